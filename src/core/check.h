@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string_view>
+
+namespace fantascope {
+
+// Prints the broken promise and its place, then aborts; a service manager restarts the show.
+[[noreturn]] void checkFailed(const char* file, int line, const char* condition, std::string_view why);
+
+}  // namespace fantascope
+
+// A promise that our own code keeps. Never for what a file, a device or a user may do: that is a Result.
+#define FANTASCOPE_CHECK(condition, why) \
+    ((condition) ? void(0) : ::fantascope::checkFailed(__FILE__, __LINE__, #condition, why))

@@ -1,0 +1,298 @@
+#include "core/config.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "core/clock.h"
+#include "core/file.h"
+
+namespace fantascope {
+
+namespace fs = std::filesystem;
+
+struct ConfigNode::Impl {
+    std::shared_ptr<const fs::path> file;
+    YAML::Node node;
+    std::string path;  // "outputs[1].warp"
+
+    ConfigNode child(const YAML::Node& value, std::string childPath) const {
+        return ConfigNode(std::make_shared<Impl>(Impl{file, value, std::move(childPath)}));
+    }
+    std::string childPath(std::string_view key) const { return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key); }
+    // What stands in the file, for a message.
+    std::string seen() const {
+        if (node.IsScalar()) return fmt::format("'{}'", node.Scalar());
+        return node.IsMap() ? "a map" : node.IsSequence() ? "a list" : "nothing";
+    }
+};
+
+namespace {
+
+std::pair<int, int> lineAndColumn(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
+
+std::string range(double low, double high, std::string_view unit) {
+    const std::string space = unit.empty() ? "" : " ";
+    return fmt::format("{} .. {}{}{}", shortest(low), shortest(high), space, unit);
+}
+
+template <class Number>
+bool parseNumber(const std::string& text, Number& value) {
+    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    const char* end = text.data() + text.size();
+    const auto [stop, failure] = std::from_chars(begin, end, value);
+    return failure == std::errc() && stop == end && begin != end;
+}
+
+}  // namespace
+
+Result<ConfigNode> ConfigNode::load(const fs::path& path) { return parse(TRY(readFile(path)), path); }
+
+Result<ConfigNode> ConfigNode::parse(const std::string& text, const fs::path& name) {
+    try {
+        auto impl = std::make_shared<Impl>(Impl{std::make_shared<const fs::path>(name), YAML::Load(text), ""});
+        if (!impl->node.IsMap()) return Error(fmt::format("{}:1:1: a map of 'key: value' lines is needed, here is {}", name.string(), impl->seen()));
+        return ConfigNode(std::move(impl));
+    } catch (const YAML::ParserException& problem) {
+        return Error(fmt::format("{}:{}:{}: not YAML: {}", name.string(), problem.mark.line + 1, problem.mark.column + 1, problem.msg));
+    }
+}
+
+const fs::path& ConfigNode::file() const { return *impl_->file; }
+
+std::string ConfigNode::place() const {
+    const auto [line, column] = lineAndColumn(impl_->node.Mark());
+    return fmt::format("{}:{}:{}", impl_->file->string(), line, column);
+}
+
+Error ConfigNode::error(const std::string& message) const {
+    return Error(fmt::format("{}: {}{}{}", place(), impl_->path, impl_->path.empty() ? "" : ": ", message));
+}
+
+bool ConfigNode::isMap() const { return impl_->node.IsMap(); }
+bool ConfigNode::isList() const { return impl_->node.IsSequence(); }
+
+Result<double> ConfigNode::number(double low, double high, std::string_view unit) const {
+    double value = 0;
+    if (!impl_->node.IsScalar() || !parseNumber(impl_->node.Scalar(), value) || !std::isfinite(value))
+        return error(fmt::format("a number in {} is needed, here is {}", range(low, high, unit), impl_->seen()));
+    if (value < low || value > high) return error(fmt::format("{} is out of range, {} is allowed", impl_->node.Scalar(), range(low, high, unit)));
+    return value;
+}
+
+Result<std::int64_t> ConfigNode::integer(std::int64_t low, std::int64_t high) const {
+    std::int64_t value = 0;
+    if (!impl_->node.IsScalar() || !parseNumber(impl_->node.Scalar(), value))
+        return error(fmt::format("a whole number in {} .. {} is needed, here is {}", low, high, impl_->seen()));
+    if (value < low || value > high) return error(fmt::format("{} is out of range, {} .. {} is allowed", value, low, high));
+    return value;
+}
+
+Result<bool> ConfigNode::boolean() const {
+    if (impl_->node.IsScalar() && impl_->node.Scalar() == "true") return true;
+    if (impl_->node.IsScalar() && impl_->node.Scalar() == "false") return false;
+    return error(fmt::format("true or false is needed, here is {}", impl_->seen()));
+}
+
+Result<std::string> ConfigNode::text() const {
+    if (!impl_->node.IsScalar() || impl_->node.Scalar().empty()) return error(fmt::format("a text is needed, here is {}", impl_->seen()));
+    return impl_->node.Scalar();
+}
+
+Result<std::size_t> ConfigNode::choice(std::initializer_list<std::string_view> names) const {
+    return choice(std::vector<std::string>(names.begin(), names.end()));
+}
+
+Result<std::size_t> ConfigNode::choice(const std::vector<std::string>& names) const {
+    const std::string word = impl_->node.IsScalar() ? impl_->node.Scalar() : "";
+    const auto found = std::find(names.begin(), names.end(), word);
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    const std::string nearest = nearestName(word, names);
+    return error(fmt::format("one of {} is needed, here is {}{}", names.empty() ? "nothing (none is declared)" : fmt::format("{}", fmt::join(names, ", ")),
+                             impl_->seen(), nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest)));
+}
+
+Result<fs::path> ConfigNode::path() const {
+    const fs::path given = TRY(text());
+    if (given.is_absolute())
+        return error(fmt::format("'{}' is absolute; name it relative to this file's folder, so that the whole folder can move", given.string()));
+    const fs::path normal = given.lexically_normal();
+    if (*normal.begin() == "..") return error(fmt::format("'{}' leaves this file's folder; copy the file into it", given.string()));
+    return impl_->file->parent_path() / normal;
+}
+
+Result<glm::dvec2> ConfigNode::vector2(double low, double high, std::string_view unit) const {
+    const auto parts = TRY(items(2, 2));
+    return glm::dvec2(TRY(parts[0].number(low, high, unit)), TRY(parts[1].number(low, high, unit)));
+}
+
+Result<glm::dvec3> ConfigNode::vector3(double low, double high, std::string_view unit) const {
+    const auto parts = TRY(items(3, 3));
+    return glm::dvec3(TRY(parts[0].number(low, high, unit)), TRY(parts[1].number(low, high, unit)), TRY(parts[2].number(low, high, unit)));
+}
+
+Result<std::vector<ConfigNode>> ConfigNode::items(std::size_t least, std::size_t most) const {
+    if (!isList()) return error(fmt::format("a list is needed, here is {}", impl_->seen()));
+    const std::size_t count = impl_->node.size();
+    if (count < least || count > most) {
+        const std::string wanted = least == most                                            ? fmt::format("exactly {}", least)
+                                   : most == std::numeric_limits<std::size_t>::max() ? fmt::format("at least {}", least)
+                                                                                     : fmt::format("{} to {}", least, most);
+        return error(fmt::format("a list of {} items is needed, here are {}", wanted, count));
+    }
+    std::vector<ConfigNode> nodes;
+    nodes.reserve(count);
+    for (const auto& item : impl_->node) nodes.push_back(impl_->child(item, fmt::format("{}[{}]", impl_->path, nodes.size())));
+    return nodes;
+}
+
+Result<std::vector<std::pair<std::string, ConfigNode>>> ConfigNode::entries() const {
+    if (!isMap()) return error(fmt::format("a map is needed, here is {}", impl_->seen()));
+    std::vector<std::pair<std::string, ConfigNode>> result;
+    std::set<std::string> names;
+    for (const auto& entry : impl_->node) {
+        const ConfigNode key = impl_->child(entry.first, impl_->path);
+        if (!entry.first.IsScalar()) return key.error("a key must be a plain word");
+        const std::string name = entry.first.Scalar();
+        if (!names.insert(name).second) return key.error(fmt::format("'{}' is given twice", name));
+        result.emplace_back(name, impl_->child(entry.second, impl_->childPath(name)));
+    }
+    return result;
+}
+
+ConfigFields::ConfigFields(ConfigNode node) : node_(std::move(node)) {
+    if (!node_.isMap()) fail({0, 0}, node_.error(fmt::format("a map of 'key: value' lines is needed, here is {}", node_.impl_->seen())));
+}
+
+void ConfigFields::fail(std::pair<int, int> place, Error error) { failures_.emplace_back(place, std::move(error)); }
+
+void ConfigFields::visit(std::string_view key, const std::function<Result<void>(const ConfigNode&)>& use) {
+    known_.emplace_back(key);
+    const bool mayBeAbsent = std::exchange(nextOptional_, false);
+    if (!node_.isMap()) return;
+    const YAML::Node value = node_.impl_->node[std::string(key)];
+    if (!value.IsDefined()) {
+        if (!mayBeAbsent) fail({std::numeric_limits<int>::max(), 0}, node_.error(fmt::format("'{}' is missing", key)));
+        return;
+    }
+    const ConfigNode child = node_.impl_->child(value, node_.impl_->childPath(key));
+    if (auto used = use(child); !used) fail(lineAndColumn(value.Mark()), used.error());
+}
+
+void ConfigFields::number(std::string_view key, double& target, double low, double high, std::string_view unit) {
+    read(key, target, [&](const ConfigNode& node) { return node.number(low, high, unit); });
+}
+
+void ConfigFields::angle(std::string_view key, double& target, double lowDegrees, double highDegrees) {
+    read(key, target, [&](const ConfigNode& node) -> Result<double> {
+        return TRY(node.number(lowDegrees, highDegrees, "degrees")) * std::numbers::pi / 180;
+    });
+}
+
+void ConfigFields::time(std::string_view key, std::chrono::nanoseconds& target, double lowSeconds, double highSeconds) {
+    read(key, target, [&](const ConfigNode& node) -> Result<std::chrono::nanoseconds> {
+        return fromSeconds(TRY(node.number(lowSeconds, highSeconds, "s")));
+    });
+}
+
+void ConfigFields::boolean(std::string_view key, bool& target) {
+    read(key, target, [](const ConfigNode& node) { return node.boolean(); });
+}
+
+void ConfigFields::text(std::string_view key, std::string& target) {
+    read(key, target, [](const ConfigNode& node) { return node.text(); });
+}
+
+void ConfigFields::path(std::string_view key, fs::path& target) {
+    read(key, target, [](const ConfigNode& node) { return node.path(); });
+}
+
+void ConfigFields::vector2(std::string_view key, glm::dvec2& target, double low, double high, std::string_view unit) {
+    read(key, target, [&](const ConfigNode& node) { return node.vector2(low, high, unit); });
+}
+
+void ConfigFields::vector3(std::string_view key, glm::dvec3& target, double low, double high, std::string_view unit) {
+    read(key, target, [&](const ConfigNode& node) { return node.vector3(low, high, unit); });
+}
+
+void ConfigFields::header(std::string_view kind, std::int64_t newestVersion) {
+    visit("fantascope", [&](const ConfigNode& node) -> Result<void> {
+        const std::string found = TRY(node.text());
+        if (found != kind) return node.error(fmt::format("this is a {} file, a {} file is needed here", found, kind));
+        return {};
+    });
+    visit("version", [&](const ConfigNode& node) -> Result<void> {
+        const std::int64_t version = TRY(node.integer(1, std::numeric_limits<std::int64_t>::max()));
+        if (version > newestVersion)
+            return node.error(fmt::format("version {} was written by a newer program, this one reads up to {}; update it", version, newestVersion));
+        return {};
+    });
+}
+
+Result<void> ConfigFields::finish() {
+    if (node_.isMap()) {
+        std::set<std::string> seen;
+        for (const auto& entry : node_.impl_->node) {
+            const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
+            const ConfigNode at = node_.impl_->child(entry.first, node_.impl_->childPath(key));
+            const auto place = lineAndColumn(entry.first.Mark());
+            if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
+                const std::string nearest = nearestName(key, known_);
+                const std::string advice =
+                    nearest.empty() ? fmt::format("known here: {}", fmt::join(known_, ", ")) : fmt::format("did you mean '{}'?", nearest);
+                fail(place, at.error(fmt::format("unknown key ({})", advice)));
+            } else if (!seen.insert(key).second) {
+                fail(place, at.error("this key is given twice"));
+            }
+        }
+    }
+    const auto first = std::min_element(failures_.begin(), failures_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    if (first != failures_.end()) return first->second;
+    return {};
+}
+
+std::string nearestName(std::string_view word, const std::vector<std::string>& known) {
+    const auto distance = [](std::string_view a, std::string_view b) {  // Levenshtein, one row at a time
+        std::vector<std::size_t> row(b.size() + 1);
+        for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            std::size_t diagonal = row[0];
+            row[0] = i + 1;
+            for (std::size_t j = 0; j < b.size(); ++j) {
+                const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
+                diagonal = row[j + 1];
+                row[j + 1] = std::min({substituted, row[j] + 1, diagonal + 1});
+            }
+        }
+        return row[b.size()];
+    };
+    std::string nearest;
+    std::size_t best = std::numeric_limits<std::size_t>::max();
+    for (const std::string& name : known) {
+        const std::size_t d = distance(word, name);
+        if (d < best && d <= std::max<std::size_t>(1, std::max(word.size(), name.size()) / 3)) {
+            best = d;
+            nearest = name;
+        }
+    }
+    return nearest;
+}
+
+std::string shortest(double value) {
+    char buffer[32];
+    const auto [end, failure] = std::to_chars(buffer, buffer + sizeof buffer, value);
+    return {buffer, end};
+}
+
+std::string quoted(std::string_view text) {
+    YAML::Emitter emitter;
+    emitter << std::string(text);
+    return emitter.c_str();
+}
+
+}  // namespace fantascope

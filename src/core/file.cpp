@@ -1,0 +1,53 @@
+#include "core/file.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace fantascope {
+
+namespace fs = std::filesystem;
+
+Result<std::string> readFile(const fs::path& path) {
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) return Error(fmt::format("{}: is a folder, a file is needed", path.string()));
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) return Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+    std::ostringstream bytes;
+    bytes << stream.rdbuf();
+    if (stream.bad()) return Error(fmt::format("{}: reading failed: {}", path.string(), std::strerror(errno)));
+    return std::move(bytes).str();
+}
+
+Result<void> writeFile(const fs::path& path, std::string_view bytes) {
+    const auto refused = [&](int reason) { return Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(reason))); };
+    std::error_code failure;
+    if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
+    if (failure) return refused(failure.value());
+
+    std::string aside = path.string() + ".XXXXXX";
+    const int descriptor = ::mkstemp(aside.data());
+    if (descriptor < 0) return refused(errno);
+    const auto abandon = [&](int reason) {
+        ::close(descriptor);
+        ::unlink(aside.c_str());
+        return refused(reason);
+    };
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) return abandon(errno);
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    if (::fchmod(descriptor, 0644) != 0 || ::fsync(descriptor) != 0) return abandon(errno);
+    if (::rename(aside.c_str(), path.c_str()) != 0) return abandon(errno);
+    ::close(descriptor);
+    return {};
+}
+
+}  // namespace fantascope

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace fantascope {
+
+// The whole file. Error: names the file and why it cannot be read (missing, a folder, no permission).
+Result<std::string> readFile(const std::filesystem::path& path);
+
+// Writes aside in the same folder, syncs and renames, so that whoever reads `path` sees the old bytes or all of the new ones, and a
+// failure leaves nothing behind. Makes missing folders. Error: names the file and the reason.
+Result<void> writeFile(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace fantascope

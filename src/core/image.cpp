@@ -1,0 +1,128 @@
+#include "core/image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/file.h"
+
+namespace fantascope {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kLargestSide = 16384;
+
+// OpenCV's view of an image's own memory.
+cv::Mat view(const GreyImage& image) { return {image.height(), image.width(), CV_32FC1, const_cast<float*>(image.pixels().data())}; }
+cv::Mat view(const RgbaImage& image) { return {image.height(), image.width(), CV_8UC4, const_cast<Rgba8*>(image.pixels().data())}; }
+
+// JPEG decoders fill what is missing with grey and call it a warning; a picture that ends early must be refused.
+bool endsEarly(std::string_view bytes) {
+    if (bytes.starts_with("\xff\xd8")) return bytes.rfind("\xff\xd9") == std::string_view::npos;
+    if (bytes.starts_with("\x89PNG")) return bytes.find("IEND") == std::string_view::npos;
+    return false;
+}
+
+Result<cv::Mat> decode(const fs::path& path) {
+    const std::string bytes = TRY(readFile(path));
+    const auto refused = [&](std::string_view why) {
+        return Error(fmt::format("{}: {}; save it again as a PNG, 8 or 16 bits a channel", path.string(), why));
+    };
+    if (bytes.empty()) return refused("the file is empty");
+    if (endsEarly(bytes)) return refused("the picture is truncated");
+    cv::Mat picture;
+    try {
+        picture = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data())), cv::IMREAD_UNCHANGED);
+    } catch (const cv::Exception&) {  // reported below like any other picture that cannot be decoded
+        picture.release();
+    }
+    if (picture.empty()) return refused("not a picture that can be read, or a damaged one");
+    if (std::max(picture.cols, picture.rows) > kLargestSide) return refused(fmt::format("larger than {} pixels", kLargestSide));
+    if (picture.channels() == 2 || picture.channels() > 4) return refused(fmt::format("has {} channels", picture.channels()));
+    const int depth = picture.depth();
+    if (depth == CV_8U) picture.convertTo(picture, CV_32F, 1.0 / 255);
+    else if (depth == CV_16U) picture.convertTo(picture, CV_32F, 1.0 / 65535);
+    else picture.convertTo(picture, CV_32F);
+    return picture;
+}
+
+std::uint8_t toByte(float value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f)); }
+
+Result<void> encode(const fs::path& path, const cv::Mat& picture) {
+    FANTASCOPE_CHECK(!picture.empty(), "an empty image was to be written");
+    std::vector<std::uint8_t> bytes;
+    cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6});
+    return writeFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+template <class Pixel>
+Image<Pixel> resizedImage(const Image<Pixel>& image, int width, int height) {
+    Image<Pixel> result(width, height);
+    cv::Mat target = view(result);
+    const bool shrinks = width < image.width() || height < image.height();
+    cv::resize(view(image), target, target.size(), 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+    return result;
+}
+
+}  // namespace
+
+float linearFromSrgb(float stored) { return stored <= 0.04045f ? stored / 12.92f : std::pow((stored + 0.055f) / 1.055f, 2.4f); }
+
+float srgbFromLinear(float linear) { return linear <= 0.0031308f ? linear * 12.92f : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f; }
+
+Result<GreyImage> readGrey(const fs::path& path) {
+    const cv::Mat picture = TRY(decode(path));
+    GreyImage image(picture.cols, picture.rows);
+    const int channels = picture.channels();
+    for (int y = 0; y < picture.rows; ++y) {
+        const float* pixel = picture.ptr<float>(y);
+        for (int x = 0; x < picture.cols; ++x, pixel += channels) {
+            float value = channels == 1 ? pixel[0] : 0.114f * pixel[0] + 0.587f * pixel[1] + 0.299f * pixel[2];
+            if (channels == 4) value *= pixel[3];
+            image.at(x, y) = std::clamp(value, 0.0f, 1.0f);
+        }
+    }
+    return image;
+}
+
+Result<RgbaImage> readRgba(const fs::path& path) {
+    const cv::Mat picture = TRY(decode(path));
+    RgbaImage image(picture.cols, picture.rows);
+    const int channels = picture.channels();
+    for (int y = 0; y < picture.rows; ++y) {
+        const float* pixel = picture.ptr<float>(y);
+        for (int x = 0; x < picture.cols; ++x, pixel += channels) {
+            const auto channel = [&](int index) { return toByte(pixel[channels == 1 ? 0 : index]); };
+            image.at(x, y) = {channel(2), channel(1), channel(0), channels == 4 ? toByte(pixel[3]) : std::uint8_t{255}};
+        }
+    }
+    return image;
+}
+
+Result<void> writePng(const fs::path& path, const GreyImage& image) {
+    Image<std::uint8_t> bytes(image.width(), image.height());
+    std::transform(image.pixels().begin(), image.pixels().end(), bytes.pixels().begin(), toByte);
+    return encode(path, {bytes.height(), bytes.width(), CV_8UC1, bytes.pixels().data()});
+}
+
+Result<void> writePng(const fs::path& path, const RgbaImage& image) {
+    cv::Mat swapped;
+    cv::cvtColor(view(image), swapped, cv::COLOR_RGBA2BGRA);
+    return encode(path, swapped);
+}
+
+GreyImage resized(const GreyImage& image, int width, int height) { return resizedImage(image, width, height); }
+RgbaImage resized(const RgbaImage& image, int width, int height) { return resizedImage(image, width, height); }
+
+GreyImage blurred(const GreyImage& image, double sigma) {
+    GreyImage result(image.width(), image.height());
+    cv::Mat target = view(result);
+    cv::GaussianBlur(view(image), target, {}, sigma, sigma, cv::BORDER_REPLICATE);
+    return result;
+}
+
+}  // namespace fantascope

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/result.h"
+
+namespace fantascope {
+
+// Triangles in space, right-handed, y up; each triangle's corners anticlockwise as seen from outside.
+struct TriangleMesh {
+    std::vector<glm::vec3> vertices;
+    std::vector<glm::uvec3> triangles;  // indices into vertices
+};
+
+// All triangle meshes of an FBX, OBJ, glTF, PLY or STL file as one, node transforms applied, in the file's own units; polygons are cut into
+// triangles, equal vertices joined, triangles with no area dropped. Error: names the file: missing, not a mesh, no triangle left, or a
+// coordinate that is not finite.
+Result<TriangleMesh> readMesh(const std::filesystem::path& path);
+
+}  // namespace fantascope

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/clock.h"
+#include "device/dmx_port.h"
+#include "device/status.h"
+
+namespace fantascope {
+
+// One frame from somebody else's desk.
+struct DmxInput {
+    std::array<std::uint8_t, kDmxSlots> slots{};
+    std::string source;  // the sender, stable while it sends: a CID, an address, a widget's serial number
+    int priority = 100;  // 0 .. 200 as in E1.31; 100 where the protocol has none
+    Time arrived{};      // on the clock that open() was handed
+};
+
+// One DMX512 universe coming in. Thread: bound to the lighting thread.
+class DmxSource : public Device {
+public:
+    // The next frame that arrived and was not taken yet, oldest first; several senders may alternate. Never waits. Nothing when there is
+    // none, also when the device is lost: the absence of frames is what a merge times out on. At least the newest frame of each sender is
+    // kept; older ones may be dropped when nobody takes them.
+    virtual std::optional<DmxInput> receive() = 0;
+};
+
+}  // namespace fantascope

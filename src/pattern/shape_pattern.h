@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/mat3x2.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "core/mesh.h"
+#include "core/result.h"
+#include "pattern/motion_settings.h"
+
+namespace fantascope::pattern {
+
+// A mesh to be copied into instances. Its geometric centre is the origin and its farthest vertex at distance 1; x right, y up, z to the viewer.
+struct ElementalShape {
+    std::string name;  // "triangle", or the file as the pattern names it: "sculpture.obj"
+    TriangleMesh mesh;
+};
+
+// One copy of an elemental shape in the picture plane.
+struct ShapeInstance {
+    std::uint32_t id = 0;      // stable for the life of the pattern, never given twice; its random streams derive from (seed, id, axis)
+    std::uint32_t shape = 0;   // index into ShapePattern::shapes
+    std::uint32_t group = 0;   // its movement group, below ShapePattern::groups
+    glm::dvec2 centre{0.0};    // canvas units: [0, aspect] x [0, 1], y down
+    double size = 0;           // canvas units: the radius of the sphere around the shape
+    glm::dvec3 rotation{0.0};  // radians about x, y, z in the shape's frame, see rotationXyz
+    glm::vec3 colour{1.0f};    // linear light, 0..1
+};
+
+// Where an instance is at one moment: its rest values plus its movement.
+struct InstancePose {
+    glm::dvec2 centre{0.0};
+    double size = 0;
+    glm::dvec3 rotation{0.0};
+};
+
+// How a guide's stored values become linear light.
+enum class GuideTransfer { Srgb, Linear };
+
+// A shape pattern: everything that is needed to draw it at any time. Value type; thread-safe to read.
+struct ShapePattern {
+    std::filesystem::path guide;  // the drawing it reads as, absolute or relative to the working directory; for comparisons
+    GuideTransfer guideTransfer = GuideTransfer::Srgb;
+    int width = 0, height = 0;  // pixels in which it was compared with the guide; the canvas's aspect is width / height
+    std::uint64_t seed = 0;
+    std::uint32_t groups = 1;
+    std::vector<ElementalShape> shapes;
+    std::vector<ShapeInstance> instances;
+    MotionSettings motion;
+
+    double aspect() const { return static_cast<double>(width) / height; }
+    std::size_t triangleCount() const;  // of all instances
+};
+
+// Rotation, size and the turned-over y of an orthographic view: canvas point = centre + (m * v).xy, and (m * v).z grows towards the viewer.
+glm::dmat3 canvasFromShape(const InstancePose& pose);
+
+// *.pattern.yaml, strict; its shape files and its guide stand in the same folder or below it. Error: names file, line, column, key.
+Result<ShapePattern> readPattern(const std::filesystem::path& file);
+// Written aside and renamed; the same pattern gives the same bytes, whatever the folder. Shapes and guide must lie in the file's folder
+// or below it (copied there by the caller).
+Result<void> writePattern(const std::filesystem::path& file, const ShapePattern& pattern);
+
+}  // namespace fantascope::pattern
