@@ -1,0 +1,32 @@
+#include "drivers/site/plug.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace fantascope::site {
+namespace {
+
+constexpr const char* kAdvice = "unplugged in the simulated site; plug it in again";
+
+}  // namespace
+
+Plug::Plug(World& world, std::string device, LossAction onLoss)
+    : world_(world), device_(std::move(device)), onLoss_(onLoss), before_(world.unpluggings(device_)), noticed_(before_) {}
+
+DeviceStatus Plug::status() const {
+    DeviceStatus status;
+    status.name = device_;
+    status.driver = "simulated";
+    status.state = world_.plugged(device_) ? DeviceState::Running : DeviceState::Absent;
+    status.onLoss = onLoss_;
+    if (status.state != DeviceState::Running) status.detail = kAdvice;
+    status.losses = world_.unpluggings(device_) - before_;
+    return status;
+}
+
+Error Plug::absent() const { return Error(fmt::format("{} is absent: {}", device_, kAdvice)); }
+
+bool Plug::lostAgain() { return std::exchange(noticed_, world_.unpluggings(device_)) != noticed_; }
+
+}  // namespace fantascope::site
