@@ -19,6 +19,7 @@ public:
     Plug(World& world, std::string device, LossAction onLoss);
 
     const std::string& device() const { return device_; }
+    bool in() const { return world_.plugged(device_); }
     DeviceStatus status() const;
     // The error of a call while the device is not Running.
     Error absent() const;
