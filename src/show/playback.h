@@ -32,17 +32,17 @@ std::string_view nameOf(Outcome outcome);
 // Plays a cue list: what is seen at any moment of show time, as a pure function of that time and of the inputs so far. Asking
 // changes nothing, so the same inputs give the same state in whatever order the moments are asked for.
 //
-// - A cue that is entered fades from what is seen at that moment, be it in the middle of another fade, to its look, in its
-// `fade`.
-//   Opacities (matched by source) and levels move linearly, and both are linear light. Relays take their new state at once.
-// - A cue with `follow` is left for the next one by itself, in that time after it was entered in whatever way, unless another
-// input
-//   comes first.
-// - GO is ignored until `goInterval` after a cue was entered, be it by hand or by itself, so that a trembling or late press skips
+// - A cue that is entered fades, in its `fade`, from what is seen at that moment (the middle of another fade, perhaps) to its
+// look:
+//   opacities, matched by source, and levels move linearly, both being linear light. Relays take their new state at once.
+// - A cue with `follow` is left for the next one by itself, that time after it was entered in whatever way, unless an input
+// enters
+//   another one first.
+// - GO is ignored until `goInterval` after a cue was entered, by hand or by itself, so that a trembling or late press skips
 // nothing.
-// - Blackout dims pictures and levels to nothing in `blackoutFade`, over whatever is running, and back when it is given a second
-// time;
-//   the cues go on underneath. Relays do not heed it: street lamps are not the operator's light.
+// - Blackout dims pictures and levels to nothing in `blackoutFade`, over whatever is running; a second one gives them back. The
+// cues
+//   go on underneath. Relays do not heed it: a dark picture is no reason for dark streets.
 //
 // Thread: stateAt() is reentrant; apply() is bound to one thread at a time and may not run beside it.
 class Playback {
@@ -50,12 +50,10 @@ public:
     explicit Playback(CueList list);
 
     // Takes one input, or says why not. Inputs take effect in the order in which they are given: one whose time is before that of
-    // its forerunner takes effect at its forerunner's time. What was answered for later moments than this input's may change; for
-    // earlier ones it may not.
+    // its forerunner takes effect at its forerunner's time. It changes what is seen from then on and nothing before.
     Outcome apply(Input input);
 
-    // What is seen at `time`, which may be any. Binary searches and one mix; no allocation once `out` has been through here
-    // before.
+    // What is seen at `time`, which may be any. Binary searches and one mix; it allocates only when it sees `out` the first time.
     void stateAt(Time time, ShowState& out) const;
 
 private:

@@ -17,8 +17,7 @@
 
 namespace fantascope::show {
 
-// A device as the site file declares it: the registry's name of its driver and the driver's own keys, which only the driver
-// reads.
+// A device as the site file declares it: the registry's name of its driver and the driver's own keys, which the driver reads.
 struct DeviceConfig {
     std::string driver;
     ConfigNode options;  // the whole map, `driver:` included
@@ -47,15 +46,13 @@ struct NominalCamera {
 struct Output {
     std::string name;
     DeviceConfig display;
-    glm::ivec2 size{1920, 1080};  // pixels of the projector
-    double refreshRate = 60;      // Hz
-    std::array<glm::dvec2, 4>
-        corners;  // where the canvas's corners go, in projector pixels, from the canvas's top left clockwise
+    glm::ivec2 size{1920, 1080};        // pixels of the projector
+    double refreshRate = 60;            // Hz
+    std::array<glm::dvec2, 4> corners;  // where the canvas's corners go, in projector pixels, clockwise from its top left
     std::optional<NominalProjector> projector;
     std::optional<Surface> surface;
 
-    // The canvas [0, canvasAspect] x [0, 1] onto `corners`, which must be those of a convex quadrilateral, as readSite gives
-    // them.
+    // The canvas [0, canvasAspect] x [0, 1] onto `corners`, which must make a convex quadrilateral, as those of readSite do.
     Homography projectorFromCanvas(double canvasAspect) const;
 };
 
@@ -80,8 +77,7 @@ struct Relay {
 
 enum class Button { Go, Back, Blackout };
 
-// The place as the technician wrote it down: the nominal site. Read at start, constant afterwards. docs/site-format.md describes
-// the file.
+// The place as the technician wrote it down: the nominal site. Read at start, constant afterwards. See docs/site-format.md.
 struct Site {
     std::filesystem::path file;
     std::vector<Output> outputs;
