@@ -11,27 +11,27 @@
 namespace fantascope::drivers {
 namespace {
 
+// A driver's own open() takes what the port's open function below takes.
 template <class Open>
 struct Driver {
     std::string_view name;
     Open* open;
 };
-template <class Port, class... Arguments>
-using Table =
-    std::vector<Driver<Result<std::unique_ptr<Port>>(const ConfigNode& options, Arguments..., const Surroundings& around)>>;
+template <class Open>
+using Table = std::vector<Driver<Open>>;
 
 // Every driver of the project.
-const Table<DisplaySink, const DisplayRequest&> kDisplays = {};
-const Table<DmxPort, int> kDmxPorts = {{"simulated", &SimulatedDmxPort::open}};
-const Table<DmxSource, int> kDmxSources = {{"simulated", &SimulatedDmxSource::open}};
-const Table<RelayBank, const std::vector<bool>&> kRelayBanks = {{"simulated", &SimulatedRelayBank::open}};
-const Table<InputBank, std::size_t> kInputBanks = {{"simulated", &SimulatedInputBank::open}};
-const Table<CueController> kCueControllers = {{"simulated", &SimulatedCueController::open}};
-const Table<CameraSource> kCameras = {};
+const Table<decltype(openDisplay)> kDisplays = {};
+const Table<decltype(openDmxPort)> kDmxPorts = {{"simulated", &SimulatedDmxPort::open}};
+const Table<decltype(openDmxSource)> kDmxSources = {{"simulated", &SimulatedDmxSource::open}};
+const Table<decltype(openRelayBank)> kRelayBanks = {{"simulated", &SimulatedRelayBank::open}};
+const Table<decltype(openInputBank)> kInputBanks = {{"simulated", &SimulatedInputBank::open}};
+const Table<decltype(openCueController)> kCueControllers = {{"simulated", &SimulatedCueController::open}};
+const Table<decltype(openCamera)> kCameras = {};
 
 // What opens the driver that the map's `driver` key names.
 template <class Open>
-Result<Open*> chosenFrom(const std::vector<Driver<Open>>& table, const ConfigNode& options) {
+Result<Open*> chosenFrom(const Table<Open>& table, const ConfigNode& options) {
     std::vector<std::string> names;
     for (const auto& driver : table) names.emplace_back(driver.name);
     for (const auto& [key, node] : TRY(options.entries()))
