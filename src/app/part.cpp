@@ -18,7 +18,7 @@ void setThreadNiceness(int niceness) {
 PartThreads::PartThreads(Clock& clock, std::vector<Part> parts) {
     for (Part& part : parts) {
         threads_.emplace_back([&clock, part = std::move(part)](const std::stop_token& stop) {
-            if (part.niceness != 0) setThreadNiceness(part.niceness);
+            setThreadNiceness(part.niceness);  // a new thread has that of the one that made it
             for (std::int64_t next = 0; !stop.stop_requested();) {
                 clock.sleepUntil(part.phase + tickTime(next, part.rate));
                 next = std::max(next, tickAt(clock.now() - part.phase, part.rate));

@@ -64,7 +64,7 @@ void Recording::lighting(Time showTime, int universe, std::span<const std::uint8
     fmt::format_to(std::back_inserter(dmx_), "{:.6f},{},{}\n", seconds(showTime), universe, fmt::join(slots, " "));
 }
 
-void Recording::relays(Time showTime, std::span<const bool> states) {
+void Recording::relays(Time showTime, const std::vector<bool>& states) {
     relays_ += fmt::format("{:.6f},", seconds(showTime));
     for (const bool on : states) relays_ += on ? '1' : '0';
     relays_ += '\n';

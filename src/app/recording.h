@@ -37,7 +37,7 @@ public:
     // `picture` was shown on `output` from `refresh` on. Refreshes of one output rise; one that was seen already is left out.
     Result<void> frame(std::size_t output, const RgbaImage& picture, std::int64_t refresh, Time showTime);
     void lighting(Time showTime, int universe, std::span<const std::uint8_t> slots);
-    void relays(Time showTime, std::span<const bool> states);
+    void relays(Time showTime, const std::vector<bool>& states);
     // The newest camera picture of a cue; the last one given for a cue goes onto the contact sheet.
     void cue(int index, const std::string& label, const RgbaImage& picture);
 

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "app/run_report.h"
 #include "core/file.h"
 
 namespace fantascope::app {
@@ -66,16 +65,6 @@ TEST_F(RecordingTest, another_kind_of_file_is_refused_with_advice) {
     const auto recording = Recording::open(folder_ / "all.avi", {});
     ASSERT_FALSE(recording);
     EXPECT_THAT(recording.error().message(), HasSubstr("ends in .mp4"));
-}
-
-TEST(Quantiles, are_those_of_the_nearest_rank) {
-    std::vector<double> values;
-    for (int i = 100; i >= 1; --i) values.push_back(i);
-    const Quantiles quantiles = quantilesOf(values);
-    EXPECT_EQ(quantiles.p50, 50);
-    EXPECT_EQ(quantiles.p99, 99);
-    EXPECT_EQ(quantiles.max, 100);
-    EXPECT_EQ(quantilesOf({}).count, 0u);
 }
 
 }  // namespace
