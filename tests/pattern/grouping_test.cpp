@@ -109,10 +109,6 @@ TEST(FuzzyCMeans, blurs_its_clusters_with_m) {
             EXPECT_GT(sharpest, 0.99);
         }
     }
-    // So large that membership^m is nothing at all: no centre has any weight, and each stays where it is.
-    const auto blurred = clustered(points, {.clusters = 3, .fuzziness = 2000});
-    expectRowsSumToOne(blurred);
-    for (const glm::dvec2& centre : blurred.centres) EXPECT_TRUE(std::isfinite(centre.x) && std::isfinite(centre.y));
 }
 
 // Example failure: a distance of zero divides, and every number turns into NaN.
@@ -125,6 +121,15 @@ TEST(FuzzyCMeans, gives_a_point_on_a_centre_to_that_centre_alone) {
     for (std::size_t i = 0; i < points.size(); ++i)
         EXPECT_THAT(clusters.membershipsOf(i), testing::Contains(1.0)) << "point " << i;
     EXPECT_EQ(clusters.summary.objective.back(), 0);
+}
+
+// Nearly sharp clusters can lose their last point to their neighbours, here after some of the possible starts; a centre without
+// any weight stays where it is. Example failure: 0 / 0.
+TEST(FuzzyCMeans, keeps_a_centre_to_which_nothing_belongs) {
+    const std::vector<glm::dvec2> points{{7, 6}, {6, 5}, {5, 0}, {10, 0}, {6, 1}, {8, 5}, {7, 6}};
+    for (std::uint64_t seed = 1; seed <= 200; ++seed)
+        for (const glm::dvec2& centre : clustered(points, {.clusters = 3, .fuzziness = 1.0002}, seed).centres)
+            ASSERT_TRUE(std::isfinite(centre.x) && std::isfinite(centre.y)) << "seed " << seed;
 }
 
 TEST(FuzzyCMeans, puts_everything_into_one_cluster_if_there_is_one) {
