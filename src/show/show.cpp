@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace fantascope::show {
 
@@ -24,6 +25,7 @@ constexpr double kLongestFollow = 86400;
 template <class Range>
 std::vector<std::string> namesOf(const Range& things) {
     std::vector<std::string> names;
+    names.reserve(things.size());
     for (const auto& thing : things) names.push_back(thing.name);
     return names;
 }
@@ -91,7 +93,10 @@ Result<bool> readSwitch(const ConfigNode& node) { return TRY(node.choice({"off",
 template <class Wish, class Read>
 Result<std::vector<Named<Wish>>> readNamed(const ConfigNode& node, Read read) {
     std::vector<Named<Wish>> wishes;
-    for (const auto& [name, value] : TRY(node.entries())) wishes.push_back({name, value, TRY(read(value))});
+    for (const auto& [name, value] : TRY(node.entries())) {
+        Wish wish = TRY(read(value));
+        wishes.push_back({name, value, std::move(wish)});
+    }
     return wishes;
 }
 
