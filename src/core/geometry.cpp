@@ -67,7 +67,7 @@ Result<Pose> Pose::lookingAt(glm::dvec3 position, glm::dvec3 target, glm::dvec3 
     if (glm::length(target - position) < 1e-9) return Error("looks at the point where it stands; move the target or the position");
     const glm::dvec3 forward = glm::normalize(target - position);
     const glm::dvec3 right = glm::cross(forward, up);
-    if (glm::length(right) < 1e-9 * glm::length(up)) return Error("looks along its own up direction; give another 'up'");
+    if (glm::length(right) <= 1e-9 * glm::length(up)) return Error("looks along its own up direction; give another 'up'");
     const glm::dvec3 unitRight = glm::normalize(right);
     return Pose{glm::dmat3(unitRight, glm::cross(forward, unitRight), forward), position};
 }
