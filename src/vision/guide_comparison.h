@@ -5,8 +5,8 @@
 #include "core/geometry.h"
 #include "core/image.h"
 
+#include <memory>
 #include <optional>
-#include <vector>
 
 namespace fantascope::vision {
 
@@ -15,8 +15,9 @@ namespace fantascope::vision {
 struct NominalView {
     CameraModel camera;
     CameraModel projector;
-    Homography projectorFromCanvas;  // of the canvas [0, aspect] x [0, 1]
-    Plane surface;                   // what the picture falls on
+    double canvasAspect = 16.0 / 9;  // the canvas is [0, canvasAspect] x [0, 1]
+    Homography projectorFromCanvas;
+    Plane surface;  // what the picture falls on
 };
 
 // z_camera: how far the picture on the wall, as the camera sees it, is from the guide drawing; 0 is the guide itself. The
@@ -31,6 +32,10 @@ public:
     // z in [0, 1] of one camera frame (stored sRGB values, camera.size pixels), or nothing if the frame shows no picture to
     // compare: too dark, too flat, or the camera does not see most of the output. Thread: reentrant.
     std::optional<double> compare(const RgbaImage& frame) const;
+
+private:
+    struct Tables;
+    std::shared_ptr<const Tables> tables_;
 };
 
 }  // namespace fantascope::vision

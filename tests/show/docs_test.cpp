@@ -7,8 +7,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <functional>
-#include <regex>
 #include <set>
 
 namespace fantascope::show {
@@ -21,53 +21,51 @@ std::string documentOf(const std::string& name) {
     return readFile(std::filesystem::path(FANTASCOPE_SOURCE_DIR) / "docs" / name).value();
 }
 
-// The fenced YAML blocks of a document.
-std::vector<std::string> examplesIn(const std::string& document) {
-    static const std::string kOpen = "```yaml\n", kClose = "```";
-    std::vector<std::string> examples;
-    for (std::size_t at = 0; (at = document.find(kOpen, at)) != std::string::npos;) {
-        const std::size_t begin = at + kOpen.size(), end = document.find(kClose, begin);
-        examples.push_back(document.substr(begin, end - begin));
-        at = end;
+// What stands between every two marks: between("`k1`, `k2`", "`", "`") is k1, k2.
+std::vector<std::string> between(std::string_view text, std::string_view open, std::string_view close) {
+    std::vector<std::string> found;
+    for (std::size_t at = 0; (at = text.find(open, at)) != std::string_view::npos;) {
+        const std::size_t begin = at + open.size(), end = std::min(text.find(close, begin), text.size());
+        found.emplace_back(text.substr(begin, end - begin));
+        at = std::min(end + close.size(), text.size());
     }
-    return examples;
+    return found;
 }
+
+// The fenced YAML blocks of a document.
+std::vector<std::string> examplesIn(const std::string& document) { return between(document, "```yaml\n", "```"); }
 
 // The words in code type in the first column of the tables.
 std::set<std::string> documentedKeys(const std::string& document) {
-    static const std::regex kRow(R"(\n\|((?: `\w+`,?)+) \|)"), kWord(R"(`(\w+)`)");
     std::set<std::string> keys;
-    for (std::sregex_iterator row(document.begin(), document.end(), kRow), end; row != end; ++row) {
-        const std::string cell = (*row)[1];
-        for (std::sregex_iterator word(cell.begin(), cell.end(), kWord); word != end; ++word) keys.insert((*word)[1]);
-    }
+    for (const std::string& cell : between(document, "\n|", " |"))
+        for (const std::string& key : between(cell, "`", "`")) keys.insert(key);
     return keys;
 }
 
 // Everything that the reader of a file knows: an unknown key is put into each map of an example in turn, and the refusal lists
 // the known ones.
 std::set<std::string> knownKeys(const std::string& example, const std::function<std::string(const std::string&)>& refusal) {
-    static const std::string kUnknown = "unknown_to_everybody";
-    static const std::regex kBlockKey(R"((^|\n)( *)(- )?\w[\w-]*:)"), kFlowMap(R"(\{(?=\w))"), kList(R"(known here: ([\w, ]+))"),
-        kWord(R"(\w+)");
+    static const std::string kUnknown = "unknown_to_everybody: 1";
     std::set<std::string> keys;
     const auto ask = [&](const std::string& text) {
-        const std::string message = refusal(text);
-        std::smatch list;
-        if (!std::regex_search(message, list, kList)) return;
-        const std::string words = list[1];
-        for (std::sregex_iterator word(words.begin(), words.end(), kWord), end; word != end; ++word) keys.insert(word->str());
+        for (const std::string& list : between(refusal(text), "known here: ", ")"))
+            for (const std::string& key : between(" " + list + ",", " ", ",")) keys.insert(key);
     };
-    for (std::sregex_iterator at(example.begin(), example.end(), kBlockKey), end; at != end; ++at) {
-        const std::string indent = (*at)[2], dash = (*at)[3];
-        const auto place = static_cast<std::size_t>(at->position(0) + (*at)[1].length());
-        // Before a key at its own depth; an item's first key moves to the line below.
+    for (std::size_t at = 0; at < example.size(); ++at) {
+        const bool atLine = at == 0 || example[at - 1] == '\n',
+                   inFlowMap = at > 0 && example[at - 1] == '{' && example[at] != '}';
         std::string text = example;
-        if (!dash.empty()) text.replace(place + indent.size(), dash.size(), std::string(dash.size(), ' '));
-        ask(text.insert(place, indent + dash + kUnknown + ": 1\n"));
+        if (atLine) {  // before the line's key, at its depth; an item's first key moves to the line below
+            const std::size_t key = example.find_first_not_of(" -", at);
+            const std::string lead = example.substr(at, key - at);
+            std::replace(text.begin() + static_cast<std::ptrdiff_t>(at), text.begin() + static_cast<std::ptrdiff_t>(key), '-',
+                         ' ');
+            ask(text.insert(at, lead + kUnknown + "\n"));
+        } else if (inFlowMap) {
+            ask(text.insert(at, kUnknown + ", "));
+        }
     }
-    for (std::sregex_iterator at(example.begin(), example.end(), kFlowMap), end; at != end; ++at)
-        ask(std::string(example).insert(static_cast<std::size_t>(at->position() + 1), kUnknown + ": 1, "));
     return keys;
 }
 
