@@ -45,8 +45,8 @@ private:
     struct Output {
         const show::Output& site;
         DisplaySink& display;
-        std::unique_ptr<render::OutputRenderer> renderer;  // made when the display is first there
-        render::FrameTap tap;
+        std::unique_ptr<render::OutputRenderer> renderer{};  // made when the display is first there
+        render::FrameTap tap{};
         bool drawn = false;  // in the frame that is being made
     };
     Result<void> draw(Output& output, std::size_t index, Time showTime, OutputReport& report);

@@ -17,7 +17,7 @@ struct OutputReport {
     std::string name;
     std::int64_t frames = 0;      // shown
     std::int64_t lateFrames = 0;  // refreshes that passed between the one that a frame was for and the one that showed it
-    Durations frame;              // from the start of drawing to the picture being ready for its refresh
+    Durations frame{};            // from the start of drawing to the picture being ready for its refresh
 };
 
 struct CueReport {
