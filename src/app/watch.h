@@ -21,7 +21,7 @@ namespace fantascope::app {
 class Watch {
 public:
     // What an output is compared with, for each source of the show; null where there is nothing to compare.
-    using Comparisons = std::vector<std::unique_ptr<vision::GuideComparison>>;
+    using Comparisons = std::vector<std::shared_ptr<const vision::GuideComparison>>;
 
     // All outlive it; `camera` and `recording` may be null. `comparisons[output][source]`. Show time 0 is `start` on the clock.
     Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera, Time start,
