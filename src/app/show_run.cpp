@@ -105,6 +105,7 @@ public:
     // The render thread's life.
     Result<void> draw(const Interrupt& interrupt) {
         while (!interrupt.requested() && !quit_ && (!options_.length || clock_.now() - start_ < *options_.length)) TRY(frames_.step());
+        length_ = clock_.now() - start_;
         return {};
     }
 
@@ -112,7 +113,7 @@ public:
     Result<RunReport> report() {
         TRY(std::move(recorded_).in("recording"));
         RunReport report;
-        report.length = clock_.now() - start_;
+        report.length = length_;
         report.stopReason = options_.length && report.length >= *options_.length ? "length" : "interrupted";
         report.seed = options_.seed;
         report.outputs = frames_.outputs();
@@ -227,6 +228,7 @@ private:
     News news_;
     std::atomic<bool> quit_ = false;
     Result<void> recorded_;
+    Time length_{};
     std::int64_t framesBefore_ = 0, yardstickTicks_ = 0, yardstickLate_ = 0;
 };
 
