@@ -18,7 +18,7 @@ constexpr int kRows = 72;                 // cells down the canvas: two a sigma
 constexpr int kPlaces = 3;                // across and down a cell
 constexpr double kMostlySeen = 0.5;       // share of the canvas that the camera must see
 constexpr double kOutliers = 0.02;        // share of the darkest and of the brightest cells that has no say in the scale
-constexpr float kFlat = 0.01f;            // a picture that spans less, in linear light of full white, is noise and ambient light
+constexpr float kFlat = 0.02f;            // a picture that spans less, in linear light of full white, is noise and ambient light
 constexpr int kBackgroundTerms = 6;       // 1, x, y, x^2, xy, y^2
 constexpr double kBackgroundCost = 1e-3;  // just enough to give to the picture what could be either
 
@@ -145,8 +145,8 @@ GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wante
     for (const Cell& cell : tables->cells) values.push_back(guide.at(cell.column, cell.row));
     tables->wanted = tables->lowPassed(values);
 
-    // Least squares of the light on the guide itself and on a smooth background: the first column takes the picture out of the
-    // fit.
+    // Least squares of the low-passed light on the low-passed guide and on a smooth background: the first column takes the
+    // picture out of the fit.
     cv::Mat terms(count, 1 + kBackgroundTerms, CV_64F);
     for (int i = 0; i < count; ++i) {
         const Cell& cell = tables->cells[static_cast<std::size_t>(i)];
@@ -158,8 +158,8 @@ GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wante
     cv::Mat normal = terms.t() * terms;
     for (int term = 1; term <= kBackgroundTerms; ++term) normal.at<double>(term, term) += kBackgroundCost * count;
     const cv::Mat solved = normal.inv(cv::DECOMP_SVD) * terms.t();
-    tables->background = terms.colRange(1, 1 + kBackgroundTerms).clone();
-    tables->backgroundOf = solved.rowRange(1, 1 + kBackgroundTerms).clone();
+    terms.colRange(1, 1 + kBackgroundTerms).convertTo(tables->background, CV_32F);
+    solved.rowRange(1, 1 + kBackgroundTerms).convertTo(tables->backgroundOf, CV_32F);
 }
 
 std::optional<double> GuideComparison::compare(const RgbaImage& frame) const {
@@ -168,22 +168,23 @@ std::optional<double> GuideComparison::compare(const RgbaImage& frame) const {
     const auto count = static_cast<int>(tables.cells.size());
     if (count < kMostlySeen * tables.grid.x * tables.grid.y) return std::nullopt;
 
-    // The light on every cell.
-    cv::Mat light(count, 3, CV_64F);
-    for (int i = 0; i < count; ++i) {
+    // The light on every cell, and what of it comes from sky and lamps: each channel for itself, since that has a colour of its
+    // own.
+    std::array<std::vector<float>, 3> light;
+    for (const Cell& cell : tables.cells) {
         glm::dvec3 sum(0);
-        for (const glm::vec2 place : tables.cells[static_cast<std::size_t>(i)].places) sum += linearAt(frame, place);
-        for (int c = 0; c < 3; ++c) light.at<double>(i, c) = sum[c] / (kPlaces * kPlaces);
+        for (const glm::vec2 place : cell.places) sum += linearAt(frame, place);
+        for (int c = 0; c < 3; ++c)
+            light[static_cast<std::size_t>(c)].push_back(static_cast<float>(sum[c] / (kPlaces * kPlaces)));
     }
-    // Without the light of sky and lamps, each channel for itself since it has a colour of its own.
-    light -= tables.background * (tables.backgroundOf * light);
+    for (std::vector<float>& channel : light) {
+        const cv::Mat background = tables.background * (tables.backgroundOf * cv::Mat(tables.lowPassed(channel)));
+        cv::subtract(cv::Mat(channel), background, cv::Mat(channel));
+    }
     // A pixel's value is its brightest channel, so that shapes of any colour count alike; over the projector's own fall-off.
     std::vector<float> seen;
-    for (int i = 0; i < count; ++i) {
-        const auto* channels = light.ptr<double>(i);
-        seen.push_back(
-            static_cast<float>(*std::max_element(channels, channels + 3) / tables.cells[static_cast<std::size_t>(i)].gain));
-    }
+    for (std::size_t i = 0; i < tables.cells.size(); ++i)
+        seen.push_back(std::max({light[0][i], light[1][i], light[2][i]}) / static_cast<float>(tables.cells[i].gain));
     seen = tables.lowPassed(seen);
 
     const Exposure exposure = exposureOf(seen, tables.wanted);
