@@ -1,5 +1,6 @@
 #include "drivers/registry.h"
 
+#include "drivers/camera/simulated.h"
 #include "drivers/cue_controller/simulated.h"
 #include "drivers/dmx/simulated.h"
 #include "drivers/modbus/simulated.h"
@@ -27,7 +28,7 @@ const Table<decltype(openDmxSource)> kDmxSources = {{"simulated", &SimulatedDmxS
 const Table<decltype(openRelayBank)> kRelayBanks = {{"simulated", &SimulatedRelayBank::open}};
 const Table<decltype(openInputBank)> kInputBanks = {{"simulated", &SimulatedInputBank::open}};
 const Table<decltype(openCueController)> kCueControllers = {{"simulated", &SimulatedCueController::open}};
-const Table<decltype(openCamera)> kCameras = {};
+const Table<decltype(openCamera)> kCameras = {{"simulated", &SimulatedCamera::open}};
 
 // What opens the driver that the map's `driver` key names.
 template <class Open>
