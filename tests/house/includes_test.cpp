@@ -66,8 +66,8 @@ const std::vector<Row> kTable = {
     {"console", {"core", "show", "device/status.h"}, {}, {"nlohmann-json"}},
     {"app",
      {"core", "device", "pattern", "theatre", "vision", "show", "render", "console", "drivers"},
-     {"CLI11"},
-     {"nlohmann-json", "libav", "OpenCV", "POSIX"}},
+     {"CLI11", "nlohmann-json"},
+     {"libav", "OpenCV", "POSIX"}},
 
     {"drivers/registry", {"core", "device", "drivers"}, {}, {}},
     {"drivers/surroundings", {"core"}, {}, {}},
