@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <array>
-#include <map>
+#include <set>
 
 namespace fantascope::contract {
 namespace {
@@ -42,14 +42,14 @@ class OpensAtALoss : public AlmostGood {
     std::optional<ContactChange> poll() override {
         if (!running()) {  // reads zeros, and believes them
             if (closed_.empty()) return std::nullopt;
-            return ContactChange{closed_.extract(closed_.begin()).key(), false, around_.clock.now()};
+            return ContactChange{closed_.extract(closed_.begin()).value(), false, around_.clock.now()};
         }
         const auto change = good_->poll();
-        if (change && change->closed) closed_[change->contact] = true;
+        if (change && change->closed) closed_.insert(change->contact);
         if (change && !change->closed) closed_.erase(change->contact);
         return change;
     }
-    std::map<std::size_t, bool> closed_;
+    std::set<std::size_t> closed_;
 };
 TEST(InputBankContract, finds_a_bank_that_takes_its_loss_for_open_contacts) {
     EXPECT_THAT(brokenBy<OpensAtALoss>(), ElementsAre("a loss is no change"));

@@ -4,10 +4,13 @@
 #include "core/bounded_queue.h"
 #include "core/latest_value.h"
 #include "core/parallel.h"
+#include "core/random.h"
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <memory>
+#include <stop_token>
 #include <thread>
 #include <vector>
 
@@ -32,17 +35,31 @@ TEST(LatestValue, gives_the_newest_once_and_keeps_it) {
 }
 
 // Example failure: the writer gets the buffer that the reader is looking at, and the picture tears.
-TEST(LatestValue, values_are_whole_and_only_get_newer) {
-    constexpr int kLast = 20'000;
-    LatestValue<std::vector<int>> slot(std::vector<int>(100, 0));
-    std::jthread writer([&] {
-        for (int value = 1; value <= kLast; ++value) {
+TEST(LatestValue, writer_and_reader_never_hold_the_same_buffer) {
+    LatestValue<int> slot;
+    Rng rng(1);
+    int published = 0;
+    for (int step = 0; step < 1000; ++step) {
+        if (rng.below(2) == 0) {
+            slot.writable() = ++published;
+            slot.publish();
+        } else if (slot.update()) {
+            EXPECT_EQ(slot.value(), published);
+        }
+        ASSERT_NE(&slot.writable(), &slot.value());
+    }
+}
+
+TEST(LatestValue, values_are_whole_and_only_get_newer_between_two_threads) {
+    LatestValue<std::vector<int>> slot(std::vector<int>(1000, 0));
+    std::jthread writer([&](const std::stop_token& stopped) {
+        for (int value = 1; !stopped.stop_requested(); ++value) {
             std::vector<int>& picture = slot.writable();
             std::fill(picture.begin(), picture.end(), value);
             slot.publish();
         }
     });
-    for (int newest = 0; newest < kLast;) {
+    for (int newest = 0, taken = 0; taken < 1000;) {
         if (!slot.update()) {
             std::this_thread::yield();
             continue;
@@ -50,7 +67,8 @@ TEST(LatestValue, values_are_whole_and_only_get_newer) {
         const std::vector<int>& picture = slot.value();
         ASSERT_GT(picture[0], newest);
         newest = picture[0];
-        ASSERT_EQ(std::count(picture.begin(), picture.end(), newest), 100);
+        ASSERT_EQ(std::count(picture.begin(), picture.end(), newest), 1000);
+        ++taken;
     }
 }
 

@@ -19,9 +19,9 @@ protected:
     static std::vector<std::string> refusals(const std::string& text, const Surroundings& around) {
         const ConfigNode node = options(text);
         const auto message = [](const auto& opened) { return opened ? "accepted" : opened.error().message(); };
-        return {message(openDmxPort(node, 1, around)), message(openDmxSource(node, 1, around)),
+        return {message(openDmxPort(node, 1, around)),        message(openDmxSource(node, 1, around)),
                 message(openRelayBank(node, {true}, around)), message(openInputBank(node, 1, around)),
-                message(openCueController(node, around))};
+                message(openCueController(node, around)),     message(openCamera(node, around))};
     }
 
     ManualClock clock_;
@@ -37,6 +37,7 @@ TEST_F(RegistryTest, opens_each_simulated_device_by_its_name) {
     EXPECT_EQ((*openRelayBank(simulated, {true}, rehearsal_))->status().name, "relay bank");
     EXPECT_EQ((*openInputBank(simulated, 1, rehearsal_))->status().name, "contacts");
     EXPECT_EQ((*openCueController(simulated, rehearsal_))->status().name, "cue controller");
+    EXPECT_EQ((*openCamera(simulated, rehearsal_))->status().name, "camera");
     EXPECT_EQ((*openDmxPort(simulated, 3, rehearsal_))->status().driver, "simulated");
 }
 
