@@ -59,7 +59,7 @@ Result<void> FrameLoop::step() {
         if (!paced && !output.display.makeCurrent()) return;
         const auto shown = output.display.present(paced);
         if (!shown) return;
-        output.tap.publish({.showTime = showTime, .refresh = target, .output = static_cast<int>(i)});
+        output.tap.publish(showTime, target, static_cast<int>(i));
         const std::int64_t late = std::max<std::int64_t>(0, shown->refresh - target);
         ++reports_[i].frames;
         reports_[i].lateFrames += late;
