@@ -25,6 +25,7 @@ public:
                              LossAction onLoss);
 
     World& world() const { return world_; }
+    bool in() const { return world_.plugged(device_); }
     DeviceStatus status() const;
     // The error of a call while the device is not Running.
     Error absent() const;
