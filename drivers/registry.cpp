@@ -19,21 +19,19 @@ struct Driver {
     std::string_view name;
     Open* open;
 };
-template <class Open>
-using Table = std::vector<Driver<Open>>;
 
 // Every driver of the project.
-const Table<decltype(openDisplay)> kDisplays = {{"headless", &HeadlessDisplay::open}};
-const Table<decltype(openDmxPort)> kDmxPorts = {{"simulated", &SimulatedDmxPort::open}};
-const Table<decltype(openDmxSource)> kDmxSources = {{"simulated", &SimulatedDmxSource::open}};
-const Table<decltype(openRelayBank)> kRelayBanks = {{"simulated", &SimulatedRelayBank::open}};
-const Table<decltype(openInputBank)> kInputBanks = {{"simulated", &SimulatedInputBank::open}};
-const Table<decltype(openCueController)> kCueControllers = {{"simulated", &SimulatedCueController::open}};
-const Table<decltype(openCamera)> kCameras = {{"simulated", &SimulatedCamera::open}};
+constexpr Driver<decltype(openDisplay)> kDisplays[] = {{"headless", &HeadlessDisplay::open}};
+constexpr Driver<decltype(openDmxPort)> kDmxPorts[] = {{"simulated", &SimulatedDmxPort::open}};
+constexpr Driver<decltype(openDmxSource)> kDmxSources[] = {{"simulated", &SimulatedDmxSource::open}};
+constexpr Driver<decltype(openRelayBank)> kRelayBanks[] = {{"simulated", &SimulatedRelayBank::open}};
+constexpr Driver<decltype(openInputBank)> kInputBanks[] = {{"simulated", &SimulatedInputBank::open}};
+constexpr Driver<decltype(openCueController)> kCueControllers[] = {{"simulated", &SimulatedCueController::open}};
+constexpr Driver<decltype(openCamera)> kCameras[] = {{"simulated", &SimulatedCamera::open}};
 
 // What opens the driver that the map's `driver` key names.
-template <class Open>
-Result<Open*> chosenFrom(const Table<Open>& table, const ConfigNode& options) {
+template <class Open, std::size_t kCount>
+Result<Open*> chosenFrom(const Driver<Open> (&table)[kCount], const ConfigNode& options) {
     std::vector<std::string> names;
     for (const auto& driver : table) names.emplace_back(driver.name);
     for (const auto& [key, node] : TRY(options.entries()))

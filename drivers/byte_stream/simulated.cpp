@@ -33,7 +33,7 @@ public:
     DeviceStatus status() const override { return plug_.status(); }
 
     Result<std::size_t> write(std::span<const std::uint8_t> bytes) override {
-        if (status().state != DeviceState::Running) return plug_.absent();
+        if (!plug_.in()) return plug_.absent();
         const std::lock_guard lock(line_->mutex);
         std::deque<std::uint8_t>& far = line_->arrived[1 - side_];
         const std::size_t count = std::min(bytes.size(), line_->capacity - far.size());
@@ -45,7 +45,7 @@ public:
         const Time deadline = clock_.now() + patience;
         for (;;) {
             if (const std::size_t count = take(bytes)) return count;
-            if (status().state != DeviceState::Running) return plug_.absent();
+            if (!plug_.in()) return plug_.absent();
             const Time now = clock_.now();
             if (now >= deadline) return std::size_t{0};
             clock_.sleepUntil(std::min(deadline, now + kLookAgain));

@@ -20,7 +20,7 @@ Result<void> SimulatedRelayBank::write(const std::vector<bool>& states) {
 }
 
 Result<std::vector<bool>> SimulatedRelayBank::read() {
-    if (status().state != DeviceState::Running) return plug_.absent();
+    if (!plug_.in()) return plug_.absent();
     return plug_.world().relays();
 }
 
@@ -32,7 +32,7 @@ Result<std::unique_ptr<InputBank>> SimulatedInputBank::open(const ConfigNode& op
 
 std::optional<ContactChange> SimulatedInputBank::poll() {
     // All contacts are looked at together, so that a restless one does not hide the others.
-    if (waiting_.empty() && status().state == DeviceState::Running) {
+    if (waiting_.empty() && plug_.in()) {
         for (std::size_t contact = 0; contact < size(); ++contact) {
             const bool closed = plug_.world().contact(contact);
             if (closed == reported_[contact]) continue;

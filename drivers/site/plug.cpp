@@ -29,7 +29,7 @@ DeviceStatus Plug::status() const {
     DeviceStatus status;
     status.name = device_;
     status.driver = "simulated";
-    status.state = world_.plugged(device_) ? DeviceState::Running : DeviceState::Absent;
+    status.state = in() ? DeviceState::Running : DeviceState::Absent;
     status.onLoss = onLoss_;
     if (status.state != DeviceState::Running) status.detail = kAdvice;
     status.losses = world_.unpluggings(device_) - before_;

@@ -25,7 +25,6 @@ public:
                              LossAction onLoss);
 
     World& world() const { return world_; }
-    const std::string& device() const { return device_; }
     bool in() const { return world_.plugged(device_); }
     DeviceStatus status() const;
     // The error of a call while the device is not Running.

@@ -47,6 +47,11 @@ TEST_F(RegistryTest, unknown_name_gets_the_known_ones_and_the_nearest) {
                                     HasSubstr("did you mean 'simulated'?"))));
 }
 
+TEST_F(RegistryTest, displays_go_by_their_names_too) {
+    EXPECT_THAT(openDisplay(options("driver: headles\n"), {}, rehearsal_).error().message(),
+                AllOf(HasSubstr("here is 'headles'"), HasSubstr("did you mean 'headless'?")));
+}
+
 TEST_F(RegistryTest, missing_driver_key_gets_the_known_names) {
     EXPECT_THAT(refusals("drivers: simulated\n", rehearsal_),
                 testing::Each(StartsWith("site.yaml:1:1: 'driver' is missing, one of simulated")));
