@@ -1,9 +1,11 @@
 #pragma once
 
 #include "drivers/site/world.h"
+#include "drivers/surroundings.h"
 
 #include "device/status.h"
 
+#include "core/config.h"
 #include "core/result.h"
 
 #include <string>
@@ -17,8 +19,12 @@ class Plug {
 public:
     // `device` is its name in the world. Losses count from now.
     Plug(World& world, std::string device, LossAction onLoss);
+    // The same for a driver that is opened from the site file and has no key there but `driver`.
+    // Error: another key, or no world, each with its place in the file.
+    static Result<Plug> open(const ConfigNode& options, const drivers::Surroundings& around, std::string device,
+                             LossAction onLoss);
 
-    const std::string& device() const { return device_; }
+    World& world() const { return world_; }
     bool in() const { return world_.plugged(device_); }
     DeviceStatus status() const;
     // The error of a call while the device is not Running.

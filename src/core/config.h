@@ -24,6 +24,7 @@ namespace fantascope {
 // One node of a loaded file; cheap to copy, keeps the file alive. Thread: thread-bound (a copy shares its file's tree).
 class ConfigNode {
 public:
+    ConfigNode() = default;  // no node yet: only to be assigned to
     // The file's root, a map. Error: unreadable, or not YAML: place and reason.
     static Result<ConfigNode> load(const std::filesystem::path& path);
     // The same from text; `name` stands for the file in messages, and relative paths start from its folder.

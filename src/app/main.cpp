@@ -1,0 +1,39 @@
+#include "app/command.h"
+
+#include <fmt/format.h>
+
+#include <initializer_list>
+
+namespace fantascope::app {
+namespace {
+
+// Every subcommand of the program.
+const std::initializer_list<AddCommand> kCommands = {};
+
+enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
+
+int run(int argc, char** argv) {
+    CLI::App program("A live installation controller for night-time public projection.", "fantascope");
+    program.set_version_flag("--version", FANTASCOPE_VERSION);
+    program.require_subcommand(1);
+    program.failure_message([](const CLI::App* app, const CLI::Error& error) {
+        return fmt::format("fantascope: error: {}\nSee '{} --help'.\n", error.what(), app->get_name());
+    });
+    Action action;
+    for (const AddCommand add : kCommands) add(program, action);
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {  // also thrown for --help, with exit code 0
+        return program.exit(error) == 0 ? Done : WrongUsage;
+    }
+    if (const auto done = action(); !done) {
+        fmt::print(stderr, "fantascope: error: {}\n", done.error().message());
+        return Refused;
+    }
+    return Done;
+}
+
+}  // namespace
+}  // namespace fantascope::app
+
+int main(int argc, char** argv) { return fantascope::app::run(argc, argv); }
