@@ -145,5 +145,3 @@ BENCHMARK(yardstick)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace fantascope::render
-
-BENCHMARK_MAIN();

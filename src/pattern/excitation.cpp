@@ -56,8 +56,8 @@ private:
 Excitation::Excitation(double beta, int frames, double rate, double deviation) : frames_(frames), deviation_(deviation) {
     FANTASCOPE_CHECK(frames >= 4 && frames % 2 == 0, "an excitation needs an even number of frames, 4 or more");
     FANTASCOPE_CHECK(beta >= 0 && rate > 0 && deviation >= 0, "an excitation's parameters are out of range");
-    // Step 1: bin 0 is zero, so that shapes fluctuate around their place. Step 2: bin i stands for the frequency i *
-    // frequencyStep.
+    // Step 1: bin 0 is zero, so that shapes fluctuate around their place.
+    // Step 2: bin i stands for the frequency i * frequencyStep.
     const double frequencyStep = rate / frames;
     meanAmplitude_.assign(static_cast<std::size_t>(frames) / 2 + 1, 0.0);
     for (std::size_t i = 1; i < meanAmplitude_.size(); ++i)

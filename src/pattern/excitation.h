@@ -12,9 +12,8 @@ namespace fantascope::pattern {
 // cannot be; here the peak is 1 on either side of 0. Thread: every const method is reentrant.
 class Excitation {
 public:
-    // Forces of `frames` samples at `rate` Hz. `deviation` (m << 1) is the spread of each spectral amplitude relative to its
-    // mean: the paper's "variance sigma = m mu" is a standard deviation. beta >= 0, frames even and >= 4, rate > 0, deviation >=
-    // 0.
+    // Forces of `frames` (even, >= 4) samples at `rate` (> 0) Hz. `deviation` (>= 0, the paper's m << 1) is the spread of each
+    // spectral amplitude relative to its mean: the paper's "variance sigma = m mu" is a standard deviation. beta >= 0.
     Excitation(double beta, int frames, double rate, double deviation);
     Excitation(Excitation&&) noexcept;
     ~Excitation();

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace fantascope::pattern {
 namespace {
@@ -42,45 +43,59 @@ std::vector<glm::dvec2> firstCentres(std::span<const glm::dvec2> points, std::ui
     }
 }
 
-// Fills a point's row with (1 / distance^2)^(1 / (m - 1)), normalised to sum 1. Taken relative to the nearest centre no power can
+// How a point belongs to each centre: by (1 / distance^2)^(1 / (m - 1)). Taken relative to the nearest centre no power can
 // overflow, and a point on a centre belongs to it (or to all that lie there) alone.
-void fillMemberships(std::span<const double> squaredDistances, double fuzziness, std::span<double> row) {
-    const double nearest = *std::min_element(squaredDistances.begin(), squaredDistances.end());
-    const double exponent = 1 / (fuzziness - 1);
-    std::transform(squaredDistances.begin(), squaredDistances.end(), row.begin(),
-                   [&](double squared) { return squared > nearest ? std::pow(nearest / squared, exponent) : 1.0; });
-    const double sum = std::accumulate(row.begin(), row.end(), 0.0);
-    for (double& membership : row) membership /= sum;
-}
+struct Belonging {
+    std::vector<double> ratio;  // squared distance of the nearest centre / that of this one; 0..1
+    std::vector<double> share;  // ratio^(1 / (m - 1))
+    double nearest = 0;         // squared distance
+    double sum = 0;             // of all shares
+
+    explicit Belonging(std::size_t centres) : ratio(centres), share(centres) {}
+
+    void measure(glm::dvec2 point, std::span<const glm::dvec2> centres, double m) {
+        nearest = std::numeric_limits<double>::max();
+        for (std::size_t k = 0; k < centres.size(); ++k)
+            nearest = std::min(nearest, ratio[k] = squaredDistance(point, centres[k]));
+        sum = 0;
+        for (std::size_t k = 0; k < centres.size(); ++k) {
+            ratio[k] = ratio[k] > nearest ? nearest / ratio[k] : 1.0;
+            sum += share[k] = std::pow(ratio[k], 1 / (m - 1));
+        }
+    }
+};
 
 }  // namespace
 
 FuzzyClusters fuzzyCMeans(std::span<const glm::dvec2> points, const FuzzyClusters::Options& options, Rng& rng) {
     FANTASCOPE_CHECK(!points.empty() && options.clusters >= 1, "clustering needs a point and a cluster");
     FANTASCOPE_CHECK(options.fuzziness > 1, "fuzzy c-means needs a fuzziness > 1");
+    const double m = options.fuzziness;
     const std::size_t clusters = options.clusters;
     FuzzyClusters result;
     result.centres = firstCentres(points, options.clusters, rng);
     result.memberships.assign(points.size() * clusters, 0.0);
 
-    std::vector<double> squaredDistances(clusters), row(clusters), weightSums(clusters);
-    std::vector<glm::dvec2> weightedSums(clusters);
+    Belonging belonging(clusters);
+    std::vector<double> weightSum(clusters);
+    std::vector<glm::dvec2> weightedSum(clusters);
     for (int iteration = 0; iteration < options.maxIterations; ++iteration) {
+        std::fill(weightSum.begin(), weightSum.end(), 0.0);
+        std::fill(weightedSum.begin(), weightedSum.end(), glm::dvec2(0));
         double objective = 0, change = 0;
-        std::fill(weightSums.begin(), weightSums.end(), 0.0);
-        std::fill(weightedSums.begin(), weightedSums.end(), glm::dvec2(0));
-        // The best memberships for these centres ...
+        // The best memberships for these centres. A point's weight for a centre, membership^m = (share / sum)^m, needs no power
+        // of its own: share^m = share * ratio, and so weight * distance^2 = nearest * share / sum^m.
         for (std::size_t i = 0; i < points.size(); ++i) {
-            for (std::size_t k = 0; k < clusters; ++k) squaredDistances[k] = squaredDistance(points[i], result.centres[k]);
-            fillMemberships(squaredDistances, options.fuzziness, row);
+            belonging.measure(points[i], result.centres, m);
+            const double sumToM = std::pow(belonging.sum, m);
+            objective += belonging.nearest * belonging.sum / sumToM;
             for (std::size_t k = 0; k < clusters; ++k) {
                 double& membership = result.memberships[i * clusters + k];
-                change = std::max(change, std::abs(row[k] - membership));
-                membership = row[k];
-                const double weight = std::pow(membership, options.fuzziness);
-                objective += weight * squaredDistances[k];
-                weightSums[k] += weight;
-                weightedSums[k] += weight * points[i];
+                const double before = std::exchange(membership, belonging.share[k] / belonging.sum);
+                change = std::max(change, std::abs(membership - before));
+                const double weight = belonging.share[k] * belonging.ratio[k] / sumToM;
+                weightSum[k] += weight;
+                weightedSum[k] += weight * points[i];
             }
         }
         result.summary.objective.push_back(objective);
@@ -88,9 +103,9 @@ FuzzyClusters fuzzyCMeans(std::span<const glm::dvec2> points, const FuzzyCluster
             result.summary.reason = FuzzyClusters::StopReason::Converged;
             break;
         }
-        // ... and the best centres for these memberships. A centre to which nothing belongs stays.
+        // The best centres for these memberships. A centre to which nothing belongs stays.
         for (std::size_t k = 0; k < clusters; ++k)
-            if (weightSums[k] > 0) result.centres[k] = weightedSums[k] / weightSums[k];
+            if (weightSum[k] > 0) result.centres[k] = weightedSum[k] / weightSum[k];
     }
     return result;
 }

@@ -17,7 +17,7 @@ struct FuzzyClusters {
     struct Options {
         std::uint32_t clusters = 1;  // >= 1; may exceed the number of points
         double fuzziness = 2;        // m > 1; towards 1 every point belongs to its nearest cluster alone
-        double tolerance = 1e-5;     // stops when no membership changes by more in an iteration
+        double tolerance = 1e-3;     // stops when no membership changes by more in an iteration: hardly a draw could differ
         int maxIterations = 500;
     };
     enum class StopReason { Converged, IterationLimit };

@@ -77,7 +77,12 @@ std::array<double, 4> hermiteWeights(double fraction) {
 
 double peakDisplacement(std::span<const MotionState> loop, double step) {
     double peak = 0;
-    for (std::size_t i = 0; i < loop.size(); ++i) peak = std::max(peak, segmentPeak(loop[i], loop[(i + 1) % loop.size()], step));
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const MotionState from = loop[i], to = loop[(i + 1) % loop.size()];
+        // Between its ends a segment overshoots them by at most the slopes' weights, 4/27 each: few segments can raise the peak.
+        const double bound = std::max(std::abs(from.x), std::abs(to.x)) + 4.0 / 27 * step * (std::abs(from.y) + std::abs(to.y));
+        if (bound > peak) peak = std::max(peak, segmentPeak(from, to, step));
+    }
     return peak;
 }
 

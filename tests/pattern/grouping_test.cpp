@@ -39,18 +39,20 @@ void expectRowsSumToOne(const FuzzyClusters& clusters) {
 
 const std::vector<glm::dvec2> kPlaces{{0.2, 0.2}, {1.5, 0.3}, {0.9, 0.9}};
 
-// From any start: k-means++ leaves no far cluster without a centre.
+// From any start. Example failure: with first centres drawn evenly two of them fall into one cluster and another gets none.
 TEST(FuzzyCMeans, finds_clusters_that_lie_apart) {
-    const auto points = around(kPlaces, 30, 0.05);
+    std::vector<glm::dvec2> places;
+    for (int i = 0; i < 12; ++i) places.emplace_back(0.4 * (i % 4), 0.4 * (i / 4));
+    const auto points = around(places, 10, 0.02);
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-        const auto clusters = clustered(points, {.clusters = 3, .fuzziness = 2}, seed);
+        const auto clusters = clustered(points, {.clusters = 12, .fuzziness = 1.5}, seed);
         EXPECT_EQ(clusters.summary.reason, FuzzyClusters::StopReason::Converged);
         expectRowsSumToOne(clusters);
         for (std::size_t i = 0; i < points.size(); ++i) {
             const auto row = clusters.membershipsOf(i);
             const auto own = static_cast<std::size_t>(std::max_element(row.begin(), row.end()) - row.begin());
-            EXPECT_GT(row[own], 0.9);
-            EXPECT_LT(glm::length(clusters.centres[own] - kPlaces[i / 30]), 0.02);
+            ASSERT_GT(row[own], 0.9) << "seed " << seed;
+            ASSERT_LT(glm::length(clusters.centres[own] - places[i / 10]), 0.02) << "seed " << seed;
         }
     }
 }
@@ -119,6 +121,15 @@ TEST(FuzzyCMeans, gives_a_point_on_a_centre_to_that_centre_alone) {
     for (std::size_t i = 0; i < points.size(); ++i)
         EXPECT_THAT(clusters.membershipsOf(i), testing::Contains(1.0)) << "point " << i;
     EXPECT_EQ(clusters.summary.objective.back(), 0);
+}
+
+// Nearly sharp clusters can lose their last point to their neighbours, here after some of the possible starts; a centre without
+// any weight stays where it is. Example failure: 0 / 0.
+TEST(FuzzyCMeans, keeps_a_centre_to_which_nothing_belongs) {
+    const std::vector<glm::dvec2> points{{7, 6}, {6, 5}, {5, 0}, {10, 0}, {6, 1}, {8, 5}, {7, 6}};
+    for (std::uint64_t seed = 1; seed <= 200; ++seed)
+        for (const glm::dvec2& centre : clustered(points, {.clusters = 3, .fuzziness = 1.0002}, seed).centres)
+            ASSERT_TRUE(std::isfinite(centre.x) && std::isfinite(centre.y)) << "seed " << seed;
 }
 
 TEST(FuzzyCMeans, puts_everything_into_one_cluster_if_there_is_one) {
