@@ -1,5 +1,5 @@
-// How long a frame takes: a pattern as large as the default show's on every output, in software OpenGL or on whatever GPU EGL offers.
-// Compare with the yardstick of the same run, since machines and their neighbours differ.
+// How long a frame takes: a pattern as large as the default show's on every output, in software OpenGL or on whatever GPU EGL
+// offers. Compare with the yardstick of the same run, since machines and their neighbours differ.
 
 #include "drivers/display/headless.h"
 
@@ -82,7 +82,7 @@ T valueOf(Result<T> result) {
 // One frame on `outputs` displays: drawn one after the other, presented together.
 void drawFrame(benchmark::State& state, int outputs, int layers) {
     ManualClock clock;
-    const std::vector<PictureSource> sources = {swayingCrystals(), swayingCrystals()};
+    static const std::vector<PictureSource> sources = {swayingCrystals(), swayingCrystals()};
     std::vector<Output> all;
     for (int i = 0; i < outputs; ++i) {
         Output output;
@@ -117,10 +117,14 @@ void drawFrame(benchmark::State& state, int outputs, int layers) {
 }
 BENCHMARK_CAPTURE(drawFrame, one_output, 1, 1)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK_CAPTURE(drawFrame, two_outputs, 2, 1)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(drawFrame, two_outputs_in_a_crossfade, 2, 2)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(drawFrame, two_outputs_in_a_crossfade, 2, 2)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime();
 BENCHMARK_CAPTURE(drawFrame, one_output_black, 1, 0)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
-// The yardstick: what one multisampled picture needs at least, on one core: every sample's colour and depth cleared, then averaged.
+// The yardstick: what one multisampled picture needs at least, on one core: every sample's colour and depth cleared, then
+// averaged.
 void yardstick(benchmark::State& state) {
     constexpr std::size_t kPixels = static_cast<std::size_t>(kSize.x) * kSize.y;
     std::vector<std::uint32_t> colour(kPixels * kSamples), depth(kPixels * kSamples), picture(kPixels);
@@ -141,5 +145,3 @@ BENCHMARK(yardstick)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace fantascope::render
-
-BENCHMARK_MAIN();

@@ -1,7 +1,7 @@
 #version 450 core
-// The light of one facet.
+// One facet, in the layer picture's square roots of linear light.
 
-flat in vec3 facetLight;  // linear
-layout(location = 0) out vec4 colour;
+flat in vec3 facetColour;  // linear light
+layout(location = 0) out vec4 root;
 
-void main() { colour = vec4(facetLight, 1.0); }
+void main() { root = vec4(sqrt(facetColour), 1.0); }

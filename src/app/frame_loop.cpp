@@ -13,7 +13,20 @@ FrameLoop::FrameLoop(const show::Site& site, const show::CueList& cues, std::vec
     }
 }
 
-render::FrameSlot& FrameLoop::tap(std::size_t output) { return outputs_[output].tap.addSlot(); }
+FrameLoop::~FrameLoop() {
+    // What belongs to a context goes while it is current; a context that is lost has taken it along.
+    for (Output& output : outputs_) {
+        if (!output.display.makeCurrent()) continue;
+        output.tap.reset();
+        output.renderer.reset();
+    }
+}
+
+LatestValue<render::ShownFrame>& FrameLoop::tap(std::size_t output) {
+    std::optional<render::FrameTap>& tap = outputs_[output].tap;
+    if (!tap) tap.emplace(output, outputs_[output].site.size);
+    return tap->addReader();
+}
 
 FrameLoop::Output* FrameLoop::leader() {
     const auto running = [](const Output& output) { return output.display.status().state == DeviceState::Running; };
@@ -31,7 +44,7 @@ Result<void> FrameLoop::draw(Output& output, std::size_t index, Time showTime, O
         output.renderer = TRY(render::OutputRenderer::create(options, sources_).in("output '" + output.site.name + "'"));
     }
     output.renderer->draw(state_.outputs[index], showTime, output.display.framebuffer());
-    output.tap.capture(output.display.framebuffer(), output.display.size());
+    if (output.tap) output.tap->capture(output.display.framebuffer(), showTime);
     report.frame.add(clock_.now() - began);
     output.drawn = true;
     return {};
@@ -59,7 +72,7 @@ Result<void> FrameLoop::step() {
         if (!paced && !output.display.makeCurrent()) return;
         const auto shown = output.display.present(paced);
         if (!shown) return;
-        output.tap.publish(showTime, target, static_cast<int>(i));
+        if (output.tap) output.tap->publish(*shown);
         const std::int64_t late = std::max<std::int64_t>(0, shown->refresh - target);
         ++reports_[i].frames;
         reports_[i].lateFrames += late;

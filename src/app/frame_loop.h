@@ -12,6 +12,7 @@
 #include <atomic>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace fantascope::app {
@@ -24,10 +25,11 @@ public:
     // All outlive it. Show time 0 is `start` on the clock. `assets`: the folder of the shaders.
     FrameLoop(const show::Site& site, const show::CueList& cues, std::vector<render::PictureSource> sources, std::filesystem::path assets,
               Devices& devices, Clock& clock, Time start);
+    ~FrameLoop();
 
     PlaybackReplica& replica() { return replica_; }
     // A further reader of the frames that `output` shows. Before the first frame.
-    render::FrameSlot& tap(std::size_t output);
+    LatestValue<render::ShownFrame>& tap(std::size_t output);
     // The state of the newest frame goes into this slot too. Before the first frame.
     void publishStateTo(LatestValue<show::ShowState>& slot) { stateSlot_ = &slot; }
 
@@ -46,7 +48,7 @@ private:
         const show::Output& site;
         DisplaySink& display;
         std::unique_ptr<render::OutputRenderer> renderer{};  // made when the display is first there
-        render::FrameTap tap{};
+        std::optional<render::FrameTap> tap{};             // where somebody reads
         bool drawn = false;  // in the frame that is being made
     };
     Result<void> draw(Output& output, std::size_t index, Time showTime, OutputReport& report);

@@ -135,8 +135,8 @@ private:
         return names;
     }
     double frameRate() const { return programme_.site.outputs[0].refreshRate; }
-    std::vector<render::FrameSlot*> tapEveryOutput() {
-        std::vector<render::FrameSlot*> slots;
+    std::vector<LatestValue<render::ShownFrame>*> tapEveryOutput() {
+        std::vector<LatestValue<render::ShownFrame>*> slots;
         for (std::size_t output = 0; output < programme_.site.outputs.size(); ++output) slots.push_back(&frames_.tap(output));
         return slots;
     }
@@ -170,10 +170,10 @@ private:
     Part simulatedSite() {
         surrounding_.simulation->begin(start_);
         return {"site", kSiteRate, start_, [this, slots = tapEveryOutput()](Time moment) {
-                    for (render::FrameSlot* slot : slots)
+                    for (LatestValue<render::ShownFrame>* slot : slots)
                         if (slot->update()) {
-                            const render::TappedFrame& frame = slot->value();
-                            const std::string& output = programme_.site.outputs[static_cast<std::size_t>(frame.output)].name;
+                            const render::ShownFrame& frame = slot->value();
+                            const std::string& output = programme_.site.outputs[frame.output].name;
                             surrounding_.world.setFrame(output, std::make_shared<const RgbaImage>(frame.image));
                         }
                     surrounding_.simulation->advanceTo(moment);
@@ -183,10 +183,10 @@ private:
     Part recorder() {
         // Half a refresh after the frames were shown, so that each is met once.
         return {"recording", frameRate(), start_ + tickTime(1, 2 * frameRate()), [this, slots = tapEveryOutput()](Time) {
-                    for (render::FrameSlot* slot : slots)
+                    for (LatestValue<render::ShownFrame>* slot : slots)
                         if (slot->update() && recorded_) {
-                            const render::TappedFrame& frame = slot->value();
-                            recorded_ = recording_->frame(static_cast<std::size_t>(frame.output), frame.image, frame.refresh, frame.showTime);
+                            const render::ShownFrame& frame = slot->value();
+                            recorded_ = recording_->frame(frame.output, frame.image, frame.shown.refresh, frame.showTime);
                         }
                 }, kWatchNiceness};
     }

@@ -7,12 +7,12 @@
 namespace fantascope::render {
 
 Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& options, std::span<const PictureSource> sources) {
-    auto picture = TRY(gpu::MultisampledPicture::create(options.size, options.samples));
+    auto picture = TRY(gpu::LayerPicture::create(options.size, options.samples, options.shaders));
     auto painter = TRY(gpu::ShapePainter::create(options.shaders));
     std::unique_ptr<OutputRenderer> renderer(new OutputRenderer(std::move(picture), std::move(painter)));
     for (const PictureSource& source : sources) {
         PlacedSource placed = TRY(PlacedSource::create(source, options.size, options.corners));
-        gpu::InstancedMeshes meshes(placed.meshes());
+        gpu::InstancedMeshes meshes(placed.meshes(), placed.mirrored());
         renderer->sources_.push_back({std::move(placed), std::move(meshes)});
     }
     return renderer;
@@ -26,15 +26,16 @@ void OutputRenderer::draw(const show::OutputState& state, Time time, unsigned fr
         sources_[layer.source].opacity += layer.opacity;
     }
 
-    picture_.begin();
     gpu::Light light = gpu::Light::Alone;
     for (DrawnSource& source : sources_) {
         if (source.opacity <= 0) continue;
         source.placed.place(time, source.meshes.place());
-        painter_.paint(source.meshes, source.placed.canvasEdges(), source.opacity, light);
+        picture_.begin();
+        painter_.paint(source.meshes, source.placed.canvasEdges());
+        picture_.shine(framebuffer, source.opacity, light);
         light = gpu::Light::Added;
     }
-    picture_.resolveInto(framebuffer);
+    if (light == gpu::Light::Alone) gpu::darken(framebuffer);
 }
 
 }  // namespace fantascope::render

@@ -4,6 +4,7 @@
 #include "pattern/shape_pattern.h"
 
 #include <glm/vec3.hpp>
+
 #include <memory>
 #include <variant>
 

@@ -6,16 +6,18 @@
 #include "core/clock.h"
 #include "core/result.h"
 
-#include <array>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
+
+#include <array>
 #include <span>
 #include <vector>
 
 namespace fantascope::render {
 
-// One picture source as it stands in one output's picture: which meshes, and at any time where their instances are, through the warp.
-// Instances are opaque to each other: of two, the later one in the pattern's order lies on top, whole. Thread: thread-bound.
+// One picture source as it stands in one output's picture: which meshes, and at any time where their instances are, through the
+// warp. Instances are opaque to each other: of two, the later one in the pattern's order lies on top, whole. Thread:
+// thread-bound.
 class PlacedSource {
 public:
     // `corners`: where the canvas's corners go in the output's `size` pixels, from the canvas's top left clockwise.
@@ -24,7 +26,10 @@ public:
 
     // The meshes with the number of their instances, in the order in which place() fills them.
     std::vector<gpu::InstancedMeshes::Mesh> meshes() const;
-    // The canvas's edges: a clip space point (x, y, z, w) is on the canvas when its (x, y, w) has no negative dot product with any.
+    // Whether the warp turns the canvas over, as for rear projection.
+    bool mirrored() const;
+    // The canvas's edges: a clip space point (x, y, z, w) is on the canvas when its (x, y, w) has no negative dot product with
+    // any.
     const std::array<glm::vec3, 4>& canvasEdges() const { return canvasEdges_; }
     // All instances at show time `time`. No allocation.
     void place(Time time, std::span<gpu::Instance> out);

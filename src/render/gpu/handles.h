@@ -4,8 +4,8 @@
 
 namespace fantascope::render::gpu {
 
-// Owns one OpenGL object; typed, so that a buffer cannot pass for a framebuffer. Made and destroyed while its context is current; it dies
-// with the context at the latest. Thread: the context's.
+// Owns one OpenGL object; typed, so that a buffer cannot pass for a framebuffer. Made and destroyed while its context is current;
+// it dies with the context at the latest. Thread: the context's.
 template <class Kind>
 class Handle {
 public:
@@ -36,6 +36,10 @@ struct RenderbufferKind {
     static unsigned create();
     static void destroy(unsigned name);
 };
+struct MultisampleTextureKind {
+    static unsigned create();
+    static void destroy(unsigned name);
+};
 struct FramebufferKind {
     static unsigned create();
     static void destroy(unsigned name);
@@ -48,6 +52,7 @@ struct ProgramKind {
 using Buffer = Handle<BufferKind>;
 using VertexArray = Handle<VertexArrayKind>;
 using Renderbuffer = Handle<RenderbufferKind>;
+using MultisampleTexture = Handle<MultisampleTextureKind>;
 using Framebuffer = Handle<FramebufferKind>;
 using Program = Handle<ProgramKind>;
 

@@ -22,14 +22,14 @@ void attribute(GLuint vertexArray, GLuint binding, GLuint location, GLint compon
 
 }  // namespace
 
-InstancedMeshes::InstancedMeshes(std::span<const Mesh> meshes) {
+InstancedMeshes::InstancedMeshes(std::span<const Mesh> meshes, bool mirrored) : mirrored_(mirrored) {
     std::vector<FacetVertex> vertices;
     std::vector<std::uint32_t> indices;
     for (const Mesh& mesh : meshes) {
         if (mesh.instances == 0) continue;
         parts_.push_back({static_cast<unsigned>(mesh.mesh.indices.size()), static_cast<unsigned>(indices.size()),
                           static_cast<int>(vertices.size()), static_cast<unsigned>(mesh.instances),
-                          static_cast<unsigned>(instanceCount_)});
+                          static_cast<unsigned>(instanceCount_), mesh.mesh.closed});
         vertices.insert(vertices.end(), mesh.mesh.vertices.begin(), mesh.mesh.vertices.end());
         indices.insert(indices.end(), mesh.mesh.indices.begin(), mesh.mesh.indices.end());
         instanceCount_ += mesh.instances;
@@ -51,7 +51,8 @@ InstancedMeshes::InstancedMeshes(std::span<const Mesh> meshes) {
     attribute(array, kPerVertex, kPosition, 3, offsetof(FacetVertex, position));
     attribute(array, kPerVertex, kNormal, 3, offsetof(FacetVertex, normal));
     for (GLuint column = 0; column < 4; ++column)
-        attribute(array, kPerInstance, kClipFromShape + column, 4, offsetof(Instance, clipFromShape) + column * sizeof(glm::vec4));
+        attribute(array, kPerInstance, kClipFromShape + column, 4,
+                  offsetof(Instance, clipFromShape) + column * sizeof(glm::vec4));
     attribute(array, kPerInstance, kTowardsLight, 3, offsetof(Instance, towardsLight));
     attribute(array, kPerInstance, kColour, 3, offsetof(Instance, colour));
 }
@@ -64,11 +65,15 @@ std::span<Instance> InstancedMeshes::place() {
 
 void InstancedMeshes::draw() {
     glBindVertexArray(vertexArray_.name());
-    for (const Part& part : parts_)
-        glDrawElementsInstancedBaseVertexBaseInstance(
-            GL_TRIANGLES, static_cast<GLsizei>(part.indexCount), GL_UNSIGNED_INT,
-            reinterpret_cast<const void*>(part.firstIndex * sizeof(std::uint32_t)), static_cast<GLsizei>(part.instanceCount),
-            part.firstVertex, static_cast<GLuint>(frame_ * instanceCount_) + part.firstInstance);
+    glFrontFace(mirrored_ ? GL_CW : GL_CCW);
+    for (const Part& part : parts_) {
+        // Half of a closed surface is turned away; a software OpenGL would spend half of its time on it.
+        (part.closed ? glEnable : glDisable)(GL_CULL_FACE);
+        glDrawElementsInstancedBaseVertexBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(part.indexCount), GL_UNSIGNED_INT,
+                                                      reinterpret_cast<const void*>(part.firstIndex * sizeof(std::uint32_t)),
+                                                      static_cast<GLsizei>(part.instanceCount), part.firstVertex,
+                                                      static_cast<GLuint>(frame_ * instanceCount_) + part.firstInstance);
+    }
     drawn_[frame_].set();
 }
 

@@ -3,10 +3,11 @@
 #include "render/facet_mesh.h"
 #include "render/gpu/handles.h"
 
-#include <array>
-#include <cstddef>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+
+#include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -26,11 +27,13 @@ public:
         FacetMesh mesh;
         std::size_t instances = 0;
     };
-    explicit InstancedMeshes(std::span<const Mesh> meshes);
+    // `mirrored`: clipFromShape turns the shapes inside out, as a picture for rear projection does.
+    InstancedMeshes(std::span<const Mesh> meshes, bool mirrored);
 
-    // The instances of the next draw(), those of the first mesh first; to be written whole. May wait for the drawing of three frames ago.
+    // The instances of the next draw(), those of the first mesh first; to be written whole. May wait for the drawing of three
+    // frames ago.
     std::span<Instance> place();
-    // Draws all instances as they were placed last, with the program and the state that are set; as often as wanted.
+    // Draws all instances as they were placed last, with the program and the depth test that are set.
     void draw();
 
 private:
@@ -39,11 +42,13 @@ private:
         unsigned indexCount, firstIndex;
         int firstVertex;
         unsigned instanceCount, firstInstance;
+        bool closed;
     };
     // The GPU may still read the instances of the frames before while the next are written.
     static constexpr std::size_t kFramesInFlight = 3;
 
     std::vector<Part> parts_;
+    bool mirrored_;
     std::size_t instanceCount_ = 0;
     VertexArray vertexArray_;
     Buffer vertices_, indices_, instances_;

@@ -8,7 +8,8 @@
 
 namespace fantascope::render::gpu {
 
-// A program of a vertex and a fragment shader, each read from its file. Error: names the file and gives the compiler's or linker's log.
+// A program of a vertex and a fragment shader, each read from its file. Error: names the file and gives the compiler's or
+// linker's log.
 Result<Program> loadProgram(const std::filesystem::path& vertexShader, const std::filesystem::path& fragmentShader);
 
 }  // namespace fantascope::render::gpu
