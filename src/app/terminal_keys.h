@@ -1,7 +1,6 @@
 #pragma once
 
-#include <termios.h>
-
+#include <memory>
 #include <optional>
 
 namespace fantascope::app {
@@ -15,11 +14,11 @@ public:
     TerminalKeys(const TerminalKeys&) = delete;
     TerminalKeys& operator=(const TerminalKeys&) = delete;
 
-    bool active() const { return saved_.has_value(); }
     std::optional<char> poll();  // the next key, never waits
 
 private:
-    std::optional<termios> saved_;
+    struct Settings;
+    std::unique_ptr<Settings> saved_;  // null: no terminal
 };
 
 }  // namespace fantascope::app
