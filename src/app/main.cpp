@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/pattern_command.h"
 #include "app/rehearse_command.h"
 
 #include <fmt/format.h>
@@ -9,7 +10,7 @@ namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-const std::initializer_list<AddCommand> kCommands = {addRehearseCommand, addRunCommand};
+const std::initializer_list<AddCommand> kCommands = {addPatternCommand, addRehearseCommand, addRunCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

@@ -12,6 +12,7 @@
 
 #include "core/clock.h"
 #include "core/file.h"
+#include "core/geometry.h"
 
 namespace fantascope {
 
@@ -191,7 +192,7 @@ void ConfigFields::number(std::string_view key, double& target, double low, doub
 
 void ConfigFields::angle(std::string_view key, double& target, double lowDegrees, double highDegrees) {
     read(key, target, [&](const ConfigNode& node) -> Result<double> {
-        return TRY(node.number(lowDegrees, highDegrees, "degrees")) * std::numbers::pi / 180;
+        return radians(TRY(node.number(lowDegrees, highDegrees, "degrees")));
     });
 }
 
