@@ -15,11 +15,11 @@ struct AxisMotion {
 
 // The numerical parameters of section 4.2. Every default works with any pattern. Lengths in canvas heights, angles in radians (degrees in files).
 struct MotionSettings {
-    int frames = 2000;           // N: samples in one period of the excitation; even
-    double rate = 30;            // k: samples a second; the loop lasts frames / rate seconds
-    double deviation = 0.1;      // m << 1: spread of the spectrum's absolute values relative to their mean
+    int frames = 2000;           // N: samples in one period of the excitation; even, >= 4
+    double rate = 30;            // k: samples a second, > 0; the loop lasts frames / rate seconds
+    double deviation = 0.1;      // m << 1, >= 0: spread of the spectrum's absolute values relative to their mean
     double direction = 0;        // of the groups' major movement, from the canvas's x axis towards its y axis
-    double instancesPerGroup = 20;  // the number of groups follows from the number of instances
+    double instancesPerGroup = 20;  // > 0; the number of groups follows from the number of instances
     double fuzziness = 1.5;      // m of fuzzy c-means; > 1
     AxisMotion groupMajor{2, 0.25, 0.35, 0.05, 0.02};   // along `direction`
     AxisMotion groupMinor{2, 0.25, 0.35, 0.015, 0.006};  // across it

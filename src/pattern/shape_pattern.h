@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <glm/mat3x2.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <string>

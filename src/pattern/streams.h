@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+
+namespace fantascope::pattern {
+
+// What a random stream is for. It leads the stream's identity, as in streamSeed(pattern.seed, {Stream::InstanceMotion, id,
+// axis}), so that no two purposes ever share a stream. The values are part of what a seed means: never change or reuse one.
+struct Stream {
+    enum : std::uint64_t {
+        GroupCentres = 0x4701,     // where fuzzy c-means starts
+        GroupMembership = 0x4702,  // + instance id: the draw of its group
+        GroupMotion = 0x4703,      // + group, axis
+        InstanceMotion = 0x4704,   // + instance id, axis
+    };
+};
+
+}  // namespace fantascope::pattern
