@@ -1,14 +1,13 @@
 #include "app/command.h"
+#include "app/pattern_command.h"
 
 #include <fmt/format.h>
-
-#include <initializer_list>
 
 namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-const std::initializer_list<AddCommand> kCommands = {};
+constexpr AddCommand kCommands[] = {addPatternCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 
@@ -17,7 +16,9 @@ int run(int argc, char** argv) {
     program.set_version_flag("--version", FANTASCOPE_VERSION);
     program.require_subcommand(1);
     program.failure_message([](const CLI::App* app, const CLI::Error& error) {
-        return fmt::format("fantascope: error: {}\nSee '{} --help'.\n", error.what(), app->get_name());
+        const auto chosen = app->get_subcommands();
+        const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+        return fmt::format("fantascope: error: {}\nSee 'fantascope{} --help'.\n", error.what(), command);
     });
     Action action;
     for (const AddCommand add : kCommands) add(program, action);

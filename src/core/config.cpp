@@ -11,6 +11,7 @@
 
 #include "core/clock.h"
 #include "core/file.h"
+#include "core/geometry.h"
 
 namespace fantascope {
 
@@ -190,7 +191,7 @@ void ConfigFields::number(std::string_view key, double& target, double low, doub
 
 void ConfigFields::angle(std::string_view key, double& target, double lowDegrees, double highDegrees) {
     read(key, target, [&](const ConfigNode& node) -> Result<double> {
-        return TRY(node.number(lowDegrees, highDegrees, "degrees")) * std::numbers::pi / 180;
+        return radians(TRY(node.number(lowDegrees, highDegrees, "degrees")));
     });
 }
 
@@ -287,6 +288,16 @@ std::string shortest(double value) {
     char buffer[32];
     const auto [end, failure] = std::to_chars(buffer, buffer + sizeof buffer, value);
     return {buffer, end};
+}
+
+std::string shortestDegrees(double angle) {
+    const double degrees = angle * 180 / std::numbers::pi;
+    for (int digits = 1; digits < std::numeric_limits<double>::max_digits10; ++digits) {
+        double rounded = 0;
+        parseNumber(fmt::format("{:.{}g}", degrees, digits), rounded);
+        if (radians(rounded) == angle) return shortest(rounded);
+    }
+    return shortest(degrees);
 }
 
 std::string quoted(std::string_view text) {

@@ -127,6 +127,8 @@ std::string nearestName(std::string_view word, const std::vector<std::string>& k
 
 // For writing YAML: the shortest decimal that reads back as the same double, the same for any locale.
 std::string shortest(double value);
+// The shortest number of degrees that ConfigFields::angle reads back as the same angle; the nearest one where no number does.
+std::string shortestDegrees(double radians);
 // Quoted where YAML needs it.
 std::string quoted(std::string_view text);
 

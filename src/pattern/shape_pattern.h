@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/mesh.h"
@@ -40,6 +41,7 @@ struct InstancePose {
 
 // How a guide's stored values become linear light.
 enum class GuideTransfer { Srgb, Linear };
+constexpr std::string_view name(GuideTransfer transfer) { return transfer == GuideTransfer::Srgb ? "srgb" : "linear"; }  // in files and reports
 
 // A shape pattern: everything that is needed to draw it at any time. Value type; thread-safe to read.
 struct ShapePattern {
