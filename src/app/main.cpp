@@ -1,3 +1,4 @@
+#include "app/check_command.h"
 #include "app/command.h"
 #include "app/pattern_command.h"
 
@@ -7,7 +8,7 @@ namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-constexpr AddCommand kCommands[] = {addPatternCommand};
+constexpr AddCommand kCommands[] = {addPatternCommand, addCheckCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 
