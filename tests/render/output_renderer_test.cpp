@@ -197,15 +197,15 @@ TEST(OutputRenderer, cuts_shapes_at_the_canvas_and_never_lights_beyond_it) {
     pattern.instances[1].centre = {0.8, horizon + 1};
     pattern.instances.push_back(pattern.instances[0]);
     pattern.instances[2].centre = {-0.3, 0.5};
-    for (const Rgba8 pixel : DrawnOutput(kSize, steep, {resting(pattern)}).frame({{0, 1}}).pixels())
-        ASSERT_EQ(pixel, (Rgba8{0, 0, 0, 255}));
+    const auto drawn = [&](const PictureSource& source) -> RgbaImage {
+        return DrawnOutput(kSize, steep, {source}).frame({{0, 1}});
+    };
+    const RgbaImage none = drawn(resting(pattern));
+    for (const Rgba8 pixel : none.pixels()) ASSERT_EQ(pixel, (Rgba8{0, 0, 0, 255}));
     // One that reaches from behind the horizon over the whole canvas lights all of the canvas.
     pattern.instances = {pattern.instances[0]};
     pattern.instances[0].size = 20;
-    EXPECT_LE(difference(DrawnOutput(kSize, steep, {resting(pattern)}).frame({{0, 1}}),
-                         DrawnOutput(kSize, steep, {SolidSource{}}).frame({{0, 1}}))
-                  .most,
-              1);
+    EXPECT_LE(difference(drawn(resting(pattern)), drawn(SolidSource{})).most, 1);
 }
 
 // Show time alone decides the picture: forwards, backwards, and round the loop.
