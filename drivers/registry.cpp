@@ -2,6 +2,7 @@
 
 #include "drivers/camera/simulated.h"
 #include "drivers/cue_controller/simulated.h"
+#include "drivers/display/glfw.h"
 #include "drivers/display/headless.h"
 #include "drivers/dmx/simulated.h"
 #include "drivers/modbus/simulated.h"
@@ -23,7 +24,7 @@ template <class Open>
 using Table = std::vector<Driver<Open>>;
 
 // Every driver of the project.
-const Table<decltype(openDisplay)> kDisplays = {{"headless", &HeadlessDisplay::open}};
+const Table<decltype(openDisplay)> kDisplays = {{"headless", &HeadlessDisplay::open}, {"glfw", &GlfwDisplay::open}};
 const Table<decltype(openDmxPort)> kDmxPorts = {{"simulated", &SimulatedDmxPort::open}};
 const Table<decltype(openDmxSource)> kDmxSources = {{"simulated", &SimulatedDmxSource::open}};
 const Table<decltype(openRelayBank)> kRelayBanks = {{"simulated", &SimulatedRelayBank::open}};

@@ -1,8 +1,10 @@
 #include "contract/display_sink_contract.h"
 
+#include "drivers/display/glfw.h"
 #include "drivers/display/headless.h"
 #include "drivers/site/world.h"
 
+#include "contract/x_server.h"
 #include "core/check.h"
 
 #include <gmock/gmock.h>
@@ -46,6 +48,13 @@ std::unique_ptr<DisplaySinkRig> makeRig(Open open, const std::string& options) {
 std::unique_ptr<DisplaySinkRig> headlessRig() { return makeRig(drivers::HeadlessDisplay::open, "driver: headless\n"); }
 
 TEST(DisplaySinkContract, headless_display_keeps_it) { EXPECT_THAT(violations(displaySinkContract(), headlessRig), IsEmpty()); }
+
+TEST(DisplaySinkContract, glfw_display_keeps_it) {
+    const auto server = XServer::start();
+    ASSERT_TRUE(server) << server.error().message();
+    const auto rig = [] { return makeRig(drivers::GlfwDisplay::open, "driver: glfw\n"); };
+    EXPECT_THAT(violations(displaySinkContract(), rig), IsEmpty());
+}
 
 // A good display with the promises of a bad one; each of the following breaks one promise, and the suite must say which.
 class Broken : public DisplaySink {
