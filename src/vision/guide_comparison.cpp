@@ -2,9 +2,9 @@
 
 #include "core/check.h"
 
+#include <Eigen/Dense>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <opencv2/core.hpp>
 
 #include <algorithm>
 #include <array>
@@ -30,13 +30,6 @@ struct Cell {
     double gain = 0;
 };
 
-// How strongly a projector lights a surface at a point, up to a factor: the number of its pixels on a square metre there.
-double illuminance(const CameraModel& projector, glm::dvec3 point, glm::dvec3 normal) {
-    const glm::dvec3 toLens = projector.pose.position - point;
-    const double depth = -glm::dot(toLens, projector.pose.worldFromLocal[2]);
-    return glm::dot(normal, toLens) / (depth * depth * depth);
-}
-
 // All cells that the camera sees whole, by rows; the strongest gain is 1.
 std::vector<Cell> cellsInSight(const NominalView& view, glm::ivec2 grid) {
     std::vector<Cell> cells;
@@ -52,7 +45,7 @@ std::vector<Cell> cellsInSight(const NominalView& view, glm::ivec2 grid) {
                 const auto pixel = point ? view.camera.pixelFromWorld(*point) : std::nullopt;
                 if (!pixel || !view.camera.inPicture(*pixel)) break;
                 cell.places.emplace_back(*pixel);
-                cell.gain += illuminance(view.projector, *point, view.surface.normal);
+                cell.gain += view.projector.pixelsPerArea(*point, view.surface.normal);
             }
             if (cell.places.size() < kPlaces * kPlaces) continue;
             strongest = std::max(strongest, cell.gain);
@@ -111,10 +104,10 @@ struct GuideComparison::Tables {
     glm::ivec2 frameSize;
     glm::ivec2 grid;  // cells across and down the canvas
     std::vector<Cell> cells;
-    GreyImage weights;          // of the cells in sight under the low-pass
-    std::vector<float> wanted;  // low-passed, of the cells in sight
-    cv::Mat background;         // cells x terms
-    cv::Mat backgroundOf;       // terms x cells: what part of an unlit picture's light each term has
+    GreyImage weights;             // of the cells in sight under the low-pass
+    std::vector<float> wanted;     // low-passed, of the cells in sight
+    Eigen::MatrixXf background;    // cells x terms
+    Eigen::MatrixXf backgroundOf;  // terms x cells: how much of each term is in the low-passed light
 
     // A Gaussian over the cells in sight, as if there were no others.
     std::vector<float> lowPassed(const std::vector<float>& values) const {
@@ -147,19 +140,18 @@ GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wante
 
     // Least squares of the low-passed light on the low-passed guide and on a smooth background: the first column takes the
     // picture out of the fit.
-    cv::Mat terms(count, 1 + kBackgroundTerms, CV_64F);
+    Eigen::MatrixXd terms(count, 1 + kBackgroundTerms);
     for (int i = 0; i < count; ++i) {
         const Cell& cell = tables->cells[static_cast<std::size_t>(i)];
         const glm::dvec2 at = 2.0 * glm::dvec2(cell.column, cell.row) / glm::dvec2(tables->grid) - 1.0;
-        const std::array<double, 1 + kBackgroundTerms> row{
-            tables->wanted[static_cast<std::size_t>(i)] * cell.gain, 1, at.x, at.y, at.x * at.x, at.x * at.y, at.y * at.y};
-        std::copy(row.begin(), row.end(), terms.ptr<double>(i));
+        terms.row(i) << tables->wanted[static_cast<std::size_t>(i)] * cell.gain, 1, at.x, at.y, at.x * at.x, at.x * at.y,
+            at.y * at.y;
     }
-    cv::Mat normal = terms.t() * terms;
-    for (int term = 1; term <= kBackgroundTerms; ++term) normal.at<double>(term, term) += kBackgroundCost * count;
-    const cv::Mat solved = normal.inv(cv::DECOMP_SVD) * terms.t();
-    terms.colRange(1, 1 + kBackgroundTerms).convertTo(tables->background, CV_32F);
-    solved.rowRange(1, 1 + kBackgroundTerms).convertTo(tables->backgroundOf, CV_32F);
+    Eigen::MatrixXd normal = terms.transpose() * terms;
+    normal.diagonal().tail(kBackgroundTerms).array() += kBackgroundCost * count;
+    const Eigen::MatrixXd solved = normal.completeOrthogonalDecomposition().solve(terms.transpose());
+    tables->background = terms.rightCols(kBackgroundTerms).cast<float>();
+    tables->backgroundOf = solved.bottomRows(kBackgroundTerms).cast<float>();
 }
 
 std::optional<double> GuideComparison::compare(const RgbaImage& frame) const {
@@ -178,8 +170,9 @@ std::optional<double> GuideComparison::compare(const RgbaImage& frame) const {
             light[static_cast<std::size_t>(c)].push_back(static_cast<float>(sum[c] / (kPlaces * kPlaces)));
     }
     for (std::vector<float>& channel : light) {
-        const cv::Mat background = tables.background * (tables.backgroundOf * cv::Mat(tables.lowPassed(channel)));
-        cv::subtract(cv::Mat(channel), background, cv::Mat(channel));
+        const std::vector<float> smooth = tables.lowPassed(channel);
+        const Eigen::VectorXf share = tables.backgroundOf * Eigen::Map<const Eigen::VectorXf>(smooth.data(), count);
+        Eigen::Map<Eigen::VectorXf>(channel.data(), count) -= tables.background * share;
     }
     // A pixel's value is its brightest channel, so that shapes of any colour count alike; over the projector's own fall-off.
     std::vector<float> seen;

@@ -202,8 +202,8 @@ TEST(SiteLight, a_frame_of_another_size_fills_the_picture) {
     for (int y = 0; y < 10; ++y)
         for (int x = 10; x < 20; ++x) halves.at(x, y) = {255, 255, 255, 255};
     light.show(std::make_shared<const RgbaImage>(halves));
-    EXPECT_NEAR(light.at(0, {10, 50}).r, 0, 1e-6);
-    EXPECT_NEAR(light.at(0, {55, 10}).r, 1, 1e-6);
+    EXPECT_NEAR(light.at(ProjectedLight::placeOf({64, 64}, {10, 50}, 1)).r, 0, 1e-6);
+    EXPECT_NEAR(light.at(ProjectedLight::placeOf({64, 64}, {55, 10}, 1)).r, 1, 1e-6);
     EXPECT_NEAR(light.mean().r, 0.5, 0.01);
 }
 

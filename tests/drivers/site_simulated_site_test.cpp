@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <functional>
+#include <algorithm>
+#include <atomic>
+#include <thread>
 
 namespace fantascope::site {
 namespace {
@@ -193,6 +195,34 @@ TEST(SimulatedSite, gives_the_same_bytes_for_the_same_seed) {
     const auto first = night(1);
     EXPECT_EQ(first, night(1));
     EXPECT_NE(first, night(2));
+}
+
+// The loop of the header, word for word, on a clock that its sleep moves; devices and console work beside it.
+TEST(SimulatedSite, runs_on_a_thread_of_its_own) {
+    Stage stage(
+        "faults: [{kind: bump, output: left, at: 0.5, until: 1, turn: [0, 1, 0]}, {kind: unplug, device: right, at: 1.5}]");
+    std::atomic<bool> stopped = false;
+    std::jthread thread([&] {
+        while (!stopped) {
+            stage.site_->advanceTo(stage.clock_.now());
+            stage.clock_.sleepUntil(std::min(stage.site_->nextEvent(), stage.clock_.now() + 100ms));
+        }
+    });
+    std::uint8_t value = 0;
+    std::uint64_t last = 0;
+    while (stage.site_->happenings().size() < 3) {
+        stage.show("left", ++value);
+        stage.setSlot(10, value);
+        if (const auto frame = stage.world_.takeFromCamera()) {
+            EXPECT_GE(frame->sequence, last);
+            last = frame->sequence;
+        }
+    }
+    stopped = true;
+    thread.join();
+    EXPECT_THAT(told(*stage.site_), ElementsAre("0.5 projector left bumped by 0.000 m and 1.00 degrees",
+                                                "1.0 projector left put back", "1.5 right unplugged"));
+    EXPECT_FALSE(stage.world_.plugged("right"));
 }
 
 // Example failure: an unplugged projector goes on glowing with its black level.
