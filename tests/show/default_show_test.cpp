@@ -21,7 +21,7 @@ struct DefaultShow {
     Result<Show> show = Error("not loaded");
 
     DefaultShow() {
-        for (const char* pattern : {"patterns/left.pattern.yaml", "patterns/right.pattern.yaml"}) folder.write(pattern, "");
+        for (const char* pattern : {"left.pattern.yaml", "right.pattern.yaml"}) folder.write(pattern, "");
         show = Show::load(folder.write("show.yaml", readFile(kSource / "shows/light-movement/show.yaml").value()));
     }
 };
