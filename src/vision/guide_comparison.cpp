@@ -13,7 +13,10 @@
 namespace fantascope::vision {
 namespace {
 
-constexpr double kBlur = 1.0 / 36;        // sigma in canvas heights, that of the pattern's own `tone`
+// The low-pass, sigma in canvas heights: that of the pattern's own `tone`. On the default site with a pattern of 400 shapes, the score in
+// place and with the projector turned by half a degree were .060 / .108 at 1/144, .043 / .092 at 1/72, .027 / .074 at 1/36 and
+// .014 / .048 at 1/18: less blur counts the gaps between shapes as faults, more blur hides small moves.
+constexpr double kBlur = 1.0 / 36;
 constexpr int kRows = 72;                 // cells down the canvas: two a sigma
 constexpr int kPlaces = 3;                // across and down a cell
 constexpr double kMostlySeen = 0.5;       // share of the canvas that the camera must see
