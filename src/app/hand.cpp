@@ -34,9 +34,9 @@ void Hand::tick(Time moment) {
 
 bool GoSchedule::due(Time showTime) {
     if (ended()) return false;
-    // Every cue has the same share of the length, and its GO comes when a sixth of that is over.
-    const double share = seconds(length_) / static_cast<double>(cues_);
-    if (showTime < fromSeconds(share * (static_cast<double>(pressed_) + 1.0 / 6))) return false;
+    constexpr double kDarkness = 1.0 / 6;  // of a cue's share
+    const double share = seconds(length_) / (static_cast<double>(presses_) + (cueIsOn_ ? 1 : 0));
+    if (showTime < fromSeconds(share * (static_cast<double>(pressed_) + (cueIsOn_ ? 1 : kDarkness)))) return false;
     ++pressed_;
     return true;
 }

@@ -78,7 +78,7 @@ public:
           lighting_(programme.site, programme.cues, surrounding.devices, clock, start_, recording),
           hand_(programme.show, programme.cues, programme.site, surrounding.devices.cueController.get(), start_),
           watch_(programme.show, outputNames(), programme.comparisons, surrounding.devices.camera.get(), start_, recording),
-          schedule_(options.handsOff && options.length ? programme.show.cues.size() : 0, options.length.value_or(Time{})) {
+          schedule_(scheduleOf(options, programme)) {
         frames_.publishStateTo(watch_.shown());
         hand_.feed(frames_.replica());
         hand_.feed(lighting_.replica());
@@ -129,6 +129,12 @@ public:
     }
 
 private:
+    static GoSchedule scheduleOf(const RunOptions& options, const Programme& programme) {
+        if (!options.handsOff || !options.length) return {0, false, {}};
+        const bool cueIsOn = programme.firstInput.has_value();
+        const std::size_t entered = cueIsOn ? static_cast<std::size_t>(programme.firstInput->cue) + 1 : 0;
+        return {programme.show.cues.size() - entered, cueIsOn, *options.length};
+    }
     std::vector<std::string> outputNames() const {
         std::vector<std::string> names;
         for (const show::Output& output : programme_.site.outputs) names.push_back(output.name);

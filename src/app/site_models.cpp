@@ -44,6 +44,7 @@ Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site,
     vision::NominalView view;
     view.camera = TRY(cameraOf(site));
     view.projector = projectorOf(from);
+    view.canvasAspect = canvasAspect;
     view.projectorFromCanvas = from.projectorFromCanvas(canvasAspect);
     view.surface = {from.surface->point, from.surface->normal};
     return std::optional(view);

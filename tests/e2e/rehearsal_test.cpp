@@ -38,13 +38,13 @@ Outcome rehearse(const fs::path& folder, std::vector<std::string> more, const st
 
 TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
     const Folder folder;
-    const Outcome outcome = rehearse(folder.path(), {"--seconds", "12"});
+    const Outcome outcome = rehearse(folder.path(), {"--seconds", "30"});
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
     const json report = json::parse(contentsOf(folder / "report.json"));
     std::vector<std::string> entered;
     for (const json& cue : report["cues"]) entered.push_back(cue["name"]);
     EXPECT_EQ(entered, kCues);
-    EXPECT_EQ(report["frames"], 2 * 12 * 30);
+    EXPECT_EQ(report["frames"], 2 * 30 * 30);
     EXPECT_EQ(report["late_frames"], 0);
     EXPECT_EQ(report["input_to_frame_ms"]["count"], 6);
     EXPECT_EQ(report["stop_reason"], "length");
@@ -70,8 +70,8 @@ TEST(Rehearsal, is_the_same_byte_for_byte_in_another_folder_and_with_other_threa
 
 TEST(Rehearsal, another_seed_gives_other_camera_noise_and_the_same_show) {
     const Folder one, other;
-    ASSERT_EQ(rehearse(one.path(), {"--seconds", "3", "--from", "Full", "--seed", "1"}).status, 0);
-    ASSERT_EQ(rehearse(other.path(), {"--seconds", "3", "--from", "Full", "--seed", "2"}).status, 0);
+    ASSERT_EQ(rehearse(one.path(), {"--seconds", "3", "--by-hand", "--from", "Full", "--seed", "1"}).status, 0);
+    ASSERT_EQ(rehearse(other.path(), {"--seconds", "3", "--by-hand", "--from", "Full", "--seed", "2"}).status, 0);
     EXPECT_EQ(contentsOf(one / "rehearsal/frames.csv"), contentsOf(other / "rehearsal/frames.csv"));
     EXPECT_NE(contentsOf(one / "rehearsal/contact-sheet.png"), contentsOf(other / "rehearsal/contact-sheet.png"));
 }
@@ -93,7 +93,7 @@ double meanScore(const json& series, double from, double to) {
 TEST(Rehearsal, the_cameras_score_rises_while_a_projector_is_bumped_and_only_for_its_output) {
     const Folder folder;
     const fs::path site = siteWith(folder, "  faults:\n    - {at: 6, until: 12, kind: bump, output: left, move: [0.05, 0, 0], turn: [0, 1.5, 0.5]}\n");
-    const Outcome outcome = rehearse(folder.path(), {"--seconds", "18", "--from", "Full", "--site", site.string()});
+    const Outcome outcome = rehearse(folder.path(), {"--seconds", "18", "--by-hand", "--from", "Full", "--site", site.string()});
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
     const json report = json::parse(contentsOf(folder / "report.json"));
     EXPECT_EQ(report["faults"].size(), 2u) << report["faults"];
@@ -109,7 +109,7 @@ TEST(Rehearsal, the_cameras_score_rises_while_a_projector_is_bumped_and_only_for
 TEST(Rehearsal, an_unplugged_projector_goes_dark_and_comes_back_while_the_other_plays_on) {
     const Folder folder;
     const fs::path site = siteWith(folder, "  faults:\n    - {at: 2, until: 4, kind: unplug, device: left}\n");
-    ASSERT_EQ(rehearse(folder.path(), {"--seconds", "6", "--from", "Full", "--site", site.string()}).status, 0);
+    ASSERT_EQ(rehearse(folder.path(), {"--seconds", "6", "--by-hand", "--from", "Full", "--site", site.string()}).status, 0);
     const json report = json::parse(contentsOf(folder / "report.json"));
     EXPECT_EQ(report["frames_by_output"]["right"], 180);
     EXPECT_NEAR(report["frames_by_output"]["left"].get<double>(), 120, 2);
