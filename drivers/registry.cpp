@@ -2,6 +2,7 @@
 
 #include "drivers/camera/simulated.h"
 #include "drivers/cue_controller/simulated.h"
+#include "drivers/display/glfw.h"
 #include "drivers/display/headless.h"
 #include "drivers/dmx/simulated.h"
 #include "drivers/modbus/simulated.h"
@@ -21,7 +22,7 @@ struct Driver {
 };
 
 // Every driver of the project.
-constexpr Driver<decltype(openDisplay)> kDisplays[] = {{"headless", &HeadlessDisplay::open}};
+constexpr Driver<decltype(openDisplay)> kDisplays[] = {{"glfw", &GlfwDisplay::open}, {"headless", &HeadlessDisplay::open}};
 constexpr Driver<decltype(openDmxPort)> kDmxPorts[] = {{"simulated", &SimulatedDmxPort::open}};
 constexpr Driver<decltype(openDmxSource)> kDmxSources[] = {{"simulated", &SimulatedDmxSource::open}};
 constexpr Driver<decltype(openRelayBank)> kRelayBanks[] = {{"simulated", &SimulatedRelayBank::open}};

@@ -1,3 +1,5 @@
+#include "drivers/virtual_x_server.h"
+
 #include "contract/display_sink_suite.h"
 #include "contract/simulated_rig.h"
 
@@ -42,6 +44,12 @@ std::vector<std::string> brokenBy() {
 
 TEST(DisplaySinkContract, is_kept_by_the_headless_display) {
     EXPECT_THAT(violations(displaySinkSuite(), [] { return std::make_unique<DrivenDisplayRig>("headless"); }), IsEmpty());
+}
+
+TEST(DisplaySinkContract, is_kept_by_windows) {
+    const auto server = VirtualXServer::start();
+    ASSERT_TRUE(server) << server.error().message();
+    EXPECT_THAT(violations(displaySinkSuite(), [] { return std::make_unique<DrivenDisplayRig>("glfw"); }), IsEmpty());
 }
 
 class AlmostGood : public Between<DisplaySink> {
