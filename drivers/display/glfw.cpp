@@ -4,11 +4,14 @@
 
 #include "core/check.h"
 
+#include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #define GLFW_INCLUDE_NONE
+#define GLFW_EXPOSE_NATIVE_EGL
 #include <GLFW/glfw3.h>
+#include <GLFW/glfw3native.h>
 
 #include <algorithm>
 #include <span>
@@ -119,7 +122,8 @@ Result<void> GlfwDisplay::makeCurrent() {
             status_.detail = appeared.error().message();
     }
     if (!appeared) return appeared.error().in(request_.name + " is absent");
-    if (glfwGetCurrentContext() != window_) glfwMakeContextCurrent(window_);
+    // GLFW knows its own contexts alone; a headless display on this thread makes others current.
+    if (eglGetCurrentContext() != glfwGetEGLContext(window_)) glfwMakeContextCurrent(window_);
     return {};
 }
 
@@ -150,6 +154,7 @@ Result<void> GlfwDisplay::openWindow() {
 
     if (!session_) session_ = TRY(Session::shared());
     glfwDefaultWindowHints();
+    glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);  // GLX cannot share a thread with headless displays
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);

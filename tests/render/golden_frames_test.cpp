@@ -1,0 +1,68 @@
+// Frames as people will see them, and the same ones from everywhere.
+
+#include "drivers/virtual_x_server.h"
+
+#include "render/golden.h"
+#include "render/scene.h"
+
+#include "core/file.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <string>
+
+namespace fantascope::render {
+namespace {
+
+constexpr glm::ivec2 kSize{480, 270};
+
+// Shapes, shading, warp and movement together: what no other test would notice, an eye does.
+TEST(GoldenFrames, a_swaying_pattern_through_a_keystone) {
+    DrawnOutput output(kSize, keystone(kSize), {moving(smallPattern())});
+    EXPECT_TRUE(looksLikeGolden("pattern-at-0s", output.frame({{0, 1}}, Time::zero())));
+    EXPECT_TRUE(looksLikeGolden("pattern-at-12s", output.frame({{0, 1}}, std::chrono::seconds(12))));
+}
+
+// The comparison itself: a picture that is a pixel off, or a shade darker, is not the golden one.
+TEST(GoldenFrames, are_not_met_by_a_shifted_or_a_darker_picture) {
+    DrawnOutput output(kSize, keystone(kSize), {moving(smallPattern())});
+    const RgbaImage frame = output.frame({{0, 1}}, Time::zero());
+    RgbaImage shifted = frame, darker = frame;
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 1; x < kSize.x; ++x) shifted.at(x, y) = frame.at(x - 1, y);
+    for (Rgba8& pixel : darker.pixels()) pixel.g = static_cast<std::uint8_t>(pixel.g * 95 / 100);
+    EXPECT_EQ(differsVisibly(frame, frame), "");
+    EXPECT_NE(differsVisibly(frame, shifted), "");
+    EXPECT_NE(differsVisibly(frame, darker), "");
+}
+
+std::string framesOfAnotherProcess(const std::string& environment) {
+    const std::string file = testing::TempDir() + "frames.raw";
+    const std::string command = environment + " " + DRAW_FRAMES + " " + file;
+    if (std::system(command.c_str()) != 0) return command + " failed";
+    return readFile(file).value();
+}
+
+// A night can be replayed byte by byte.
+// Example failure: the software renderer's threads blend in the order in which they happen to finish.
+TEST(Frames, are_the_same_bytes_in_every_run_and_on_every_number_of_threads) {
+    const std::string frames = framesOfAnotherProcess("LP_NUM_THREADS=0");
+    EXPECT_GT(frames.size(), 1'000'000u) << frames;
+    EXPECT_TRUE(framesOfAnotherProcess("LP_NUM_THREADS=0") == frames);
+    EXPECT_TRUE(framesOfAnotherProcess("LP_NUM_THREADS=2") == frames);
+}
+
+TEST(Frames, are_the_same_in_a_window_as_without_a_window_system) {
+    const auto server = VirtualXServer::start();
+    ASSERT_TRUE(server) << server.error().message();
+    const PatternSource source = moving(smallPattern());
+    const std::vector<show::LayerState> layers = {{0, 0.7f}, {1, 0.2f}};
+    DrawnOutput headless(kSize, keystone(kSize), {source, SolidSource{{1, 0.5f, 0.2f}}});
+    DrawnOutput window(kSize, keystone(kSize), {source, SolidSource{{1, 0.5f, 0.2f}}}, "glfw");
+    for (const Time time : {Time::zero(), Time(std::chrono::seconds(5))})
+        EXPECT_LE(difference(headless.frame(layers, time), window.frame(layers, time)).most, 1);
+}
+
+}  // namespace
+}  // namespace fantascope::render
