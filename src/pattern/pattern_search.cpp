@@ -153,9 +153,8 @@ private:
     Heuristics examine(const Candidate& reference) const {
         Heuristics found;
         for (const PixelRectangle& cell : lattice_) {
-            const double g = goal_.differenceIndex(cell, reference.coverage);
-            if (g > options_.lambdaCreate)
-                found.vacancies.push_back({cell, (g - options_.lambdaCreate) / (1 - options_.lambdaCreate)});
+            const double probability = createProbability(goal_.differenceIndex(cell, reference.coverage), options_.lambdaCreate);
+            if (probability > 0) found.vacancies.push_back({cell, probability});
         }
         for (const ShapeInstance& instance : reference.instances)
             found.instanceIndices.push_back(goal_.differenceIndex(instanceCell(instance), reference.coverage));
@@ -169,10 +168,7 @@ private:
         candidate.nextId = reference.nextId;
         for (std::size_t i = 0; i < reference.instances.size(); ++i) {
             const double g = heuristics.instanceIndices[i];
-            if (g < options_.lambdaDelete) {
-                const double deleteProbability = (g - options_.lambdaDelete) / (-1 - options_.lambdaDelete);
-                if (rng.uniform() < deleteProbability) continue;
-            }
+            if (rng.uniform() < deleteProbability(g, options_.lambdaDelete)) continue;
             candidate.instances.push_back(adjusted(reference.instances[i], g, share, rng));
         }
         std::vector<const PixelRectangle*> cells;
@@ -328,6 +324,12 @@ std::string_view name(PatternSearch::StopReason reason) {
             return "interrupted";
     }
     return "";
+}
+
+double createProbability(double g, double lambdaCreate) { return g > lambdaCreate ? (g - lambdaCreate) / (1 - lambdaCreate) : 0; }
+
+double deleteProbability(double g, double lambdaDelete) {
+    return g < lambdaDelete ? (g - lambdaDelete) / (-1 - lambdaDelete) : 0;
 }
 
 PatternSearch::Found PatternSearch::run(const GreyImage& guide, ShapePattern pattern, const Options& options, int threads,
