@@ -1,5 +1,12 @@
 #pragma once
 
+#include "device/camera_source.h"
+#include "device/cue_controller.h"
+#include "device/dmx_source.h"
+
+#include "core/clock.h"
+#include "core/image.h"
+
 #include <array>
 #include <deque>
 #include <map>
@@ -11,63 +18,71 @@
 #include <string>
 #include <vector>
 
-#include "core/clock.h"
-#include "core/image.h"
-#include "device/camera_source.h"
-#include "device/cue_controller.h"
-#include "device/dmx_source.h"
-
 namespace fantascope::site {
 
-// The far end of every simulated device: what lamps, relays, projectors, the hand and the camera of the simulated site are doing now.
-// The simulated drivers act on it from one side; the scene (simulated_site.h), tests and the rehearsal's operator from the other.
-// Thread: thread-safe; no call waits for more than a copy.
+// The far end of every simulated device: what lamps, relays, projectors, the hand and the camera of the simulated site are doing
+// now. The simulated drivers act on it from one side; the scene (simulated_site.h), tests and the rehearsal's operator from the
+// other. Nothing passes a pulled plug in either direction, and what was on its way when it was pulled is lost. Thread:
+// thread-safe; no call waits for more than a copy.
 class World {
 public:
     explicit World(const Clock& clock) : clock_(clock) {}
 
     const Clock& clock() const { return clock_; }
 
-    // Pulls a device's plug, or puts it back. Devices go by their name in the site file: an output's name, "universe N", "relay bank",
-    // "cue controller", "camera", "contacts", "desk N".
+    // Pulls a device's plug, or puts it back. Devices go by their name in the site file: an output's name, "universe N", "relay
+    // bank", "cue controller", "camera", "contacts", "desk N". All are plugged in at first.
     void setPlugged(const std::string& device, bool plugged);
     bool plugged(const std::string& device) const;
+    // How many times the device's plug was pulled so far: tells a driver of a loss that was over before it looked.
+    int unpluggings(const std::string& device) const;
 
-    // Lamps: what each universe's line carried last. All zero before the first frame.
-    void setSlots(int universe, std::span<const std::uint8_t, kDmxSlots> slots);
+    // Lamps: what each universe's line carried last; all zero before the first frame. They hold it while the line is silent.
+    // False: the line is unplugged and the lamps see nothing of it.
+    bool setSlots(int universe, std::span<const std::uint8_t, kDmxSlots> slots);
     std::array<std::uint8_t, kDmxSlots> slots(int universe) const;
 
-    // Relays of the one simulated bank.
-    void setRelays(const std::vector<bool>& states);
-    std::vector<bool> relays() const;
+    // Relays of the one simulated bank. installRelays() wires it: they take their safe states now, and whenever the plug is
+    // pulled.
+    void installRelays(const std::vector<bool>& safeStates);
+    bool setRelays(const std::vector<bool>& states);  // false: unplugged, nothing changes; states.size() is the installed number
+    std::vector<bool> relays() const;                 // empty before installRelays()
 
-    // Contacts of the simulated input bank.
+    // Contacts of the simulated input bank; all open at first. They open and close whether or not anybody is connected to them.
     void setContact(std::size_t contact, bool closed);
     bool contact(std::size_t contact) const;
 
-    // Somebody else's desk on a universe.
-    void sendFromDesk(int universe, const DmxInput& frame);
+    // Somebody else's desk on a universe: frames wait until the driver takes them, oldest first. `arrived` is set to the clock's
+    // now. Of each sender the newest waits at least; older ones are dropped beyond kDeskDepth.
+    static constexpr std::size_t kDeskDepth = 16;
+    void sendFromDesk(int universe, DmxInput frame);
     std::optional<DmxInput> takeFromDesk(int universe);
 
-    // The hand on the cue controller: events wait until the driver takes them; lost while it is unplugged. `at` is set to the clock's now.
+    // The hand on the cue controller: events wait until the driver takes them. `at` is set to the clock's now.
     void press(int button, bool pressed);
     std::optional<ButtonEvent> takePress();
 
-    // Projectors: the frame each one throws on the wall now; null before the first.
+    // Projectors: the frame each one throws on the wall now; null before the first, and after its plug was pulled until the next.
     void setFrame(const std::string& output, std::shared_ptr<const RgbaImage> frame);
     std::shared_ptr<const RgbaImage> frame(const std::string& output) const;
 
-    // The camera: frames become visible to the driver at `due`.
+    // The camera: frames become visible to the driver at `due`, which only rises.
     void sendFromCamera(std::shared_ptr<const CameraFrame> frame, Time due);
     std::shared_ptr<const CameraFrame> takeFromCamera();  // the newest that is due and was not taken; older ones are dropped
 
 private:
+    struct Plug {
+        bool in = true;
+        int pulls = 0;
+    };
+    bool isIn(const std::string& device) const;  // with mutex_ held
+
     const Clock& clock_;
     mutable std::mutex mutex_;
-    std::set<std::string> unplugged_;
+    std::map<std::string, Plug> plugs_;
     std::map<int, std::array<std::uint8_t, kDmxSlots>> slots_;
-    std::vector<bool> relays_;
-    std::map<std::size_t, bool> contacts_;
+    std::vector<bool> relays_, safeStates_;
+    std::set<std::size_t> closed_;
     std::map<int, std::deque<DmxInput>> desk_;
     std::deque<ButtonEvent> presses_;
     std::map<std::string, std::shared_ptr<const RgbaImage>> frames_;

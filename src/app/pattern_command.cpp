@@ -127,6 +127,7 @@ Result<Shapes> loadShapes(const Options& options) {
                     "{}: a .gltf keeps its points in a second file and cannot be copied beside the pattern; export it as .glb",
                     given));
             shape.name = loaded.files.back().name;
+            shape.file = fs::absolute(options.output).parent_path() / shape.name;
         }
         for (const auto& other : loaded.shapes)
             if (other.name == shape.name) return Error(fmt::format("--shapes: {} is given twice", given));

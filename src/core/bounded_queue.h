@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 namespace fantascope {
 
@@ -23,7 +24,7 @@ public:
     std::optional<T> pop() {
         const std::size_t head = head_.load(std::memory_order_relaxed);
         if (head == tail_.load(std::memory_order_acquire)) return std::nullopt;
-        std::optional<T> value(values_[head % kCapacity]);
+        std::optional<T> value(std::move(values_[head % kCapacity]));
         head_.store(head + 1, std::memory_order_release);
         return value;
     }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <tuple>
 
 #include "core/clock.h"
 #include "core/file.h"
@@ -290,14 +291,19 @@ std::string shortest(double value) {
     return {buffer, end};
 }
 
-std::string shortestDegrees(double angle) {
-    const double degrees = angle * 180 / std::numbers::pi;
-    for (int digits = 1; digits < std::numeric_limits<double>::max_digits10; ++digits) {
-        double rounded = 0;
-        parseNumber(fmt::format("{:.{}g}", degrees, digits), rounded);
-        if (radians(rounded) == angle) return shortest(rounded);
+std::string shortestDegrees(double radians) {
+    constexpr int kReach = 4;  // units in the last place; the two conversions together are wrong by fewer
+    // Ends in the number itself, so that the choice does not depend on where the search for it began.
+    const auto rank = [&](double degrees) {
+        return std::tuple(std::abs(degrees * std::numbers::pi / 180 - radians), shortest(degrees).size(), degrees);
+    };
+    double best = radians * 180 / std::numbers::pi, candidate = best;
+    for (int i = 0; i < kReach; ++i) candidate = std::nextafter(candidate, -std::numeric_limits<double>::infinity());
+    for (int i = 0; i <= 2 * kReach; ++i) {
+        if (rank(candidate) < rank(best)) best = candidate;
+        candidate = std::nextafter(candidate, std::numeric_limits<double>::infinity());
     }
-    return shortest(degrees);
+    return shortest(best);
 }
 
 std::string quoted(std::string_view text) {

@@ -24,6 +24,7 @@ namespace fantascope {
 // One node of a loaded file; cheap to copy, keeps the file alive. Thread: thread-bound (a copy shares its file's tree).
 class ConfigNode {
 public:
+    ConfigNode() = default;  // no node yet: only to be assigned to
     // The file's root, a map. Error: unreadable, or not YAML: place and reason.
     static Result<ConfigNode> load(const std::filesystem::path& path);
     // The same from text; `name` stands for the file in messages, and relative paths start from its folder.
@@ -126,7 +127,8 @@ std::string nearestName(std::string_view word, const std::vector<std::string>& k
 
 // For writing YAML: the shortest decimal that reads back as the same double, the same for any locale.
 std::string shortest(double value);
-// The shortest number of degrees that ConfigFields::angle reads back as the same angle; the nearest one where no number does.
+// Degrees for ConfigFields::angle: of those doubles that it reads as nearest to `radians` the shortest decimal. An angle that was once
+// read comes back exactly, with the same text; of others one in ten or so by one unit in its last place, as no degrees stand for it.
 std::string shortestDegrees(double radians);
 // Quoted where YAML needs it.
 std::string quoted(std::string_view text);

@@ -33,11 +33,13 @@ std::optional<std::string> whyNotConvex(const std::array<glm::dvec2, 4>& corners
 Result<Homography> Homography::fromCorners(const std::array<glm::dvec2, 4>& source, const std::array<glm::dvec2, 4>& target) {
     for (const auto* corners : {&source, &target})
         if (const auto why = whyNotConvex(*corners)) return Error(*why);
-    // The direct linear transform with h33 = 1 (Hartley & Zisserman 2004, section 4.1).
+    // The direct linear transform with h33 = 1 (Hartley & Zisserman 2004, section 4.1). h33 is the w of the source's origin, which
+    // may not be 0; so the source is measured from its first corner, whose image is a finite point.
     Eigen::Matrix<double, 8, 8> equations;
     Eigen::Matrix<double, 8, 1> values;
     for (int i = 0; i < 4; ++i) {
-        const auto [x, y] = std::pair(source[static_cast<std::size_t>(i)].x, source[static_cast<std::size_t>(i)].y);
+        const glm::dvec2 from = source[static_cast<std::size_t>(i)] - source[0];
+        const auto [x, y] = std::pair(from.x, from.y);
         const auto [u, v] = std::pair(target[static_cast<std::size_t>(i)].x, target[static_cast<std::size_t>(i)].y);
         equations.row(2 * i) << x, y, 1, 0, 0, 0, -u * x, -u * y;
         equations.row(2 * i + 1) << 0, 0, 0, x, y, 1, -v * x, -v * y;
@@ -45,7 +47,10 @@ Result<Homography> Homography::fromCorners(const std::array<glm::dvec2, 4>& sour
         values(2 * i + 1) = v;
     }
     const Eigen::Matrix<double, 8, 1> h = equations.fullPivLu().solve(values);
-    return Homography(glm::dmat3(h(0), h(3), h(6), h(1), h(4), h(7), h(2), h(5), 1.0));
+    const glm::dmat3 targetFromFirstCorner(h(0), h(3), h(6), h(1), h(4), h(7), h(2), h(5), 1.0);
+    glm::dmat3 firstCornerFromSource(1.0);
+    firstCornerFromSource[2] = {-source[0], 1.0};
+    return Homography(targetFromFirstCorner * firstCornerFromSource);
 }
 
 glm::dvec2 Homography::operator()(glm::dvec2 point) const {
@@ -67,7 +72,8 @@ Result<Pose> Pose::lookingAt(glm::dvec3 position, glm::dvec3 target, glm::dvec3 
     if (glm::length(target - position) < 1e-9) return Error("looks at the point where it stands; move the target or the position");
     const glm::dvec3 forward = glm::normalize(target - position);
     const glm::dvec3 right = glm::cross(forward, up);
-    if (glm::length(right) < 1e-9 * glm::length(up)) return Error("looks along its own up direction; give another 'up'");
+    if (!(glm::length(right) > 1e-9 * glm::length(up)))
+        return Error("looks along its own up direction, or that has no length; give another 'up'");
     const glm::dvec3 unitRight = glm::normalize(right);
     return Pose{glm::dmat3(unitRight, glm::cross(forward, unitRight), forward), position};
 }

@@ -48,7 +48,8 @@ struct Pose {
     glm::dmat3 worldFromLocal{1.0};  // columns: right, down, forward in world axes
     glm::dvec3 position{0.0};        // metres
 
-    // Looks from `position` at `target` with the picture's top towards `up`. Error: target at the position, or up along the view.
+    // Looks from `position` at `target` with the picture's top towards `up`. Error: target at the position, up along the view or
+    // without a length.
     static Result<Pose> lookingAt(glm::dvec3 position, glm::dvec3 target, glm::dvec3 up = {0, 1, 0});
     glm::dvec3 localFromWorld(glm::dvec3 point) const;
 };

@@ -20,9 +20,20 @@ constexpr int kLargestSide = 16384;
 cv::Mat view(const GreyImage& image) { return {image.height(), image.width(), CV_32FC1, const_cast<float*>(image.pixels().data())}; }
 cv::Mat view(const RgbaImage& image) { return {image.height(), image.width(), CV_8UC4, const_cast<Rgba8*>(image.pixels().data())}; }
 
+// Where a JPEG's own data begin: after the segments of its head, each of them 0xff, a marker and a length that counts itself. A
+// thumbnail in one of them is a whole JPEG, with an end of its own.
+std::size_t jpegDataStart(std::string_view bytes) {
+    const auto byte = [&](std::size_t index) { return static_cast<std::size_t>(static_cast<unsigned char>(bytes[index])); };
+    constexpr std::size_t kMarker = 0xff, kStartOfScan = 0xda;
+    std::size_t at = 2;  // after the start of the image
+    while (at + 4 <= bytes.size() && byte(at) == kMarker && byte(at + 1) != kStartOfScan)
+        at += 2 + 256 * byte(at + 2) + byte(at + 3);
+    return at;
+}
+
 // JPEG decoders fill what is missing with grey and call it a warning; a picture that ends early must be refused.
 bool endsEarly(std::string_view bytes) {
-    if (bytes.starts_with("\xff\xd8")) return bytes.rfind("\xff\xd9") == std::string_view::npos;
+    if (bytes.starts_with("\xff\xd8")) return bytes.find("\xff\xd9", jpegDataStart(bytes)) == std::string_view::npos;
     if (bytes.starts_with("\x89PNG")) return bytes.find("IEND") == std::string_view::npos;
     return false;
 }
@@ -47,6 +58,7 @@ Result<cv::Mat> decode(const fs::path& path) {
     if (depth == CV_8U) picture.convertTo(picture, CV_32F, 1.0 / 255);
     else if (depth == CV_16U) picture.convertTo(picture, CV_32F, 1.0 / 65535);
     else picture.convertTo(picture, CV_32F);
+    if (!cv::checkRange(picture)) return refused("holds a value that is not a number");
     return picture;
 }
 

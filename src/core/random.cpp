@@ -52,7 +52,7 @@ std::uint32_t Rng::below(std::uint32_t count) {
 
 std::uint64_t streamSeed(std::uint64_t seed, std::initializer_list<std::uint64_t> identity) {
     std::uint64_t state = mix(seed);
-    for (const std::uint64_t part : identity) state = mix(state ^ mix(part));
+    for (const std::uint64_t part : identity) state = mix(state ^ part);
     return state;
 }
 

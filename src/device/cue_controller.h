@@ -1,9 +1,10 @@
 #pragma once
 
-#include <optional>
+#include "device/status.h"
 
 #include "core/clock.h"
-#include "device/status.h"
+
+#include <optional>
 
 namespace fantascope {
 
@@ -17,9 +18,9 @@ struct ButtonEvent {
 // The hand-held device that steps the cues. Thread: bound to the input thread.
 class CueController : public Device {
 public:
-    // The next event, oldest first; nothing when there is none. Never waits. Events of one button alternate, a press first; a key's
-    // auto-repeat is left out. Plugging in, unplugging or noise never makes a press; a button that was down when the device was lost is
-    // reported up.
+    // The next event, oldest first; nothing when there is none. Never waits. Events of one button alternate, a press first; a
+    // key's auto-repeat is left out. Plugging in, unplugging or noise never makes a press, nor does one that waited while the
+    // device was lost come out after its return; a button that was down when the device was lost is reported up.
     virtual std::optional<ButtonEvent> poll() = 0;
 };
 

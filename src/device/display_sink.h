@@ -19,6 +19,9 @@ struct Shown {
 //
 // A frame: makeCurrent(); draw into framebuffer(); present(). With several outputs on one render thread the first one leads (paced) and
 // the others follow (not paced), so that the thread waits for one refresh and not for each in turn.
+//
+// The context comes with the first success of makeCurrent() and lives as long as the display: what is in it outlives a loss. Objects in it
+// are destroyed while it is current.
 // Thread: all methods but status() are bound to the render thread, the context with them.
 class DisplaySink : public Device {
 public:
@@ -35,7 +38,7 @@ public:
     virtual Result<void> makeCurrent() = 0;
     // The GL name of the framebuffer to draw into; its colours are stored sRGB values, row 0 of GL at the bottom of the picture.
     virtual unsigned framebuffer() const = 0;
-    // Shows what was drawn. Paced: waits for the next refresh. Otherwise shows at once, within the refresh that is running, and does not
+    // Shows what was drawn; its context is current afterwards. Paced: waits for the next refresh. Otherwise shows at once, within the refresh that is running, and does not
     // wait. Error: not Running: the frame is dropped. Loss: the projector shows nothing.
     virtual Result<Shown> present(bool paced) = 0;
 };

@@ -1,13 +1,14 @@
 #pragma once
 
+#include "device/dmx_port.h"
+#include "device/status.h"
+
+#include "core/clock.h"
+
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
-
-#include "core/clock.h"
-#include "device/dmx_port.h"
-#include "device/status.h"
 
 namespace fantascope {
 
@@ -22,9 +23,10 @@ struct DmxInput {
 // One DMX512 universe coming in. Thread: bound to the lighting thread.
 class DmxSource : public Device {
 public:
-    // The next frame that arrived and was not taken yet, oldest first; several senders may alternate. Never waits. Nothing when there is
-    // none, also when the device is lost: the absence of frames is what a merge times out on. At least the newest frame of each sender is
-    // kept; older ones may be dropped when nobody takes them.
+    // The next frame that arrived and was not taken yet, oldest first; several senders may alternate. Never waits. Nothing when
+    // there is none, also when the device is lost: the absence of frames is what a merge times out on. A frame from before a loss
+    // is not given after the return. At least the newest frame of each sender is kept; older ones may be dropped when nobody
+    // takes them.
     virtual std::optional<DmxInput> receive() = 0;
 };
 

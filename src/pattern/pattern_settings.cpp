@@ -1,6 +1,6 @@
 #include "pattern/pattern_settings.h"
 
-#include "pattern/motion_section.h"
+#include "pattern/motion_file.h"
 #include "pattern/search_bounds.h"
 
 #include "core/config.h"

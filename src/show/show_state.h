@@ -1,10 +1,10 @@
 #pragma once
 // The one value that the show gives out: what is to be seen at one moment. Renderer and lighting read it; nothing flows back.
 
+#include "core/clock.h"
+
 #include <cstdint>
 #include <vector>
-
-#include "core/clock.h"
 
 namespace fantascope::show {
 
@@ -12,22 +12,30 @@ namespace fantascope::show {
 struct LayerState {
     std::uint32_t source = 0;  // index into Show::sources
     float opacity = 0;         // 0..1, in linear light
+    friend bool operator==(const LayerState&, const LayerState&) = default;
 };
 
-// One output's picture: its layers from the bottom up, each added as light. An empty list is black.
+// One output's picture: its layers, each added as light, and each source at most once. An empty list is black.
 struct OutputState {
     std::vector<LayerState> layers;
+    friend bool operator==(const OutputState&, const OutputState&) = default;
 };
 
-// Everything at one moment of show time. Value type; reused from frame to frame, so that its vectors keep their capacity.
-struct ShowState {
-    Time time{};                    // show time
-    int cue = -1;                   // index into Show::cues of the cue that was entered last; -1 before the first
-    bool blackout = false;          // the operator holds the picture and the lamps dark
-    std::uint64_t inputs = 0;       // how many inputs have taken effect so far
-    std::vector<OutputState> outputs;  // in the order of the site's outputs
-    std::vector<float> levels;      // 0..1 linear, one for every fixture channel, in the patch's order
-    std::vector<std::uint8_t> relays;  // 1: on, in the patch's order
+// Everything that the site can show, in the site's order.
+struct Look {
+    std::vector<OutputState> outputs;  // one for each of Site::outputs
+    std::vector<float> levels;         // 0..1 linear, one for each channel of each of Site::fixtures
+    std::vector<std::uint8_t> relays;  // 1: on, one for each of Site::relays
+    friend bool operator==(const Look&, const Look&) = default;
+};
+
+// The look of one moment of show time. Value type; reused from frame to frame, so that its vectors keep their capacity.
+struct ShowState : Look {
+    Time time{};               // show time
+    int cue = -1;              // index into Show::cues of the cue that was entered last; -1 before the first
+    bool blackout = false;     // the operator holds the pictures and the lamps dark
+    std::uint64_t inputs = 0;  // how many inputs have taken effect so far
+    friend bool operator==(const ShowState&, const ShowState&) = default;
 };
 
 }  // namespace fantascope::show

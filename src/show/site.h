@@ -1,20 +1,23 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <filesystem>
-#include <glm/vec2.hpp>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "core/config.h"
 #include "core/geometry.h"
 #include "core/result.h"
 
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace fantascope::show {
 
-// A device as the site file declares it: the registry's name of its driver and the driver's own keys, which only the driver reads.
+// A device as the site file declares it: the registry's name of its driver and the driver's own keys, which the driver reads.
 struct DeviceConfig {
     std::string driver;
     ConfigNode options;  // the whole map, `driver:` included
@@ -36,18 +39,20 @@ struct NominalProjector {
 struct NominalCamera {
     Pose pose;
     glm::ivec2 size{640, 360};
-    double fieldOfView = 1;       // horizontal, radians
-    double k1 = 0, k2 = 0;        // radial distortion (Brown 1966)
+    double fieldOfView = 1;  // horizontal, radians
+    double k1 = 0, k2 = 0;   // radial distortion (Brown 1966)
 };
 
 struct Output {
     std::string name;
     DeviceConfig display;
-    glm::ivec2 size{1920, 1080};  // pixels of the projector
-    double refreshRate = 60;      // Hz
-    std::array<glm::dvec2, 4> corners;  // where the canvas's corners go, in projector pixels, from the canvas's top left clockwise
+    glm::ivec2 size{1920, 1080};        // pixels of the projector
+    double refreshRate = 60;            // Hz
+    std::array<glm::dvec2, 4> corners;  // where the canvas's corners go, in projector pixels, clockwise from its top left
     std::optional<NominalProjector> projector;
     std::optional<Surface> surface;
+
+    // The canvas [0, canvasAspect] x [0, 1] onto `corners`, which must make a convex quadrilateral, as those of readSite do.
     Homography projectorFromCanvas(double canvasAspect) const;
 };
 
@@ -60,19 +65,19 @@ struct Universe {
 struct Fixture {
     std::string name;
     int universe = 1;
-    int address = 1;                     // 1 .. 512, of the first channel
-    std::vector<std::string> channels;   // "intensity", "red", ...
+    int address = 1;                    // 1 .. 512, of the first channel
+    std::vector<std::string> channels;  // "intensity", "red", ...
 };
 
 struct Relay {
     std::string name;
-    int coil = 0;
+    int coil = 0;      // its place in the bank, from 0
     bool safe = true;  // the state to fall back to; street lamps: on
 };
 
 enum class Button { Go, Back, Blackout };
 
-// The place as the technician wrote it down: the nominal site. Read at start, constant afterwards.
+// The place as the technician wrote it down: the nominal site. Read at start, constant afterwards. See docs/site-format.md.
 struct Site {
     std::filesystem::path file;
     std::vector<Output> outputs;
@@ -83,13 +88,17 @@ struct Site {
     std::optional<DeviceConfig> cueController;
     std::vector<std::pair<int, Button>> buttons;  // controller button -> what it does
     std::optional<DeviceConfig> camera;
-    std::optional<NominalCamera> nominalCamera;
-    std::optional<ConfigNode> simulation;  // the simulated site's own section
+    std::optional<NominalCamera> nominalCamera;  // there whenever `camera` is
+    std::optional<ConfigNode> simulation;        // the simulated site's own section
 
-    std::size_t channelCount() const;  // of all fixtures: the size of ShowState::levels
+    std::size_t firstLevel(std::size_t fixture) const;  // where a fixture's channels begin in Look::levels
+    std::size_t channelCount() const;                   // of all fixtures: the size of Look::levels
+    std::size_t coilCount() const;                      // the highest coil + 1: the size of the relay bank
 };
 
-// Strict. Error: names file, line, column, key.
+// Strict. Besides types, ranges and unknown keys it refuses two things of one name, coil or button; fixtures on top of each
+// other, beyond slot 512 or on no universe; folded corners; a surface turned from its projector. Error: file, line, column, key,
+// advice.
 Result<Site> readSite(const std::filesystem::path& file);
 
 }  // namespace fantascope::show

@@ -1,0 +1,147 @@
+// How long a frame takes: a pattern as large as the default show's on every output, in software OpenGL or on whatever GPU EGL
+// offers. Compare with the yardstick of the same run, since machines and their neighbours differ.
+
+#include "drivers/display/headless.h"
+
+#include "render/output_renderer.h"
+
+#include "core/check.h"
+#include "core/random.h"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+namespace fantascope::render {
+namespace {
+
+constexpr glm::ivec2 kSize{640, 360};
+constexpr int kSamples = 4;
+constexpr int kInstances = 330;
+
+// A closed crystal of 60 facets: a sphere of six segments, as many rings.
+TriangleMesh crystal() {
+    constexpr std::uint32_t kSegments = 6, kRings = 6;
+    TriangleMesh mesh;
+    mesh.vertices.push_back({0, 1, 0});
+    for (std::uint32_t ring = 1; ring < kRings; ++ring)
+        for (std::uint32_t segment = 0; segment < kSegments; ++segment) {
+            const double polar = std::numbers::pi * ring / kRings, around = 2 * std::numbers::pi * segment / kSegments;
+            mesh.vertices.push_back({std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around)});
+        }
+    mesh.vertices.push_back({0, -1, 0});
+    const auto bottom = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+    for (std::uint32_t segment = 0; segment < kSegments; ++segment) {
+        const std::uint32_t next = (segment + 1) % kSegments;
+        mesh.triangles.push_back({0, 1 + next, 1 + segment});
+        for (std::uint32_t ring = 0; ring + 2 < kRings; ++ring) {
+            const std::uint32_t upper = 1 + ring * kSegments, lower = upper + kSegments;
+            mesh.triangles.push_back({upper + segment, upper + next, lower + segment});
+            mesh.triangles.push_back({upper + next, lower + next, lower + segment});
+        }
+        mesh.triangles.push_back({bottom, bottom - kSegments + segment, bottom - kSegments + next});
+    }
+    return mesh;
+}
+
+PatternSource swayingCrystals() {
+    pattern::ShapePattern pattern;
+    pattern.width = kSize.x;
+    pattern.height = kSize.y;
+    pattern.shapes.push_back({"crystal", crystal()});
+    Rng rng(1);
+    for (std::uint32_t id = 0; id < kInstances; ++id) {
+        pattern::ShapeInstance instance;
+        instance.id = id;
+        instance.centre = {rng.uniform(0, pattern.aspect()), rng.uniform()};
+        instance.size = rng.uniform(0.02, 0.06);
+        instance.rotation = {rng.uniform(0, 3), rng.uniform(0, 3), rng.uniform(0, 3)};
+        pattern.instances.push_back(instance);
+    }
+    const auto shared = std::make_shared<const pattern::ShapePattern>(std::move(pattern));
+    return {shared, std::make_shared<const pattern::PatternMotion>(*shared)};
+}
+
+struct Output {
+    std::unique_ptr<DisplaySink> sink;
+    std::unique_ptr<OutputRenderer> renderer;
+};
+
+// Ends on a refusal: a bench has nobody to tell.
+template <class T>
+T valueOf(Result<T> result) {
+    FANTASCOPE_CHECK(result.has_value(), result.error().message());
+    return std::move(result).value();
+}
+
+// One frame on `outputs` displays: drawn one after the other, presented together.
+void drawFrame(benchmark::State& state, int outputs, int layers) {
+    ManualClock clock;
+    static const std::vector<PictureSource> sources = {swayingCrystals(), swayingCrystals()};
+    std::vector<Output> all;
+    for (int i = 0; i < outputs; ++i) {
+        Output output;
+        const ConfigNode options = valueOf(ConfigNode::parse("driver: headless", "bench"));
+        output.sink = valueOf(drivers::HeadlessDisplay::open(options, {"output", kSize, 30}, {clock}));
+        FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "a new display is there");
+        OutputRenderer::Options keystone;
+        keystone.size = kSize;
+        keystone.corners = {{{40, 20}, {610, 5}, {630, 350}, {10, 340}}};
+        keystone.samples = kSamples;
+        keystone.shaders = FANTASCOPE_SOURCE_DIR "/assets/shaders";
+        output.renderer = valueOf(OutputRenderer::create(keystone, sources));
+        all.push_back(std::move(output));
+    }
+    show::OutputState look;
+    for (int layer = 0; layer < layers; ++layer) look.layers.push_back({static_cast<std::uint32_t>(layer), 0.5f});
+    const auto frame = [&] {
+        clock.advance(tickTime(1, 30));
+        for (Output& output : all) {
+            FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "nobody unplugs it");
+            output.renderer->draw(look, clock.now(), output.sink->framebuffer());
+        }
+        for (Output& output : all) FANTASCOPE_CHECK(output.sink->present(false).has_value(), "nobody unplugs it");
+    };
+    frame();  // OpenGL compiles its shaders at the first use
+    for (auto _ : state) frame();
+    // OpenGL objects go while their context is current.
+    for (Output& output : all) {
+        FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "nobody unplugs it");
+        output.renderer.reset();
+    }
+}
+BENCHMARK_CAPTURE(drawFrame, one_output, 1, 1)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(drawFrame, two_outputs, 2, 1)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(drawFrame, two_outputs_in_a_crossfade, 2, 2)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(drawFrame, one_output_black, 1, 0)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+
+// The yardstick: what one multisampled picture needs at least, on one core: every sample's colour and depth cleared, then
+// averaged.
+void yardstick(benchmark::State& state) {
+    constexpr std::size_t kPixels = static_cast<std::size_t>(kSize.x) * kSize.y;
+    std::vector<std::uint32_t> colour(kPixels * kSamples), depth(kPixels * kSamples), picture(kPixels);
+    for (auto _ : state) {
+        std::fill(colour.begin(), colour.end(), 0xff000000u);
+        std::fill(depth.begin(), depth.end(), 0xffffffu);
+        for (std::size_t pixel = 0; pixel < kPixels; ++pixel) {
+            std::uint32_t sum = 0;
+            for (std::size_t sample = 0; sample < kSamples; ++sample) sum += colour[sample * kPixels + pixel] >> 2 & 0x3f3f3f3fu;
+            picture[pixel] = sum;
+        }
+        benchmark::DoNotOptimize(picture.data());
+        benchmark::DoNotOptimize(depth.data());
+        benchmark::ClobberMemory();
+    }
+}
+BENCHMARK(yardstick)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace fantascope::render

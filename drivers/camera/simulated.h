@@ -1,0 +1,25 @@
+#pragma once
+
+#include "drivers/site/plug.h"
+#include "drivers/surroundings.h"
+
+#include "device/camera_source.h"
+
+#include "core/config.h"
+
+namespace fantascope::drivers {
+
+// The camera of the simulated site; what it sees comes from site::SimulatedSite through the world. Plug: "camera".
+class SimulatedCamera final : public CameraSource {
+public:
+    static Result<std::unique_ptr<CameraSource>> open(const ConfigNode& options, const Surroundings& around);
+
+    DeviceStatus status() const override { return plug_.status(); }
+    std::shared_ptr<const CameraFrame> newest() override { return plug_.world().takeFromCamera(); }
+
+private:
+    explicit SimulatedCamera(site::Plug plug) : plug_(std::move(plug)) {}
+    site::Plug plug_;
+};
+
+}  // namespace fantascope::drivers

@@ -1,0 +1,21 @@
+#include "drivers/cue_controller/simulated.h"
+
+namespace fantascope::drivers {
+
+Result<std::unique_ptr<CueController>> SimulatedCueController::open(const ConfigNode& options, const Surroundings& around) {
+    auto plug = TRY(site::Plug::open(options, around, "cue controller", LossAction::Hold));
+    return std::unique_ptr<CueController>(new SimulatedCueController(std::move(plug)));
+}
+
+std::optional<ButtonEvent> SimulatedCueController::poll() {
+    if (plug_.lostAgain()) lost_.merge(down_);
+    if (!lost_.empty()) return ButtonEvent{lost_.extract(lost_.begin()).value(), false, plug_.world().clock().now()};
+    while (const auto event = plug_.world().takePress()) {
+        // A press of a button that is down is auto-repeat; a release of one that is up was pressed while nobody could see it.
+        const bool changes = event->pressed ? down_.insert(event->button).second : down_.erase(event->button) == 1;
+        if (changes) return event;
+    }
+    return std::nullopt;
+}
+
+}  // namespace fantascope::drivers

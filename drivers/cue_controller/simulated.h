@@ -1,0 +1,29 @@
+#pragma once
+
+#include "drivers/site/plug.h"
+#include "drivers/surroundings.h"
+
+#include "device/cue_controller.h"
+
+#include "core/config.h"
+
+#include <set>
+
+namespace fantascope::drivers {
+
+// The hand controller of the simulated site, pressed by World::press(). Plug: "cue controller".
+class SimulatedCueController final : public CueController {
+public:
+    static Result<std::unique_ptr<CueController>> open(const ConfigNode& options, const Surroundings& around);
+
+    DeviceStatus status() const override { return plug_.status(); }
+    std::optional<ButtonEvent> poll() override;
+
+private:
+    explicit SimulatedCueController(site::Plug plug) : plug_(std::move(plug)) {}
+    site::Plug plug_;
+    std::set<int> down_;  // buttons whose press was given
+    std::set<int> lost_;  // of those, the ones whose release a loss has swallowed
+};
+
+}  // namespace fantascope::drivers

@@ -1,0 +1,142 @@
+#include "drivers/display/headless.h"
+
+#include "drivers/display/srgb_framebuffer.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace fantascope::drivers {
+namespace {
+
+constexpr const char* kDriver = "headless";
+constexpr const char* kPackages =
+    "Debian's packages libegl1, libegl-mesa0 and libgl1-mesa-dri bring a software OpenGL: apt-get install libegl1 libegl-mesa0 "
+    "libgl1-mesa-dri";
+
+// A context of OpenGL 4.5 core that draws into framebuffer objects alone. Error: why `display` gives none.
+Result<EGLContext> makeContext(EGLDisplay display) {
+    for (const char* needed : {"EGL_KHR_create_context", "EGL_KHR_no_config_context", "EGL_KHR_surfaceless_context"})
+        if (!epoxy_has_egl_extension(display, needed)) return Error(fmt::format("{} is missing", needed));
+    if (!eglBindAPI(EGL_OPENGL_API)) return Error("it has no desktop OpenGL");
+    const EGLint attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+    if (context == EGL_NO_CONTEXT) return Error("it has no OpenGL 4.5 core");
+    return context;
+}
+
+}  // namespace
+
+// The process's one connection to EGL, open for as long as a headless display is.
+class HeadlessDisplay::Egl {
+public:
+    // Tries Mesa without a window system, then every GPU that EGL lists. Error: why each of them failed.
+    static Result<std::shared_ptr<Egl>> shared();
+    explicit Egl(EGLDisplay display) : display(display) {}
+    ~Egl() { eglTerminate(display); }
+    Egl(const Egl&) = delete;
+    Egl& operator=(const Egl&) = delete;
+
+    const EGLDisplay display;
+};
+
+Result<std::shared_ptr<HeadlessDisplay::Egl>> HeadlessDisplay::Egl::shared() {
+    static std::mutex mutex;
+    static std::weak_ptr<Egl> open;
+    const std::lock_guard lock(mutex);
+    if (auto egl = open.lock()) return egl;
+
+    if (!epoxy_has_egl()) return Error(fmt::format("EGL is missing; {}", kPackages));
+    std::vector<std::pair<std::string, EGLDisplay>> candidates;
+    if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
+        candidates.emplace_back("Mesa without a window system",
+                                eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+    if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device")) {
+        EGLint count = 0;
+        eglQueryDevicesEXT(0, nullptr, &count);
+        std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(count));
+        eglQueryDevicesEXT(count, devices.data(), &count);
+        for (std::size_t i = 0; i < devices.size(); ++i)
+            candidates.emplace_back(fmt::format("EGL device {}", i),
+                                    eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
+    }
+
+    std::string reasons;
+    for (const auto& [name, display] : candidates) {
+        if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) {
+            reasons += fmt::format("{}: it cannot be initialised; ", name);
+            continue;
+        }
+        auto egl = std::make_shared<Egl>(display);
+        if (const auto context = makeContext(display)) {
+            eglDestroyContext(display, *context);
+            open = egl;
+            return egl;
+        } else {
+            reasons += fmt::format("{}: {}; ", name, context.error().message());
+        }
+    }
+    return Error(fmt::format("no OpenGL 4.5 without a window system: {}{}", reasons, kPackages));
+}
+
+Result<std::unique_ptr<DisplaySink>> HeadlessDisplay::open(const ConfigNode& options, const DisplayRequest& request,
+                                                           const Surroundings& around) {
+    std::string driver;
+    ConfigFields fields(options);
+    fields.text("driver", driver);
+    TRY(fields.finish());
+
+    auto egl = TRY(Egl::shared().in(options.error("display").message()));
+    const EGLContext context = TRY(makeContext(egl->display));
+    std::unique_ptr<HeadlessDisplay> sink(new HeadlessDisplay(request, around, std::move(egl), context));
+    eglMakeCurrent(sink->egl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
+    sink->framebuffer_ = TRY(makeSrgbFramebuffer(request.size).in(options.error(request.name).message()));
+    return std::unique_ptr<DisplaySink>(std::move(sink));
+}
+
+HeadlessDisplay::HeadlessDisplay(const DisplayRequest& request, const Surroundings& around, std::shared_ptr<Egl> egl,
+                                 void* context)
+    : request_(request),
+      clock_(around.clock),
+      refreshes_(request.refreshRate),
+      cable_(request, around),
+      egl_(std::move(egl)),
+      context_(context) {}
+
+HeadlessDisplay::~HeadlessDisplay() {
+    if (eglGetCurrentContext() == context_) eglMakeCurrent(egl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(egl_->display, context_);
+}
+
+DeviceStatus HeadlessDisplay::status() const { return cable_.status(kDriver); }
+
+std::int64_t HeadlessDisplay::nextRefresh() const { return refreshes_.running(clock_.now()) + 1; }
+
+Time HeadlessDisplay::refreshTime(std::int64_t number) const { return refreshes_.timeOf(number); }
+
+Result<void> HeadlessDisplay::makeCurrent() {
+    TRY(cable_.check());
+    // Asking EGL for the context that is current already would make it flush.
+    if (eglGetCurrentContext() == context_) return {};
+    if (!eglMakeCurrent(egl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
+        return Error(fmt::format("{}: its OpenGL context is current on another thread; use one render thread", request_.name));
+    return {};
+}
+
+Result<Shown> HeadlessDisplay::present(bool paced) {
+    TRY(makeCurrent());
+    glFinish();
+    Shown shown;
+    shown.refresh = paced ? nextRefresh() : refreshes_.running(clock_.now());
+    shown.at = refreshTime(shown.refresh);
+    if (paced) clock_.sleepUntil(shown.at);
+    return shown;
+}
+
+}  // namespace fantascope::drivers

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "drivers/display/cable.h"
+#include "drivers/display/refresh_train.h"
+#include "drivers/surroundings.h"
+
+#include "device/display_sink.h"
+
+#include "core/config.h"
+
+#include <memory>
+
+namespace fantascope::drivers {
+
+// A display without a window system: real OpenGL on EGL alone, Mesa's software renderer or a GPU. Its refreshes are those of a
+// clock: number k takes place at tickTime(k, rate). It can be unplugged where a simulated site has its plug.
+//
+// present() finishes all drawing before it looks at the clock, so that a frame counts as shown only once it is complete.
+// The context and what is in it outlive a loss.
+class HeadlessDisplay final : public DisplaySink {
+public:
+    // Keys: none of its own. Error: a wrong key; no OpenGL 4.5 here (names the Debian packages that bring one).
+    static Result<std::unique_ptr<DisplaySink>> open(const ConfigNode& options, const DisplayRequest& request,
+                                                     const Surroundings& around);
+    ~HeadlessDisplay() override;
+
+    DeviceStatus status() const override;
+    glm::ivec2 size() const override { return request_.size; }
+    double refreshRate() const override { return request_.refreshRate; }
+    std::int64_t nextRefresh() const override;
+    Time refreshTime(std::int64_t number) const override;
+    Result<void> makeCurrent() override;
+    unsigned framebuffer() const override { return framebuffer_; }
+    Result<Shown> present(bool paced) override;
+
+private:
+    class Egl;
+    HeadlessDisplay(const DisplayRequest& request, const Surroundings& around, std::shared_ptr<Egl> egl, void* context);
+
+    DisplayRequest request_;
+    Clock& clock_;
+    RefreshTrain refreshes_;
+    Cable cable_;
+    std::shared_ptr<Egl> egl_;
+    void* context_;  // EGLContext
+    unsigned framebuffer_ = 0;
+};
+
+}  // namespace fantascope::drivers

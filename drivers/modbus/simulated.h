@@ -1,0 +1,50 @@
+#pragma once
+
+#include "drivers/site/plug.h"
+#include "drivers/surroundings.h"
+
+#include "device/input_bank.h"
+#include "device/relay_bank.h"
+
+#include "core/config.h"
+
+#include <deque>
+
+namespace fantascope::drivers {
+
+// The simulated site's relays; its watchdog knows at once that its line is dead. Plug: "relay bank".
+class SimulatedRelayBank final : public RelayBank {
+public:
+    static Result<std::unique_ptr<RelayBank>> open(const ConfigNode& options, const std::vector<bool>& safeStates,
+                                                   const Surroundings& around);
+    ~SimulatedRelayBank() override;
+
+    DeviceStatus status() const override { return plug_.status(); }
+    std::size_t size() const override { return safeStates_.size(); }
+    Result<void> write(const std::vector<bool>& states) override;
+    Result<std::vector<bool>> read() override;
+
+private:
+    SimulatedRelayBank(site::Plug plug, std::vector<bool> safeStates)
+        : plug_(std::move(plug)), safeStates_(std::move(safeStates)) {}
+    site::Plug plug_;
+    std::vector<bool> safeStates_;
+};
+
+// The simulated site's contacts. Plug: "contacts".
+class SimulatedInputBank final : public InputBank {
+public:
+    static Result<std::unique_ptr<InputBank>> open(const ConfigNode& options, std::size_t size, const Surroundings& around);
+
+    DeviceStatus status() const override { return plug_.status(); }
+    std::size_t size() const override { return reported_.size(); }
+    std::optional<ContactChange> poll() override;
+
+private:
+    SimulatedInputBank(site::Plug plug, std::size_t size) : plug_(std::move(plug)), reported_(size, false) {}
+    site::Plug plug_;
+    std::vector<bool> reported_;         // as of the last change that was noticed
+    std::deque<ContactChange> waiting_;  // noticed and not taken yet
+};
+
+}  // namespace fantascope::drivers

@@ -1,0 +1,152 @@
+#include "drivers/site/camera_view.h"
+
+#include "core/check.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fantascope::site {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr float kSkyDistance = 60;  // metres of air before the sky: what fog hides of it
+
+constexpr double kGrazing = 1e-3;  // pixels on a square metre: a surface seen from its very edge
+
+// The share of light that is left after a way through fog (Beer and Lambert's law).
+float transmitted(double fog, float path) { return fog > 0 ? std::exp(-static_cast<float>(fog) * path) : 1.0f; }
+
+}  // namespace
+
+double Lamp::intensity(glm::dvec3 direction) const {
+    const double p = std::log(std::log(10.0) / std::log(2.0)) / std::log(field / beam);
+    const double a = beam / 2 / std::pow(std::log(2.0), 1 / p);
+    const double angle = std::acos(std::clamp(glm::dot(direction, aim), -1.0, 1.0));
+    return candela * std::exp(-std::pow(angle / a, p));
+}
+
+CameraView::CameraView(const Scene& scene, const vision::CameraModel& camera, glm::dvec3 ambient, glm::dvec3 sky)
+    : scene_(scene), camera_(camera), steady_{Image<glm::vec4>(camera.size.x, camera.size.y), ambient} {
+    std::uint32_t pixel = 0;
+    for (int y = 0; y < camera.size.y; ++y)
+        for (int x = 0; x < camera.size.x; ++x, ++pixel)
+            for (int i = 0; i < kSide * kSide; ++i) {
+                const vision::Ray ray = camera.rayThrough({x + (i % kSide + 0.5) / kSide, y + (i / kSide + 0.5) / kSide});
+                const auto hit = scene.nearest(ray.origin, ray.direction);
+                glm::vec4& steady = steady_.light.pixels()[pixel];
+                if (!hit) {
+                    steady += kShare * glm::vec4(sky, kSkyDistance);
+                    continue;
+                }
+                const glm::vec3 response = hit->reflectance * (kShare / static_cast<float>(kPi));
+                steady += glm::vec4(response * glm::vec3(ambient), kShare * hit->distance);
+                const double pixelsPerArea = std::max(kGrazing, camera.pixelsPerArea(hit->point, hit->normal));
+                const auto footprint = static_cast<float>(kShare / pixelsPerArea);
+                samples_.push_back({pixel, hit->distance, footprint, hit->point, hit->normal, response});
+            }
+}
+
+void CameraView::addLamp(const Lamp& lamp) {
+    Layer layer{Image<glm::vec4>(camera_.size.x, camera_.size.y), glm::vec3(0)};
+    const auto add = [&](std::uint32_t pixel, glm::vec3 luminance, float path) {
+        // The way is the mean of the samples', each weighed by its light.
+        layer.light.pixels()[pixel] += glm::vec4(luminance, (luminance.r + luminance.g + luminance.b) * path);
+    };
+    for (const Sample& sample : samples_) {
+        const glm::vec3 toLamp = glm::vec3(lamp.position) - sample.point;
+        const float distance = glm::length(toLamp), cosine = glm::dot(sample.normal, toLamp) / distance;
+        if (cosine <= 0) continue;
+        const double intensity = lamp.intensity(-glm::dvec3(toLamp) / static_cast<double>(distance));
+        const glm::vec3 illuminance = lamp.colour * (intensity * cosine / (distance * distance));
+        if (scene_.blocked(sample.point, lamp.position)) continue;
+        add(sample.pixel, illuminance * sample.response, distance + sample.distance);
+        layer.meanIlluminance += illuminance / static_cast<float>(samples_.size());
+    }
+
+    // The head itself, a disc in the picture; never smaller than a pixel, so that a far one's light does not fall between the
+    // samples.
+    const auto centre = camera_.pixelFromWorld(lamp.position);
+    const glm::dvec3 fromLamp = camera_.pose.position - lamp.position;
+    if (centre && !scene_.blocked(camera_.pose.position, lamp.position)) {
+        const double distance = glm::length(fromLamp), seen = lamp.radius * camera_.focal / distance, drawn = std::max(seen, 1.0);
+        const double luminance =
+            lamp.intensity(fromLamp / distance) / (kPi * lamp.radius * lamp.radius) * std::pow(seen / drawn, 2);
+        const glm::ivec2 low = glm::max(glm::ivec2(*centre - drawn), glm::ivec2(0));
+        const glm::ivec2 high = glm::min(glm::ivec2(*centre + drawn), camera_.size - 1);
+        for (int y = low.y; y <= high.y; ++y)
+            for (int x = low.x; x <= high.x; ++x)
+                for (int i = 0; i < kSide * kSide; ++i) {
+                    const glm::dvec2 at(x + (i % kSide + 0.5) / kSide, y + (i / kSide + 0.5) / kSide);
+                    if (glm::length(at - *centre) > drawn) continue;
+                    add(static_cast<std::uint32_t>(y * camera_.size.x + x), lamp.colour * (luminance * kShare),
+                        static_cast<float>(distance));
+                }
+    }
+    for (glm::vec4& light : layer.light.pixels())
+        if (const float sum = light.r + light.g + light.b; sum > 0) light.w /= sum;
+    lamps_.push_back(std::move(layer));
+}
+
+void CameraView::addProjector(const vision::CameraModel& projector, double lumens) {
+    projectors_.push_back({lumens, {}, 0});
+    moveProjector(projectors_.size() - 1, projector);
+}
+
+void CameraView::moveProjector(std::size_t index, const vision::CameraModel& model) {
+    Projector& projector = projectors_[index];
+    projector.taps.clear();
+    projector.meanIlluminance = 0;
+    const double lumensPerPixel = projector.lumens / (model.size.x * model.size.y);
+    for (const Sample& sample : samples_) {
+        const auto pixel = model.pixelFromWorld(sample.point);
+        if (!pixel || !model.inPicture(*pixel)) continue;
+        const double pixelsPerArea = model.pixelsPerArea(sample.point, sample.normal);
+        if (pixelsPerArea <= 0 || scene_.blocked(sample.point, model.pose.position)) continue;
+        const double illuminance = lumensPerPixel * pixelsPerArea;
+        const auto path = static_cast<float>(glm::distance(model.pose.position, glm::dvec3(sample.point))) + sample.distance;
+        projector.taps.push_back({sample.pixel,
+                                  ProjectedLight::placeOf(model.size, *pixel, std::sqrt(sample.footprint * pixelsPerArea)),
+                                  sample.response * static_cast<float>(illuminance), path});
+        projector.meanIlluminance += static_cast<float>(illuminance / static_cast<double>(samples_.size()));
+    }
+}
+
+void CameraView::render(std::span<const glm::vec3> levels, std::span<const ProjectedLight> frames, double fog,
+                        Image<glm::vec3>& luminance) const {
+    FANTASCOPE_CHECK(levels.size() == lamps_.size() && frames.size() == projectors_.size(),
+                     "one level a lamp, one frame a projector");
+    FANTASCOPE_CHECK(luminance.width() == camera_.size.x && luminance.height() == camera_.size.y,
+                     "a picture of the camera's size");
+
+    // Fog scatters what passes through it evenly in all directions, once.
+    glm::vec3 inTheAir = steady_.meanIlluminance;
+    for (std::size_t i = 0; i < lamps_.size(); ++i) inTheAir += levels[i] * lamps_[i].meanIlluminance;
+    for (std::size_t i = 0; i < projectors_.size(); ++i)
+        if (!frames[i].dark()) inTheAir += glm::vec3(frames[i].mean()) * projectors_[i].meanIlluminance;
+    const glm::vec3 airlight = inTheAir / static_cast<float>(4 * kPi);
+
+    const auto out = luminance.pixels();
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const glm::vec4 steady = steady_.light.pixels()[i];
+        const float left = transmitted(fog, steady.w);
+        out[i] = glm::vec3(steady) * left + airlight * (1 - left);
+    }
+    for (std::size_t lamp = 0; lamp < lamps_.size(); ++lamp) {
+        if (levels[lamp] == glm::vec3(0)) continue;
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const glm::vec4 light = lamps_[lamp].light.pixels()[i];
+            out[i] += levels[lamp] * glm::vec3(light) * transmitted(fog, light.w);
+        }
+    }
+    for (std::size_t i = 0; i < projectors_.size(); ++i) {
+        if (frames[i].dark()) continue;
+        for (const Tap& tap : projectors_[i].taps)
+            out[tap.pixel] += tap.weight * glm::vec3(frames[i].at(tap.place)) * transmitted(fog, tap.path);
+    }
+}
+
+}  // namespace fantascope::site

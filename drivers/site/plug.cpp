@@ -1,0 +1,43 @@
+#include "drivers/site/plug.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace fantascope::site {
+namespace {
+
+constexpr const char* kAdvice = "unplugged in the simulated site; plug it in again";
+
+}  // namespace
+
+Plug::Plug(World& world, std::string device, LossAction onLoss)
+    : world_(world), device_(std::move(device)), onLoss_(onLoss), before_(world.unpluggings(device_)), noticed_(before_) {}
+
+Result<Plug> Plug::open(const ConfigNode& options, const drivers::Surroundings& around, std::string device, LossAction onLoss) {
+    std::string driver;
+    ConfigFields fields(options);
+    fields.text("driver", driver);
+    TRY(fields.finish());
+    if (around.world == nullptr)
+        return options.error(fmt::format(
+            "{}: driver '{}' needs a simulated site and here is none; rehearse, or name a real driver", device, driver));
+    return Plug(*around.world, std::move(device), onLoss);
+}
+
+DeviceStatus Plug::status() const {
+    DeviceStatus status;
+    status.name = device_;
+    status.driver = "simulated";
+    status.state = in() ? DeviceState::Running : DeviceState::Absent;
+    status.onLoss = onLoss_;
+    if (status.state != DeviceState::Running) status.detail = kAdvice;
+    status.losses = world_.unpluggings(device_) - before_;
+    return status;
+}
+
+Error Plug::absent() const { return Error(fmt::format("{} is absent: {}", device_, kAdvice)); }
+
+bool Plug::lostAgain() { return std::exchange(noticed_, world_.unpluggings(device_)) != noticed_; }
+
+}  // namespace fantascope::site

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "drivers/site/world.h"
+#include "drivers/surroundings.h"
+
+#include "device/status.h"
+
+#include "core/config.h"
+#include "core/result.h"
+
+#include <string>
+
+namespace fantascope::site {
+
+// A simulated device's end of its line to the world, from which it knows whether it is there and what its status is: Running
+// while plugged in, Absent otherwise, back at once when plugged in again. Thread: thread-safe but for lostAgain(), which belongs
+// to the device's own thread.
+class Plug {
+public:
+    // `device` is its name in the world. Losses count from now.
+    Plug(World& world, std::string device, LossAction onLoss);
+    // The same for a driver that is opened from the site file and has no key there but `driver`.
+    // Error: another key, or no world, each with its place in the file.
+    static Result<Plug> open(const ConfigNode& options, const drivers::Surroundings& around, std::string device,
+                             LossAction onLoss);
+
+    World& world() const { return world_; }
+    bool in() const { return world_.plugged(device_); }
+    DeviceStatus status() const;
+    // The error of a call while the device is not Running.
+    Error absent() const;
+    // Whether the device was lost since the last call (or the construction), even if it is back already.
+    bool lostAgain();
+
+private:
+    World& world_;
+    std::string device_;
+    LossAction onLoss_;
+    int before_;   // unpluggings before this device was opened
+    int noticed_;  // unpluggings that lostAgain() told of
+};
+
+}  // namespace fantascope::site

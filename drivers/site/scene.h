@@ -1,0 +1,63 @@
+#pragma once
+
+#include "vision/camera_model.h"
+
+#include "core/mesh.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace fantascope::site {
+
+// A thing that stands in the site.
+struct SceneObject {
+    TriangleMesh mesh;           // world metres
+    glm::vec3 reflectance{0.5};  // of a matt surface, linear RGB, 0..1
+};
+
+// All surfaces of the site, for asking what a ray meets. Immutable; thread-safe.
+class Scene {
+public:
+    explicit Scene(const std::vector<SceneObject>& objects);
+
+    struct Hit {
+        float distance = 0;
+        glm::vec3 point{0}, normal{0};  // unit, on the side that the ray came from: every surface has two sides
+        glm::vec3 reflectance{0};
+    };
+    // The first surface along the ray. `direction` is unit.
+    std::optional<Hit> nearest(glm::vec3 origin, glm::vec3 direction) const;
+    // Whether a surface stands between two points; those within a millimetre of either do not count.
+    bool blocked(glm::vec3 from, glm::vec3 to) const;
+
+private:
+    struct Triangle {
+        glm::vec3 corner, edge1, edge2, reflectance;
+        glm::vec3 centre() const { return corner + (edge1 + edge2) / 3.0f; }
+    };
+    struct Box {
+        glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
+        void include(const Triangle& triangle);
+        float area() const;  // half of its surface; 0 if it is empty
+    };
+    // A tree of boxes; the children of an inner node stand at `first` and first + 1.
+    struct Node {
+        Box box;
+        std::uint32_t first = 0;  // triangle or child
+        std::uint32_t count = 0;  // of triangles; 0: an inner node
+    };
+    void divide(std::uint32_t node, std::uint32_t begin, std::uint32_t end, std::size_t depth);
+    // Calls test(triangle) for the triangles whose box the ray enters before `limit`, which test may lower, until it returns
+    // true.
+    template <class Test>
+    void visit(glm::vec3 origin, glm::vec3 direction, const float& limit, Test test) const;
+
+    std::vector<Triangle> triangles_;
+    std::vector<Node> nodes_;
+};
+
+}  // namespace fantascope::site

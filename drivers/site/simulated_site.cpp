@@ -1,0 +1,238 @@
+#include "drivers/site/simulated_site.h"
+
+#include "drivers/site/camera_view.h"
+#include "drivers/site/projected_light.h"
+#include "drivers/site/scene.h"
+#include "drivers/site/sensor.h"
+#include "drivers/site/simulation.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace fantascope::site {
+namespace {
+
+const std::string kCamera = "camera";
+
+// What a lamp gives at its slots' values: linear, 1 is full power.
+glm::vec3 levelOf(const NominalSite::Fixture& fixture, const std::array<std::uint8_t, kDmxSlots>& slots) {
+    constexpr std::array<std::string_view, 3> kColours{"red", "green", "blue"};
+    std::optional<float> intensity;
+    std::optional<glm::vec3> colour;
+    for (std::size_t i = 0; i < fixture.channels.size(); ++i) {
+        const float value = static_cast<float>(slots[static_cast<std::size_t>(fixture.address) - 1 + i]) / 255;
+        if (fixture.channels[i] == "intensity") intensity = value;
+        for (int c = 0; c < 3; ++c)
+            if (fixture.channels[i] == kColours[static_cast<std::size_t>(c)]) {
+                if (!colour) colour = glm::vec3(0);
+                (*colour)[c] = value;
+            }
+    }
+    if (!intensity && !colour) return glm::vec3(0);
+    return intensity.value_or(1) * colour.value_or(glm::vec3(1));
+}
+
+// A fault's beginning or end.
+struct Change {
+    Time at{};
+    const Fault* fault = nullptr;
+    bool begins = false;
+};
+
+std::string tell(const Fault& fault, bool begins) {
+    switch (fault.kind) {
+        case Fault::Kind::Unplug:
+            return fmt::format("{} {}", fault.device, begins ? "unplugged" : "plugged in again");
+        case Fault::Kind::Freeze:
+            return fmt::format("{} {}", fault.device, begins ? "froze" : "moves again");
+        case Fault::Kind::Bump:
+            if (!begins) return fmt::format("projector {} put back", fault.device);
+            return fmt::format("projector {} bumped by {:.3f} m and {:.2f} degrees", fault.device, glm::length(fault.move),
+                               glm::length(fault.turn) * 180 / std::numbers::pi);
+        case Fault::Kind::Fog:
+            return begins ? fmt::format("fog of {} / m comes within {} s", fault.density, seconds(fault.rise))
+                          : fmt::format("fog clears within {} s", seconds(fault.rise));
+    }
+    return "";
+}
+
+}  // namespace
+
+struct SimulatedSite::Impl {
+    Impl(Simulation read, NominalSite site, std::uint64_t seed, World& itsWorld)
+        : world(itsWorld),
+          nominal(std::move(site)),
+          simulation(std::move(read)),
+          scene(simulation.objects),
+          sensor(simulation.camera.sensor, seed) {
+        for (std::size_t i = 0; i < nominal.outputs.size(); ++i)
+            light.emplace_back(nominal.outputs[i].projector.size, simulation.projectors[i].gamma,
+                               simulation.projectors[i].blackLevel);
+        if (nominal.camera) {
+            view.emplace(scene, *nominal.camera, simulation.ambient, simulation.sky);
+            for (const FedLamp& lamp : simulation.lamps) view->addLamp(lamp.lamp);
+            for (const FedLamp& lamp : simulation.streetLamps) view->addLamp(lamp.lamp);
+            for (std::size_t i = 0; i < nominal.outputs.size(); ++i)
+                view->addProjector(nominal.outputs[i].projector, simulation.projectors[i].lumens);
+            luminance = Image<glm::vec3>(nominal.camera->size.x, nominal.camera->size.y);
+        }
+        for (const Fault& fault : simulation.faults) {
+            changes.push_back({fault.at, &fault, true});
+            if (fault.until) changes.push_back({*fault.until, &fault, false});
+        }
+        std::stable_sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) { return a.at < b.at; });
+    }
+
+    // All faults up to a time since the beginning.
+    void happen(Time until) {
+        for (; nextChange < changes.size() && changes[nextChange].at <= until; ++nextChange) {
+            const Change& change = changes[nextChange];
+            if (change.begins)
+                active.push_back(change.fault);
+            else
+                std::erase(active, change.fault);
+            apply(*change.fault);
+            const std::lock_guard lock(mutex);
+            happenings.push_back({change.at, tell(*change.fault, change.begins)});
+        }
+    }
+
+    // Brings the truth that one fault touches in line with all faults that are active now.
+    void apply(const Fault& changed) {
+        const std::string& device = changed.device;
+        const auto isActive = [&](Fault::Kind kind) {
+            return std::any_of(active.begin(), active.end(),
+                               [&](const Fault* fault) { return fault->kind == kind && fault->device == device; });
+        };
+        switch (changed.kind) {
+            case Fault::Kind::Unplug:
+                world.setPlugged(device, !isActive(Fault::Kind::Unplug));
+                break;
+            case Fault::Kind::Freeze:
+                if (!isActive(Fault::Kind::Freeze))
+                    frozen.erase(device);
+                else
+                    frozen.emplace(device, world.frame(device));  // null for the camera, which repeats its own
+                break;
+            case Fault::Kind::Bump:
+                bump(device);
+                break;
+            case Fault::Kind::Fog:
+                break;  // a function of time, see expose()
+        }
+    }
+
+    void bump(const std::string& output) {
+        if (!view) return;
+        const auto found =
+            std::find_if(nominal.outputs.begin(), nominal.outputs.end(), [&](const auto& each) { return each.name == output; });
+        vision::CameraModel projector = found->projector;
+        Pose& pose = projector.pose;
+        for (const Fault* fault : active) {
+            if (fault->kind != Fault::Kind::Bump || fault->device != output) continue;
+            pose.position += pose.worldFromLocal * fault->move;
+            pose.worldFromLocal = pose.worldFromLocal * rotationXyz(fault->turn);
+        }
+        view->moveProjector(static_cast<std::size_t>(found - nominal.outputs.begin()), projector);
+    }
+
+    // The site as it is now, seen by the camera; `frame` is its number.
+    RgbaImage seen(std::int64_t frame) {
+        std::vector<glm::vec3> levels;
+        for (const FedLamp& lamp : simulation.lamps) {
+            const NominalSite::Fixture& fixture = nominal.fixtures[lamp.feed];
+            levels.push_back(levelOf(fixture, world.slots(fixture.universe)));
+        }
+        const std::vector<bool> relays = world.relays();
+        for (const FedLamp& lamp : simulation.streetLamps) {
+            const std::size_t coil = nominal.relays[lamp.feed].coil;
+            levels.emplace_back(coil < relays.size() && relays[coil] ? 1 : 0);
+        }
+        for (std::size_t i = 0; i < nominal.outputs.size(); ++i) {
+            const std::string& output = nominal.outputs[i].name;
+            const auto held = frozen.find(output);
+            const auto shown = held == frozen.end() ? world.frame(output) : held->second;
+            light[i].show(world.plugged(output) ? shown : nullptr);
+        }
+        double fog = 0;
+        for (const Fault& fault : simulation.faults)
+            if (fault.kind == Fault::Kind::Fog) fog += fault.densityAt(tickTime(frame, simulation.camera.frameRate));
+        view->render(levels, light, fog, luminance);
+        return sensor.expose(luminance, static_cast<std::uint64_t>(frame));
+    }
+
+    void expose(std::int64_t frame) {
+        if (!world.plugged(kCamera)) return;
+        if (!frozen.contains(kCamera) || lastSeen.empty()) lastSeen = seen(frame);
+        const Time exposed = beginning + tickTime(frame, simulation.camera.frameRate);
+        const CameraFrame sent{lastSeen, exposed, static_cast<std::uint64_t>(frame)};
+        world.sendFromCamera(std::make_shared<const CameraFrame>(sent), exposed + simulation.camera.latency);
+    }
+
+    World& world;
+    const NominalSite nominal;
+    const Simulation simulation;
+    const Scene scene;
+    const Sensor sensor;
+    Time beginning{};
+
+    std::vector<Change> changes;  // in the order of time; point into simulation.faults
+    std::size_t nextChange = 0;
+    std::vector<const Fault*> active;
+    std::map<std::string, std::shared_ptr<const RgbaImage>> frozen;  // what a frozen device keeps
+
+    std::optional<CameraView> view;
+    std::vector<ProjectedLight> light;  // of each output
+    Image<glm::vec3> luminance;
+    RgbaImage lastSeen;
+    std::int64_t lastFrame = -1;
+
+    mutable std::mutex mutex;
+    std::vector<Happening> happenings;
+};
+
+Result<std::unique_ptr<SimulatedSite>> SimulatedSite::open(const ConfigNode& simulation, const NominalSite& nominal,
+                                                           std::uint64_t seed, World& world) {
+    auto impl = std::make_unique<Impl>(TRY(readSimulation(simulation, nominal)), nominal, seed, world);
+    return std::unique_ptr<SimulatedSite>(new SimulatedSite(std::move(impl)));
+}
+
+SimulatedSite::SimulatedSite(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SimulatedSite::~SimulatedSite() = default;
+
+void SimulatedSite::begin(Time at) { impl_->beginning = at; }
+
+void SimulatedSite::advanceTo(Time now) {
+    Impl& site = *impl_;
+    const Time elapsed = now - site.beginning;
+    if (elapsed < Time{}) return;
+    if (site.view) {
+        const double rate = site.simulation.camera.frameRate;
+        if (const std::int64_t frame = tickAt(elapsed, rate); frame > site.lastFrame) {
+            site.happen(tickTime(frame, rate));
+            site.expose(frame);
+            site.lastFrame = frame;
+        }
+    }
+    site.happen(elapsed);
+}
+
+Time SimulatedSite::nextEvent() const {
+    const Impl& site = *impl_;
+    Time next = Time::max();
+    if (site.nextChange < site.changes.size()) next = site.beginning + site.changes[site.nextChange].at;
+    if (site.view) next = std::min(next, site.beginning + tickTime(site.lastFrame + 1, site.simulation.camera.frameRate));
+    return next;
+}
+
+std::vector<Happening> SimulatedSite::happenings() const {
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->happenings;
+}
+
+}  // namespace fantascope::site

@@ -1,0 +1,250 @@
+#include "drivers/site/simulation.h"
+
+#include "core/geometry.h"
+#include "core/mesh.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+namespace fantascope::site {
+namespace {
+
+constexpr double kFar = 1000;       // metres: the farthest anything stands from the origin
+constexpr double kLongest = 1e6;    // seconds: eleven days
+constexpr double kBrightest = 1e6;  // lux, candela, lumens, cd/m2
+
+// A flat four-sided sheet from one corner along two edges.
+TriangleMesh sheet(glm::dvec3 corner, glm::dvec3 right, glm::dvec3 up) {
+    return {{corner, corner + right, corner + right + up, corner + up}, {{0, 1, 2}, {0, 2, 3}}};
+}
+
+// Six sheets around a centre, along the axes.
+TriangleMesh box(glm::dvec3 centre, glm::dvec3 size) {
+    TriangleMesh mesh;
+    for (int i = 0; i < 8; ++i) mesh.vertices.push_back(centre + size * (glm::dvec3(i & 1, (i >> 1) & 1, i >> 2) - 0.5));
+    for (const glm::uvec4& side :
+         std::array<glm::uvec4, 6>{{{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}}) {
+        mesh.triangles.emplace_back(side.x, side.y, side.z);
+        mesh.triangles.emplace_back(side.x, side.z, side.w);
+    }
+    return mesh;
+}
+
+Result<TriangleMesh> readRectangle(const ConfigNode& node) {
+    glm::dvec3 corner{}, right{}, up{};
+    ConfigFields fields(node);
+    fields.vector3("corner", corner, -kFar, kFar, "m");
+    fields.vector3("right", right, -kFar, kFar, "m");
+    fields.vector3("up", up, -kFar, kFar, "m");
+    TRY(fields.finish());
+    if (glm::length(glm::cross(right, up)) < 1e-6)
+        return node.error("'right' and 'up' must span a rectangle; they are zero or in a line");
+    return sheet(corner, right, up);
+}
+
+Result<TriangleMesh> readBox(const ConfigNode& node) {
+    glm::dvec3 centre{}, size{};
+    ConfigFields fields(node);
+    fields.vector3("centre", centre, -kFar, kFar, "m");
+    fields.vector3("size", size, 1e-3, kFar, "m");
+    TRY(fields.finish());
+    return box(centre, size);
+}
+
+Result<TriangleMesh> readPlacedMesh(const ConfigNode& node) {
+    std::filesystem::path file;
+    glm::dvec3 position{0.0};
+    double turn = 0, scale = 1;
+    ConfigFields fields(node);
+    fields.path("file", file);
+    fields.optional().vector3("position", position, -kFar, kFar, "m");
+    fields.optional().angle("turn", turn, -360, 360);
+    fields.optional().number("scale", scale, 1e-4, 1e4);
+    TRY(fields.finish());
+    TriangleMesh mesh = TRY(readMesh(file).in(node.place()));
+    const glm::dmat3 rotation = rotationXyz({0, turn, 0});
+    for (glm::vec3& vertex : mesh.vertices) vertex = rotation * glm::dvec3(vertex) * scale + position;
+    return mesh;
+}
+
+Result<SceneObject> readObject(const ConfigNode& node) {
+    SceneObject object;
+    glm::dvec3 reflectance{0.5};
+    std::string name;  // for the file's readers
+    std::optional<TriangleMesh> rectangle, box, mesh;
+    ConfigFields fields(node);
+    fields.text("name", name);
+    fields.optional().read("rectangle", rectangle, readRectangle);
+    fields.optional().read("box", box, readBox);
+    fields.optional().read("mesh", mesh, readPlacedMesh);
+    fields.optional().vector3("reflectance", reflectance, 0, 1);
+    TRY(fields.finish());
+    if (rectangle.has_value() + box.has_value() + mesh.has_value() != 1)
+        return node.error("exactly one of rectangle, box and mesh is needed");
+    object.mesh = std::move(*(rectangle ? rectangle : box ? box : mesh));
+    object.reflectance = reflectance;
+    return object;
+}
+
+Result<SimulatedProjector> readProjector(const ConfigNode& node) {
+    SimulatedProjector projector;
+    ConfigFields fields(node);
+    fields.optional().number("lumens", projector.lumens, 0, kBrightest, "lm");
+    fields.optional().number("black_level", projector.blackLevel, 0, 1);
+    fields.optional().number("gamma", projector.gamma, 0.5, 5);
+    TRY(fields.finish());
+    return projector;
+}
+
+Result<Lamp> readLamp(const ConfigNode& node) {
+    Lamp lamp;
+    glm::dvec3 lookAt{0.0};
+    ConfigFields fields(node);
+    fields.vector3("position", lamp.position, -kFar, kFar, "m");
+    fields.vector3("look_at", lookAt, -kFar, kFar, "m");
+    fields.angle("beam_angle", lamp.beam, 1, 175);
+    fields.angle("field_angle", lamp.field, 1, 180);
+    fields.number("candela", lamp.candela, 0, kBrightest, "cd");
+    fields.optional().vector3("colour", lamp.colour, 0, 1);
+    fields.optional().number("radius", lamp.radius, 0.001, 10, "m");
+    TRY(fields.finish());
+    if (lamp.field <= lamp.beam) return node.error("field_angle must be larger than beam_angle");
+    if (glm::length(lookAt - lamp.position) < 1e-6) return node.error("look_at must differ from position");
+    lamp.aim = glm::normalize(lookAt - lamp.position);
+    return lamp;
+}
+
+Result<SimulatedCamera> readCamera(const ConfigNode& node) {
+    SimulatedCamera camera;
+    ConfigFields fields(node);
+    fields.optional().number("white", camera.sensor.white, 1e-3, kBrightest, "cd/m2");
+    fields.optional().number("read_noise", camera.sensor.readNoise, 0, 1);
+    fields.optional().number("shot_noise", camera.sensor.shotNoise, 0, 1);
+    fields.optional().time("latency", camera.latency, 0, 10);
+    fields.optional().number("frame_rate", camera.frameRate, 0.01, 240, "Hz");
+    TRY(fields.finish());
+    return camera;
+}
+
+template <class Named>
+std::vector<std::string> namesOf(const std::vector<Named>& things) {
+    std::vector<std::string> names;
+    for (const Named& thing : things) names.push_back(thing.name);
+    return names;
+}
+
+// A map from names that the site declares to what the simulation adds to them; use(index of the name, value).
+template <class Parse, class Use>
+Result<void> readNamed(const ConfigNode& node, const std::vector<std::string>& names, std::string_view kind, Parse parse,
+                       Use use) {
+    for (const auto& [name, value] : TRY(node.entries())) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end()) {
+            const std::string nearest = nearestName(name, names);
+            return value.error(fmt::format("this site has no {} '{}' ({})", kind, name,
+                                           !nearest.empty() ? fmt::format("did you mean '{}'?", nearest)
+                                           : names.empty()  ? fmt::format("it declares no {}", kind)
+                                                            : fmt::format("known here: {}", fmt::join(names, ", "))));
+        }
+        use(static_cast<std::size_t>(found - names.begin()), TRY(parse(value)));
+    }
+    return {};
+}
+
+Result<std::vector<SimulatedProjector>> readProjectors(const ConfigNode& node, const NominalSite& nominal) {
+    std::vector<SimulatedProjector> projectors(nominal.outputs.size());
+    TRY(readNamed(node, namesOf(nominal.outputs), "output", readProjector,
+                  [&](std::size_t output, SimulatedProjector projector) { projectors[output] = projector; }));
+    return projectors;
+}
+
+Result<std::vector<FedLamp>> readLamps(const ConfigNode& node, const std::vector<std::string>& feeds, std::string_view kind) {
+    std::vector<FedLamp> lamps;
+    TRY(readNamed(node, feeds, kind, readLamp, [&](std::size_t feed, const Lamp& lamp) { lamps.push_back({feed, lamp}); }));
+    return lamps;
+}
+
+Result<Fault> readFault(const ConfigNode& node, const NominalSite& nominal) {
+    Fault fault;
+    // Which keys a fault may have follows from its kind, so that comes first wherever it stands.
+    bool kindKnown = false;
+    for (const auto& [key, value] : TRY(node.entries()))
+        if (key == "kind") {
+            fault.kind = static_cast<Fault::Kind>(TRY(value.choice({"unplug", "freeze", "bump", "fog"})));
+            kindKnown = true;
+        }
+    if (!kindKnown) return node.error("'kind' is missing; one of unplug, freeze, bump, fog is needed");
+
+    ConfigFields fields(node);
+    std::string kind;
+    fields.text("kind", kind);
+    fields.time("at", fault.at, 0, kLongest);
+    fields.optional().read("until", fault.until, [](const ConfigNode& value) -> Result<Time> {
+        return fromSeconds(TRY(value.number(0, kLongest, "s")));
+    });
+    const auto readDevice = [&](std::string_view key, const std::vector<std::string>& names) {
+        fields.read(key, fault.device,
+                    [&](const ConfigNode& value) -> Result<std::string> { return names[TRY(value.choice(names))]; });
+    };
+    std::vector<std::string> outputs = namesOf(nominal.outputs);
+    switch (fault.kind) {
+        case Fault::Kind::Unplug:
+            readDevice("device", nominal.devices);
+            break;
+        case Fault::Kind::Freeze:
+            if (nominal.camera) outputs.emplace_back("camera");
+            readDevice("device", outputs);
+            break;
+        case Fault::Kind::Bump: {
+            readDevice("output", outputs);
+            glm::dvec3 degrees{0.0};
+            fields.optional().vector3("move", fault.move, -100, 100, "m");
+            fields.optional().vector3("turn", degrees, -180, 180, "degrees");
+            fault.turn = degrees * (std::numbers::pi / 180);
+            break;
+        }
+        case Fault::Kind::Fog:
+            fields.number("density", fault.density, 0, 10, "1/m");
+            fields.optional().time("rise", fault.rise, 0, kLongest);
+            break;
+    }
+    TRY(fields.finish());
+    if (fault.until && *fault.until <= fault.at) return node.error("'until' must be later than 'at'");
+    return fault;
+}
+
+}  // namespace
+
+double Fault::densityAt(Time time) const {
+    const auto share = [&](Time since) { return since < Time{} ? 0.0 : since >= rise ? 1.0 : seconds(since) / seconds(rise); };
+    return density * std::max(0.0, share(time - at) - (until ? share(time - *until) : 0.0));
+}
+
+Result<Simulation> readSimulation(const ConfigNode& node, const NominalSite& nominal) {
+    Simulation simulation;
+    simulation.projectors.resize(nominal.outputs.size());
+    ConfigFields fields(node);
+    fields.optional().vector3("ambient", simulation.ambient, 0, kBrightest, "lux");
+    fields.optional().vector3("sky", simulation.sky, 0, kBrightest, "cd/m2");
+    fields.list("objects", simulation.objects, readObject, 1);
+    fields.optional().read("projectors", simulation.projectors,
+                           [&](const ConfigNode& value) { return readProjectors(value, nominal); });
+    fields.optional().read("lamps", simulation.lamps,
+                           [&](const ConfigNode& value) { return readLamps(value, namesOf(nominal.fixtures), "fixture"); });
+    fields.optional().read("street_lamps", simulation.streetLamps,
+                           [&](const ConfigNode& value) { return readLamps(value, namesOf(nominal.relays), "relay"); });
+    fields.optional().read("camera", simulation.camera, readCamera);
+    fields.optional().list("faults", simulation.faults, [&](const ConfigNode& value) { return readFault(value, nominal); });
+    TRY(fields.finish());
+    for (const NominalSite::Output& output : nominal.outputs)
+        if (const glm::ivec2 size = output.projector.size; std::min(size.x, size.y) < ProjectedLight::kLeastSide)
+            return node.error(fmt::format("output '{}' of {} x {} pixels cannot be simulated, {} each way is the least",
+                                          output.name, size.x, size.y, ProjectedLight::kLeastSide));
+    return simulation;
+}
+
+}  // namespace fantascope::site

@@ -1,0 +1,68 @@
+#pragma once
+// The `simulation:` section of a site file as values; README.md has the table of its keys.
+
+#include "drivers/site/camera_view.h"
+#include "drivers/site/scene.h"
+#include "drivers/site/sensor.h"
+#include "drivers/site/simulated_site.h"
+
+#include "core/clock.h"
+#include "core/config.h"
+
+#include <glm/vec3.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fantascope::site {
+
+// What a projector is besides its place, one for each of the nominal site's outputs.
+struct SimulatedProjector {
+    double lumens = 3500;
+    double blackLevel = 0.0005;  // share of full light that a black pixel lets through
+    double gamma = 2.2;
+};
+
+// A lamp and what feeds it: the fixture or relay of that index in the nominal site.
+struct FedLamp {
+    std::size_t feed = 0;
+    Lamp lamp;
+};
+
+struct SimulatedCamera {
+    Sensor::Settings sensor;
+    Time latency = fromSeconds(0.05);  // from the exposure to the driver
+    double frameRate = 10;             // Hz
+};
+
+// Something that goes wrong with the simulated truth, and when. Times count from the site's beginning.
+struct Fault {
+    enum class Kind { Unplug, Freeze, Bump, Fog };
+    Kind kind = Kind::Unplug;
+    Time at{};
+    std::optional<Time> until;        // absent: for good
+    std::string device;               // Unplug: any device; Freeze: an output or the camera; Bump: an output
+    glm::dvec3 move{0.0}, turn{0.0};  // Bump, along and about the projector's own axes right, down, forward: metres, radians
+    double density = 0;               // Fog: extinction per metre at its thickest
+    Time rise{};                      // Fog: how long it takes to come, and to go after `until`
+
+    // Fog: the extinction at a time.
+    double densityAt(Time time) const;
+};
+
+struct Simulation {
+    glm::dvec3 ambient{0.2, 0.25, 0.4};  // lux
+    glm::dvec3 sky{0.01, 0.015, 0.03};   // cd/m2
+    std::vector<SceneObject> objects;
+    std::vector<SimulatedProjector> projectors;  // in the order of the nominal outputs
+    std::vector<FedLamp> lamps;                  // fed by fixtures
+    std::vector<FedLamp> streetLamps;            // fed by relays
+    SimulatedCamera camera;
+    std::vector<Fault> faults;
+};
+
+// Strict. Error: file, line, column, key.
+Result<Simulation> readSimulation(const ConfigNode& node, const NominalSite& nominal);
+
+}  // namespace fantascope::site

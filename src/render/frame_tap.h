@@ -1,0 +1,59 @@
+#pragma once
+
+#include "render/gpu/pixel_reader.h"
+
+#include "device/display_sink.h"
+
+#include "core/clock.h"
+#include "core/image.h"
+#include "core/latest_value.h"
+
+#include <glm/vec2.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace fantascope::render {
+
+// A frame as it went to a projector.
+struct ShownFrame {
+    std::size_t output = 0;  // index into the site's outputs
+    Time showTime{};         // what was drawn
+    Shown shown;             // when it became visible
+    RgbaImage image;         // stored values, row 0 at the top, alpha 255
+};
+
+// Where shown frames leave the renderer, and the only place: the simulated site, recordings and z read here. One for each output.
+//
+// A frame: draw; capture(); the display's present(); publish(). The copy runs while the display presents, so that the render
+// thread hardly waits for it. Without a tap nothing is copied. No allocation after readers have been added.
+//
+// Thread: the render thread, with the output's context current in capture(), publish() and the destructor; each reader's slot also
+// belongs to one thread of its own (see LatestValue).
+class FrameTap {
+public:
+    // `size`: pixels of the output's display.
+    FrameTap(std::size_t output, glm::ivec2 size);
+
+    // A slot of the newest frame for one reader; it lives as long as the tap. Call before the first frame.
+    LatestValue<ShownFrame>& addReader();
+
+    // After draw(): starts to copy what is in `framebuffer`, drawn for show time `showTime`.
+    void capture(unsigned framebuffer, Time showTime);
+    // After present(): hands the captured frame to newest() and to every reader. When present() failed nothing was shown: leave
+    // it out.
+    void publish(const Shown& shown);
+    // The frame that was published last; for whoever works on the render thread itself, as a rehearsal on a manual clock does.
+    const ShownFrame& newest() const { return newest_; }
+
+private:
+    std::optional<gpu::PixelReader> reader_;  // made with the first frame, since the display may come later than its readers
+    Time captured_{};  // the show time of what reader_ copies
+    ShownFrame newest_;
+    std::vector<std::unique_ptr<LatestValue<ShownFrame>>> slots_;
+};
+
+}  // namespace fantascope::render

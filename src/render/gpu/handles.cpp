@@ -1,0 +1,47 @@
+#include "render/gpu/handles.h"
+
+#include <epoxy/gl.h>
+
+namespace fantascope::render::gpu {
+namespace {
+
+template <class Create>
+unsigned created(Create create) {
+    GLuint name = 0;
+    create(1, &name);
+    return name;
+}
+
+}  // namespace
+
+unsigned BufferKind::create() { return created(glCreateBuffers); }
+void BufferKind::destroy(unsigned name) { glDeleteBuffers(1, &name); }
+unsigned VertexArrayKind::create() { return created(glCreateVertexArrays); }
+void VertexArrayKind::destroy(unsigned name) { glDeleteVertexArrays(1, &name); }
+unsigned RenderbufferKind::create() { return created(glCreateRenderbuffers); }
+void RenderbufferKind::destroy(unsigned name) { glDeleteRenderbuffers(1, &name); }
+unsigned MultisampleTextureKind::create() {
+    return created([](GLsizei count, GLuint* names) { glCreateTextures(GL_TEXTURE_2D_MULTISAMPLE, count, names); });
+}
+void MultisampleTextureKind::destroy(unsigned name) { glDeleteTextures(1, &name); }
+unsigned FramebufferKind::create() { return created(glCreateFramebuffers); }
+void FramebufferKind::destroy(unsigned name) { glDeleteFramebuffers(1, &name); }
+unsigned ProgramKind::create() { return glCreateProgram(); }
+void ProgramKind::destroy(unsigned name) { glDeleteProgram(name); }
+
+void Fence::set() {
+    clear();
+    sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+}
+
+void Fence::wait() {
+    if (sync_ == nullptr) return;
+    glClientWaitSync(static_cast<GLsync>(sync_), GL_SYNC_FLUSH_COMMANDS_BIT, GL_TIMEOUT_IGNORED);
+    clear();
+}
+
+void Fence::clear() {
+    if (sync_ != nullptr) glDeleteSync(static_cast<GLsync>(std::exchange(sync_, nullptr)));
+}
+
+}  // namespace fantascope::render::gpu

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <utility>
+
+namespace fantascope::render::gpu {
+
+// Owns one OpenGL object; typed, so that a buffer cannot pass for a framebuffer. Made and destroyed while its context is current;
+// it dies with the context at the latest. Thread: the context's.
+template <class Kind>
+class Handle {
+public:
+    Handle() : name_(Kind::create()) {}
+    ~Handle() {
+        if (name_ != 0) Kind::destroy(name_);
+    }
+    Handle(Handle&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+    Handle& operator=(Handle&& other) noexcept {
+        std::swap(name_, other.name_);
+        return *this;
+    }
+    unsigned name() const { return name_; }
+
+private:
+    unsigned name_;
+};
+
+struct BufferKind {
+    static unsigned create();
+    static void destroy(unsigned name);
+};
+struct VertexArrayKind {
+    static unsigned create();
+    static void destroy(unsigned name);
+};
+struct RenderbufferKind {
+    static unsigned create();
+    static void destroy(unsigned name);
+};
+struct MultisampleTextureKind {
+    static unsigned create();
+    static void destroy(unsigned name);
+};
+struct FramebufferKind {
+    static unsigned create();
+    static void destroy(unsigned name);
+};
+struct ProgramKind {
+    static unsigned create();
+    static void destroy(unsigned name);
+};
+
+using Buffer = Handle<BufferKind>;
+using VertexArray = Handle<VertexArrayKind>;
+using Renderbuffer = Handle<RenderbufferKind>;
+using MultisampleTexture = Handle<MultisampleTextureKind>;
+using Framebuffer = Handle<FramebufferKind>;
+using Program = Handle<ProgramKind>;
+
+// A point in the stream of commands that can be waited for. Empty until set().
+class Fence {
+public:
+    Fence() = default;
+    ~Fence() { clear(); }
+    Fence(Fence&& other) noexcept : sync_(std::exchange(other.sync_, nullptr)) {}
+    Fence& operator=(Fence&& other) noexcept {
+        std::swap(sync_, other.sync_);
+        return *this;
+    }
+    // After all commands so far.
+    void set();
+    // Returns once that point is passed and empties the fence; at once if it is empty.
+    void wait();
+
+private:
+    void clear();
+    void* sync_ = nullptr;  // GLsync
+};
+
+}  // namespace fantascope::render::gpu

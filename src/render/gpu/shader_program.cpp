@@ -1,0 +1,65 @@
+#include "render/gpu/shader_program.h"
+
+#include "core/file.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <string>
+
+namespace fantascope::render::gpu {
+namespace {
+
+// A shader matters only until its program is linked.
+template <GLenum kStage>
+struct ShaderKind {
+    static unsigned create() { return glCreateShader(kStage); }
+    static void destroy(unsigned name) { glDeleteShader(name); }
+};
+
+template <class GetParameter, class GetLog>
+std::string logOf(unsigned name, GetParameter getParameter, GetLog getLog) {
+    GLint length = 0;
+    getParameter(name, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(length), '\0');
+    getLog(name, length, &length, log.data());
+    log.resize(static_cast<std::size_t>(length));
+    return log;
+}
+
+template <GLenum kStage>
+Result<Handle<ShaderKind<kStage>>> compiled(const std::filesystem::path& file) {
+    const std::string source = TRY(readFile(file));
+    Handle<ShaderKind<kStage>> shader;
+    const char* text = source.data();
+    const auto length = static_cast<GLint>(source.size());
+    glShaderSource(shader.name(), 1, &text, &length);
+    glCompileShader(shader.name());
+    GLint good = GL_FALSE;
+    glGetShaderiv(shader.name(), GL_COMPILE_STATUS, &good);
+    if (good != GL_TRUE)
+        return Error(fmt::format("{}: the shader does not compile:\n{}", file.string(),
+                                 logOf(shader.name(), glGetShaderiv, glGetShaderInfoLog)));
+    return shader;
+}
+
+}  // namespace
+
+Result<Program> loadProgram(const std::filesystem::path& vertexShader, const std::filesystem::path& fragmentShader) {
+    const auto vertex = TRY(compiled<GL_VERTEX_SHADER>(vertexShader));
+    const auto fragment = TRY(compiled<GL_FRAGMENT_SHADER>(fragmentShader));
+    Program program;
+    glAttachShader(program.name(), vertex.name());
+    glAttachShader(program.name(), fragment.name());
+    glLinkProgram(program.name());
+    glDetachShader(program.name(), vertex.name());
+    glDetachShader(program.name(), fragment.name());
+    GLint good = GL_FALSE;
+    glGetProgramiv(program.name(), GL_LINK_STATUS, &good);
+    if (good != GL_TRUE)
+        return Error(fmt::format("{} and {} do not link:\n{}", vertexShader.string(), fragmentShader.string(),
+                                 logOf(program.name(), glGetProgramiv, glGetProgramInfoLog)));
+    return program;
+}
+
+}  // namespace fantascope::render::gpu

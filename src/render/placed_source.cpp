@@ -1,0 +1,115 @@
+#include "render/placed_source.h"
+
+#include "core/check.h"
+#include "core/geometry.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace fantascope::render {
+namespace {
+
+// Where the light on the facets comes from, in the canvas's frame (x right, y down, z to the viewer): above, a little left, in
+// front.
+const glm::dvec3 kTowardsLight = glm::normalize(glm::dvec3(-0.4, -0.6, 0.7));
+
+// A solid is a pattern of one square; it is larger than the canvas, whose edges cut it.
+PatternSource asPattern(const SolidSource& solid) {
+    pattern::ShapePattern square;
+    square.width = square.height = 1;
+    const float half = std::sqrt(0.5f);
+    square.shapes.push_back({"square",
+                             {{{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}},  //
+                              {{0, 1, 2}, {0, 2, 3}}}});
+    pattern::ShapeInstance instance;
+    instance.centre = {0.5, 0.5};
+    instance.size = 1;
+    instance.colour = solid.colour;
+    square.instances.push_back(instance);
+    return {std::make_shared<const pattern::ShapePattern>(std::move(square)), nullptr};
+}
+
+// Projector pixels, y down, to OpenGL's picture, y up and -1 .. 1.
+glm::dmat3 clipFromProjector(glm::ivec2 size) { return {2.0 / size.x, 0, 0, 0, -2.0 / size.y, 0, -1, 1, 1}; }
+
+}  // namespace
+
+Result<PlacedSource> PlacedSource::create(const PictureSource& source, glm::ivec2 size,
+                                          const std::array<glm::dvec2, 4>& corners) {
+    const auto* pattern = std::get_if<PatternSource>(&source);
+    PatternSource placed = pattern != nullptr ? *pattern : asPattern(std::get<SolidSource>(source));
+    FANTASCOPE_CHECK(placed.pattern != nullptr, "a pattern source has a pattern");
+
+    const std::array<glm::dvec2, 4> canvas = rectangleCorners(placed.pattern->aspect(), 1);
+    const Homography projectorFromCanvas = TRY(Homography::fromCorners(canvas, corners));
+    glm::dmat3 clipFromCanvas = clipFromProjector(size) * projectorFromCanvas.matrix();
+    // A projective map is free in scale: the least w of the canvas becomes 1, so that depths of 0 .. 1 stay in front of the far
+    // plane.
+    double least = INFINITY;
+    for (const glm::dvec2 corner : canvas) least = std::min(least, (clipFromCanvas * glm::dvec3(corner, 1)).z);
+    return PlacedSource(std::move(placed), clipFromCanvas / least);
+}
+
+PlacedSource::PlacedSource(PatternSource source, const glm::dmat3& clipFromCanvas)
+    : source_(std::move(source)), clipFromCanvas_(clipFromCanvas) {
+    // A line e of the canvas, dot(e, (x, y, 1)) = 0, is the line inverse(H)^T e of its image.
+    const glm::dmat3 clipFromEdge = glm::transpose(glm::inverse(clipFromCanvas));
+    const double aspect = source_.pattern->aspect();
+    const std::array<glm::dvec3, 4> edges = {{{1, 0, 0}, {-1, 0, aspect}, {0, 1, 0}, {0, -1, 1}}};
+    std::transform(edges.begin(), edges.end(), canvasEdges_.begin(),
+                   [&](glm::dvec3 edge) { return glm::vec3(clipFromEdge * edge); });
+
+    const auto& instances = source_.pattern->instances;
+    for (const pattern::ShapeInstance& instance : instances)
+        poses_.push_back({instance.centre, instance.size, instance.rotation});
+    order_.resize(instances.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::size_t a, std::size_t b) { return instances[a].shape < instances[b].shape; });
+}
+
+std::vector<gpu::InstancedMeshes::Mesh> PlacedSource::meshes() const {
+    std::vector<gpu::InstancedMeshes::Mesh> meshes;
+    for (const pattern::ElementalShape& shape : source_.pattern->shapes) meshes.push_back({facetMesh(shape.mesh), 0});
+    for (const pattern::ShapeInstance& instance : source_.pattern->instances) ++meshes[instance.shape].instances;
+    return meshes;
+}
+
+bool PlacedSource::mirrored() const {
+    // Canvas and projector have y down, OpenGL has it up: the warp of an upright picture turns over, and so does canvasFromShape.
+    return glm::determinant(clipFromCanvas_) > 0;
+}
+
+void PlacedSource::place(Time time, std::span<gpu::Instance> out) {
+    FANTASCOPE_CHECK(out.size() == order_.size(), "one place for each instance");
+    if (source_.motion) source_.motion->posesAt(time, poses_);
+
+    // Each instance has a slice of the depths 0 .. 1 to itself, the last instance the nearest. Clip z is that depth and w the
+    // warp's, so the map of space to clip space is projective: whatever lies behind a point of the canvas keeps its order.
+    const double slice = 1.0 / static_cast<double>(order_.size());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const std::size_t rank = order_[i];
+        const pattern::InstancePose& pose = poses_[rank];
+        const glm::dmat3 canvasFromShape = pattern::canvasFromShape({pose.centre, 1, pose.rotation});  // but for size and place
+        const double depth = 1 - (static_cast<double>(rank) + 0.5) * slice;
+        const auto clip = [&](glm::dvec3 canvas, double depth) {
+            const glm::dvec3 warped = clipFromCanvas_ * canvas;
+            return glm::vec4(warped.x, warped.y, depth, warped.z);
+        };
+        gpu::Instance& instance = out[i];
+        for (int axis = 0; axis < 3; ++axis) {
+            const glm::dvec3 along = canvasFromShape[axis];
+            instance.clipFromShape[axis] = clip(glm::dvec3(pose.size * glm::dvec2(along), 0), -0.5 * slice * along.z);
+        }
+        instance.clipFromShape[3] = clip(glm::dvec3(pose.centre, 1), depth);
+        instance.towardsLight = glm::transpose(canvasFromShape) * kTowardsLight;
+        instance.colour = source_.pattern->instances[rank].colour;
+    }
+}
+
+}  // namespace fantascope::render

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "render/gpu/instanced_meshes.h"
+#include "render/picture_source.h"
+
+#include "core/clock.h"
+#include "core/result.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace fantascope::render {
+
+// One picture source as it stands in one output's picture: which meshes, and at any time where their instances are, through the
+// warp. Instances are opaque to each other: of two, the later one in the pattern's order lies on top, whole. Thread:
+// thread-bound.
+class PlacedSource {
+public:
+    // `corners`: where the canvas's corners go in the output's `size` pixels, from the canvas's top left clockwise.
+    // Error: corners that are not those of a picture.
+    static Result<PlacedSource> create(const PictureSource& source, glm::ivec2 size, const std::array<glm::dvec2, 4>& corners);
+
+    // The meshes with the number of their instances, in the order in which place() fills them.
+    std::vector<gpu::InstancedMeshes::Mesh> meshes() const;
+    // Whether the warp turns the canvas over, as for rear projection.
+    bool mirrored() const;
+    // The canvas's edges: a clip space point (x, y, z, w) is on the canvas when its (x, y, w) has no negative dot product with
+    // any.
+    const std::array<glm::vec3, 4>& canvasEdges() const { return canvasEdges_; }
+    // All instances at show time `time`. No allocation.
+    void place(Time time, std::span<gpu::Instance> out);
+
+private:
+    PlacedSource(PatternSource source, const glm::dmat3& clipFromCanvas);
+
+    PatternSource source_;
+    glm::dmat3 clipFromCanvas_;  // (x, y, w) = clipFromCanvas_ * (canvas x, canvas y, 1), w >= 1 all over the canvas
+    std::array<glm::vec3, 4> canvasEdges_;
+    std::vector<pattern::InstancePose> poses_;  // in the pattern's order; at rest where nothing moves
+    std::vector<std::size_t> order_;            // the pattern's instances, mesh by mesh
+};
+
+}  // namespace fantascope::render

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "show/show_state.h"
+
+#include "core/clock.h"
+
+#include <optional>
+#include <vector>
+
+namespace fantascope::show {
+
+// A show's cues with every name looked up in one site: all that playback needs. Constant during a night; see Show::bind.
+struct CueList {
+    struct Cue {
+        Look look;
+        Time fade{};                 // from whatever is seen when the cue is entered to its look
+        std::optional<Time> follow;  // after being entered, the next cue is entered by itself
+    };
+    std::vector<Cue> cues;
+    Look dark;            // what is seen before the first cue: black pictures, levels 0, relays in their safe states
+    Time goInterval{};    // after a cue was entered, GO is ignored for this long
+    Time blackoutFade{};  // from full light to none and back
+};
+
+}  // namespace fantascope::show

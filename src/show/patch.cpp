@@ -1,0 +1,37 @@
+#include "show/patch.h"
+
+#include "core/check.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fantascope::show {
+
+void slotsOf(const Site& site, const Look& look, int universe, std::span<std::uint8_t, 512> out) {
+    FANTASCOPE_CHECK(look.levels.size() == site.channelCount(), "the look is for this site");
+    std::fill(out.begin(), out.end(), std::uint8_t{0});
+    auto level = look.levels.begin();
+    for (const Fixture& fixture : site.fixtures) {
+        const auto next = level + static_cast<std::ptrdiff_t>(fixture.channels.size());
+        if (fixture.universe == universe)
+            std::transform(level, next, out.begin() + (fixture.address - 1), [](float value) {
+                return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255));
+            });
+        level = next;
+    }
+}
+
+std::vector<bool> coilsOf(const Site& site, const Look& look) {
+    FANTASCOPE_CHECK(look.relays.size() == site.relays.size(), "the look is for this site");
+    std::vector<bool> states(site.coilCount(), false);
+    for (std::size_t i = 0; i < site.relays.size(); ++i) states[static_cast<std::size_t>(site.relays[i].coil)] = look.relays[i] != 0;
+    return states;
+}
+
+std::vector<bool> safeCoils(const Site& site) {
+    std::vector<bool> states(site.coilCount(), false);
+    for (const Relay& relay : site.relays) states[static_cast<std::size_t>(relay.coil)] = relay.safe;
+    return states;
+}
+
+}  // namespace fantascope::show

@@ -1,0 +1,23 @@
+#pragma once
+// From the levels and relays of a look to what the lines of the site carry.
+
+#include "show/show_state.h"
+#include "show/site.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fantascope::show {
+
+// Fills the 512 slots of one universe; out[0] is address 1. A level goes straight to its slot, linearly, 0..1 to 0..255, rounded
+// to the nearest; whatever curve the dimmer has is its own. Slots without a fixture are 0.
+void slotsOf(const Site& site, const Look& look, int universe, std::span<std::uint8_t, 512> out);
+
+// The states of the relay bank's coils, site.coilCount() of them, from coil 0; true is on. Coils without a relay are off.
+std::vector<bool> coilsOf(const Site& site, const Look& look);
+
+// The safe states of the same coils.
+std::vector<bool> safeCoils(const Site& site);
+
+}  // namespace fantascope::show

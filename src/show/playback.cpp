@@ -1,0 +1,173 @@
+#include "show/playback.h"
+
+#include "core/check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace fantascope::show {
+
+namespace {
+
+// The last of `events` that has happened by `time`, or null. They are sorted by `at`.
+template <class Event>
+const Event* lastBy(Time time, const std::vector<Event>& events) {
+    const auto next =
+        std::upper_bound(events.begin(), events.end(), time, [](Time t, const Event& event) { return t < event.at; });
+    return next == events.begin() ? nullptr : &*std::prev(next);
+}
+
+// How much of a change that began at `start` and lasts `length` has happened by `time` >= start, 0..1.
+float progress(Time start, Time length, Time time) {
+    if (time - start >= length) return 1;
+    return static_cast<float>(seconds(time - start) / seconds(length));
+}
+
+const LayerState* layerOf(std::uint32_t source, const std::vector<LayerState>& layers) {
+    const auto found =
+        std::find_if(layers.begin(), layers.end(), [&](const LayerState& layer) { return layer.source == source; });
+    return found == layers.end() ? nullptr : &*found;
+}
+
+// Each source of either list once; layers without light are left out. `out` is neither of them.
+void mixLayers(const std::vector<LayerState>& from, const std::vector<LayerState>& to, float share,
+               std::vector<LayerState>& out) {
+    out.clear();
+    const auto add = [&](std::uint32_t source) {
+        const LayerState *before = layerOf(source, from), *after = layerOf(source, to);
+        const float opacity = std::lerp(before ? before->opacity : 0, after ? after->opacity : 0, share);
+        if (opacity > 0) out.push_back({source, opacity});
+    };
+    for (const LayerState& layer : from) add(layer.source);
+    for (const LayerState& layer : to)
+        if (!layerOf(layer.source, from)) add(layer.source);
+}
+
+// The look on the way from one to another: `share` 0 is `from`, 1 is `to`; the relays are already those of `to`.
+void mix(const Look& from, const Look& to, float share, Look& out) {
+    for (std::size_t i = 0; i < to.outputs.size(); ++i)
+        mixLayers(from.outputs[i].layers, to.outputs[i].layers, share, out.outputs[i].layers);
+    for (std::size_t i = 0; i < to.levels.size(); ++i) out.levels[i] = std::lerp(from.levels[i], to.levels[i], share);
+    out.relays = to.relays;
+}
+
+void dim(Look& look, float light) {
+    for (OutputState& output : look.outputs) {
+        for (LayerState& layer : output.layers) layer.opacity *= light;
+        std::erase_if(output.layers, [](const LayerState& layer) { return layer.opacity == 0; });
+    }
+    for (float& level : look.levels) level *= light;
+}
+
+}  // namespace
+
+std::string_view nameOf(Outcome outcome) {
+    switch (outcome) {
+        case Outcome::Taken:
+            return "taken";
+        case Outcome::TooSoonAfterCue:
+            return "ignored: too soon after the cue began";
+        case Outcome::AtLastCue:
+            return "ignored: this is the last cue";
+        case Outcome::AtFirstCue:
+            return "ignored: there is no cue before";
+        case Outcome::NoSuchCue:
+            return "ignored: there is no such cue";
+    }
+    return "unknown";
+}
+
+Playback::Playback(CueList list) : list_(std::move(list)) {
+    const auto examine = [&](const Look& look) {
+        FANTASCOPE_CHECK(look.outputs.size() == list_.dark.outputs.size() && look.levels.size() == list_.dark.levels.size() &&
+                             look.relays.size() == list_.dark.relays.size(),
+                         "all looks of a cue list are for one site");
+        for (const OutputState& output : look.outputs)
+            for (const LayerState& layer : output.layers) mostLayers_ = std::max<std::size_t>(mostLayers_, layer.source + 1);
+    };
+    for (const CueList::Cue& cue : list_.cues) examine(cue.look);
+}
+
+Outcome Playback::apply(Input input) {
+    newest_ = std::max(newest_, input.at);
+    const Time at = newest_;
+    const int cue = cueAt(at), last = static_cast<int>(list_.cues.size()) - 1;
+    switch (input.kind) {
+        case Input::Kind::Go: {
+            const Entry* entry = lastBy(at, entries_);
+            if (entry && at - entry->at < list_.goInterval) return Outcome::TooSoonAfterCue;
+            if (cue == last) return Outcome::AtLastCue;
+            enter(cue + 1, at);
+            break;
+        }
+        case Input::Kind::Back:
+            if (cue <= 0) return Outcome::AtFirstCue;
+            enter(cue - 1, at);
+            break;
+        case Input::Kind::Jump:
+            if (input.cue < 0 || input.cue > last) return Outcome::NoSuchCue;
+            enter(input.cue, at);
+            break;
+        case Input::Kind::Blackout: {
+            const Shutter* shutter = lastBy(at, shutters_);
+            shutters_.push_back({at, !(shutter && shutter->dark), lightAt(at)});
+            break;
+        }
+    }
+    taken_.push_back(at);
+    return Outcome::Taken;
+}
+
+// Enters a cue, and after it those that follow by themselves. What would have followed otherwise is off.
+void Playback::enter(int cue, Time at) {
+    std::erase_if(entries_, [&](const Entry& entry) { return entry.at > at; });
+    for (;;) {
+        Look from;
+        lookAt(at, from);
+        entries_.push_back({at, cue, std::move(from)});
+        const std::optional<Time> follow = list_.cues[static_cast<std::size_t>(cue)].follow;
+        if (!follow || static_cast<std::size_t>(cue) + 1 == list_.cues.size()) return;
+        at += *follow;
+        ++cue;
+    }
+}
+
+void Playback::stateAt(Time time, ShowState& out) const {
+    out.time = time;
+    out.cue = cueAt(time);
+    lookAt(time, out);
+    const Shutter* shutter = lastBy(time, shutters_);
+    out.blackout = shutter && shutter->dark;
+    if (const float light = lightAt(time); light < 1) dim(out, light);
+    out.inputs = static_cast<std::uint64_t>(std::upper_bound(taken_.begin(), taken_.end(), time) - taken_.begin());
+}
+
+int Playback::cueAt(Time time) const {
+    const Entry* entry = lastBy(time, entries_);
+    return entry ? entry->cue : -1;
+}
+
+// What is seen, blackout aside.
+void Playback::lookAt(Time time, Look& out) const {
+    out.outputs.resize(list_.dark.outputs.size());
+    for (OutputState& output : out.outputs) output.layers.reserve(mostLayers_);
+    out.levels.resize(list_.dark.levels.size());
+
+    const Entry* entry = lastBy(time, entries_);
+    if (!entry) return mix(list_.dark, list_.dark, 1, out);
+    const CueList::Cue& cue = list_.cues[static_cast<std::size_t>(entry->cue)];
+    mix(entry->from, cue.look, progress(entry->at, cue.fade, time), out);
+}
+
+// The factor of pictures and levels that blackout leaves: it moves at a constant rate, so that a change of mind on the way has no
+// step.
+float Playback::lightAt(Time time) const {
+    const Shutter* shutter = lastBy(time, shutters_);
+    if (!shutter) return 1;
+    const float moved = progress(shutter->at, list_.blackoutFade, time);
+    return shutter->dark ? std::max(0.0f, shutter->from - moved) : std::min(1.0f, shutter->from + moved);
+}
+
+}  // namespace fantascope::show

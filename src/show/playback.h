@@ -1,0 +1,86 @@
+#pragma once
+
+#include "show/cue_list.h"
+#include "show/show_state.h"
+
+#include "core/clock.h"
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace fantascope::show {
+
+// Something that the operator, or whoever acts for the operator, asked for.
+struct Input {
+    enum class Kind {
+        Go,       // enter the next cue
+        Back,     // enter the cue before
+        Jump,     // enter cue `cue`, also the one that is running
+        Blackout  // hold pictures and lamps dark, or give them back
+    };
+    Time at{};  // show time
+    Kind kind = Kind::Go;
+    int cue = 0;  // for Jump alone: index into CueList::cues
+};
+
+// What became of an input.
+enum class Outcome { Taken, TooSoonAfterCue, AtLastCue, AtFirstCue, NoSuchCue };
+// In words for the operator: "taken", "ignored: ...".
+std::string_view nameOf(Outcome outcome);
+
+// Plays a cue list: what is seen at any moment of show time, as a pure function of that time and of the inputs so far. Asking
+// changes nothing, so the same inputs give the same state in whatever order the moments are asked for.
+//
+// - A cue that is entered fades, in its `fade`, from what is seen at that moment (the middle of another fade, perhaps) to its
+// look:
+//   opacities, matched by source, and levels move linearly, both being linear light. Relays take their new state at once.
+// - A cue with `follow` is left for the next one by itself, that time after it was entered in whatever way, unless an input
+// enters
+//   another one first.
+// - GO is ignored until `goInterval` after a cue was entered, by hand or by itself, so that a trembling or late press skips
+// nothing.
+// - Blackout dims pictures and levels to nothing in `blackoutFade`, over whatever is running; a second one gives them back. The
+// cues
+//   go on underneath. Relays do not heed it: a dark picture is no reason for dark streets.
+//
+// Thread: stateAt() is reentrant; apply() is bound to one thread at a time and may not run beside it.
+class Playback {
+public:
+    explicit Playback(CueList list);
+
+    // Takes one input, or says why not. Inputs take effect in the order in which they are given: one whose time is before that of
+    // its forerunner takes effect at its forerunner's time. It changes what is seen from then on and nothing before.
+    Outcome apply(Input input);
+
+    // What is seen at `time`, which may be any. Binary searches and one mix; it allocates only when it sees `out` the first time.
+    void stateAt(Time time, ShowState& out) const;
+
+private:
+    // A cue that was entered, or that will be by itself if no input comes before.
+    struct Entry {
+        Time at{};
+        int cue = 0;
+        Look from;  // what was seen then, blackout aside
+    };
+    // The operator took the light away or gave it back.
+    struct Shutter {
+        Time at{};
+        bool dark = false;
+        float from = 1;  // the light's factor then
+    };
+
+    int cueAt(Time time) const;
+    void enter(int cue, Time at);
+    void lookAt(Time time, Look& out) const;
+    float lightAt(Time time) const;
+
+    CueList list_;
+    std::size_t mostLayers_ = 0;     // that one output can have: one of each source
+    std::vector<Entry> entries_;     // by time, those in the future last
+    std::vector<Shutter> shutters_;  // by time
+    std::vector<Time> taken_;        // when each input took effect
+    Time newest_ = Time::min();      // of all inputs, ignored ones included
+};
+
+}  // namespace fantascope::show

@@ -1,0 +1,231 @@
+#include "show/show.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace fantascope::show {
+
+namespace {
+
+constexpr int kNewestVersion = 1;
+
+// Defaults. 0.3 s is shorter than a deliberate second press and longer than a bouncing or trembling one; as a fade it is quick
+// without being a flash.
+constexpr Time kGoInterval = std::chrono::milliseconds(300);
+constexpr Time kBlackoutFade = std::chrono::milliseconds(300);
+
+// Limits in seconds.
+constexpr double kLongestGoInterval = 5;
+constexpr double kLongestBlackoutFade = 10;
+constexpr double kLongestFade = 3600;
+constexpr double kLongestFollow = 86400;
+
+template <class Range>
+std::vector<std::string> namesOf(const Range& things) {
+    std::vector<std::string> names;
+    names.reserve(things.size());
+    for (const auto& thing : things) names.push_back(thing.name);
+    return names;
+}
+
+// The index of `name` among `known`, or why not: "no output is called 'lefd' (did you mean 'left'?)".
+Result<std::size_t> find(std::string_view name, const std::vector<std::string>& known, std::string_view what) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
+    const std::string nearest = nearestName(name, known);
+    const std::string advice = !nearest.empty() ? fmt::format("did you mean '{}'?", nearest)
+                               : known.empty()  ? std::string("there is none at all")
+                                                : fmt::format("known: {}", fmt::join(known, ", "));
+    return Error(fmt::format("no {} is called '{}' ({})", what, name, advice));
+}
+
+Result<PatternSource> readPatternSource(const ConfigNode& node) {
+    const std::filesystem::path file = TRY(node.path());
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored))
+        return node.error(fmt::format("there is no file {0}; make it with 'fantascope pattern GUIDE -o {0}'", file.string()));
+    return PatternSource{file};
+}
+
+Result<Source> readSource(const std::string& name, const ConfigNode& node) {
+    std::optional<PatternSource> pattern;
+    std::optional<SolidSource> solid;
+    ConfigFields fields(node);
+    fields.optional().read("pattern", pattern, readPatternSource);
+    fields.optional().read("solid", solid, [](const ConfigNode& colour) -> Result<SolidSource> {
+        return SolidSource{glm::vec3(TRY(colour.vector3(0, 1)))};
+    });
+    TRY(fields.finish());
+    if (pattern.has_value() == solid.has_value()) return node.error("exactly one kind of source is needed: 'pattern' or 'solid'");
+    if (pattern) return Source{name, *pattern};
+    return Source{name, *solid};
+}
+
+// The layers of one output of a look.
+Result<OutputState> readLayers(const ConfigNode& node, const std::vector<std::string>& sources) {
+    OutputState output;
+    for (const ConfigNode& item : TRY(node.items())) {
+        LayerState layer;
+        double opacity = 1;
+        ConfigFields fields(item);
+        fields.read("source", layer.source, [&](const ConfigNode& value) -> Result<std::uint32_t> {
+            return static_cast<std::uint32_t>(TRY(value.choice(sources)));
+        });
+        fields.optional().number("opacity", opacity, 0, 1);
+        TRY(fields.finish());
+        layer.opacity = static_cast<float>(opacity);
+        const auto same = [&](const LayerState& other) { return other.source == layer.source; };
+        if (std::any_of(output.layers.begin(), output.layers.end(), same))
+            return item.error(
+                fmt::format("'{}' is on this output already; one layer of a source is enough", sources[layer.source]));
+        output.layers.push_back(layer);
+    }
+    return output;
+}
+
+Result<float> readLevel(const ConfigNode& node) { return static_cast<float>(TRY(node.number(0, 1))); }
+
+Result<bool> readSwitch(const ConfigNode& node) { return TRY(node.choice({"off", "on"})) == 1; }
+
+// A map whose keys are names of the site.
+template <class Wish, class Read>
+Result<std::vector<Named<Wish>>> readNamed(const ConfigNode& node, Read read) {
+    std::vector<Named<Wish>> wishes;
+    for (const auto& [name, value] : TRY(node.entries())) {
+        Wish wish = TRY(read(value));
+        wishes.push_back({name, value, std::move(wish)});
+    }
+    return wishes;
+}
+
+Result<NamedLook::Levels> readLevels(const ConfigNode& node) {
+    if (node.isMap()) return NamedLook::Levels(TRY(readNamed<float>(node, readLevel)));
+    return NamedLook::Levels(TRY(readLevel(node)));
+}
+
+Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, const std::vector<std::string>& sources) {
+    NamedLook look;
+    look.name = name;
+    ConfigFields fields(node);
+    fields.optional().read("outputs", look.outputs, [&](const ConfigNode& map) {
+        return readNamed<OutputState>(map, [&](const ConfigNode& layers) { return readLayers(layers, sources); });
+    });
+    fields.optional().read("fixtures", look.fixtures,
+                           [](const ConfigNode& map) { return readNamed<NamedLook::Levels>(map, readLevels); });
+    fields.optional().read("relays", look.relays, [](const ConfigNode& map) { return readNamed<bool>(map, readSwitch); });
+    TRY(fields.finish());
+    return look;
+}
+
+Result<Cue> readCue(const ConfigNode& node, const std::vector<std::string>& looks) {
+    Cue cue;
+    ConfigFields fields(node);
+    fields.text("name", cue.name);
+    fields.read("look", cue.look, [&](const ConfigNode& value) { return value.choice(looks); });
+    fields.time("fade", cue.fade, 0, kLongestFade);
+    fields.optional().read("follow", cue.follow, [](const ConfigNode& value) -> Result<Time> {
+        return fromSeconds(TRY(value.number(0, kLongestFollow, "s")));
+    });
+    TRY(fields.finish());
+    return cue;
+}
+
+Result<std::vector<Cue>> readCues(const ConfigNode& node, const std::vector<std::string>& looks) {
+    std::vector<Cue> cues;
+    const auto items = TRY(node.items(1));
+    for (const ConfigNode& item : items) {
+        Cue cue = TRY(readCue(item, looks));
+        const auto same = [&](const Cue& other) { return other.name == cue.name; };
+        if (std::any_of(cues.begin(), cues.end(), same))
+            return item.error(fmt::format("another cue is called '{}'; each needs its own name", cue.name));
+        cues.push_back(std::move(cue));
+    }
+    if (cues.back().follow) return items.back().error("no cue comes after this one; take its 'follow' away");
+    return cues;
+}
+
+// Where in the site the thing is that a show calls by name.
+template <class Wish>
+Result<std::size_t> indexOf(const Named<Wish>& wanted, const std::vector<std::string>& known, std::string_view what,
+                            const Site& site) {
+    const auto index = find(wanted.name, known, what);
+    if (!index) return wanted.at.error(fmt::format("{} in {}", index.error().message(), site.file.string()));
+    return *index;
+}
+
+// What is seen of a look that names nothing.
+Look darkLook(const Site& site) {
+    Look look;
+    look.outputs.resize(site.outputs.size());
+    look.levels.assign(site.channelCount(), 0.0f);
+    for (const Relay& relay : site.relays) look.relays.push_back(relay.safe);
+    return look;
+}
+
+Result<Look> bindLook(const NamedLook& named, const Site& site) {
+    Look look = darkLook(site);
+    for (const auto& output : named.outputs)
+        look.outputs[TRY(indexOf(output, namesOf(site.outputs), "output", site))] = output.wish;
+    for (const auto& relay : named.relays) look.relays[TRY(indexOf(relay, namesOf(site.relays), "relay", site))] = relay.wish;
+    for (const auto& fixture : named.fixtures) {
+        const std::size_t index = TRY(indexOf(fixture, namesOf(site.fixtures), "fixture", site));
+        const std::vector<std::string>& channels = site.fixtures[index].channels;
+        const std::span<float> levels = std::span(look.levels).subspan(site.firstLevel(index), channels.size());
+        if (const float* all = std::get_if<float>(&fixture.wish)) {
+            std::fill(levels.begin(), levels.end(), *all);
+        } else {
+            const std::string what = fmt::format("channel of '{}'", fixture.name);
+            for (const Named<float>& channel : std::get<NamedLook::ChannelLevels>(fixture.wish))
+                levels[TRY(indexOf(channel, channels, what, site))] = channel.wish;
+        }
+    }
+    return look;
+}
+
+}  // namespace
+
+Result<Show> Show::load(const std::filesystem::path& fileOrFolder) {
+    Show show;
+    std::error_code ignored;
+    show.file = std::filesystem::is_directory(fileOrFolder, ignored) ? fileOrFolder / "show.yaml" : fileOrFolder;
+    show.goInterval = kGoInterval;
+    show.blackoutFade = kBlackoutFade;
+    const ConfigNode root = TRY(ConfigNode::load(show.file));
+    ConfigFields fields(root);
+    fields.header("show", kNewestVersion);
+    fields.text("title", show.title);
+    fields.optional().time("go_interval", show.goInterval, 0, kLongestGoInterval);
+    fields.optional().time("blackout_fade", show.blackoutFade, 0, kLongestBlackoutFade);
+    fields.read("sources", show.sources, [](const ConfigNode& node) -> Result<std::vector<Source>> {
+        std::vector<Source> sources;
+        for (const auto& [name, source] : TRY(node.entries())) sources.push_back(TRY(readSource(name, source)));
+        return sources;
+    });
+    fields.read("looks", show.looks, [&](const ConfigNode& node) -> Result<std::vector<NamedLook>> {
+        std::vector<NamedLook> looks;
+        for (const auto& [name, look] : TRY(node.entries())) looks.push_back(TRY(readLook(name, look, namesOf(show.sources))));
+        return looks;
+    });
+    fields.read("cues", show.cues, [&](const ConfigNode& node) { return readCues(node, namesOf(show.looks)); });
+    TRY(fields.finish());
+    return show;
+}
+
+Result<CueList> Show::bind(const Site& site) const {
+    std::vector<Look> bound;
+    for (const NamedLook& look : looks) bound.push_back(TRY(bindLook(look, site)));
+
+    CueList list;
+    for (const Cue& cue : cues) list.cues.push_back({bound[cue.look], cue.fade, cue.follow});
+    list.dark = darkLook(site);
+    list.goInterval = goInterval;
+    list.blackoutFade = blackoutFade;
+    return list;
+}
+
+Result<std::size_t> Show::cueNamed(std::string_view name) const { return find(name, namesOf(cues), "cue").in(file.string()); }
+
+}  // namespace fantascope::show

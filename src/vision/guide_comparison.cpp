@@ -1,0 +1,191 @@
+#include "vision/guide_comparison.h"
+
+#include "core/check.h"
+
+#include <Eigen/Dense>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace fantascope::vision {
+namespace {
+
+constexpr double kBlur = 1.0 / 36;        // sigma in canvas heights, that of the pattern's own `tone`
+constexpr int kRows = 72;                 // cells down the canvas: two a sigma
+constexpr int kPlaces = 3;                // across and down a cell
+constexpr double kMostlySeen = 0.5;       // share of the canvas that the camera must see
+constexpr double kOutliers = 0.02;        // share of the darkest and of the brightest cells that has no say in the scale
+constexpr float kFlat = 0.02f;            // a picture that spans less, in linear light of full white, is noise and ambient light
+constexpr int kBackgroundTerms = 6;       // 1, x, y, x^2, xy, y^2
+constexpr double kBackgroundCost = 1e-3;  // just enough to give to the picture what could be either
+
+// Where the camera sees one cell of the canvas: some places of it in camera pixels, and how strongly the projector lights it
+// there.
+struct Cell {
+    int column = 0, row = 0;
+    std::vector<glm::vec2> places;
+    double gain = 0;
+};
+
+// All cells that the camera sees whole, by rows; the strongest gain is 1.
+std::vector<Cell> cellsInSight(const NominalView& view, glm::ivec2 grid) {
+    std::vector<Cell> cells;
+    double strongest = 0;
+    for (int row = 0; row < grid.y; ++row)
+        for (int column = 0; column < grid.x; ++column) {
+            Cell cell{column, row, {}, 0};
+            for (int i = 0; i < kPlaces * kPlaces; ++i) {
+                const glm::dvec2 within((i % kPlaces + 0.5) / kPlaces, (i / kPlaces + 0.5) / kPlaces);
+                const glm::dvec2 canvas =
+                    (glm::dvec2(column, row) + within) * glm::dvec2(view.canvasAspect, 1) / glm::dvec2(grid);
+                const auto point = view.surface.hitBy(view.projector.rayThrough(view.projectorFromCanvas(canvas)));
+                const auto pixel = point ? view.camera.pixelFromWorld(*point) : std::nullopt;
+                if (!pixel || !view.camera.inPicture(*pixel)) break;
+                cell.places.emplace_back(*pixel);
+                cell.gain += view.projector.pixelsPerArea(*point, view.surface.normal);
+            }
+            if (cell.places.size() < kPlaces * kPlaces) continue;
+            strongest = std::max(strongest, cell.gain);
+            cells.push_back(std::move(cell));
+        }
+    for (Cell& cell : cells) cell.gain /= strongest;
+    return cells;
+}
+
+// The linear light of a stored frame, bilinear between pixel centres.
+glm::dvec3 linearAt(const RgbaImage& frame, glm::vec2 pixel) {
+    static const std::array<float, 256> linear = [] {
+        std::array<float, 256> values{};
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = linearFromSrgb(static_cast<float>(i) / 255);
+        return values;
+    }();
+    const auto at = [&](int x, int y) {
+        const Rgba8& stored = frame.at(std::clamp(x, 0, frame.width() - 1), std::clamp(y, 0, frame.height() - 1));
+        return glm::vec3(linear[stored.r], linear[stored.g], linear[stored.b]);
+    };
+    const glm::vec2 corner = glm::floor(pixel - 0.5f), share = pixel - 0.5f - corner;
+    const int x = static_cast<int>(corner.x), y = static_cast<int>(corner.y);
+    return glm::mix(glm::mix(at(x, y), at(x + 1, y), share.x), glm::mix(at(x, y + 1), at(x + 1, y + 1), share.x), share.y);
+}
+
+// wanted = scale * seen + lift, as far as their quantiles tell.
+struct Exposure {
+    double scale = 0, lift = 0;
+    double span = 0;  // of what is seen
+};
+
+// Exposure, fades and the colour of the shapes scale what is seen, and uniform light lifts it. By how much follows from the
+// values alone, wherever they stand: the line through the quantiles of one against those of the other. So a picture in the wrong
+// place is not taken for a faint one in the right place, as the best fit cell by cell would.
+Exposure exposureOf(std::vector<float> seen, std::vector<float> wanted) {
+    std::sort(seen.begin(), seen.end());
+    std::sort(wanted.begin(), wanted.end());
+    const auto first = static_cast<std::size_t>(kOutliers * static_cast<double>(seen.size())), last = seen.size() - first;
+    const auto count = static_cast<double>(last - first);
+    double meanSeen = 0, meanWanted = 0, variance = 0, covariance = 0;
+    for (std::size_t i = first; i < last; ++i) {
+        meanSeen += seen[i] / count;
+        meanWanted += wanted[i] / count;
+    }
+    for (std::size_t i = first; i < last; ++i) {
+        variance += (seen[i] - meanSeen) * (seen[i] - meanSeen);
+        covariance += (seen[i] - meanSeen) * (wanted[i] - meanWanted);
+    }
+    const double scale = variance > 0 ? covariance / variance : 0;
+    return {scale, meanWanted - scale * meanSeen, seen[last - 1] - seen[first]};
+}
+
+}  // namespace
+
+struct GuideComparison::Tables {
+    glm::ivec2 frameSize;
+    glm::ivec2 grid;  // cells across and down the canvas
+    std::vector<Cell> cells;
+    GreyImage weights;             // of the cells in sight under the low-pass
+    std::vector<float> wanted;     // low-passed, of the cells in sight
+    Eigen::MatrixXf background;    // cells x terms
+    Eigen::MatrixXf backgroundOf;  // terms x cells: how much of each term is in the low-passed light
+
+    // A Gaussian over the cells in sight, as if there were no others.
+    std::vector<float> lowPassed(const std::vector<float>& values) const {
+        GreyImage canvas(grid.x, grid.y);
+        for (std::size_t i = 0; i < cells.size(); ++i) canvas.at(cells[i].column, cells[i].row) = values[i];
+        canvas = blurred(canvas, kBlur * kRows);
+        std::vector<float> result;
+        for (const Cell& cell : cells) result.push_back(canvas.at(cell.column, cell.row) / weights.at(cell.column, cell.row));
+        return result;
+    }
+};
+
+GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wanted) {
+    FANTASCOPE_CHECK(!wanted.empty(), "a guide to compare with");
+    auto tables = std::make_shared<Tables>();
+    tables->frameSize = view.camera.size;
+    tables->grid = {std::max(1, static_cast<int>(std::lround(kRows * view.canvasAspect))), kRows};
+    tables->cells = cellsInSight(view, tables->grid);
+    const auto count = static_cast<int>(tables->cells.size());
+    tables_ = tables;
+    if (count == 0) return;
+
+    GreyImage inSight(tables->grid.x, tables->grid.y);
+    for (const Cell& cell : tables->cells) inSight.at(cell.column, cell.row) = 1;
+    tables->weights = blurred(inSight, kBlur * kRows);
+    const GreyImage guide = resized(wanted, tables->grid.x, tables->grid.y);
+    std::vector<float> values;
+    for (const Cell& cell : tables->cells) values.push_back(guide.at(cell.column, cell.row));
+    tables->wanted = tables->lowPassed(values);
+
+    // Least squares of the low-passed light on the low-passed guide and on a smooth background: the first column takes the
+    // picture out of the fit.
+    Eigen::MatrixXd terms(count, 1 + kBackgroundTerms);
+    for (int i = 0; i < count; ++i) {
+        const Cell& cell = tables->cells[static_cast<std::size_t>(i)];
+        const glm::dvec2 at = 2.0 * glm::dvec2(cell.column, cell.row) / glm::dvec2(tables->grid) - 1.0;
+        terms.row(i) << tables->wanted[static_cast<std::size_t>(i)] * cell.gain, 1, at.x, at.y, at.x * at.x, at.x * at.y,
+            at.y * at.y;
+    }
+    Eigen::MatrixXd normal = terms.transpose() * terms;
+    normal.diagonal().tail(kBackgroundTerms).array() += kBackgroundCost * count;
+    const Eigen::MatrixXd solved = normal.completeOrthogonalDecomposition().solve(terms.transpose());
+    tables->background = terms.rightCols(kBackgroundTerms).cast<float>();
+    tables->backgroundOf = solved.bottomRows(kBackgroundTerms).cast<float>();
+}
+
+std::optional<double> GuideComparison::compare(const RgbaImage& frame) const {
+    const Tables& tables = *tables_;
+    FANTASCOPE_CHECK(frame.width() == tables.frameSize.x && frame.height() == tables.frameSize.y, "a frame of the camera's size");
+    const auto count = static_cast<int>(tables.cells.size());
+    if (count < kMostlySeen * tables.grid.x * tables.grid.y) return std::nullopt;
+
+    // The light on every cell, and what of it comes from sky and lamps: each channel for itself, since that has a colour of its
+    // own.
+    std::array<std::vector<float>, 3> light;
+    for (const Cell& cell : tables.cells) {
+        glm::dvec3 sum(0);
+        for (const glm::vec2 place : cell.places) sum += linearAt(frame, place);
+        for (int c = 0; c < 3; ++c)
+            light[static_cast<std::size_t>(c)].push_back(static_cast<float>(sum[c] / (kPlaces * kPlaces)));
+    }
+    for (std::vector<float>& channel : light) {
+        const std::vector<float> smooth = tables.lowPassed(channel);
+        const Eigen::VectorXf share = tables.backgroundOf * Eigen::Map<const Eigen::VectorXf>(smooth.data(), count);
+        Eigen::Map<Eigen::VectorXf>(channel.data(), count) -= tables.background * share;
+    }
+    // A pixel's value is its brightest channel, so that shapes of any colour count alike; over the projector's own fall-off.
+    std::vector<float> seen;
+    for (std::size_t i = 0; i < tables.cells.size(); ++i)
+        seen.push_back(std::max({light[0][i], light[1][i], light[2][i]}) / static_cast<float>(tables.cells[i].gain));
+    seen = tables.lowPassed(seen);
+
+    const Exposure exposure = exposureOf(seen, tables.wanted);
+    if (exposure.span < kFlat || exposure.scale <= 0) return std::nullopt;
+    double difference = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+        difference += std::abs(std::clamp(exposure.scale * seen[i] + exposure.lift, 0.0, 1.0) - tables.wanted[i]);
+    return difference / count;
+}
+
+}  // namespace fantascope::vision

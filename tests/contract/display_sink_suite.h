@@ -1,0 +1,209 @@
+#pragma once
+
+#include "device/display_sink.h"
+
+#include "contract/rig.h"
+
+#include <epoxy/gl.h>
+#include <glm/vec2.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+namespace fantascope::contract {
+
+// A display that was asked to be kSize large and kRefreshRate fast, on a clock that stands still unless somebody moves it, so
+// that whoever waits is found out.
+class DisplaySinkRig : public Rig<DisplaySink> {
+public:
+    static constexpr glm::ivec2 kSize{64, 36};
+    static constexpr double kRefreshRate = 30;
+
+    virtual ManualClock& manualClock() = 0;
+    // Another output of the same kind on the same thread.
+    virtual DisplaySink& otherOutput() = 0;
+};
+
+// Fills the picture with a grey of linear light; the display's context is current.
+inline void fill(const DisplaySink& sink, float light) {
+    const std::array<GLfloat, 4> colour = {light, light, light, 1};
+    glEnable(GL_FRAMEBUFFER_SRGB);
+    glClearNamedFramebufferfv(sink.framebuffer(), GL_COLOR, 0, colour.data());
+}
+
+// The stored red of one pixel; GL's row 0 is at the bottom.
+inline int storedRed(const DisplaySink& sink, int x, int y) {
+    std::array<std::uint8_t, 4> pixel{};
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, sink.framebuffer());
+    glReadPixels(x, y, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel.data());
+    return pixel[0];
+}
+
+// Every promise of device/display_sink.h.
+inline Suite<DisplaySinkRig> displaySinkSuite() {
+    const auto serves = [](DisplaySinkRig& rig) -> std::string {
+        for (const bool paced : {true, false}) {
+            CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+            fill(rig.port(), 1);
+            CONTRACT_REQUIRE(storedRed(rig.port(), 0, 0) == 255, "what is drawn is not there");
+            CONTRACT_SUCCEEDS(rig.port().present(paced));
+        }
+        return "";
+    };
+    return joined<DisplaySinkRig>(
+        lifeClauses<DisplaySinkRig>(serves),
+        {
+            {"it has the size and the refresh rate that it was asked for",
+             [](DisplaySinkRig& rig) -> std::string {
+                 const glm::ivec2 size = rig.port().size();
+                 CONTRACT_REQUIRE(size == DisplaySinkRig::kSize, "its size is {} x {}", size.x, size.y);
+                 CONTRACT_REQUIRE(rig.port().refreshRate() == DisplaySinkRig::kRefreshRate, "its rate is {}",
+                                  rig.port().refreshRate());
+                 return "";
+             }},
+            {"it has a context of OpenGL 4.5 core",
+             [](DisplaySinkRig& rig) -> std::string {
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 GLint major = 0, minor = 0, profile = 0;
+                 glGetIntegerv(GL_MAJOR_VERSION, &major);
+                 glGetIntegerv(GL_MINOR_VERSION, &minor);
+                 glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+                 CONTRACT_REQUIRE(std::pair(major, minor) >= std::pair(4, 5), "OpenGL {}.{}", major, minor);
+                 CONTRACT_REQUIRE(profile == GL_CONTEXT_CORE_PROFILE_BIT, "its profile is {}", profile);
+                 return "";
+             }},
+            {"its framebuffer is of its size and holds stored sRGB values",
+             [](DisplaySinkRig& rig) -> std::string {
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 const GLenum state = glCheckNamedFramebufferStatus(rig.port().framebuffer(), GL_FRAMEBUFFER);
+                 CONTRACT_REQUIRE(state == GL_FRAMEBUFFER_COMPLETE, "it cannot be drawn into, status {:#x}", state);
+                 fill(rig.port(), 0.5f);
+                 const glm::ivec2 last = DisplaySinkRig::kSize - 1;
+                 for (const glm::ivec2 pixel : {glm::ivec2(0), last}) {
+                     // Half of the light is stored as 188 (IEC 61966-2-1); a framebuffer of linear values stores 128.
+                     const int stored = storedRed(rig.port(), pixel.x, pixel.y);
+                     CONTRACT_REQUIRE(stored == 188, "half of the light is stored as {} at {}, {}", stored, pixel.x, pixel.y);
+                 }
+                 return "";
+             }},
+            {"a paced frame waits for the next refresh and not longer",
+             [](DisplaySinkRig& rig) -> std::string {
+                 for (int frame = 0; frame < 5; ++frame) {
+                     CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                     const Time before = rig.clock().now();
+                     const std::int64_t next = rig.port().nextRefresh();
+                     const Time due = rig.port().refreshTime(next);
+                     CONTRACT_REQUIRE(due > before, "at {} s the next refresh is said to be at {} s", seconds(before),
+                                      seconds(due));
+                     const auto shown = rig.port().present(true);
+                     CONTRACT_SUCCEEDS(shown);
+                     CONTRACT_REQUIRE(shown->refresh == next && shown->at == due,
+                                      "shown at refresh {} ({} s), the next was {} ({} s)", shown->refresh, seconds(shown->at),
+                                      next, seconds(due));
+                     const Time after = rig.clock().now();
+                     CONTRACT_REQUIRE(after == due, "it came back at {} s, the refresh was at {} s", seconds(after),
+                                      seconds(due));
+                 }
+                 return "";
+             }},
+            {"an unpaced frame is shown within the refresh that is running, without waiting",
+             [](DisplaySinkRig& rig) -> std::string {
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 rig.manualClock().advance(fromSeconds(3.25 / DisplaySinkRig::kRefreshRate));
+                 for (int frame = 0; frame < 2; ++frame) {
+                     const Time now = rig.clock().now();
+                     const auto shown = rig.port().present(false);
+                     CONTRACT_SUCCEEDS(shown);
+                     CONTRACT_REQUIRE(rig.clock().now() == now, "it waited {} s", seconds(rig.clock().now() - now));
+                     CONTRACT_REQUIRE(shown->at == rig.port().refreshTime(shown->refresh), "refresh {} is not at {} s",
+                                      shown->refresh, seconds(shown->at));
+                     CONTRACT_REQUIRE(shown->at <= now && now < rig.port().refreshTime(shown->refresh + 1),
+                                      "at {} s refresh {} of {} s is not running", seconds(now), shown->refresh,
+                                      seconds(shown->at));
+                 }
+                 return "";
+             }},
+            {"refreshes are even and counted, shown or not",
+             [](DisplaySinkRig& rig) -> std::string {
+                 const double period = 1 / DisplaySinkRig::kRefreshRate;
+                 for (const std::int64_t number : {1, 2, 1000}) {
+                     const double step = seconds(rig.port().refreshTime(number + 1) - rig.port().refreshTime(number));
+                     CONTRACT_REQUIRE(std::abs(step - period) < 1e-8, "refresh {} lasts {} s, a period is {} s", number, step,
+                                      period);
+                 }
+                 const std::int64_t before = rig.port().nextRefresh();
+                 rig.manualClock().advance(fromSeconds(7 * period));
+                 const std::int64_t counted = rig.port().nextRefresh() - before;
+                 CONTRACT_REQUIRE(counted == 7, "in 7 periods it counted {} refreshes", counted);
+                 return "";
+             }},
+            {"a slow frame misses refreshes",
+             [](DisplaySinkRig& rig) -> std::string {
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 const auto first = rig.port().present(true);
+                 CONTRACT_SUCCEEDS(first);
+                 rig.manualClock().advance(fromSeconds(2.5 / DisplaySinkRig::kRefreshRate));  // the drawing of the second frame
+                 const auto second = rig.port().present(true);
+                 CONTRACT_SUCCEEDS(second);
+                 const std::int64_t later = second->refresh - first->refresh;
+                 CONTRACT_REQUIRE(later == 3, "a frame that took 2.5 periods was shown {} refreshes after the one before, not 3",
+                                  later);
+                 return "";
+             }},
+            // With several outputs on one thread all are drawn before the first is presented.
+            {"present() makes its own context current",
+             [](DisplaySinkRig& rig) -> std::string {
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 GLuint buffer = 0;
+                 glCreateBuffers(1, &buffer);
+                 CONTRACT_SUCCEEDS(rig.otherOutput().makeCurrent());
+                 CONTRACT_SUCCEEDS(rig.port().present(false));
+                 CONTRACT_REQUIRE(glIsBuffer(buffer), "after present() another display's context is current");
+                 const GLenum error = glGetError();
+                 CONTRACT_REQUIRE(error == GL_NO_ERROR, "it leaves the OpenGL error {:#x} behind", error);
+                 return "";
+             }},
+            {"outputs keep their own pictures",
+             [](DisplaySinkRig& rig) -> std::string {
+                 for (const auto& [sink, light] : {std::pair(&rig.port(), 1.0f), std::pair(&rig.otherOutput(), 0.0f)}) {
+                     CONTRACT_SUCCEEDS(sink->makeCurrent());
+                     fill(*sink, light);
+                     CONTRACT_SUCCEEDS(sink->present(false));
+                 }
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 const int stored = storedRed(rig.port(), 1, 1);
+                 CONTRACT_REQUIRE(stored == 255, "its white became {} when another output was drawn", stored);
+                 return "";
+             }},
+            {"calls on a lost display are errors that name it, at once",
+             [](DisplaySinkRig& rig) -> std::string {
+                 CONTRACT_REQUIRE(rig.port().status().onLoss == LossAction::Dark, "a projector without a signal goes dark");
+                 rig.lose();
+                 const Time before = rig.clock().now();
+                 const auto current = rig.port().makeCurrent();
+                 CONTRACT_REQUIRE(!current, "makeCurrent() claims success");
+                 CONTRACT_REQUIRE(current.error().message().find(rig.port().status().name) != std::string::npos,
+                                  "which display? {}", current.error().message());
+                 for (const bool paced : {true, false})
+                     CONTRACT_REQUIRE(!rig.port().present(paced), "present({}) claims success", paced);
+                 CONTRACT_REQUIRE(rig.clock().now() == before, "it waited {} s", seconds(rig.clock().now() - before));
+                 return "";
+             }},
+            {"what is in its context outlives a loss",
+             [](DisplaySinkRig& rig) -> std::string {
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 GLuint buffer = 0;
+                 glCreateBuffers(1, &buffer);
+                 rig.lose();
+                 rig.giveBack();
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 CONTRACT_REQUIRE(glIsBuffer(buffer), "after the return it is gone");
+                 return "";
+             }},
+        });
+}
+
+}  // namespace fantascope::contract

@@ -1,0 +1,182 @@
+#include "contract/display_sink_suite.h"
+#include "contract/simulated_rig.h"
+#include "contract/x_server.h"
+
+#include <gmock/gmock.h>
+
+namespace fantascope::contract {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+// A display of the named driver as an output of a simulated site.
+class DrivenDisplayRig final : public SimulatedRig<DisplaySinkRig> {
+public:
+    explicit DrivenDisplayRig(const std::string& driver, Wrap<DisplaySink> wrap = {}) : SimulatedRig("left", std::move(wrap)) {
+        options_ = ConfigNode::parse("driver: " + driver + "\n", "site.yaml").value();
+        other_ = openNamed("right");
+        reopen();
+    }
+    ManualClock& manualClock() override { return clock_; }
+    DisplaySink& otherOutput() override { return *other_; }
+    void letTimePass() override {
+        SimulatedRig::letTimePass();
+        (void)port().makeCurrent();  // a window hears of its fate when its thread looks
+    }
+
+private:
+    std::unique_ptr<DisplaySink> openNamed(const std::string& name) {
+        return drivers::openDisplay(options_, {name, kSize, kRefreshRate}, around_).value();
+    }
+    std::unique_ptr<DisplaySink> open() override { return openNamed("left"); }
+
+    std::unique_ptr<DisplaySink> other_;
+};
+
+template <class Broken>
+std::vector<std::string> brokenBy() {
+    return clausesOf(violations(displaySinkSuite(),
+                                [] { return std::make_unique<DrivenDisplayRig>("headless", wrappedIn<Broken, DisplaySink>); }));
+}
+
+TEST(DisplaySinkContract, is_kept_by_the_headless_display) {
+    EXPECT_THAT(violations(displaySinkSuite(), [] { return std::make_unique<DrivenDisplayRig>("headless"); }), IsEmpty());
+}
+
+TEST(DisplaySinkContract, is_kept_by_the_glfw_display) {
+    const auto server = XServer::start();
+    ASSERT_TRUE(server) << server.error().message();
+    EXPECT_THAT(violations(displaySinkSuite(), [] { return std::make_unique<DrivenDisplayRig>("glfw"); }), IsEmpty());
+}
+
+class AlmostGood : public Between<DisplaySink> {
+    using Between::Between;
+    glm::ivec2 size() const override { return good_->size(); }
+    double refreshRate() const override { return good_->refreshRate(); }
+    std::int64_t nextRefresh() const override { return good_->nextRefresh(); }
+    Time refreshTime(std::int64_t number) const override { return good_->refreshTime(number); }
+    Result<void> makeCurrent() override { return good_->makeCurrent(); }
+    unsigned framebuffer() const override { return good_->framebuffer(); }
+    Result<Shown> present(bool paced) override { return good_->present(paced); }
+};
+
+class OfAnotherSize : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    glm::ivec2 size() const override { return {1920, 1080}; }
+};
+TEST(DisplaySinkContract, finds_a_display_of_another_size) {
+    EXPECT_THAT(brokenBy<OfAnotherSize>(), ElementsAre("it has the size and the refresh rate that it was asked for"));
+}
+
+// Without a window system there is no framebuffer 0.
+class LendsNoFramebuffer : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    unsigned framebuffer() const override { return 0; }
+};
+TEST(DisplaySinkContract, finds_a_framebuffer_that_cannot_be_drawn_into) {
+    EXPECT_THAT(brokenBy<LendsNoFramebuffer>(), Contains("its framebuffer is of its size and holds stored sRGB values"));
+}
+
+class NeverWaits : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    Result<Shown> present(bool) override { return good_->present(false); }
+};
+TEST(DisplaySinkContract, finds_a_display_that_does_not_pace) {
+    EXPECT_THAT(brokenBy<NeverWaits>(), Contains("a paced frame waits for the next refresh and not longer"));
+}
+
+class AlwaysWaits : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    Result<Shown> present(bool) override { return good_->present(true); }
+};
+TEST(DisplaySinkContract, finds_a_follower_that_waits_for_a_refresh_of_its_own) {
+    EXPECT_THAT(brokenBy<AlwaysWaits>(),
+                ElementsAre("an unpaced frame is shown within the refresh that is running, without waiting"));
+}
+
+// With this no frame would ever be late.
+class NumbersItsFrames : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    Result<Shown> present(bool paced) override {
+        Shown shown = TRY(good_->present(paced));
+        shown.refresh = ++frames_;
+        return shown;
+    }
+    std::int64_t frames_ = 0;
+};
+TEST(DisplaySinkContract, finds_a_display_that_counts_its_frames_and_not_its_refreshes) {
+    EXPECT_THAT(brokenBy<NumbersItsFrames>(), Contains("a slow frame misses refreshes"));
+}
+
+class SaysItsRefreshesAreUneven : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    Time refreshTime(std::int64_t number) const override { return good_->refreshTime(number) + Time(number % 2 * 1'000'000); }
+};
+TEST(DisplaySinkContract, finds_uneven_refreshes) {
+    EXPECT_THAT(brokenBy<SaysItsRefreshesAreUneven>(), Contains("refreshes are even and counted, shown or not"));
+}
+
+// The display that is presented is whatever context happens to be current.
+class TakesAnyContext : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    Result<Shown> present(bool) override {
+        if (!running()) return Error("left is lost");
+        return Shown{good_->nextRefresh() - 1, good_->refreshTime(good_->nextRefresh() - 1)};
+    }
+};
+TEST(DisplaySinkContract, finds_a_present_that_leaves_another_context_current) {
+    EXPECT_THAT(brokenBy<TakesAnyContext>(), Contains("present() makes its own context current"));
+}
+
+class DeniesItsLoss : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    Result<void> makeCurrent() override {
+        (void)good_->makeCurrent();
+        return {};
+    }
+};
+TEST(DisplaySinkContract, finds_a_lost_display_that_claims_success) {
+    EXPECT_THAT(brokenBy<DeniesItsLoss>(), ElementsAre("calls on a lost display are errors that name it, at once"));
+}
+
+class StaysAway : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    Result<void> makeCurrent() override {
+        if (good_->status().losses > 0) return Error("left is gone");
+        return good_->makeCurrent();
+    }
+};
+TEST(DisplaySinkContract, finds_a_display_that_does_not_come_back) {
+    EXPECT_THAT(brokenBy<StaysAway>(), Contains("a lost device comes back by itself and the same object serves"));
+}
+
+// A loss throws everything away, and the return starts afresh.
+class LosesItsContext : public AlmostGood {
+public:
+    using AlmostGood::AlmostGood;
+
+private:
+    Result<void> makeCurrent() override {
+        if (const int losses = good_->status().losses; losses > lossesSeen_ && running()) {
+            lossesSeen_ = losses;
+            fresh_ = openAnother();
+        }
+        TRY(good_->makeCurrent());
+        return fresh_ ? fresh_->makeCurrent() : Result<void>();
+    }
+    unsigned framebuffer() const override { return fresh_ ? fresh_->framebuffer() : good_->framebuffer(); }
+    std::unique_ptr<DisplaySink> openAnother() const {
+        const ConfigNode options = ConfigNode::parse("driver: headless\n", "site.yaml").value();
+        return drivers::openDisplay(options, {"left", DisplaySinkRig::kSize, DisplaySinkRig::kRefreshRate}, around_).value();
+    }
+    int lossesSeen_ = 0;
+    std::unique_ptr<DisplaySink> fresh_;
+};
+TEST(DisplaySinkContract, finds_a_display_whose_context_dies_with_it) {
+    EXPECT_THAT(brokenBy<LosesItsContext>(), Contains("what is in its context outlives a loss"));
+}
+
+}  // namespace
+}  // namespace fantascope::contract

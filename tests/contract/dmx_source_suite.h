@@ -1,0 +1,96 @@
+#pragma once
+
+#include "device/dmx_source.h"
+
+#include "contract/rig.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace fantascope::contract {
+
+class DmxSourceRig : public Rig<DmxSource> {
+public:
+    // Somebody's desk sends a frame whose slots are all `level`; `priority` only where the protocol has it.
+    virtual void deskSends(const std::string& source, int level, int priority = 100) = 0;
+};
+
+// What the source gives once all that is on its way has come, as "sender:level".
+inline std::vector<std::string> received(DmxSourceRig& rig) {
+    rig.letTimePass();
+    std::vector<std::string> frames;
+    for (const DmxInput& frame : drained([&] { return rig.port().receive(); }))
+        frames.push_back(fmt::format("{}:{}", frame.source, frame.slots[0]));
+    return frames;
+}
+
+inline std::string receivedDiffers(DmxSourceRig& rig, const std::vector<std::string>& wanted) {
+    const auto got = received(rig);
+    CONTRACT_REQUIRE(got == wanted, "received [{}], not [{}]", fmt::join(got, " "), fmt::join(wanted, " "));
+    return "";
+}
+
+// Every promise of device/dmx_source.h.
+inline Suite<DmxSourceRig> dmxSourceSuite() {
+    const auto serves = [](DmxSourceRig& rig) -> std::string {
+        rig.deskSends("a", 1);
+        return receivedDiffers(rig, {"a:1"});
+    };
+    return joined<DmxSourceRig>(
+        lifeClauses<DmxSourceRig>(serves),
+        {
+            {"a frame arrives whole, with its sender, its priority and the time of its arrival",
+             [](DmxSourceRig& rig) -> std::string {
+                 rig.letTimePass();
+                 const Time before = rig.clock().now();
+                 rig.deskSends("a", 200, 150);
+                 rig.letTimePass();
+                 const auto frame = rig.port().receive();
+                 CONTRACT_REQUIRE(frame.has_value(), "nothing arrived");
+                 for (std::size_t slot = 0; slot < kDmxSlots; ++slot)
+                     CONTRACT_REQUIRE(frame->slots[slot] == 200, "slot {} holds {}", slot, frame->slots[slot]);
+                 CONTRACT_REQUIRE(frame->source == "a" && frame->priority == 150, "sender '{}', priority {}", frame->source,
+                                  frame->priority);
+                 CONTRACT_REQUIRE(before <= frame->arrived && frame->arrived <= rig.clock().now(),
+                                  "arrived at {} s, sent at {} s", seconds(frame->arrived), seconds(before));
+                 return "";
+             }},
+            {"frames are given once, oldest first, whoever sent them",
+             [](DmxSourceRig& rig) -> std::string {
+                 for (const int level : {1, 2}) {
+                     rig.deskSends("a", level);
+                     rig.deskSends("b", level);
+                 }
+                 if (auto wrong = receivedDiffers(rig, {"a:1", "b:1", "a:2", "b:2"}); !wrong.empty()) return wrong;
+                 return receivedDiffers(rig, {});
+             }},
+            {"of each sender at least the newest frame is kept, and in order",
+             [](DmxSourceRig& rig) -> std::string {
+                 constexpr int kMany = 200;
+                 rig.deskSends("quiet", 7);
+                 for (int level = 1; level <= kMany; ++level) rig.deskSends("loud", level);
+                 rig.letTimePass();
+                 int quiet = 0, loud = 0;
+                 for (const DmxInput& frame : drained([&] { return rig.port().receive(); })) {
+                     int& newest = frame.source == "quiet" ? quiet : loud;
+                     CONTRACT_REQUIRE(frame.slots[0] > newest, "{}:{} came after {}", frame.source, frame.slots[0], newest);
+                     newest = frame.slots[0];
+                 }
+                 CONTRACT_REQUIRE(quiet == 7 && loud == kMany, "the newest were quiet:{} and loud:{}", quiet, loud);
+                 return "";
+             }},
+            {"a lost source gives nothing, and nothing old after its return",
+             [serves](DmxSourceRig& rig) -> std::string {
+                 if (auto wrong = serves(rig); !wrong.empty()) return wrong;
+                 rig.deskSends("a", 2);
+                 rig.lose();
+                 rig.deskSends("a", 3);
+                 if (auto wrong = receivedDiffers(rig, {}); !wrong.empty()) return wrong;
+                 rig.giveBack();
+                 return receivedDiffers(rig, {});
+             }},
+        });
+}
+
+}  // namespace fantascope::contract

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "core/check.h"
+#include "core/file.h"
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fantascope {
+
+// A folder of a test's own, gone with the object.
+class ScratchFolder {
+public:
+    ScratchFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "fantascope-XXXXXX").string();
+        FANTASCOPE_CHECK(mkdtemp(name.data()) != nullptr, "the temporary folder can be written to");
+        path_ = name;
+    }
+    ~ScratchFolder() { std::filesystem::remove_all(path_); }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+    std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
+    // Makes a file and returns its path.
+    std::filesystem::path file(const std::filesystem::path& name, std::string_view bytes) const {
+        FANTASCOPE_CHECK(writeFile(path_ / name, bytes).has_value(), "the temporary folder can be written to");
+        return path_ / name;
+    }
+    // The names of all that is in it, sorted.
+    std::vector<std::string> names() const {
+        std::vector<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(path_)) names.push_back(entry.path().filename());
+        std::sort(names.begin(), names.end());
+        return names;
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+}  // namespace fantascope

@@ -1,0 +1,221 @@
+// Holds the table of docs/design.md that says which folder may include what. Every include under src and drivers is read; what no
+// line of the tables here allows is refused, so a new library or a new neighbour takes a line here, which somebody reads.
+
+#include "house/repository.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <string_view>
+
+namespace fantascope::house {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+using Names = std::vector<std::string_view>;
+
+// The outside libraries by the headers that they are seen by: a folder, or a whole name.
+const std::map<std::string_view, Names> kLibraries = {
+    {"fmt", {"fmt/"}},
+    {"GLM", {"glm/"}},
+    {"Eigen", {"Eigen/"}},
+    {"OpenCV", {"opencv2/"}},
+    {"yaml-cpp", {"yaml-cpp/"}},
+    {"spdlog", {"spdlog/"}},
+    {"assimp", {"assimp/"}},
+    {"FFTW", {"fftw3.h"}},
+    {"OpenGL", {"epoxy/gl.h"}},
+    {"EGL", {"epoxy/egl.h"}},
+    {"GLFW", {"GLFW/"}},
+    {"libav", {"libavcodec/", "libavformat/", "libavutil/", "libswscale/"}},
+    {"libusb", {"libusb-1.0/"}},
+    {"libmodbus", {"modbus/"}},
+    {"V4L2", {"linux/videodev2.h"}},
+    {"CLI11", {"CLI/"}},
+    {"nlohmann-json", {"nlohmann/"}},
+    {"POSIX", {"sys/", "fcntl.h", "poll.h", "signal.h", "termios.h", "unistd.h"}},
+};
+const Names kEverywhere = {"fmt", "GLM"};  // besides the standard library
+
+struct Row {
+    std::string_view folder;  // or the beginning of a file's name; the longest row that fits a file is its row
+    Names ours;               // what it may include of ours besides its own folder
+    Names others;             // libraries
+    Names othersInCpp;        // libraries that no header may show
+};
+
+// A driver knows its own family and the simulated site's state; its vendor's library stays in its .cpp.
+const Names kOfDrivers = {"core", "device", "drivers/surroundings.h", "drivers/site/world.h", "drivers/site/plug.h"};
+
+const std::vector<Row> kTable = {
+    {"core", {}, {"Eigen"}, {"OpenCV", "yaml-cpp", "spdlog", "assimp", "POSIX"}},
+    {"device", {"core"}, {}, {}},
+    {"pattern", {"core"}, {"Eigen"}, {"FFTW"}},
+    {"theatre", {"core"}, {"Eigen"}, {"FFTW"}},
+    {"vision", {"core"}, {"Eigen"}, {"OpenCV"}},
+    {"show", {"core"}, {}, {}},
+    {"render", {"core", "pattern", "theatre", "show/show_state.h", "device/display_sink.h"}, {}, {"libav"}},
+    {"render/gpu", {"core", "pattern", "theatre", "show/show_state.h", "device/display_sink.h", "render"}, {}, {"OpenGL"}},
+    {"console", {"core", "show", "device/status.h"}, {}, {"nlohmann-json"}},
+    {"app",
+     {"core", "device", "pattern", "theatre", "vision", "show", "render", "console", "drivers"},
+     {"CLI11", "nlohmann-json"},
+     {"libav", "OpenCV", "POSIX"}},
+
+    {"drivers/registry", {"core", "device", "drivers"}, {}, {}},
+    {"drivers/surroundings", {"core"}, {}, {}},
+    {"drivers/site", {"core", "device", "vision/camera_model.h", "drivers/surroundings.h"}, {}, {}},
+    {"drivers/display", kOfDrivers, {}, {"OpenGL"}},
+    {"drivers/display/headless", kOfDrivers, {}, {"OpenGL", "EGL"}},
+    {"drivers/display/glfw", kOfDrivers, {}, {"OpenGL", "GLFW"}},
+    {"drivers/dmx", kOfDrivers, {}, {"POSIX"}},
+    {"drivers/modbus", kOfDrivers, {}, {"libmodbus"}},
+    {"drivers/cue_controller", kOfDrivers, {}, {"libusb"}},
+    {"drivers/camera", kOfDrivers, {}, {"V4L2", "POSIX"}},
+    {"drivers/byte_stream", kOfDrivers, {}, {"POSIX"}},
+};
+
+// "core/clock.h" lies in "core" and in "core/clock.h"; "core_extra/x.h" lies in neither.
+bool liesIn(std::string_view path, std::string_view folder) {
+    return path.starts_with(folder) && (path.size() == folder.size() || path[folder.size()] == '/');
+}
+
+bool liesInAny(const Names& folders, std::string_view path) {
+    return std::any_of(folders.begin(), folders.end(), [&](std::string_view folder) { return liesIn(path, folder); });
+}
+
+std::string_view folderOf(std::string_view path) { return path.substr(0, path.rfind('/')); }
+
+// As the includes name it: without "src/".
+std::string_view includeName(std::string_view file) { return file.starts_with("src/") ? file.substr(4) : file; }
+
+const Row* rowOf(std::string_view name) {
+    const Row* best = nullptr;
+    for (const Row& row : kTable) {
+        const std::string_view rest = name.starts_with(row.folder) ? name.substr(row.folder.size()) : "none";
+        const bool fits = rest.starts_with('/') || rest.starts_with('.');
+        if (fits && (best == nullptr || row.folder.size() > best->folder.size())) best = &row;
+    }
+    return best;
+}
+
+std::optional<std::string_view> libraryOf(const std::string& header) {
+    if (header.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == std::string::npos) return "standard library";
+    for (const auto& [library, names] : kLibraries)
+        for (const std::string_view name : names)
+            if (name.ends_with('/') ? header.starts_with(name) : header == name) return library;
+    return std::nullopt;
+}
+
+// Why the file that includes name so may not include <header>, or "".
+std::string whyNotOther(const Row& row, std::string_view name, const std::string& header) {
+    const auto library = libraryOf(header);
+    if (!library) return fmt::format("<{}> belongs to no library of the table", header);
+    const auto holds = [&](const Names& libraries) {
+        return std::find(libraries.begin(), libraries.end(), *library) != libraries.end();
+    };
+    if (*library == "standard library" || holds(kEverywhere) || holds(row.others)) return "";
+    if (!holds(row.othersInCpp)) return fmt::format("{} may not use {}", row.folder, *library);
+    if (!name.ends_with(".cpp")) return fmt::format("{} may use {} in a .cpp only", row.folder, *library);
+    return "";
+}
+
+// The same for "header".
+std::string whyNotOurs(const Row& row, std::string_view name, const std::string& header) {
+    if (header.find('/') == std::string::npos) return fmt::format("\"{}\" must be named from its folder", header);
+    if (liesInAny({row.folder, folderOf(name)}, header) || liesInAny(row.ours, header)) return "";
+    return fmt::format("{} may not include {}", row.folder, header);
+}
+
+// What the table forbids in one file, each with its place.
+std::vector<std::string> forbiddenIncludes(const TextFile& file) {
+    const std::string_view name = includeName(file.path);
+    const Row* row = rowOf(name);
+    if (row == nullptr) return {file.path + ": its folder has no row in the table"};
+    std::vector<std::string> forbidden;
+    for (std::size_t line = 0; line < file.lines.size(); ++line) {
+        char quote = 0, header[256] = "";
+        if (std::sscanf(file.lines[line].c_str(), " # include %c%255[^\">]", &quote, header) != 2) continue;
+        const std::string why = quote == '<' ? whyNotOther(*row, name, header) : whyNotOurs(*row, name, header);
+        if (!why.empty()) forbidden.push_back(fmt::format("{}: {}", place(file, line), why));
+    }
+    return forbidden;
+}
+
+bool isCode(const TextFile& file) {
+    return (file.path.starts_with("src/") || file.path.starts_with("drivers/")) &&
+           (file.path.ends_with(".h") || file.path.ends_with(".cpp"));
+}
+
+TEST(Includes, are_those_of_the_design) {
+    std::vector<std::string> forbidden;
+    std::size_t files = 0;
+    for (const TextFile& file : repositoryFiles()) {
+        if (!isCode(file)) continue;
+        ++files;
+        const auto here = forbiddenIncludes(file);
+        forbidden.insert(forbidden.end(), here.begin(), here.end());
+    }
+    EXPECT_THAT(forbidden, IsEmpty());
+    EXPECT_GT(files, 40u) << "the sources were not found";
+}
+
+// The reader itself can fail, and says what stands where.
+std::vector<std::string> told(const std::string& path, const std::vector<std::string>& lines) {
+    return forbiddenIncludes({path, lines});
+}
+
+TEST(IncludeReader, takes_what_the_table_allows) {
+    EXPECT_THAT(told("src/show/playback.cpp", {"#include \"show/playback.h\"", "#include <fmt/format.h>", "#include <vector>",
+                                               "#include \"core/clock.h\""}),
+                IsEmpty());
+    EXPECT_THAT(told("src/render/gpu/painter.cpp",
+                     {"#include <epoxy/gl.h>", "#include \"render/renderer.h\"", "#include \"pattern/motion.h\""}),
+                IsEmpty());
+    EXPECT_THAT(told("drivers/display/glfw.cpp", {"#include <GLFW/glfw3.h>", "#include \"drivers/display/shared.h\""}),
+                IsEmpty());
+}
+
+TEST(IncludeReader, names_the_line_and_the_neighbour) {
+    EXPECT_THAT(told("src/show/playback.cpp", {"", "  #  include \"device/dmx_port.h\"  // for a moment"}),
+                ElementsAre("src/show/playback.cpp:2: show may not include device/dmx_port.h"));
+}
+
+TEST(IncludeReader, keeps_our_folders_apart) {
+    EXPECT_THAT(told("src/core/clock.h", {"#include \"show/site.h\""}), SizeIs(1));
+    EXPECT_THAT(told("src/render/layer.cpp", {"#include \"show/site.h\""}), SizeIs(1))
+        << "show/show_state.h is all that render may see of show";
+    EXPECT_THAT(told("src/show/show.cpp", {"#include \"app/report.h\""}), SizeIs(1)) << "nothing includes app";
+    EXPECT_THAT(told("drivers/dmx/artnet.cpp", {"#include \"drivers/modbus/tcp.h\""}), SizeIs(1))
+        << "a driver knows its own family";
+    EXPECT_THAT(told("drivers/dmx/artnet.cpp", {"#include \"drivers/site/simulated_site.h\""}), SizeIs(1))
+        << "of the site only its state";
+    EXPECT_THAT(told("drivers/camera/v4l2.cpp", {"#include \"vision/camera_model.h\""}), SizeIs(1))
+        << "vision is for drivers/site";
+    EXPECT_THAT(told("src/core_extra/x.cpp", {}), ElementsAre("src/core_extra/x.cpp: its folder has no row in the table"));
+}
+
+TEST(IncludeReader, keeps_libraries_where_they_belong) {
+    EXPECT_THAT(told("src/core/image.h", {"#include <opencv2/core.hpp>"}),
+                ElementsAre("src/core/image.h:1: core may use OpenCV in a .cpp only"));
+    EXPECT_THAT(told("src/core/image.cpp", {"#include <opencv2/core.hpp>"}), IsEmpty());
+    EXPECT_THAT(told("drivers/display/glfw.h", {"#include <GLFW/glfw3.h>"}), SizeIs(1)) << "a vendor's header stays in the .cpp";
+    EXPECT_THAT(told("drivers/display/headless.cpp", {"#include <GLFW/glfw3.h>"}), SizeIs(1))
+        << "each driver has its own library";
+    EXPECT_THAT(told("src/render/layer.cpp", {"#include <epoxy/gl.h>"}), SizeIs(1)) << "OpenGL is for render/gpu";
+    EXPECT_THAT(told("src/pattern/search.cpp", {"#include <CLI/CLI.hpp>"}), SizeIs(1)) << "CLI11 is for app";
+    EXPECT_THAT(told("src/app/run.cpp", {"#include <boost/asio.hpp>"}),
+                ElementsAre("src/app/run.cpp:1: <boost/asio.hpp> belongs to no library of the table"));
+    EXPECT_THAT(told("src/app/run.cpp", {"#include \"report.h\""}),
+                ElementsAre("src/app/run.cpp:1: \"report.h\" must be named from its folder"));
+}
+
+}  // namespace
+}  // namespace fantascope::house

@@ -1,0 +1,20 @@
+#pragma once
+// The repository's own text files, for the tests that read them.
+
+#include <string>
+#include <vector>
+
+namespace fantascope::house {
+
+struct TextFile {
+    std::string path;  // from the repository's root: "src/core/clock.h"
+    std::vector<std::string> lines;
+};
+
+// All text files but those that .gitignore names and git's own, in the order of their paths.
+std::vector<TextFile> repositoryFiles();
+
+// "src/core/clock.h:12"
+std::string place(const TextFile& file, std::size_t line);
+
+}  // namespace fantascope::house

@@ -1,0 +1,270 @@
+#include "render/output_renderer.h"
+
+#include "render/allocations.h"
+#include "render/reference_picture.h"
+#include "render/scene.h"
+
+#include "core/file.h"
+#include "core/geometry.h"
+
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace fantascope::render {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr glm::ivec2 kSize{320, 180};
+constexpr double kAspect = 16.0 / 9;
+// A colour passes an 8-bit square root and an 8-bit sRGB value on its way: at most one stored value is lost.
+constexpr int kCoding = 1;
+
+std::array<glm::dvec2, 4> upright(glm::ivec2 size) { return rectangleCorners(size.x, size.y); }
+
+std::vector<pattern::InstancePose> restingPoses(const pattern::ShapePattern& pattern) {
+    std::vector<pattern::InstancePose> poses;
+    for (const pattern::ShapeInstance& instance : pattern.instances)
+        poses.push_back({instance.centre, instance.size, instance.rotation});
+    return poses;
+}
+
+// Where the light of a grey picture is on average, in pixels.
+glm::dvec2 centroidOfLight(const RgbaImage& image) {
+    glm::dvec2 sum(0);
+    double light = 0;
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) {
+            const double here = linearFromSrgb(static_cast<float>(image.at(x, y).r) / 255);
+            sum += here * glm::dvec2(x + 0.5, y + 0.5);
+            light += here;
+        }
+    return sum / light;
+}
+
+glm::dvec2 centroid(const std::array<glm::dvec2, 4>& corners) {
+    glm::dvec2 sum(0);
+    double area = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const glm::dvec2 a = corners[i], b = corners[(i + 1) % 4];
+        const double cross = a.x * b.y - b.x * a.y;
+        sum += cross * (a + b);
+        area += cross;
+    }
+    return sum / (3 * area);
+}
+
+// A solid fills exactly the quadrilateral that the technician asked for, and nothing is lit outside it.
+// Example failure: the corners' order is taken for OpenGL's, with y up.
+TEST(OutputRenderer, lights_the_warped_canvas_and_nothing_else) {
+    const auto corners = keystone(kSize);
+    DrawnOutput output(kSize, corners, {SolidSource{glm::vec3(0.5f, 1, 0)}});
+    const RgbaImage& image = output.frame({{0, 1}});
+    const auto canvasFromProjector = Homography::fromCorners(rectangleCorners(1, 1), corners)->inverse();
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x) {
+            const glm::dvec2 canvas = canvasFromProjector({x + 0.5, y + 0.5});
+            const double inside = std::min({canvas.x, canvas.y, 1 - canvas.x, 1 - canvas.y});  // some 1/150 a pixel
+            if (std::abs(inside) < 0.01) continue;
+            const Rgba8 pixel = image.at(x, y);
+            ASSERT_NEAR(pixel.r, inside > 0 ? 188 : 0, kCoding) << x << ", " << y;
+            ASSERT_EQ(pixel.g, inside > 0 ? 255 : 0) << x << ", " << y;
+            ASSERT_EQ(pixel.b, 0) << x << ", " << y;
+        }
+    const glm::dvec2 found = centroidOfLight(image), wanted = centroid(corners);
+    EXPECT_LT(glm::distance(found, wanted), 0.05);
+}
+
+// A square marker around a corner of the canvas shows the quarter of it that is on the canvas, where the warp carries it.
+// Example failure: half a pixel off, because pixel centres were taken for corners.
+TEST(OutputRenderer, carries_each_corner_of_the_canvas_to_the_asked_pixel) {
+    const auto corners = keystone(kSize);
+    const auto canvas = rectangleCorners(kAspect, 1);
+    const Homography projectorFromCanvas = *Homography::fromCorners(canvas, corners);
+    constexpr double kEdge = 0.16;  // of the marker, in canvas heights: its quarter is some 14 pixels wide
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+        DrawnOutput output(kSize, corners, {resting(squareAt(canvas[corner], kEdge / std::sqrt(2.0), glm::vec3(1), kAspect))});
+        const glm::dvec2 inwards = glm::sign(glm::dvec2(kAspect / 2, 0.5) - canvas[corner]) * kEdge / 2.0;
+        std::array<glm::dvec2, 4> lit = {canvas[corner], canvas[corner] + glm::dvec2(inwards.x, 0), canvas[corner] + inwards,
+                                         canvas[corner] + glm::dvec2(0, inwards.y)};
+        for (glm::dvec2& point : lit) point = projectorFromCanvas(point);
+        const glm::dvec2 found = centroidOfLight(output.frame({{0, 1}}));
+        EXPECT_LT(glm::distance(found, centroid(lit)), 0.1) << "corner " << corner << ": " << found.x << ", " << found.y;
+    }
+}
+
+// The whole definition at once: warp, order of instances, facets and their shading, edges, linear averaging, cut at the canvas's
+// edge. What four samples a pixel cannot tell stays at the edges; inside a facet the colour is right.
+TEST(OutputRenderer, draws_what_a_point_by_point_reference_draws) {
+    constexpr glm::ivec2 kLarge{640, 360};
+    const pattern::ShapePattern pattern = smallPattern();
+    const auto corners = keystone(kLarge);
+    DrawnOutput output(kLarge, corners, {resting(pattern)});
+    const RgbaImage& drawn = output.frame({{0, 1}});
+    const RgbaImage reference = referencePicture(pattern, restingPoses(pattern),
+                                                 *Homography::fromCorners(rectangleCorners(kAspect, 1), corners), kLarge, 6);
+    const Difference apart = difference(drawn, reference);
+    std::printf("rms %.2f of 255 against 36 points a pixel\n", apart.rms);
+    RecordProperty("rms", std::to_string(apart.rms));
+    EXPECT_LE(apart.rms, 4);
+
+    int insideFacets = 0;
+    for (int y = 1; y + 1 < kLarge.y; ++y)
+        for (int x = 1; x + 1 < kLarge.x; ++x) {
+            const Rgba8 wanted = reference.at(x, y), found = drawn.at(x, y);
+            bool inside = wanted.r != 0;
+            for (int i = 0; i < 9; ++i) inside = inside && reference.at(x - 1 + i % 3, y - 1 + i / 3) == wanted;
+            if (!inside) continue;
+            ++insideFacets;
+            for (const int off : {found.r - wanted.r, found.g - wanted.g, found.b - wanted.b})
+                ASSERT_LE(std::abs(off), kCoding) << "at " << x << ", " << y;
+        }
+    EXPECT_GT(insideFacets, 10'000);
+}
+
+// The same for a picture that is turned over, as rear projection needs it.
+// Example failure: the facets in front are taken for those behind and left out.
+TEST(OutputRenderer, draws_the_mirror_image_through_mirrored_corners) {
+    const pattern::ShapePattern pattern = smallPattern();
+    const auto corners = upright(kSize);
+    DrawnOutput seen(kSize, corners, {resting(pattern)});
+    DrawnOutput mirrored(kSize, {corners[1], corners[0], corners[3], corners[2]}, {resting(pattern)});
+    const RgbaImage& drawn = mirrored.frame({{0, 1}});
+    RgbaImage turnedBack(kSize.x, kSize.y);
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x) turnedBack.at(x, y) = drawn.at(kSize.x - 1 - x, y);
+    // The samples of a pixel do not mirror, so edges differ a little; a missing front would differ by far more.
+    EXPECT_LE(difference(seen.frame({{0, 1}}), turnedBack).rms, 8);
+}
+
+TEST(OutputRenderer, adds_layers_as_linear_light) {
+    DrawnOutput output({64, 36}, upright({64, 36}),
+                       {SolidSource{glm::vec3(0.2f)}, SolidSource{glm::vec3(0.3f)}, SolidSource{glm::vec3(1)}});
+    const auto grey = [&](const std::vector<show::LayerState>& layers) { return int{output.frame(layers).at(32, 18).g}; };
+    EXPECT_NEAR(grey({{0, 1}, {1, 1}}), 188, 1);  // 0.2 + 0.3 of the light; stored values would add to 123 + 149
+    EXPECT_NEAR(grey({{2, 0.5f}}), 188, 1);
+    EXPECT_NEAR(grey({{2, 0.25f}, {2, 0.25f}}), 188, 1);
+    EXPECT_EQ(grey({{2, 1}, {0, 1}}), 255);
+    EXPECT_EQ(grey({{2, 0}}), 0);
+}
+
+// Example failure: the last frame's picture stays when all layers have gone.
+TEST(OutputRenderer, is_black_without_layers) {
+    DrawnOutput output({64, 36}, upright({64, 36}), {SolidSource{}});
+    ASSERT_EQ(output.frame({{0, 1}}).at(5, 5), (Rgba8{255, 255, 255, 255}));
+    for (const Rgba8 pixel : output.frame(std::vector<show::LayerState>{}).pixels()) ASSERT_EQ(pixel, (Rgba8{0, 0, 0, 255}));
+}
+
+// Two squares over each other in a layer that fades above another layer: neither shines through the other.
+TEST(OutputRenderer, fades_a_pattern_as_one_picture) {
+    pattern::ShapePattern pattern = squareAt({0.8, 0.5}, 0.3, glm::vec3(1));
+    pattern.instances.push_back(pattern.instances[0]);
+    pattern.instances[1].centre.x = 1.0;
+    DrawnOutput output(kSize, upright(kSize), {SolidSource{glm::vec3(0.25f)}, resting(pattern)});
+    const RgbaImage& image = output.frame({{0, 1}, {1, 0.25f}});
+    const auto greyAt = [&](double x, double y) { return int{image.at(static_cast<int>(x * 180), static_cast<int>(y * 180)).r}; };
+    EXPECT_NEAR(greyAt(0.65, 0.5), 188, 1) << "one square: 0.25 + 0.25 of the light";
+    EXPECT_NEAR(greyAt(0.9, 0.5), 188, 1) << "both squares";
+    EXPECT_NEAR(greyAt(0.2, 0.2), 137, 1) << "no square";
+}
+
+// Whatever their tilt: a later instance covers an earlier one as a whole, and instances never cut into each other.
+TEST(OutputRenderer, puts_the_later_instance_on_top) {
+    pattern::ShapePattern pattern = squareAt({0.8, 0.5}, 0.3, glm::vec3(1, 0, 0));
+    pattern.instances.push_back(pattern.instances[0]);
+    pattern.instances[0].rotation.y = 1;  // its right half comes towards the viewer
+    pattern.instances[1].rotation.y = -1;
+    pattern.instances[1].colour = {0, 1, 0};
+    const auto drawn = [&] { return DrawnOutput(kSize, keystone(kSize), {resting(pattern)}).frame({{0, 1}}); };
+    const auto has = [](const RgbaImage& image, Rgba8 colour) { return std::ranges::count(image.pixels(), colour) > 0; };
+    EXPECT_FALSE(has(drawn(), {255, 0, 0, 255}));
+    std::swap(pattern.instances[0], pattern.instances[1]);
+    EXPECT_FALSE(has(drawn(), {0, 255, 0, 255}));
+}
+
+// Shapes far outside the canvas, behind the horizon of a steep warp included, leave no trace.
+TEST(OutputRenderer, cuts_shapes_at_the_canvas_and_never_lights_beyond_it) {
+    const std::array<glm::dvec2, 4> steep = {{{150, 20}, {170, 20}, {300, 160}, {20, 160}}};
+    const Homography projectorFromCanvas = *Homography::fromCorners(rectangleCorners(kAspect, 1), steep);
+    // The canvas y where w is 0: a little below the canvas, where the picture is wide.
+    const double horizon = -projectorFromCanvas.matrix()[2].z / projectorFromCanvas.matrix()[1].z;
+    ASSERT_GT(horizon, 1.06);
+    pattern::ShapePattern pattern = squareAt({0.8, horizon}, 0.06, glm::vec3(1));
+    pattern.instances.push_back(pattern.instances[0]);
+    pattern.instances[1].centre = {0.8, horizon + 1};
+    pattern.instances.push_back(pattern.instances[0]);
+    pattern.instances[2].centre = {-0.3, 0.5};
+    const auto drawn = [&](const PictureSource& source) -> RgbaImage {
+        return DrawnOutput(kSize, steep, {source}).frame({{0, 1}});
+    };
+    const RgbaImage none = drawn(resting(pattern));
+    for (const Rgba8 pixel : none.pixels()) ASSERT_EQ(pixel, (Rgba8{0, 0, 0, 255}));
+    // One that reaches from behind the horizon over the whole canvas lights all of the canvas.
+    pattern.instances = {pattern.instances[0]};
+    pattern.instances[0].size = 20;
+    EXPECT_LE(difference(drawn(resting(pattern)), drawn(SolidSource{})).most, 1);
+}
+
+// Show time alone decides the picture: forwards, backwards, and round the loop.
+TEST(OutputRenderer, shows_the_pattern_as_it_stands_at_the_show_time) {
+    const PatternSource source = moving(smallPattern());
+    DrawnOutput output(kSize, keystone(kSize), {source});
+    const RgbaImage at1 = output.frame({{0, 1}}, std::chrono::seconds(1));
+    const RgbaImage at9 = output.frame({{0, 1}}, std::chrono::seconds(9));
+    EXPECT_GT(difference(at1, at9).rms, 5);
+    EXPECT_EQ(output.frame({{0, 1}}, std::chrono::seconds(1)), at1);
+    EXPECT_EQ(output.frame({{0, 1}}, source.motion->period() + std::chrono::seconds(9)), at9);
+}
+
+TEST(OutputRenderer, allocates_nothing_once_it_runs) {
+    DrawnOutput output(kSize, keystone(kSize), {moving(smallPattern()), moving(smallPattern()), SolidSource{}});
+    LatestValue<ShownFrame>& reader = output.tap().addReader();
+    const show::OutputState look{{{0, 0.5f}, {1, 0.5f}, {2, 0.1f}}};
+    for (int frame = 0; frame < 3; ++frame) output.frame(look, tickTime(frame, 30));
+    const std::int64_t before = allocationsSoFar();
+    for (int frame = 3; frame < 20; ++frame) output.frame(look, tickTime(frame, 30));
+    EXPECT_EQ(allocationsSoFar() - before, 0);
+    EXPECT_TRUE(reader.update());
+}
+
+TEST(OutputRenderer, leaves_no_opengl_error_and_refuses_what_cannot_be_drawn) {
+    DrawnOutput output({64, 36}, upright({64, 36}), {});
+    const auto refusal = [&](const OutputRenderer::Options& options) {
+        const std::vector<PictureSource> sources = {SolidSource{}};
+        const auto renderer = OutputRenderer::create(options, sources);
+        return renderer ? "accepted" : renderer.error().message();
+    };
+    OutputRenderer::Options options{{64, 36}, upright({64, 36}), 4, shaderFolder()};
+    EXPECT_EQ(refusal(options), "accepted");
+    std::swap(options.corners[0], options.corners[1]);
+    EXPECT_THAT(refusal(options), HasSubstr("crossed"));
+    options.corners = upright({64, 36});
+    options.samples = 1000;
+    EXPECT_THAT(refusal(options), HasSubstr("1000 samples a pixel: this OpenGL has 1 .. "));
+    options.samples = 4;
+    options.size.x = 1'000'000;
+    EXPECT_THAT(refusal(options), HasSubstr("1000000 x 36 pixels"));
+}
+
+// Who edits a shader gets the compiler's words, with the file's name.
+TEST(OutputRenderer, names_the_shader_that_does_not_compile) {
+    DrawnOutput output({64, 36}, upright({64, 36}), {});
+    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "broken_shaders";
+    std::filesystem::copy(shaderFolder(), folder,
+                          std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
+    const auto refusal = [&] {
+        const auto renderer = OutputRenderer::create({{64, 36}, upright({64, 36}), 4, folder}, {});
+        return renderer ? "accepted" : renderer.error().message();
+    };
+    ASSERT_TRUE(writeFile(folder / "shape.frag", "#version 450 core\nvoid main() { colour = 1; }\n"));
+    EXPECT_THAT(refusal(), AllOf(HasSubstr("broken_shaders/shape.frag: the shader does not compile"), HasSubstr("colour")));
+    std::filesystem::remove(folder / "shape.frag");
+    EXPECT_THAT(refusal(), HasSubstr("broken_shaders/shape.frag"));
+    std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace fantascope::render

@@ -1,0 +1,94 @@
+#include "render/reference_picture.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace fantascope::render {
+namespace {
+
+// One facet on the canvas: x right, y down, z to the viewer.
+struct Facet {
+    glm::dvec3 a, b, c;
+    glm::dvec3 light;  // linear
+};
+
+// The height above the canvas at which the facet covers a point, if it does.
+std::optional<double> heightOver(const Facet& facet, glm::dvec2 point) {
+    const auto area = [](glm::dvec2 u, glm::dvec2 v) { return u.x * v.y - u.y * v.x; };
+    const glm::dvec2 a = facet.a, b = facet.b, c = facet.c;
+    const double whole = area(b - a, c - a);
+    if (whole == 0) return std::nullopt;
+    const double ofB = area(point - a, c - a) / whole, ofC = area(b - a, point - a) / whole;
+    if (ofB < 0 || ofC < 0 || ofB + ofC > 1) return std::nullopt;
+    return facet.a.z + ofB * (facet.b.z - facet.a.z) + ofC * (facet.c.z - facet.a.z);
+}
+
+std::vector<Facet> facetsOf(const TriangleMesh& mesh, const pattern::InstancePose& pose, glm::dvec3 colour) {
+    const glm::dmat3 canvasFromShape = pattern::canvasFromShape(pose);
+    const auto placed = [&](std::uint32_t vertex) {
+        return canvasFromShape * glm::dvec3(mesh.vertices[vertex]) + glm::dvec3(pose.centre, 0);
+    };
+    std::vector<Facet> facets;
+    for (const glm::uvec3 t : mesh.triangles) facets.push_back({placed(t.x), placed(t.y), placed(t.z), colour});
+
+    // Facets are lit from above, a little left, in front: three quarters of the colour, and up to the whole towards the light.
+    const auto seenNormal = [](const Facet& facet) {
+        const glm::dvec3 normal = glm::normalize(glm::cross(facet.b - facet.a, facet.c - facet.a));
+        return normal.z < 0 ? -normal : normal;
+    };
+    const bool flat = std::all_of(facets.begin(), facets.end(), [&](const Facet& facet) {
+        return std::abs(glm::dot(seenNormal(facet), seenNormal(facets[0]))) > 0.9999;
+    });
+    const glm::dvec3 towardsLight = glm::normalize(glm::dvec3(-0.4, -0.6, 0.7));
+    for (Facet& facet : facets)
+        if (!flat) facet.light *= 0.75 + 0.25 * std::max(glm::dot(seenNormal(facet), towardsLight), 0.0);
+    return facets;
+}
+
+}  // namespace
+
+RgbaImage referencePicture(const pattern::ShapePattern& pattern, std::span<const pattern::InstancePose> poses,
+                           const Homography& projectorFromCanvas, glm::ivec2 size, int samples) {
+    std::vector<std::vector<Facet>> instances;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        instances.push_back(facetsOf(pattern.shapes[pattern.instances[i].shape].mesh, poses[i], pattern.instances[i].colour));
+
+    const auto lightAt = [&](glm::dvec2 point) -> glm::dvec3 {
+        if (point.x < 0 || point.y < 0 || point.x > pattern.aspect() || point.y > 1) return glm::dvec3(0);
+        for (std::size_t i = poses.size(); i-- > 0;) {
+            if (glm::distance(point, poses[i].centre) > poses[i].size) continue;  // outside the sphere around the shape
+            double highest = -INFINITY;
+            glm::dvec3 light(0);
+            for (const Facet& facet : instances[i])
+                if (const auto height = heightOver(facet, point); height && *height > highest) {
+                    highest = *height;
+                    light = facet.light;
+                }
+            if (highest > -INFINITY) return light;
+        }
+        return glm::dvec3(0);
+    };
+
+    const Homography canvasFromProjector = projectorFromCanvas.inverse();
+    RgbaImage picture(size.x, size.y);
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) {
+            glm::dvec3 light(0);
+            for (int sample = 0; sample < samples * samples; ++sample) {
+                const glm::dvec2 within((sample % samples + 0.5) / samples, (sample / samples + 0.5) / samples);
+                light += lightAt(canvasFromProjector(glm::dvec2(x, y) + within));
+            }
+            light /= samples * samples;
+            const auto stored = [](double linear) {
+                return static_cast<std::uint8_t>(std::lround(255 * srgbFromLinear(static_cast<float>(linear))));
+            };
+            picture.at(x, y) = {stored(light.x), stored(light.y), stored(light.z), 255};
+        }
+    return picture;
+}
+
+}  // namespace fantascope::render

@@ -1,0 +1,385 @@
+#include "show/playback.h"
+
+#include "show/allocations.h"
+
+#include "core/random.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace fantascope::show {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::Each;
+using testing::ElementsAre;
+using testing::FloatNear;
+using testing::IsEmpty;
+
+constexpr Input go(Time at) { return {at, Input::Kind::Go}; }
+constexpr Input back(Time at) { return {at, Input::Kind::Back}; }
+constexpr Input blackout(Time at) { return {at, Input::Kind::Blackout}; }
+constexpr Input jump(Time at, int cue) { return {at, Input::Kind::Jump, cue}; }
+
+// A site of one output, two channels and one street lamp; source 0 and source 1 share the output.
+//   cue 0, fade 2 s: source 0 whole, channels 1 and 0, lamp off
+//   cue 1, fade 4 s: source 0 half and source 1 whole, channels 0 and 0.5, lamp off
+//   cue 2, cut:      dark, lamp on
+CueList threeCues() {
+    CueList list;
+    list.cues = {{{{{{{0, 1.0f}}}}, {1.0f, 0.0f}, {0}}, 2s, std::nullopt},
+                 {{{{{{0, 0.5f}, {1, 1.0f}}}}, {0.0f, 0.5f}, {0}}, 4s, std::nullopt},
+                 {{{{}}, {0.0f, 0.0f}, {1}}, 0s, std::nullopt}};
+    list.dark = {{{}}, {0.0f, 0.0f}, {1}};
+    list.goInterval = 300ms;
+    list.blackoutFade = 500ms;
+    return list;
+}
+
+// Three cues that run by themselves: cue 1 three seconds after cue 0, cue 2 five seconds after that.
+CueList followingCues() {
+    CueList list = threeCues();
+    list.cues[0].follow = 3s;
+    list.cues[1].follow = 5s;
+    return list;
+}
+
+Playback after(const CueList& list, std::initializer_list<Input> inputs) {
+    Playback playback(list);
+    for (const Input& input : inputs) EXPECT_EQ(playback.apply(input), Outcome::Taken) << seconds(input.at) << " s";
+    return playback;
+}
+
+ShowState stateOf(const Playback& playback, Time time) {
+    ShowState state;
+    playback.stateAt(time, state);
+    return state;
+}
+
+Look lookOf(const Playback& playback, Time time) { return stateOf(playback, time); }
+
+float opacity(const Look& look, std::size_t output, std::uint32_t source) {
+    for (const LayerState& layer : look.outputs[output].layers)
+        if (layer.source == source) return layer.opacity;
+    return 0;
+}
+
+TEST(Playback, before_the_first_cue_all_is_dark_and_the_relays_are_safe) {
+    const ShowState state = stateOf(Playback(threeCues()), 10s);
+    EXPECT_EQ(state.cue, -1);
+    EXPECT_EQ(static_cast<const Look&>(state), threeCues().dark);
+    EXPECT_EQ(state.time, 10s);
+    EXPECT_EQ(state.inputs, 0u);
+}
+
+TEST(Playback, go_fades_linearly_to_the_next_look_and_stays_there) {
+    const Playback playback = after(threeCues(), {go(10s)});
+    EXPECT_EQ(stateOf(playback, 10s - 1ns).cue, -1);
+    EXPECT_EQ(stateOf(playback, 10s).cue, 0);
+    EXPECT_THAT(lookOf(playback, 10s).outputs[0].layers, IsEmpty());
+    EXPECT_THAT(lookOf(playback, 10500ms).levels, ElementsAre(0.25f, 0.0f));
+    EXPECT_THAT(lookOf(playback, 11s).outputs[0].layers, ElementsAre(LayerState{0, 0.5f}));
+    EXPECT_EQ(lookOf(playback, 12s), threeCues().cues[0].look);
+    EXPECT_EQ(lookOf(playback, 3600s), threeCues().cues[0].look);
+}
+
+// A source on both sides moves from its one opacity to its other. Example failure: it dips, since each look is faded as a whole.
+TEST(Playback, crossfade_matches_layers_by_their_source) {
+    const Playback playback = after(threeCues(), {go(0s), go(10s)});
+    EXPECT_THAT(lookOf(playback, 11s).outputs[0].layers, ElementsAre(LayerState{0, 0.875f}, LayerState{1, 0.25f}));
+    EXPECT_THAT(lookOf(playback, 12s).levels, ElementsAre(0.5f, 0.25f));
+    EXPECT_EQ(lookOf(playback, 14s), threeCues().cues[1].look);
+}
+
+TEST(Playback, a_cue_without_fade_is_there_at_once) {
+    const Playback playback = after(threeCues(), {jump(5s, 2)});
+    EXPECT_EQ(stateOf(playback, 5s - 1ns).cue, -1);
+    EXPECT_EQ(lookOf(playback, 5s), threeCues().cues[2].look);
+}
+
+// The street is dark for the show's first picture, and lit before its last one has gone.
+TEST(Playback, relays_switch_when_their_cue_is_entered) {
+    const Playback playback = after(threeCues(), {go(10s), jump(20s, 2)});
+    EXPECT_THAT(lookOf(playback, 10s - 1ns).relays, ElementsAre(1));
+    EXPECT_THAT(lookOf(playback, 10s).relays, ElementsAre(0));
+    EXPECT_THAT(lookOf(playback, 20s).relays, ElementsAre(1));
+}
+
+// Example failure: the fade starts from the look that was never reached, and the lamp jumps.
+TEST(Playback, a_fade_that_is_interrupted_goes_on_from_where_it_was) {
+    const Playback playback = after(threeCues(), {go(10s), go(11s)});
+    EXPECT_THAT(lookOf(playback, 11s).levels, ElementsAre(0.5f, 0.0f));
+    EXPECT_THAT(lookOf(playback, 11s).outputs[0].layers, ElementsAre(LayerState{0, 0.5f}));
+    EXPECT_THAT(lookOf(playback, 13s).levels, ElementsAre(0.25f, 0.25f));
+    EXPECT_THAT(lookOf(playback, 13s).outputs[0].layers, ElementsAre(LayerState{0, 0.5f}, LayerState{1, 0.5f}));
+    EXPECT_EQ(lookOf(playback, 15s), threeCues().cues[1].look);
+}
+
+TEST(Playback, back_enters_the_cue_before_in_that_cues_fade) {
+    const Playback playback = after(threeCues(), {go(0s), go(10s), back(20s)});
+    EXPECT_EQ(stateOf(playback, 20s).cue, 0);
+    EXPECT_THAT(lookOf(playback, 21s).levels, ElementsAre(0.5f, 0.25f));
+    EXPECT_EQ(lookOf(playback, 22s), threeCues().cues[0].look);
+}
+
+TEST(Playback, jump_enters_any_cue_and_go_goes_on_from_there) {
+    const Playback playback = after(threeCues(), {jump(0s, 1), go(10s), jump(20s, 0)});
+    EXPECT_EQ(stateOf(playback, 5s).cue, 1);
+    EXPECT_EQ(stateOf(playback, 10s).cue, 2);
+    EXPECT_EQ(stateOf(playback, 20s).cue, 0);
+}
+
+TEST(Playback, what_cannot_be_done_is_ignored_and_said) {
+    Playback playback(threeCues());
+    EXPECT_EQ(playback.apply(back(1s)), Outcome::AtFirstCue);  // there is no cue at all yet
+    EXPECT_EQ(playback.apply(go(2s)), Outcome::Taken);
+    EXPECT_EQ(playback.apply(back(3s)), Outcome::AtFirstCue);
+    EXPECT_EQ(playback.apply(jump(4s, 3)), Outcome::NoSuchCue);
+    EXPECT_EQ(playback.apply(jump(4s, -1)), Outcome::NoSuchCue);
+    EXPECT_EQ(playback.apply(jump(5s, 2)), Outcome::Taken);
+    EXPECT_EQ(playback.apply(go(6s)), Outcome::AtLastCue);
+    const ShowState state = stateOf(playback, 7s);
+    EXPECT_EQ(state.cue, 2);
+    EXPECT_EQ(state.inputs, 2u);
+    EXPECT_EQ(nameOf(Outcome::AtLastCue), "ignored: this is the last cue");
+}
+
+// linux-show-player's users lost cues to a double press. Example failure: every GO restarts the interval, and a nervous operator
+// is locked out.
+TEST(Playback, go_right_after_a_cue_began_is_ignored) {
+    Playback playback(threeCues());
+    EXPECT_EQ(playback.apply(go(1s)), Outcome::Taken);
+    EXPECT_EQ(playback.apply(go(1150ms)), Outcome::TooSoonAfterCue);
+    EXPECT_EQ(playback.apply(go(1299ms)), Outcome::TooSoonAfterCue);
+    EXPECT_EQ(playback.apply(go(1300ms)), Outcome::Taken);
+    EXPECT_EQ(stateOf(playback, 2s).cue, 1);
+    EXPECT_EQ(stateOf(playback, 2s).inputs, 2u);
+}
+
+// The operator's GO meets the cue that has just followed by itself. Example failure: it is skipped unseen.
+TEST(Playback, go_right_after_a_cue_followed_by_itself_is_ignored) {
+    Playback playback(followingCues());
+    EXPECT_EQ(playback.apply(go(0s)), Outcome::Taken);
+    EXPECT_EQ(playback.apply(go(3s + 100ms)), Outcome::TooSoonAfterCue);
+    EXPECT_EQ(stateOf(playback, 4s).cue, 1);
+    EXPECT_EQ(stateOf(playback, 9s).cue, 2);  // and the ignored GO left the rest of the chain alone
+}
+
+// The interval guards GO alone: nothing may delay a blackout or the way back.
+TEST(Playback, blackout_and_back_are_taken_at_any_moment) {
+    Playback playback = after(threeCues(), {go(1s), go(2s)});
+    EXPECT_EQ(playback.apply(blackout(2s + 1ms)), Outcome::Taken);
+    EXPECT_EQ(playback.apply(back(2s + 2ms)), Outcome::Taken);
+    EXPECT_EQ(playback.apply(blackout(2s + 3ms)), Outcome::Taken);
+}
+
+// A blackout wins over everything in flight. Example failure: a fade started earlier lifts a channel afterwards.
+TEST(Playback, blackout_overrides_running_fades) {
+    const Playback playback = after(threeCues(), {go(10s), blackout(11s)});
+    EXPECT_THAT(lookOf(playback, 11s).levels, ElementsAre(0.5f, 0.0f));
+    EXPECT_THAT(lookOf(playback, 11250ms).levels, ElementsAre(0.3125f, 0.0f));  // 0.625 of the fade, half of the light
+    EXPECT_THAT(lookOf(playback, 11250ms).outputs[0].layers, ElementsAre(LayerState{0, 0.3125f}));
+    for (const Time time : {11500ms, 11750ms, 12s + 0ms, 60s + 0ms}) {
+        EXPECT_TRUE(stateOf(playback, time).blackout);
+        EXPECT_THAT(lookOf(playback, time).levels, Each(0.0f));
+        EXPECT_THAT(lookOf(playback, time).outputs[0].layers, IsEmpty());
+    }
+}
+
+// A dark picture is no reason for dark streets, and none for street lamps that light up the audience's darkness.
+TEST(Playback, blackout_leaves_relays_to_the_cues) {
+    const Playback playback = after(threeCues(), {go(10s), blackout(20s), jump(30s, 2)});
+    EXPECT_THAT(lookOf(playback, 25s).relays, ElementsAre(0));
+    EXPECT_THAT(lookOf(playback, 30s).relays, ElementsAre(1));
+}
+
+// Example failure: a fade that stood still in the dark, or a cue that was lost in it.
+TEST(Playback, when_a_blackout_is_given_back_the_show_has_gone_on) {
+    const Playback dark = after(threeCues(), {go(10s), blackout(11s), go(12s), blackout(13s)});
+    const Playback light = after(threeCues(), {go(10s), go(12s)});
+    EXPECT_FALSE(stateOf(dark, 13s).blackout);
+    EXPECT_THAT(lookOf(dark, 13s).levels, Each(0.0f));
+    EXPECT_FLOAT_EQ(lookOf(dark, 13250ms).levels[0], lookOf(light, 13250ms).levels[0] / 2);
+    for (const Time time : {13500ms, 14s + 0ms, 20s + 0ms}) EXPECT_EQ(lookOf(dark, time), lookOf(light, time));
+    EXPECT_EQ(stateOf(dark, 20s).cue, 1);
+}
+
+TEST(Playback, a_blackout_taken_back_on_the_way_returns_from_where_it_was) {
+    const Playback playback = after(threeCues(), {jump(0s, 0), blackout(10s), blackout(10100ms)});
+    EXPECT_THAT(lookOf(playback, 10100ms).levels, ElementsAre(FloatNear(0.8f, 1e-6f), 0.0f));
+    EXPECT_THAT(lookOf(playback, 10150ms).levels, ElementsAre(FloatNear(0.9f, 1e-6f), 0.0f));
+    EXPECT_THAT(lookOf(playback, 10200ms).levels, ElementsAre(FloatNear(1.0f, 1e-6f), 0.0f));
+}
+
+TEST(Playback, cues_follow_by_themselves_to_the_end_of_the_chain) {
+    const Playback playback = after(followingCues(), {go(10s)});
+    EXPECT_EQ(stateOf(playback, 13s - 1ns).cue, 0);
+    EXPECT_EQ(stateOf(playback, 13s).cue, 1);
+    EXPECT_THAT(lookOf(playback, 15s).levels, ElementsAre(0.5f, 0.25f));
+    EXPECT_EQ(stateOf(playback, 18s - 1ns).cue, 1);
+    EXPECT_EQ(stateOf(playback, 18s).cue, 2);
+    EXPECT_EQ(stateOf(playback, 3600s).cue, 2);
+    EXPECT_EQ(stateOf(playback, 3600s).inputs, 1u);  // what follows is derived, not an input
+}
+
+// Example failure: the cue that was to follow comes all the same, on top of the operator's.
+TEST(Playback, an_input_that_enters_a_cue_calls_off_what_would_have_followed) {
+    const Playback playback = after(followingCues(), {go(10s), jump(12s, 2)});
+    EXPECT_EQ(stateOf(playback, 12s).cue, 2);
+    EXPECT_EQ(stateOf(playback, 100s).cue, 2);
+    const Playback again = after(followingCues(), {go(10s), go(12s)});
+    EXPECT_EQ(stateOf(again, 16s).cue, 1);  // five seconds from 12 s, not from 13 s
+    EXPECT_EQ(stateOf(again, 17s).cue, 2);
+}
+
+TEST(Playback, blackout_does_not_call_off_what_follows) {
+    EXPECT_EQ(stateOf(after(followingCues(), {go(10s), blackout(11s)}), 14s).cue, 1);
+}
+
+TEST(Playback, a_cue_entered_by_back_is_followed_too) {
+    const Playback playback = after(followingCues(), {go(0s), back(4s)});
+    EXPECT_EQ(stateOf(playback, 4s).cue, 0);
+    EXPECT_EQ(stateOf(playback, 7s).cue, 1);
+}
+
+// Two devices on two threads may stamp their inputs out of order by a hair; what was shown already stays true.
+TEST(Playback, an_input_stamped_late_takes_effect_with_its_forerunner) {
+    const Playback playback = after(threeCues(), {go(10s), blackout(9s)});
+    EXPECT_FALSE(stateOf(playback, 9500ms).blackout);
+    EXPECT_TRUE(stateOf(playback, 10s).blackout);
+}
+
+// The three properties below hold for any show and any operator, so chance plays both.
+
+CueList randomCues(Rng& rng) {
+    constexpr int kOutputs = 2, kSources = 4, kChannels = 3;
+    const auto look = [&] {
+        Look look;
+        look.outputs.resize(kOutputs);
+        for (OutputState& output : look.outputs)
+            for (std::uint32_t source = 0; source < kSources; ++source)
+                if (rng.uniform() < 0.4) output.layers.push_back({source, static_cast<float>(rng.uniform())});
+        for (int i = 0; i < kChannels; ++i) look.levels.push_back(static_cast<float>(rng.uniform()));
+        look.relays.push_back(static_cast<std::uint8_t>(rng.below(2)));
+        return look;
+    };
+    CueList list;
+    list.dark = {std::vector<OutputState>(kOutputs), std::vector<float>(kChannels, 0.0f), {1}};
+    list.goInterval = 300ms;
+    list.blackoutFade = 500ms;
+    for (std::uint32_t i = 0, count = 2 + rng.below(5); i < count; ++i) {
+        CueList::Cue cue{look(), fromSeconds(0.5 + 3 * rng.uniform()), std::nullopt};
+        if (i + 1 < count && rng.uniform() < 0.4) cue.follow = fromSeconds(5 * rng.uniform());
+        list.cues.push_back(std::move(cue));
+    }
+    return list;
+}
+
+std::vector<Input> randomInputs(Rng& rng, std::size_t count) {
+    std::vector<Input> inputs;
+    Time at{};
+    while (inputs.size() < count) {
+        at += fromSeconds(2 * rng.uniform() * rng.uniform());
+        inputs.push_back({at, static_cast<Input::Kind>(rng.below(4)), static_cast<int>(rng.below(8)) - 1});
+    }
+    return inputs;
+}
+
+// A seek, a restart and a second machine show the same frame. Asks the same moments in order while the inputs come in, as a night
+// does, and in a random order afterwards. Example failure: a fade that is advanced from query to query.
+TEST(Playback, the_state_depends_on_time_and_inputs_alone) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        Rng rng(seed);
+        const CueList list = randomCues(rng);
+        const std::vector<Input> inputs = randomInputs(rng, 60);
+        constexpr Time kFrame = 33ms;
+
+        Playback live(list);
+        std::vector<ShowState> seen;
+        auto next = inputs.begin();
+        for (Time time{}; time < inputs.back().at + 10s; time += kFrame) {
+            for (; next != inputs.end() && next->at <= time; ++next) live.apply(*next);
+            seen.push_back(stateOf(live, time));
+        }
+
+        Playback replay(list);
+        for (const Input& input : inputs) replay.apply(input);
+        ShowState state;  // reused, so that what it held before must not show
+        for (int i = 0; i < 300; ++i) {
+            const std::size_t frame = rng.below(static_cast<std::uint32_t>(seen.size()));
+            replay.stateAt(static_cast<std::int64_t>(frame) * kFrame, state);
+            ASSERT_EQ(state, seen[frame]) << "seed " << seed << ", frame " << frame;
+        }
+    }
+}
+
+// Nothing jumps: between two moments no level and no opacity moves faster than the quickest fade allows.
+// Example failure: an interrupted fade or a blackout over one that starts from a look instead of from what is seen.
+TEST(Playback, no_level_and_no_opacity_ever_steps) {
+    for (std::uint64_t seed = 100; seed < 120; ++seed) {
+        Rng rng(seed);
+        const CueList list = randomCues(rng);
+        const std::vector<Input> inputs = randomInputs(rng, 60);
+        Playback playback(list);
+        for (const Input& input : inputs) playback.apply(input);
+
+        // A change of the light multiplies: its rate and the fade's add up at most.
+        double rate = 1 / seconds(list.blackoutFade), quickest = 0;
+        for (const CueList::Cue& cue : list.cues) quickest = std::max(quickest, 1 / seconds(cue.fade));
+        rate += quickest;
+        constexpr Time kStep = 5ms;
+        const double allowed = rate * seconds(kStep) + 1e-6;
+        Look before = lookOf(playback, 0s);
+        for (Time time = kStep; time < inputs.back().at + 5s; time += kStep) {
+            const Look now = lookOf(playback, time);
+            for (std::size_t i = 0; i < now.levels.size(); ++i)
+                ASSERT_LE(std::abs(now.levels[i] - before.levels[i]), allowed) << seed;
+            for (std::size_t output = 0; output < now.outputs.size(); ++output)
+                for (std::uint32_t source = 0; source < 4; ++source)
+                    ASSERT_LE(std::abs(opacity(now, output, source) - opacity(before, output, source)), allowed) << seed;
+            before = now;
+        }
+    }
+}
+
+// The renderer is handed what it can draw: no source twice, no layer without light, nothing out of range.
+TEST(Playback, every_state_is_well_formed) {
+    for (std::uint64_t seed = 200; seed < 220; ++seed) {
+        Rng rng(seed);
+        Playback playback(randomCues(rng));
+        for (const Input& input : randomInputs(rng, 60)) playback.apply(input);
+        for (int i = 0; i < 300; ++i) {
+            const Look look = lookOf(playback, fromSeconds(rng.uniform(0, 60)));
+            for (const OutputState& output : look.outputs) {
+                std::vector<std::uint32_t> sources;
+                for (const LayerState& layer : output.layers) {
+                    EXPECT_GT(layer.opacity, 0);
+                    EXPECT_LE(layer.opacity, 1);
+                    EXPECT_EQ(std::count(sources.begin(), sources.end(), layer.source), 0) << seed;
+                    sources.push_back(layer.source);
+                }
+            }
+            for (const float level : look.levels) EXPECT_TRUE(level >= 0 && level <= 1) << level;
+        }
+    }
+}
+
+// The render thread asks for a state with every frame and must not wait for the heap.
+TEST(Playback, asking_again_allocates_nothing) {
+    Rng rng(7);
+    Playback playback(randomCues(rng));
+    const std::vector<Input> inputs = randomInputs(rng, 300);
+    for (const Input& input : inputs) playback.apply(input);
+    ShowState state;
+    playback.stateAt(0s, state);
+    const std::size_t before = allocations();
+    for (Time time{}; time < inputs.back().at; time += 33ms) playback.stateAt(time, state);
+    EXPECT_EQ(allocations(), before);
+    EXPECT_GT(before, 0u);
+}
+
+}  // namespace
+}  // namespace fantascope::show

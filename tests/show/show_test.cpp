@@ -1,0 +1,219 @@
+#include "show/show.h"
+
+#include "show/show_folder.h"
+
+#include <gmock/gmock.h>
+
+namespace fantascope::show {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+constexpr std::string_view kShow = R"(fantascope: show
+version: 1
+title: Test
+sources:
+  leaves: {pattern: patterns/leaves.pattern.yaml}
+  dim: {solid: [0.1, 0.2, 0.3]}
+looks:
+  dark: {}
+  bright:
+    outputs:
+      left: [{source: leaves, opacity: 0.5}, {source: dim}]
+    fixtures: {fountain: {blue: 0.75}, sculpture: 1}
+    relays: {road: off}
+cues:
+  - {name: Dusk, look: dark, fade: 2}
+  - {name: Night, look: bright, fade: 1.5, follow: 20}
+  - {name: Farewell, look: dark, fade: 0}
+)";
+
+// Two outputs, two fixtures of four channels, a lamp that is safe when on and a fog machine that is safe when off.
+Site testSite() {
+    Site site;
+    site.file = "site.yaml";
+    site.outputs.resize(2);
+    site.outputs[0].name = "right";
+    site.outputs[1].name = "left";
+    site.fixtures = {{"sculpture", 1, 1, {"intensity"}}, {"fountain", 1, 2, {"red", "green", "blue"}}};
+    site.relays = {{"fog", 0, false}, {"road", 1, true}};
+    return site;
+}
+
+struct Loaded {
+    ShowFolder folder;
+    Result<Show> show = Error("not loaded");
+
+    explicit Loaded(const std::string& text) {
+        folder.write("patterns/leaves.pattern.yaml", "");
+        show = Show::load(folder.write("show.yaml", text));
+    }
+};
+
+std::string refusal(const std::string& text) {
+    const Loaded loaded(text);
+    return loaded.show ? "accepted" : loaded.folder.relative(loaded.show.error().message());
+}
+std::string refusalAfter(std::string_view what, std::string_view by) { return refusal(replaced(std::string(kShow), what, by)); }
+
+std::string bindRefusalAfter(std::string_view what, std::string_view by) {
+    const Loaded loaded(replaced(std::string(kShow), what, by));
+    if (!loaded.show) return "not loaded: " + loaded.show.error().message();
+    const auto list = loaded.show->bind(testSite());
+    return list ? "bound" : loaded.folder.relative(list.error().message());
+}
+
+TEST(ShowFile, reads_everything_that_the_file_says) {
+    const Loaded loaded{std::string(kShow)};
+    ASSERT_TRUE(loaded.show) << loaded.show.error().message();
+    const Show& show = *loaded.show;
+    EXPECT_EQ(show.title, "Test");
+    EXPECT_EQ(show.goInterval, 300ms);
+    EXPECT_EQ(show.blackoutFade, 300ms);
+    ASSERT_EQ(show.sources.size(), 2u);
+    EXPECT_EQ(std::get<PatternSource>(show.sources[0].picture).file, loaded.folder.path() / "patterns/leaves.pattern.yaml");
+    EXPECT_EQ(std::get<SolidSource>(show.sources[1].picture).colour, glm::vec3(0.1f, 0.2f, 0.3f));
+    ASSERT_EQ(show.cues.size(), 3u);
+    EXPECT_EQ(show.cues[1].name, "Night");
+    EXPECT_EQ(show.looks[show.cues[1].look].name, "bright");
+    EXPECT_EQ(show.cues[1].fade, 1500ms);
+    EXPECT_EQ(show.cues[1].follow, 20s);
+    EXPECT_EQ(show.cues[0].follow, std::nullopt);
+}
+
+TEST(ShowFile, a_folder_stands_for_the_show_in_it) {
+    const Loaded loaded{std::string(kShow)};
+    EXPECT_EQ(Show::load(loaded.folder.path())->title, "Test");
+    EXPECT_THAT(Show::load(loaded.folder.path() / "patterns").error().message(),
+                EndsWith("patterns/show.yaml: cannot be read: No such file or directory"));
+}
+
+TEST(ShowFile, own_go_interval_and_blackout_fade_replace_the_defaults) {
+    const Loaded loaded(replaced(std::string(kShow), "title: Test", "title: Test\ngo_interval: 1\nblackout_fade: 0"));
+    EXPECT_EQ(loaded.show->goInterval, 1s);
+    EXPECT_EQ(loaded.show->blackoutFade, 0s);
+}
+
+TEST(ShowFile, mistakes_are_refused_with_place_and_advice) {
+    EXPECT_EQ(refusalAfter("title:", "tittle:"), "show.yaml:3:1: tittle: unknown key (did you mean 'title'?)");
+    EXPECT_EQ(refusalAfter("opacity: 0.5", "opacty: 0.5"),
+              "show.yaml:11:31: looks.bright.outputs.left[0].opacty: unknown key (did you mean 'opacity'?)");
+    EXPECT_EQ(refusalAfter("fade: 2}", "fade: slow}"),
+              "show.yaml:15:36: cues[0].fade: a number in 0 .. 3600 s is needed, here is 'slow'");
+    EXPECT_EQ(refusalAfter("fade: 2}", "fade: -2}"), "show.yaml:15:36: cues[0].fade: -2 is out of range, 0 .. 3600 s is allowed");
+    EXPECT_EQ(refusalAfter("opacity: 0.5", "opacity: 50"),
+              "show.yaml:11:40: looks.bright.outputs.left[0].opacity: 50 is out of range, 0 .. 1 is allowed");
+    EXPECT_EQ(refusalAfter("blue: 0.75", "blue: 255"),
+              "show.yaml:12:33: looks.bright.fixtures.fountain.blue: 255 is out of range, 0 .. 1 is allowed");
+    EXPECT_EQ(refusalAfter("road: off", "road: 0"),
+              "show.yaml:13:20: looks.bright.relays.road: one of off, on is needed, here is '0'");
+    EXPECT_EQ(refusalAfter("look: bright", "look: brigth"),
+              "show.yaml:16:25: cues[1].look: one of dark, bright is needed, here is 'brigth' (did you mean 'bright'?)");
+    EXPECT_EQ(refusalAfter("source: dim", "source: dimm"),
+              "show.yaml:11:55: looks.bright.outputs.left[1].source: one of leaves, dim is needed, here is 'dimm' (did you mean "
+              "'dim'?)");
+    EXPECT_EQ(refusalAfter("version: 1", "version: 2"),
+              "show.yaml:2:10: version: version 2 was written by a newer program, this one reads up to 1; update it");
+}
+
+TEST(ShowFile, pattern_files_are_there_and_inside_the_show) {
+    EXPECT_EQ(refusalAfter("patterns/leaves.pattern.yaml", "patterns/leafs.pattern.yaml"),
+              "show.yaml:5:21: sources.leaves.pattern: there is no file patterns/leafs.pattern.yaml; make it with 'fantascope "
+              "pattern GUIDE -o "
+              "patterns/leafs.pattern.yaml'");
+    EXPECT_EQ(refusalAfter("patterns/leaves.pattern.yaml", "/srv/leaves.pattern.yaml"),
+              "show.yaml:5:21: sources.leaves.pattern: '/srv/leaves.pattern.yaml' is absolute; name it relative to this file's "
+              "folder, so "
+              "that the whole folder can move");
+    EXPECT_EQ(
+        refusalAfter("patterns/leaves.pattern.yaml", "../leaves.pattern.yaml"),
+        "show.yaml:5:21: sources.leaves.pattern: '../leaves.pattern.yaml' leaves this file's folder; copy the file into it");
+}
+
+TEST(ShowFile, a_source_is_of_exactly_one_kind) {
+    const std::string_view kinds = "{solid: [0.1, 0.2, 0.3]}";
+    const std::string answer = "show.yaml:6:8: sources.dim: exactly one kind of source is needed: 'pattern' or 'solid'";
+    EXPECT_EQ(refusalAfter(kinds, "{}"), answer);
+    EXPECT_EQ(refusalAfter(kinds, "{solid: [0, 0, 0], pattern: patterns/leaves.pattern.yaml}"), answer);
+    EXPECT_THAT(refusalAfter(kinds, "{solid: [0, 0]}"), HasSubstr("sources.dim.solid: a list of exactly 3 items is needed"));
+}
+
+// Fades match layers by their source: with two of one, which goes where would be a guess.
+TEST(ShowFile, a_source_stands_on_an_output_once) {
+    EXPECT_EQ(
+        refusalAfter("{source: dim}", "{source: leaves}"),
+        "show.yaml:11:46: looks.bright.outputs.left[1]: 'leaves' is on this output already; one layer of a source is enough");
+}
+
+TEST(ShowFile, cues_have_their_own_names_and_the_last_does_not_follow) {
+    EXPECT_EQ(refusalAfter("name: Night", "name: Dusk"),
+              "show.yaml:16:5: cues[1]: another cue is called 'Dusk'; each needs its own name");
+    EXPECT_EQ(refusalAfter("fade: 0}", "fade: 0, follow: 3}"),
+              "show.yaml:17:5: cues[2]: no cue comes after this one; take its 'follow' away");
+    EXPECT_EQ(refusal(std::string(kShow.substr(0, kShow.find("cues:"))) + "cues: []\n"),
+              "show.yaml:14:7: cues: a list of at least 1 items is needed, here are 0");
+}
+
+TEST(ShowFile, cues_are_found_by_name) {
+    const Loaded loaded{std::string(kShow)};
+    EXPECT_EQ(*loaded.show->cueNamed("Night"), 1u);
+    EXPECT_EQ(loaded.folder.relative(loaded.show->cueNamed("night").error().message()),
+              "show.yaml: no cue is called 'night' (did you mean 'Night'?)");
+    EXPECT_THAT(loaded.show->cueNamed("Intermission").error().message(), EndsWith("(known: Dusk, Night, Farewell)"));
+}
+
+// Playback, renderer and patch count; names are for people. Example failure: levels in the order of the show file.
+TEST(ShowBind, puts_looks_in_the_sites_order) {
+    const Loaded loaded{std::string(kShow)};
+    const auto list = loaded.show->bind(testSite());
+    ASSERT_TRUE(list) << list.error().message();
+    const Look& night = list->cues[1].look;
+    EXPECT_TRUE(night.outputs[0].layers.empty());
+    EXPECT_THAT(night.outputs[1].layers, ElementsAre(LayerState{0, 0.5f}, LayerState{1, 1.0f}));
+    EXPECT_THAT(night.levels, ElementsAre(1.0f, 0.0f, 0.0f, 0.75f));
+    EXPECT_THAT(night.relays, ElementsAre(0, 0));
+    EXPECT_EQ(list->cues[1].fade, 1500ms);
+    EXPECT_EQ(list->cues[1].follow, 20s);
+    EXPECT_EQ(list->goInterval, 300ms);
+    EXPECT_EQ(list->blackoutFade, 300ms);
+}
+
+// What a look leaves out does not linger from the cue before. Example failure: a street lamp that stays off after the show.
+TEST(ShowBind, what_a_look_does_not_name_is_dark_and_safe) {
+    const Loaded loaded{std::string(kShow)};
+    const auto list = loaded.show->bind(testSite());
+    const Look safe{{{}, {}}, {0, 0, 0, 0}, {0, 1}};  // fog off, road lamp on
+    EXPECT_EQ(list->dark, safe);
+    EXPECT_EQ(list->cues[2].look, safe);
+}
+
+TEST(ShowBind, one_level_goes_to_all_channels) {
+    const Loaded loaded(replaced(std::string(kShow), "{blue: 0.75}", "0.5"));
+    EXPECT_THAT(loaded.show->bind(testSite())->cues[1].look.levels, ElementsAre(1.0f, 0.5f, 0.5f, 0.5f));
+}
+
+TEST(ShowBind, names_that_the_site_does_not_have_are_refused_with_place_and_the_nearest_name) {
+    EXPECT_EQ(bindRefusalAfter("left: [", "lefd: ["),
+              "show.yaml:11:13: looks.bright.outputs.lefd: no output is called 'lefd' (did you mean 'left'?) in site.yaml");
+    EXPECT_EQ(bindRefusalAfter("left: [", "ceiling: ["),
+              "show.yaml:11:16: looks.bright.outputs.ceiling: no output is called 'ceiling' (known: right, left) in site.yaml");
+    EXPECT_EQ(bindRefusalAfter("sculpture: 1", "sculptur: 1"),
+              "show.yaml:12:50: looks.bright.fixtures.sculptur: no fixture is called 'sculptur' (did you mean 'sculpture'?) in "
+              "site.yaml");
+    EXPECT_EQ(bindRefusalAfter("blue: 0.75", "bleu: 0.75"),
+              "show.yaml:12:33: looks.bright.fixtures.fountain.bleu: no channel of 'fountain' is called 'bleu' (known: red, "
+              "green, blue) in site.yaml");
+    EXPECT_EQ(bindRefusalAfter("road: off", "raod: off"),
+              "show.yaml:13:20: looks.bright.relays.raod: no relay is called 'raod' (known: fog, road) in site.yaml");
+    Site bare = testSite();
+    bare.relays.clear();
+    const Loaded loaded{std::string(kShow)};
+    EXPECT_THAT(loaded.show->bind(bare).error().message(),
+                EndsWith("no relay is called 'road' (there is none at all) in site.yaml"));
+}
+
+}  // namespace
+}  // namespace fantascope::show

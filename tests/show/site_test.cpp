@@ -1,0 +1,199 @@
+#include "show/site.h"
+
+#include "show/show_folder.h"
+
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+namespace fantascope::show {
+namespace {
+
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::Pair;
+
+constexpr std::string_view kSite = R"(fantascope: site
+version: 1
+outputs:
+  - name: left
+    display: {driver: headless, colour: red}
+    size: [640, 360]
+    refresh_rate: 30
+    corners: [[10, 0], [640, 20], [630, 360], [0, 350]]
+    projector: {position: [0, 4, 9], look_at: [0, 1, 0], throw_ratio: 1.4}
+    surface: {point: [0, 0, 0], normal: [0, 0, 0.5]}
+  - {name: right, display: {driver: glfw}, size: [1920, 1080], refresh_rate: 59.94}
+universes:
+  - {number: 1, port: {driver: simulated}}
+  - {number: 7, port: {driver: artnet, address: 10.0.0.7}}
+fixtures:
+  - {name: sculpture, universe: 1, address: 1, channels: [intensity]}
+  - {name: fountain, universe: 1, address: 510, channels: [red, green, blue]}
+  - {name: lawn, universe: 7, address: 1, channels: [warm, cold]}
+relay_bank:
+  device: {driver: simulated}
+  relays: [{name: road-north, coil: 4, safe: on}, {name: fog, coil: 0, safe: off}]
+cue_controller:
+  device: {driver: simulated}
+  buttons: {go: 1, blackout: 3}
+camera:
+  device: {driver: simulated}
+  size: [320, 180]
+  field_of_view: 60
+  position: [0, 2, 12]
+  look_at: [0, 1, 0]
+  k1: -0.05
+simulation: {seed: 3}
+)";
+
+// What readSite says of the text, led by the file's name.
+std::string refusal(const std::string& text) {
+    const ShowFolder folder;
+    const auto site = readSite(folder.write("site.yaml", text));
+    return site ? "accepted" : folder.relative(site.error().message());
+}
+std::string refusalAfter(std::string_view what, std::string_view by) { return refusal(replaced(std::string(kSite), what, by)); }
+
+TEST(Site, reads_everything_that_the_file_says) {
+    const ShowFolder folder;
+    const auto site = readSite(folder.write("site.yaml", kSite));
+    ASSERT_TRUE(site) << site.error().message();
+
+    ASSERT_EQ(site->outputs.size(), 2u);
+    const Output& left = site->outputs[0];
+    EXPECT_EQ(left.name, "left");
+    EXPECT_EQ(left.display.driver, "headless");
+    EXPECT_EQ(left.size, glm::ivec2(640, 360));
+    EXPECT_EQ(left.refreshRate, 30);
+    EXPECT_THAT(left.corners, ElementsAre(glm::dvec2(10, 0), glm::dvec2(640, 20), glm::dvec2(630, 360), glm::dvec2(0, 350)));
+    EXPECT_EQ(left.projector->pose.position, glm::dvec3(0, 4, 9));
+    EXPECT_EQ(left.projector->throwRatio, 1.4);
+    EXPECT_EQ(left.surface->normal, glm::dvec3(0, 0, 1));  // made a unit
+
+    ASSERT_EQ(site->universes.size(), 2u);
+    EXPECT_EQ(site->universes[1].number, 7);
+    EXPECT_EQ(site->universes[1].port.driver, "artnet");
+    EXPECT_THAT(site->fixtures[1].channels, ElementsAre("red", "green", "blue"));
+    EXPECT_EQ(site->channelCount(), 6u);
+    EXPECT_EQ(site->relays[0].coil, 4);
+    EXPECT_TRUE(site->relays[0].safe);
+    EXPECT_FALSE(site->relays[1].safe);
+    EXPECT_EQ(site->coilCount(), 5u);
+    EXPECT_THAT(site->buttons, ElementsAre(Pair(1, Button::Go), Pair(3, Button::Blackout)));
+    EXPECT_NEAR(site->nominalCamera->fieldOfView, std::numbers::pi / 3, 1e-12);
+    EXPECT_EQ(site->nominalCamera->k1, -0.05);
+    EXPECT_TRUE(site->simulation);
+}
+
+// The driver of a device reads its own keys, so the whole map must reach it.
+TEST(Site, hands_the_drivers_keys_on_unread) {
+    const ShowFolder folder;
+    const auto site = readSite(folder.write("site.yaml", kSite));
+    const auto entries = site->outputs[0].display.options.entries();
+    ASSERT_EQ(entries->size(), 2u);
+    EXPECT_EQ((*entries)[1].first, "colour");
+    EXPECT_EQ(*(*entries)[1].second.text(), "red");
+}
+
+// Corners are the only thing that a technician may leave out for a straight projector.
+TEST(Site, without_corners_the_canvas_fills_the_picture) {
+    const ShowFolder folder;
+    const auto site = readSite(folder.write("site.yaml", kSite));
+    const Homography projectorFromCanvas = site->outputs[1].projectorFromCanvas(16.0 / 9);
+    EXPECT_LT(glm::distance(projectorFromCanvas({16.0 / 9, 1}), glm::dvec2(1920, 1080)), 1e-9);
+    EXPECT_LT(glm::distance(projectorFromCanvas({8.0 / 9, 0.5}), glm::dvec2(960, 540)), 1e-9);
+    const Homography warped = site->outputs[0].projectorFromCanvas(16.0 / 9);
+    EXPECT_LT(glm::distance(warped({16.0 / 9, 0}), glm::dvec2(640, 20)), 1e-9);
+}
+
+TEST(Site, a_site_of_projectors_alone_is_a_site) {
+    EXPECT_EQ(refusal("fantascope: site\nversion: 1\noutputs:\n  - {name: a, display: {driver: glfw}, size: [640, 360], "
+                      "refresh_rate: 60}\n"),
+              "accepted");
+}
+
+TEST(Site, mistakes_are_refused_with_place_and_advice) {
+    EXPECT_EQ(refusalAfter("    refresh_rate: 30\n", ""), "site.yaml:4:5: outputs[0]: 'refresh_rate' is missing");
+    EXPECT_EQ(refusalAfter("corners:", "cornres:"), "site.yaml:8:5: outputs[0].cornres: unknown key (did you mean 'corners'?)");
+    EXPECT_EQ(refusalAfter("size: [640, 360]", "size: wide"),
+              "site.yaml:6:11: outputs[0].size: a list is needed, here is 'wide'");
+    EXPECT_EQ(refusalAfter("[1920, 1080]", "[1920, 0]"),
+              "site.yaml:11:57: outputs[1].size[1]: 0 is out of range, 1 .. 16384 is allowed");
+    EXPECT_EQ(refusalAfter("field_of_view: 60", "field_of_view: 1.2 rad"),
+              "site.yaml:28:18: camera.field_of_view: a number in 1 .. 179 degrees is needed, here is '1.2 rad'");
+    EXPECT_EQ(refusalAfter("display: {driver: glfw}", "display: {name: glfw}"),
+              "site.yaml:11:28: outputs[1].display: 'driver' is missing: the name of the device's driver");
+    EXPECT_EQ(refusalAfter("safe: off", "safe: open"),
+              "site.yaml:21:78: relay_bank.relays[1].safe: one of off, on is needed, here is 'open'");
+    EXPECT_EQ(refusalAfter("look_at: [0, 1, 0], throw", "look_at: [0, 4, 9], throw"),
+              "site.yaml:9:16: outputs[0].projector: looks at the point where it stands; move the target or the position");
+    EXPECT_EQ(refusal("fantascope: site\nversion: 1\noutputs: []\n"),
+              "site.yaml:3:10: outputs: a list of at least 1 items is needed, here are 0");
+    EXPECT_THAT(readSite("nowhere/site.yaml").error().message(), EndsWith("cannot be read: No such file or directory"));
+}
+
+TEST(Site, names_that_recordings_could_not_be_called_by_are_refused) {
+    EXPECT_EQ(refusalAfter("name: right", "name: ../right"),
+              "site.yaml:11:12: outputs[1].name: '../right' is no name: it may not hold a '/' or begin with a '.'");
+}
+
+// A show that names one of two things of one name would light the wrong one.
+TEST(Site, what_must_differ_is_refused_when_it_is_the_same) {
+    EXPECT_EQ(refusalAfter("name: right", "name: left"),
+              "site.yaml:11:12: outputs[1].name: left is taken by another output; each needs its own");
+    EXPECT_EQ(refusalAfter("number: 7", "number: 1"),
+              "site.yaml:14:14: universes[1].number: 1 is taken by another universe; each needs its own");
+    EXPECT_EQ(refusalAfter("name: lawn", "name: fountain"),
+              "site.yaml:18:12: fixtures[2].name: fountain is taken by another fixture; each needs its own");
+    EXPECT_EQ(refusalAfter("[warm, cold]", "[warm, warm]"),
+              "site.yaml:18:60: fixtures[2].channels[1]: warm is taken by another channel of this fixture; each needs its own");
+    EXPECT_EQ(refusalAfter("name: fog", "name: road-north"),
+              "site.yaml:21:58: relay_bank.relays[1].name: road-north is taken by another relay; each needs its own");
+    EXPECT_EQ(refusalAfter("coil: 0", "coil: 4"),
+              "site.yaml:21:69: relay_bank.relays[1].coil: 4 is taken by another relay; each needs its own");
+    EXPECT_EQ(refusalAfter("blackout: 3", "blackout: 1"),
+              "site.yaml:24:30: cue_controller.buttons.blackout: 1 is taken by another button; each needs its own");
+}
+
+TEST(Site, fixtures_stay_in_their_universe_and_off_each_other) {
+    EXPECT_EQ(refusalAfter("address: 1, channels: [intensity]", "address: 511, channels: [intensity]"),
+              "site.yaml:17:5: fixtures[1]: 'sculpture' and 'fountain' overlap at slot 511 of universe 1; move one of them");
+    EXPECT_EQ(refusalAfter("address: 510", "address: 511"),
+              "site.yaml:17:5: fixtures[1]: 'fountain' would reach slot 513, a universe ends at 512; move its address");
+    EXPECT_EQ(refusalAfter("universe: 7, address", "universe: 8, address"),
+              "site.yaml:18:28: fixtures[2].universe: universe 8 is not declared; add it under 'universes'");
+}
+
+TEST(Site, corners_that_make_no_picture_are_refused) {
+    EXPECT_EQ(
+        refusalAfter("[[10, 0], [640, 20], [630, 360], [0, 350]]", "[[10, 0], [640, 20], [0, 350], [630, 360]]"),
+        "site.yaml:8:14: outputs[0].corners: the corners are crossed or folded inwards; go round from the top left: top-right, "
+        "bottom-right, bottom-left");
+    EXPECT_EQ(refusalAfter("[[10, 0], [640, 20], [630, 360], [0, 350]]", "[[10, 0], [640, 20], [630, 360]]"),
+              "site.yaml:8:14: outputs[0].corners: a list of exactly 4 items is needed, here are 3");
+}
+
+TEST(Site, a_surface_faces_its_projector) {
+    EXPECT_EQ(
+        refusalAfter("normal: [0, 0, 0.5]", "normal: [0, 0, -1]"),
+        "site.yaml:4:5: outputs[0]: the projector stands behind its surface; turn the surface's normal towards the projector");
+    EXPECT_EQ(refusalAfter("normal: [0, 0, 0.5]", "normal: [0, 0, 0]"),
+              "site.yaml:10:14: outputs[0].surface: the normal has no length; give the direction that the surface faces");
+}
+
+// A projector that hangs from a mast and looks straight down has no top of its own.
+TEST(Site, looking_straight_down_needs_up) {
+    const std::string_view aim = "position: [0, 4, 9], look_at: [0, 1, 0]";
+    const std::string_view surface = "normal: [0, 0, 0.5]";
+    const std::string flat = replaced(std::string(kSite), surface, "normal: [0, 1, 0]");
+    EXPECT_EQ(refusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0]")),
+              "site.yaml:9:16: outputs[0].projector: looks along its own up direction; give another 'up'");
+    EXPECT_EQ(refusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0], up: [0, 0, -1]")), "accepted");
+    EXPECT_EQ(refusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0], up: [0, 0, 0]")),
+              "site.yaml:9:16: outputs[0].projector: looks along its own up direction; give another 'up'");
+}
+
+}  // namespace
+}  // namespace fantascope::show
