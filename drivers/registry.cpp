@@ -22,7 +22,7 @@ struct Driver {
 };
 
 // Every driver of the project.
-constexpr Driver<decltype(openDisplay)> kDisplays[] = {{"glfw", &GlfwDisplay::open}, {"headless", &HeadlessDisplay::open}};
+constexpr Driver<decltype(openDisplay)> kDisplays[] = {{"headless", &HeadlessDisplay::open}, {"glfw", &GlfwDisplay::open}};
 constexpr Driver<decltype(openDmxPort)> kDmxPorts[] = {{"simulated", &SimulatedDmxPort::open}};
 constexpr Driver<decltype(openDmxSource)> kDmxSources[] = {{"simulated", &SimulatedDmxSource::open}};
 constexpr Driver<decltype(openRelayBank)> kRelayBanks[] = {{"simulated", &SimulatedRelayBank::open}};

@@ -2,66 +2,80 @@
 
 #include "drivers/display/srgb_framebuffer.h"
 
-#include "core/check.h"
-
-#include <epoxy/egl.h>
 #include <epoxy/gl.h>
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-#define GLFW_INCLUDE_NONE
-#define GLFW_EXPOSE_NATIVE_EGL
-#include <GLFW/glfw3.h>
-#include <GLFW/glfw3native.h>
 
-#include <algorithm>
-#include <span>
+#define GLFW_INCLUDE_NONE  // epoxy brings OpenGL
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <cmath>
 #include <utility>
 #include <vector>
 
 namespace fantascope::drivers {
 namespace {
 
-constexpr Time kFirstRetry = std::chrono::seconds(1), kLastRetry = std::chrono::seconds(30);
+constexpr const char* kDriver = "glfw";
+constexpr Time kRetry = std::chrono::seconds(1);
+// A swap that takes more than this part of a period waited for a refresh; one that takes less only copied.
+constexpr double kWaitOfSwap = 0.25;
 
 // What GLFW says of the call that failed last.
-std::string glfwReason() {
-    const char* reason = nullptr;
-    glfwGetError(&reason);
-    return reason != nullptr ? reason : "no reason given";
+std::string whyGlfwFailed() {
+    const char* why = nullptr;
+    glfwGetError(&why);
+    return why != nullptr ? why : "unknown reason";
 }
 
-std::span<GLFWmonitor*> monitors() {
+// A monitor, and the mode in which it shows a picture pixel by pixel.
+struct Screen {
+    GLFWmonitor* monitor;
+    GLFWvidmode mode;
+};
+
+// Of the monitor's modes of the asked size the one nearest to the asked rate. Error: no such monitor (lists those there are), or
+// it has no mode of that size.
+Result<Screen> screenNamed(const std::string& name, const DisplayRequest& request) {
     int count = 0;
-    GLFWmonitor** all = glfwGetMonitors(&count);
-    return {all, static_cast<std::size_t>(count)};
+    GLFWmonitor** const monitors = glfwGetMonitors(&count);
+    std::vector<std::string> names;
+    for (int i = 0; i < count; ++i) {
+        names.emplace_back(glfwGetMonitorName(monitors[i]));
+        if (names.back() != name) continue;
+
+        int modeCount = 0;
+        const GLFWvidmode* const modes = glfwGetVideoModes(monitors[i], &modeCount);
+        const GLFWvidmode* best = nullptr;
+        const auto misses = [&](const GLFWvidmode& mode) { return std::abs(mode.refreshRate - request.refreshRate); };
+        for (const GLFWvidmode* mode = modes; mode != modes + modeCount; ++mode)
+            if (glm::ivec2(mode->width, mode->height) == request.size && (best == nullptr || misses(*mode) < misses(*best)))
+                best = mode;
+        if (best != nullptr) return Screen{monitors[i], *best};
+        return Error(fmt::format("monitor '{}' has no mode of {} x {} pixels; give the output a size that it has", name,
+                                 request.size.x, request.size.y));
+    }
+    return Error(
+        fmt::format("there is no monitor '{}' (there is: {}); connect it and switch it on", name, fmt::join(names, ", ")));
 }
 
 }  // namespace
 
-// GLFW between its first window and its last.
-class GlfwDisplay::Session {
+// The process's use of GLFW, for as long as a display needs it. Thread: the main thread.
+class GlfwDisplay::Glfw {
 public:
-    // Error: there is no window system.
-    static Result<std::shared_ptr<Session>> shared() {
-        static std::weak_ptr<Session> open;
-        if (auto session = open.lock()) {
-            FANTASCOPE_CHECK(session->thread_ == std::this_thread::get_id(), "all windows belong to one thread");
-            return session;
-        }
-        if (!glfwInit())
-            return Error(fmt::format("no window system: {}; start an X server and set DISPLAY, or use the headless display",
-                                     glfwReason()));
-        auto session = std::make_shared<Session>();
-        open = session;
-        return session;
+    // Error: there is no X server.
+    static Result<std::shared_ptr<Glfw>> shared() {
+        static std::weak_ptr<Glfw> open;
+        if (auto glfw = open.lock()) return glfw;
+        if (!glfwInit()) return Error(fmt::format("{}; set DISPLAY, or start an X server", whyGlfwFailed()));
+        auto glfw = std::make_shared<Glfw>();
+        open = glfw;
+        return glfw;
     }
-    Session() = default;
-    ~Session() { glfwTerminate(); }
-    Session(const Session&) = delete;
-    Session& operator=(const Session&) = delete;
-
-private:
-    std::thread::id thread_ = std::this_thread::get_id();
+    Glfw() = default;
+    ~Glfw() { glfwTerminate(); }
+    Glfw(const Glfw&) = delete;
+    Glfw& operator=(const Glfw&) = delete;
 };
 
 Result<std::unique_ptr<DisplaySink>> GlfwDisplay::open(const ConfigNode& options, const DisplayRequest& request,
@@ -71,187 +85,146 @@ Result<std::unique_ptr<DisplaySink>> GlfwDisplay::open(const ConfigNode& options
     fields.text("driver", driver);
     fields.optional().text("monitor", monitor);
     TRY(fields.finish());
+
     std::unique_ptr<GlfwDisplay> sink(new GlfwDisplay(request, around, std::move(monitor)));
-    (void)sink->makeCurrent();  // a missing screen is no error yet; the status tells
+    (void)sink->beThere();  // a missing device is no error: its status tells of it
     return std::unique_ptr<DisplaySink>(std::move(sink));
 }
 
 GlfwDisplay::GlfwDisplay(const DisplayRequest& request, const Surroundings& around, std::string monitor)
     : request_(request),
-      monitorName_(std::move(monitor)),
+      monitor_(std::move(monitor)),
       clock_(around.clock),
-      retryAfter_(kFirstRetry),
+      cable_(request, around),
       refreshes_(request.refreshRate),
-      status_{request.name, "glfw", DeviceState::Starting, LossAction::Dark, "", 0} {
-    if (around.world != nullptr) plug_.emplace(*around.world, request.name, LossAction::Dark);
-}
+      retryAt_(around.clock.now()) {}
 
 GlfwDisplay::~GlfwDisplay() {
     if (window_ != nullptr) glfwDestroyWindow(window_);
 }
 
 DeviceStatus GlfwDisplay::status() const {
-    const std::unique_lock lock(statusMutex_);
-    DeviceStatus status = status_;
-    if (!plug_) return status;
-    const DeviceStatus plug = plug_->status();
-    status.losses += plug.losses;
-    if (plug.state != DeviceState::Running) {
-        status.state = plug.state;
-        status.detail = plug.detail;
+    DeviceStatus status = cable_.status(kDriver);
+    const std::lock_guard lock(mutex_);
+    status.losses += losses_;
+    if (status.state == DeviceState::Running && !absence_.empty()) {
+        status.state = DeviceState::Absent;
+        status.detail = absence_;
     }
     return status;
 }
 
 std::int64_t GlfwDisplay::nextRefresh() const { return refreshes_.running(clock_.now()) + 1; }
 
-Result<void> GlfwDisplay::makeCurrent() {
-    FANTASCOPE_CHECK(thread_ == std::this_thread::get_id(), "a window belongs to the thread that opened it");
-    if (plug_ && !plug_->in()) {
-        hide();
-        return plug_->absent();
-    }
-    const Result<void> appeared = appear();
-    {
-        const std::lock_guard lock(statusMutex_);
-        if (!appeared && status_.state == DeviceState::Running) ++status_.losses;
-        status_.state = appeared ? DeviceState::Running : DeviceState::Absent;
-        if (appeared)
-            status_.detail.clear();
-        else
-            status_.detail = appeared.error().message();
-    }
-    if (!appeared) return appeared.error().in(request_.name + " is absent");
-    // GLFW knows its own contexts alone; a headless display on this thread makes others current.
-    if (eglGetCurrentContext() != glfwGetEGLContext(window_)) glfwMakeContextCurrent(window_);
-    return {};
-}
-
 Result<void> GlfwDisplay::appear() {
-    if (window_ == nullptr) TRY(openWindow());
-    glfwPollEvents();
-    if (glfwWindowShouldClose(window_)) {
-        glfwSetWindowShouldClose(window_, GLFW_FALSE);
-        reopenAt_ = clock_.now() + kReopenAfter;
+    if (!glfw_) glfw_ = TRY(Glfw::shared());
+    glfwPollEvents();  // monitors come and go by events
+    Screen screen{nullptr, {}};
+    if (!monitor_.empty()) screen = TRY(screenNamed(monitor_, request_));
+    if (window_ != nullptr) {
+        glfwSetWindowMonitor(window_, screen.monitor, 0, 0, request_.size.x, request_.size.y, screen.mode.refreshRate);
+        return {};
     }
-    if (clock_.now() < reopenAt_) {
-        hide();
-        return Error(fmt::format("its window was closed; it opens again after {} s", seconds(kReopenAfter)));
-    }
-    const Result<GLFWmonitor*> monitor = wantedMonitor();
-    if (!monitor) {
-        hide();
-        return monitor.error();
-    }
-    if (!glfwGetWindowAttrib(window_, GLFW_VISIBLE) || glfwGetWindowMonitor(window_) != *monitor) show(*monitor);
-    return {};
-}
 
-Result<void> GlfwDisplay::openWindow() {
-    if (clock_.now() < retryAt_) return Error(status().detail);  // it was refused lately; the reason stands
-    retryAt_ = clock_.now() + retryAfter_;
-    retryAfter_ = std::min(2 * retryAfter_, kLastRetry);
-
-    if (!session_) session_ = TRY(Session::shared());
     glfwDefaultWindowHints();
-    glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);  // GLX cannot share a thread with headless displays
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_DEPTH_BITS, 0);  // drawing goes to framebuffer_; the window only gets copies
-    glfwWindowHint(GLFW_STENCIL_BITS, 0);
-    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+    // As in the headless display: contexts of one kind can take turns on a thread.
+    glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
     glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
-    glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);  // a projector stays lit when another window is worked in
-    GLFWwindow* window = glfwCreateWindow(request_.size.x, request_.size.y, request_.name.c_str(), nullptr, nullptr);
-    if (window == nullptr)
-        return Error(fmt::format("no window with OpenGL 4.5 core: {}; update the graphics driver", glfwReason()));
-    glfwMakeContextCurrent(window);
-    const Result<unsigned> framebuffer = makeSrgbFramebuffer(request_.size);
+    glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);  // an output stays up while somebody works at another window
+    if (screen.mode.refreshRate > 0) glfwWindowHint(GLFW_REFRESH_RATE, screen.mode.refreshRate);
+    window_ = glfwCreateWindow(request_.size.x, request_.size.y, request_.name.c_str(), screen.monitor, nullptr);
+    if (window_ == nullptr)
+        return Error(
+            fmt::format("no window with OpenGL 4.5: {}; update the graphics driver (in software: Debian's package "
+                        "libgl1-mesa-dri)",
+                        whyGlfwFailed()));
+    if (screen.monitor != nullptr) glfwSetInputMode(window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+    // GLFW knows whole numbers of Hz: what was asked is nearer to the truth than its rounding (59.94 and 60).
+    if (screen.mode.refreshRate > 0 && std::abs(screen.mode.refreshRate - request_.refreshRate) >= 1)
+        refreshes_ = RefreshTrain(screen.mode.refreshRate);
+
+    glfwMakeContextCurrent(window_);
+    const auto framebuffer = makeSrgbFramebuffer(request_.size);
     if (!framebuffer) {
-        glfwDestroyWindow(window);
+        glfwDestroyWindow(std::exchange(window_, nullptr));
         return framebuffer.error();
     }
     framebuffer_ = *framebuffer;
-    window_ = window;
     return {};
 }
 
-Result<GLFWmonitor*> GlfwDisplay::wantedMonitor() const {
-    if (monitorName_.empty()) return nullptr;
-    for (GLFWmonitor* monitor : monitors()) {
-        if (glfwGetMonitorName(monitor) != monitorName_) continue;
-        int count = 0;
-        const GLFWvidmode* modes = glfwGetVideoModes(monitor, &count);
-        const bool fits = std::any_of(
-            modes, modes + count, [&](const GLFWvidmode& mode) { return glm::ivec2(mode.width, mode.height) == request_.size; });
-        if (!fits)
-            return Error(fmt::format("monitor '{}' cannot show {} x {} pixels; give the output a size that it can", monitorName_,
-                                     request_.size.x, request_.size.y));
-        return monitor;
-    }
-    std::vector<std::string> names;
-    for (GLFWmonitor* monitor : monitors()) names.emplace_back(glfwGetMonitorName(monitor));
-    return Error(fmt::format("monitor '{}' is not connected; connected: {}", monitorName_, fmt::join(names, ", ")));
+std::string GlfwDisplay::lossOfWindow() const {
+    if (glfwWindowShouldClose(window_)) return "its window was closed; start Fantascope again to show it";
+    // GLFW takes a window off a monitor that vanishes.
+    if (!monitor_.empty() && glfwGetWindowMonitor(window_) == nullptr)
+        return fmt::format("monitor '{}' vanished; connect it and switch it on", monitor_);
+    return "";
 }
 
-void GlfwDisplay::show(GLFWmonitor* monitor) {
-    if (monitor != nullptr) {
-        glfwSetWindowMonitor(window_, monitor, 0, 0, request_.size.x, request_.size.y,
-                             static_cast<int>(request_.refreshRate + 0.5));
-        glfwSetInputMode(window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+void GlfwDisplay::setAbsence(const std::string& why) {
+    const std::lock_guard lock(mutex_);
+    if (absence_.empty() && !why.empty()) ++losses_;
+    absence_ = why;
+}
+
+Result<void> GlfwDisplay::beThere() {
+    const Time now = clock_.now();
+    const bool closed = window_ != nullptr && glfwWindowShouldClose(window_);
+    if (absence_.empty()) {
+        setAbsence(lossOfWindow());
+        if (!absence_.empty()) {
+            glfwHideWindow(window_);
+            retryAt_ = now + kRetry;
+        }
+    } else if (!closed && now >= retryAt_) {
+        retryAt_ = now + kRetry;
+        const auto appeared = appear();
+        setAbsence(appeared ? "" : appeared.error().message());
     }
-    glfwShowWindow(window_);
+    if (!absence_.empty()) return Error(fmt::format("{} is absent: {}", request_.name, absence_));
+    return {};
+}
+
+Result<void> GlfwDisplay::makeCurrent() {
+    TRY(cable_.check());
+    TRY(beThere());
+    glfwGetError(nullptr);  // forgets older ones
     glfwMakeContextCurrent(window_);
-    GLFWmonitor* const screen = monitor != nullptr ? monitor : glfwGetPrimaryMonitor();
-    const GLFWvidmode* mode = screen != nullptr ? glfwGetVideoMode(screen) : nullptr;
-    swapWaits_ = mode != nullptr && mode->refreshRate > 0 && swapWaits(mode->refreshRate);
-    refreshes_ = RefreshTrain(swapWaits_ ? mode->refreshRate : request_.refreshRate);
+    const char* why = nullptr;
+    if (glfwGetError(&why) != GLFW_NO_ERROR)
+        return Error(fmt::format("{}: its OpenGL context cannot be used: {}; use one render thread", request_.name, why));
+    return {};
 }
 
-void GlfwDisplay::hide() {
-    if (window_ == nullptr || !glfwGetWindowAttrib(window_, GLFW_VISIBLE)) return;
-    // GLFW hides no window that fills a monitor.
-    if (glfwGetWindowMonitor(window_) != nullptr)
-        glfwSetWindowMonitor(window_, nullptr, 0, 0, request_.size.x, request_.size.y, 0);
-    glfwHideWindow(window_);
-}
-
-bool GlfwDisplay::swapWaits(double hertz) {
-    constexpr int kSwaps = 3;
-    swap(1);  // the first may find nothing to wait for
-    glFinish();
-    const Time start = clock_.now();
-    for (int i = 0; i < kSwaps; ++i) {
-        swap(1);
-        glFinish();
-    }
-    return clock_.now() - start >= tickTime(kSwaps, 2 * hertz);  // at least half a period each
-}
-
-void GlfwDisplay::swap(int interval) {
-    if (swapInterval_ != interval) glfwSwapInterval(swapInterval_ = interval);
-    glfwSwapBuffers(window_);
+void GlfwDisplay::setSwapInterval(int refreshes) {
+    if (std::exchange(swapInterval_, refreshes) != refreshes) glfwSwapInterval(refreshes);
 }
 
 Result<Shown> GlfwDisplay::present(bool paced) {
     TRY(makeCurrent());
-    // A copy of stored values: nothing is decoded or encoded on the way.
+    // With conversion off the stored values arrive as they are, whatever the window says of its own colours.
+    const bool converting = glIsEnabled(GL_FRAMEBUFFER_SRGB);
     glDisable(GL_FRAMEBUFFER_SRGB);
-    glBlitNamedFramebuffer(framebuffer_, 0, 0, 0, request_.size.x, request_.size.y, 0, 0, request_.size.x, request_.size.y,
-                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    const auto [width, height] = std::pair(request_.size.x, request_.size.y);
+    glBlitNamedFramebuffer(framebuffer_, 0, 0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    if (converting) glEnable(GL_FRAMEBUFFER_SRGB);
+    glFinish();  // now only the swap itself can wait
+
+    setSwapInterval(paced ? 1 : 0);
+    const Time before = clock_.now();
     Shown shown;
-    if (swapWaits_ && paced) {
-        swap(1);
-        glFinish();  // returns when the swap is done, not when it is queued
-        shown.refresh = refreshes_.seen(clock_.now());
-    } else {
-        glFinish();
-        shown.refresh = refreshes_.running(clock_.now()) + (paced ? 1 : 0);
-        if (paced) clock_.sleepUntil(refreshes_.timeOf(shown.refresh));
-        swap(0);
-    }
-    shown.at = refreshes_.timeOf(shown.refresh);
+    shown.refresh = paced ? nextRefresh() : refreshes_.running(before);
+    glfwSwapBuffers(window_);
+    glFinish();
+    const Time after = clock_.now();
+    glfwPollEvents();
+
+    if (paced && seconds(after - before) * refreshes_.hertz() > kWaitOfSwap) shown.refresh = refreshes_.seen(after);
+    shown.at = refreshTime(shown.refresh);
+    if (paced) clock_.sleepUntil(shown.at);
     return shown;
 }
 

@@ -102,28 +102,26 @@ Result<std::unique_ptr<DisplaySink>> HeadlessDisplay::open(const ConfigNode& opt
 
 HeadlessDisplay::HeadlessDisplay(const DisplayRequest& request, const Surroundings& around, std::shared_ptr<Egl> egl,
                                  void* context)
-    : request_(request), clock_(around.clock), refreshes_(request.refreshRate), egl_(std::move(egl)), context_(context) {
-    if (around.world != nullptr) plug_.emplace(*around.world, request.name, LossAction::Dark);
-}
+    : request_(request),
+      clock_(around.clock),
+      refreshes_(request.refreshRate),
+      cable_(request, around),
+      egl_(std::move(egl)),
+      context_(context) {}
 
 HeadlessDisplay::~HeadlessDisplay() {
     if (eglGetCurrentContext() == context_) eglMakeCurrent(egl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(egl_->display, context_);
 }
 
-DeviceStatus HeadlessDisplay::status() const {
-    if (!plug_) return {request_.name, kDriver, DeviceState::Running, LossAction::Dark, "", 0};
-    DeviceStatus status = plug_->status();
-    status.driver = kDriver;
-    return status;
-}
+DeviceStatus HeadlessDisplay::status() const { return cable_.status(kDriver); }
 
 std::int64_t HeadlessDisplay::nextRefresh() const { return refreshes_.running(clock_.now()) + 1; }
 
 Time HeadlessDisplay::refreshTime(std::int64_t number) const { return refreshes_.timeOf(number); }
 
 Result<void> HeadlessDisplay::makeCurrent() {
-    if (plug_ && !plug_->in()) return plug_->absent();
+    TRY(cable_.check());
     // Asking EGL for the context that is current already would make it flush.
     if (eglGetCurrentContext() == context_) return {};
     if (!eglMakeCurrent(egl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))

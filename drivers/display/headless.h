@@ -1,7 +1,7 @@
 #pragma once
 
+#include "drivers/display/cable.h"
 #include "drivers/display/refresh_train.h"
-#include "drivers/site/plug.h"
 #include "drivers/surroundings.h"
 
 #include "device/display_sink.h"
@@ -9,7 +9,6 @@
 #include "core/config.h"
 
 #include <memory>
-#include <optional>
 
 namespace fantascope::drivers {
 
@@ -41,7 +40,7 @@ private:
     DisplayRequest request_;
     Clock& clock_;
     RefreshTrain refreshes_;
-    std::optional<site::Plug> plug_;  // none where nothing is simulated: such a display is never lost
+    Cable cable_;
     std::shared_ptr<Egl> egl_;
     void* context_;  // EGLContext
     unsigned framebuffer_ = 0;

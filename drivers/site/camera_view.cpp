@@ -15,6 +15,8 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr float kSkyDistance = 60;  // metres of air before the sky: what fog hides of it
 
+constexpr double kGrazing = 1e-3;  // pixels on a square metre: a surface seen from its very edge
+
 // The share of light that is left after a way through fog (Beer and Lambert's law).
 float transmitted(double fog, float path) { return fog > 0 ? std::exp(-static_cast<float>(fog) * path) : 1.0f; }
 
@@ -42,12 +44,8 @@ CameraView::CameraView(const Scene& scene, const vision::CameraModel& camera, gl
                 }
                 const glm::vec3 response = hit->reflectance * (kShare / static_cast<float>(kPi));
                 steady += glm::vec4(response * glm::vec3(ambient), kShare * hit->distance);
-                // A pixel's solid angle shrinks with the cube of its angle to the axis; a slanted surface fills it with more of
-                // itself.
-                const double toAxis = glm::dot(ray.direction, camera.pose.worldFromLocal[2]);
-                const double toNormal = std::max(1e-3, -glm::dot(ray.direction, glm::dvec3(hit->normal)));
-                const double solidAngle = kShare * std::pow(toAxis, 3) / (camera.focal * camera.focal);
-                const auto footprint = static_cast<float>(solidAngle * hit->distance * hit->distance / toNormal);
+                const double pixelsPerArea = std::max(kGrazing, camera.pixelsPerArea(hit->point, hit->normal));
+                const auto footprint = static_cast<float>(kShare / pixelsPerArea);
                 samples_.push_back({pixel, hit->distance, footprint, hit->point, hit->normal, response});
             }
 }
@@ -106,17 +104,13 @@ void CameraView::moveProjector(std::size_t index, const vision::CameraModel& mod
     for (const Sample& sample : samples_) {
         const auto pixel = model.pixelFromWorld(sample.point);
         if (!pixel || !model.inPicture(*pixel)) continue;
-        const glm::dvec3 toLens = model.pose.position - glm::dvec3(sample.point);
-        const double distance = glm::length(toLens), depth = -glm::dot(toLens, model.pose.worldFromLocal[2]);
-        const double cosine = glm::dot(glm::dvec3(sample.normal), toLens) / distance;
-        if (cosine <= 0 || scene_.blocked(sample.point, model.pose.position)) continue;
-        // On a plane at `depth` that the lens faces squarely a square metre holds (focal / depth)^2 pixels, wherever it lies; on
-        // this surface, which is slanted to the pixel's ray and that ray to the axis, so many:
-        const double pixelsPerArea = std::pow(model.focal / depth, 2) * cosine * distance / depth;
+        const double pixelsPerArea = model.pixelsPerArea(sample.point, sample.normal);
+        if (pixelsPerArea <= 0 || scene_.blocked(sample.point, model.pose.position)) continue;
         const double illuminance = lumensPerPixel * pixelsPerArea;
-        projector.taps.push_back({sample.pixel, ProjectedLight::levelFor(std::sqrt(sample.footprint * pixelsPerArea)), *pixel,
-                                  sample.response * static_cast<float>(illuminance),
-                                  static_cast<float>(distance) + sample.distance});
+        const auto path = static_cast<float>(glm::distance(model.pose.position, glm::dvec3(sample.point))) + sample.distance;
+        projector.taps.push_back({sample.pixel,
+                                  ProjectedLight::placeOf(model.size, *pixel, std::sqrt(sample.footprint * pixelsPerArea)),
+                                  sample.response * static_cast<float>(illuminance), path});
         projector.meanIlluminance += static_cast<float>(illuminance / static_cast<double>(samples_.size()));
     }
 }
@@ -151,7 +145,7 @@ void CameraView::render(std::span<const glm::vec3> levels, std::span<const Proje
     for (std::size_t i = 0; i < projectors_.size(); ++i) {
         if (frames[i].dark()) continue;
         for (const Tap& tap : projectors_[i].taps)
-            out[tap.pixel] += tap.weight * glm::vec3(frames[i].at(tap.level, tap.at)) * transmitted(fog, tap.path);
+            out[tap.pixel] += tap.weight * glm::vec3(frames[i].at(tap.place)) * transmitted(fog, tap.path);
     }
 }
 

@@ -38,8 +38,7 @@ struct Lamp {
 // beforehand (direct light on matt surfaces, with shadows); a picture is then one pass over those weights. Thread-bound.
 class CameraView {
 public:
-    // `scene` outlives the view. `ambient`: lux on every surface; `sky`: cd/m2 where there is none. Adds nothing else; lamps and
-    // projectors are dark.
+    // `scene` outlives the view. `ambient`: lux on every surface; `sky`: cd/m2 where there is none.
     CameraView(const Scene& scene, const vision::CameraModel& camera, glm::dvec3 ambient, glm::dvec3 sky);
 
     // Lamps count from 0 in the order in which they are added, projectors too.
@@ -76,8 +75,7 @@ private:
     // Where in a projector's frame the light comes from that one sample sees.
     struct Tap {
         std::uint32_t pixel;
-        std::int32_t level;
-        glm::vec2 at;      // projector pixels
+        ProjectedLight::Place place;
         glm::vec3 weight;  // cd/m2 for a white frame
         float path;        // metres from the lens over the surface to the camera
     };

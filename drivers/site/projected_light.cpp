@@ -1,5 +1,7 @@
 #include "drivers/site/projected_light.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,14 +9,18 @@
 namespace fantascope::site {
 namespace {
 
-constexpr int kLevels = 5;  // cells of up to 16 pixels: a camera that sees a whole output in 40 pixels
+constexpr std::size_t kLevels = 5;  // cells of up to 16 pixels: a camera that sees a whole output in 40 pixels
+
+glm::ivec2 halved(glm::ivec2 cells) { return (cells + 1) / 2; }
+bool canBeLookedInto(glm::ivec2 cells) { return std::min(cells.x, cells.y) >= ProjectedLight::kLeastSide; }
 
 }  // namespace
 
 ProjectedLight::ProjectedLight(glm::ivec2 size, double gamma, double blackLevel) : size_(size) {
     for (std::size_t stored = 0; stored < lightOf_.size(); ++stored)
         lightOf_[stored] = static_cast<float>(blackLevel + (1 - blackLevel) * std::pow(static_cast<double>(stored) / 255, gamma));
-    for (int level = 0; level < kLevels; ++level, size = (size + 1) / 2) levels_.emplace_back(size.x, size.y);
+    FANTASCOPE_CHECK(canBeLookedInto(size), "a frame of some pixels each way");
+    for (; levels_.size() < kLevels && canBeLookedInto(size); size = halved(size)) levels_.emplace_back(size.x, size.y);
 }
 
 void ProjectedLight::show(std::shared_ptr<const RgbaImage> frame) {
@@ -40,21 +46,20 @@ void ProjectedLight::show(std::shared_ptr<const RgbaImage> frame) {
     }
 }
 
-int ProjectedLight::levelFor(double footprint) {
-    return std::clamp(static_cast<int>(std::lround(std::log2(std::max(footprint, 1.0)))), 0, kLevels - 1);
-}
-
-glm::vec4 ProjectedLight::at(int level, glm::vec2 pixel) const {
-    const LightImage& cells = levels_[static_cast<std::size_t>(level)];
-    const float scale = 1.0f / static_cast<float>(1 << level);
-    const float x = std::clamp(pixel.x * scale - 0.5f, 0.0f, static_cast<float>(cells.width() - 1));
-    const float y = std::clamp(pixel.y * scale - 0.5f, 0.0f, static_cast<float>(cells.height() - 1));
-    const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
-    const int x1 = std::min(x0 + 1, cells.width() - 1), y1 = std::min(y0 + 1, cells.height() - 1);
-    const float u = x - static_cast<float>(x0), v = y - static_cast<float>(y0);
-    const glm::vec4 top = cells.at(x0, y0) * (1 - u) + cells.at(x1, y0) * u;
-    const glm::vec4 bottom = cells.at(x0, y1) * (1 - u) + cells.at(x1, y1) * u;
-    return top * (1 - v) + bottom * v;
+ProjectedLight::Place ProjectedLight::placeOf(glm::ivec2 size, glm::vec2 pixel, double footprint) {
+    const auto wanted = static_cast<std::size_t>(std::lround(std::log2(std::max(footprint, 1.0))));
+    Place place;
+    while (place.level < std::min(wanted, kLevels - 1) && canBeLookedInto(halved(size))) {
+        size = halved(size);
+        ++place.level;
+    }
+    const glm::vec2 last = size - 1;
+    const glm::vec2 at = glm::clamp(pixel / static_cast<float>(1 << place.level) - 0.5f, glm::vec2(0), last);
+    const glm::vec2 corner = glm::min(glm::floor(at), last - 1.0f);
+    place.corner =
+        static_cast<std::uint32_t>(corner.y) * static_cast<std::uint32_t>(size.x) + static_cast<std::uint32_t>(corner.x);
+    place.share = at - corner;
+    return place;
 }
 
 glm::vec4 ProjectedLight::mean() const {

@@ -14,8 +14,13 @@ namespace fantascope::site {
 // A projector's frame as the light that leaves its lens: linear, 1 is a full white pixel, w unused; averaged over cells of 1, 2,
 // 4 ... pixels, so that a camera pixel that covers many of the projector's sees all of them. Thread-bound.
 class ProjectedLight {
+    using LightImage = Image<glm::vec4>;
+
 public:
-    // light = blackLevel + (1 - blackLevel) stored^gamma. blackLevel 0..1, gamma > 0.
+    // Of the smallest frame: two pixels to lie between.
+    static constexpr int kLeastSide = 2;
+    // light = blackLevel + (1 - blackLevel) stored^gamma. blackLevel 0..1, gamma > 0,
+    // size >= kLeastSide each way.
     ProjectedLight(glm::ivec2 size, double gamma, double blackLevel);
 
     // Takes a new frame, stretched to the projector's own pixels if its size differs; null is no light at all. Does nothing if it
@@ -23,15 +28,27 @@ public:
     void show(std::shared_ptr<const RgbaImage> frame);
     bool dark() const { return frame_ == nullptr; }
 
-    // The finest cells that are at least about `footprint` pixels wide, as an index for at().
-    static int levelFor(double footprint);
-    // Bilinear between cell centres; `pixel` in [0, width] x [0, height]. Not while dark().
-    glm::vec4 at(int level, glm::vec2 pixel) const;
+    // Somewhere in the frame, looked up once and read from every frame.
+    struct Place {
+        std::uint32_t level = 0;   // of cells of 2^level pixels
+        std::uint32_t corner = 0;  // the cell whose centre is next above and left
+        glm::vec2 share{0};        // of the way from there to the next centres right and below
+    };
+    // In frames of `size`, around `pixel` in [0, width] x [0, height], in cells about `footprint` pixels wide.
+    static Place placeOf(glm::ivec2 size, glm::vec2 pixel, double footprint);
+    // Bilinear between cell centres. Not while dark().
+    glm::vec4 at(const Place& place) const {
+        const LightImage& cells = levels_[place.level];
+        const glm::vec4* top = cells.pixels().data() + place.corner;
+        const glm::vec4* bottom = top + cells.width();
+        const glm::vec4 above = top[0] + (top[1] - top[0]) * place.share.x;
+        const glm::vec4 below = bottom[0] + (bottom[1] - bottom[0]) * place.share.x;
+        return above + (below - above) * place.share.y;
+    }
     // Of the whole frame. Not while dark().
     glm::vec4 mean() const;
 
 private:
-    using LightImage = Image<glm::vec4>;
     glm::ivec2 size_;
     std::array<float, 256> lightOf_{};
     std::shared_ptr<const RgbaImage> frame_;

@@ -55,8 +55,8 @@ std::string tell(const Fault& fault, bool begins) {
             return fmt::format("projector {} bumped by {:.3f} m and {:.2f} degrees", fault.device, glm::length(fault.move),
                                glm::length(fault.turn) * 180 / std::numbers::pi);
         case Fault::Kind::Fog:
-            return begins ? fmt::format("fog comes, {} / m within {} s", fault.density, seconds(fault.rise))
-                          : std::string("fog goes");
+            return begins ? fmt::format("fog of {} / m comes within {} s", fault.density, seconds(fault.rise))
+                          : fmt::format("fog clears within {} s", seconds(fault.rise));
     }
     return "";
 }

@@ -51,13 +51,17 @@ struct Happening {
 //
 // Time: everything happens on World's clock, counted from begin(). The same code runs on a thread of its own in real time,
 //     site->begin(clock.now());
-//     while (!stopped) { site->advanceTo(clock.now()); clock.sleepUntil(site->nextEvent()); }
-// and stepped by a manual clock: call advanceTo() after every step.
+//     while (!stopped) {
+//         site->advanceTo(clock.now());
+//         clock.sleepUntil(std::min(site->nextEvent(), clock.now() + 100ms));  // so that `stopped` is seen
+//     }
+// and stepped by a manual clock: call advanceTo() after every step of it.
 // Thread: bound to the site's thread; happenings() may be called from any.
 class SimulatedSite {
 public:
-    // `simulation`: the site file's section of that name, see README.md; meshes and seeds included. `seed` is the noise's.
-    // `world` outlives the site. Error: file, line, column, key.
+    // `simulation`: the site file's section of that name, see README.md; it reads the meshes named there and works out
+    // all light beforehand, which takes about a second. `seed`: of the noise. `world` outlives the site. Error: file, line,
+    // column, key.
     static Result<std::unique_ptr<SimulatedSite>> open(const ConfigNode& simulation, const NominalSite& nominal,
                                                        std::uint64_t seed, World& world);
     ~SimulatedSite();

@@ -17,8 +17,6 @@ constexpr double kFar = 1000;       // metres: the farthest anything stands from
 constexpr double kLongest = 1e6;    // seconds: eleven days
 constexpr double kBrightest = 1e6;  // lux, candela, lumens, cd/m2
 
-glm::vec3 asFloats(glm::dvec3 v) { return v; }
-
 // A flat four-sided sheet from one corner along two edges.
 TriangleMesh sheet(glm::dvec3 corner, glm::dvec3 right, glm::dvec3 up) {
     return {{corner, corner + right, corner + right + up, corner + up}, {{0, 1, 2}, {0, 2, 3}}};
@@ -88,7 +86,7 @@ Result<SceneObject> readObject(const ConfigNode& node) {
     if (rectangle.has_value() + box.has_value() + mesh.has_value() != 1)
         return node.error("exactly one of rectangle, box and mesh is needed");
     object.mesh = std::move(*(rectangle ? rectangle : box ? box : mesh));
-    object.reflectance = asFloats(reflectance);
+    object.reflectance = reflectance;
     return object;
 }
 
@@ -242,6 +240,10 @@ Result<Simulation> readSimulation(const ConfigNode& node, const NominalSite& nom
     fields.optional().read("camera", simulation.camera, readCamera);
     fields.optional().list("faults", simulation.faults, [&](const ConfigNode& value) { return readFault(value, nominal); });
     TRY(fields.finish());
+    for (const NominalSite::Output& output : nominal.outputs)
+        if (const glm::ivec2 size = output.projector.size; std::min(size.x, size.y) < ProjectedLight::kLeastSide)
+            return node.error(fmt::format("output '{}' of {} x {} pixels cannot be simulated, {} each way is the least",
+                                          output.name, size.x, size.y, ProjectedLight::kLeastSide));
     return simulation;
 }
 

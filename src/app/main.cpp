@@ -1,14 +1,15 @@
+#include "app/check_command.h"
 #include "app/command.h"
+#include "app/pattern_command.h"
+#include "app/rehearse_command.h"
 
 #include <fmt/format.h>
-
-#include <initializer_list>
 
 namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-const std::initializer_list<AddCommand> kCommands = {};
+constexpr AddCommand kCommands[] = {addPatternCommand, addRehearseCommand, addRunCommand, addCheckCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

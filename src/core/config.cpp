@@ -8,9 +8,11 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <tuple>
 
 #include "core/clock.h"
 #include "core/file.h"
+#include "core/geometry.h"
 
 namespace fantascope {
 
@@ -190,7 +192,7 @@ void ConfigFields::number(std::string_view key, double& target, double low, doub
 
 void ConfigFields::angle(std::string_view key, double& target, double lowDegrees, double highDegrees) {
     read(key, target, [&](const ConfigNode& node) -> Result<double> {
-        return TRY(node.number(lowDegrees, highDegrees, "degrees")) * std::numbers::pi / 180;
+        return radians(TRY(node.number(lowDegrees, highDegrees, "degrees")));
     });
 }
 
@@ -287,6 +289,21 @@ std::string shortest(double value) {
     char buffer[32];
     const auto [end, failure] = std::to_chars(buffer, buffer + sizeof buffer, value);
     return {buffer, end};
+}
+
+std::string shortestDegrees(double radians) {
+    constexpr int kReach = 4;  // units in the last place; the two conversions together are wrong by fewer
+    // Ends in the number itself, so that the choice does not depend on where the search for it began.
+    const auto rank = [&](double degrees) {
+        return std::tuple(std::abs(degrees * std::numbers::pi / 180 - radians), shortest(degrees).size(), degrees);
+    };
+    double best = radians * 180 / std::numbers::pi, candidate = best;
+    for (int i = 0; i < kReach; ++i) candidate = std::nextafter(candidate, -std::numeric_limits<double>::infinity());
+    for (int i = 0; i <= 2 * kReach; ++i) {
+        if (rank(candidate) < rank(best)) best = candidate;
+        candidate = std::nextafter(candidate, std::numeric_limits<double>::infinity());
+    }
+    return shortest(best);
 }
 
 std::string quoted(std::string_view text) {

@@ -127,6 +127,9 @@ std::string nearestName(std::string_view word, const std::vector<std::string>& k
 
 // For writing YAML: the shortest decimal that reads back as the same double, the same for any locale.
 std::string shortest(double value);
+// Degrees for ConfigFields::angle: of those doubles that it reads as nearest to `radians` the shortest decimal. An angle that was once
+// read comes back exactly, with the same text; of others one in ten or so by one unit in its last place, as no degrees stand for it.
+std::string shortestDegrees(double radians);
 // Quoted where YAML needs it.
 std::string quoted(std::string_view text);
 

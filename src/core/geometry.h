@@ -4,12 +4,16 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <numbers>
 #include <optional>
 #include <string>
 
 #include "core/result.h"
 
 namespace fantascope {
+
+// Angles are degrees in files and radians inside. One expression for all of them: a default equals, to the bit, what a file gives.
+constexpr double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 // A projective map of the plane, named target-from-source where one is held: projectorFromCanvas(point on the canvas) is a projector pixel.
 class Homography {

@@ -73,7 +73,7 @@ private:
 // Nothing that owns memory may come before it in its expression, as in f(name, TRY(...)) or {name, TRY(...)}: g++ would not destroy it.
 #define TRY(expression)                                              \
     ({                                                               \
-        auto&& tried_ = (expression);                                \
+        auto tried_ = (expression);                                  \
         if (!tried_.has_value()) return ::fantascope::Error(tried_.error()); \
         std::move(tried_).value();                                   \
     })

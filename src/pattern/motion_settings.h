@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include "core/geometry.h"
 
 namespace fantascope::pattern {
 
@@ -24,8 +24,8 @@ struct MotionSettings {
     AxisMotion groupMajor{2, 0.25, 0.35, 0.05, 0.02};   // along `direction`
     AxisMotion groupMinor{2, 0.25, 0.35, 0.015, 0.006};  // across it
     AxisMotion localTranslation{1, 1.0, 0.2, 0.01, 0.004};  // each of two axes
-    AxisMotion localTilt{1, 0.8, 0.2, 0.6, 0.35};           // about x and y
-    AxisMotion localTurn{1, 0.8, 0.2, 0.4, 0.25};           // about z
+    AxisMotion localTilt{1, 0.8, 0.2, radians(35), radians(20)};  // about x and y
+    AxisMotion localTurn{1, 0.8, 0.2, radians(23), radians(14)};  // about z
 };
 
 }  // namespace fantascope::pattern

@@ -4,6 +4,12 @@
 
 namespace fantascope::pattern {
 
+std::size_t ShapePattern::triangleCount() const {
+    std::size_t count = 0;
+    for (const ShapeInstance& instance : instances) count += shapes[instance.shape].mesh.triangles.size();
+    return count;
+}
+
 glm::dmat3 canvasFromShape(const InstancePose& pose) {
     const double s = pose.size;
     return glm::dmat3(s, 0, 0, 0, -s, 0, 0, 0, s) * rotationXyz(pose.rotation);

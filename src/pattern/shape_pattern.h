@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/mesh.h"
@@ -18,6 +19,7 @@ namespace fantascope::pattern {
 struct ElementalShape {
     std::string name;  // "triangle", or the file as the pattern names it: "sculpture.obj"
     TriangleMesh mesh;
+    std::filesystem::path file = {};  // that the mesh came from, absolute or relative to the working directory; empty: built in
 };
 
 // One copy of an elemental shape in the picture plane.
@@ -40,13 +42,14 @@ struct InstancePose {
 
 // How a guide's stored values become linear light.
 enum class GuideTransfer { Srgb, Linear };
+constexpr std::string_view name(GuideTransfer transfer) { return transfer == GuideTransfer::Srgb ? "srgb" : "linear"; }  // in files and reports
 
 // A shape pattern: everything that is needed to draw it at any time. Value type; thread-safe to read.
 struct ShapePattern {
     std::filesystem::path guide;  // the drawing it reads as, absolute or relative to the working directory; for comparisons
     GuideTransfer guideTransfer = GuideTransfer::Srgb;
     int width = 0, height = 0;  // pixels in which it was compared with the guide; the canvas's aspect is width / height
-    std::uint64_t seed = 0;
+    std::uint64_t seed = 0;     // below 2^63 in files
     std::uint32_t groups = 1;
     std::vector<ElementalShape> shapes;
     std::vector<ShapeInstance> instances;
@@ -59,10 +62,12 @@ struct ShapePattern {
 // Rotation, size and the turned-over y of an orthographic view: canvas point = centre + (m * v).xy, and (m * v).z grows towards the viewer.
 glm::dmat3 canvasFromShape(const InstancePose& pose);
 
-// *.pattern.yaml, strict; its shape files and its guide stand in the same folder or below it. Error: names file, line, column, key.
+// *.pattern.yaml (docs/pattern-format.md), strict; its shape files and its guide stand in the same folder or below it. The guide is not
+// looked for: a show plays without. Error: names file, line, column, key.
 Result<ShapePattern> readPattern(const std::filesystem::path& file);
-// Written aside and renamed; the same pattern gives the same bytes, whatever the folder. Shapes and guide must lie in the file's folder
-// or below it (copied there by the caller).
+// Written aside and renamed; the same pattern gives the same bytes, whatever the folder. Reading it gives the same pattern, but for the
+// last bit of some angles (files have degrees); a pattern that was read comes back exactly. Shapes and guide must lie in the file's folder
+// or below it (copied there by the caller). Error: they do not, or readPattern would refuse the file; then nothing is written.
 Result<void> writePattern(const std::filesystem::path& file, const ShapePattern& pattern);
 
 }  // namespace fantascope::pattern

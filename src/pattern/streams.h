@@ -12,6 +12,10 @@ struct Stream {
         GroupMembership = 0x4702,  // + instance id: the draw of its group
         GroupMotion = 0x4703,      // + group, axis
         InstanceMotion = 0x4704,   // + instance id, axis
+        InstanceColour = 0x4705,   // + instance id
+        SearchStart = 0x4706,      // the random pattern that a search begins with
+        SearchCandidate = 0x4707,  // + iteration, slot
+        TypicalViews = 0x4708,     // + shape: the rotations by which a shape's area is measured
     };
 };
 

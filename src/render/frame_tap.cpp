@@ -2,7 +2,7 @@
 
 namespace fantascope::render {
 
-FrameTap::FrameTap(std::size_t output, glm::ivec2 size) : reader_(size) {
+FrameTap::FrameTap(std::size_t output, glm::ivec2 size) {
     newest_.output = output;
     newest_.image = RgbaImage(size.x, size.y);
 }
@@ -12,14 +12,15 @@ LatestValue<ShownFrame>& FrameTap::addReader() {
 }
 
 void FrameTap::capture(unsigned framebuffer, Time showTime) {
-    reader_.start(framebuffer);
+    if (!reader_) reader_.emplace(glm::ivec2(newest_.image.width(), newest_.image.height()));
+    reader_->start(framebuffer);
     captured_ = showTime;
 }
 
 void FrameTap::publish(const Shown& shown) {
     newest_.showTime = captured_;
     newest_.shown = shown;
-    reader_.finish(newest_.image);
+    reader_->finish(newest_.image);
     for (const auto& slot : slots_) {
         slot->writable() = newest_;  // of the same size: copied in place
         slot->publish();

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace fantascope::render {
@@ -30,10 +31,11 @@ struct ShownFrame {
 // A frame: draw; capture(); the display's present(); publish(). The copy runs while the display presents, so that the render
 // thread hardly waits for it. Without a tap nothing is copied. No allocation after readers have been added.
 //
-// Thread: the render thread, with the output's context current in every call and in the destructor; each reader's slot also
+// Thread: the render thread, with the output's context current in capture(), publish() and the destructor; each reader's slot also
 // belongs to one thread of its own (see LatestValue).
 class FrameTap {
 public:
+    // `size`: pixels of the output's display.
     FrameTap(std::size_t output, glm::ivec2 size);
 
     // A slot of the newest frame for one reader; it lives as long as the tap. Call before the first frame.
@@ -48,7 +50,7 @@ public:
     const ShownFrame& newest() const { return newest_; }
 
 private:
-    gpu::PixelReader reader_;
+    std::optional<gpu::PixelReader> reader_;  // made with the first frame, since the display may come later than its readers
     Time captured_{};  // the show time of what reader_ copies
     ShownFrame newest_;
     std::vector<std::unique_ptr<LatestValue<ShownFrame>>> slots_;

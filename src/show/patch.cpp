@@ -21,11 +21,11 @@ void slotsOf(const Site& site, const Look& look, int universe, std::span<std::ui
     }
 }
 
-void coilsOf(const Site& site, const Look& look, std::span<bool> out) {
-    FANTASCOPE_CHECK(look.relays.size() == site.relays.size() && out.size() == site.coilCount(),
-                     "the look and the coils are for this site");
-    std::fill(out.begin(), out.end(), false);
-    for (std::size_t i = 0; i < site.relays.size(); ++i) out[static_cast<std::size_t>(site.relays[i].coil)] = look.relays[i] != 0;
+std::vector<bool> coilsOf(const Site& site, const Look& look) {
+    FANTASCOPE_CHECK(look.relays.size() == site.relays.size(), "the look is for this site");
+    std::vector<bool> states(site.coilCount(), false);
+    for (std::size_t i = 0; i < site.relays.size(); ++i) states[static_cast<std::size_t>(site.relays[i].coil)] = look.relays[i] != 0;
+    return states;
 }
 
 std::vector<bool> safeCoils(const Site& site) {

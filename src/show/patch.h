@@ -14,9 +14,8 @@ namespace fantascope::show {
 // to the nearest; whatever curve the dimmer has is its own. Slots without a fixture are 0.
 void slotsOf(const Site& site, const Look& look, int universe, std::span<std::uint8_t, 512> out);
 
-// Fills the states of the relay bank's coils, out.size() == site.coilCount(), out[0] is coil 0; true is on. Coils without a relay
-// are off.
-void coilsOf(const Site& site, const Look& look, std::span<bool> out);
+// The states of the relay bank's coils, site.coilCount() of them, from coil 0; true is on. Coils without a relay are off.
+std::vector<bool> coilsOf(const Site& site, const Look& look);
 
 // The safe states of the same coils.
 std::vector<bool> safeCoils(const Site& site);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace fantascope::show {
@@ -30,7 +31,7 @@ std::vector<std::string> namesOf(const Range& things) {
     return names;
 }
 
-// The index of `name` among `known`, or why not: "left: no output is called 'lefd' (did you mean 'left'?)".
+// The index of `name` among `known`, or why not: "no output is called 'lefd' (did you mean 'left'?)".
 Result<std::size_t> find(std::string_view name, const std::vector<std::string>& known, std::string_view what) {
     const auto found = std::find(known.begin(), known.end(), name);
     if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
@@ -100,9 +101,9 @@ Result<std::vector<Named<Wish>>> readNamed(const ConfigNode& node, Read read) {
     return wishes;
 }
 
-Result<std::variant<float, NamedLook::ChannelLevels>> readLevels(const ConfigNode& node) {
-    if (!node.isMap()) return std::variant<float, NamedLook::ChannelLevels>(TRY(readLevel(node)));
-    return std::variant<float, NamedLook::ChannelLevels>(TRY(readNamed<float>(node, readLevel)));
+Result<NamedLook::Levels> readLevels(const ConfigNode& node) {
+    if (node.isMap()) return NamedLook::Levels(TRY(readNamed<float>(node, readLevel)));
+    return NamedLook::Levels(TRY(readLevel(node)));
 }
 
 Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, const std::vector<std::string>& sources) {
@@ -112,9 +113,8 @@ Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, cons
     fields.optional().read("outputs", look.outputs, [&](const ConfigNode& map) {
         return readNamed<OutputState>(map, [&](const ConfigNode& layers) { return readLayers(layers, sources); });
     });
-    fields.optional().read("fixtures", look.fixtures, [](const ConfigNode& map) {
-        return readNamed<std::variant<float, NamedLook::ChannelLevels>>(map, readLevels);
-    });
+    fields.optional().read("fixtures", look.fixtures,
+                           [](const ConfigNode& map) { return readNamed<NamedLook::Levels>(map, readLevels); });
     fields.optional().read("relays", look.relays, [](const ConfigNode& map) { return readNamed<bool>(map, readSwitch); });
     TRY(fields.finish());
     return look;
@@ -147,66 +147,43 @@ Result<std::vector<Cue>> readCues(const ConfigNode& node, const std::vector<std:
     return cues;
 }
 
-// Where each fixture's first channel stands in Look::levels.
-std::vector<std::size_t> firstLevels(const Site& site) {
-    std::vector<std::size_t> first;
-    std::size_t next = 0;
-    for (const Fixture& fixture : site.fixtures) {
-        first.push_back(next);
-        next += fixture.channels.size();
-    }
-    return first;
+// Where in the site the thing is that a show calls by name.
+template <class Wish>
+Result<std::size_t> indexOf(const Named<Wish>& wanted, const std::vector<std::string>& known, std::string_view what,
+                            const Site& site) {
+    const auto index = find(wanted.name, known, what);
+    if (!index) return wanted.at.error(fmt::format("{} in {}", index.error().message(), site.file.string()));
+    return *index;
 }
 
-// The names of a site, to look up those of a show in.
-class SiteNames {
-public:
-    explicit SiteNames(const Site& site)
-        : site_(site),
-          outputs_(namesOf(site.outputs)),
-          fixtures_(namesOf(site.fixtures)),
-          relays_(namesOf(site.relays)),
-          firstLevels_(firstLevels(site)) {}
+// What is seen of a look that names nothing.
+Look darkLook(const Site& site) {
+    Look look;
+    look.outputs.resize(site.outputs.size());
+    look.levels.assign(site.channelCount(), 0.0f);
+    for (const Relay& relay : site.relays) look.relays.push_back(relay.safe);
+    return look;
+}
 
-    Look dark() const {
-        Look look;
-        look.outputs.resize(site_.outputs.size());
-        look.levels.assign(site_.channelCount(), 0.0f);
-        for (const Relay& relay : site_.relays) look.relays.push_back(relay.safe);
-        return look;
-    }
-
-    Result<Look> bind(const NamedLook& named) const {
-        Look look = dark();
-        for (const auto& output : named.outputs) look.outputs[TRY(indexOf(output, outputs_, "output"))] = output.wish;
-        for (const auto& relay : named.relays) look.relays[TRY(indexOf(relay, relays_, "relay"))] = relay.wish;
-        for (const auto& wanted : named.fixtures) {
-            const std::size_t index = TRY(indexOf(wanted, fixtures_, "fixture"));
-            const std::vector<std::string>& channels = site_.fixtures[index].channels;
-            const auto levels = look.levels.begin() + static_cast<std::ptrdiff_t>(firstLevels_[index]);
-            if (const float* level = std::get_if<float>(&wanted.wish)) {
-                std::fill_n(levels, channels.size(), *level);
-            } else {
-                for (const Named<float>& channel : std::get<NamedLook::ChannelLevels>(wanted.wish))
-                    levels[static_cast<std::ptrdiff_t>(
-                        TRY(indexOf(channel, channels, fmt::format("channel of '{}'", wanted.name))))] = channel.wish;
-            }
+Result<Look> bindLook(const NamedLook& named, const Site& site) {
+    Look look = darkLook(site);
+    for (const auto& output : named.outputs)
+        look.outputs[TRY(indexOf(output, namesOf(site.outputs), "output", site))] = output.wish;
+    for (const auto& relay : named.relays) look.relays[TRY(indexOf(relay, namesOf(site.relays), "relay", site))] = relay.wish;
+    for (const auto& fixture : named.fixtures) {
+        const std::size_t index = TRY(indexOf(fixture, namesOf(site.fixtures), "fixture", site));
+        const std::vector<std::string>& channels = site.fixtures[index].channels;
+        const std::span<float> levels = std::span(look.levels).subspan(site.firstLevel(index), channels.size());
+        if (const float* all = std::get_if<float>(&fixture.wish)) {
+            std::fill(levels.begin(), levels.end(), *all);
+        } else {
+            const std::string what = fmt::format("channel of '{}'", fixture.name);
+            for (const Named<float>& channel : std::get<NamedLook::ChannelLevels>(fixture.wish))
+                levels[TRY(indexOf(channel, channels, what, site))] = channel.wish;
         }
-        return look;
     }
-
-private:
-    template <class Wish>
-    Result<std::size_t> indexOf(const Named<Wish>& wanted, const std::vector<std::string>& known, std::string_view what) const {
-        const auto index = find(wanted.name, known, what);
-        if (!index) return wanted.at.error(fmt::format("{} in {}", index.error().message(), site_.file.string()));
-        return *index;
-    }
-
-    const Site& site_;
-    std::vector<std::string> outputs_, fixtures_, relays_;
-    std::vector<std::size_t> firstLevels_;
-};
+    return look;
+}
 
 }  // namespace
 
@@ -238,13 +215,12 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder) {
 }
 
 Result<CueList> Show::bind(const Site& site) const {
-    const SiteNames names(site);
     std::vector<Look> bound;
-    for (const NamedLook& look : looks) bound.push_back(TRY(names.bind(look)));
+    for (const NamedLook& look : looks) bound.push_back(TRY(bindLook(look, site)));
 
     CueList list;
     for (const Cue& cue : cues) list.cues.push_back({bound[cue.look], cue.fade, cue.follow});
-    list.dark = names.dark();
+    list.dark = darkLook(site);
     list.goInterval = goInterval;
     list.blackoutFade = blackoutFade;
     return list;

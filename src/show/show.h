@@ -41,10 +41,11 @@ struct Named {
 // A look as its author wrote it. What it does not name is black, at level 0, or in its safe state.
 struct NamedLook {
     using ChannelLevels = std::vector<Named<float>>;
+    using Levels = std::variant<float, ChannelLevels>;  // one for all channels of a fixture, or each by its name
     std::string name;
     std::vector<Named<OutputState>> outputs;
-    std::vector<Named<std::variant<float, ChannelLevels>>> fixtures;  // one level for all channels, or each by its name
-    std::vector<Named<bool>> relays;                                  // true: on
+    std::vector<Named<Levels>> fixtures;
+    std::vector<Named<bool>> relays;  // true: on
 };
 
 // One step of the show.
@@ -65,12 +66,12 @@ struct Show {
     std::vector<NamedLook> looks;
     std::vector<Cue> cues;
 
-    // Reads a show.yaml, or the one in a folder. Strict. Error: file, line, column, key, advice; also for a pattern file that is
-    // not there.
+    // Reads a show.yaml, or the one in a folder. Strict; the files that it names must exist. Error: file, line, column, key,
+    // advice.
     static Result<Show> load(const std::filesystem::path& fileOrFolder);
 
     // Looks every name up in `site`. Error: place in the show file, and what the site has instead. Thread: the one that loaded
-    // the show.
+    // it.
     Result<CueList> bind(const Site& site) const;
 
     // The index of a cue. Error: no cue has this name; says which one was perhaps meant.

@@ -20,7 +20,7 @@ constexpr double kFarthest = 1000;         // metres
 constexpr int kLastUniverse = 63999;       // ANSI E1.31
 constexpr int kLastSlot = 512;             // ANSI E1.11
 constexpr int kLastCoil = 1967;            // one Modbus request writes 1968 coils at most (Modbus 1.1b3, section 6.11)
-constexpr int kLastButton = 255;
+constexpr int kLastButton = 255;           // more than any hand-held device has
 
 // A reader of values that may stand only once among all that share `taken`.
 template <class Value, class Read>
@@ -197,11 +197,13 @@ Homography Output::projectorFromCanvas(double canvasAspect) const {
     return Homography::fromCorners(rectangleCorners(canvasAspect, 1), corners).value();
 }
 
-std::size_t Site::channelCount() const {
-    std::size_t count = 0;
-    for (const Fixture& fixture : fixtures) count += fixture.channels.size();
-    return count;
+std::size_t Site::firstLevel(std::size_t fixture) const {
+    std::size_t channels = 0;
+    for (std::size_t before = 0; before < fixture; ++before) channels += fixtures[before].channels.size();
+    return channels;
 }
+
+std::size_t Site::channelCount() const { return firstLevel(fixtures.size()); }
 
 std::size_t Site::coilCount() const {
     std::size_t count = 0;

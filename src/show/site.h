@@ -91,13 +91,14 @@ struct Site {
     std::optional<NominalCamera> nominalCamera;  // there whenever `camera` is
     std::optional<ConfigNode> simulation;        // the simulated site's own section
 
-    std::size_t channelCount() const;  // of all fixtures: the size of Look::levels
-    std::size_t coilCount() const;     // the highest coil + 1: the size of the relay bank
+    std::size_t firstLevel(std::size_t fixture) const;  // where a fixture's channels begin in Look::levels
+    std::size_t channelCount() const;                   // of all fixtures: the size of Look::levels
+    std::size_t coilCount() const;                      // the highest coil + 1: the size of the relay bank
 };
 
-// Strict: besides types, ranges and unknown keys it refuses two things of one name, fixtures on top of each other or beyond slot
-// 512, a fixture on a universe that is not declared, corners that are folded, a coil or button given twice. Error: file, line,
-// column, key, advice.
+// Strict. Besides types, ranges and unknown keys it refuses two things of one name, coil or button; fixtures on top of each
+// other, beyond slot 512 or on no universe; folded corners; a surface turned from its projector. Error: file, line, column, key,
+// advice.
 Result<Site> readSite(const std::filesystem::path& file);
 
 }  // namespace fantascope::show

@@ -83,6 +83,14 @@ std::optional<glm::dvec2> CameraModel::pixelFromWorld(glm::dvec3 point) const {
     return centre + focal * stretch * ideal;
 }
 
+double CameraModel::pixelsPerArea(glm::dvec3 point, glm::dvec3 normal) const {
+    // A plane at `depth` that faces the camera squarely holds (focal / depth)^2, wherever it lies in the picture; this one is
+    // slanted to the ray, and the ray to the axis: cos(to normal) / cos(to axis), each with the distance cancelled.
+    const glm::dvec3 toEye = pose.position - point;
+    const double depth = -glm::dot(toEye, pose.worldFromLocal[2]);
+    return focal * focal * glm::dot(normal, toEye) / (depth * depth * depth);
+}
+
 bool CameraModel::inPicture(glm::dvec2 pixel) const {
     return pixel.x >= 0 && pixel.y >= 0 && pixel.x <= size.x && pixel.y <= size.y;
 }

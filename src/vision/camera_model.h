@@ -46,6 +46,9 @@ struct CameraModel {
     // Where a point in the world is seen; it may lie outside the picture. Nothing: behind the camera, or beyond the fold of its
     // distortion.
     std::optional<glm::dvec2> pixelFromWorld(glm::dvec3 point) const;
+    // How many of its pixels a square metre of a surface holds there, distortion left aside; `normal` is unit. 0 or less: the
+    // surface turns its back. A projector whose pixels all give the same light makes an illuminance of that many times as much.
+    double pixelsPerArea(glm::dvec3 point, glm::dvec3 normal) const;
     // Whether a pixel position lies in the picture.
     bool inPicture(glm::dvec2 pixel) const;
     // What a pixel position in the picture sees. Exact to 1e-12 focal lengths.

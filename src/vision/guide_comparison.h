@@ -30,7 +30,9 @@ public:
     GuideComparison(const NominalView& view, const GreyImage& wanted);
 
     // z in [0, 1] of one camera frame (stored sRGB values, camera.size pixels), or nothing if the frame shows no picture to
-    // compare: too dark, too flat, or the camera does not see most of the output. Thread: reentrant.
+    // compare: too dark, too flat, or the camera does not see most of the output. Whether the show wants the guide there at this
+    // moment is for the caller to know: any other picture scores badly. Exposure, fades, the colour of the shapes and smooth
+    // light of other lamps hardly matter; where the picture stands does. Thread: reentrant.
     std::optional<double> compare(const RgbaImage& frame) const;
 
 private:

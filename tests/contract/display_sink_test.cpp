@@ -1,7 +1,6 @@
-#include "drivers/virtual_x_server.h"
-
 #include "contract/display_sink_suite.h"
 #include "contract/simulated_rig.h"
+#include "contract/x_server.h"
 
 #include <gmock/gmock.h>
 
@@ -46,8 +45,8 @@ TEST(DisplaySinkContract, is_kept_by_the_headless_display) {
     EXPECT_THAT(violations(displaySinkSuite(), [] { return std::make_unique<DrivenDisplayRig>("headless"); }), IsEmpty());
 }
 
-TEST(DisplaySinkContract, is_kept_by_windows) {
-    const auto server = VirtualXServer::start();
+TEST(DisplaySinkContract, is_kept_by_the_glfw_display) {
+    const auto server = XServer::start();
     ASSERT_TRUE(server) << server.error().message();
     EXPECT_THAT(violations(displaySinkSuite(), [] { return std::make_unique<DrivenDisplayRig>("glfw"); }), IsEmpty());
 }

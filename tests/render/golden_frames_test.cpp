@@ -1,6 +1,6 @@
 // Frames as people will see them, and the same ones from everywhere.
 
-#include "drivers/virtual_x_server.h"
+#include "contract/x_server.h"
 
 #include "render/golden.h"
 #include "render/scene.h"
@@ -54,7 +54,7 @@ TEST(Frames, are_the_same_bytes_in_every_run_and_on_every_number_of_threads) {
 }
 
 TEST(Frames, are_the_same_in_a_window_as_without_a_window_system) {
-    const auto server = VirtualXServer::start();
+    const auto server = XServer::start();
     ASSERT_TRUE(server) << server.error().message();
     const PatternSource source = moving(smallPattern());
     const std::vector<show::LayerState> layers = {{0, 0.7f}, {1, 0.2f}};

@@ -47,12 +47,9 @@ TEST(Patch, levels_are_rounded_to_the_nearest_step) {
 TEST(Patch, relays_go_to_their_coils_and_coils_between_are_off) {
     Look look;
     look.relays = {1, 1};
-    std::array<bool, 4> coils = {false, true, true, false};
-    coilsOf(testSite(), look, coils);
-    EXPECT_THAT(coils, ElementsAre(true, false, false, true));
+    EXPECT_THAT(coilsOf(testSite(), look), ElementsAre(true, false, false, true));
     look.relays = {0, 1};
-    coilsOf(testSite(), look, coils);
-    EXPECT_THAT(coils, ElementsAre(true, false, false, false));
+    EXPECT_THAT(coilsOf(testSite(), look), ElementsAre(true, false, false, false));
     EXPECT_THAT(safeCoils(testSite()), ElementsAre(false, false, false, true));
 }
 

@@ -189,10 +189,10 @@ TEST(Site, looking_straight_down_needs_up) {
     const std::string_view surface = "normal: [0, 0, 0.5]";
     const std::string flat = replaced(std::string(kSite), surface, "normal: [0, 1, 0]");
     EXPECT_EQ(refusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0]")),
-              "site.yaml:9:16: outputs[0].projector: looks along its own up direction; give another 'up'");
+              "site.yaml:9:16: outputs[0].projector: looks along its own up direction, or that has no length; give another 'up'");
     EXPECT_EQ(refusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0], up: [0, 0, -1]")), "accepted");
     EXPECT_EQ(refusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0], up: [0, 0, 0]")),
-              "site.yaml:9:16: outputs[0].projector: looks along its own up direction; give another 'up'");
+              "site.yaml:9:16: outputs[0].projector: looks along its own up direction, or that has no length; give another 'up'");
 }
 
 }  // namespace

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "drivers/site/plug.h"
+#include "drivers/surroundings.h"
+
+#include "device/status.h"
+
+#include "core/result.h"
+
+#include <optional>
+#include <string>
+
+namespace fantascope::drivers {
+
+// The line from an output to its projector. A simulated site can pull it by the output's name; elsewhere it is always in.
+// Thread: thread-safe.
+class Cable {
+public:
+    Cable(const DisplayRequest& request, const Surroundings& around) : name_(request.name) {
+        if (around.world != nullptr) plug_.emplace(*around.world, name_, LossAction::Dark);
+    }
+
+    // Error: it is pulled.
+    Result<void> check() const {
+        if (plug_ && !plug_->in()) return plug_->absent();
+        return {};
+    }
+    // The status of a display of `driver` that fails by its cable alone.
+    DeviceStatus status(const std::string& driver) const {
+        DeviceStatus status{name_, driver, DeviceState::Running, LossAction::Dark, "", 0};
+        if (plug_) status = plug_->status();
+        status.driver = driver;
+        return status;
+    }
+
+private:
+    std::string name_;
+    std::optional<site::Plug> plug_;
+};
+
+}  // namespace fantascope::drivers

@@ -1,0 +1,138 @@
+#include "app/check_command.h"
+
+#include "pattern/pattern_settings.h"
+#include "pattern/shape_pattern.h"
+#include "show/show.h"
+#include "show/site.h"
+
+#include "core/config.h"
+#include "core/image.h"
+
+#include <fmt/format.h>
+
+#include <deque>
+#include <iostream>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What is known of a file that is right.
+struct Finding {
+    std::string summary;
+    std::vector<fs::path> names;  // the files that it names
+};
+
+// "1 cue", "6 cues".
+std::string counted(std::size_t count, std::string_view thing) {
+    return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
+Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>& site) {
+    const show::Show show = TRY(show::Show::load(path));
+    Finding finding{fmt::format("show, {}, {}, {}", counted(show.cues.size(), "cue"), counted(show.looks.size(), "look"),
+                                counted(show.sources.size(), "source")),
+                    {}};
+    if (site) {
+        TRY(show.bind(*site));
+        finding.summary += fmt::format(", plays on {}", site->file.string());
+    }
+    for (const show::Source& source : show.sources)
+        if (const auto* pattern = std::get_if<show::PatternSource>(&source.picture)) finding.names.push_back(pattern->file);
+    return finding;
+}
+
+Result<Finding> checkSite(const fs::path& path, const std::optional<show::Site>&) {
+    const show::Site site = TRY(show::readSite(path));
+    return Finding{
+        fmt::format("site, {}, {}, {}{}", counted(site.outputs.size(), "output"), counted(site.fixtures.size(), "fixture"),
+                    counted(site.relays.size(), "relay"), site.camera ? ", camera" : ""),
+        {}};
+}
+
+Result<Finding> checkPattern(const fs::path& path, const std::optional<show::Site>&) {
+    const pattern::ShapePattern pattern = TRY(pattern::readPattern(path));
+    return Finding{fmt::format("pattern, {}, {}", counted(pattern.instances.size(), "instance"),
+                               counted(pattern.triangleCount(), "triangle")),
+                   {pattern.guide}};
+}
+
+Result<Finding> checkPatternSettings(const fs::path& path, const std::optional<show::Site>&) {
+    const pattern::PatternSettings settings = TRY(pattern::readPatternSettings(path));
+    return Finding{fmt::format("pattern settings, at most {}", counted(settings.search.instances, "instance")), {}};
+}
+
+Result<Finding> checkGuide(const fs::path& path) {
+    const GreyImage guide = TRY(readGrey(path));
+    return Finding{fmt::format("guide, {} x {} px", guide.width(), guide.height()), {}};
+}
+
+using Check = Result<Finding> (*)(const fs::path&, const std::optional<show::Site>&);
+
+// A YAML file says of itself of which kind it is.
+constexpr std::pair<std::string_view, Check> kKinds[] = {
+    {"show", checkShow}, {"site", checkSite}, {"pattern", checkPattern}, {"pattern-settings", checkPatternSettings}};
+
+Result<Finding> checkYaml(const fs::path& path, const std::optional<show::Site>& site) {
+    std::vector<std::string> names;
+    for (const auto& kind : kKinds) names.emplace_back(kind.first);
+    const ConfigNode root = TRY(ConfigNode::load(path));
+    for (const auto& [key, value] : TRY(root.entries()))
+        if (key == "fantascope") return kKinds[TRY(value.choice(names))].second(path, site);
+    return root.error(fmt::format("'fantascope' is missing: the kind of file, one of {}", fmt::join(names, ", ")));
+}
+
+Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>& site) {
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) return checkShow(path, site);
+    return path.extension() == ".yaml" ? checkYaml(path, site) : checkGuide(path);
+}
+
+void declareOptions(CLI::App& command, CheckOptions& options) {
+    command.add_option("path", options.paths, "Show folders, show, site and pattern files, guide images")
+        ->required()
+        ->type_name("PATH");
+    command.add_option("--site", options.site, "Look the shows' outputs, fixtures and relays up in this site file")
+        ->type_name("SITE");
+}
+
+Result<void> runCheck(const CheckOptions& options) { return checkFiles(options, std::cout); }
+
+}  // namespace
+
+Result<void> checkFiles(const CheckOptions& options, std::ostream& out) {
+    std::deque<fs::path> waiting(options.paths.begin(), options.paths.end());
+    std::optional<show::Site> site;
+    if (options.site) {
+        waiting.push_front(*options.site);
+        if (auto read = show::readSite(*options.site))
+            site = std::move(read).value();  // what is wrong with it is said in its turn
+    }
+    std::set<fs::path> seen;
+    std::size_t refused = 0;
+    for (; !waiting.empty(); waiting.pop_front()) {
+        const fs::path path = waiting.front();
+        if (!seen.insert(path.lexically_normal()).second) continue;
+        if (const auto finding = checkFile(path, site)) {
+            out << fmt::format("ok {}: {}\n", path.string(), finding->summary);
+            waiting.insert(waiting.end(), finding->names.begin(), finding->names.end());
+        } else {
+            out << finding.error().message() << "\n";
+            ++refused;
+        }
+    }
+    if (refused > 0) return Error(fmt::format("{} of {} refused", refused, counted(seen.size(), "file")));
+    return {};
+}
+
+void addCheckCommand(CLI::App& program, Action& action) {
+    addCommand<CheckOptions>(program, action, "check", "Read files as the program would and say what is wrong with them",
+                             declareOptions, runCheck);
+}
+
+}  // namespace fantascope::app

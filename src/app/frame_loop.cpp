@@ -1,0 +1,95 @@
+#include "app/frame_loop.h"
+
+#include <algorithm>
+
+namespace fantascope::app {
+
+FrameLoop::FrameLoop(const show::Site& site, const show::CueList& cues, std::vector<render::PictureSource> sources, std::filesystem::path assets,
+                     Devices& devices, Clock& clock, Time start)
+    : sources_(std::move(sources)), assets_(std::move(assets)), clock_(clock), start_(start), replica_(cues) {
+    for (std::size_t i = 0; i < site.outputs.size(); ++i) {
+        outputs_.push_back({site.outputs[i], *devices.displays[i]});
+        reports_.push_back({.name = site.outputs[i].name});
+    }
+}
+
+FrameLoop::~FrameLoop() {
+    // What belongs to a context goes while it is current; a context that is lost has taken it along.
+    for (Output& output : outputs_) {
+        if (!output.display.makeCurrent()) continue;
+        output.tap.reset();
+        output.renderer.reset();
+    }
+}
+
+LatestValue<render::ShownFrame>& FrameLoop::tap(std::size_t output) {
+    std::optional<render::FrameTap>& tap = outputs_[output].tap;
+    if (!tap) tap.emplace(output, outputs_[output].site.size);
+    return tap->addReader();
+}
+
+FrameLoop::Output* FrameLoop::leader() {
+    const auto running = [](const Output& output) { return output.display.status().state == DeviceState::Running; };
+    const auto first = std::find_if(outputs_.begin(), outputs_.end(), running);
+    return first == outputs_.end() ? nullptr : &*first;
+}
+
+Result<void> FrameLoop::draw(Output& output, std::size_t index, Time showTime, OutputReport& report) {
+    output.drawn = false;
+    const Time began = clock_.now();
+    if (!output.display.makeCurrent()) return {};  // lost; its status says so, and it comes back by itself
+    if (!output.renderer) {
+        const render::OutputRenderer::Options options{
+            .size = output.display.size(), .corners = output.site.corners, .shaders = assets_ / "shaders"};
+        output.renderer = TRY(render::OutputRenderer::create(options, sources_).in("output '" + output.site.name + "'"));
+    }
+    output.renderer->draw(state_.outputs[index], showTime, output.display.framebuffer());
+    if (output.tap) output.tap->capture(output.display.framebuffer(), showTime);
+    report.frame.add(clock_.now() - began);
+    output.drawn = true;
+    return {};
+}
+
+Result<void> FrameLoop::step() {
+    // The moment that this frame is for: the next refresh that can still be met.
+    Output* const leads = leader();
+    const double rate = outputs_.empty() ? 1.0 : outputs_[0].site.refreshRate;
+    const std::int64_t target = leads != nullptr ? leads->display.nextRefresh() : tickAt(clock_.now(), rate) + 1;
+    const Time due = leads != nullptr ? leads->display.refreshTime(target) : tickTime(target, rate);
+    const Time showTime = due - start_;
+
+    Time oldestInput = Time::max();
+    replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput = std::min(oldestInput, input.at); });
+    for (std::size_t i = 0; i < outputs_.size(); ++i) TRY(draw(outputs_[i], i, showTime, reports_[i]));
+
+    // The leader waits for the refresh, the others show within it.
+    if (leads == nullptr || !leads->drawn) clock_.sleepUntil(due);
+    std::optional<Time> seen;
+    const auto show = [&](std::size_t i) {
+        Output& output = outputs_[i];
+        if (!output.drawn) return;
+        const bool paced = &output == leads;
+        if (!paced && !output.display.makeCurrent()) return;
+        const auto shown = output.display.present(paced);
+        if (!shown) return;
+        if (output.tap) output.tap->publish(*shown);
+        const std::int64_t late = std::max<std::int64_t>(0, shown->refresh - target);
+        ++reports_[i].frames;
+        reports_[i].lateFrames += late;
+        ++framesShown_;
+        framesLate_ += late;
+        if (!seen) seen = shown->at;
+    };
+    if (leads != nullptr) show(static_cast<std::size_t>(leads - outputs_.data()));
+    for (std::size_t i = 0; i < outputs_.size(); ++i)
+        if (&outputs_[i] != leads) show(i);
+
+    if (seen && oldestInput != Time::max()) inputToFrame_.add(*seen - start_ - oldestInput);
+    if (stateSlot_ != nullptr) {
+        stateSlot_->writable() = state_;
+        stateSlot_->publish();
+    }
+    return {};
+}
+
+}  // namespace fantascope::app

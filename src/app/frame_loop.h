@@ -1,0 +1,70 @@
+#pragma once
+
+#include "app/devices.h"
+#include "app/playback_replica.h"
+#include "app/run_report.h"
+#include "render/frame_tap.h"
+#include "render/output_renderer.h"
+#include "show/site.h"
+
+#include "core/latest_value.h"
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace fantascope::app {
+
+// The render thread's work: frame after frame it asks the playback what is to be seen when the next refresh takes place, draws that on
+// every output and shows it. The first running display leads: its refresh paces the loop; the others follow within the same refresh. A
+// display that is lost is left out until it is back. Thread: bound to the render thread, but for the slots and counters.
+class FrameLoop {
+public:
+    // All outlive it. Show time 0 is `start` on the clock. `assets`: the folder of the shaders.
+    FrameLoop(const show::Site& site, const show::CueList& cues, std::vector<render::PictureSource> sources, std::filesystem::path assets,
+              Devices& devices, Clock& clock, Time start);
+    ~FrameLoop();
+
+    PlaybackReplica& replica() { return replica_; }
+    // A further reader of the frames that `output` shows. Before the first frame.
+    LatestValue<render::ShownFrame>& tap(std::size_t output);
+    // The state of the newest frame goes into this slot too. Before the first frame.
+    void publishStateTo(LatestValue<show::ShowState>& slot) { stateSlot_ = &slot; }
+
+    // One frame on every output; returns when the leading display has shown it. Error: a renderer cannot be made for a display.
+    Result<void> step();
+
+    // Counters for the progress line. Thread-safe.
+    std::int64_t framesShown() const { return framesShown_; }
+    std::int64_t framesLate() const { return framesLate_; }
+    // After the last frame.
+    const std::vector<OutputReport>& outputs() const { return reports_; }
+    const Durations& inputToFrame() const { return inputToFrame_; }
+
+private:
+    struct Output {
+        const show::Output& site;
+        DisplaySink& display;
+        std::unique_ptr<render::OutputRenderer> renderer{};  // made when the display is first there
+        std::optional<render::FrameTap> tap{};             // where somebody reads
+        bool drawn = false;  // in the frame that is being made
+    };
+    Result<void> draw(Output& output, std::size_t index, Time showTime, OutputReport& report);
+    Output* leader();
+
+    std::vector<render::PictureSource> sources_;
+    std::filesystem::path assets_;
+    Clock& clock_;
+    const Time start_;
+    PlaybackReplica replica_;
+    show::ShowState state_;
+    std::vector<Output> outputs_;
+    LatestValue<show::ShowState>* stateSlot_ = nullptr;
+    std::vector<OutputReport> reports_;
+    Durations inputToFrame_;
+    std::atomic<std::int64_t> framesShown_ = 0, framesLate_ = 0;
+};
+
+}  // namespace fantascope::app

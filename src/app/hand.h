@@ -1,0 +1,65 @@
+#pragma once
+
+#include "app/devices.h"
+#include "app/playback_replica.h"
+#include "app/run_report.h"
+#include "show/cue_buttons.h"
+#include "show/show.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fantascope::app {
+
+// The operator's side of a run: polls the cue controller, turns its presses into inputs and gives each to every replica, so that the
+// whole show agrees. Keeps a copy of the playback itself, to tell which cue is on.
+class Hand {
+public:
+    // All outlive it. Show time 0 is `start` on the clock.
+    Hand(const show::Show& show, const show::CueList& cues, const show::Site& site, CueController* controller, Time start);
+
+    // How often the controller is asked: a press waits 5 ms at most.
+    static constexpr double kRate = 200;
+    // A part of the run that is given every input. Before the first tick.
+    void feed(PlaybackReplica& replica) { replicas_.push_back(&replica); }
+    // An input that no button stands for, such as the cue to start from. From the input thread, or before it starts.
+    void give(const show::Input& input);
+    void tick(Time moment);
+
+    // Called on the input thread with a sentence whenever an input or a cue change is worth telling the operator.
+    std::function<void(const std::string&)> tell = [](const std::string&) {};
+
+    // Once the input part has ended.
+    const std::vector<CueReport>& cues() const { return entered_; }
+
+private:
+    const show::Show& show_;
+    CueController* controller_;
+    const Time start_;
+    show::CueButtons buttons_;
+    show::Playback playback_;
+    show::ShowState state_;
+    std::vector<PlaybackReplica*> replicas_;
+    std::vector<CueReport> entered_;
+    int cue_ = -1;
+};
+
+// When a rehearsal without hands presses GO, so that it reaches every cue in an equal share of its length: one press for each cue that is
+// to be entered. The first comes after a moment of darkness, or, where a cue is on from the start, after that cue's share.
+class GoSchedule {
+public:
+    GoSchedule(std::size_t presses, bool cueIsOn, Time length) : presses_(presses), cueIsOn_(cueIsOn), length_(length) {}
+    // Whether the next press is due; each is so once.
+    bool due(Time showTime);
+    void end() { pressed_ = presses_; }  // the operator has taken over
+    bool ended() const { return pressed_ == presses_; }
+
+private:
+    std::size_t presses_, pressed_ = 0;
+    bool cueIsOn_;
+    Time length_;
+};
+
+}  // namespace fantascope::app

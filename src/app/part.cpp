@@ -1,0 +1,57 @@
+#include "app/part.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "core/check.h"
+
+namespace fantascope::app {
+
+void setThreadNiceness(int niceness) {
+    // On Linux niceness belongs to the thread. Refused without the privilege to come first: then it stays as it was.
+    [[maybe_unused]] const int refused = setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), niceness);
+}
+
+PartThreads::PartThreads(Clock& clock, std::vector<Part> parts) {
+    for (Part& part : parts) {
+        threads_.emplace_back([&clock, part = std::move(part)](const std::stop_token& stop) {
+            setThreadNiceness(part.niceness);  // a new thread has that of the one that made it
+            for (std::int64_t next = 0; !stop.stop_requested();) {
+                clock.sleepUntil(part.phase + tickTime(next, part.rate));
+                next = std::max(next, tickAt(clock.now() - part.phase, part.rate));
+                if (stop.stop_requested()) break;
+                part.work(part.phase + tickTime(next, part.rate));
+                ++next;
+            }
+        });
+    }
+}
+
+PartThreads::~PartThreads() {
+    for (std::jthread& thread : threads_) thread.request_stop();
+}
+
+void SteppedClock::setParts(std::vector<Part> parts) {
+    parts_.clear();
+    for (Part& part : parts) parts_.push_back({std::move(part)});
+}
+
+void SteppedClock::sleepUntil(Time time) {
+    FANTASCOPE_CHECK(!stepping_, "a part may not sleep on the clock that steps it");
+    stepping_ = true;
+    for (;;) {
+        const auto next = std::min_element(parts_.begin(), parts_.end(), [](const Scheduled& a, const Scheduled& b) { return a.due() < b.due(); });
+        if (next == parts_.end() || next->due() > time) break;
+        const Time moment = next->due();
+        manual_.advanceTo(moment);
+        ++next->next;
+        next->part.work(moment);
+    }
+    stepping_ = false;
+    manual_.advanceTo(time);
+}
+
+}  // namespace fantascope::app

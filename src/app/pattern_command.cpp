@@ -1,0 +1,226 @@
+#include "app/pattern_command.h"
+
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "app/report.h"
+
+#include "pattern/elemental_shape.h"
+#include "pattern/measure.h"
+#include "pattern/pattern_search.h"
+#include "pattern/pattern_settings.h"
+
+#include "core/clock.h"
+#include "core/file.h"
+#include "core/parallel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace fantascope::app {
+namespace {
+
+namespace fs = std::filesystem;
+using pattern::PatternSearch;
+using pattern::ShapePattern;
+
+constexpr double kDefaultSeconds = 30;
+constexpr int kLoopMoments = 200;  // of the animated loop are judged: one in ten of the default 2000 frames
+
+struct Options {
+    fs::path guide, output;
+    std::vector<std::string> shapes = {"triangle"};
+    std::optional<fs::path> settings, image, report;
+    std::optional<std::uint32_t> instances;
+    std::optional<double> seconds, targetZ;
+    std::optional<int> iterations;
+    std::uint64_t seed = 1;
+    int threads = hardwareThreads();
+    std::string method = "paper";
+};
+
+std::string onlyPaper(const std::string& method) {
+    return method == "paper" ? "" : fmt::format("there is no method '{}'; the only one is 'paper'", method);
+}
+
+// Keeps a slip of the finger from writing a pattern over a picture.
+std::string onlyYaml(const std::string& file) {
+    return fs::path(file).extension() == ".yaml"
+               ? ""
+               : fmt::format("'{}' is not P.pattern.yaml: a pattern's name ends in .yaml", file);
+}
+
+void declare(CLI::App& command, Options& options) {
+    command.add_option("GUIDE", options.guide, "The grey drawing: PNG, JPEG or TIFF")->required();
+    command.add_option("-o,--output", options.output, "The pattern to write, P.pattern.yaml")
+        ->required()
+        ->check(CLI::Validator(onlyYaml, "YAML"));
+    command
+        .add_option("--shapes", options.shapes,
+                    fmt::format("Elemental shapes, separated by commas: {}, or mesh files (FBX, OBJ, glTF, PLY, STL)",
+                                fmt::join(pattern::builtInShapeNames(), ", ")))
+        ->delimiter(',')
+        ->capture_default_str();
+    command.add_option("--settings", options.settings, "The numerical parameters, *.pattern-settings.yaml");
+    command.add_option("--instances", options.instances, "The most instances")->check(CLI::Range(1, 100'000));
+    command
+        .add_option("--seconds", options.seconds,
+                    fmt::format("Stop after so long (default {} s, unless --iterations is given)", kDefaultSeconds))
+        ->check(CLI::Range(0.0, 1e6));
+    command.add_option("--iterations", options.iterations, "Stop after so many iterations; repeats a run exactly")
+        ->check(CLI::Range(0, std::numeric_limits<int>::max()));
+    command.add_option("--target-z", options.targetZ, "Stop once the mean difference from the guide is below this")
+        ->check(CLI::Range(0.0, 1.0));
+    command.add_option("--method", options.method, "paper: Ji et al. 2015, section 4.1, as written")
+        ->check(CLI::Validator(onlyPaper, "paper"))
+        ->capture_default_str();
+    command.add_option("--image", options.image, "Also write the pattern white on black, in the guide's size, as PNG");
+    command.add_option("--seed", options.seed, "Another seed, another pattern; the same seed, the same pattern")
+        ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
+        ->capture_default_str();
+    command.add_option("--threads", options.threads, "How many to use; the pattern is the same for any number")
+        ->check(CLI::Range(1, 256));
+    command.add_option("--report", options.report, "Also write figures, as JSON");
+}
+
+// A file that the pattern refers to: where it is, and its name beside the pattern.
+struct Material {
+    fs::path source;
+    std::string name;  // relative to the pattern's folder
+    bool copied;       // it has to be put there
+};
+
+// What lies in the pattern's folder or below stays where it is; anything else becomes STEM.`suffix` there.
+Material materialFor(const fs::path& output, const fs::path& source, const std::string& suffix) {
+    const fs::path relative =
+        fs::weakly_canonical(source).lexically_relative(fs::weakly_canonical(fs::absolute(output).parent_path()));
+    if (!relative.empty() && *relative.begin() != "..") return {source, relative.generic_string(), false};
+    const std::string stem = output.stem().stem().string();  // "P" of P.pattern.yaml
+    return {source, fmt::format("{}.{}", stem, suffix), true};
+}
+
+Result<void> copyTo(const fs::path& folder, const Material& material) {
+    if (!material.copied) return {};
+    return writeFile(folder / material.name, TRY(readFile(material.source)));
+}
+
+struct Shapes {
+    std::vector<pattern::ElementalShape> shapes;
+    std::vector<Material> files;
+};
+
+Result<Shapes> loadShapes(const Options& options) {
+    Shapes loaded;
+    for (const std::string& given : options.shapes) {
+        pattern::ElementalShape shape = TRY(pattern::loadShape(given));
+        const auto& builtIn = pattern::builtInShapeNames();
+        if (std::find(builtIn.begin(), builtIn.end(), given) == builtIn.end()) {
+            const fs::path file = given;
+            loaded.files.push_back(materialFor(options.output, file, file.filename().string()));
+            if (loaded.files.back().copied && file.extension() == ".gltf")
+                return Error(fmt::format(
+                    "{}: a .gltf keeps its points in a second file and cannot be copied beside the pattern; export it as .glb",
+                    given));
+            shape.name = loaded.files.back().name;
+            shape.file = fs::absolute(options.output).parent_path() / shape.name;
+        }
+        for (const auto& other : loaded.shapes)
+            if (other.name == shape.name) return Error(fmt::format("--shapes: {} is given twice", given));
+        loaded.shapes.push_back(std::move(shape));
+    }
+    return loaded;
+}
+
+Report reportOf(const PatternSearch::Found& found, const pattern::PatternQuality& quality, double loopZ, Time took) {
+    Report report;
+    report["method"] = "paper";
+    report["z"] = quality.z;
+    report["z_bound"] = quality.zBound;
+    report["tone"] = quality.tone;
+    report["overlap"] = quality.overlap;
+    report["loop_z"] = loopZ;
+    report["instances"] = found.pattern.instances.size();
+    report["triangles"] = found.pattern.triangleCount();
+    report["iterations"] = found.summary.iterations;
+    report["evaluations"] = found.summary.evaluations;
+    report["seconds"] = seconds(took);
+    report["stop_reason"] = name(found.summary.reason);
+    report["seed"] = found.pattern.seed;
+    report["guide_transfer"] = name(found.pattern.guideTransfer);
+    Report& history = report["history"] = {{"z_min", Report::array()}, {"z_max", Report::array()}, {"accepted", Report::array()}};
+    for (const PatternSearch::Iteration& iteration : found.summary.history) {
+        history["z_min"].push_back(iteration.zMin);
+        history["z_max"].push_back(iteration.zMax);
+        history["accepted"].push_back(iteration.accepted);
+    }
+    return report;
+}
+
+// Searches until the settings, the clock or Ctrl-C say stop.
+PatternSearch::Found search(const GreyImage& guide, ShapePattern pattern, const PatternSearch::Options& options,
+                            std::optional<double> limit, int threads, const Clock& clock) {
+    const Interrupt interrupt;
+    Progress progress("pattern", clock, std::cerr, standardErrorIsTerminal());
+    const Time start = clock.now();
+    return PatternSearch::run(
+        guide, std::move(pattern), options, threads,
+        [&](const PatternSearch::Progress& now) -> std::optional<PatternSearch::StopReason> {
+            const double elapsed = seconds(clock.now() - start);
+            const double byTime = limit && elapsed < *limit ? elapsed / *limit : limit ? 1 : 0;
+            const double byCount = double(now.iterations) / options.iterations;  // not asked any more once it is 1
+            progress.update(std::max(byTime, byCount), fmt::format("z {:.4f}  {} instances", now.z, now.instances));
+            if (interrupt.requested()) return PatternSearch::StopReason::Interrupted;
+            if (limit && elapsed >= *limit) return PatternSearch::StopReason::Time;
+            return std::nullopt;
+        });
+}
+
+Result<void> run(const Options& options) {
+    // Everything that can be refused is read before the search begins.
+    const GreyImage guide = TRY(readGrey(options.guide));
+    pattern::PatternSettings settings;
+    if (options.settings) settings = TRY(pattern::readPatternSettings(*options.settings));
+    if (options.instances) settings.search.instances = *options.instances;
+    if (options.targetZ) settings.search.targetZ = *options.targetZ;
+    if (options.iterations) settings.search.iterations = *options.iterations;
+    const std::optional<double> limit = options.seconds || options.iterations ? options.seconds : kDefaultSeconds;
+    Shapes material = TRY(loadShapes(options));
+    const Material guideFile = materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
+
+    ShapePattern pattern;
+    pattern.guideTransfer = settings.guideTransfer;
+    pattern.seed = options.seed;
+    pattern.shapes = std::move(material.shapes);
+    pattern.motion = settings.motion;
+    const SteadyClock clock;
+    PatternSearch::Found found = search(guide, std::move(pattern), settings.search, limit, options.threads, clock);
+    const Time took = clock.now();
+
+    // What the pattern names first, so that it never names what is not there.
+    const fs::path folder = fs::absolute(options.output).parent_path();
+    TRY(copyTo(folder, guideFile));
+    for (const Material& file : material.files) TRY(copyTo(folder, file));
+    found.pattern.guide = folder / guideFile.name;
+    TRY(writePattern(options.output, found.pattern));
+    if (options.image) TRY(writePng(*options.image, drawWhiteOnBlack(found.pattern, guide.width(), guide.height())));
+
+    const pattern::PatternQuality quality = measure(found.pattern, guide);
+    const double loopZ = pattern::loopZ(found.pattern, guide, kLoopMoments, options.threads);
+    if (options.report) TRY(writeReport(*options.report, reportOf(found, quality, loopZ, took)));
+    fmt::print("{}: {}, {} instances, tone {:.4f}, moving z {:.4f}\n", options.output.string(), found.summary.brief(),
+               found.pattern.instances.size(), quality.tone, loopZ);
+    return {};
+}
+
+}  // namespace
+
+void addPatternCommand(CLI::App& program, Action& action) {
+    addCommand<Options>(program, action, "pattern", "Find a light pattern that reads as a guide drawing", declare, run);
+}
+
+}  // namespace fantascope::app

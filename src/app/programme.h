@@ -1,0 +1,30 @@
+#pragma once
+
+#include "app/show_run.h"
+#include "app/watch.h"
+#include "render/picture_source.h"
+#include "show/playback.h"
+#include "show/show.h"
+#include "show/site.h"
+
+#include "core/result.h"
+
+#include <optional>
+#include <vector>
+
+namespace fantascope::app {
+
+// Everything that a run reads from files, before anything lights up. Constant afterwards.
+struct Programme {
+    show::Show show;
+    show::Site site;
+    show::CueList cues;
+    std::optional<show::Input> firstInput;       // the cue to start from
+    std::vector<render::PictureSource> sources;  // in the order of Show::sources
+    std::vector<Watch::Comparisons> comparisons;  // [output][source]
+};
+
+// Error: the first file that cannot be used, with its place and what to do.
+Result<Programme> readProgramme(const RunOptions& options);
+
+}  // namespace fantascope::app

@@ -1,0 +1,275 @@
+#include "app/show_run.h"
+
+#include "app/data_folder.h"
+#include "app/frame_loop.h"
+#include "app/hand.h"
+#include "app/lighting.h"
+#include "app/part.h"
+#include "app/programme.h"
+#include "app/recording.h"
+#include "app/site_models.h"
+#include "app/terminal_keys.h"
+#include "app/watch.h"
+#include "drivers/site/simulated_site.h"
+
+#include "core/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+// The niceness of a real-time run's threads: first what the audience sees, last what only looks at it.
+constexpr int kRenderNiceness = -10, kLightingNiceness = -5, kInputNiceness = 0, kWatchNiceness = 10;
+
+constexpr double kRelayRate = 20;    // Hz; a relay clicks in tens of milliseconds
+constexpr double kSiteRate = 120;    // Hz; a camera frame is exposed at most a tick late
+constexpr double kProgressRate = 2;  // Hz
+
+// News for the operator, from the input thread to the progress line.
+class News {
+public:
+    void add(const std::string& sentence) {
+        const std::lock_guard lock(mutex_);
+        text_ += (text_.empty() ? "" : "; ") + sentence;
+    }
+    std::string take() {
+        const std::lock_guard lock(mutex_);
+        return std::exchange(text_, {});
+    }
+
+private:
+    std::mutex mutex_;
+    std::string text_;
+};
+
+// The world that a run plays in: the devices, and the simulated site where they are simulated.
+struct Surrounding {
+    site::World world;
+    std::unique_ptr<site::SimulatedSite> simulation;  // null: real devices
+    Devices devices;
+
+    static Result<std::unique_ptr<Surrounding>> open(const RunOptions& options, const show::Site& site, Clock& clock) {
+        auto surrounding = std::make_unique<Surrounding>(clock);
+        const bool simulated = options.backends != Backends::AsDeclared;
+        if (simulated) {
+            if (!site.simulation)
+                return Error(fmt::format("{}: has no 'simulation' section, so it cannot be rehearsed; see docs/site-format.md", site.file.string()));
+            surrounding->simulation =
+                TRY(site::SimulatedSite::open(*site.simulation, TRY(simulationOf(site)), options.seed, surrounding->world));
+        }
+        surrounding->devices = TRY(openDevices(site, options.backends, {clock, simulated ? &surrounding->world : nullptr}));
+        return surrounding;
+    }
+    explicit Surrounding(const Clock& clock) : world(clock) {}
+};
+
+// A show while it runs: its parts, and what they pass to each other. Each part is declared in one function below.
+class ShowRun {
+public:
+    ShowRun(const RunOptions& options, const Programme& programme, Surrounding& surrounding, Recording* recording, Clock& clock)
+        : options_(options), programme_(programme), surrounding_(surrounding), recording_(recording), clock_(clock), start_(clock.now()),
+          frames_(programme.site, programme.cues, programme.sources, dataFolder() / "assets", surrounding.devices, clock, start_),
+          lighting_(programme.site, programme.cues, surrounding.devices, clock, start_, recording),
+          hand_(programme.show, programme.cues, programme.site, surrounding.devices.cueController.get(), start_),
+          watch_(programme.show, outputNames(), programme.comparisons, surrounding.devices.camera.get(), start_, recording),
+          schedule_(scheduleOf(options, programme)) {
+        frames_.publishStateTo(watch_.shown());
+        hand_.feed(frames_.replica());
+        hand_.feed(lighting_.replica());
+        hand_.tell = [this](const std::string& sentence) { news_.add(sentence); };
+        if (programme.firstInput) hand_.give(*programme.firstInput);
+    }
+
+    std::vector<Part> parts(const std::function<void(const RunStatus&)>& progress) {
+        std::vector<Part> parts;
+        parts.push_back({"input", Hand::kRate, start_, [this](Time moment) { takeInput(moment); }, kInputNiceness});
+        parts.push_back({"lighting", Lighting::kRate, start_, [this](Time moment) { lighting_.tick(moment); }, kLightingNiceness});
+        parts.push_back({"relays", kRelayRate, start_, [this](Time moment) { lighting_.relayTick(moment); }, kLightingNiceness});
+        if (surrounding_.simulation) parts.push_back(simulatedSite());
+        parts.push_back({"watch", Watch::kRate, start_, [this](Time moment) { watch_.tick(moment); }, kWatchNiceness});
+        if (recording_ != nullptr) parts.push_back(recorder());
+        parts.push_back({"progress", kProgressRate, start_, [this, progress](Time moment) { progress(statusAt(moment)); }, kInputNiceness});
+        if (!options_.asFastAsPossible) {
+            keys_.emplace();
+            parts.push_back(yardstick());
+        }
+        return parts;
+    }
+
+    // The render thread's life.
+    Result<void> draw(const Interrupt& interrupt) {
+        while (!interrupt.requested() && !quit_ && (!options_.length || clock_.now() - start_ < *options_.length)) TRY(frames_.step());
+        length_ = clock_.now() - start_;
+        return {};
+    }
+
+    // Once all parts have ended.
+    Result<RunReport> report() {
+        TRY(std::move(recorded_).in("recording"));
+        RunReport report;
+        report.length = length_;
+        report.stopReason = options_.length && report.length >= *options_.length ? "length" : "interrupted";
+        report.seed = options_.seed;
+        report.outputs = frames_.outputs();
+        report.inputToFrame = frames_.inputToFrame();
+        report.dmxInterval = lighting_.dmxInterval();
+        report.yardstickTicks = yardstickTicks_;
+        report.yardstickLate = yardstickLate_;
+        report.cues = hand_.cues();
+        report.zCamera = watch_.series();
+        if (surrounding_.simulation)
+            for (const site::Happening& happening : surrounding_.simulation->happenings()) report.faults.push_back({happening.at, happening.text});
+        return report;
+    }
+
+private:
+    static GoSchedule scheduleOf(const RunOptions& options, const Programme& programme) {
+        if (!options.handsOff || !options.length) return {0, false, {}};
+        const bool cueIsOn = programme.firstInput.has_value();
+        const std::size_t entered = cueIsOn ? static_cast<std::size_t>(programme.firstInput->cue) + 1 : 0;
+        return {programme.show.cues.size() - entered, cueIsOn, *options.length};
+    }
+    std::vector<std::string> outputNames() const {
+        std::vector<std::string> names;
+        for (const show::Output& output : programme_.site.outputs) names.push_back(output.name);
+        return names;
+    }
+    double frameRate() const { return programme_.site.outputs[0].refreshRate; }
+    std::vector<LatestValue<render::ShownFrame>*> tapEveryOutput() {
+        std::vector<LatestValue<render::ShownFrame>*> slots;
+        for (std::size_t output = 0; output < programme_.site.outputs.size(); ++output) slots.push_back(&frames_.tap(output));
+        return slots;
+    }
+
+    void takeInput(Time moment) {
+        while (const auto key = keys_ ? keys_->poll() : std::nullopt) pressKey(*key, moment);
+        if (schedule_.due(moment - start_)) pressGo(moment);
+        hand_.tick(moment);
+    }
+    // The terminal's keys act as a hand controller; whoever presses one has taken over from the schedule.
+    void pressKey(char key, Time moment) {
+        if (key == 'q') quit_ = true;
+        for (const auto& [name, kind] : {std::pair{' ', show::Input::Kind::Go}, {'b', show::Input::Kind::Back}, {'0', show::Input::Kind::Blackout}}) {
+            if (key != name) continue;
+            if (!schedule_.ended()) news_.add("you have the controller");
+            schedule_.end();
+            hand_.give({moment - start_, kind});
+        }
+    }
+    // A press of the simulated hand, through its device; straight to the show where the site has no controller.
+    void pressGo(Time moment) {
+        const auto& buttons = programme_.site.buttons;
+        const auto go = std::find_if(buttons.begin(), buttons.end(), [](const auto& button) { return button.second == show::Button::Go; });
+        if (surrounding_.simulation && surrounding_.devices.cueController && go != buttons.end())
+            for (const bool pressed : {true, false}) surrounding_.world.press(go->first, pressed);
+        else
+            hand_.give({moment - start_, show::Input::Kind::Go});
+    }
+
+    // What the displays show is what the simulated projectors throw, whatever display it is.
+    Part simulatedSite() {
+        surrounding_.simulation->begin(start_);
+        return {"site", kSiteRate, start_, [this, slots = tapEveryOutput()](Time moment) {
+                    for (LatestValue<render::ShownFrame>* slot : slots)
+                        if (slot->update()) {
+                            const render::ShownFrame& frame = slot->value();
+                            const std::string& output = programme_.site.outputs[frame.output].name;
+                            surrounding_.world.setFrame(output, std::make_shared<const RgbaImage>(frame.image));
+                        }
+                    surrounding_.simulation->advanceTo(moment);
+                }, kWatchNiceness};
+    }
+
+    Part recorder() {
+        // Half a refresh after the frames were shown, so that each is met once.
+        return {"recording", frameRate(), start_ + tickTime(1, 2 * frameRate()), [this, slots = tapEveryOutput()](Time) {
+                    for (LatestValue<render::ShownFrame>* slot : slots)
+                        if (slot->update() && recorded_) {
+                            const render::ShownFrame& frame = slot->value();
+                            recorded_ = recording_->frame(frame.output, frame.image, frame.shown.refresh, frame.showTime);
+                        }
+                }, kWatchNiceness};
+    }
+
+    // What the machine itself misses: a thread of the render thread's rank that does nothing, at the leading output's rate.
+    Part yardstick() {
+        return {"yardstick", frameRate(), start_, [this, last = std::int64_t{-1}](Time moment) mutable {
+                    const std::int64_t tick = tickAt(moment - start_, frameRate());
+                    yardstickLate_ += tick - last - 1;
+                    ++yardstickTicks_;
+                    last = tick;
+                }, kRenderNiceness};
+    }
+
+    RunStatus statusAt(Time moment) {
+        RunStatus status;
+        status.showTime = moment - start_;
+        status.said = news_.take();
+        const std::int64_t shown = frames_.framesShown();
+        status.framesPerSecond = static_cast<double>(shown - std::exchange(framesBefore_, shown)) * kProgressRate;
+        status.lateFrames = frames_.framesLate();
+        const auto scores = watch_.newestScores();
+        for (std::size_t output = 0; output < scores.size(); ++output) status.zCamera.emplace_back(programme_.site.outputs[output].name, scores[output]);
+        return status;
+    }
+
+    const RunOptions& options_;
+    const Programme& programme_;
+    Surrounding& surrounding_;
+    Recording* recording_;
+    Clock& clock_;
+    const Time start_;
+    FrameLoop frames_;
+    Lighting lighting_;
+    Hand hand_;
+    Watch watch_;
+    GoSchedule schedule_;
+    std::optional<TerminalKeys> keys_;
+    News news_;
+    std::atomic<bool> quit_ = false;
+    Result<void> recorded_;
+    Time length_{};
+    std::int64_t framesBefore_ = 0, yardstickTicks_ = 0, yardstickLate_ = 0;
+};
+
+}  // namespace
+
+Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt, const std::function<void(const RunStatus&)>& progress) {
+    FANTASCOPE_CHECK(options.length || !options.asFastAsPossible, "as fast as possible needs an end");
+    const Programme programme = TRY(readProgramme(options));
+
+    SteadyClock steadyClock;
+    SteppedClock steppedClock;
+    Clock& clock = options.asFastAsPossible ? static_cast<Clock&>(steppedClock) : steadyClock;
+    if (!options.asFastAsPossible) setThreadNiceness(kRenderNiceness);  // before the displays make threads of their own
+    const auto surrounding = TRY(Surrounding::open(options, programme.site, clock));
+    std::unique_ptr<Recording> recording;
+    if (!options.recordTo.empty()) {
+        std::vector<Recording::Output> outputs;
+        for (const show::Output& output : programme.site.outputs) outputs.push_back({output.name, output.size, output.refreshRate});
+        recording = TRY(Recording::open(options.recordTo, std::move(outputs)));
+    }
+
+    ShowRun run(options, programme, *surrounding, recording.get(), clock);
+    Result<void> drawn;
+    if (options.asFastAsPossible) {
+        steppedClock.setParts(run.parts(progress));
+        drawn = run.draw(interrupt);
+        steppedClock.setParts({});
+    } else {
+        const PartThreads threads(clock, run.parts(progress));
+        drawn = run.draw(interrupt);
+    }
+    TRY(std::move(drawn));
+    RunReport report = TRY(run.report());
+    if (recording) TRY(recording->finish());
+    return report;
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,53 @@
+#include "app/site_models.h"
+
+#include <fmt/format.h>
+
+namespace fantascope::app {
+namespace {
+
+vision::CameraModel projectorOf(const show::Output& output) {
+    return vision::CameraModel::fromThrowRatio(output.projector->pose, output.size, output.projector->throwRatio, output.projector->lensShift);
+}
+
+Result<vision::CameraModel> cameraOf(const show::Site& site) {
+    const show::NominalCamera& camera = *site.nominalCamera;
+    return vision::CameraModel::fromFieldOfView(camera.pose, camera.size, camera.fieldOfView, camera.k1, camera.k2).in(site.file.string() + ": camera");
+}
+
+}  // namespace
+
+Result<site::NominalSite> simulationOf(const show::Site& site) {
+    site::NominalSite nominal;
+    for (const show::Output& output : site.outputs) {
+        if (!output.projector)
+            return Error(fmt::format("{}: output '{}' has no 'projector': the simulated site must know where it stands; add its position, "
+                                     "look_at and throw_ratio",
+                                     site.file.string(), output.name));
+        nominal.outputs.push_back({output.name, projectorOf(output)});
+        nominal.devices.push_back(output.name);
+    }
+    for (const show::Fixture& fixture : site.fixtures) nominal.fixtures.push_back({fixture.name, fixture.universe, fixture.address, fixture.channels});
+    for (const show::Relay& relay : site.relays) nominal.relays.push_back({relay.name, static_cast<std::size_t>(relay.coil)});
+    for (const show::Universe& universe : site.universes) nominal.devices.push_back(fmt::format("universe {}", universe.number));
+    if (site.relayBank) nominal.devices.emplace_back("relay bank");
+    if (site.cueController) nominal.devices.emplace_back("cue controller");
+    if (site.camera) {
+        nominal.camera = TRY(cameraOf(site));
+        nominal.devices.emplace_back("camera");
+    }
+    return nominal;
+}
+
+Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site, std::size_t output, double canvasAspect) {
+    const show::Output& from = site.outputs[output];
+    if (!from.projector || !from.surface || !site.nominalCamera) return std::optional<vision::NominalView>();
+    vision::NominalView view;
+    view.camera = TRY(cameraOf(site));
+    view.projector = projectorOf(from);
+    view.canvasAspect = canvasAspect;
+    view.projectorFromCanvas = from.projectorFromCanvas(canvasAspect);
+    view.surface = {from.surface->point, from.surface->normal};
+    return std::optional(view);
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,19 @@
+#pragma once
+// The site file's numbers as the models of those who see: the simulated site, and the comparison with the guide.
+
+#include "drivers/site/simulated_site.h"
+#include "show/site.h"
+#include "vision/guide_comparison.h"
+
+#include "core/result.h"
+
+namespace fantascope::app {
+
+// Error: the site lacks a projector's place, the camera or a usable optic; names what to add to the site file.
+Result<site::NominalSite> simulationOf(const show::Site& site);
+
+// What the comparison may know of one output for a canvas of this aspect. Nothing where the site does not say where the projector, its
+// surface or the camera are: then the output is not scored.
+Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site, std::size_t output, double canvasAspect);
+
+}  // namespace fantascope::app

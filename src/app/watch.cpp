@@ -1,0 +1,51 @@
+#include "app/watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace fantascope::app {
+
+Watch::Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera, Time start,
+             Recording* recording)
+    : show_(show), outputs_(std::move(outputs)), comparisons_(std::move(comparisons)), camera_(camera), start_(start), recording_(recording),
+      scores_(outputs_.size()) {
+    for (std::atomic<double>& score : scores_) score = -1;
+    for (const std::string& output : outputs_) series_[output];
+}
+
+const vision::GuideComparison* Watch::comparisonOf(std::size_t output) const {
+    // In a crossfade of two drawings neither is what should be seen, and what is nearly dark cannot be told from the night.
+    constexpr float kAlone = 0.05f, kBright = 0.5f;
+    if (shown_.value().blackout || output >= shown_.value().outputs.size()) return nullptr;
+    const vision::GuideComparison* comparison = nullptr;
+    for (const show::LayerState& layer : shown_.value().outputs[output].layers) {
+        if (layer.opacity < kAlone) continue;
+        if (comparison != nullptr || layer.opacity < kBright) return nullptr;
+        comparison = comparisons_[output][layer.source].get();
+    }
+    return comparison;
+}
+
+void Watch::tick(Time) {
+    if (camera_ == nullptr) return;
+    shown_.update();
+    const auto frame = camera_->newest();
+    if (!frame) return;
+    const Time showTime = frame->exposed - start_;
+    for (std::size_t output = 0; output < outputs_.size(); ++output) {
+        const vision::GuideComparison* comparison = comparisonOf(output);
+        if (comparison == nullptr) continue;
+        if (const auto z = comparison->compare(frame->image)) {
+            series_[outputs_[output]].emplace_back(showTime, *z);
+            scores_[output] = *z;
+        }
+    }
+    const int cue = shown_.value().cue;
+    if (recording_ != nullptr && cue >= 0)
+        recording_->cue(cue, fmt::format("{} {}  ({:.1f} s)", cue + 1, show_.cues[static_cast<std::size_t>(cue)].name, seconds(showTime)), frame->image);
+}
+
+std::vector<double> Watch::newestScores() const { return {scores_.begin(), scores_.end()}; }
+
+}  // namespace fantascope::app

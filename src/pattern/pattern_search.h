@@ -1,0 +1,103 @@
+#pragma once
+
+#include "pattern/shape_pattern.h"
+
+#include "core/geometry.h"
+#include "core/image.h"
+#include "core/result.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fantascope::pattern {
+
+// Creates a shape pattern from an artist's sketch: the stochastic optimisation of Ji et al. 2015, section 4.1, as written. What
+// the paper leaves open (how small "small random amounts" are, how large cells and shapes) is said here.
+struct PatternSearch {
+    // All defaults work with any guide and any shapes.
+    struct Options {
+        // When it stops; the caller may stop it as well.
+        double targetZ = 0;                                // z_0: once z is below it, 0..1
+        int iterations = std::numeric_limits<int>::max();  // after so many, >= 0
+
+        // What is compared: the guide is resampled to so many rows of pixels, unless it has fewer. 16 .. 4096.
+        int rows = 720;
+
+        // The thresholds for the difference indices; -1 < delete <= reduce <= 0 <= increase <= create < 1. Small ones keep the
+        // greys of a drawing better, large ones its edges.
+        double lambdaCreate = 0.1, lambdaIncrease = 0.05, lambdaReduce = -0.05, lambdaDelete = -0.1;
+        // The sides of the evaluation cells, as multiples of the side of a square as large as a shape: in the lattice a typical
+        // one, in an instance cell this instance's. > 0. At 2, an instance that stands alone in the dark has g_i = -1/4.
+        double latticeCell = 2, instanceCell = 2;
+
+        int candidates = 12;  // new ones in each iteration (Figure 5), 1 .. 1000
+        // The largest amount of a perturbation, as a share of the instance's size (radians for rotations): 0 .. 10.
+        double largestAmount = 0.5;
+        // The share of iterations that should be accepted; perturbations grow when more are. 0.01 .. 0.99.
+        double successRate = 0.5;
+
+        std::uint32_t instances = 600;  // the pattern never has more; 1 .. 100,000
+        // The smallest and the largest instance in canvas heights, 0 < x <= y <= 2. Without it, sizes from a half to twice that
+        // of which `instances` would light the guide's white, and a little more.
+        std::optional<glm::dvec2> size;
+        double tilt = radians(40);   // the largest rotation about x and y, 0 .. pi: beyond, flat shapes are slivers
+        double turn = radians(180);  // the largest rotation about z, 0 .. pi
+
+        struct Colours {
+            glm::dvec3 from{1.0}, to{1.0};
+        };
+        // An instance gets a colour between the two of one entry, linear light, 0..1; never empty.
+        std::vector<Colours> colours = {Colours{}};
+
+        // Error: names the option, its value and the rule.
+        Result<void> check() const;
+    };
+
+    enum class StopReason { NotRun, TargetReached, Iterations, Time, Interrupted };
+
+    // What the caller sees between two iterations.
+    struct Progress {
+        int iterations = 0;  // done so far
+        double z = 1;        // of the reference solution
+        std::size_t instances = 0;
+    };
+    // Asked before every iteration: a reason to stop now, with the best pattern so far, or nothing.
+    using AskStop = std::function<std::optional<StopReason>(const Progress&)>;
+
+    // Figure 5, iteration by iteration.
+    struct Iteration {
+        double zMin = 1, zMax = 1;  // of the candidates
+        bool accepted = false;      // zMin was better than the reference solution's
+    };
+    struct Summary {
+        StopReason reason = StopReason::NotRun;
+        double z = 1;
+        int iterations = 0;
+        std::int64_t evaluations = 0;  // of the goal function
+        std::vector<Iteration> history;
+
+        std::string brief() const;
+    };
+    struct Found {
+        ShapePattern pattern;
+        Summary summary;
+    };
+
+    // `guide`: stored values, in any resolution. `pattern` brings seed, shapes (at least one), motion and what else the search
+    // does not touch; its resolution, instances and groups are filled. The result depends on these, the options and the number of
+    // iterations alone, not on `threads`. Options must pass check().
+    static Found run(const GreyImage& guide, ShapePattern pattern, const Options& options, int threads, const AskStop& askStop);
+};
+
+// As reports say it: "target_reached", "iterations", "time", "interrupted".
+std::string_view name(PatternSearch::StopReason reason);
+
+}  // namespace fantascope::pattern

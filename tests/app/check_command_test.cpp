@@ -1,0 +1,137 @@
+#include "app/check_command.h"
+
+#include "pattern/elemental_shape.h"
+#include "pattern/shape_pattern.h"
+#include "show/show_folder.h"
+
+#include "core/file.h"
+#include "core/image.h"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+namespace fantascope::app {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::string_view kSite = R"(fantascope: site
+version: 1
+outputs: [{name: left, display: {driver: headless}, size: [640, 360], refresh_rate: 30}]
+universes: [{number: 1, port: {driver: simulated}}]
+fixtures: [{name: lamp, universe: 1, address: 1, channels: [intensity]}]
+)";
+
+constexpr std::string_view kShow = R"(fantascope: show
+version: 1
+title: Test
+sources: {dim: {solid: [0.1, 0.1, 0.1]}}
+looks: {glow: {outputs: {left: [{source: dim}]}, fixtures: {lamp: 1}}}
+cues: [{name: Glow, look: glow, fade: 1}, {name: Still, look: glow, fade: 1}]
+)";
+
+struct Checked {
+    std::string lines;
+    std::string refusal;  // "" if nothing was refused
+};
+
+Checked check(const ShowFolder& folder, const CheckOptions& options) {
+    std::ostringstream out;
+    const auto done = checkFiles(options, out);
+    return {folder.relative(out.str()), done ? "" : folder.relative(done.error().message())};
+}
+
+TEST(Check, says_of_each_good_file_what_it_holds) {
+    const ShowFolder folder;
+    folder.write("show.yaml", kShow);
+    const auto site = folder.write("site.yaml", kSite);
+    const auto settings =
+        folder.write("fine.pattern-settings.yaml", "fantascope: pattern-settings\nversion: 1\nshapes: {instances: 40}\n");
+    const auto guide = folder.path() / "guide.png";
+    ASSERT_TRUE(writePng(guide, GreyImage(64, 36)));
+    const Checked checked = check(folder, {{folder.path() / "show.yaml", site, settings, guide}, std::nullopt});
+    EXPECT_EQ(checked.lines,
+              "ok show.yaml: show, 2 cues, 1 look, 1 source\n"
+              "ok site.yaml: site, 1 output, 1 fixture, 0 relays\n"
+              "ok fine.pattern-settings.yaml: pattern settings, at most 40 instances\n"
+              "ok guide.png: guide, 64 x 36 px\n");
+    EXPECT_EQ(checked.refusal, "");
+}
+
+TEST(Check, a_folder_stands_for_the_show_in_it) {
+    const ShowFolder folder;
+    folder.write("show.yaml", kShow);
+    EXPECT_THAT(check(folder, {{folder.path()}, std::nullopt}).lines, HasSubstr("show, 2 cues"));
+}
+
+// A show may be right in itself and still not fit the place. Example failure: the technician learns it at nightfall.
+TEST(Check, a_show_is_held_against_the_site) {
+    const ShowFolder folder;
+    const auto site = folder.write("site.yaml", kSite);
+    const auto show = folder.write("show.yaml", kShow),
+               other = folder.write("other.yaml", replaced(std::string(kShow), "lamp: 1", "lmap: 1"));
+    const Checked fits = check(folder, {{show}, site});
+    EXPECT_EQ(fits.lines,
+              "ok site.yaml: site, 1 output, 1 fixture, 0 relays\n"
+              "ok show.yaml: show, 2 cues, 1 look, 1 source, plays on site.yaml\n");
+    const Checked misses = check(folder, {{other}, site});
+    EXPECT_THAT(misses.lines,
+                HasSubstr("other.yaml:5:67: looks.glow.fixtures.lmap: no fixture is called 'lmap' (known: lamp) in site.yaml"));
+    EXPECT_EQ(misses.refusal, "1 of 2 files refused");
+}
+
+// Example failure: the show loads, and one of its pictures stays black for want of a file.
+TEST(Check, a_show_is_checked_with_the_patterns_and_guides_that_it_names) {
+    const ShowFolder folder;
+    const auto patternFile = folder.path() / "leaves.pattern.yaml", guide = folder.path() / "leaves.png";
+    pattern::ShapePattern pattern;
+    pattern.guide = guide;
+    pattern.width = 64;
+    pattern.height = 36;
+    pattern.shapes = {pattern::loadShape("triangle").value()};
+    pattern.instances = {{.id = 0, .centre = {0.5, 0.5}, .size = 0.1}, {.id = 1, .centre = {1, 0.5}, .size = 0.1}};
+    ASSERT_TRUE(writePng(guide, GreyImage(64, 36)));
+    ASSERT_TRUE(pattern::writePattern(patternFile, pattern));
+    const auto show =
+        folder.write("show.yaml", replaced(std::string(kShow), "{solid: [0.1, 0.1, 0.1]}", "{pattern: leaves.pattern.yaml}"));
+    EXPECT_EQ(check(folder, {{show}, std::nullopt}).lines,
+              "ok show.yaml: show, 2 cues, 1 look, 1 source\n"
+              "ok leaves.pattern.yaml: pattern, 2 instances, 2 triangles\n"
+              "ok leaves.png: guide, 64 x 36 px\n");
+    std::filesystem::remove(guide);
+    const Checked checked = check(folder, {{show}, std::nullopt});
+    EXPECT_THAT(checked.lines, HasSubstr("\nleaves.png: "));
+    EXPECT_EQ(checked.refusal, "1 of 3 files refused");
+}
+
+// One mistake does not hide the next file's.
+TEST(Check, goes_on_after_a_refusal_and_counts_them) {
+    const ShowFolder folder;
+    const auto truncated = folder.path() / "truncated.png";
+    ASSERT_TRUE(writePng(truncated, GreyImage(64, 36, 0.5f)));
+    const std::string png = readFile(truncated).value();
+    folder.write("truncated.png", png.substr(0, png.size() / 2));
+    const Checked checked = check(folder, {{folder.write("a.yaml", "fantascope: shoe\n"), folder.write("b.yaml", "version: 1\n"),
+                                            truncated, folder.path() / "absent.yaml", folder.write("site.yaml", kSite)},
+                                           std::nullopt});
+    std::istringstream lines(checked.lines);
+    std::string line;
+    for (const std::string expected :
+         {"a.yaml:1:13: fantascope: one of ", "b.yaml:1:1: 'fantascope' is missing: the kind of file, one of show, site, pattern",
+          "truncated.png: ", "absent.yaml: cannot be read: No such file or directory", "ok site.yaml: "}) {
+        ASSERT_TRUE(std::getline(lines, line));
+        EXPECT_THAT(line, testing::StartsWith(expected));
+    }
+    EXPECT_EQ(checked.refusal, "4 of 5 files refused");
+}
+
+TEST(Check, a_file_that_is_named_twice_is_read_once) {
+    const ShowFolder folder;
+    const auto site = folder.write("site.yaml", kSite);
+    const Checked checked = check(folder, {{site, folder.path() / "." / "site.yaml"}, site});
+    EXPECT_EQ(checked.lines, "ok site.yaml: site, 1 output, 1 fixture, 0 relays\n");
+}
+
+}  // namespace
+}  // namespace fantascope::app

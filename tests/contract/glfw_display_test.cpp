@@ -1,0 +1,113 @@
+// What a window adds to the promises of every display.
+
+#include "drivers/display/glfw.h"
+
+#include "contract/x_server.h"
+#include "core/check.h"
+
+#include <epoxy/gl.h>
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <utility>
+
+namespace fantascope::contract {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::unique_ptr<DisplaySink> open(const std::string& options, glm::ivec2 size, Clock& clock) {
+    auto sink = drivers::GlfwDisplay::open(*ConfigNode::parse(options, "site.yaml"), {"left", size, 30}, {clock});
+    FANTASCOPE_CHECK(sink.has_value(), sink.error().message());
+    return std::move(sink).value();
+}
+
+class GlfwDisplay : public testing::Test {
+protected:
+    void SetUp() override {
+        auto server = XServer::start();
+        ASSERT_TRUE(server) << server.error().message();
+        server_ = std::move(server).value();
+    }
+
+    std::unique_ptr<XServer> server_;
+    ManualClock clock_;
+};
+
+// All 256 stored values, in the picture's top row alone, so that a picture upside down is found out. A conversion there and back on
+// the way to the window would move some by one, a single one nearly all.
+TEST_F(GlfwDisplay, fills_its_monitor_with_the_stored_values) {
+    const auto sink = open("{driver: glfw, monitor: screen}", {1280, 720}, clock_);
+    ASSERT_TRUE(sink->makeCurrent()) << sink->status().detail;
+    glBindFramebuffer(GL_FRAMEBUFFER, sink->framebuffer());
+    glDisable(GL_FRAMEBUFFER_SRGB);  // what is drawn now is stored as it is
+    glEnable(GL_SCISSOR_TEST);
+    for (int value = 0; value < 256; ++value) {
+        const GLfloat colour[] = {float(value) / 255, 0, float(255 - value) / 255, 1};
+        glScissor(value, 719, 1, 1);
+        glClearBufferfv(GL_COLOR, 0, colour);
+    }
+    glDisable(GL_SCISSOR_TEST);
+    glEnable(GL_FRAMEBUFFER_SRGB);  // as a renderer leaves it
+    ASSERT_TRUE(sink->present(true));
+    EXPECT_TRUE(glIsEnabled(GL_FRAMEBUFFER_SRGB)) << "the renderer's state is changed";
+
+    const auto top = server_->row(0);
+    for (int value = 0; value < 256; ++value) EXPECT_THAT(top[value], ElementsAre(value, 0, 255 - value)) << value;
+    EXPECT_THAT(server_->row(1), Each(ElementsAre(0, 0, 0)));
+}
+
+TEST_F(GlfwDisplay, is_absent_without_its_monitor_and_names_those_there_are) {
+    const auto sink = open("{driver: glfw, monitor: HDMI-7}", {1280, 720}, clock_);
+    EXPECT_EQ(sink->status().state, DeviceState::Absent);
+    EXPECT_THAT(sink->status().detail, HasSubstr("'HDMI-7' (there is: screen)"));
+    EXPECT_FALSE(sink->present(true));
+}
+
+// Otherwise the picture would be scaled or cut and nobody would know.
+TEST_F(GlfwDisplay, is_absent_on_a_monitor_without_a_mode_of_its_size) {
+    const auto sink = open("{driver: glfw, monitor: screen}", {1000, 700}, clock_);
+    EXPECT_THAT(sink->status().detail, HasSubstr("no mode of 1000 x 700"));
+}
+
+TEST_F(GlfwDisplay, stays_closed_when_somebody_closes_its_window) {
+    const auto sink = open("{driver: glfw}", {64, 36}, clock_);
+    ASSERT_TRUE(sink->present(true));
+    ASSERT_TRUE(server_->hasWindow("left"));
+    server_->closeWindow("left");
+    ASSERT_TRUE(sink->present(true)) << "this frame's events tell of the closing";
+    for (int second = 0; second < 3; ++second) {
+        EXPECT_FALSE(sink->makeCurrent());
+        EXPECT_FALSE(sink->present(true));
+        clock_.advance(std::chrono::seconds(1));
+    }
+    EXPECT_EQ(sink->status().state, DeviceState::Absent);
+    EXPECT_THAT(sink->status().detail, HasSubstr("start Fantascope again"));
+    EXPECT_EQ(sink->status().losses, 1);
+    EXPECT_FALSE(server_->hasWindow("left"));
+}
+
+TEST_F(GlfwDisplay, waits_for_an_x_server_and_tries_once_a_second) {
+    const std::string name = std::getenv("DISPLAY");
+    ::unsetenv("DISPLAY");
+    const auto sink = open("{driver: glfw}", {64, 36}, clock_);
+    ::setenv("DISPLAY", name.c_str(), 1);
+    EXPECT_EQ(sink->status().state, DeviceState::Absent);
+    EXPECT_THAT(sink->status().detail, HasSubstr("set DISPLAY, or start an X server"));
+    EXPECT_FALSE(sink->makeCurrent()) << "it tries again before a second is over";
+    clock_.advance(std::chrono::seconds(1));
+    EXPECT_TRUE(sink->makeCurrent());
+    EXPECT_EQ(sink->status().state, DeviceState::Running);
+    EXPECT_EQ(sink->status().losses, 0) << "what was never there was not lost";
+}
+
+TEST_F(GlfwDisplay, refuses_a_wrong_key) {
+    const auto sink = drivers::GlfwDisplay::open(*ConfigNode::parse("{driver: glfw, monitr: a}", "site.yaml"), {}, {clock_});
+    ASSERT_FALSE(sink);
+    EXPECT_THAT(sink.error().message(), HasSubstr("monitor"));
+}
+
+}  // namespace
+}  // namespace fantascope::contract

@@ -1,0 +1,40 @@
+#pragma once
+// An X server of a test's own, and what a person in front of its screen sees and does.
+
+#include "core/result.h"
+
+#include <sys/types.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fantascope {
+
+// Xvfb with one screen of 1280 x 720 pixels, monitor "screen", no window manager. While it runs, DISPLAY names it.
+class XServer {
+public:
+    // Error: Xvfb is not installed or does not start.
+    static Result<std::unique_ptr<XServer>> start();
+    ~XServer();
+    XServer(const XServer&) = delete;
+    XServer& operator=(const XServer&) = delete;
+
+    // What the screen shows in its row `y` from the top: 1280 pixels of red, green, blue as they are stored.
+    std::vector<std::array<std::uint8_t, 3>> row(int y) const;
+    bool hasWindow(const std::string& title) const;  // a visible one
+    // Asks the window to close, as its close button does.
+    void closeWindow(const std::string& title) const;
+
+private:
+    XServer(pid_t child, const std::string& display);
+
+    pid_t child_;
+    std::string display_;
+    std::optional<std::string> displayBefore_;
+};
+
+}  // namespace fantascope

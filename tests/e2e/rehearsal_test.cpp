@@ -1,0 +1,151 @@
+// Whole rehearsals of the default show with the built program, on the stepped clock, as a newcomer would run them.
+
+#include "program.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <numeric>
+
+namespace fantascope {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+const fs::path kSource = FANTASCOPE_SOURCE_DIR;
+const std::vector<std::string> kCues = {"Dusk", "First light", "Left rises", "Both", "Full", "Farewell"};
+
+void replace(std::string& text, const std::string& before, const std::string& after) {
+    const auto at = text.find(before);
+    ASSERT_NE(at, std::string::npos) << before;
+    text.replace(at, before.size(), after);
+}
+
+// The default site with further lines in its simulation section.
+fs::path siteWith(const Folder& folder, const std::string& lines) {
+    fs::copy(kSource / "config/simulated", folder / "site", fs::copy_options::recursive);
+    std::ofstream(folder / "site/site.yaml", std::ios::app) << lines;
+    return folder / "site";
+}
+
+Outcome rehearse(const fs::path& folder, std::vector<std::string> more, const std::vector<std::pair<std::string, std::string>>& environment = {}) {
+    std::vector<std::string> arguments = {"rehearse", "--as-fast-as-possible", "--record", "rehearsal", "--report", "report.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(arguments, folder, environment);
+}
+
+TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
+    const Folder folder;
+    const Outcome outcome = rehearse(folder.path(), {"--seconds", "30"});
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    const json report = json::parse(contentsOf(folder / "report.json"));
+    std::vector<std::string> entered;
+    for (const json& cue : report["cues"]) entered.push_back(cue["name"]);
+    EXPECT_EQ(entered, kCues);
+    EXPECT_EQ(report["frames"], 2 * 30 * 30);
+    EXPECT_EQ(report["late_frames"], 0);
+    EXPECT_EQ(report["input_to_frame_ms"]["count"], 6);
+    EXPECT_EQ(report["stop_reason"], "length");
+    for (const char* file : {"left.mp4", "right.mp4", "contact-sheet.png", "dmx.csv", "relays.csv", "frames.csv"})
+        EXPECT_GT(fs::file_size(folder / "rehearsal" / file), 0u) << file;
+    // The road lamps are on before and after the show and off during it; the sculpture's lamp follows the looks.
+    const std::string relays = contentsOf(folder / "rehearsal/relays.csv");
+    EXPECT_THAT(relays, testing::MatchesRegex("show_time_s,states\n[0-9.]+,11\n[0-9.]+,00\n[0-9.]+,11\n"));
+    EXPECT_THAT(contentsOf(folder / "rehearsal/dmx.csv"), HasSubstr(",1,255\n"));
+}
+
+// The operator's word is only worth something if a rehearsal can be repeated. Example failure: a part that reads the real clock, a result
+// that depends on which thread came first.
+TEST(Rehearsal, is_the_same_byte_for_byte_in_another_folder_and_with_other_threads) {
+    const Folder one, other;
+    ASSERT_EQ(rehearse(one.path(), {"--seconds", "6"}, {{"LP_NUM_THREADS", "0"}}).status, 0);
+    ASSERT_EQ(rehearse(other.path(), {"--seconds", "6"}, {{"LP_NUM_THREADS", "2"}}).status, 0);
+    for (const char* file : {"frames.csv", "dmx.csv", "relays.csv", "left.mp4", "right.mp4", "contact-sheet.png"})
+        EXPECT_EQ(contentsOf(one / "rehearsal" / file), contentsOf(other / "rehearsal" / file)) << file;
+    json reportOne = json::parse(contentsOf(one / "report.json")), reportOther = json::parse(contentsOf(other / "report.json"));
+    EXPECT_EQ(reportOne["z_camera"], reportOther["z_camera"]);
+}
+
+TEST(Rehearsal, another_seed_gives_other_camera_noise_and_the_same_show) {
+    const Folder one, other;
+    ASSERT_EQ(rehearse(one.path(), {"--seconds", "3", "--by-hand", "--from", "Full", "--seed", "1"}).status, 0);
+    ASSERT_EQ(rehearse(other.path(), {"--seconds", "3", "--by-hand", "--from", "Full", "--seed", "2"}).status, 0);
+    EXPECT_EQ(contentsOf(one / "rehearsal/frames.csv"), contentsOf(other / "rehearsal/frames.csv"));
+    EXPECT_NE(contentsOf(one / "rehearsal/contact-sheet.png"), contentsOf(other / "rehearsal/contact-sheet.png"));
+}
+
+double meanScore(const json& series, double from, double to) {
+    double sum = 0;
+    int count = 0;
+    for (const json& entry : series) {
+        if (entry[0] < from || entry[0] >= to) continue;
+        sum += entry[1].get<double>();
+        ++count;
+    }
+    EXPECT_GT(count, 0) << "no score between " << from << " and " << to << " s";
+    return sum / count;
+}
+
+// The camera's score tells a technician which projector was knocked, and that it stands right again. It knows the nominal site alone.
+// Example failure: the comparison reads the simulated truth, so that a bump moves both sides.
+TEST(Rehearsal, the_cameras_score_rises_while_a_projector_is_bumped_and_only_for_its_output) {
+    const Folder folder;
+    const fs::path site = siteWith(folder, "  faults:\n    - {at: 6, until: 12, kind: bump, output: left, move: [0.05, 0, 0], turn: [0, 1.5, 0.5]}\n");
+    const Outcome outcome = rehearse(folder.path(), {"--seconds", "18", "--by-hand", "--from", "Full", "--site", site.string()});
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    const json report = json::parse(contentsOf(folder / "report.json"));
+    EXPECT_EQ(report["faults"].size(), 2u) << report["faults"];
+    const json &left = report["z_camera"]["left"], &right = report["z_camera"]["right"];
+    // The first seconds belong to the fade.
+    const double before = meanScore(left, 4.5, 6), bumped = meanScore(left, 6.5, 12), after = meanScore(left, 12.5, 18);
+    EXPECT_GT(bumped, 1.25 * before) << before << " " << bumped << " " << after;
+    EXPECT_NEAR(after, before, 0.3 * (bumped - before)) << before << " " << bumped << " " << after;
+    const double still = meanScore(right, 4.5, 6), alsoStill = meanScore(right, 6.5, 12);
+    EXPECT_NEAR(alsoStill, still, 0.2 * (bumped - before)) << still << " " << alsoStill;
+}
+
+TEST(Rehearsal, an_unplugged_projector_goes_dark_and_comes_back_while_the_other_plays_on) {
+    const Folder folder;
+    const fs::path site = siteWith(folder, "  faults:\n    - {at: 2, until: 4, kind: unplug, device: left}\n");
+    ASSERT_EQ(rehearse(folder.path(), {"--seconds", "6", "--by-hand", "--from", "Full", "--site", site.string()}).status, 0);
+    const json report = json::parse(contentsOf(folder / "report.json"));
+    EXPECT_EQ(report["frames_by_output"]["right"], 180);
+    EXPECT_NEAR(report["frames_by_output"]["left"].get<double>(), 120, 2);
+    EXPECT_EQ(report["late_frames"], 0);
+}
+
+// Each mistake ends with one message that says where and what to do, exit status 1, and nothing half written.
+TEST(Rehearsal, bad_input_is_refused_before_anything_is_shown) {
+    const Folder folder;
+    const auto refused = [&](std::vector<std::string> arguments) {
+        const Outcome outcome = rehearse(folder.path(), std::move(arguments));
+        EXPECT_EQ(outcome.status, 1) << outcome.errors;
+        EXPECT_FALSE(fs::exists(folder / "rehearsal"));
+        EXPECT_FALSE(fs::exists(folder / "report.json"));
+        return outcome.errors;
+    };
+    EXPECT_THAT(refused({"nowhere", "--seconds", "1"}), HasSubstr("nowhere"));
+    EXPECT_THAT(refused({"--seconds", "1", "--from", "Ful"}), HasSubstr("Full"));
+    EXPECT_THAT(refused({"--seconds", "1", "--site", "nowhere"}), HasSubstr("nowhere"));
+    const fs::path typo = siteWith(folder, "  fautls: []\n");
+    EXPECT_THAT(refused({"--seconds", "1", "--site", typo.string()}), HasSubstr("fautls: unknown key (did you mean 'faults'?)"));
+
+    fs::copy(kSource / "shows/light-movement", folder / "show", fs::copy_options::recursive);
+    std::string show = contentsOf(folder / "show/show.yaml");
+    replace(show, "      right: [{source: moonlight}]", "      rihgt: [{source: moonlight}]");
+    std::ofstream(folder / "show/show.yaml") << show;
+    EXPECT_THAT(refused({"show", "--seconds", "1"}), testing::AllOf(HasSubstr("show.yaml:"), HasSubstr("rihgt"), HasSubstr("right")));
+}
+
+TEST(Rehearsal, wrong_usage_has_its_own_exit_status) {
+    const Folder folder;
+    EXPECT_EQ(runProgram({"rehearse", "--secnds", "5"}, folder.path()).status, 2);
+    EXPECT_EQ(runProgram({"rehears"}, folder.path()).status, 2);
+    EXPECT_EQ(runProgram({}, folder.path()).status, 2);
+    EXPECT_EQ(runProgram({"rehearse", "--help"}, folder.path()).status, 0);
+}
+
+}  // namespace
+}  // namespace fantascope

@@ -1,0 +1,178 @@
+// Photographs of a wall made by hand, without the simulated site: pixel by pixel through the nominal geometry.
+
+#include "vision/guide_comparison.h"
+
+#include "core/random.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+namespace fantascope::vision {
+namespace {
+
+constexpr double kAspect = 16.0 / 9;
+
+// A projector that looks at a wall from the side, its picture put straight, and a camera with a slightly barrel-shaped lens.
+NominalView nominalView() {
+    const Pose eye = Pose::lookingAt({0.3, 1.6, 5}, {0, 1.2, 0}).value(),
+               lamp = Pose::lookingAt({1.6, 2, 4}, {0, 1.2, 0}).value();
+    NominalView view;
+    view.camera = CameraModel::fromFieldOfView(eye, {320, 180}, 0.9, -0.08).value();
+    view.projector = CameraModel::fromThrowRatio(lamp, {640, 360}, 1.1, {0, 0});
+    view.canvasAspect = kAspect;
+    const auto corners =
+        rectifyingCorners(view.projector, {{{-1.2, 1.875, 0}, {1.2, 1.875, 0}, {1.2, 0.525, 0}, {-1.2, 0.525, 0}}});
+    view.projectorFromCanvas = Homography::fromCorners(rectangleCorners(kAspect, 1), corners.value()).value();
+    return view;
+}
+
+// A spiral of light: the same at no other place and in no other orientation.
+GreyImage spiral() {
+    GreyImage guide(320, 180);
+    for (int y = 0; y < 180; ++y)
+        for (int x = 0; x < 320; ++x) {
+            const glm::dvec2 at = glm::dvec2(x + 0.5, y + 0.5) / 180.0 - glm::dvec2(0.8, 0.5);
+            const double turns = glm::length(at) / 0.13 - std::atan2(at.y, at.x) / (2 * std::numbers::pi);
+            const double fromLine = std::abs(turns - std::round(turns));
+            if (glm::length(at) < 0.48) guide.at(x, y) = static_cast<float>(0.9 * std::exp(-fromLine * fromLine * 40));
+        }
+    return guide;
+}
+
+struct Photograph {
+    glm::dvec3 scale{0.6};          // linear light of a white picture
+    glm::dvec3 ambient{0.02};       // linear light of the wall without it
+    glm::dvec3 ambientAcross{0.0};  // what is added to that from the left to the right end of the wall in view
+    double noise = 0;               // of the linear light
+    double turned = 0;              // degrees that the projector has been turned to the side
+};
+
+// The light of one pixel of a projector on a square metre of the wall: its pixels there, over those at the picture's middle.
+double falloff(const CameraModel& projector, glm::dvec3 point) {
+    const auto pixelsPerArea = [&](glm::dvec3 at) {
+        const glm::dvec3 toLens = projector.pose.position - at;
+        return toLens.z / std::pow(glm::dot(-toLens, projector.pose.worldFromLocal[2]), 3);
+    };
+    return pixelsPerArea(point) / pixelsPerArea({0, 1.2, 0});
+}
+
+RgbaImage photographed(const GreyImage& picture, const Photograph& how) {
+    const NominalView view = nominalView();
+    CameraModel projector = view.projector;
+    projector.pose.worldFromLocal = projector.pose.worldFromLocal * rotationXyz({0, how.turned * std::numbers::pi / 180, 0});
+    const Homography canvasFromProjector = view.projectorFromCanvas.inverse();
+    RgbaImage frame(view.camera.size.x, view.camera.size.y);
+    Rng rng(3);
+    constexpr int kSide = 3;
+    for (int y = 0; y < frame.height(); ++y)
+        for (int x = 0; x < frame.width(); ++x) {
+            glm::dvec3 light(0.0);
+            for (int i = 0; i < kSide * kSide; ++i) {
+                const glm::dvec2 pixel(x + (i % kSide + 0.5) / kSide, y + (i / kSide + 0.5) / kSide);
+                const glm::dvec3 point = view.surface.hitBy(view.camera.rayThrough(pixel)).value();
+                const glm::dvec2 canvas = canvasFromProjector(projector.pixelFromWorld(point).value());
+                light += how.ambient + how.ambientAcross * (0.5 + point.x / 4);
+                if (canvas.x < 0 || canvas.y < 0 || canvas.x >= kAspect || canvas.y >= 1) continue;
+                const float shown = picture.at(static_cast<int>(canvas.x * 180), static_cast<int>(canvas.y * 180));
+                light += how.scale * (shown * falloff(projector, point));
+            }
+            const auto stored = [&](double linear) {
+                const double noisy = linear / (kSide * kSide) + how.noise * rng.normal();
+                return static_cast<std::uint8_t>(
+                    std::lround(255 * srgbFromLinear(static_cast<float>(std::clamp(noisy, 0.0, 1.0)))));
+            };
+            frame.at(x, y) = {stored(light.r), stored(light.g), stored(light.b), 255};
+        }
+    return frame;
+}
+
+double score(const GreyImage& guide, const RgbaImage& frame) {
+    return GuideComparison(nominalView(), guide).compare(frame).value_or(NAN);
+}
+
+GreyImage inverted(GreyImage image) {
+    for (float& value : image.pixels()) value = 1 - value;
+    return image;
+}
+
+TEST(GuideComparison, is_near_zero_for_the_guide_itself_and_far_from_it_for_other_pictures) {
+    const GreyImage guide = spiral();
+    GreyImage mirrored = guide;
+    for (int y = 0; y < 180; ++y) std::reverse(mirrored.row(y).begin(), mirrored.row(y).end());
+    const double right = score(guide, photographed(guide, {}));
+    EXPECT_LT(right, 0.015);
+    // An inverted picture is the same one with a negative exposure; no camera has that.
+    EXPECT_GT(score(guide, photographed(inverted(guide), {})), 0.15);
+    EXPECT_GT(score(guide, photographed(mirrored, {})), 0.1);
+}
+
+TEST(GuideComparison, grows_with_the_way_that_the_picture_has_moved) {
+    const GreyImage guide = spiral();
+    double last = score(guide, photographed(guide, {}));
+    for (const double degrees : {0.25, 0.5, 1.0, 1.5}) {
+        const double moved = score(guide, photographed(guide, {.turned = degrees}));
+        EXPECT_GT(moved, 1.15 * last) << degrees;
+        last = moved;
+    }
+}
+
+TEST(GuideComparison, does_not_mind_exposure_fades_colours_ambient_light_and_noise) {
+    const GreyImage guide = spiral();
+    const double plain = score(guide, photographed(guide, {}));
+    const std::vector<std::pair<std::string, Photograph>> ways = {
+        {"a fade", {.scale = glm::dvec3(0.08)}},
+        {"blue shapes", {.scale = {0.05, 0.1, 0.5}}},
+        {"light of the sky", {.ambient = {0.1, 0.12, 0.2}}},
+        {"a warm lamp from the side", {.ambientAcross = {0.3, 0.15, 0.05}}},
+        {"a warm lamp on blue shapes", {.scale = {0.05, 0.1, 0.5}, .ambientAcross = {0.3, 0.15, 0.05}}},
+        {"noise", {.noise = 0.03}},
+    };
+    for (const auto& [what, how] : ways) EXPECT_NEAR(score(guide, photographed(guide, how)), plain, 0.006) << what;
+}
+
+// A guide that is itself as smooth as ambient light must not be taken for it.
+TEST(GuideComparison, keeps_a_guide_that_is_a_mere_gradient) {
+    GreyImage ramp(320, 180), back(320, 180);
+    for (int y = 0; y < 180; ++y)
+        for (int x = 0; x < 320; ++x) {
+            ramp.at(x, y) = static_cast<float>(x) / 320;
+            back.at(x, y) = 1 - ramp.at(x, y);
+        }
+    EXPECT_LT(score(ramp, photographed(ramp, {})), 0.02);
+    EXPECT_GT(score(ramp, photographed(back, {})), 0.3);
+}
+
+TEST(GuideComparison, has_no_value_where_there_is_nothing_to_compare) {
+    const GuideComparison comparison(nominalView(), spiral());
+    const GreyImage black(320, 180);
+    EXPECT_FALSE(comparison.compare(photographed(black, {.ambient = glm::dvec3(0), .noise = 0.01}))) << "the dark";
+    EXPECT_FALSE(
+        comparison.compare(photographed(black, {.ambient = {0.3, 0.2, 0.1}, .ambientAcross = {0.3, 0.2, 0.1}, .noise = 0.02})))
+        << "lamps on an empty wall";
+
+    NominalView turnedAway = nominalView();
+    turnedAway.camera.pose = Pose::lookingAt({0.3, 1.6, 5}, {0.3, 1.6, 9}).value();
+    EXPECT_FALSE(GuideComparison(turnedAway, spiral()).compare(photographed(spiral(), {}))) << "a camera that looks elsewhere";
+    EXPECT_FALSE(GuideComparison(nominalView(), black).compare(photographed(spiral(), {}))) << "a guide without a drawing";
+}
+
+// Only stored pictures count, wherever they come from: a night's frames, kept as PNG, give the same scores again.
+TEST(GuideComparison, gives_a_stored_sequence_the_same_scores) {
+    const GuideComparison comparison(nominalView(), spiral());
+    const auto file = std::filesystem::path(testing::TempDir()) / "guide_comparison_frame.png";
+    for (const double degrees : {0.0, 0.7, 0.0}) {
+        const RgbaImage frame = photographed(spiral(), {.noise = 0.02, .turned = degrees});
+        ASSERT_TRUE(writePng(file, frame));
+        EXPECT_EQ(comparison.compare(readRgba(file).value()), comparison.compare(frame));
+    }
+    std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace fantascope::vision
