@@ -18,7 +18,9 @@ int run(int argc, char** argv) {
     program.set_version_flag("--version", FANTASCOPE_VERSION);
     program.require_subcommand(1);
     program.failure_message([](const CLI::App* app, const CLI::Error& error) {
-        return fmt::format("fantascope: error: {}\nSee '{} --help'.\n", error.what(), app->get_name());
+        const auto chosen = app->get_subcommands();
+        const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+        return fmt::format("fantascope: error: {}\nSee 'fantascope{} --help'.\n", error.what(), command);
     });
     Action action;
     for (const AddCommand add : kCommands) add(program, action);

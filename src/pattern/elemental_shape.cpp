@@ -116,8 +116,8 @@ Result<ElementalShape> loadShape(const std::string& nameOrFile) {
     for (const BuiltIn& shape : builtIns())
         if (shape.name == nameOrFile) return makeShape(shape.name, shape.mesh());
     const fs::path file = nameOrFile;
-    if (!file.has_extension() && !file.has_parent_path() && !fs::exists(file)) {
-        const std::string nearest = nearestName(nameOrFile, builtInShapeNames());
+    if (!file.has_extension() && !fs::exists(file)) {
+        const std::string nearest = nearestName(file.filename().string(), builtInShapeNames());
         return Error(fmt::format("'{}' is not a shape: neither a file nor one of {}{}", nameOrFile,
                                  fmt::join(builtInShapeNames(), ", "),
                                  nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest)));

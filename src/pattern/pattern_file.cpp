@@ -85,7 +85,7 @@ Result<ShapePattern> patternOf(const ConfigNode& root) {
     ConfigFields fields(root);
     fields.header("pattern", kVersion);
     fields.path("guide", pattern.guide);
-    fields.choice("guide_transfer", pattern.guideTransfer, {"srgb", "linear"});
+    fields.choice("guide_transfer", pattern.guideTransfer, {name(GuideTransfer::Srgb), name(GuideTransfer::Linear)});
     fields.read("size", size, readSize);
     fields.integer("seed", pattern.seed, 0, std::numeric_limits<std::int64_t>::max());
     fields.integer("groups", pattern.groups, 1, kMostInstances);
@@ -135,7 +135,7 @@ Result<void> writePattern(const fs::path& file, const ShapePattern& pattern) {
     const auto add = [&]<class... Values>(fmt::format_string<Values...> format, Values&&... values) {
         fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
     };
-    add("guide_transfer: {}\n", pattern.guideTransfer == GuideTransfer::Linear ? "linear" : "srgb");
+    add("guide_transfer: {}\n", name(pattern.guideTransfer));
     add("size: [{}, {}]\nseed: {}\ngroups: {}\nshapes:\n", pattern.width, pattern.height, pattern.seed, pattern.groups);
     for (const ElementalShape& shape : pattern.shapes) {
         if (shape.file.empty())

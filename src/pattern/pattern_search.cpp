@@ -68,9 +68,12 @@ double typicalSide(const Silhouette& shape, const Options& options, Rng rng) {
 double rounded(double value, double steps) { return std::round(value * steps) / steps; }
 double roundedAngle(double angle) { return radians(rounded(angle * 180 / std::numbers::pi, 1e4)); }
 
-// The nearest instance whose numbers are short decimals: a file then holds, in few digits, exactly what was compared.
-ShapeInstance storable(ShapeInstance instance) {
-    instance.centre = {rounded(instance.centre.x, 1e6), rounded(instance.centre.y, 1e6)};
+// The nearest instance whose numbers are short decimals and whose centre is on the canvas: a file then holds, in few digits, exactly
+// what was compared.
+ShapeInstance storable(ShapeInstance instance, double aspect) {
+    const double right = std::floor(aspect * 1e6) / 1e6;
+    instance.centre.x = std::clamp(rounded(instance.centre.x, 1e6), 0.0, right);
+    instance.centre.y = std::clamp(rounded(instance.centre.y, 1e6), 0.0, 1.0);
     instance.size = rounded(instance.size, 1e6);
     instance.rotation = {roundedAngle(instance.rotation.x), roundedAngle(instance.rotation.y), roundedAngle(instance.rotation.z)};
     return instance;
@@ -153,9 +156,8 @@ private:
     Heuristics examine(const Candidate& reference) const {
         Heuristics found;
         for (const PixelRectangle& cell : lattice_) {
-            const double g = goal_.differenceIndex(cell, reference.coverage);
-            if (g > options_.lambdaCreate)
-                found.vacancies.push_back({cell, (g - options_.lambdaCreate) / (1 - options_.lambdaCreate)});
+            const double probability = createProbability(goal_.differenceIndex(cell, reference.coverage), options_.lambdaCreate);
+            if (probability > 0) found.vacancies.push_back({cell, probability});
         }
         for (const ShapeInstance& instance : reference.instances)
             found.instanceIndices.push_back(goal_.differenceIndex(instanceCell(instance), reference.coverage));
@@ -169,10 +171,7 @@ private:
         candidate.nextId = reference.nextId;
         for (std::size_t i = 0; i < reference.instances.size(); ++i) {
             const double g = heuristics.instanceIndices[i];
-            if (g < options_.lambdaDelete) {
-                const double deleteProbability = (g - options_.lambdaDelete) / (-1 - options_.lambdaDelete);
-                if (rng.uniform() < deleteProbability) continue;
-            }
+            if (rng.uniform() < deleteProbability(g, options_.lambdaDelete)) continue;
             candidate.instances.push_back(adjusted(reference.instances[i], g, share, rng));
         }
         std::vector<const PixelRectangle*> cells;
@@ -197,13 +196,13 @@ private:
         instance.size = std::clamp(instance.size, sizes_.x, sizes_.y);
 
         const auto shift = [&] { return amount * rng.uniform(-1, 1); };
-        instance.centre.x = std::clamp(instance.centre.x + instance.size * shift(), 0.0, aspect_);
-        instance.centre.y = std::clamp(instance.centre.y + instance.size * shift(), 0.0, 1.0);
+        instance.centre.x += instance.size * shift();
+        instance.centre.y += instance.size * shift();
         instance.rotation.x = std::clamp(instance.rotation.x + shift(), -options_.tilt, options_.tilt);
         instance.rotation.y = std::clamp(instance.rotation.y + shift(), -options_.tilt, options_.tilt);
         const double turned = std::remainder(instance.rotation.z + shift(), 2 * std::numbers::pi);  // a free turn has no ends
         instance.rotation.z = std::clamp(turned, -options_.turn, options_.turn);
-        return storable(instance);
+        return storable(instance, aspect_);
     }
 
     // A success rule after Rechenberg's (1973): more is perturbed after an acceptance and less after a rejection, in such steps
@@ -224,7 +223,7 @@ private:
         instance.size = sizes_.x * std::pow(sizes_.y / sizes_.x, rng.uniform());
         instance.rotation = {rng.uniform(-options_.tilt, options_.tilt), rng.uniform(-options_.tilt, options_.tilt),
                              rng.uniform(-options_.turn, options_.turn)};
-        candidate.instances.push_back(storable(instance));
+        candidate.instances.push_back(storable(instance, aspect_));
     }
 
     void evaluate(Candidate& candidate) const {
@@ -328,6 +327,12 @@ std::string_view name(PatternSearch::StopReason reason) {
             return "interrupted";
     }
     return "";
+}
+
+double createProbability(double g, double lambdaCreate) { return g > lambdaCreate ? (g - lambdaCreate) / (1 - lambdaCreate) : 0; }
+
+double deleteProbability(double g, double lambdaDelete) {
+    return g < lambdaDelete ? (g - lambdaDelete) / (-1 - lambdaDelete) : 0;
 }
 
 PatternSearch::Found PatternSearch::run(const GreyImage& guide, ShapePattern pattern, const Options& options, int threads,

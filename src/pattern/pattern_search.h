@@ -97,6 +97,11 @@ struct PatternSearch {
     static Found run(const GreyImage& guide, ShapePattern pattern, const Options& options, int threads, const AskStop& askStop);
 };
 
+// p_cre of a lattice cell and p_del of an instance cell with difference index g; 0 where g does not pass the threshold
+// (section 4.1).
+double createProbability(double g, double lambdaCreate);
+double deleteProbability(double g, double lambdaDelete);
+
 // As reports say it: "target_reached", "iterations", "time", "interrupted".
 std::string_view name(PatternSearch::StopReason reason);
 

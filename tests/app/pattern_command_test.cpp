@@ -1,0 +1,206 @@
+// The program as a person runs it: its exit statuses, its messages, and what it leaves behind.
+
+#include "pattern/shape_pattern.h"
+
+#include "core/file.h"
+#include "core/image.h"
+#include "core/scratch_folder.h"
+#include "program.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <string>
+#include <vector>
+
+namespace fantascope {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+using Arguments = std::vector<std::string>;
+
+// A folder with a small drawing, a mesh, and what the program leaves in out/.
+class PatternCommand : public testing::Test {
+protected:
+    PatternCommand() {
+        GreyImage guide(64, 36);
+        for (int y = 8; y < 28; ++y)
+            for (int x = 8; x < 40; ++x) guide.at(x, y) = 1;
+        EXPECT_TRUE(writePng(folder_ / "guide.png", guide));
+        fs::copy(FANTASCOPE_SOURCE_DIR "/shows/light-movement/shapes/sculpture.obj", folder_ / "sculpture.obj");
+        fs::create_directory(folder_ / "out");
+    }
+
+    Outcome run(const Arguments& arguments) const { return runProgram(arguments, folder_ / "."); }
+    // `pattern guide.png -o out/p.pattern.yaml`, a small one, and more.
+    Outcome find(const Arguments& more) const {
+        Arguments arguments = {"pattern", "guide.png", "-o", "out/p.pattern.yaml", "--instances", "40"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    }
+    std::string text(const std::string& file) const { return readFile(folder_ / file).value(); }
+    nlohmann::json report() const { return nlohmann::json::parse(text("out/r.json")); }
+    std::vector<std::string> written() const {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(folder_ / "out")) names.push_back(entry.path().filename());
+        std::sort(names.begin(), names.end());
+        return names;
+    }
+
+    const ScratchFolder folder_;
+};
+
+TEST_F(PatternCommand, writes_a_pattern_with_all_it_needs_beside_it) {
+    const Outcome done =
+        find({"--iterations", "20", "--shapes", "circle,sculpture.obj", "--image", "out/p.png", "--report", "out/r.json"});
+    ASSERT_EQ(done.status, 0) << done.errors;
+    EXPECT_THAT(written(), ElementsAre("p.guide.png", "p.pattern.yaml", "p.png", "p.sculpture.obj", "r.json"));
+    fs::rename(folder_ / "out", folder_ / "moved");  // as a folder it can go anywhere
+    const auto pattern = pattern::readPattern(folder_ / "moved/p.pattern.yaml");
+    ASSERT_TRUE(pattern) << pattern.error().message();
+    EXPECT_EQ(readFile(pattern->guide).value(), text("guide.png"));
+    EXPECT_EQ(readFile(pattern->shapes[1].file).value(), text("sculpture.obj"));
+}
+
+TEST_F(PatternCommand, refers_to_what_lies_beside_or_below_it) {
+    const Outcome done = run({"pattern", "guide.png", "-o", "p.pattern.yaml", "--iterations", "2", "--shapes", "sculpture.obj"});
+    ASSERT_EQ(done.status, 0) << done.errors;
+    EXPECT_THAT(text("p.pattern.yaml"), HasSubstr("guide: guide.png"));
+    EXPECT_THAT(text("p.pattern.yaml"), HasSubstr("file: sculpture.obj"));
+    EXPECT_FALSE(fs::exists(folder_ / "p.guide.png"));
+}
+
+// Anybody can compute z from the drawing and the picture.
+TEST_F(PatternCommand, reports_the_figures_of_the_picture_that_it_writes) {
+    ASSERT_EQ(find({"--iterations", "30", "--image", "out/p.png", "--report", "out/r.json"}).status, 0);
+    const GreyImage guide = readGrey(folder_ / "guide.png").value(), image = readGrey(folder_ / "out/p.png").value();
+    double sum = 0;
+    for (std::size_t i = 0; i < guide.pixels().size(); ++i) sum += std::abs(guide.pixels()[i] - image.pixels()[i]);
+    const nlohmann::json figures = report();
+    EXPECT_NEAR(figures["z"].get<double>(), sum / (64 * 36), 1e-9);
+    EXPECT_EQ(figures["z_bound"], 0);  // the guide is black and white
+    EXPECT_GT(figures["loop_z"].get<double>(), 0);
+    EXPECT_EQ(figures["iterations"], 30);
+    EXPECT_EQ(figures["evaluations"], 1 + 12 * 30);
+    EXPECT_EQ(figures["stop_reason"], "iterations");
+    EXPECT_EQ(figures["seed"], 1);
+    EXPECT_EQ(figures["guide_transfer"], "srgb");
+    for (const char* column : {"z_min", "z_max", "accepted"}) EXPECT_EQ(figures["history"][column].size(), 30u);
+    for (const char* key : {"tone", "overlap", "instances", "seconds"}) EXPECT_TRUE(figures[key].is_number()) << key;
+}
+
+// Example failure: the clock has a say in more than when to stop.
+TEST_F(PatternCommand, a_run_that_stopped_by_time_is_replayed_byte_for_byte_by_its_iterations) {
+    ASSERT_EQ(find({"--seconds", "0.2", "--threads", "2", "--seed", "5", "--report", "out/r.json"}).status, 0);
+    const nlohmann::json figures = report();
+    EXPECT_EQ(figures["stop_reason"], "time");
+    const std::string first = text("out/p.pattern.yaml");
+    ASSERT_EQ(find({"--iterations", figures["iterations"].dump(), "--threads", "1", "--seed", "5"}).status, 0);
+    EXPECT_EQ(text("out/p.pattern.yaml"), first);
+}
+
+TEST_F(PatternCommand, gives_the_same_bytes_in_another_folder) {
+    ASSERT_EQ(find({"--iterations", "10", "--shapes", "sculpture.obj"}).status, 0);
+    const std::string guide = folder_ / "guide.png", mesh = folder_ / "sculpture.obj";
+    ASSERT_EQ(
+        run({"pattern", guide, "-o", "a/b/p.pattern.yaml", "--instances", "40", "--iterations", "10", "--shapes", mesh}).status,
+        0);
+    EXPECT_EQ(text("a/b/p.pattern.yaml"), text("out/p.pattern.yaml"));
+}
+
+TEST_F(PatternCommand, takes_its_numbers_from_a_settings_file_and_the_line_has_the_last_word) {
+    folder_.file("s.yaml",
+                 "fantascope: pattern-settings\nversion: 1\nguide_transfer: linear\nshapes: {instances: 500}\n"
+                 "search: {candidates: 3}\nmotion: {frames: 100}\n");
+    ASSERT_EQ(find({"--iterations", "4", "--settings", "s.yaml", "--report", "out/r.json"}).status, 0);
+    EXPECT_EQ(report()["evaluations"], 1 + 3 * 4);
+    EXPECT_EQ(report()["guide_transfer"], "linear");
+    EXPECT_LE(report()["instances"], 40);
+    EXPECT_THAT(text("out/p.pattern.yaml"), HasSubstr("frames: 100"));
+}
+
+// The world refuses: one message, status 1, and nothing is written.
+TEST_F(PatternCommand, bad_input_is_refused_with_one_message_and_leaves_nothing) {
+    const auto refusal = [&](const std::string& guide, const Arguments& more = {}) {
+        Arguments arguments = {"pattern", guide, "-o", "out/p.pattern.yaml", "--iterations", "1"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 1) << outcome.errors;
+        EXPECT_THAT(outcome.errors, StartsWith("fantascope: error: "));
+        EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
+        EXPECT_THAT(written(), IsEmpty());
+        return outcome.errors;
+    };
+    EXPECT_THAT(refusal("nowhere.png"), HasSubstr("nowhere.png: cannot be read"));
+    const std::string png = text("guide.png");
+    folder_.file("half.png", png.substr(0, png.size() / 2));
+    EXPECT_THAT(refusal("half.png"), HasSubstr("half.png: the picture is truncated"));
+    folder_.file("words.png", "This is no picture.");
+    EXPECT_THAT(refusal("words.png"), HasSubstr("words.png: not a picture"));
+
+    folder_.file("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    EXPECT_THAT(refusal("guide.png", {"--shapes", "points.obj"}), HasSubstr("points.obj: "));
+    folder_.file("floor.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
+    EXPECT_THAT(refusal("guide.png", {"--shapes", "floor.obj"}), HasSubstr("floor.obj: seen from the front"));
+    EXPECT_THAT(refusal("guide.png", {"--shapes", "circel"}), HasSubstr("did you mean 'circle'?"));
+    EXPECT_THAT(refusal("guide.png", {"--shapes", "circle,circle"}), HasSubstr("given twice"));
+
+    folder_.file("s.yaml", "fantascope: pattern-settings\nversion: 1\nsearch: {candidates: none}\n");
+    EXPECT_THAT(refusal("guide.png", {"--settings", "s.yaml"}), HasSubstr("s.yaml:3:22: search.candidates: a whole number"));
+    EXPECT_THAT(refusal("guide.png", {"--settings", "absent.yaml"}), HasSubstr("absent.yaml: cannot be read"));
+}
+
+TEST_F(PatternCommand, wrong_usage_has_a_status_of_its_own_and_points_to_the_help) {
+    const std::vector<Arguments> wrong = {{"--instances", "0"},    {"--seconds", "-1"}, {"--iterations", "many"},
+                                          {"--target-z", "2"},     {"--threads", "0"},  {"--seed", "-1"},
+                                          {"--method", "refined"}, {"--nonsense"}};
+    for (const Arguments& arguments : wrong) {
+        const Outcome outcome = find(arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments[0];
+        EXPECT_THAT(outcome.errors, StartsWith("fantascope: error: "));
+        EXPECT_THAT(outcome.errors, HasSubstr("See 'fantascope pattern --help'."));
+    }
+    EXPECT_THAT(find({"--method", "refined"}).errors, HasSubstr("the only one is 'paper'"));
+    EXPECT_EQ(run({"pattern"}).status, 2);
+    // A slip that would write the pattern over the drawing.
+    EXPECT_EQ(run({"pattern", "guide.png", "-o", "guide.png"}).status, 2);
+    EXPECT_EQ(run({"pattern", "--help"}).status, 0);
+}
+
+// The artist's stop: Ctrl-C keeps the best pattern so far. The signal is sent once the first line of progress says that the
+// search runs.
+TEST_F(PatternCommand, ctrl_c_keeps_the_best_so_far) {
+    std::array<int, 2> pipe{};
+    ASSERT_EQ(::pipe(pipe.data()), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::dup2(pipe[1], STDERR_FILENO);
+        ::close(pipe[0]);
+        if (::chdir((folder_ / ".").c_str()) == 0)
+            ::execl(FANTASCOPE_PROGRAM, "fantascope", "pattern", "guide.png", "-o", "out/p.pattern.yaml", "--instances", "40",
+                    "--seconds", "100000", "--report", "out/r.json", nullptr);
+        ::_exit(127);
+    }
+    ::close(pipe[1]);
+    char firstByte = 0;
+    ASSERT_EQ(::read(pipe[0], &firstByte, 1), 1);
+    ::kill(child, SIGINT);
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ::close(pipe[0]);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    EXPECT_EQ(report()["stop_reason"], "interrupted");
+    EXPECT_TRUE(pattern::readPattern(folder_ / "out" / "p.pattern.yaml"));
+}
+
+}  // namespace
+}  // namespace fantascope

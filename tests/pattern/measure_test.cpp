@@ -1,0 +1,85 @@
+#include "pattern/measure.h"
+
+#include "pattern/elemental_shape.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace fantascope::pattern {
+namespace {
+
+// A square whose sides are sqrt(2) times its size, at rest.
+ShapeInstance square(std::uint32_t id, glm::dvec2 centre, double size) {
+    return {.id = id, .shape = 0, .group = 0, .centre = centre, .size = size, .rotation = {}, .colour = {1, 1, 1}};
+}
+
+// A canvas of 120 x 90 pixels with squares of 30 pixels.
+constexpr double kThirtyPixels = 30.0 / 90 / std::numbers::sqrt2;
+
+ShapePattern squares(std::initializer_list<glm::dvec2> centresInPixels) {
+    ShapePattern pattern;
+    pattern.width = 120, pattern.height = 90;
+    pattern.shapes.push_back(loadShape("square").value());
+    for (const glm::dvec2 centre : centresInPixels)
+        pattern.instances.push_back(square(static_cast<std::uint32_t>(pattern.instances.size()), centre / 90.0, kThirtyPixels));
+    return pattern;
+}
+
+// A square's corners are not round numbers; its sides may round to one pixel more or less.
+constexpr double kOnePixelASide = 0.07;
+
+TEST(Measure, overlap_is_the_share_of_covered_pixels_that_are_covered_twice) {
+    const GreyImage guide(120, 90);
+    EXPECT_EQ(measure(squares({}), guide).overlap, 0);
+    EXPECT_EQ(measure(squares({{30, 30}, {80, 60}}), guide).overlap, 0);
+    EXPECT_EQ(measure(squares({{30, 30}, {30, 30}}), guide).overlap, 1);
+    EXPECT_EQ(measure(squares({{30, 30}, {30, 30}, {30, 30}}), guide).overlap, 1);
+    EXPECT_NEAR(measure(squares({{30, 30}, {45, 30}}), guide).overlap, 15.0 / 45, kOnePixelASide);
+}
+
+TEST(Measure, a_pattern_that_is_its_guide_differs_in_nothing) {
+    const ShapePattern pattern = squares({{30, 30}, {80, 60}});
+    const PatternQuality quality = measure(pattern, drawWhiteOnBlack(pattern, 120, 90));
+    EXPECT_EQ(quality.z, 0);
+    EXPECT_EQ(quality.zBound, 0);
+    EXPECT_EQ(quality.tone, 0);
+}
+
+// Seen from afar, a chequer of black and white is grey: z says as different as can be, tone says alike.
+TEST(Measure, tone_sees_a_grey_where_z_sees_black_and_white) {
+    ShapePattern chequer;
+    chequer.width = 120, chequer.height = 90;
+    chequer.shapes.push_back(loadShape("square").value());
+    for (int row = 0; row < 45; ++row)
+        for (int column = row % 2; column < 60; column += 2)
+            chequer.instances.push_back(square(static_cast<std::uint32_t>(chequer.instances.size()),
+                                               {(2 * column + 1) / 90.0, (2 * row + 1) / 90.0}, 2.0 / 90 / std::numbers::sqrt2));
+    const PatternQuality quality = measure(chequer, GreyImage(120, 90, 0.5f));
+    EXPECT_NEAR(quality.z, 0.5, 1e-4);
+    EXPECT_LT(quality.tone, 0.05);
+}
+
+TEST(Measure, white_on_black_keeps_its_place_in_any_size) {
+    const ShapePattern pattern = squares({{30, 30}});
+    const GreyImage twice = drawWhiteOnBlack(pattern, 240, 180);
+    EXPECT_EQ(twice.at(60, 60), 1);
+    EXPECT_EQ(twice.at(36, 60), 1);
+    EXPECT_EQ(twice.at(24, 60), 0);
+    EXPECT_EQ(twice.at(180, 120), 0);
+}
+
+TEST(Measure, loop_z_is_z_when_nothing_moves_and_worse_when_the_shapes_leave_their_places) {
+    ShapePattern pattern = squares({{30, 30}, {80, 60}});
+    const GreyImage guide = drawWhiteOnBlack(pattern, 120, 90);
+    EXPECT_GT(loopZ(pattern, guide, 20, 1), 0.001);
+    EXPECT_EQ(loopZ(pattern, guide, 20, 1), loopZ(pattern, guide, 20, 3));
+    MotionSettings& motion = pattern.motion;
+    for (AxisMotion* axis :
+         {&motion.groupMajor, &motion.groupMinor, &motion.localTranslation, &motion.localTilt, &motion.localTurn})
+        axis->magnitude = axis->range = 0;
+    EXPECT_EQ(loopZ(pattern, guide, 20, 1), 0);
+}
+
+}  // namespace
+}  // namespace fantascope::pattern
