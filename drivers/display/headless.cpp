@@ -31,26 +31,13 @@ Result<EGLContext> makeContext(EGLDisplay display) {
     return context;
 }
 
-}  // namespace
-
-// The process's one connection to EGL, open for as long as a headless display is.
-class HeadlessDisplay::Egl {
-public:
-    // Tries Mesa without a window system, then every GPU that EGL lists. Error: why each of them failed.
-    static Result<std::shared_ptr<Egl>> shared();
-    explicit Egl(EGLDisplay display) : display(display) {}
-    ~Egl() { eglTerminate(display); }
-    Egl(const Egl&) = delete;
-    Egl& operator=(const Egl&) = delete;
-
-    const EGLDisplay display;
-};
-
-Result<std::shared_ptr<HeadlessDisplay::Egl>> HeadlessDisplay::Egl::shared() {
+// The process's one connection to EGL, once a headless display needed it; kept to the end, since opening it loads a whole driver and Mesa
+// does not free all of that again. Tries Mesa without a window system, then every GPU that EGL lists. Error: why each of them failed.
+Result<EGLDisplay> connection() {
     static std::mutex mutex;
-    static std::weak_ptr<Egl> open;
+    static EGLDisplay open = EGL_NO_DISPLAY;
     const std::lock_guard lock(mutex);
-    if (auto egl = open.lock()) return egl;
+    if (open != EGL_NO_DISPLAY) return open;
 
     if (!epoxy_has_egl()) return Error(fmt::format("EGL is missing; {}", kPackages));
     std::vector<std::pair<std::string, EGLDisplay>> candidates;
@@ -73,17 +60,19 @@ Result<std::shared_ptr<HeadlessDisplay::Egl>> HeadlessDisplay::Egl::shared() {
             reasons += fmt::format("{}: it cannot be initialised; ", name);
             continue;
         }
-        auto egl = std::make_shared<Egl>(display);
-        if (const auto context = makeContext(display)) {
+        const auto context = makeContext(display);
+        if (context) {
             eglDestroyContext(display, *context);
-            open = egl;
-            return egl;
-        } else {
-            reasons += fmt::format("{}: {}; ", name, context.error().message());
+            open = display;
+            return open;
         }
+        reasons += fmt::format("{}: {}; ", name, context.error().message());
+        eglTerminate(display);
     }
     return Error(fmt::format("no OpenGL 4.5 without a window system: {}{}", reasons, kPackages));
 }
+
+}  // namespace
 
 Result<std::unique_ptr<DisplaySink>> HeadlessDisplay::open(const ConfigNode& options, const DisplayRequest& request,
                                                            const Surroundings& around) {
@@ -92,26 +81,25 @@ Result<std::unique_ptr<DisplaySink>> HeadlessDisplay::open(const ConfigNode& opt
     fields.text("driver", driver);
     TRY(fields.finish());
 
-    auto egl = TRY(Egl::shared().in(options.error("display").message()));
-    const EGLContext context = TRY(makeContext(egl->display));
-    std::unique_ptr<HeadlessDisplay> sink(new HeadlessDisplay(request, around, std::move(egl), context));
-    eglMakeCurrent(sink->egl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
+    const EGLDisplay egl = TRY(connection().in(options.error("display").message()));
+    const EGLContext context = TRY(makeContext(egl));
+    std::unique_ptr<HeadlessDisplay> sink(new HeadlessDisplay(request, around, egl, context));
+    eglMakeCurrent(egl, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
     sink->framebuffer_ = TRY(makeSrgbFramebuffer(request.size).in(options.error(request.name).message()));
     return std::unique_ptr<DisplaySink>(std::move(sink));
 }
 
-HeadlessDisplay::HeadlessDisplay(const DisplayRequest& request, const Surroundings& around, std::shared_ptr<Egl> egl,
-                                 void* context)
+HeadlessDisplay::HeadlessDisplay(const DisplayRequest& request, const Surroundings& around, void* egl, void* context)
     : request_(request),
       clock_(around.clock),
       refreshes_(request.refreshRate),
       cable_(request, around),
-      egl_(std::move(egl)),
+      egl_(egl),
       context_(context) {}
 
 HeadlessDisplay::~HeadlessDisplay() {
-    if (eglGetCurrentContext() == context_) eglMakeCurrent(egl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    eglDestroyContext(egl_->display, context_);
+    if (eglGetCurrentContext() == context_) eglMakeCurrent(egl_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(egl_, context_);
 }
 
 DeviceStatus HeadlessDisplay::status() const { return cable_.status(kDriver); }
@@ -124,7 +112,7 @@ Result<void> HeadlessDisplay::makeCurrent() {
     TRY(cable_.check());
     // Asking EGL for the context that is current already would make it flush.
     if (eglGetCurrentContext() == context_) return {};
-    if (!eglMakeCurrent(egl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
+    if (!eglMakeCurrent(egl_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
         return Error(fmt::format("{}: its OpenGL context is current on another thread; use one render thread", request_.name));
     return {};
 }

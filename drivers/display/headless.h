@@ -34,14 +34,13 @@ public:
     Result<Shown> present(bool paced) override;
 
 private:
-    class Egl;
-    HeadlessDisplay(const DisplayRequest& request, const Surroundings& around, std::shared_ptr<Egl> egl, void* context);
+    HeadlessDisplay(const DisplayRequest& request, const Surroundings& around, void* egl, void* context);
 
     DisplayRequest request_;
     Clock& clock_;
     RefreshTrain refreshes_;
     Cable cable_;
-    std::shared_ptr<Egl> egl_;
+    void* egl_;      // EGLDisplay
     void* context_;  // EGLContext
     unsigned framebuffer_ = 0;
 };

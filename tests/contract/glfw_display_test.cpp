@@ -77,7 +77,9 @@ TEST_F(GlfwDisplay, stays_closed_when_somebody_closes_its_window) {
     ASSERT_TRUE(sink->present(true));
     ASSERT_TRUE(server_->hasWindow("left"));
     server_->closeWindow("left");
-    ASSERT_TRUE(sink->present(true)) << "this frame's events tell of the closing";
+    // The request travels by the server: some frame's events tell of it, the next one's or a later one's.
+    for (int frame = 0; frame < 100'000 && sink->present(false); ++frame) {
+    }
     for (int second = 0; second < 3; ++second) {
         EXPECT_FALSE(sink->makeCurrent());
         EXPECT_FALSE(sink->present(true));
