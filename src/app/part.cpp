@@ -1,5 +1,6 @@
 #include "app/part.h"
 
+#include <sched.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -10,15 +11,20 @@
 
 namespace fantascope::app {
 
-void setThreadNiceness(int niceness) {
-    // On Linux niceness belongs to the thread. Refused without the privilege to come first: then it stays as it was.
-    [[maybe_unused]] const int refused = setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), niceness);
+void setThreadRank(Rank rank) {
+    const sched_param realTime{.sched_priority = 1}, ordinary{.sched_priority = 0};
+    if (rank == Rank::Render && sched_setscheduler(0, SCHED_RR, &realTime) == 0) return;
+    sched_setscheduler(0, SCHED_OTHER, &ordinary);
+    // On Linux scheduling and niceness belong to the thread. A refusal leaves them as they were.
+    constexpr int kNiceness[] = {-10, -5, 0, 10};
+    [[maybe_unused]] const int refused =
+        setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNiceness[static_cast<std::size_t>(rank)]);
 }
 
 PartThreads::PartThreads(Clock& clock, std::vector<Part> parts) {
     for (Part& part : parts) {
         threads_.emplace_back([&clock, part = std::move(part)](const std::stop_token& stop) {
-            setThreadNiceness(part.niceness);  // a new thread has that of the one that made it
+            setThreadRank(part.rank);  // a new thread has that of the one that made it
             for (std::int64_t next = 0; !stop.stop_requested();) {
                 clock.sleepUntil(part.phase + tickTime(next, part.rate));
                 next = std::max(next, tickAt(clock.now() - part.phase, part.rate));

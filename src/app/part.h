@@ -11,13 +11,20 @@
 
 namespace fantascope::app {
 
+// Who goes first in real time: what the audience sees, then its light, the operator's hand, and last what only looks on.
+enum class Rank { Render, Lighting, Input, Watch };
+
+// Gives the calling thread, and those that it makes from now on, a rank. Where the system allows it, rendering preempts everything else
+// (SCHED_RR); without that privilege only those who look on give way, and nothing is refused.
+void setThreadRank(Rank rank);
+
 // One part of a running show that works at moments of its own: lighting ticks, camera frames, button polls.
 struct Part {
     std::string name;
     double rate = 0;              // Hz
     Time phase{};                 // of the first moment
     std::function<void(Time)> work;  // handed the moment that it is for; may be called late, never early
-    int niceness = 0;             // of its thread in real time; higher gives way to others
+    Rank rank = Rank::Input;      // of its thread in real time
 };
 
 // The parts in real time: a thread each. A part that is late does the work for the newest moment and leaves the missed ones out.
@@ -48,8 +55,5 @@ private:
     std::vector<Scheduled> parts_;
     bool stepping_ = false;
 };
-
-// Lets the calling thread give way to others (niceness > 0) or come first (< 0, where the system allows it; otherwise nothing happens).
-void setThreadNiceness(int niceness);
 
 }  // namespace fantascope::app

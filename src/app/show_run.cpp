@@ -24,9 +24,6 @@
 namespace fantascope::app {
 namespace {
 
-// The niceness of a real-time run's threads: first what the audience sees, last what only looks at it.
-constexpr int kRenderNiceness = -10, kLightingNiceness = -5, kInputNiceness = 0, kWatchNiceness = 10;
-
 constexpr double kRelayRate = 20;    // Hz; a relay clicks in tens of milliseconds
 constexpr double kSiteRate = 120;    // Hz; a camera frame is exposed at most a tick late
 constexpr double kProgressRate = 2;  // Hz
@@ -88,13 +85,13 @@ public:
 
     std::vector<Part> parts(const std::function<void(const RunStatus&)>& progress) {
         std::vector<Part> parts;
-        parts.push_back({"input", Hand::kRate, start_, [this](Time moment) { takeInput(moment); }, kInputNiceness});
-        parts.push_back({"lighting", Lighting::kRate, start_, [this](Time moment) { lighting_.tick(moment); }, kLightingNiceness});
-        parts.push_back({"relays", kRelayRate, start_, [this](Time moment) { lighting_.relayTick(moment); }, kLightingNiceness});
+        parts.push_back({"input", Hand::kRate, start_, [this](Time moment) { takeInput(moment); }, Rank::Input});
+        parts.push_back({"lighting", Lighting::kRate, start_, [this](Time moment) { lighting_.tick(moment); }, Rank::Lighting});
+        parts.push_back({"relays", kRelayRate, start_, [this](Time moment) { lighting_.relayTick(moment); }, Rank::Lighting});
         if (surrounding_.simulation) parts.push_back(simulatedSite());
-        parts.push_back({"watch", Watch::kRate, start_, [this](Time moment) { watch_.tick(moment); }, kWatchNiceness});
+        parts.push_back({"watch", Watch::kRate, start_, [this](Time moment) { watch_.tick(moment); }, Rank::Watch});
         if (recording_ != nullptr) parts.push_back(recorder());
-        parts.push_back({"progress", kProgressRate, start_, [this, progress](Time moment) { progress(statusAt(moment)); }, kInputNiceness});
+        parts.push_back({"progress", kProgressRate, start_, [this, progress](Time moment) { progress(statusAt(moment)); }, Rank::Input});
         if (!options_.asFastAsPossible) {
             keys_.emplace();
             parts.push_back(yardstick());
@@ -183,7 +180,7 @@ private:
                             surrounding_.world.setFrame(output, std::make_shared<const RgbaImage>(frame.image));
                         }
                     surrounding_.simulation->advanceTo(moment);
-                }, kWatchNiceness};
+                }, Rank::Watch};
     }
 
     Part recorder() {
@@ -194,7 +191,7 @@ private:
                             const render::ShownFrame& frame = slot->value();
                             recorded_ = recording_->frame(frame.output, frame.image, frame.shown.refresh, frame.showTime);
                         }
-                }, kWatchNiceness};
+                }, Rank::Watch};
     }
 
     // What the machine itself misses: a thread of the render thread's rank that does nothing, at the leading output's rate.
@@ -204,7 +201,7 @@ private:
                     yardstickLate_ += tick - last - 1;
                     ++yardstickTicks_;
                     last = tick;
-                }, kRenderNiceness};
+                }, Rank::Render};
     }
 
     RunStatus statusAt(Time moment) {
@@ -247,7 +244,7 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
     SteadyClock steadyClock;
     SteppedClock steppedClock;
     Clock& clock = options.asFastAsPossible ? static_cast<Clock&>(steppedClock) : steadyClock;
-    if (!options.asFastAsPossible) setThreadNiceness(kRenderNiceness);  // before the displays make threads of their own
+    if (!options.asFastAsPossible) setThreadRank(Rank::Render);  // before the displays make threads of their own
     const auto surrounding = TRY(Surrounding::open(options, programme.site, clock));
     std::unique_ptr<Recording> recording;
     if (!options.recordTo.empty()) {

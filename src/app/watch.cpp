@@ -41,9 +41,16 @@ void Watch::tick(Time) {
             scores_[output] = *z;
         }
     }
-    const int cue = shown_.value().cue;
-    if (recording_ != nullptr && cue >= 0)
-        recording_->cue(cue, fmt::format("{} {}  ({:.1f} s)", cue + 1, show_.cues[static_cast<std::size_t>(cue)].name, seconds(showTime)), frame->image);
+    keepForCue(shown_.value().cue, frame, showTime);
+}
+
+void Watch::keepForCue(int cue, std::shared_ptr<const CameraFrame> frame, Time showTime) {
+    // Lamps and relays may be a moment ahead of the pictures, so a cue's last frame may show the next cue already: the one before counts.
+    if (recording_ != nullptr && last_.frame && cue >= 0 && cue == last_.cue) {
+        const std::string& name = show_.cues[static_cast<std::size_t>(cue)].name;
+        recording_->cue(cue, fmt::format("{} {}  ({:.1f} s)", cue + 1, name, seconds(last_.showTime)), last_.frame->image);
+    }
+    last_ = {cue, std::move(frame), showTime};
 }
 
 std::vector<double> Watch::newestScores() const { return {scores_.begin(), scores_.end()}; }

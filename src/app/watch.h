@@ -39,7 +39,13 @@ public:
     const std::map<std::string, std::vector<std::pair<Time, double>>>& series() const { return series_; }
 
 private:
+    struct Seen {
+        int cue = -1;
+        std::shared_ptr<const CameraFrame> frame;
+        Time showTime{};
+    };
     const vision::GuideComparison* comparisonOf(std::size_t output) const;
+    void keepForCue(int cue, std::shared_ptr<const CameraFrame> frame, Time showTime);
 
     const show::Show& show_;
     std::vector<std::string> outputs_;
@@ -49,6 +55,7 @@ private:
     Recording* recording_;
     LatestValue<show::ShowState> shown_;
     std::vector<std::atomic<double>> scores_;
+    Seen last_;
     std::map<std::string, std::vector<std::pair<Time, double>>> series_;
 };
 

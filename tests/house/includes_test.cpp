@@ -40,7 +40,7 @@ const std::map<std::string_view, Names> kLibraries = {
     {"V4L2", {"linux/videodev2.h"}},
     {"CLI11", {"CLI/"}},
     {"nlohmann-json", {"nlohmann/"}},
-    {"POSIX", {"sys/", "fcntl.h", "poll.h", "signal.h", "termios.h", "unistd.h"}},
+    {"POSIX", {"sys/", "fcntl.h", "poll.h", "sched.h", "signal.h", "termios.h", "unistd.h"}},
 };
 const Names kEverywhere = {"fmt", "GLM"};  // besides the standard library
 
