@@ -5,8 +5,8 @@
 namespace fantascope::app {
 
 FrameLoop::FrameLoop(const show::Site& site, const show::CueList& cues, std::vector<render::PictureSource> sources, std::filesystem::path assets,
-                     Devices& devices, Clock& clock, Time start)
-    : sources_(std::move(sources)), assets_(std::move(assets)), clock_(clock), start_(start), replica_(cues) {
+                     Devices& devices, Clock& clock)
+    : sources_(std::move(sources)), assets_(std::move(assets)), clock_(clock), replica_(cues) {
     for (std::size_t i = 0; i < site.outputs.size(); ++i) {
         outputs_.push_back({site.outputs[i], *devices.displays[i]});
         reports_.push_back({.name = site.outputs[i].name});
@@ -34,15 +34,30 @@ FrameLoop::Output* FrameLoop::leader() {
     return first == outputs_.end() ? nullptr : &*first;
 }
 
+Result<void> FrameLoop::makeRenderer(Output& output) {
+    if (output.renderer) return {};
+    const render::OutputRenderer::Options options{
+        .size = output.display.size(), .corners = output.site.corners, .shaders = assets_ / "shaders"};
+    output.renderer = TRY(render::OutputRenderer::create(options, sources_).in("output '" + output.site.name + "'"));
+    return {};
+}
+
+Result<void> FrameLoop::prepare() {
+    show::OutputState everything;
+    for (std::uint32_t source = 0; source < sources_.size(); ++source) everything.layers.push_back({source, 1.0f});
+    for (Output& output : outputs_) {
+        if (!output.display.makeCurrent()) continue;
+        TRY(makeRenderer(output));
+        for (const show::OutputState& state : {everything, show::OutputState{}}) output.renderer->draw(state, Time{}, output.display.framebuffer());
+    }
+    return {};
+}
+
 Result<void> FrameLoop::draw(Output& output, std::size_t index, Time showTime, OutputReport& report) {
     output.drawn = false;
     const Time began = clock_.now();
     if (!output.display.makeCurrent()) return {};  // lost; its status says so, and it comes back by itself
-    if (!output.renderer) {
-        const render::OutputRenderer::Options options{
-            .size = output.display.size(), .corners = output.site.corners, .shaders = assets_ / "shaders"};
-        output.renderer = TRY(render::OutputRenderer::create(options, sources_).in("output '" + output.site.name + "'"));
-    }
+    TRY(makeRenderer(output));
     output.renderer->draw(state_.outputs[index], showTime, output.display.framebuffer());
     if (output.tap) output.tap->capture(output.display.framebuffer(), showTime);
     report.frame.add(clock_.now() - began);

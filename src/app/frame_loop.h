@@ -22,9 +22,9 @@ namespace fantascope::app {
 // display that is lost is left out until it is back. Thread: bound to the render thread, but for the slots and counters.
 class FrameLoop {
 public:
-    // All outlive it. Show time 0 is `start` on the clock. `assets`: the folder of the shaders.
+    // All outlive it. `assets`: the folder of the shaders.
     FrameLoop(const show::Site& site, const show::CueList& cues, std::vector<render::PictureSource> sources, std::filesystem::path assets,
-              Devices& devices, Clock& clock, Time start);
+              Devices& devices, Clock& clock);
     ~FrameLoop();
 
     PlaybackReplica& replica() { return replica_; }
@@ -33,6 +33,11 @@ public:
     // The state of the newest frame goes into this slot too. Before the first frame.
     void publishStateTo(LatestValue<show::ShowState>& slot) { stateSlot_ = &slot; }
 
+    // Makes the renderers of the displays that are there and draws every source once, so that nothing is compiled while people watch.
+    // Error: a renderer cannot be made for a display.
+    Result<void> prepare();
+    // Show time 0 is `start` on the clock. Before the first frame.
+    void begin(Time start) { start_ = start; }
     // One frame on every output; returns when the leading display has shown it. Error: a renderer cannot be made for a display.
     Result<void> step();
 
@@ -51,13 +56,14 @@ private:
         std::optional<render::FrameTap> tap{};             // where somebody reads
         bool drawn = false;  // in the frame that is being made
     };
+    Result<void> makeRenderer(Output& output);
     Result<void> draw(Output& output, std::size_t index, Time showTime, OutputReport& report);
     Output* leader();
 
     std::vector<render::PictureSource> sources_;
     std::filesystem::path assets_;
     Clock& clock_;
-    const Time start_;
+    Time start_{};
     PlaybackReplica replica_;
     show::ShowState state_;
     std::vector<Output> outputs_;

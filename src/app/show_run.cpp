@@ -70,12 +70,14 @@ struct Surrounding {
 class ShowRun {
 public:
     ShowRun(const RunOptions& options, const Programme& programme, Surrounding& surrounding, Recording* recording, Clock& clock)
-        : options_(options), programme_(programme), surrounding_(surrounding), recording_(recording), clock_(clock), start_(clock.now()),
-          frames_(programme.site, programme.cues, programme.sources, dataFolder() / "assets", surrounding.devices, clock, start_),
+        : options_(options), programme_(programme), surrounding_(surrounding), recording_(recording), clock_(clock),
+          frames_(programme.site, programme.cues, programme.sources, dataFolder() / "assets", surrounding.devices, clock),
+          prepared_(frames_.prepare()), start_(clock.now()),
           lighting_(programme.site, programme.cues, surrounding.devices, clock, start_, recording),
           hand_(programme.show, programme.cues, programme.site, surrounding.devices.cueController.get(), start_),
           watch_(programme.show, outputNames(), programme.comparisons, surrounding.devices.camera.get(), start_, recording),
           schedule_(scheduleOf(options, programme)) {
+        frames_.begin(start_);
         frames_.publishStateTo(watch_.shown());
         hand_.feed(frames_.replica());
         hand_.feed(lighting_.replica());
@@ -101,6 +103,7 @@ public:
 
     // The render thread's life.
     Result<void> draw(const Interrupt& interrupt) {
+        TRY(std::move(prepared_));
         while (!interrupt.requested() && !quit_ && (!options_.length || clock_.now() - start_ < *options_.length)) TRY(frames_.step());
         length_ = clock_.now() - start_;
         return {};
@@ -221,8 +224,9 @@ private:
     Surrounding& surrounding_;
     Recording* recording_;
     Clock& clock_;
-    const Time start_;
     FrameLoop frames_;
+    Result<void> prepared_;
+    const Time start_;  // after everything slow
     Lighting lighting_;
     Hand hand_;
     Watch watch_;
