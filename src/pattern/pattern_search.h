@@ -44,7 +44,7 @@ struct PatternSearch {
         // The share of iterations that should be accepted; perturbations grow when more are. 0.01 .. 0.99.
         double successRate = 0.5;
 
-        std::uint32_t instances = 600;  // the pattern never has more; 1 .. 100,000
+        std::uint32_t instances = 1000;  // the pattern never has more; 1 .. 100,000
         // The smallest and the largest instance in canvas heights, 0 < x <= y <= 2. Without it, sizes from a half to twice that
         // of which `instances` would light the guide's white, and a little more.
         std::optional<glm::dvec2> size;
