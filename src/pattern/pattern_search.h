@@ -93,7 +93,7 @@ struct PatternSearch {
 
     // `guide`: stored values, in any resolution. `pattern` brings seed, shapes (at least one), motion and what else the search
     // does not touch; its resolution, instances and groups are filled. The result depends on these, the options and the number of
-    // iterations alone, not on `threads`. Options must pass check().
+    // iterations alone, not on `threads`. Options must pass check(). Thread: reentrant; askStop is called on the caller's.
     static Found run(const GreyImage& guide, ShapePattern pattern, const Options& options, int threads, const AskStop& askStop);
 };
 

@@ -95,6 +95,12 @@ TEST(PatternSearch, z_never_rises_and_an_iteration_is_accepted_when_its_best_is_
     EXPECT_EQ(found.summary.evaluations, 1 + 12 * 120);
 }
 
+// Example failure: every slot draws the same numbers, and twelve candidates are worth one.
+TEST(PatternSearch, candidates_of_an_iteration_differ) {
+    const auto history = search(halfWhite(), fewInstances(20)).summary.history;
+    EXPECT_TRUE(std::all_of(history.begin(), history.end(), [](const auto& iteration) { return iteration.zMin < iteration.zMax; }));
+}
+
 // Example failure: candidates draw from one common stream, and whoever comes first takes the first numbers.
 TEST(PatternSearch, gives_the_same_pattern_on_any_number_of_threads) {
     const auto one = search(halfWhite(), fewInstances(40), 7, 1);
@@ -153,13 +159,12 @@ TEST(PatternSearch, deletes_where_the_guide_is_dark_unless_the_threshold_forbids
 // Too little coverage everywhere: the lattice creates, up to the most instances. A threshold that no cell reaches creates none.
 TEST(PatternSearch, creates_where_the_guide_is_light_unless_the_threshold_forbids) {
     const GreyImage white(96, 54, 0.9f);
-    const auto filled = search(white, fewInstances(100));
-    EXPECT_LE(filled.pattern.instances.size(), 60u);
-    EXPECT_GT(filled.pattern.instances.size(), 30u);
+    PatternSearch::Options options = fewInstances(100);
+    options.size = {0.03, 0.06};  // too small to fill the picture, so that there is always more to create
+    EXPECT_EQ(search(white, options).pattern.instances.size(), 60u);
 
-    PatternSearch::Options timid = fewInstances(100);
-    timid.lambdaCreate = 0.95;
-    const auto kept = search(white, timid).pattern.instances;
+    options.lambdaCreate = 0.95;
+    const auto kept = search(white, options).pattern.instances;
     EXPECT_TRUE(std::all_of(kept.begin(), kept.end(), [](const ShapeInstance& instance) { return instance.id <= 30; }));
 }
 
