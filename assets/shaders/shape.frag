@@ -1,7 +1,7 @@
 #version 450 core
-// One facet, in the layer picture's square roots of linear light.
+// One facet.
 
-flat in vec3 facetColour;  // linear light
+flat in vec3 facetRoot;
 layout(location = 0) out vec4 root;
 
-void main() { root = vec4(sqrt(facetColour), 1.0); }
+void main() { root = vec4(facetRoot, 1.0); }

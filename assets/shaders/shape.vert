@@ -10,7 +10,7 @@ layout(location = 7) in vec3 colour;         // linear light
 layout(location = 0) uniform vec3 inside[4];  // the canvas's edges: dot with clip (x, y, w) is positive on the canvas
 
 out float gl_ClipDistance[4];
-flat out vec3 facetColour;  // of the triangle's last corner
+flat out vec3 facetRoot;  // of the triangle's last corner: what the layer picture holds, the square root of linear light
 
 // A facet that faces away from the light keeps this share of its colour: enough to tell facets apart, never a black hole in the drawing.
 const float darkest = 0.75;
@@ -24,5 +24,5 @@ void main() {
     float facing = dot(away, normal) > 0.0 ? -1.0 : 1.0;
     float lit = max(facing * dot(towardsLight, normal), 0.0);
     float shade = 1.0 - (1.0 - darkest) * (dot(normal, normal) - lit);  // 1 without a normal
-    facetColour = shade * colour;
+    facetRoot = sqrt(shade * colour);
 }

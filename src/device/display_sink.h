@@ -38,8 +38,8 @@ public:
     virtual Result<void> makeCurrent() = 0;
     // The GL name of the framebuffer to draw into; its colours are stored sRGB values, row 0 of GL at the bottom of the picture.
     virtual unsigned framebuffer() const = 0;
-    // Shows what was drawn; its context is current afterwards. Paced: waits for the next refresh. Otherwise shows at once, within the refresh that is running, and does not
-    // wait. Error: not Running: the frame is dropped. Loss: the projector shows nothing.
+    // Shows what was drawn; its context is current afterwards. Paced: waits for the next refresh. Otherwise shows at once, within the
+    // refresh that is running, and does not wait. Error: not Running: the frame is dropped. Loss: the projector shows nothing.
     virtual Result<Shown> present(bool paced) = 0;
 };
 

@@ -9,8 +9,8 @@
 namespace fantascope {
 
 // What sets a picture apart from a golden one, or "" when it looks the same: the rms difference of all stored values of 0 .. 255
-// is at most 1.5 and none is larger than 64. Another version of OpenGL may place a sample or round a value differently, but moves
-// no edge by half a pixel. Both of one size.
+// is at most 1.5 and none is larger than 140, which is one sample of four at an edge. Another version of OpenGL may place a sample
+// or round a value differently here and there, but moves no edge. Both of one size.
 std::string differsVisibly(const RgbaImage& golden, const RgbaImage& image);
 
 // Whether a picture still looks like tests/golden/NAME.png. If not, and when there is no such file yet, the message names the

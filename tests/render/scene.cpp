@@ -62,8 +62,8 @@ pattern::ShapePattern smallPattern() {
     pattern.motion.groupMajor = {2, 0.25, 0.35, 0.05, 0.02};
     pattern.motion.groupMinor = {2, 0.25, 0.35, 0.015, 0.006};
     pattern.motion.localTranslation = {1, 1.0, 0.2, 0.01, 0.004};
-    pattern.motion.localTilt = {1, 0.8, 0.2, 0.6, 0.35};
-    pattern.motion.localTurn = {1, 0.8, 0.2, 0.4, 0.25};
+    pattern.motion.localTilt = {1, 0.8, 0.2, radians(35), radians(20)};
+    pattern.motion.localTurn = {1, 0.8, 0.2, radians(23), radians(14)};
     Rng rng(11);
     for (std::uint32_t id = 0; id < 40; ++id) {
         pattern::ShapeInstance instance;
