@@ -1,6 +1,6 @@
 #include "render/output_renderer.h"
 
-#include "render/allocations.h"
+#include "allocations.h"
 #include "render/reference_picture.h"
 #include "render/scene.h"
 

@@ -1,4 +1,4 @@
-#include "render/allocations.h"
+#include "allocations.h"
 
 #include <cstdlib>
 #include <new>
@@ -10,9 +10,12 @@ thread_local std::int64_t allocations = 0;
 }  // namespace
 
 // These replace the standard library's for the whole test program.
-void* operator new(std::size_t bytes) {
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
     ++allocations;
-    if (void* memory = std::malloc(bytes)) return memory;
+    return std::malloc(bytes);
+}
+void* operator new(std::size_t bytes) {
+    if (void* memory = operator new(bytes, std::nothrow)) return memory;
     throw std::bad_alloc();
 }
 void operator delete(void* memory) noexcept { std::free(memory); }
