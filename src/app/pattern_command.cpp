@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -65,6 +66,7 @@ void declare(CLI::App& command, Options& options) {
                     fmt::format("Elemental shapes, separated by commas: {}, or mesh files (FBX, OBJ, glTF, PLY, STL)",
                                 fmt::join(pattern::builtInShapeNames(), ", ")))
         ->delimiter(',')
+        ->allow_extra_args(false)  // what follows the list is the next argument
         ->capture_default_str();
     command.add_option("--settings", options.settings, "The numerical parameters, *.pattern-settings.yaml");
     command.add_option("--instances", options.instances, "The most instances")->check(CLI::Range(1, 100'000));
@@ -86,6 +88,15 @@ void declare(CLI::App& command, Options& options) {
     command.add_option("--threads", options.threads, "How many to use; the pattern is the same for any number")
         ->check(CLI::Range(1, 256));
     command.add_option("--report", options.report, "Also write figures, as JSON");
+}
+
+// Whether `file` could be written, as far as can be told before the search; its folder need not be there yet.
+Result<void> checkWritable(const fs::path& file) {
+    fs::path folder = fs::absolute(file).parent_path();
+    std::error_code ignored;
+    while (!fs::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
+    if (fs::is_directory(folder, ignored) && ::access(folder.c_str(), W_OK) == 0) return {};
+    return Error(fmt::format("{}: cannot be written: {} is not a folder that may be written to", file.string(), folder.string()));
 }
 
 // A file that the pattern refers to: where it is, and its name beside the pattern.
@@ -181,7 +192,10 @@ PatternSearch::Found search(const GreyImage& guide, ShapePattern pattern, const 
 }
 
 Result<void> run(const Options& options) {
-    // Everything that can be refused is read before the search begins.
+    // Whatever can be refused is refused before the search begins.
+    TRY(checkWritable(options.output));
+    for (const auto& file : {options.image, options.report})
+        if (file) TRY(checkWritable(*file));
     const GreyImage guide = TRY(readGrey(options.guide));
     pattern::PatternSettings settings;
     if (options.settings) settings = TRY(pattern::readPatternSettings(*options.settings));

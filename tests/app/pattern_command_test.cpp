@@ -71,6 +71,13 @@ TEST_F(PatternCommand, writes_a_pattern_with_all_it_needs_beside_it) {
     EXPECT_EQ(readFile(pattern->shapes[1].file).value(), text("sculpture.obj"));
 }
 
+// Example failure: a list of shapes takes the drawing for one more of them.
+TEST_F(PatternCommand, takes_its_arguments_in_any_order) {
+    const Outcome done =
+        run({"pattern", "--iterations", "1", "-o", "out/p.pattern.yaml", "--shapes", "leaf,circle", "guide.png"});
+    EXPECT_EQ(done.status, 0) << done.errors;
+}
+
 TEST_F(PatternCommand, refers_to_what_lies_beside_or_below_it) {
     const Outcome done = run({"pattern", "guide.png", "-o", "p.pattern.yaml", "--iterations", "2", "--shapes", "sculpture.obj"});
     ASSERT_EQ(done.status, 0) << done.errors;
@@ -146,6 +153,9 @@ TEST_F(PatternCommand, bad_input_is_refused_with_one_message_and_leaves_nothing)
     EXPECT_THAT(refusal("half.png"), HasSubstr("half.png: the picture is truncated"));
     folder_.file("words.png", "This is no picture.");
     EXPECT_THAT(refusal("words.png"), HasSubstr("words.png: not a picture"));
+
+    // Before the search, not after it.
+    EXPECT_THAT(run({"pattern", "guide.png", "-o", "guide.png/p.pattern.yaml"}).errors, HasSubstr("guide.png is not a folder"));
 
     folder_.file("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
     EXPECT_THAT(refusal("guide.png", {"--shapes", "points.obj"}), HasSubstr("points.obj: "));
