@@ -43,16 +43,13 @@ public:
 
     // After draw(): starts to copy what is in `framebuffer`, drawn for show time `showTime`.
     void capture(unsigned framebuffer, Time showTime);
-    // After present(): hands the captured frame to newest() and to every reader. When present() failed nothing was shown: leave
-    // it out.
+    // After present(): hands the captured frame to every reader. When present() failed nothing was shown: leave it out.
     void publish(const Shown& shown);
-    // The frame that was published last; for whoever works on the render thread itself, as a rehearsal on a manual clock does.
-    const ShownFrame& newest() const { return newest_; }
 
 private:
     std::optional<gpu::PixelReader> reader_;  // made with the first frame, since the display may come later than its readers
     Time captured_{};  // the show time of what reader_ copies
-    ShownFrame newest_;
+    ShownFrame blank_;  // what a reader's slot holds before the first frame; of the display's size
     std::vector<std::unique_ptr<LatestValue<ShownFrame>>> slots_;
 };
 

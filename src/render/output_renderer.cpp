@@ -2,14 +2,18 @@
 
 #include "core/check.h"
 
+#include <array>
 #include <utility>
 
 namespace fantascope::render {
 
 Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& options, std::span<const PictureSource> sources) {
-    auto picture = TRY(gpu::LayerPicture::create(options.size, options.samples, options.shaders));
     auto painter = TRY(gpu::ShapePainter::create(options.shaders));
-    std::unique_ptr<OutputRenderer> renderer(new OutputRenderer(std::move(picture), std::move(painter)));
+    std::vector<gpu::LayerPicture> pictures;
+    for (std::size_t i = 0; i < gpu::LightSum::kTogether; ++i)
+        pictures.push_back(TRY(gpu::LayerPicture::create(options.size, options.samples)));
+    auto sum = TRY(gpu::LightSum::create(pictures[0].samples(), options.shaders));
+    std::unique_ptr<OutputRenderer> renderer(new OutputRenderer(std::move(painter), std::move(pictures), std::move(sum)));
     for (const PictureSource& source : sources) {
         PlacedSource placed = TRY(PlacedSource::create(source, options.size, options.corners));
         gpu::InstancedMeshes meshes(placed.meshes(), placed.mirrored());
@@ -26,15 +30,24 @@ void OutputRenderer::draw(const show::OutputState& state, Time time, unsigned fr
         sources_[layer.source].opacity += layer.opacity;
     }
 
+    std::array<gpu::LightSum::Layer, gpu::LightSum::kTogether> painted;
+    std::size_t count = 0;
     gpu::Light light = gpu::Light::Alone;
+    const auto shine = [&] {
+        sum_.shine(framebuffer, std::span(painted).first(count), light);
+        count = 0;
+        light = gpu::Light::Added;
+    };
     for (DrawnSource& source : sources_) {
         if (source.opacity <= 0) continue;
         source.placed.place(time, source.meshes.place());
-        picture_.begin();
+        gpu::LayerPicture& picture = pictures_[count];
+        picture.begin();
         painter_.paint(source.meshes, source.placed.canvasEdges());
-        picture_.shine(framebuffer, source.opacity, light);
-        light = gpu::Light::Added;
+        painted[count++] = {&picture, source.opacity};
+        if (count == painted.size()) shine();
     }
+    if (count > 0) shine();
     if (light == gpu::Light::Alone) gpu::darken(framebuffer);
 }
 

@@ -49,11 +49,12 @@ private:
         gpu::InstancedMeshes meshes;
         float opacity = 0;  // in the frame that is being drawn
     };
-    OutputRenderer(gpu::LayerPicture picture, gpu::ShapePainter painter)
-        : picture_(std::move(picture)), painter_(std::move(painter)) {}
+    OutputRenderer(gpu::ShapePainter painter, std::vector<gpu::LayerPicture> pictures, gpu::LightSum sum)
+        : painter_(std::move(painter)), pictures_(std::move(pictures)), sum_(std::move(sum)) {}
 
-    gpu::LayerPicture picture_;
     gpu::ShapePainter painter_;
+    std::vector<gpu::LayerPicture> pictures_;  // LightSum::kTogether of them
+    gpu::LightSum sum_;
     std::vector<DrawnSource> sources_;
 };
 

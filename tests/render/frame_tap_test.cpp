@@ -27,14 +27,16 @@ TEST(FrameTap, gives_the_frame_with_its_top_row_first) {
 TEST(FrameTap, says_what_was_shown_where_and_when) {
     DrawnOutput output = whiteSquareAtTheTopLeft();
     FrameTap tap(3, kSize);
+    LatestValue<ShownFrame>& reader = tap.addReader();
     ASSERT_TRUE(output.sink().makeCurrent());
     tap.capture(output.sink().framebuffer(), std::chrono::seconds(5));
     const Shown shown = *output.sink().present(true);
     tap.publish(shown);
-    EXPECT_EQ(tap.newest().output, 3u);
-    EXPECT_EQ(tap.newest().showTime, std::chrono::seconds(5));
-    EXPECT_EQ(tap.newest().shown.refresh, shown.refresh);
-    EXPECT_EQ(tap.newest().shown.at, tickTime(1, 30));
+    ASSERT_TRUE(reader.update());
+    EXPECT_EQ(reader.value().output, 3u);
+    EXPECT_EQ(reader.value().showTime, std::chrono::seconds(5));
+    EXPECT_EQ(reader.value().shown.refresh, shown.refresh);
+    EXPECT_EQ(reader.value().shown.at, tickTime(1, 30));
 }
 
 // The copy is of the moment of capture(), although it is fetched later.
@@ -43,10 +45,12 @@ TEST(FrameTap, captures_the_frame_before_the_next_one_is_drawn) {
     DrawnOutput output = whiteSquareAtTheTopLeft();
     output.frame({{0, 1}});
     FrameTap tap(0, kSize);
+    LatestValue<ShownFrame>& reader = tap.addReader();
     tap.capture(output.sink().framebuffer(), Time::zero());
     output.frame(std::vector<show::LayerState>{});
     tap.publish({});
-    EXPECT_EQ(tap.newest().image.at(2, 2), (Rgba8{255, 255, 255, 255}));
+    ASSERT_TRUE(reader.update());
+    EXPECT_EQ(reader.value().image.at(2, 2), (Rgba8{255, 255, 255, 255}));
 }
 
 TEST(FrameTap, gives_every_reader_the_newest_frame_in_its_own_slot) {

@@ -115,6 +115,7 @@ DrawnOutput::DrawnOutput(glm::ivec2 size, const std::array<glm::dvec2, 4>& corne
     FANTASCOPE_CHECK(current.has_value(), current.error().message());
     renderer_ = valueOf(OutputRenderer::create({size, corners, 4, shaderFolder()}, sources));
     tap_ = std::make_unique<FrameTap>(0, size);
+    newest_ = &tap_->addReader();
 }
 
 DrawnOutput::~DrawnOutput() {
@@ -128,7 +129,8 @@ const RgbaImage& DrawnOutput::frame(const show::OutputState& state, Time time) {
     renderer_->draw(state, time, sink_->framebuffer());
     tap_->capture(sink_->framebuffer(), time);
     tap_->publish(valueOf(sink_->present(true)));
-    return tap_->newest().image;
+    newest_->update();
+    return newest_->value().image;
 }
 
 Difference difference(const RgbaImage& a, const RgbaImage& b) {

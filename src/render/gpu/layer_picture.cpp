@@ -2,6 +2,8 @@
 
 #include "render/gpu/shader_program.h"
 
+#include "core/check.h"
+
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
@@ -12,13 +14,13 @@ namespace {
 
 constexpr GLfloat kBlack[] = {0, 0, 0, 1};
 
-// Of assets/shaders/resolve.frag.
+// Of assets/shaders/resolve.frag: the first layer's; the others' follow.
 constexpr GLint kOpacity = 0;
 constexpr GLuint kRoots = 0;
 
 }  // namespace
 
-Result<LayerPicture> LayerPicture::create(glm::ivec2 size, int samples, const std::filesystem::path& shaders) {
+Result<LayerPicture> LayerPicture::create(glm::ivec2 size, int samples) {
     GLint mostSamples = 0, largest = 0;
     glGetIntegerv(GL_MAX_COLOR_TEXTURE_SAMPLES, &mostSamples);
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
@@ -27,9 +29,10 @@ Result<LayerPicture> LayerPicture::create(glm::ivec2 size, int samples, const st
     if (std::min(size.x, size.y) < 1 || std::max(size.x, size.y) > largest)
         return Error(fmt::format("{} x {} pixels: this OpenGL draws 1 .. {} in each dimension", size.x, size.y, largest));
 
-    LayerPicture picture(size, TRY(loadProgram(shaders / "resolve.vert", shaders / "resolve.frag")));
+    LayerPicture picture(size);
     const GLuint framebuffer = picture.framebuffer_.name();
     glTextureStorage2DMultisample(picture.roots_.name(), samples, GL_RGBA8, size.x, size.y, GL_TRUE);
+    glGetTextureLevelParameteriv(picture.roots_.name(), 0, GL_TEXTURE_SAMPLES, &picture.samples_);
     glNamedRenderbufferStorageMultisample(picture.depth_.name(), samples, GL_DEPTH_COMPONENT32F, size.x, size.y);
     glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, picture.roots_.name(), 0);
     glNamedFramebufferRenderbuffer(framebuffer, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, picture.depth_.name());
@@ -46,7 +49,16 @@ void LayerPicture::begin() {
     glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &farthest);
 }
 
-void LayerPicture::shine(unsigned framebuffer, float opacity, Light light) {
+Result<LightSum> LightSum::create(int samples, const std::filesystem::path& shaders) {
+    LightSum sum;
+    for (std::size_t i = 0; i < kTogether; ++i)
+        sum.programs_[i] = TRY(loadProgram(shaders / "resolve.vert", shaders / "resolve.frag",
+                                           fmt::format("#define LAYERS {}\n#define SAMPLES {}\n", i + 1, samples)));
+    return sum;
+}
+
+void LightSum::shine(unsigned framebuffer, std::span<const Layer> layers, Light light) {
+    FANTASCOPE_CHECK(!layers.empty() && layers.size() <= kTogether, "one pass takes one layer to kTogether");
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
     glEnable(GL_FRAMEBUFFER_SRGB);
     glDisable(GL_DEPTH_TEST);
@@ -55,15 +67,14 @@ void LayerPicture::shine(unsigned framebuffer, float opacity, Light light) {
         glEnable(GL_BLEND);
         glBlendFunc(GL_ONE, GL_ONE);
     }
-    glUseProgram(resolve_.name());
-    glUniform1f(kOpacity, opacity);
-    glBindTextureUnit(kRoots, roots_.name());
+    glUseProgram(programs_[layers.size() - 1].name());
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        glUniform1f(kOpacity + static_cast<GLint>(i), layers[i].opacity);
+        glBindTextureUnit(kRoots + static_cast<GLuint>(i), layers[i].picture->texture());
+    }
     glBindVertexArray(noVertices_.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDisable(GL_BLEND);
-    // A GPU with tiles need not write the samples out to memory.
-    const GLenum done[] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
-    glInvalidateNamedFramebufferData(framebuffer_.name(), 2, done);
 }
 
 void darken(unsigned framebuffer) { glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, kBlack); }

@@ -17,7 +17,7 @@ public:
 
     // Queues a copy of `framebuffer`'s stored values as they are after all drawing so far.
     void start(unsigned framebuffer);
-    // Waits for the copy that start() queued and puts it into `image` of the same size, row 0 at the top.
+    // Waits for the copy that start() queued and puts it into `image` of the same size, row 0 at the top. Again and again, if wanted.
     void finish(RgbaImage& image);
 
 private:

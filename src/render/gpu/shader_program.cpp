@@ -28,8 +28,10 @@ std::string logOf(unsigned name, GetParameter getParameter, GetLog getLog) {
 }
 
 template <GLenum kStage>
-Result<Handle<ShaderKind<kStage>>> compiled(const std::filesystem::path& file) {
-    const std::string source = TRY(readFile(file));
+Result<Handle<ShaderKind<kStage>>> compiled(const std::filesystem::path& file, const std::string& definitions) {
+    std::string source = TRY(readFile(file));
+    // Nothing but comments may stand before #version; after it the compiler is told that line 2 of the file comes next.
+    if (!definitions.empty()) source.insert(source.find('\n') + 1, definitions + "#line 2\n");
     Handle<ShaderKind<kStage>> shader;
     const char* text = source.data();
     const auto length = static_cast<GLint>(source.size());
@@ -45,9 +47,10 @@ Result<Handle<ShaderKind<kStage>>> compiled(const std::filesystem::path& file) {
 
 }  // namespace
 
-Result<Program> loadProgram(const std::filesystem::path& vertexShader, const std::filesystem::path& fragmentShader) {
-    const auto vertex = TRY(compiled<GL_VERTEX_SHADER>(vertexShader));
-    const auto fragment = TRY(compiled<GL_FRAGMENT_SHADER>(fragmentShader));
+Result<Program> loadProgram(const std::filesystem::path& vertexShader, const std::filesystem::path& fragmentShader,
+                            const std::string& definitions) {
+    const auto vertex = TRY(compiled<GL_VERTEX_SHADER>(vertexShader, definitions));
+    const auto fragment = TRY(compiled<GL_FRAGMENT_SHADER>(fragmentShader, definitions));
     Program program;
     glAttachShader(program.name(), vertex.name());
     glAttachShader(program.name(), fragment.name());
