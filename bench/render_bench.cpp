@@ -105,7 +105,7 @@ void drawFrame(benchmark::State& state, int outputs, int layers) {
             FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "nobody unplugs it");
             output.renderer->draw(look, clock.now(), output.sink->framebuffer());
         }
-        for (Output& output : all) FANTASCOPE_CHECK(output.sink->present(false).has_value(), "nobody unplugs it");
+        for (Output& output : all) FANTASCOPE_CHECK(output.sink->presentWith(clock.now()).has_value(), "nobody unplugs it");
     };
     frame();  // OpenGL compiles its shaders at the first use
     for (auto _ : state) frame();

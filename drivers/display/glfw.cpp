@@ -199,11 +199,7 @@ Result<void> GlfwDisplay::makeCurrent() {
     return {};
 }
 
-void GlfwDisplay::setSwapInterval(int refreshes) {
-    if (std::exchange(swapInterval_, refreshes) != refreshes) glfwSwapInterval(refreshes);
-}
-
-Result<Shown> GlfwDisplay::present(bool paced) {
+Result<void> GlfwDisplay::fillBackBuffer() {
     TRY(makeCurrent());
     // With conversion off the stored values arrive as they are, whatever the window says of its own colours.
     const bool converting = glIsEnabled(GL_FRAMEBUFFER_SRGB);
@@ -212,20 +208,35 @@ Result<Shown> GlfwDisplay::present(bool paced) {
     glBlitNamedFramebuffer(framebuffer_, 0, 0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     if (converting) glEnable(GL_FRAMEBUFFER_SRGB);
     glFinish();  // now only the swap itself can wait
+    return {};
+}
 
-    setSwapInterval(paced ? 1 : 0);
-    const Time before = clock_.now();
-    Shown shown;
-    shown.refresh = paced ? nextRefresh() : refreshes_.running(before);
+void GlfwDisplay::swap(int refreshes) {
+    if (std::exchange(swapInterval_, refreshes) != refreshes) glfwSwapInterval(refreshes);
     glfwSwapBuffers(window_);
     glFinish();
+}
+
+Result<Shown> GlfwDisplay::present() {
+    TRY(fillBackBuffer());
+    const Time before = clock_.now();
+    std::int64_t refresh = nextRefresh();
+    swap(1);
     const Time after = clock_.now();
     glfwPollEvents();
-
-    if (paced && seconds(after - before) * refreshes_.hertz() > kWaitOfSwap) shown.refresh = refreshes_.seen(after);
-    shown.at = refreshTime(shown.refresh);
-    if (paced) clock_.sleepUntil(shown.at);
+    if (seconds(after - before) * refreshes_.hertz() > kWaitOfSwap) refresh = refreshes_.seen(after);
+    const Shown shown{refresh, refreshTime(refresh)};
+    clock_.sleepUntil(shown.at);
     return shown;
+}
+
+Result<Shown> GlfwDisplay::presentWith(Time leading) {
+    TRY(fillBackBuffer());
+    clock_.sleepUntil(leading);
+    const std::int64_t refresh = refreshes_.running(clock_.now());
+    swap(0);
+    glfwPollEvents();
+    return Shown{refresh, refreshTime(refresh)};
 }
 
 }  // namespace fantascope::drivers

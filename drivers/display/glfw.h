@@ -38,7 +38,8 @@ public:
     Result<void> makeCurrent() override;
     // 0 before it is Running for the first time.
     unsigned framebuffer() const override { return framebuffer_; }
-    Result<Shown> present(bool paced) override;
+    Result<Shown> present() override;
+    Result<Shown> presentWith(Time leading) override;
 
 private:
     class Glfw;
@@ -51,7 +52,10 @@ private:
     // Sees that it is Running, and brings it back when that is due. Error: it is Absent.
     Result<void> beThere();
     void setAbsence(const std::string& why);
-    void setSwapInterval(int refreshes);
+    // Brings what was drawn into the window's back buffer, finished. Error: it is Absent.
+    Result<void> fillBackBuffer();
+    // Swaps after so many refreshes: 1 waits for the next where the driver can, 0 swaps at once.
+    void swap(int refreshes);
 
     const DisplayRequest request_;
     const std::string monitor_;  // its name; empty: a window of the desktop

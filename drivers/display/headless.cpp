@@ -6,6 +6,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -104,7 +105,9 @@ HeadlessDisplay::~HeadlessDisplay() {
 
 DeviceStatus HeadlessDisplay::status() const { return cable_.status(kDriver); }
 
-std::int64_t HeadlessDisplay::nextRefresh() const { return refreshes_.running(clock_.now()) + 1; }
+std::int64_t HeadlessDisplay::nextRefresh() const { 
+    return std::max(refreshes_.running(clock_.now()), shown_) + 1;
+}
 
 Time HeadlessDisplay::refreshTime(std::int64_t number) const { return refreshes_.timeOf(number); }
 
@@ -117,14 +120,23 @@ Result<void> HeadlessDisplay::makeCurrent() {
     return {};
 }
 
-Result<Shown> HeadlessDisplay::present(bool paced) {
+Result<Shown> HeadlessDisplay::present() {
     TRY(makeCurrent());
     glFinish();
-    Shown shown;
-    shown.refresh = paced ? nextRefresh() : refreshes_.running(clock_.now());
-    shown.at = refreshTime(shown.refresh);
-    if (paced) clock_.sleepUntil(shown.at);
-    return shown;
+    shown_ = nextRefresh();
+    // There is room for another once the frame before is off.
+    clock_.sleepUntil(refreshTime(shown_ - 1));
+    return Shown{shown_, refreshTime(shown_)};
+}
+
+Result<Shown> HeadlessDisplay::presentWith(Time leading) {
+    TRY(makeCurrent());
+    const bool toCome = leading > clock_.now();
+    glFinish();
+    const std::int64_t running = refreshes_.running(clock_.now());
+    const Time halfPeriod = tickTime(1, 2 * request_.refreshRate);
+    shown_ = toCome ? std::max(refreshes_.running(leading + halfPeriod), running + 1) : running;
+    return Shown{shown_, refreshTime(shown_)};
 }
 
 }  // namespace fantascope::drivers

@@ -15,7 +15,8 @@ namespace fantascope::drivers {
 // A display without a window system: real OpenGL on EGL alone, Mesa's software renderer or a GPU. Its refreshes are those of a
 // clock: number k takes place at tickTime(k, rate). It can be unplugged where a simulated site has its plug.
 //
-// present() finishes all drawing before it looks at the clock, so that a frame counts as shown only once it is complete.
+// A frame is finished before the clock is looked at, so that it counts as shown only once it is complete. One finished frame is
+// held until its refresh comes, as a graphics card's swap chain does.
 // The context and what is in it outlive a loss.
 class HeadlessDisplay final : public DisplaySink {
 public:
@@ -31,7 +32,8 @@ public:
     Time refreshTime(std::int64_t number) const override;
     Result<void> makeCurrent() override;
     unsigned framebuffer() const override { return framebuffer_; }
-    Result<Shown> present(bool paced) override;
+    Result<Shown> present() override;
+    Result<Shown> presentWith(Time leading) override;
 
 private:
     HeadlessDisplay(const DisplayRequest& request, const Surroundings& around, void* egl, void* context);
@@ -43,6 +45,7 @@ private:
     void* egl_;      // EGLDisplay
     void* context_;  // EGLContext
     unsigned framebuffer_ = 0;
+    std::int64_t shown_ = -1;  // the refresh of the newest frame, running or to come
 };
 
 }  // namespace fantascope::drivers

@@ -1,6 +1,7 @@
 #include "app/frame_loop.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fantascope::app {
 
@@ -22,7 +23,7 @@ FrameLoop::~FrameLoop() {
     }
 }
 
-LatestValue<render::ShownFrame>& FrameLoop::tap(std::size_t output) {
+render::FrameReader& FrameLoop::tap(std::size_t output) {
     std::optional<render::FrameTap>& tap = outputs_[output].tap;
     if (!tap) tap.emplace(output, outputs_[output].site.size);
     return tap->addReader();
@@ -65,39 +66,45 @@ Result<void> FrameLoop::draw(Output& output, std::size_t index, Time showTime, O
     return {};
 }
 
-Result<void> FrameLoop::step() {
-    // The moment that this frame is for: the next refresh that can still be met.
-    Output* const leads = leader();
+Time FrameLoop::nextDue() {
+    if (const Output* const leads = leader()) return leads->display.refreshTime(leads->display.nextRefresh());
+    // Nothing is to be seen; the show goes on at its pace.
     const double rate = outputs_.empty() ? 1.0 : outputs_[0].site.refreshRate;
-    const std::int64_t target = leads != nullptr ? leads->display.nextRefresh() : tickAt(clock_.now(), rate) + 1;
-    const Time due = leads != nullptr ? leads->display.refreshTime(target) : tickTime(target, rate);
+    return tickTime(tickAt(clock_.now(), rate) + 1, rate);
+}
+
+Result<void> FrameLoop::step() {
+    Output* const leads = leader();
+    // A display that takes the lead may hold no frame yet for a refresh that the others have theirs for.
+    if (nextDue() <= newest_) clock_.sleepUntil(newest_);
+    const Time due = newest_ = nextDue();
     const Time showTime = due - start_;
 
     Time oldestInput = Time::max();
     replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput = std::min(oldestInput, input.at); });
     for (std::size_t i = 0; i < outputs_.size(); ++i) TRY(draw(outputs_[i], i, showTime, reports_[i]));
 
-    // The leader waits for the refresh, the others show within it.
-    if (leads == nullptr || !leads->drawn) clock_.sleepUntil(due);
+    // The leader waits as its refreshes ask, the others show with it.
     std::optional<Time> seen;
-    const auto show = [&](std::size_t i) {
+    const auto show = [&](std::size_t i, auto present) {
         Output& output = outputs_[i];
-        if (!output.drawn) return;
-        const bool paced = &output == leads;
-        if (!paced && !output.display.makeCurrent()) return;
-        const auto shown = output.display.present(paced);
+        if (!output.drawn || !output.display.makeCurrent()) return;
+        const Result<Shown> shown = present(output.display);
         if (!shown) return;
         if (output.tap) output.tap->publish(*shown);
-        const std::int64_t late = std::max<std::int64_t>(0, shown->refresh - target);
+        // The displays may count their refreshes differently: time tells how many were missed.
+        const std::int64_t late = std::max<std::int64_t>(0, std::llround(seconds(shown->at - due) * output.display.refreshRate()));
         ++reports_[i].frames;
         reports_[i].lateFrames += late;
         ++framesShown_;
         framesLate_ += late;
         if (!seen) seen = shown->at;
     };
-    if (leads != nullptr) show(static_cast<std::size_t>(leads - outputs_.data()));
+    if (leads != nullptr) show(static_cast<std::size_t>(leads - outputs_.data()), [](DisplaySink& display) { return display.present(); });
+    if (!seen) clock_.sleepUntil(due);
+    const Time leading = seen.value_or(due);
     for (std::size_t i = 0; i < outputs_.size(); ++i)
-        if (&outputs_[i] != leads) show(i);
+        if (&outputs_[i] != leads) show(i, [&](DisplaySink& display) { return display.presentWith(leading); });
 
     if (seen && oldestInput != Time::max()) inputToFrame_.add(*seen - start_ - oldestInput);
     if (stateSlot_ != nullptr) {

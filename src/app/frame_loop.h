@@ -19,7 +19,7 @@ namespace fantascope::app {
 
 // The render thread's work: frame after frame it asks the playback what is to be seen when the next refresh takes place, draws that on
 // every output and shows it. The first running display leads: its refresh paces the loop; the others follow within the same refresh. A
-// display that is lost is left out until it is back. Thread: bound to the render thread, but for the slots and counters.
+// display that is lost is left out until it is back. A display that holds a finished frame lets the loop be a frame ahead. Thread: bound to the render thread, but for the slots and counters.
 class FrameLoop {
 public:
     // All outlive it. `assets`: the folder of the shaders.
@@ -29,7 +29,7 @@ public:
 
     PlaybackReplica& replica() { return replica_; }
     // A further reader of the frames that `output` shows. Before the first frame.
-    LatestValue<render::ShownFrame>& tap(std::size_t output);
+    render::FrameReader& tap(std::size_t output);
     // The state of the newest frame goes into this slot too. Before the first frame.
     void publishStateTo(LatestValue<show::ShowState>& slot) { stateSlot_ = &slot; }
 
@@ -38,7 +38,9 @@ public:
     Result<void> prepare();
     // Show time 0 is `start` on the clock. Before the first frame.
     void begin(Time start) { start_ = start; }
-    // One frame on every output; returns when the leading display has shown it. Error: a renderer cannot be made for a display.
+    // The moment that the next frame is for: the first refresh that can still be met.
+    Time nextDue();
+    // One frame on every output; returns when another can be made. Error: a renderer cannot be made for a display.
     Result<void> step();
 
     // Counters for the progress line. Thread-safe.
@@ -64,6 +66,7 @@ private:
     std::filesystem::path assets_;
     Clock& clock_;
     Time start_{};
+    Time newest_{};  // the moment that the newest frame is for
     PlaybackReplica replica_;
     show::ShowState state_;
     std::vector<Output> outputs_;

@@ -104,7 +104,10 @@ public:
     // The render thread's life.
     Result<void> draw(const Interrupt& interrupt) {
         TRY(std::move(prepared_));
-        while (!interrupt.requested() && !quit_ && (!options_.length || clock_.now() - start_ < *options_.length)) TRY(frames_.step());
+        const Time end = options_.length ? start_ + *options_.length : Time::max();
+        const auto stopped = [&] { return interrupt.requested() || quit_; };
+        while (!stopped() && frames_.nextDue() <= end) TRY(frames_.step());
+        if (!stopped()) clock_.sleepUntil(end);  // the last frame is seen
         length_ = clock_.now() - start_;
         return {};
     }
@@ -141,10 +144,10 @@ private:
         return names;
     }
     double frameRate() const { return programme_.site.outputs[0].refreshRate; }
-    std::vector<LatestValue<render::ShownFrame>*> tapEveryOutput() {
-        std::vector<LatestValue<render::ShownFrame>*> slots;
-        for (std::size_t output = 0; output < programme_.site.outputs.size(); ++output) slots.push_back(&frames_.tap(output));
-        return slots;
+    std::vector<render::FrameReader*> tapEveryOutput() {
+        std::vector<render::FrameReader*> readers;
+        for (std::size_t output = 0; output < programme_.site.outputs.size(); ++output) readers.push_back(&frames_.tap(output));
+        return readers;
     }
 
     void takeInput(Time moment) {
@@ -175,25 +178,22 @@ private:
     // What the displays show is what the simulated projectors throw, whatever display it is.
     Part simulatedSite() {
         surrounding_.simulation->begin(start_);
-        return {"site", kSiteRate, start_, [this, slots = tapEveryOutput()](Time moment) {
-                    for (LatestValue<render::ShownFrame>* slot : slots)
-                        if (slot->update()) {
-                            const render::ShownFrame& frame = slot->value();
-                            const std::string& output = programme_.site.outputs[frame.output].name;
-                            surrounding_.world.setFrame(output, std::make_shared<const RgbaImage>(frame.image));
+        return {"site", kSiteRate, start_, [this, readers = tapEveryOutput()](Time moment) {
+                    for (render::FrameReader* reader : readers)
+                        while (const render::ShownFrame* frame = reader->next(moment)) {
+                            const std::string& output = programme_.site.outputs[frame->output].name;
+                            surrounding_.world.setFrame(output, std::make_shared<const RgbaImage>(frame->image));
                         }
                     surrounding_.simulation->advanceTo(moment);
                 }, Rank::Watch};
     }
 
     Part recorder() {
-        // Half a refresh after the frames were shown, so that each is met once.
-        return {"recording", frameRate(), start_ + tickTime(1, 2 * frameRate()), [this, slots = tapEveryOutput()](Time) {
-                    for (LatestValue<render::ShownFrame>* slot : slots)
-                        if (slot->update() && recorded_) {
-                            const render::ShownFrame& frame = slot->value();
-                            recorded_ = recording_->frame(frame.output, frame.image, frame.shown.refresh, frame.showTime);
-                        }
+        // Half a refresh after the frames became visible.
+        return {"recording", frameRate(), start_ + tickTime(1, 2 * frameRate()), [this, readers = tapEveryOutput()](Time moment) {
+                    for (render::FrameReader* reader : readers)
+                        while (const render::ShownFrame* frame = reader->next(moment))
+                            if (recorded_) recorded_ = recording_->frame(frame->output, frame->image, frame->shown.refresh, frame->showTime);
                 }, Rank::Watch};
     }
 

@@ -9,28 +9,44 @@
 namespace fantascope {
 
 // A first-in first-out queue of at most `kCapacity` values from one writing thread to one reading thread; neither side ever waits or allocates.
-// Thread: push() from one thread, pop() from one other.
+// Large values are written and read in place: a T that keeps its capacity (a vector, an image) costs nothing in steady state.
+// Thread: space() and push() from one thread, front(), drop() and pop() from one other.
 template <class T, std::size_t kCapacity>
 class BoundedQueue {
 public:
+    explicit BoundedQueue(const T& initial = T{}) { values_.fill(initial); }
+
+    // Where the next value goes; it holds some older one: overwrite all of it, then push(). Null if the queue is full.
+    T* space() {
+        const std::size_t tail = tail_.load(std::memory_order_relaxed);
+        return tail - head_.load(std::memory_order_acquire) == kCapacity ? nullptr : &values_[tail % kCapacity];
+    }
+    void push() { tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
     // False if the queue is full: the value was not taken.
     bool push(const T& value) {
-        const std::size_t tail = tail_.load(std::memory_order_relaxed);
-        if (tail - head_.load(std::memory_order_acquire) == kCapacity) return false;
-        values_[tail % kCapacity] = value;
-        tail_.store(tail + 1, std::memory_order_release);
+        T* const place = space();
+        if (place == nullptr) return false;
+        *place = value;
+        push();
         return true;
     }
-    std::optional<T> pop() {
+
+    // The oldest value, which stays in the queue until drop(); null if there is none.
+    T* front() {
         const std::size_t head = head_.load(std::memory_order_relaxed);
-        if (head == tail_.load(std::memory_order_acquire)) return std::nullopt;
-        std::optional<T> value(std::move(values_[head % kCapacity]));
-        head_.store(head + 1, std::memory_order_release);
+        return head == tail_.load(std::memory_order_acquire) ? nullptr : &values_[head % kCapacity];
+    }
+    void drop() { head_.store(head_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
+    std::optional<T> pop() {
+        T* const oldest = front();
+        if (oldest == nullptr) return std::nullopt;
+        std::optional<T> value(std::move(*oldest));
+        drop();
         return value;
     }
 
 private:
-    std::array<T, kCapacity> values_{};
+    std::array<T, kCapacity> values_;
     std::atomic<std::size_t> head_ = 0, tail_ = 0;
 };
 

@@ -12,13 +12,16 @@ namespace fantascope {
 // When a frame really became visible.
 struct Shown {
     std::int64_t refresh = 0;  // the number of the refresh that first showed it, counted by the display
-    Time at{};                 // the time of that refresh, on the clock that open() was handed
+    Time at{};                 // the time of that refresh, on the clock that open() was handed; may be up to one period ahead
 };
 
 // One output's picture surface with an OpenGL 4.5 core context of its own.
 //
-// A frame: makeCurrent(); draw into framebuffer(); present(). With several outputs on one render thread the first one leads (paced) and
-// the others follow (not paced), so that the thread waits for one refresh and not for each in turn.
+// A frame: makeCurrent(); draw into framebuffer(); present(). With several outputs on one render thread the first one leads, at its own
+// pace, and the others follow, so that the thread waits for one refresh and not for each in turn.
+//
+// A display may hold one finished frame until its refresh comes, so that the next one can be drawn meanwhile: a moment in which the
+// machine is busy elsewhere then does not show.
 //
 // The context comes with the first success of makeCurrent() and lives as long as the display: what is in it outlives a loss. Objects in it
 // are destroyed while it is current.
@@ -29,7 +32,7 @@ public:
     virtual glm::ivec2 size() const = 0;
     // Refreshes a second.
     virtual double refreshRate() const = 0;
-    // The refresh that the next paced present() can make at the earliest.
+    // The refresh that the next leading frame can make at the earliest: the first one to come that shows no frame yet.
     virtual std::int64_t nextRefresh() const = 0;
     // When refresh `number` takes place (may be an estimate on real hardware).
     virtual Time refreshTime(std::int64_t number) const = 0;
@@ -38,9 +41,13 @@ public:
     virtual Result<void> makeCurrent() = 0;
     // The GL name of the framebuffer to draw into; its colours are stored sRGB values, row 0 of GL at the bottom of the picture.
     virtual unsigned framebuffer() const = 0;
-    // Shows what was drawn; its context is current afterwards. Paced: waits for the next refresh. Otherwise shows at once, within the
-    // refresh that is running, and does not wait. Error: not Running: the frame is dropped. Loss: the projector shows nothing.
-    virtual Result<Shown> present(bool paced) = 0;
+    // Shows what was drawn; its context is current afterwards. Error: not Running: the frame is dropped. Loss: the projector shows nothing.
+    // A leading frame is shown at nextRefresh(), and the call returns once another may be drawn: at that refresh, or up to one period
+    // earlier where the display holds a frame.
+    virtual Result<Shown> present() = 0;
+    // A following frame is shown together with one that another display shows at `leading`, or as soon after as can be, and waits for no
+    // refresh but that one: where `leading` is past it is shown at once, within the refresh that is running.
+    virtual Result<Shown> presentWith(Time leading) = 0;
 };
 
 }  // namespace fantascope

@@ -59,7 +59,8 @@ class AlmostGood : public Between<DisplaySink> {
     Time refreshTime(std::int64_t number) const override { return good_->refreshTime(number); }
     Result<void> makeCurrent() override { return good_->makeCurrent(); }
     unsigned framebuffer() const override { return good_->framebuffer(); }
-    Result<Shown> present(bool paced) override { return good_->present(paced); }
+    Result<Shown> present() override { return good_->present(); }
+    Result<Shown> presentWith(Time leading) override { return good_->presentWith(leading); }
 };
 
 class OfAnotherSize : public AlmostGood {
@@ -81,27 +82,58 @@ TEST(DisplaySinkContract, finds_a_framebuffer_that_cannot_be_drawn_into) {
 
 class NeverWaits : public AlmostGood {
     using AlmostGood::AlmostGood;
-    Result<Shown> present(bool) override { return good_->present(false); }
+    Result<Shown> present() override { return good_->presentWith(Time{}); }
 };
 TEST(DisplaySinkContract, finds_a_display_that_does_not_pace) {
-    EXPECT_THAT(brokenBy<NeverWaits>(), Contains("a paced frame waits for the next refresh and not longer"));
+    EXPECT_THAT(brokenBy<NeverWaits>(),
+                Contains("leading frames are shown at one refresh after the other, and the display waits for it or for the one before"));
+}
+
+// A queue without an end: no frame is ever late, and a button's effect comes ever later.
+class QueuesEverything : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    std::int64_t nextRefresh() const override { return std::max(good_->nextRefresh(), shown_ + 1); }
+    Result<Shown> present() override {
+        shown_ = nextRefresh();
+        return Shown{shown_, good_->refreshTime(shown_)};
+    }
+    std::int64_t shown_ = 0;
+};
+TEST(DisplaySinkContract, finds_a_display_that_holds_more_than_one_frame) {
+    EXPECT_THAT(brokenBy<QueuesEverything>(),
+                Contains("leading frames are shown at one refresh after the other, and the display waits for it or for the one before"));
 }
 
 class AlwaysWaits : public AlmostGood {
     using AlmostGood::AlmostGood;
-    Result<Shown> present(bool) override { return good_->present(true); }
+    Result<Shown> presentWith(Time) override {
+        const Shown shown = TRY(good_->present());
+        around_.clock.sleepUntil(shown.at);
+        return shown;
+    }
 };
 TEST(DisplaySinkContract, finds_a_follower_that_waits_for_a_refresh_of_its_own) {
-    EXPECT_THAT(brokenBy<AlwaysWaits>(),
-                ElementsAre("an unpaced frame is shown within the refresh that is running, without waiting"));
+    EXPECT_THAT(
+        brokenBy<AlwaysWaits>(),
+        Contains("a following frame is shown within the refresh that is running, without waiting, where the leading one is shown already"));
+}
+
+class RunsAhead : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    Result<Shown> presentWith(Time) override { return good_->presentWith(around_.clock.now()); }
+};
+TEST(DisplaySinkContract, finds_a_follower_that_does_not_wait_for_the_leader) {
+    EXPECT_THAT(brokenBy<RunsAhead>(),
+                ElementsAre("a following frame is shown with the leading one, and its display does not wait longer than that"));
 }
 
 // With this no frame would ever be late.
 class NumbersItsFrames : public AlmostGood {
     using AlmostGood::AlmostGood;
-    Result<Shown> present(bool paced) override {
-        Shown shown = TRY(good_->present(paced));
+    Result<Shown> present() override {
+        Shown shown = TRY(good_->present());
         shown.refresh = ++frames_;
+        shown.at = good_->refreshTime(frames_);
         return shown;
     }
     std::int64_t frames_ = 0;
@@ -121,7 +153,7 @@ TEST(DisplaySinkContract, finds_uneven_refreshes) {
 // The display that is presented is whatever context happens to be current.
 class TakesAnyContext : public AlmostGood {
     using AlmostGood::AlmostGood;
-    Result<Shown> present(bool) override {
+    Result<Shown> presentWith(Time) override {
         if (!running()) return Error("left is lost");
         return Shown{good_->nextRefresh() - 1, good_->refreshTime(good_->nextRefresh() - 1)};
     }

@@ -51,7 +51,7 @@ TEST_F(GlfwDisplay, fills_its_monitor_with_the_stored_values) {
     }
     glDisable(GL_SCISSOR_TEST);
     glEnable(GL_FRAMEBUFFER_SRGB);  // as a renderer leaves it
-    ASSERT_TRUE(sink->present(true));
+    ASSERT_TRUE(sink->present());
     EXPECT_TRUE(glIsEnabled(GL_FRAMEBUFFER_SRGB)) << "the renderer's state is changed";
 
     const auto top = server_->row(0);
@@ -63,7 +63,7 @@ TEST_F(GlfwDisplay, is_absent_without_its_monitor_and_names_those_there_are) {
     const auto sink = open("{driver: glfw, monitor: HDMI-7}", {1280, 720}, clock_);
     EXPECT_EQ(sink->status().state, DeviceState::Absent);
     EXPECT_THAT(sink->status().detail, HasSubstr("'HDMI-7' (there is: screen)"));
-    EXPECT_FALSE(sink->present(true));
+    EXPECT_FALSE(sink->present());
 }
 
 // Otherwise the picture would be scaled or cut and nobody would know.
@@ -74,15 +74,15 @@ TEST_F(GlfwDisplay, is_absent_on_a_monitor_without_a_mode_of_its_size) {
 
 TEST_F(GlfwDisplay, stays_closed_when_somebody_closes_its_window) {
     const auto sink = open("{driver: glfw}", {64, 36}, clock_);
-    ASSERT_TRUE(sink->present(true));
+    ASSERT_TRUE(sink->present());
     ASSERT_TRUE(server_->hasWindow("left"));
     server_->closeWindow("left");
     // The request travels by the server: some frame's events tell of it, the next one's or a later one's.
-    for (int frame = 0; frame < 100'000 && sink->present(false); ++frame) {
+    for (int frame = 0; frame < 100'000 && sink->presentWith(clock_.now()); ++frame) {
     }
     for (int second = 0; second < 3; ++second) {
         EXPECT_FALSE(sink->makeCurrent());
-        EXPECT_FALSE(sink->present(true));
+        EXPECT_FALSE(sink->present());
         clock_.advance(std::chrono::seconds(1));
     }
     EXPECT_EQ(sink->status().state, DeviceState::Absent);

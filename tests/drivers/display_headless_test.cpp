@@ -28,7 +28,7 @@ TEST(HeadlessDisplay, runs_without_a_simulated_site) {
     ManualClock clock;
     const auto sink = open("driver: headless\n", clock).value();
     EXPECT_EQ(sink->status().state, DeviceState::Running);
-    EXPECT_TRUE(sink->present(true));
+    EXPECT_TRUE(sink->present());
     EXPECT_EQ(sink->status().losses, 0);
 }
 
@@ -41,12 +41,12 @@ TEST(HeadlessDisplay, serves_several_threads_with_a_display_each) {
     bool theirsServes = false;
     std::thread([&] {
         const auto theirs = open("driver: headless\n", clock).value();
-        theirsServes = theirs->makeCurrent() && theirs->present(false);
+        theirsServes = theirs->makeCurrent() && theirs->presentWith(clock.now());
         if (const auto current = mine->makeCurrent(); !current) theirError = current.error().message();
     }).join();
     EXPECT_TRUE(theirsServes);
     EXPECT_THAT(theirError, HasSubstr("current on another thread"));
-    EXPECT_TRUE(mine->present(false));
+    EXPECT_TRUE(mine->presentWith(clock.now()));
 }
 
 }  // namespace

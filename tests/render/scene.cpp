@@ -128,9 +128,10 @@ const RgbaImage& DrawnOutput::frame(const show::OutputState& state, Time time) {
     FANTASCOPE_CHECK(sink_->makeCurrent().has_value(), "nobody unplugs it");
     renderer_->draw(state, time, sink_->framebuffer());
     tap_->capture(sink_->framebuffer(), time);
-    tap_->publish(valueOf(sink_->present(true)));
-    newest_->update();
-    return newest_->value().image;
+    tap_->publish(valueOf(sink_->present()));
+    const ShownFrame* const frame = newest_->next(Time::max());
+    FANTASCOPE_CHECK(frame != nullptr, "what was presented is published");
+    return frame->image;
 }
 
 Difference difference(const RgbaImage& a, const RgbaImage& b) {

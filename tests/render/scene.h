@@ -54,7 +54,7 @@ private:
     std::unique_ptr<DisplaySink> sink_;
     std::unique_ptr<OutputRenderer> renderer_;
     std::unique_ptr<FrameTap> tap_;
-    LatestValue<ShownFrame>* newest_ = nullptr;
+    FrameReader* newest_ = nullptr;
 };
 
 // How far two pictures of one size are apart, in stored values of 0 .. 255, over all colour channels.
