@@ -1,10 +1,7 @@
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
+#include "drivers/surroundings.h"
 
-#include "core/config.h"
 #include "device/camera_source.h"
 #include "device/cue_controller.h"
 #include "device/display_sink.h"
@@ -12,18 +9,25 @@
 #include "device/dmx_source.h"
 #include "device/input_bank.h"
 #include "device/relay_bank.h"
-#include "drivers/surroundings.h"
+
+#include "core/config.h"
+
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace fantascope::drivers {
 
 // Opens a device by its driver's name. `options` is the driver's own map in the site file, its `driver:` key included; each driver's
 // folder has a README of its keys. A device that is not there opens all the same and is Absent. Error, with its place in the file: a name
 // that is not in the registry (the known ones are listed), a wrong key or value, or a simulated driver without a simulated site.
-Result<std::unique_ptr<DisplaySink>> openDisplay(const ConfigNode& options, const DisplayRequest& request, const Surroundings& around);
+Result<std::unique_ptr<DisplaySink>> openDisplay(const ConfigNode& options, const DisplayRequest& request,
+                                                 const Surroundings& around);
 Result<std::unique_ptr<DmxPort>> openDmxPort(const ConfigNode& options, int universe, const Surroundings& around);
 Result<std::unique_ptr<DmxSource>> openDmxSource(const ConfigNode& options, int universe, const Surroundings& around);
 // `safeStates`: one for each relay, true is energised; their number is the bank's size.
-Result<std::unique_ptr<RelayBank>> openRelayBank(const ConfigNode& options, const std::vector<bool>& safeStates, const Surroundings& around);
+Result<std::unique_ptr<RelayBank>> openRelayBank(const ConfigNode& options, const std::vector<bool>& safeStates,
+                                                 const Surroundings& around);
 Result<std::unique_ptr<InputBank>> openInputBank(const ConfigNode& options, std::size_t size, const Surroundings& around);
 Result<std::unique_ptr<CueController>> openCueController(const ConfigNode& options, const Surroundings& around);
 Result<std::unique_ptr<CameraSource>> openCamera(const ConfigNode& options, const Surroundings& around);

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <glm/vec2.hpp>
-#include <string>
-
 #include "core/clock.h"
+
+#include <glm/vec2.hpp>
+
+#include <string>
 
 namespace fantascope::site {
 class World;

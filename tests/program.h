@@ -17,7 +17,7 @@
 namespace fantascope {
 
 struct Outcome {
-    int status = -1;        // the exit status, or 128 + the signal
+    int status = -1;  // the exit status, or 128 + the signal
     std::string out, errors;
 };
 

@@ -105,9 +105,7 @@ HeadlessDisplay::~HeadlessDisplay() {
 
 DeviceStatus HeadlessDisplay::status() const { return cable_.status(kDriver); }
 
-std::int64_t HeadlessDisplay::nextRefresh() const { 
-    return std::max(refreshes_.running(clock_.now()), shown_) + 1;
-}
+std::int64_t HeadlessDisplay::nextRefresh() const { return std::max(refreshes_.running(clock_.now()), shown_) + 1; }
 
 Time HeadlessDisplay::refreshTime(std::int64_t number) const { return refreshes_.timeOf(number); }
 

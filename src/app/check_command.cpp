@@ -89,7 +89,8 @@ Result<Finding> checkYaml(const fs::path& path, const std::optional<show::Site>&
 
 Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>& site) {
     std::error_code ignored;
-    if (fs::is_directory(path, ignored)) return fs::exists(path / "site.yaml", ignored) ? checkSite(path / "site.yaml", site) : checkShow(path, site);
+    if (fs::is_directory(path, ignored))
+        return fs::exists(path / "site.yaml", ignored) ? checkSite(path / "site.yaml", site) : checkShow(path, site);
     return path.extension() == ".yaml" ? checkYaml(path, site) : checkGuide(path);
 }
 
@@ -97,7 +98,9 @@ void declareOptions(CLI::App& command, CheckOptions& options) {
     command.add_option("path", options.paths, "Show and site folders, show, site and pattern files, guide images")
         ->required()
         ->type_name("PATH");
-    command.add_option("--site", options.site, "Look the shows' outputs, fixtures and relays up in this site: a folder or a site.yaml")
+    command
+        .add_option("--site", options.site,
+                    "Look the shows' outputs, fixtures and relays up in this site: a folder or a site.yaml")
         ->type_name("SITE");
 }
 
@@ -111,8 +114,7 @@ Result<void> checkFiles(const CheckOptions& options, std::ostream& out) {
     if (options.site) {
         waiting.push_front(*options.site);
         const fs::path file = fs::is_directory(*options.site) ? fs::path(*options.site) / "site.yaml" : fs::path(*options.site);
-        if (auto read = show::readSite(file))
-            site = std::move(read).value();  // what is wrong with it is said in its turn
+        if (auto read = show::readSite(file)) site = std::move(read).value();  // what is wrong with it is said in its turn
     }
     std::set<fs::path> seen;
     std::size_t refused = 0;

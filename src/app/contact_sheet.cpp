@@ -1,7 +1,8 @@
 #include "app/contact_sheet.h"
 
-#include <algorithm>
 #include <opencv2/imgproc.hpp>
+
+#include <algorithm>
 
 namespace fantascope::app {
 
@@ -18,9 +19,12 @@ RgbaImage contactSheet(const std::vector<LabelledPicture>& pictures) {
     for (int i = 0; i < static_cast<int>(pictures.size()); ++i) {
         const LabelledPicture& picture = pictures[static_cast<std::size_t>(i)];
         const int left = kMargin + i % columns * stepX, top = kMargin + i / columns * stepY;
-        const RgbaImage fitted = picture.image.width() == width && picture.image.height() == height ? picture.image : resized(picture.image, width, height);
+        const RgbaImage fitted = picture.image.width() == width && picture.image.height() == height
+                                     ? picture.image
+                                     : resized(picture.image, width, height);
         for (int y = 0; y < height; ++y) std::copy_n(fitted.row(y).begin(), width, sheet.row(top + y).begin() + left);
-        cv::putText(canvas, picture.label, {left + 2, top + height + 17}, cv::FONT_HERSHEY_SIMPLEX, 0.5, {225, 225, 225, 255}, 1, cv::LINE_AA);
+        cv::putText(canvas, picture.label, {left + 2, top + height + 17}, cv::FONT_HERSHEY_SIMPLEX, 0.5, {225, 225, 225, 255}, 1,
+                    cv::LINE_AA);
     }
     return sheet;
 }

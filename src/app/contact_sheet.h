@@ -1,9 +1,9 @@
 #pragma once
 
+#include "core/image.h"
+
 #include <string>
 #include <vector>
-
-#include "core/image.h"
 
 namespace fantascope::app {
 

@@ -1,6 +1,7 @@
 #include "app/devices.h"
 
 #include "drivers/registry.h"
+
 #include "show/patch.h"
 
 namespace fantascope::app {
@@ -17,18 +18,26 @@ Result<ConfigNode> optionsOf(const show::DeviceConfig& declared, Backends backen
 Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::Surroundings& around) {
     Devices devices;
     for (const show::Output& output : site.outputs) {
-        const ConfigNode options = TRY(optionsOf(output.display, backends, backends == Backends::SimulatedWindows ? "glfw" : "headless"));
+        const ConfigNode options =
+            TRY(optionsOf(output.display, backends, backends == Backends::SimulatedWindows ? "glfw" : "headless"));
         devices.displays.push_back(TRY(drivers::openDisplay(options, {output.name, output.size, output.refreshRate}, around)));
     }
     for (const show::Universe& universe : site.universes) {
         const ConfigNode options = TRY(optionsOf(universe.port, backends, "simulated"));
         devices.lines.push_back({universe.number, TRY(drivers::openDmxPort(options, universe.number, around))});
     }
-    if (site.relayBank)
-        devices.relayBank = TRY(drivers::openRelayBank(TRY(optionsOf(*site.relayBank, backends, "simulated")), show::safeCoils(site), around));
-    if (site.cueController)
-        devices.cueController = TRY(drivers::openCueController(TRY(optionsOf(*site.cueController, backends, "simulated")), around));
-    if (site.camera) devices.camera = TRY(drivers::openCamera(TRY(optionsOf(*site.camera, backends, "simulated")), around));
+    if (site.relayBank) {
+        const ConfigNode options = TRY(optionsOf(*site.relayBank, backends, "simulated"));
+        devices.relayBank = TRY(drivers::openRelayBank(options, show::safeCoils(site), around));
+    }
+    if (site.cueController) {
+        const ConfigNode options = TRY(optionsOf(*site.cueController, backends, "simulated"));
+        devices.cueController = TRY(drivers::openCueController(options, around));
+    }
+    if (site.camera) {
+        const ConfigNode options = TRY(optionsOf(*site.camera, backends, "simulated"));
+        devices.camera = TRY(drivers::openCamera(options, around));
+    }
     return devices;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "drivers/surroundings.h"
+
 #include "show/site.h"
 
 #include "device/camera_source.h"
@@ -33,9 +34,9 @@ struct Devices {
 
 // Which drivers to open.
 enum class Backends {
-    AsDeclared,        // what the site file names: the night
-    SimulatedHeadless, // the simulated ones, pictures in memory, whatever the site file names: a rehearsal
-    SimulatedWindows   // the same with the pictures in windows
+    AsDeclared,         // what the site file names: the night
+    SimulatedHeadless,  // the simulated ones, pictures in memory, whatever the site file names: a rehearsal
+    SimulatedWindows    // the same with the pictures in windows
 };
 
 // Error: what a driver says of its part of the site file. A device that is not there is no error.

@@ -5,8 +5,8 @@
 
 namespace fantascope::app {
 
-FrameLoop::FrameLoop(const show::Site& site, const show::CueList& cues, std::vector<render::PictureSource> sources, std::filesystem::path assets,
-                     Devices& devices, Clock& clock)
+FrameLoop::FrameLoop(const show::Site& site, const show::CueList& cues, std::vector<render::PictureSource> sources,
+                     std::filesystem::path assets, Devices& devices, Clock& clock)
     : sources_(std::move(sources)), assets_(std::move(assets)), clock_(clock), replica_(cues) {
     for (std::size_t i = 0; i < site.outputs.size(); ++i) {
         outputs_.push_back({site.outputs[i], *devices.displays[i]});
@@ -49,7 +49,8 @@ Result<void> FrameLoop::prepare() {
     for (Output& output : outputs_) {
         if (!output.display.makeCurrent()) continue;
         TRY(makeRenderer(output));
-        for (const show::OutputState& state : {everything, show::OutputState{}}) output.renderer->draw(state, Time{}, output.display.framebuffer());
+        for (const show::OutputState& state : {everything, show::OutputState{}})
+            output.renderer->draw(state, Time{}, output.display.framebuffer());
     }
     return {};
 }
@@ -93,14 +94,16 @@ Result<void> FrameLoop::step() {
         if (!shown) return;
         if (output.tap) output.tap->publish(*shown);
         // The displays may count their refreshes differently: time tells how many were missed.
-        const std::int64_t late = std::max<std::int64_t>(0, std::llround(seconds(shown->at - due) * output.display.refreshRate()));
+        const std::int64_t late =
+            std::max<std::int64_t>(0, std::llround(seconds(shown->at - due) * output.display.refreshRate()));
         ++reports_[i].frames;
         reports_[i].lateFrames += late;
         ++framesShown_;
         framesLate_ += late;
         if (!seen) seen = shown->at;
     };
-    if (leads != nullptr) show(static_cast<std::size_t>(leads - outputs_.data()), [](DisplaySink& display) { return display.present(); });
+    if (leads != nullptr)
+        show(static_cast<std::size_t>(leads - outputs_.data()), [](DisplaySink& display) { return display.present(); });
     if (!seen) clock_.sleepUntil(due);
     const Time leading = seen.value_or(due);
     for (std::size_t i = 0; i < outputs_.size(); ++i)

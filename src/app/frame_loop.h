@@ -3,6 +3,7 @@
 #include "app/devices.h"
 #include "app/playback_replica.h"
 #include "app/run_report.h"
+
 #include "render/frame_tap.h"
 #include "render/output_renderer.h"
 #include "show/site.h"
@@ -23,8 +24,8 @@ namespace fantascope::app {
 class FrameLoop {
 public:
     // All outlive it. `assets`: the folder of the shaders.
-    FrameLoop(const show::Site& site, const show::CueList& cues, std::vector<render::PictureSource> sources, std::filesystem::path assets,
-              Devices& devices, Clock& clock);
+    FrameLoop(const show::Site& site, const show::CueList& cues, std::vector<render::PictureSource> sources,
+              std::filesystem::path assets, Devices& devices, Clock& clock);
     ~FrameLoop();
 
     PlaybackReplica& replica() { return replica_; }
@@ -55,8 +56,8 @@ private:
         const show::Output& site;
         DisplaySink& display;
         std::unique_ptr<render::OutputRenderer> renderer{};  // made when the display is first there
-        std::optional<render::FrameTap> tap{};             // where somebody reads
-        bool drawn = false;  // in the frame that is being made
+        std::optional<render::FrameTap> tap{};               // where somebody reads
+        bool drawn = false;                                  // in the frame that is being made
     };
     Result<void> makeRenderer(Output& output);
     Result<void> draw(Output& output, std::size_t index, Time showTime, OutputReport& report);

@@ -1,8 +1,8 @@
 #include "app/hand.h"
 
-#include <fmt/format.h>
-
 #include "core/log.h"
+
+#include <fmt/format.h>
 
 namespace fantascope::app {
 

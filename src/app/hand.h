@@ -3,6 +3,7 @@
 #include "app/devices.h"
 #include "app/playback_replica.h"
 #include "app/run_report.h"
+
 #include "show/cue_buttons.h"
 #include "show/show.h"
 

@@ -7,8 +7,15 @@
 
 namespace fantascope::app {
 
-Lighting::Lighting(const show::Site& site, const show::CueList& cues, Devices& devices, const Clock& clock, Time start, Recording* recording)
-    : site_(site), devices_(devices), clock_(clock), start_(start), recording_(recording), replica_(cues), wanted_(show::safeCoils(site)) {}
+Lighting::Lighting(const show::Site& site, const show::CueList& cues, Devices& devices, const Clock& clock, Time start,
+                   Recording* recording)
+    : site_(site),
+      devices_(devices),
+      clock_(clock),
+      start_(start),
+      recording_(recording),
+      replica_(cues),
+      wanted_(show::safeCoils(site)) {}
 
 void Lighting::tick(Time moment) {
     const Time showTime = moment - start_;

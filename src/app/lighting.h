@@ -5,6 +5,7 @@
 #include "app/part.h"
 #include "app/playback_replica.h"
 #include "app/recording.h"
+
 #include "show/site.h"
 
 #include "core/latest_value.h"
@@ -19,7 +20,8 @@ namespace fantascope::app {
 class Lighting {
 public:
     // All outlive it; `recording` may be null. Show time 0 is `start` on the clock.
-    Lighting(const show::Site& site, const show::CueList& cues, Devices& devices, const Clock& clock, Time start, Recording* recording);
+    Lighting(const show::Site& site, const show::CueList& cues, Devices& devices, const Clock& clock, Time start,
+             Recording* recording);
 
     // DMX512 allows up to 44 full frames a second; this leaves the line some rest (ANSI E1.11).
     static constexpr double kRate = 40;

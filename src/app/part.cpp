@@ -1,13 +1,13 @@
 #include "app/part.h"
 
+#include "core/check.h"
+
 #include <sched.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
-
-#include "core/check.h"
 
 namespace fantascope::app {
 
@@ -49,7 +49,8 @@ void SteppedClock::sleepUntil(Time time) {
     FANTASCOPE_CHECK(!stepping_, "a part may not sleep on the clock that steps it");
     stepping_ = true;
     for (;;) {
-        const auto next = std::min_element(parts_.begin(), parts_.end(), [](const Scheduled& a, const Scheduled& b) { return a.due() < b.due(); });
+        const auto next = std::min_element(parts_.begin(), parts_.end(),
+                                           [](const Scheduled& a, const Scheduled& b) { return a.due() < b.due(); });
         if (next == parts_.end() || next->due() > time) break;
         const Time moment = next->due();
         manual_.advanceTo(moment);

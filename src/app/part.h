@@ -2,12 +2,12 @@
 // How the parts of a running show share time: each part is a thing to do at its next moment. In real time every part has a thread of its
 // own; on a stepped clock one thread runs all of them in the order of their moments, and the same code gives the same result every time.
 
+#include "core/clock.h"
+
 #include <functional>
 #include <string>
 #include <thread>
 #include <vector>
-
-#include "core/clock.h"
 
 namespace fantascope::app {
 
@@ -21,10 +21,10 @@ void setThreadRank(Rank rank);
 // One part of a running show that works at moments of its own: lighting ticks, camera frames, button polls.
 struct Part {
     std::string name;
-    double rate = 0;              // Hz
-    Time phase{};                 // of the first moment
+    double rate = 0;                 // Hz
+    Time phase{};                    // of the first moment
     std::function<void(Time)> work;  // handed the moment that it is for; may be called late, never early
-    Rank rank = Rank::Input;      // of its thread in real time
+    Rank rank = Rank::Input;         // of its thread in real time
 };
 
 // The parts in real time: a thread each. A part that is late does the work for the newest moment and leaves the missed ones out.

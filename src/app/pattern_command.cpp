@@ -117,7 +117,8 @@ Material materialFor(const fs::path& output, const fs::path& source, const std::
 
 Result<void> copyTo(const fs::path& folder, const Material& material) {
     if (!material.copied) return {};
-    return writeFile(folder / material.name, TRY(readFile(material.source)));
+    const std::string content = TRY(readFile(material.source));
+    return writeFile(folder / material.name, content);
 }
 
 struct Shapes {

@@ -1,6 +1,7 @@
 #include "app/programme.h"
 
 #include "app/site_models.h"
+
 #include "pattern/shape_pattern.h"
 
 #include "core/image.h"
@@ -30,19 +31,22 @@ Result<Pictures> readPictures(const show::Show& show) {
         }
         const fs::path& file = std::get<show::PatternSource>(source.picture).file;
         auto pattern = std::make_shared<const pattern::ShapePattern>(TRY(pattern::readPattern(file)));
-        pictures.guides.push_back(Pictures::Guide{TRY(readGrey(pattern->guide).in(file.string() + ": guide")), pattern->aspect()});
+        pictures.guides.push_back(
+            Pictures::Guide{TRY(readGrey(pattern->guide).in(file.string() + ": guide")), pattern->aspect()});
         pictures.sources.emplace_back(render::PatternSource{pattern, std::make_shared<const pattern::PatternMotion>(*pattern)});
     }
     return pictures;
 }
 
-Result<std::vector<Watch::Comparisons>> compareWith(const std::vector<std::optional<Pictures::Guide>>& guides, const show::Site& site) {
+Result<std::vector<Watch::Comparisons>> compareWith(const std::vector<std::optional<Pictures::Guide>>& guides,
+                                                    const show::Site& site) {
     std::vector<Watch::Comparisons> comparisons(site.outputs.size());
     for (std::size_t output = 0; output < site.outputs.size(); ++output)
         for (const auto& guide : guides) {
             std::optional<vision::NominalView> view;
             if (guide) view = TRY(nominalViewOf(site, output, guide->canvasAspect));
-            comparisons[output].push_back(view ? std::make_shared<const vision::GuideComparison>(*view, guide->drawing) : nullptr);
+            comparisons[output].push_back(view ? std::make_shared<const vision::GuideComparison>(*view, guide->drawing)
+                                               : nullptr);
         }
     return comparisons;
 }

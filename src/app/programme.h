@@ -2,6 +2,7 @@
 
 #include "app/show_run.h"
 #include "app/watch.h"
+
 #include "render/picture_source.h"
 #include "show/playback.h"
 #include "show/show.h"
@@ -19,8 +20,8 @@ struct Programme {
     show::Show show;
     show::Site site;
     show::CueList cues;
-    std::optional<show::Input> firstInput;       // the cue to start from
-    std::vector<render::PictureSource> sources;  // in the order of Show::sources
+    std::optional<show::Input> firstInput;        // the cue to start from
+    std::vector<render::PictureSource> sources;   // in the order of Show::sources
     std::vector<Watch::Comparisons> comparisons;  // [output][source]
 };
 

@@ -1,11 +1,12 @@
 #include "app/recording.h"
 
+#include "app/contact_sheet.h"
+
+#include "core/file.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-
-#include "app/contact_sheet.h"
-#include "core/file.h"
 
 namespace fantascope::app {
 
@@ -26,7 +27,8 @@ std::uint64_t hashOf(const RgbaImage& picture) {
 Result<std::unique_ptr<Recording>> Recording::open(const fs::path& target, std::vector<Output> outputs) {
     std::unique_ptr<Recording> recording(new Recording(target, std::move(outputs)));
     if (target.has_extension() && !recording->sideBySide())
-        return Error(fmt::format("{}: a recording goes into a folder, or into one video file that ends in .mp4", target.string()));
+        return Error(
+            fmt::format("{}: a recording goes into a folder, or into one video file that ends in .mp4", target.string()));
     if (recording->sideBySide()) {
         glm::ivec2 size(0);
         for (const Output& output : recording->outputs_) size = {size.x + output.size.x, std::max(size.y, output.size.y)};
@@ -35,7 +37,8 @@ Result<std::unique_ptr<Recording>> Recording::open(const fs::path& target, std::
             recording->videos_.push_back({TRY(VideoWriter::open(target, size, recording->outputs_[0].frameRate))});
     } else {
         for (const Output& output : recording->outputs_)
-            recording->videos_.push_back({TRY(VideoWriter::open(target / (output.name + ".mp4"), output.size, output.frameRate))});
+            recording->videos_.push_back(
+                {TRY(VideoWriter::open(target / (output.name + ".mp4"), output.size, output.frameRate))});
     }
     return recording;
 }
@@ -44,7 +47,8 @@ Result<void> Recording::frame(std::size_t output, const RgbaImage& picture, std:
     Video& video = videos_[sideBySide() ? 0 : output];
     if (!sideBySide() && refresh <= video.lastRefresh) return {};
     if (video.firstRefresh < 0) video.firstRefresh = refresh;
-    fmt::format_to(std::back_inserter(frames_), "{},{:.6f},{},{:016x}\n", refresh, seconds(showTime), outputs_[output].name, hashOf(picture));
+    fmt::format_to(std::back_inserter(frames_), "{},{:.6f},{},{:016x}\n", refresh, seconds(showTime), outputs_[output].name,
+                   hashOf(picture));
     if (!sideBySide()) {
         video.lastRefresh = refresh;
         return video.writer->write(picture, refresh - video.firstRefresh);

@@ -1,18 +1,20 @@
 #pragma once
 
+#include "app/video_writer.h"
+
+#include "core/clock.h"
+#include "core/image.h"
+#include "core/result.h"
+
+#include <glm/vec2.hpp>
+
 #include <cstdint>
 #include <filesystem>
-#include <glm/vec2.hpp>
 #include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "app/video_writer.h"
-#include "core/clock.h"
-#include "core/image.h"
-#include "core/result.h"
 
 namespace fantascope::app {
 
@@ -48,7 +50,8 @@ private:
         std::unique_ptr<VideoWriter> writer;
         std::int64_t firstRefresh = -1, lastRefresh = -1;
     };
-    Recording(std::filesystem::path target, std::vector<Output> outputs) : target_(std::move(target)), outputs_(std::move(outputs)) {}
+    Recording(std::filesystem::path target, std::vector<Output> outputs)
+        : target_(std::move(target)), outputs_(std::move(outputs)) {}
     bool sideBySide() const { return target_.extension() == ".mp4"; }
 
     std::filesystem::path target_;

@@ -22,8 +22,10 @@ struct Options {
 
 // The line that a person watches while a show runs.
 std::string lineOf(const RunStatus& status) {
-    std::string line = fmt::format("{:6.1f} s  {:5.1f} frames/s  {} late", seconds(status.showTime), status.framesPerSecond, status.lateFrames);
-    for (const auto& [output, z] : status.zCamera) line += z < 0 ? fmt::format("  z {} -", output) : fmt::format("  z {} {:.3f}", output, z);
+    std::string line =
+        fmt::format("{:6.1f} s  {:5.1f} frames/s  {} late", seconds(status.showTime), status.framesPerSecond, status.lateFrames);
+    for (const auto& [output, z] : status.zCamera)
+        line += z < 0 ? fmt::format("  z {} -", output) : fmt::format("  z {} {:.3f}", output, z);
     return line;
 }
 
@@ -35,8 +37,11 @@ Result<void> runAndReport(const RunOptions& run, const std::filesystem::path& re
         const bool terminal = standardErrorIsTerminal();
         Progress progress(label, clock, std::cerr, terminal);
         report = TRY(runShow(run, interrupt, [&](const RunStatus& status) {
-            if (!status.said.empty()) std::cerr << (terminal ? "\r\x1b[K" : "") << fmt::format("{:6.1f} s  {}", seconds(status.showTime), status.said) << std::endl;
-            progress.update(run.length ? std::optional(seconds(status.showTime) / seconds(*run.length)) : std::nullopt, lineOf(status));
+            if (!status.said.empty())
+                std::cerr << (terminal ? "\r\x1b[K" : "") << fmt::format("{:6.1f} s  {}", seconds(status.showTime), status.said)
+                          << std::endl;
+            progress.update(run.length ? std::optional(seconds(status.showTime) / seconds(*run.length)) : std::nullopt,
+                            lineOf(status));
         }));
     }
     if (!reportFile.empty()) TRY(writeReport(reportFile, jsonOf(report)));
@@ -45,15 +50,16 @@ Result<void> runAndReport(const RunOptions& run, const std::filesystem::path& re
         frames += output.frames;
         late += output.lateFrames;
     }
-    fmt::print("{:.1f} s, {} cues entered, {} frames shown, {} late (an idle thread missed {} of {} refreshes)\n", seconds(report.length),
-               report.cues.size(), frames, late, report.yardstickLate, report.yardstickTicks);
+    fmt::print("{:.1f} s, {} cues entered, {} frames shown, {} late (an idle thread missed {} of {} refreshes)\n",
+               seconds(report.length), report.cues.size(), frames, late, report.yardstickLate, report.yardstickTicks);
     return {};
 }
 
 void declareCommon(CLI::App& command, Options& options) {
     command.add_option("--seconds", options.length, "end after this much show time")->check(CLI::Range(0.1, 1e6));
     command.add_option("--from", options.fromCue, "enter this cue at once, by its name");
-    command.add_option("--record", options.record, "leave videos, traces and a contact sheet in this folder, or one video in FILE.mp4");
+    command.add_option("--record", options.record,
+                       "leave videos, traces and a contact sheet in this folder, or one video in FILE.mp4");
     command.add_option("--report", options.report, "write the run's figures to this JSON file (docs/report.md)");
 }
 

@@ -4,7 +4,10 @@ namespace fantascope::app {
 namespace {
 
 Report jsonOf(const Durations& durations) {
-    return {{"count", durations.count()}, {"p50", durations.quantileMs(0.5)}, {"p99", durations.quantileMs(0.99)}, {"max", durations.maxMs()}};
+    return {{"count", durations.count()},
+            {"p50", durations.quantileMs(0.5)},
+            {"p99", durations.quantileMs(0.99)},
+            {"max", durations.maxMs()}};
 }
 
 }  // namespace

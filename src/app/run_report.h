@@ -37,7 +37,8 @@ struct RunReport {
     std::vector<OutputReport> outputs;
     Durations inputToFrame;  // from a button's arrival to the first refresh that shows its effect
     Durations dmxInterval;   // between the lamps' frames
-    std::int64_t yardstickTicks = 0, yardstickLate = 0;  // an empty thread at the first output's rate: what the machine itself misses
+    std::int64_t yardstickTicks = 0,
+                 yardstickLate = 0;  // an empty thread at the first output's rate: what the machine itself misses
     std::vector<CueReport> cues;
     std::vector<FaultReport> faults;
     std::map<std::string, std::vector<std::pair<Time, double>>> zCamera;  // per output

@@ -56,7 +56,8 @@ struct Surrounding {
         const bool simulated = options.backends != Backends::AsDeclared;
         if (simulated) {
             if (!site.simulation)
-                return Error(fmt::format("{}: has no 'simulation' section, so it cannot be rehearsed; see docs/site-format.md", site.file.string()));
+                return Error(fmt::format("{}: has no 'simulation' section, so it cannot be rehearsed; see docs/site-format.md",
+                                         site.file.string()));
             surrounding->simulation =
                 TRY(site::SimulatedSite::open(*site.simulation, TRY(simulationOf(site)), options.seed, surrounding->world));
         }
@@ -70,9 +71,14 @@ struct Surrounding {
 class ShowRun {
 public:
     ShowRun(const RunOptions& options, const Programme& programme, Surrounding& surrounding, Recording* recording, Clock& clock)
-        : options_(options), programme_(programme), surrounding_(surrounding), recording_(recording), clock_(clock),
+        : options_(options),
+          programme_(programme),
+          surrounding_(surrounding),
+          recording_(recording),
+          clock_(clock),
           frames_(programme.site, programme.cues, programme.sources, dataFolder() / "assets", surrounding.devices, clock),
-          prepared_(frames_.prepare()), start_(clock.now()),
+          prepared_(frames_.prepare()),
+          start_(clock.now()),
           lighting_(programme.site, programme.cues, surrounding.devices, clock, start_, recording),
           hand_(programme.show, programme.cues, programme.site, surrounding.devices.cueController.get(), start_),
           watch_(programme.show, outputNames(), programme.comparisons, surrounding.devices.camera.get(), start_, recording),
@@ -93,7 +99,8 @@ public:
         if (surrounding_.simulation) parts.push_back(simulatedSite());
         parts.push_back({"watch", Watch::kRate, start_, [this](Time moment) { watch_.tick(moment); }, Rank::Watch});
         if (recording_ != nullptr) parts.push_back(recorder());
-        parts.push_back({"progress", kProgressRate, start_, [this, progress](Time moment) { progress(statusAt(moment)); }, Rank::Input});
+        parts.push_back(
+            {"progress", kProgressRate, start_, [this, progress](Time moment) { progress(statusAt(moment)); }, Rank::Input});
         if (!options_.asFastAsPossible) {
             keys_.emplace();
             parts.push_back(yardstick());
@@ -127,7 +134,8 @@ public:
         report.cues = hand_.cues();
         report.zCamera = watch_.series();
         if (surrounding_.simulation)
-            for (const site::Happening& happening : surrounding_.simulation->happenings()) report.faults.push_back({happening.at, happening.text});
+            for (const site::Happening& happening : surrounding_.simulation->happenings())
+                report.faults.push_back({happening.at, happening.text});
         return report;
     }
 
@@ -158,7 +166,8 @@ private:
     // The terminal's keys act as a hand controller; whoever presses one has taken over from the schedule.
     void pressKey(char key, Time moment) {
         if (key == 'q') quit_ = true;
-        for (const auto& [name, kind] : {std::pair{' ', show::Input::Kind::Go}, {'b', show::Input::Kind::Back}, {'0', show::Input::Kind::Blackout}}) {
+        for (const auto& [name, kind] :
+             {std::pair{' ', show::Input::Kind::Go}, {'b', show::Input::Kind::Back}, {'0', show::Input::Kind::Blackout}}) {
             if (key != name) continue;
             if (!schedule_.ended()) news_.add("you have the controller");
             schedule_.end();
@@ -168,7 +177,8 @@ private:
     // A press of the simulated hand, through its device; straight to the show where the site has no controller.
     void pressGo(Time moment) {
         const auto& buttons = programme_.site.buttons;
-        const auto go = std::find_if(buttons.begin(), buttons.end(), [](const auto& button) { return button.second == show::Button::Go; });
+        const auto go =
+            std::find_if(buttons.begin(), buttons.end(), [](const auto& button) { return button.second == show::Button::Go; });
         if (surrounding_.simulation && surrounding_.devices.cueController && go != buttons.end())
             for (const bool pressed : {true, false}) surrounding_.world.press(go->first, pressed);
         else
@@ -178,33 +188,40 @@ private:
     // What the displays show is what the simulated projectors throw, whatever display it is.
     Part simulatedSite() {
         surrounding_.simulation->begin(start_);
-        return {"site", kSiteRate, start_, [this, readers = tapEveryOutput()](Time moment) {
+        return {"site", kSiteRate, start_,
+                [this, readers = tapEveryOutput()](Time moment) {
                     for (render::FrameReader* reader : readers)
                         while (const render::ShownFrame* frame = reader->next(moment)) {
                             const std::string& output = programme_.site.outputs[frame->output].name;
                             surrounding_.world.setFrame(output, std::make_shared<const RgbaImage>(frame->image));
                         }
                     surrounding_.simulation->advanceTo(moment);
-                }, Rank::Watch};
+                },
+                Rank::Watch};
     }
 
     Part recorder() {
         // Half a refresh after the frames became visible.
-        return {"recording", frameRate(), start_ + tickTime(1, 2 * frameRate()), [this, readers = tapEveryOutput()](Time moment) {
+        return {"recording", frameRate(), start_ + tickTime(1, 2 * frameRate()),
+                [this, readers = tapEveryOutput()](Time moment) {
                     for (render::FrameReader* reader : readers)
                         while (const render::ShownFrame* frame = reader->next(moment))
-                            if (recorded_) recorded_ = recording_->frame(frame->output, frame->image, frame->shown.refresh, frame->showTime);
-                }, Rank::Watch};
+                            if (recorded_)
+                                recorded_ = recording_->frame(frame->output, frame->image, frame->shown.refresh, frame->showTime);
+                },
+                Rank::Watch};
     }
 
     // What the machine itself misses: a thread of the render thread's rank that does nothing, at the leading output's rate.
     Part yardstick() {
-        return {"yardstick", frameRate(), start_, [this, last = std::int64_t{-1}](Time moment) mutable {
+        return {"yardstick", frameRate(), start_,
+                [this, last = std::int64_t{-1}](Time moment) mutable {
                     const std::int64_t tick = tickAt(moment - start_, frameRate());
                     yardstickLate_ += tick - last - 1;
                     ++yardstickTicks_;
                     last = tick;
-                }, Rank::Render};
+                },
+                Rank::Render};
     }
 
     RunStatus statusAt(Time moment) {
@@ -215,7 +232,8 @@ private:
         status.framesPerSecond = static_cast<double>(shown - std::exchange(framesBefore_, shown)) * kProgressRate;
         status.lateFrames = frames_.framesLate();
         const auto scores = watch_.newestScores();
-        for (std::size_t output = 0; output < scores.size(); ++output) status.zCamera.emplace_back(programme_.site.outputs[output].name, scores[output]);
+        for (std::size_t output = 0; output < scores.size(); ++output)
+            status.zCamera.emplace_back(programme_.site.outputs[output].name, scores[output]);
         return status;
     }
 
@@ -241,7 +259,8 @@ private:
 
 }  // namespace
 
-Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt, const std::function<void(const RunStatus&)>& progress) {
+Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
+                          const std::function<void(const RunStatus&)>& progress) {
     FANTASCOPE_CHECK(options.length || !options.asFastAsPossible, "as fast as possible needs an end");
     const Programme programme = TRY(readProgramme(options));
 
@@ -253,7 +272,8 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
     std::unique_ptr<Recording> recording;
     if (!options.recordTo.empty()) {
         std::vector<Recording::Output> outputs;
-        for (const show::Output& output : programme.site.outputs) outputs.push_back({output.name, output.size, output.refreshRate});
+        for (const show::Output& output : programme.site.outputs)
+            outputs.push_back({output.name, output.size, output.refreshRate});
         recording = TRY(Recording::open(options.recordTo, std::move(outputs)));
     }
 

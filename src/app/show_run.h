@@ -18,8 +18,8 @@ struct RunOptions {
     std::filesystem::path show;  // a folder or a show.yaml
     std::filesystem::path site;  // a folder or a site.yaml
     Backends backends = Backends::AsDeclared;
-    std::optional<Time> length;  // until interrupted where there is none
-    std::string fromCue;         // enter this cue at once; empty: wait for the first GO in the dark
+    std::optional<Time> length;      // until interrupted where there is none
+    std::string fromCue;             // enter this cue at once; empty: wait for the first GO in the dark
     std::filesystem::path recordTo;  // nowhere if empty; see Recording
     bool asFastAsPossible = false;   // on a stepped clock: the same bytes every time. Needs a length
     bool handsOff = false;           // the simulated controller presses GO by itself, evenly over the length
@@ -29,16 +29,17 @@ struct RunOptions {
 // What is worth a progress line, about every half second.
 struct RunStatus {
     Time showTime{};
-    std::string cue;          // "3 of 6: Both"
+    std::string cue;  // "3 of 6: Both"
     double framesPerSecond = 0;
     std::int64_t lateFrames = 0;
     std::vector<std::pair<std::string, double>> zCamera;  // the newest of each output; negative: none yet
-    std::string said;         // news for the operator since the last status
+    std::string said;                                     // news for the operator since the last status
 };
 
 // Runs a show from its files to its report: opens the site's devices, or the simulated site and its devices, gives every part its thread (or
 // the stepped clock its parts), and draws on the calling thread, which is the render thread, until the length is over or `interrupt` is
 // requested. Error: a file or a driver refuses; nothing has been shown then. A device that is lost while it runs is no error.
-Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt, const std::function<void(const RunStatus&)>& progress);
+Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
+                          const std::function<void(const RunStatus&)>& progress);
 
 }  // namespace fantascope::app

@@ -6,12 +6,14 @@ namespace fantascope::app {
 namespace {
 
 vision::CameraModel projectorOf(const show::Output& output) {
-    return vision::CameraModel::fromThrowRatio(output.projector->pose, output.size, output.projector->throwRatio, output.projector->lensShift);
+    return vision::CameraModel::fromThrowRatio(output.projector->pose, output.size, output.projector->throwRatio,
+                                               output.projector->lensShift);
 }
 
 Result<vision::CameraModel> cameraOf(const show::Site& site) {
     const show::NominalCamera& camera = *site.nominalCamera;
-    return vision::CameraModel::fromFieldOfView(camera.pose, camera.size, camera.fieldOfView, camera.k1, camera.k2).in(site.file.string() + ": camera");
+    return vision::CameraModel::fromFieldOfView(camera.pose, camera.size, camera.fieldOfView, camera.k1, camera.k2)
+        .in(site.file.string() + ": camera");
 }
 
 }  // namespace
@@ -20,13 +22,15 @@ Result<site::NominalSite> simulationOf(const show::Site& site) {
     site::NominalSite nominal;
     for (const show::Output& output : site.outputs) {
         if (!output.projector)
-            return Error(fmt::format("{}: output '{}' has no 'projector': the simulated site must know where it stands; add its position, "
-                                     "look_at and throw_ratio",
-                                     site.file.string(), output.name));
+            return Error(
+                fmt::format("{}: output '{}' has no 'projector': the simulated site must know where it stands; add its position, "
+                            "look_at and throw_ratio",
+                            site.file.string(), output.name));
         nominal.outputs.push_back({output.name, projectorOf(output)});
         nominal.devices.push_back(output.name);
     }
-    for (const show::Fixture& fixture : site.fixtures) nominal.fixtures.push_back({fixture.name, fixture.universe, fixture.address, fixture.channels});
+    for (const show::Fixture& fixture : site.fixtures)
+        nominal.fixtures.push_back({fixture.name, fixture.universe, fixture.address, fixture.channels});
     for (const show::Relay& relay : site.relays) nominal.relays.push_back({relay.name, static_cast<std::size_t>(relay.coil)});
     for (const show::Universe& universe : site.universes) nominal.devices.push_back(fmt::format("universe {}", universe.number));
     if (site.relayBank) nominal.devices.emplace_back("relay bank");

@@ -2,6 +2,7 @@
 // The site file's numbers as the models of those who see: the simulated site, and the comparison with the guide.
 
 #include "drivers/site/simulated_site.h"
+
 #include "show/site.h"
 #include "vision/guide_comparison.h"
 

@@ -1,10 +1,10 @@
 #include "app/video_writer.h"
 
+#include "core/check.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
-
-#include "core/check.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -50,7 +50,9 @@ struct VideoWriter::Impl {
         fs::remove(aside, ignored);  // renamed already if finish() succeeded
     }
 
-    Error error(std::string_view what, int code) const { return Error(fmt::format("{}: {}: {}", file.string(), what, reason(code))); }
+    Error error(std::string_view what, int code) const {
+        return Error(fmt::format("{}: {}: {}", file.string(), what, reason(code)));
+    }
 
     // Hands the encoder a picture, or nullptr at the end, and writes what it gives back.
     Result<void> encode(const AVFrame* picture) {
@@ -80,8 +82,10 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, glm
     if (file.has_parent_path()) fs::create_directories(file.parent_path(), failure);
 
     const AVCodec* codec = avcodec_find_encoder_by_name("libx264");
-    if (codec == nullptr) return Error(fmt::format("{}: no H.264 encoder here; install Debian's libavcodec with libx264", file.string()));
-    if (const int code = avformat_alloc_output_context2(&impl->container, nullptr, "mp4", nullptr); code < 0) return impl->error("no MP4 container", code);
+    if (codec == nullptr)
+        return Error(fmt::format("{}: no H.264 encoder here; install Debian's libavcodec with libx264", file.string()));
+    if (const int code = avformat_alloc_output_context2(&impl->container, nullptr, "mp4", nullptr); code < 0)
+        return impl->error("no MP4 container", code);
     impl->container->flags |= AVFMT_FLAG_BITEXACT;
     impl->encoder = avcodec_alloc_context3(codec);
     AVCodecContext& encoder = *impl->encoder;
@@ -95,12 +99,14 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, glm
     // A rehearsal must not slow the show that it records: the quickest preset that still holds fine light on black.
     av_opt_set(encoder.priv_data, "preset", "ultrafast", 0);
     av_opt_set(encoder.priv_data, "crf", "20", 0);
-    if (const int code = avcodec_open2(&encoder, codec, nullptr); code < 0) return impl->error("the encoder refuses this size or rate", code);
+    if (const int code = avcodec_open2(&encoder, codec, nullptr); code < 0)
+        return impl->error("the encoder refuses this size or rate", code);
 
     impl->stream = avformat_new_stream(impl->container, nullptr);
     impl->stream->time_base = encoder.time_base;
     avcodec_parameters_from_context(impl->stream->codecpar, &encoder);
-    if (const int code = avio_open(&impl->container->pb, impl->aside.c_str(), AVIO_FLAG_WRITE); code < 0) return impl->error("cannot be written", code);
+    if (const int code = avio_open(&impl->container->pb, impl->aside.c_str(), AVIO_FLAG_WRITE); code < 0)
+        return impl->error("cannot be written", code);
     if (const int code = avformat_write_header(impl->container, nullptr); code < 0) return impl->error("cannot be written", code);
 
     impl->packet = av_packet_alloc();
@@ -109,13 +115,14 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, glm
     impl->frame->width = encoder.width;
     impl->frame->height = encoder.height;
     if (const int code = av_frame_get_buffer(impl->frame, 0); code < 0) return impl->error("no memory for a frame", code);
-    impl->yuvFromRgba = sws_getContext(encoder.width, encoder.height, AV_PIX_FMT_RGBA, encoder.width, encoder.height, encoder.pix_fmt, SWS_BILINEAR,
-                                       nullptr, nullptr, nullptr);
+    impl->yuvFromRgba = sws_getContext(encoder.width, encoder.height, AV_PIX_FMT_RGBA, encoder.width, encoder.height,
+                                       encoder.pix_fmt, SWS_BILINEAR, nullptr, nullptr, nullptr);
     return std::unique_ptr<VideoWriter>(new VideoWriter(std::move(impl)));
 }
 
 Result<void> VideoWriter::write(const RgbaImage& picture, std::int64_t number) {
-    FANTASCOPE_CHECK(picture.width() == impl_->pictureSize.x && picture.height() == impl_->pictureSize.y, "a picture of another size");
+    FANTASCOPE_CHECK(picture.width() == impl_->pictureSize.x && picture.height() == impl_->pictureSize.y,
+                     "a picture of another size");
     if (const int code = av_frame_make_writable(impl_->frame); code < 0) return impl_->error("no memory for a frame", code);
     const auto* rows = reinterpret_cast<const std::uint8_t*>(picture.pixels().data());
     const int stride = picture.width() * 4;
@@ -130,7 +137,9 @@ Result<void> VideoWriter::finish() {
     avio_closep(&impl_->container->pb);
     std::error_code failure;
     fs::rename(impl_->aside, impl_->file, failure);
-    if (failure) return Error(fmt::format("{}: cannot be renamed from {}: {}", impl_->file.string(), impl_->aside.string(), failure.message()));
+    if (failure)
+        return Error(
+            fmt::format("{}: cannot be renamed from {}: {}", impl_->file.string(), impl_->aside.string(), failure.message()));
     return {};
 }
 

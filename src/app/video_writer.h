@@ -1,11 +1,12 @@
 #pragma once
 
-#include <filesystem>
-#include <glm/vec2.hpp>
-#include <memory>
-
 #include "core/image.h"
 #include "core/result.h"
+
+#include <glm/vec2.hpp>
+
+#include <filesystem>
+#include <memory>
 
 namespace fantascope::app {
 

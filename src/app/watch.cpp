@@ -6,9 +6,14 @@
 
 namespace fantascope::app {
 
-Watch::Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera, Time start,
-             Recording* recording)
-    : show_(show), outputs_(std::move(outputs)), comparisons_(std::move(comparisons)), camera_(camera), start_(start), recording_(recording),
+Watch::Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
+             Time start, Recording* recording)
+    : show_(show),
+      outputs_(std::move(outputs)),
+      comparisons_(std::move(comparisons)),
+      camera_(camera),
+      start_(start),
+      recording_(recording),
       scores_(outputs_.size()) {
     for (std::atomic<double>& score : scores_) score = -1;
     for (const std::string& output : outputs_) series_[output];

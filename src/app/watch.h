@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/recording.h"
+
 #include "show/show.h"
 #include "vision/guide_comparison.h"
 
@@ -24,8 +25,8 @@ public:
     using Comparisons = std::vector<std::shared_ptr<const vision::GuideComparison>>;
 
     // All outlive it; `camera` and `recording` may be null. `comparisons[output][source]`. Show time 0 is `start` on the clock.
-    Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera, Time start,
-          Recording* recording);
+    Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
+          Time start, Recording* recording);
 
     // How often the camera is asked for a new frame.
     static constexpr double kRate = 50;

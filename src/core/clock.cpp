@@ -12,7 +12,8 @@ Time tickTime(std::int64_t index, double hertz) {
 }
 
 std::int64_t tickAt(Time time, double hertz) {
-    auto index = static_cast<std::int64_t>(std::floor(static_cast<long double>(time.count()) * static_cast<long double>(hertz) / 1e9L));
+    auto index =
+        static_cast<std::int64_t>(std::floor(static_cast<long double>(time.count()) * static_cast<long double>(hertz) / 1e9L));
     while (tickTime(index, hertz) > time) --index;
     while (tickTime(index + 1, hertz) <= time) ++index;
     return index;

@@ -1,5 +1,9 @@
 #include "core/config.h"
 
+#include "core/clock.h"
+#include "core/file.h"
+#include "core/geometry.h"
+
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
@@ -9,10 +13,6 @@
 #include <numbers>
 #include <set>
 #include <tuple>
-
-#include "core/clock.h"
-#include "core/file.h"
-#include "core/geometry.h"
 
 namespace fantascope {
 
@@ -26,7 +26,9 @@ struct ConfigNode::Impl {
     ConfigNode child(const YAML::Node& value, std::string childPath) const {
         return ConfigNode(std::make_shared<Impl>(Impl{file, value, std::move(childPath)}));
     }
-    std::string childPath(std::string_view key) const { return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key); }
+    std::string childPath(std::string_view key) const {
+        return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+    }
     // What stands in the file, for a message.
     std::string seen() const {
         if (node.IsScalar()) return fmt::format("'{}'", node.Scalar());
@@ -58,10 +60,12 @@ Result<ConfigNode> ConfigNode::load(const fs::path& path) { return parse(TRY(rea
 Result<ConfigNode> ConfigNode::parse(const std::string& text, const fs::path& name) {
     try {
         auto impl = std::make_shared<Impl>(Impl{std::make_shared<const fs::path>(name), YAML::Load(text), ""});
-        if (!impl->node.IsMap()) return Error(fmt::format("{}:1:1: a map of 'key: value' lines is needed, here is {}", name.string(), impl->seen()));
+        if (!impl->node.IsMap())
+            return Error(fmt::format("{}:1:1: a map of 'key: value' lines is needed, here is {}", name.string(), impl->seen()));
         return ConfigNode(std::move(impl));
     } catch (const YAML::ParserException& problem) {
-        return Error(fmt::format("{}:{}:{}: not YAML: {}", name.string(), problem.mark.line + 1, problem.mark.column + 1, problem.msg));
+        return Error(
+            fmt::format("{}:{}:{}: not YAML: {}", name.string(), problem.mark.line + 1, problem.mark.column + 1, problem.msg));
     }
 }
 
@@ -83,7 +87,8 @@ Result<double> ConfigNode::number(double low, double high, std::string_view unit
     double value = 0;
     if (!impl_->node.IsScalar() || !parseNumber(impl_->node.Scalar(), value) || !std::isfinite(value))
         return error(fmt::format("a number in {} is needed, here is {}", range(low, high, unit), impl_->seen()));
-    if (value < low || value > high) return error(fmt::format("{} is out of range, {} is allowed", impl_->node.Scalar(), range(low, high, unit)));
+    if (value < low || value > high)
+        return error(fmt::format("{} is out of range, {} is allowed", impl_->node.Scalar(), range(low, high, unit)));
     return value;
 }
 
@@ -102,7 +107,8 @@ Result<bool> ConfigNode::boolean() const {
 }
 
 Result<std::string> ConfigNode::text() const {
-    if (!impl_->node.IsScalar() || impl_->node.Scalar().empty()) return error(fmt::format("a text is needed, here is {}", impl_->seen()));
+    if (!impl_->node.IsScalar() || impl_->node.Scalar().empty())
+        return error(fmt::format("a text is needed, here is {}", impl_->seen()));
     return impl_->node.Scalar();
 }
 
@@ -115,16 +121,19 @@ Result<std::size_t> ConfigNode::choice(const std::vector<std::string>& names) co
     const auto found = std::find(names.begin(), names.end(), word);
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
     const std::string nearest = nearestName(word, names);
-    return error(fmt::format("one of {} is needed, here is {}{}", names.empty() ? "nothing (none is declared)" : fmt::format("{}", fmt::join(names, ", ")),
+    return error(fmt::format("one of {} is needed, here is {}{}",
+                             names.empty() ? "nothing (none is declared)" : fmt::format("{}", fmt::join(names, ", ")),
                              impl_->seen(), nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest)));
 }
 
 Result<fs::path> ConfigNode::path() const {
     const fs::path given = TRY(text());
     if (given.is_absolute())
-        return error(fmt::format("'{}' is absolute; name it relative to this file's folder, so that the whole folder can move", given.string()));
+        return error(fmt::format("'{}' is absolute; name it relative to this file's folder, so that the whole folder can move",
+                                 given.string()));
     const fs::path normal = given.lexically_normal();
-    if (*normal.begin() == "..") return error(fmt::format("'{}' leaves this file's folder; copy the file into it", given.string()));
+    if (*normal.begin() == "..")
+        return error(fmt::format("'{}' leaves this file's folder; copy the file into it", given.string()));
     return impl_->file->parent_path() / normal;
 }
 
@@ -135,14 +144,15 @@ Result<glm::dvec2> ConfigNode::vector2(double low, double high, std::string_view
 
 Result<glm::dvec3> ConfigNode::vector3(double low, double high, std::string_view unit) const {
     const auto parts = TRY(items(3, 3));
-    return glm::dvec3(TRY(parts[0].number(low, high, unit)), TRY(parts[1].number(low, high, unit)), TRY(parts[2].number(low, high, unit)));
+    return glm::dvec3(TRY(parts[0].number(low, high, unit)), TRY(parts[1].number(low, high, unit)),
+                      TRY(parts[2].number(low, high, unit)));
 }
 
 Result<std::vector<ConfigNode>> ConfigNode::items(std::size_t least, std::size_t most) const {
     if (!isList()) return error(fmt::format("a list is needed, here is {}", impl_->seen()));
     const std::size_t count = impl_->node.size();
     if (count < least || count > most) {
-        const std::string wanted = least == most                                            ? fmt::format("exactly {}", least)
+        const std::string wanted = least == most                                     ? fmt::format("exactly {}", least)
                                    : most == std::numeric_limits<std::size_t>::max() ? fmt::format("at least {}", least)
                                                                                      : fmt::format("{} to {}", least, most);
         return error(fmt::format("a list of {} items is needed, here are {}", wanted, count));
@@ -168,7 +178,8 @@ Result<std::vector<std::pair<std::string, ConfigNode>>> ConfigNode::entries() co
 }
 
 ConfigFields::ConfigFields(ConfigNode node) : node_(std::move(node)) {
-    if (!node_.isMap()) fail({0, 0}, node_.error(fmt::format("a map of 'key: value' lines is needed, here is {}", node_.impl_->seen())));
+    if (!node_.isMap())
+        fail({0, 0}, node_.error(fmt::format("a map of 'key: value' lines is needed, here is {}", node_.impl_->seen())));
 }
 
 void ConfigFields::fail(std::pair<int, int> place, Error error) { failures_.emplace_back(place, std::move(error)); }
@@ -191,9 +202,8 @@ void ConfigFields::number(std::string_view key, double& target, double low, doub
 }
 
 void ConfigFields::angle(std::string_view key, double& target, double lowDegrees, double highDegrees) {
-    read(key, target, [&](const ConfigNode& node) -> Result<double> {
-        return radians(TRY(node.number(lowDegrees, highDegrees, "degrees")));
-    });
+    read(key, target,
+         [&](const ConfigNode& node) -> Result<double> { return radians(TRY(node.number(lowDegrees, highDegrees, "degrees"))); });
 }
 
 void ConfigFields::time(std::string_view key, std::chrono::nanoseconds& target, double lowSeconds, double highSeconds) {
@@ -231,7 +241,8 @@ void ConfigFields::header(std::string_view kind, std::int64_t newestVersion) {
     visit("version", [&](const ConfigNode& node) -> Result<void> {
         const std::int64_t version = TRY(node.integer(1, std::numeric_limits<std::int64_t>::max()));
         if (version > newestVersion)
-            return node.error(fmt::format("version {} was written by a newer program, this one reads up to {}; update it", version, newestVersion));
+            return node.error(fmt::format("version {} was written by a newer program, this one reads up to {}; update it",
+                                          version, newestVersion));
         return {};
     });
 }
@@ -245,15 +256,16 @@ Result<void> ConfigFields::finish() {
             const auto place = lineAndColumn(entry.first.Mark());
             if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
                 const std::string nearest = nearestName(key, known_);
-                const std::string advice =
-                    nearest.empty() ? fmt::format("known here: {}", fmt::join(known_, ", ")) : fmt::format("did you mean '{}'?", nearest);
+                const std::string advice = nearest.empty() ? fmt::format("known here: {}", fmt::join(known_, ", "))
+                                                           : fmt::format("did you mean '{}'?", nearest);
                 fail(place, at.error(fmt::format("unknown key ({})", advice)));
             } else if (!seen.insert(key).second) {
                 fail(place, at.error("this key is given twice"));
             }
         }
     }
-    const auto first = std::min_element(failures_.begin(), failures_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    const auto first =
+        std::min_element(failures_.begin(), failures_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     if (first != failures_.end()) return first->second;
     return {};
 }

@@ -3,12 +3,15 @@
 // with file, line, column, the key's path and advice:
 //   config/courtyard.yaml:14:7: outputs[1].keystome: unknown key (did you mean 'keystone'?)
 
+#include "core/result.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
 #include <initializer_list>
 #include <limits>
 #include <memory>
@@ -16,8 +19,6 @@
 #include <string_view>
 #include <utility>
 #include <vector>
-
-#include "core/result.h"
 
 namespace fantascope {
 
@@ -31,23 +32,24 @@ public:
     static Result<ConfigNode> parse(const std::string& text, const std::filesystem::path& name);
 
     const std::filesystem::path& file() const;
-    std::string place() const;                     // "file:line:column"
-    Error error(const std::string& message) const; // "file:line:column: path.to.key: message"
+    std::string place() const;                      // "file:line:column"
+    Error error(const std::string& message) const;  // "file:line:column: path.to.key: message"
     bool isMap() const;
     bool isList() const;
 
     // The node itself as a value. Errors name place, path, what stands there and what is wanted.
     Result<double> number(double low, double high, std::string_view unit = "") const;  // finite, low <= value <= high
     Result<std::int64_t> integer(std::int64_t low, std::int64_t high) const;
-    Result<bool> boolean() const;                                                       // true or false
-    Result<std::string> text() const;                                                   // not empty
-    Result<std::size_t> choice(std::initializer_list<std::string_view> names) const;    // the index of the name that stands here
+    Result<bool> boolean() const;                                                     // true or false
+    Result<std::string> text() const;                                                 // not empty
+    Result<std::size_t> choice(std::initializer_list<std::string_view> names) const;  // the index of the name that stands here
     Result<std::size_t> choice(const std::vector<std::string>& names) const;
     // A path relative to the file's folder, returned joined to it. Error: absolute, or it leaves the folder by "..".
     Result<std::filesystem::path> path() const;
     Result<glm::dvec2> vector2(double low, double high, std::string_view unit = "") const;  // [x, y], each in the range
     Result<glm::dvec3> vector3(double low, double high, std::string_view unit = "") const;
-    Result<std::vector<ConfigNode>> items(std::size_t least = 0, std::size_t most = std::numeric_limits<std::size_t>::max()) const;
+    Result<std::vector<ConfigNode>> items(std::size_t least = 0,
+                                          std::size_t most = std::numeric_limits<std::size_t>::max()) const;
     // The entries of a map whose keys are names chosen by the file's author, in the file's order; a name given twice is refused.
     Result<std::vector<std::pair<std::string, ConfigNode>>> entries() const;
 
@@ -74,11 +76,13 @@ public:
         return *this;
     }
     void number(std::string_view key, double& target, double low, double high, std::string_view unit = "");
-    void angle(std::string_view key, double& target, double lowDegrees, double highDegrees);  // degrees in the file, radians in the target
+    void angle(std::string_view key, double& target, double lowDegrees,
+               double highDegrees);  // degrees in the file, radians in the target
     void time(std::string_view key, std::chrono::nanoseconds& target, double lowSeconds, double highSeconds);
     template <class Integer>
     void integer(std::string_view key, Integer& target, std::int64_t low, std::int64_t high) {
-        read(key, target, [&](const ConfigNode& node) -> Result<Integer> { return static_cast<Integer>(TRY(node.integer(low, high))); });
+        read(key, target,
+             [&](const ConfigNode& node) -> Result<Integer> { return static_cast<Integer>(TRY(node.integer(low, high))); });
     }
     void boolean(std::string_view key, bool& target);
     void text(std::string_view key, std::string& target);

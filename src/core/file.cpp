@@ -25,7 +25,9 @@ Result<std::string> readFile(const fs::path& path) {
 }
 
 Result<void> writeFile(const fs::path& path, std::string_view bytes) {
-    const auto refused = [&](int reason) { return Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(reason))); };
+    const auto refused = [&](int reason) {
+        return Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(reason)));
+    };
     std::error_code failure;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
     if (failure) return refused(failure.value());

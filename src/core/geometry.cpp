@@ -1,15 +1,17 @@
 #include "core/geometry.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/LU>
-#include <cmath>
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include <cmath>
+
 namespace fantascope {
 
-std::array<glm::dvec2, 4> rectangleCorners(double width, double height) { return {{{0, 0}, {width, 0}, {width, height}, {0, height}}}; }
+std::array<glm::dvec2, 4> rectangleCorners(double width, double height) {
+    return {{{0, 0}, {width, 0}, {width, height}, {0, height}}};
+}
 
 std::optional<std::string> whyNotConvex(const std::array<glm::dvec2, 4>& corners) {
     double extent = 0;
@@ -23,10 +25,12 @@ std::optional<std::string> whyNotConvex(const std::array<glm::dvec2, 4>& corners
     for (std::size_t i = 0; i < 4; ++i) {
         const glm::dvec2 in = corners[(i + 1) % 4] - corners[i], out = corners[(i + 2) % 4] - corners[(i + 1) % 4];
         const double turn = (in.x * out.y - in.y * out.x) / (extent * extent);
-        if (std::abs(turn) < 1e-9) return fmt::format("corners {}, {} and {} lie in a line", i + 1, (i + 1) % 4 + 1, (i + 2) % 4 + 1);
+        if (std::abs(turn) < 1e-9)
+            return fmt::format("corners {}, {} and {} lie in a line", i + 1, (i + 1) % 4 + 1, (i + 2) % 4 + 1);
         ++(turn > 0 ? right : left);
     }
-    if (left != 0 && right != 0) return "the corners are crossed or folded inwards; go round from the top left: top-right, bottom-right, bottom-left";
+    if (left != 0 && right != 0)
+        return "the corners are crossed or folded inwards; go round from the top left: top-right, bottom-right, bottom-left";
     return std::nullopt;
 }
 
@@ -61,15 +65,16 @@ glm::dvec2 Homography::operator()(glm::dvec2 point) const {
 Homography Homography::inverse() const { return Homography(glm::inverse(matrix_)); }
 
 glm::dmat3 rotationXyz(glm::dvec3 angles) {
-    const double cx = std::cos(angles.x), sx = std::sin(angles.x), cy = std::cos(angles.y), sy = std::sin(angles.y), cz = std::cos(angles.z),
-                 sz = std::sin(angles.z);
-    return glm::dmat3(cy * cz, cy * sz, -sy,                                  //
+    const double cx = std::cos(angles.x), sx = std::sin(angles.x), cy = std::cos(angles.y), sy = std::sin(angles.y),
+                 cz = std::cos(angles.z), sz = std::sin(angles.z);
+    return glm::dmat3(cy * cz, cy * sz, -sy,                                    //
                       sx * sy * cz - cx * sz, sx * sy * sz + cx * cz, sx * cy,  //
                       cx * sy * cz + sx * sz, cx * sy * sz - sx * cz, cx * cy);
 }
 
 Result<Pose> Pose::lookingAt(glm::dvec3 position, glm::dvec3 target, glm::dvec3 up) {
-    if (glm::length(target - position) < 1e-9) return Error("looks at the point where it stands; move the target or the position");
+    if (glm::length(target - position) < 1e-9)
+        return Error("looks at the point where it stands; move the target or the position");
     const glm::dvec3 forward = glm::normalize(target - position);
     const glm::dvec3 right = glm::cross(forward, up);
     if (!(glm::length(right) > 1e-9 * glm::length(up)))

@@ -1,14 +1,15 @@
 #pragma once
 
-#include <array>
+#include "core/result.h"
+
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+
+#include <array>
 #include <numbers>
 #include <optional>
 #include <string>
-
-#include "core/result.h"
 
 namespace fantascope {
 
@@ -27,7 +28,9 @@ public:
 
     glm::dvec2 operator()(glm::dvec2 point) const;
     Homography inverse() const;
-    Homography operator*(const Homography& first) const { return Homography(matrix_ * first.matrix_); }  // `first` is applied first
+    Homography operator*(const Homography& first) const {
+        return Homography(matrix_ * first.matrix_);
+    }                                                     // `first` is applied first
     const glm::dmat3& matrix() const { return matrix_; }  // column vectors: (x, y, w) = matrix * (x, y, 1)
 
 private:

@@ -1,14 +1,14 @@
 #include "core/image.h"
 
-#include <fmt/format.h>
+#include "core/file.h"
 
-#include <algorithm>
-#include <cmath>
+#include <fmt/format.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "core/file.h"
+#include <algorithm>
+#include <cmath>
 
 namespace fantascope {
 namespace {
@@ -17,8 +17,12 @@ namespace fs = std::filesystem;
 constexpr int kLargestSide = 16384;
 
 // OpenCV's view of an image's own memory.
-cv::Mat view(const GreyImage& image) { return {image.height(), image.width(), CV_32FC1, const_cast<float*>(image.pixels().data())}; }
-cv::Mat view(const RgbaImage& image) { return {image.height(), image.width(), CV_8UC4, const_cast<Rgba8*>(image.pixels().data())}; }
+cv::Mat view(const GreyImage& image) {
+    return {image.height(), image.width(), CV_32FC1, const_cast<float*>(image.pixels().data())};
+}
+cv::Mat view(const RgbaImage& image) {
+    return {image.height(), image.width(), CV_8UC4, const_cast<Rgba8*>(image.pixels().data())};
+}
 
 // Where a JPEG's own data begin: after the segments of its head, each of them 0xff, a marker and a length that counts itself. A
 // thumbnail in one of them is a whole JPEG, with an end of its own.
@@ -47,7 +51,8 @@ Result<cv::Mat> decode(const fs::path& path) {
     if (endsEarly(bytes)) return refused("the picture is truncated");
     cv::Mat picture;
     try {
-        picture = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data())), cv::IMREAD_UNCHANGED);
+        picture = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data())),
+                               cv::IMREAD_UNCHANGED);
     } catch (const cv::Exception&) {  // reported below like any other picture that cannot be decoded
         picture.release();
     }
@@ -55,9 +60,12 @@ Result<cv::Mat> decode(const fs::path& path) {
     if (std::max(picture.cols, picture.rows) > kLargestSide) return refused(fmt::format("larger than {} pixels", kLargestSide));
     if (picture.channels() == 2 || picture.channels() > 4) return refused(fmt::format("has {} channels", picture.channels()));
     const int depth = picture.depth();
-    if (depth == CV_8U) picture.convertTo(picture, CV_32F, 1.0 / 255);
-    else if (depth == CV_16U) picture.convertTo(picture, CV_32F, 1.0 / 65535);
-    else picture.convertTo(picture, CV_32F);
+    if (depth == CV_8U)
+        picture.convertTo(picture, CV_32F, 1.0 / 255);
+    else if (depth == CV_16U)
+        picture.convertTo(picture, CV_32F, 1.0 / 65535);
+    else
+        picture.convertTo(picture, CV_32F);
     if (!cv::checkRange(picture)) return refused("holds a value that is not a number");
     return picture;
 }
@@ -84,7 +92,9 @@ Image<Pixel> resizedImage(const Image<Pixel>& image, int width, int height) {
 
 float linearFromSrgb(float stored) { return stored <= 0.04045f ? stored / 12.92f : std::pow((stored + 0.055f) / 1.055f, 2.4f); }
 
-float srgbFromLinear(float linear) { return linear <= 0.0031308f ? linear * 12.92f : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f; }
+float srgbFromLinear(float linear) {
+    return linear <= 0.0031308f ? linear * 12.92f : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
 
 Result<GreyImage> readGrey(const fs::path& path) {
     const cv::Mat picture = TRY(decode(path));

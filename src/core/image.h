@@ -1,13 +1,13 @@
 #pragma once
 
+#include "core/check.h"
+#include "core/result.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "core/check.h"
-#include "core/result.h"
 
 namespace fantascope {
 

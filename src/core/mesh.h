@@ -1,11 +1,12 @@
 #pragma once
 
+#include "core/result.h"
+
+#include <glm/vec3.hpp>
+
 #include <cstdint>
 #include <filesystem>
-#include <glm/vec3.hpp>
 #include <vector>
-
-#include "core/result.h"
 
 namespace fantascope {
 

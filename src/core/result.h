@@ -71,9 +71,9 @@ private:
 
 // The value of a Result, or a return of its error from the enclosing function: auto image = TRY(readGrey(path));
 // Nothing that owns memory may come before it in its expression, as in f(name, TRY(...)) or {name, TRY(...)}: g++ would not destroy it.
-#define TRY(expression)                                              \
-    ({                                                               \
-        auto tried_ = (expression);                                  \
+#define TRY(expression)                                                      \
+    ({                                                                       \
+        auto tried_ = (expression);                                          \
         if (!tried_.has_value()) return ::fantascope::Error(tried_.error()); \
-        std::move(tried_).value();                                   \
+        std::move(tried_).value();                                           \
     })

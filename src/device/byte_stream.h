@@ -1,12 +1,13 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
+#include "device/status.h"
 
 #include "core/clock.h"
 #include "core/result.h"
-#include "device/status.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
 
 namespace fantascope {
 

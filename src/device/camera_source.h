@@ -1,11 +1,12 @@
 #pragma once
 
-#include <cstdint>
-#include <memory>
+#include "device/status.h"
 
 #include "core/clock.h"
 #include "core/image.h"
-#include "device/status.h"
+
+#include <cstdint>
+#include <memory>
 
 namespace fantascope {
 

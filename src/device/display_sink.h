@@ -1,11 +1,13 @@
 #pragma once
 
-#include <cstdint>
-#include <glm/vec2.hpp>
+#include "device/status.h"
 
 #include "core/clock.h"
 #include "core/result.h"
-#include "device/status.h"
+
+#include <glm/vec2.hpp>
+
+#include <cstdint>
 
 namespace fantascope {
 

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
+#include "device/status.h"
 
 #include "core/result.h"
-#include "device/status.h"
+
+#include <cstdint>
+#include <span>
 
 namespace fantascope {
 

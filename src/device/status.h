@@ -29,10 +29,14 @@ struct DeviceStatus {
 
 constexpr const char* nameOf(DeviceState state) {
     switch (state) {
-        case DeviceState::Absent: return "absent";
-        case DeviceState::Starting: return "starting";
-        case DeviceState::Running: return "running";
-        case DeviceState::Faulted: return "faulted";
+        case DeviceState::Absent:
+            return "absent";
+        case DeviceState::Starting:
+            return "starting";
+        case DeviceState::Running:
+            return "running";
+        case DeviceState::Faulted:
+            return "faulted";
     }
     return "unknown";
 }

@@ -1,17 +1,19 @@
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <glm/mat3x3.hpp>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-#include <string>
-#include <string_view>
-#include <vector>
+#include "pattern/motion_settings.h"
 
 #include "core/mesh.h"
 #include "core/result.h"
-#include "pattern/motion_settings.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace fantascope::pattern {
 
@@ -24,7 +26,8 @@ struct ElementalShape {
 
 // One copy of an elemental shape in the picture plane.
 struct ShapeInstance {
-    std::uint32_t id = 0;      // stable for the life of the pattern, never given twice; its random streams derive from (seed, id, axis)
+    std::uint32_t id =
+        0;  // stable for the life of the pattern, never given twice; its random streams derive from (seed, id, axis)
     std::uint32_t shape = 0;   // index into ShapePattern::shapes
     std::uint32_t group = 0;   // its movement group, below ShapePattern::groups
     glm::dvec2 centre{0.0};    // canvas units: [0, aspect] x [0, 1], y down
@@ -42,7 +45,9 @@ struct InstancePose {
 
 // How a guide's stored values become linear light.
 enum class GuideTransfer { Srgb, Linear };
-constexpr std::string_view name(GuideTransfer transfer) { return transfer == GuideTransfer::Srgb ? "srgb" : "linear"; }  // in files and reports
+constexpr std::string_view name(GuideTransfer transfer) {
+    return transfer == GuideTransfer::Srgb ? "srgb" : "linear";
+}  // in files and reports
 
 // A shape pattern: everything that is needed to draw it at any time. Value type; thread-safe to read.
 struct ShapePattern {

@@ -65,8 +65,8 @@ public:
 
 private:
     std::optional<gpu::PixelReader> reader_;  // made with the first frame, since the display may come later than its readers
-    Time captured_{};   // the show time of what reader_ copies
-    ShownFrame blank_;  // what a reader holds before the first frame; of the display's size
+    Time captured_{};                         // the show time of what reader_ copies
+    ShownFrame blank_;                        // what a reader holds before the first frame; of the display's size
     std::vector<std::unique_ptr<FrameReader>> readers_;
 };
 

@@ -24,7 +24,8 @@ void slotsOf(const Site& site, const Look& look, int universe, std::span<std::ui
 std::vector<bool> coilsOf(const Site& site, const Look& look) {
     FANTASCOPE_CHECK(look.relays.size() == site.relays.size(), "the look is for this site");
     std::vector<bool> states(site.coilCount(), false);
-    for (std::size_t i = 0; i < site.relays.size(); ++i) states[static_cast<std::size_t>(site.relays[i].coil)] = look.relays[i] != 0;
+    for (std::size_t i = 0; i < site.relays.size(); ++i)
+        states[static_cast<std::size_t>(site.relays[i].coil)] = look.relays[i] != 0;
     return states;
 }
 

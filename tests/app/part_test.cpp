@@ -32,7 +32,8 @@ TEST(SteppedClock, lets_the_parts_work_at_their_exact_moments_in_order_of_time) 
 TEST(SteppedClock, where_moments_meet_the_order_of_the_parts_decides) {
     SteppedClock clock;
     std::string order;
-    clock.setParts({{.name = "b", .rate = 10, .work = [&](Time) { order += 'b'; }}, {.name = "a", .rate = 10, .work = [&](Time) { order += 'a'; }}});
+    clock.setParts({{.name = "b", .rate = 10, .work = [&](Time) { order += 'b'; }},
+                    {.name = "a", .rate = 10, .work = [&](Time) { order += 'a'; }}});
     clock.sleepUntil(100ms);
     EXPECT_EQ(order, "baba");
 }

@@ -1,10 +1,10 @@
 #include "app/recording.h"
 
+#include "core/file.h"
+
 #include <gmock/gmock.h>
 
 #include <filesystem>
-
-#include "core/file.h"
 
 namespace fantascope::app {
 namespace {
@@ -24,7 +24,9 @@ protected:
         for (int refresh = 10; refresh < 15; ++refresh)
             for (std::size_t output : {0u, 1u}) {
                 const auto shade = static_cast<std::uint8_t>(refresh * 10);
-                ASSERT_TRUE((*recording)->frame(output, RgbaImage(64, 48, {shade, 0, static_cast<std::uint8_t>(output * 200), 255}), refresh, 33ms * refresh));
+                ASSERT_TRUE((*recording)
+                                ->frame(output, RgbaImage(64, 48, {shade, 0, static_cast<std::uint8_t>(output * 200), 255}),
+                                        refresh, 33ms * refresh));
             }
         (*recording)->lighting(1s, 1, std::vector<std::uint8_t>{7, 0, 9, 0, 0});
         (*recording)->cue(1, "2 Rise", RgbaImage(32, 18, {200, 100, 50, 255}));
@@ -52,7 +54,8 @@ TEST_F(RecordingTest, leaves_a_video_an_output_the_traces_and_the_contact_sheet)
 TEST_F(RecordingTest, the_same_pictures_give_the_same_bytes) {
     record(folder_ / "a");
     record(folder_ / "b");
-    for (const char* name : {"left.mp4", "frames.csv", "contact-sheet.png"}) EXPECT_EQ(*readFile(folder_ / "a" / name), *readFile(folder_ / "b" / name)) << name;
+    for (const char* name : {"left.mp4", "frames.csv", "contact-sheet.png"})
+        EXPECT_EQ(*readFile(folder_ / "a" / name), *readFile(folder_ / "b" / name)) << name;
 }
 
 TEST_F(RecordingTest, one_video_file_holds_the_outputs_side_by_side) {

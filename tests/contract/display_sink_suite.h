@@ -108,12 +108,13 @@ inline Suite<DisplaySinkRig> displaySinkSuite() {
                      CONTRACT_REQUIRE(last < 0 || next == last + 1, "after refresh {} came {}", last, next);
                      last = next;
                      const Time after = rig.clock().now();
-                     CONTRACT_REQUIRE(after <= due && after >= due - period - Time(1), "it came back at {} s, the refresh is at {} s",
-                                      seconds(after), seconds(due));
+                     CONTRACT_REQUIRE(after <= due && after >= due - period - Time(1),
+                                      "it came back at {} s, the refresh is at {} s", seconds(after), seconds(due));
                  }
                  return "";
              }},
-            {"a following frame is shown within the refresh that is running, without waiting, where the leading one is shown already",
+            {"a following frame is shown within the refresh that is running, without waiting, where the leading one is shown "
+             "already",
              [](DisplaySinkRig& rig) -> std::string {
                  CONTRACT_SUCCEEDS(rig.port().makeCurrent());
                  rig.manualClock().advance(fromSeconds(3.25 / DisplaySinkRig::kRefreshRate));

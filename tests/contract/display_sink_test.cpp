@@ -85,8 +85,9 @@ class NeverWaits : public AlmostGood {
     Result<Shown> present() override { return good_->presentWith(Time{}); }
 };
 TEST(DisplaySinkContract, finds_a_display_that_does_not_pace) {
-    EXPECT_THAT(brokenBy<NeverWaits>(),
-                Contains("leading frames are shown at one refresh after the other, and the display waits for it or for the one before"));
+    EXPECT_THAT(
+        brokenBy<NeverWaits>(),
+        Contains("leading frames are shown at one refresh after the other, and the display waits for it or for the one before"));
 }
 
 // A queue without an end: no frame is ever late, and a button's effect comes ever later.
@@ -100,8 +101,9 @@ class QueuesEverything : public AlmostGood {
     std::int64_t shown_ = 0;
 };
 TEST(DisplaySinkContract, finds_a_display_that_holds_more_than_one_frame) {
-    EXPECT_THAT(brokenBy<QueuesEverything>(),
-                Contains("leading frames are shown at one refresh after the other, and the display waits for it or for the one before"));
+    EXPECT_THAT(
+        brokenBy<QueuesEverything>(),
+        Contains("leading frames are shown at one refresh after the other, and the display waits for it or for the one before"));
 }
 
 class AlwaysWaits : public AlmostGood {
@@ -113,9 +115,8 @@ class AlwaysWaits : public AlmostGood {
     }
 };
 TEST(DisplaySinkContract, finds_a_follower_that_waits_for_a_refresh_of_its_own) {
-    EXPECT_THAT(
-        brokenBy<AlwaysWaits>(),
-        Contains("a following frame is shown within the refresh that is running, without waiting, where the leading one is shown already"));
+    EXPECT_THAT(brokenBy<AlwaysWaits>(), Contains("a following frame is shown within the refresh that is running, without "
+                                                  "waiting, where the leading one is shown already"));
 }
 
 class RunsAhead : public AlmostGood {

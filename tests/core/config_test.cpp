@@ -46,7 +46,8 @@ TEST(Config, unknown_key_names_file_line_column_and_the_nearest_key) {
 
 TEST(Config, missing_key_wrong_type_and_range_are_refused_with_place_and_advice) {
     EXPECT_EQ(refusal("focal: 10\n"), "folder/lens.yaml:1:1: 'name' is missing");
-    EXPECT_EQ(refusal("name: a\nfocal: wide\n"), "folder/lens.yaml:2:8: focal: a number in 1 .. 1000 mm is needed, here is 'wide'");
+    EXPECT_EQ(refusal("name: a\nfocal: wide\n"),
+              "folder/lens.yaml:2:8: focal: a number in 1 .. 1000 mm is needed, here is 'wide'");
     EXPECT_EQ(refusal("name: a\nfocal: 1001\n"), "folder/lens.yaml:2:8: focal: 1001 is out of range, 1 .. 1000 mm is allowed");
     EXPECT_THAT(refusal("name: a\nblades: 5.5\n"), HasSubstr("a whole number in 3 .. 20 is needed"));
     EXPECT_THAT(refusal("name: [a]\n"), HasSubstr("a text is needed, here is a list"));
@@ -82,7 +83,8 @@ TEST(Config, header_refuses_other_kinds_and_newer_versions) {
         return fields.finish();
     };
     EXPECT_TRUE(read("fantascope: show\nversion: 1\n"));
-    EXPECT_THAT(read("fantascope: site\nversion: 1\n").error().message(), HasSubstr("this is a site file, a show file is needed"));
+    EXPECT_THAT(read("fantascope: site\nversion: 1\n").error().message(),
+                HasSubstr("this is a site file, a show file is needed"));
     EXPECT_THAT(read("fantascope: show\nversion: 3\n").error().message(), HasSubstr("newer program"));
 }
 

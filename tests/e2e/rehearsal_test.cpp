@@ -30,8 +30,10 @@ fs::path siteWith(const Folder& folder, const std::string& lines) {
     return folder / "site";
 }
 
-Outcome rehearse(const fs::path& folder, std::vector<std::string> more, const std::vector<std::pair<std::string, std::string>>& environment = {}) {
-    std::vector<std::string> arguments = {"rehearse", "--as-fast-as-possible", "--record", "rehearsal", "--report", "report.json"};
+Outcome rehearse(const fs::path& folder, std::vector<std::string> more,
+                 const std::vector<std::pair<std::string, std::string>>& environment = {}) {
+    std::vector<std::string> arguments = {"rehearse",   "--as-fast-as-possible", "--record", "rehearsal", "--report",
+                                          "report.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram(arguments, folder, environment);
 }
@@ -92,7 +94,8 @@ double meanScore(const json& series, double from, double to) {
 // Example failure: the comparison reads the simulated truth, so that a bump moves both sides.
 TEST(Rehearsal, the_cameras_score_rises_while_a_projector_is_bumped_and_only_for_its_output) {
     const Folder folder;
-    const fs::path site = siteWith(folder, "  faults:\n    - {at: 6, until: 12, kind: bump, output: left, move: [0.05, 0, 0], turn: [0, 1.5, 0.5]}\n");
+    const fs::path site = siteWith(
+        folder, "  faults:\n    - {at: 6, until: 12, kind: bump, output: left, move: [0.05, 0, 0], turn: [0, 1.5, 0.5]}\n");
     const Outcome outcome = rehearse(folder.path(), {"--seconds", "18", "--by-hand", "--from", "Full", "--site", site.string()});
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
     const json report = json::parse(contentsOf(folder / "report.json"));
@@ -136,7 +139,8 @@ TEST(Rehearsal, bad_input_is_refused_before_anything_is_shown) {
     std::string show = contentsOf(folder / "show/show.yaml");
     replace(show, "      right: [{source: moonlight}]", "      rihgt: [{source: moonlight}]");
     std::ofstream(folder / "show/show.yaml") << show;
-    EXPECT_THAT(refused({"show", "--seconds", "1"}), testing::AllOf(HasSubstr("show.yaml:"), HasSubstr("rihgt"), HasSubstr("right")));
+    EXPECT_THAT(refused({"show", "--seconds", "1"}),
+                testing::AllOf(HasSubstr("show.yaml:"), HasSubstr("rihgt"), HasSubstr("right")));
 }
 
 TEST(Rehearsal, wrong_usage_has_its_own_exit_status) {

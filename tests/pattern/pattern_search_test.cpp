@@ -98,7 +98,8 @@ TEST(PatternSearch, z_never_rises_and_an_iteration_is_accepted_when_its_best_is_
 // Example failure: every slot draws the same numbers, and twelve candidates are worth one.
 TEST(PatternSearch, candidates_of_an_iteration_differ) {
     const auto history = search(halfWhite(), fewInstances(20)).summary.history;
-    EXPECT_TRUE(std::all_of(history.begin(), history.end(), [](const auto& iteration) { return iteration.zMin < iteration.zMax; }));
+    EXPECT_TRUE(
+        std::all_of(history.begin(), history.end(), [](const auto& iteration) { return iteration.zMin < iteration.zMax; }));
 }
 
 // Example failure: candidates draw from one common stream, and whoever comes first takes the first numbers.

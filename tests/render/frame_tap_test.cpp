@@ -94,7 +94,8 @@ TEST(FrameTap, goes_on_without_a_reader_that_does_not_read) {
     FrameReader& stalled = output.tap().addReader();
     const RgbaImage first = output.frame({{0, 1}}, std::chrono::seconds(1));
     const ShownFrame* const held = stalled.next(Time::max());
-    for (int number = 2; number < 20; ++number) output.frame({{0, 1.0f / static_cast<float>(number)}}, std::chrono::seconds(number));
+    for (int number = 2; number < 20; ++number)
+        output.frame({{0, 1.0f / static_cast<float>(number)}}, std::chrono::seconds(number));
     ASSERT_NE(held, nullptr);
     EXPECT_EQ(held->image, first);
     std::vector<std::int64_t> rest;

@@ -1,10 +1,9 @@
 // Frames as people will see them, and the same ones from everywhere.
 
-#include "contract/x_server.h"
-
 #include "render/golden.h"
 #include "render/scene.h"
 
+#include "contract/x_server.h"
 #include "core/file.h"
 
 #include <gmock/gmock.h>

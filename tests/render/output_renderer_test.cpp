@@ -1,9 +1,9 @@
 #include "render/output_renderer.h"
 
-#include "allocations.h"
 #include "render/reference_picture.h"
 #include "render/scene.h"
 
+#include "allocations.h"
 #include "core/file.h"
 #include "core/geometry.h"
 
@@ -144,7 +144,7 @@ TEST(OutputRenderer, adds_layers_as_linear_light) {
     DrawnOutput output({64, 36}, upright({64, 36}),
                        {SolidSource{glm::vec3(0.2f)}, SolidSource{glm::vec3(0.3f)}, SolidSource{glm::vec3(1)}});
     const auto grey = [&](const std::vector<show::LayerState>& layers) { return int{output.frame(layers).at(32, 18).g}; };
-    EXPECT_NEAR(grey({{0, 1}, {1, 1}}), 188, 1);  // 0.2 + 0.3 of the light; stored values would add to 123 + 149
+    EXPECT_NEAR(grey({{0, 1}, {1, 1}}), 188, 1);                 // 0.2 + 0.3 of the light; stored values would add to 123 + 149
     EXPECT_NEAR(grey({{0, 1}, {1, 0.5f}, {2, 0.15f}}), 188, 1);  // more than one pass takes
     EXPECT_NEAR(grey({{2, 0.5f}}), 188, 1);
     EXPECT_NEAR(grey({{2, 0.25f}, {2, 0.25f}}), 188, 1);

@@ -1,7 +1,6 @@
 #include "show/playback.h"
 
 #include "allocations.h"
-
 #include "core/random.h"
 
 #include <gmock/gmock.h>

@@ -1,0 +1,145 @@
+#include "app/frame_loop.h"
+
+#include "app/running_show.h"
+
+#include <gmock/gmock.h>
+
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A display whose drawing takes time: the clock moves on while it is made current to be drawn.
+class SlowDisplay final : public DisplaySink {
+public:
+    SlowDisplay(std::unique_ptr<DisplaySink> display, ManualClock& clock) : display_(std::move(display)), clock_(clock) {}
+    Time nextTakes{};  // the next frame's drawing
+
+    DeviceStatus status() const override { return display_->status(); }
+    glm::ivec2 size() const override { return display_->size(); }
+    double refreshRate() const override { return display_->refreshRate(); }
+    std::int64_t nextRefresh() const override { return display_->nextRefresh(); }
+    Time refreshTime(std::int64_t number) const override { return display_->refreshTime(number); }
+    Result<void> makeCurrent() override {
+        clock_.advance(std::exchange(nextTakes, Time{}));
+        return display_->makeCurrent();
+    }
+    unsigned framebuffer() const override { return display_->framebuffer(); }
+    Result<Shown> present() override { return display_->present(); }
+    Result<Shown> presentWith(Time leading) override { return display_->presentWith(leading); }
+
+private:
+    std::unique_ptr<DisplaySink> display_;
+    ManualClock& clock_;
+};
+
+class FrameLoopPart : public testing::Test {
+protected:
+    FrameLoopPart() {
+        auto slow = std::make_unique<SlowDisplay>(std::move(run_.devices.displays[0]), run_.clock);
+        left_ = slow.get();
+        run_.devices.displays[0] = std::move(slow);
+        const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{});
+        loop_.emplace(run_.site, run_.cues, sources, FANTASCOPE_SOURCE_DIR "/assets", run_.devices, run_.clock);
+        for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output));
+        EXPECT_TRUE(loop_->prepare());
+        loop_->begin(run_.clock.now());
+    }
+    void step(int frames = 1) {
+        for (int frame = 0; frame < frames; ++frame) {
+            const auto done = loop_->step();
+            ASSERT_TRUE(done) << done.error().message();
+        }
+    }
+    // A frame whose drawing takes so many refreshes.
+    void slowStep(double refreshes) {
+        left_->nextTakes = fromSeconds(refreshes / 30);
+        step();
+    }
+    // The refreshes of the frames that an output has shown so far, since the last call.
+    std::vector<std::int64_t> shownOn(std::size_t output) {
+        std::vector<std::int64_t> refreshes;
+        while (const render::ShownFrame* const frame = readers_[output]->next(Time::max()))
+            refreshes.push_back(frame->shown.refresh);
+        return refreshes;
+    }
+
+    RunningShow run_;
+    SlowDisplay* left_;
+    std::optional<FrameLoop> loop_;
+    std::vector<render::FrameReader*> readers_;
+};
+
+TEST_F(FrameLoopPart, shows_every_refresh_once_on_every_output) {
+    for (std::int64_t refresh = 1; refresh <= 10; ++refresh) {
+        step();
+        for (std::size_t output = 0; output < 2; ++output) EXPECT_THAT(shownOn(output), testing::ElementsAre(refresh)) << output;
+    }
+    EXPECT_EQ(loop_->framesShown(), 20);
+    EXPECT_EQ(loop_->framesLate(), 0);
+}
+
+// The machine is taken away while a finished frame waits for its refresh: the next one is for the refresh after.
+TEST_F(FrameLoopPart, a_gap_of_almost_two_periods_does_not_show) {
+    for (int gap = 0; gap < 3; ++gap) {
+        step(5);
+        slowStep(1.9);
+    }
+    slowStep(0.9);  // the lead is used up
+    step(5);
+    EXPECT_EQ(loop_->framesLate(), 0);
+}
+
+// Example failure: a frame that is three refreshes late counts as one.
+TEST_F(FrameLoopPart, every_missed_refresh_counts_on_every_output) {
+    step(5);
+    slowStep(4.5);  // of two that it had
+    EXPECT_EQ(loop_->outputs()[0].lateFrames, 3);
+    EXPECT_EQ(loop_->outputs()[1].lateFrames, 3);
+    EXPECT_EQ(loop_->framesLate(), 6);
+    step(5);
+    EXPECT_EQ(loop_->framesLate(), 6) << "what comes after is in time again";
+}
+
+// Example failure: a display that takes the lead shows a second frame for the refresh that another one has its frame for.
+TEST_F(FrameLoopPart, the_lead_changes_hands_without_a_frame_too_many_or_too_few) {
+    std::vector<std::int64_t> left, right;
+    const auto stepAndRead = [&](int frames) {
+        for (int frame = 0; frame < frames; ++frame) {
+            step();
+            for (const std::int64_t refresh : shownOn(0)) left.push_back(refresh);
+            for (const std::int64_t refresh : shownOn(1)) right.push_back(refresh);
+        }
+    };
+    stepAndRead(5);
+    run_.world.setPlugged("left", false);
+    stepAndRead(5);
+    run_.world.setPlugged("left", true);
+    stepAndRead(5);
+    EXPECT_THAT(right, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
+    EXPECT_THAT(left, testing::ElementsAre(1, 2, 3, 4, 5, 11, 12, 13, 14, 15));
+    EXPECT_EQ(loop_->framesLate(), 0);
+}
+
+TEST_F(FrameLoopPart, the_show_goes_on_in_time_while_every_output_is_lost) {
+    for (const char* output : {"left", "right"}) run_.world.setPlugged(output, false);
+    const Time before = run_.clock.now();
+    step(30);
+    EXPECT_EQ(loop_->framesShown(), 0);
+    EXPECT_NEAR(seconds(run_.clock.now() - before), 1, 0.04);
+}
+
+// The effect of a press is seen in the first frame that was drawn after it, not in the one that was finished already.
+TEST_F(FrameLoopPart, measures_a_press_to_the_refresh_that_shows_it) {
+    step(5);
+    const Time pressed = run_.clock.now();
+    ASSERT_TRUE(loop_->replica().give({pressed, show::Input::Kind::Go}));
+    step(3);
+    EXPECT_EQ(loop_->inputToFrame().count(), 1u);
+    EXPECT_NEAR(loop_->inputToFrame().maxMs(), 2000.0 / 30, 0.01);
+}
+
+}  // namespace
+}  // namespace fantascope::app
