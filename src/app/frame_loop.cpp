@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace fantascope::app {
 
@@ -67,6 +68,12 @@ Result<void> FrameLoop::draw(Output& output, std::size_t index, Time showTime, O
     return {};
 }
 
+void FrameLoop::begin(Time start) {
+    start_ = start;
+    // The first refresh from now on is one to be met.
+    for (Output& output : outputs_) output.shown = nextDue() - tickTime(1, output.display.refreshRate());
+}
+
 Time FrameLoop::nextDue() {
     if (const Output* const leads = leader()) return leads->display.refreshTime(leads->display.nextRefresh());
     // Nothing is to be seen; the show goes on at its pace.
@@ -89,18 +96,21 @@ Result<void> FrameLoop::step() {
     std::optional<Time> seen;
     const auto show = [&](std::size_t i, auto present) {
         Output& output = outputs_[i];
+        const std::optional<Time> before = std::exchange(output.shown, std::nullopt);
         if (!output.drawn || !output.display.makeCurrent()) return;
         const Result<Shown> shown = present(output.display);
         if (!shown) return;
         if (output.tap) output.tap->publish(*shown);
-        // The displays may count their refreshes differently: time tells how many were missed.
+        output.shown = shown->at;
+        if (!seen) seen = shown->at;
+        // Whatever kept us: every refresh since the last one that had a frame counts.
+        const double rate = output.display.refreshRate();
         const std::int64_t late =
-            std::max<std::int64_t>(0, std::llround(seconds(shown->at - due) * output.display.refreshRate()));
+            before ? std::max<std::int64_t>(0, std::llround(seconds(shown->at - *before) * rate) - 1) : std::int64_t{0};
         ++reports_[i].frames;
         reports_[i].lateFrames += late;
         ++framesShown_;
         framesLate_ += late;
-        if (!seen) seen = shown->at;
     };
     if (leads != nullptr)
         show(static_cast<std::size_t>(leads - outputs_.data()), [](DisplaySink& display) { return display.present(); });

@@ -38,7 +38,7 @@ public:
     // Error: a renderer cannot be made for a display.
     Result<void> prepare();
     // Show time 0 is `start` on the clock. Before the first frame.
-    void begin(Time start) { start_ = start; }
+    void begin(Time start);
     // The moment that the next frame is for: the first refresh that can still be met.
     Time nextDue();
     // One frame on every output; returns when another can be made. Error: a renderer cannot be made for a display.
@@ -58,6 +58,7 @@ private:
         std::unique_ptr<render::OutputRenderer> renderer{};  // made when the display is first there
         std::optional<render::FrameTap> tap{};               // where somebody reads
         bool drawn = false;                                  // in the frame that is being made
+        std::optional<Time> shown{};                         // when the newest frame was, or will be; none since it was lost
     };
     Result<void> makeRenderer(Output& output);
     Result<void> draw(Output& output, std::size_t index, Time showTime, OutputReport& report);

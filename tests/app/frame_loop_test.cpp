@@ -103,6 +103,18 @@ TEST_F(FrameLoopPart, every_missed_refresh_counts_on_every_output) {
     EXPECT_EQ(loop_->framesLate(), 6) << "what comes after is in time again";
 }
 
+// Example failure: what happens between two frames is nobody's fault, since the next frame aims at what can still be met.
+TEST_F(FrameLoopPart, refreshes_that_no_frame_was_for_count_too) {
+    run_.clock.advance(fromSeconds(2.0 / 30));
+    step();
+    EXPECT_EQ(loop_->outputs()[0].lateFrames, 2) << "before the first frame";
+    step(5);
+    run_.clock.advance(fromSeconds(3.0 / 30));
+    step(5);
+    EXPECT_EQ(loop_->outputs()[0].lateFrames, 4) << "of three one was covered by the frame in hand";
+    EXPECT_EQ(loop_->outputs()[1].lateFrames, 4);
+}
+
 // Example failure: a display that takes the lead shows a second frame for the refresh that another one has its frame for.
 TEST_F(FrameLoopPart, the_lead_changes_hands_without_a_frame_too_many_or_too_few) {
     std::vector<std::int64_t> left, right;

@@ -1,4 +1,4 @@
-// Whole rehearsals of the default show with the built program, on the stepped clock, as a newcomer would run them.
+// Whole rehearsals of the default show with the built program, as a newcomer would run them; most of them on the stepped clock.
 
 #include "program.h"
 
@@ -36,6 +36,26 @@ Outcome rehearse(const fs::path& folder, std::vector<std::string> more,
                                           "report.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram(arguments, folder, environment);
+}
+
+// Every part on a thread of its own, for the thread sanitizer's eyes above all. How punctual they are is for bench/rehearsal to say.
+TEST(Rehearsal, in_real_time_reaches_every_cue) {
+    const Folder folder;
+    const Outcome outcome =
+        runProgram({"rehearse", "--seconds", "6", "--record", "rehearsal", "--report", "report.json"}, folder.path());
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    const json report = json::parse(contentsOf(folder / "report.json"));
+    EXPECT_EQ(report["cues"].size(), kCues.size());
+    EXPECT_EQ(report["stop_reason"], "length");
+    // A refresh shows a frame of ours or was missed by us: one count must not hide what the other leaves out.
+    for (const char* output : {"left", "right"}) {
+        const int frames = report["frames_by_output"][output], late = report["late_frames_by_output"][output];
+        EXPECT_LE(frames, 6 * 30);
+        EXPECT_GE(frames + late, 6 * 30 - 1);
+    }
+    EXPECT_GT(report["yardstick"]["ticks"], 0);
+    EXPECT_GT(report["dmx_interval_ms"]["count"], 0);
+    EXPECT_GT(fs::file_size(folder / "rehearsal/contact-sheet.png"), 0u);
 }
 
 TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
