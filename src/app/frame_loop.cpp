@@ -68,18 +68,23 @@ Result<void> FrameLoop::draw(Output& output, std::size_t index, Time showTime, O
     return {};
 }
 
-void FrameLoop::begin(Time start) {
-    start_ = start;
-    // The first refresh from now on is one to be met.
-    for (Output& output : outputs_) output.shown = nextDue() - tickTime(1, output.display.refreshRate());
-}
-
-Time FrameLoop::nextDue() {
-    if (const Output* const leads = leader()) return leads->display.refreshTime(leads->display.nextRefresh());
+Time FrameLoop::refreshFrom(Time moment) {
+    if (const Output* const leads = leader()) {
+        std::int64_t number = leads->display.nextRefresh();
+        while (leads->display.refreshTime(number) < moment) ++number;
+        return leads->display.refreshTime(number);
+    }
     // Nothing is to be seen; the show goes on at its pace.
     const double rate = outputs_.empty() ? 1.0 : outputs_[0].site.refreshRate;
-    return tickTime(tickAt(clock_.now(), rate) + 1, rate);
+    return tickTime(tickAt(std::max(moment, clock_.now()), rate) + 1, rate);
 }
+
+void FrameLoop::begin(Time start) {
+    start_ = start;
+    for (Output& output : outputs_) output.shown = start;  // every refresh after it is one to be met
+}
+
+Time FrameLoop::nextDue() { return refreshFrom(Time{}); }
 
 Result<void> FrameLoop::step() {
     Output* const leads = leader();

@@ -37,6 +37,8 @@ public:
     // Makes the renderers of the displays that are there and draws every source once, so that nothing is compiled while people watch.
     // Error: a renderer cannot be made for a display.
     Result<void> prepare();
+    // The first refresh at or after a moment; a show that begins with one has a whole period for its first frame.
+    Time refreshFrom(Time moment);
     // Show time 0 is `start` on the clock. Before the first frame.
     void begin(Time start);
     // The moment that the next frame is for: the first refresh that can still be met.

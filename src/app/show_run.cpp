@@ -24,9 +24,10 @@
 namespace fantascope::app {
 namespace {
 
-constexpr double kRelayRate = 20;    // Hz; a relay clicks in tens of milliseconds
-constexpr double kSiteRate = 120;    // Hz; a camera frame is exposed at most a tick late
-constexpr double kProgressRate = 2;  // Hz
+constexpr double kRelayRate = 20;                          // Hz; a relay clicks in tens of milliseconds
+constexpr double kSiteRate = 120;                          // Hz; a camera frame is exposed at most a tick late
+constexpr double kProgressRate = 2;                        // Hz
+constexpr Time kStartUp = std::chrono::milliseconds(100);  // for the parts to be made and their threads to be there
 
 // News for the operator, from the input thread to the progress line.
 class News {
@@ -78,7 +79,7 @@ public:
           clock_(clock),
           frames_(programme.site, programme.cues, programme.sources, dataFolder() / "assets", surrounding.devices, clock),
           prepared_(frames_.prepare()),
-          start_(clock.now()),
+          start_(frames_.refreshFrom(clock.now() + kStartUp)),
           lighting_(programme.site, programme.cues, surrounding.devices, clock, start_, recording),
           hand_(programme.show, programme.cues, programme.site, surrounding.devices.cueController.get(), start_),
           watch_(programme.show, outputNames(), programme.comparisons, surrounding.devices.camera.get(), start_, recording),
@@ -111,6 +112,7 @@ public:
     // The render thread's life.
     Result<void> draw(const Interrupt& interrupt) {
         TRY(std::move(prepared_));
+        clock_.sleepUntil(start_);
         const Time end = options_.length ? start_ + *options_.length : Time::max();
         const auto stopped = [&] { return interrupt.requested() || quit_; };
         while (!stopped() && frames_.nextDue() <= end) TRY(frames_.step());
@@ -244,7 +246,7 @@ private:
     Clock& clock_;
     FrameLoop frames_;
     Result<void> prepared_;
-    const Time start_;  // after everything slow
+    const Time start_;  // after everything slow; a refresh
     Lighting lighting_;
     Hand hand_;
     Watch watch_;
