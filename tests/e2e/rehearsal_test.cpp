@@ -38,7 +38,8 @@ Outcome rehearse(const fs::path& folder, std::vector<std::string> more,
     return runProgram(arguments, folder, environment);
 }
 
-// Every part on a thread of its own, for the thread sanitizer's eyes above all. How punctual they are is for bench/rehearsal to say.
+// Every part on a thread of its own, for the thread sanitizer's eyes above all. How punctual they are, and how
+// much a camera sees beside them on a machine without time to spare, is for bench/rehearsal to say.
 TEST(Rehearsal, in_real_time_reaches_every_cue) {
     const Folder folder;
     const Outcome outcome =
@@ -55,7 +56,6 @@ TEST(Rehearsal, in_real_time_reaches_every_cue) {
     }
     EXPECT_GT(report["yardstick"]["ticks"], 0);
     EXPECT_GT(report["dmx_interval_ms"]["count"], 0);
-    EXPECT_GT(fs::file_size(folder / "rehearsal/contact-sheet.png"), 0u);
 }
 
 TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
