@@ -42,12 +42,8 @@ struct Options {
     std::optional<int> iterations;
     std::uint64_t seed = 1;
     int threads = hardwareThreads();
-    std::string method = "paper";
+    PatternSearch::Method method = PatternSearch::Method::Refined;
 };
-
-std::string onlyPaper(const std::string& method) {
-    return method == "paper" ? "" : fmt::format("there is no method '{}'; the only one is 'paper'", method);
-}
 
 // Keeps a slip of the finger from writing a pattern over a picture.
 std::string onlyYaml(const std::string& file) {
@@ -78,9 +74,12 @@ void declare(CLI::App& command, Options& options) {
         ->check(CLI::Range(0, std::numeric_limits<int>::max()));
     command.add_option("--target-z", options.targetZ, "Stop once the mean difference from the guide is below this")
         ->check(CLI::Range(0.0, 1.0));
-    command.add_option("--method", options.method, "paper: Ji et al. 2015, section 4.1, as written")
-        ->check(CLI::Validator(onlyPaper, "paper"))
-        ->capture_default_str();
+    command
+        .add_option("--method", options.method,
+                    "refined: one exact move at a time; paper: Ji et al. 2015, section 4.1, as written")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, PatternSearch::Method>{
+            {"refined", PatternSearch::Method::Refined}, {"paper", PatternSearch::Method::Paper}}))
+        ->default_str("refined");
     command.add_option("--image", options.image, "Also write the pattern white on black, in the guide's size, as PNG");
     command.add_option("--seed", options.seed, "Another seed, another pattern; the same seed, the same pattern")
         ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
@@ -148,9 +147,10 @@ Result<Shapes> loadShapes(const Options& options) {
     return loaded;
 }
 
-Report reportOf(const PatternSearch::Found& found, const pattern::PatternQuality& quality, double loopZ, Time took) {
+Report reportOf(PatternSearch::Method method, const PatternSearch::Found& found, const pattern::PatternQuality& quality,
+                double loopZ, Time took) {
     Report report;
-    report["method"] = "paper";
+    report["method"] = name(method);
     report["z"] = quality.z;
     report["z_bound"] = quality.zBound;
     report["tone"] = quality.tone;
@@ -179,17 +179,30 @@ PatternSearch::Found search(const GreyImage& guide, ShapePattern pattern, const 
     const Interrupt interrupt;
     Progress progress("pattern", clock, std::cerr, standardErrorIsTerminal());
     const Time start = clock.now();
-    return PatternSearch::run(
-        guide, std::move(pattern), options, threads,
-        [&](const PatternSearch::Progress& now) -> std::optional<PatternSearch::StopReason> {
-            const double elapsed = seconds(clock.now() - start);
-            const double byTime = limit && elapsed < *limit ? elapsed / *limit : limit ? 1 : 0;
-            const double byCount = double(now.iterations) / options.iterations;  // not asked any more once it is 1
-            progress.update(std::max(byTime, byCount), fmt::format("z {:.4f}  {} instances", now.z, now.instances));
-            if (interrupt.requested()) return PatternSearch::StopReason::Interrupted;
-            if (limit && elapsed >= *limit) return PatternSearch::StopReason::Time;
-            return std::nullopt;
-        });
+    std::optional<int> planned;
+    if (options.iterations < std::numeric_limits<int>::max()) planned = options.iterations;
+    // A search that cools by a plan is not stopped by the clock but by the plan: only then can it be repeated.
+    const bool planning = options.method == PatternSearch::Method::Refined;
+    const auto askStop = [&](const PatternSearch::Progress& now) -> std::optional<PatternSearch::StopReason> {
+        const double elapsed = seconds(clock.now() - start);
+        const double byTime = limit && elapsed < *limit ? elapsed / *limit : limit ? 1 : 0;
+        const double byCount = planned ? double(now.iterations) / *planned : 0;
+        progress.update(planning && planned ? byCount : std::max(byTime, byCount),
+                        fmt::format("z {:.4f}  {} instances", now.z, now.instances));
+        if (interrupt.requested()) return PatternSearch::StopReason::Interrupted;
+        if (limit && elapsed >= *limit && !(planning && planned)) return PatternSearch::StopReason::Time;
+        return std::nullopt;
+    };
+    // From the speed of the first few hundredths, once it runs.
+    std::optional<Time> running;
+    const auto plan = [&](const PatternSearch::Progress& now) -> std::optional<int> {
+        if (!running) running = clock.now();
+        const double elapsed = seconds(clock.now() - *running), left = limit ? *limit - seconds(*running - start) : 0;
+        if (!limit || now.iterations == 0 || elapsed < 0.04 * left) return std::nullopt;
+        planned = static_cast<int>(std::min(now.iterations * left / elapsed, double(std::numeric_limits<int>::max() - 1)));
+        return planned;
+    };
+    return PatternSearch::run(guide, std::move(pattern), options, threads, askStop, plan);
 }
 
 Result<void> run(const Options& options) {
@@ -200,6 +213,7 @@ Result<void> run(const Options& options) {
     const GreyImage guide = TRY(readGrey(options.guide));
     pattern::PatternSettings settings;
     if (options.settings) settings = TRY(pattern::readPatternSettings(*options.settings));
+    settings.search.method = options.method;
     if (options.instances) settings.search.instances = *options.instances;
     if (options.targetZ) settings.search.targetZ = *options.targetZ;
     if (options.iterations) settings.search.iterations = *options.iterations;
@@ -226,7 +240,7 @@ Result<void> run(const Options& options) {
 
     const pattern::PatternQuality quality = measure(found.pattern, guide);
     const double loopZ = pattern::loopZ(found.pattern, guide, kLoopMoments, options.threads);
-    if (options.report) TRY(writeReport(*options.report, reportOf(found, quality, loopZ, took)));
+    if (options.report) TRY(writeReport(*options.report, reportOf(settings.search.method, found, quality, loopZ, took)));
     fmt::print("{}: {}, {} instances, tone {:.4f}, moving z {:.4f}\n", options.output.string(), found.summary.brief(),
                found.pattern.instances.size(), quality.tone, loopZ);
     return {};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pattern/shape_pattern.h"
+#include "pattern/silhouette.h"
 
 #include "core/image.h"
 
@@ -20,31 +20,8 @@ struct PixelRectangle {
     std::int64_t area() const { return std::int64_t{end.x - begin.x} * (end.y - begin.y); }
 };
 
-// A mesh prepared for Coverage: its edges, each with the triangles beside it.
-class Silhouette {
-public:
-    explicit Silhouette(const TriangleMesh& mesh);
-
-private:
-    friend class Coverage;
-    struct Side {
-        std::uint32_t triangle;
-        int direction;  // 1: the triangle's corners run along the edge from `from` to `to`; -1: the other way
-    };
-    struct Edge {
-        std::uint32_t from, to;             // vertices, from < to
-        std::uint32_t firstSide, sidesEnd;  // range in sides_
-    };
-
-    std::vector<glm::dvec3> vertices_;
-    std::vector<glm::uvec3> triangles_;
-    std::vector<Edge> edges_;
-    std::vector<Side> sides_;
-};
-
 // Which pixels a set of silhouettes covers, one bit each: a shape pattern drawn white on black, without colours (Ji et al. 2015,
-// section 4.1). This is the inner loop of the search, so a row is a few words, and of a mesh only the edges of its outline are
-// followed.
+// section 4.1).
 class Coverage {
 public:
     // Nothing is covered; width, height > 0.
@@ -53,9 +30,7 @@ public:
     int width() const { return width_; }
     int height() const { return height_; }
     void clear();
-    // Unites the silhouette of one instance, seen by an orthographic view whose height is one canvas unit. A pixel counts when
-    // its centre is inside a triangle; of two triangles with a common edge each pixel goes to one. What lies off the picture is
-    // cut off.
+    // Unites the silhouette of one instance; see SilhouetteScanner.
     void add(const Silhouette& shape, const InstancePose& pose);
 
     bool at(int x, int y) const { return (word(x, y) >> (x % kBits) & 1) != 0; }
@@ -89,26 +64,12 @@ private:
     std::uint64_t word(int x, int y) const {
         return words_[static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(x / kBits)];
     }
-    struct Crossing {
-        int x;       // the first pixel whose centre is right of the edge
-        int change;  // of the number of triangles above each other, from there on
-        int next;    // in the same row, x ascending; -1: none
-    };
-    void addEdge(glm::dvec2 from, glm::dvec2 to, int weight);
-    void fillRow(int y);
     void addSpan(int y, int begin, int end);
 
     int width_, height_;
     std::size_t stride_;                // words a row
     std::vector<std::uint64_t> words_;  // pixel x is bit x % 64 of its word; bits beyond the width are 0
-
-    // The instance at hand, kept for its memory.
-    std::vector<glm::dvec2> projected_;  // vertices, in pixels
-    std::vector<int> facing_;            // triangles: 1 clockwise as seen, -1 anticlockwise, 0 edge-on
-    std::vector<Crossing> crossings_;    // the first crossingCount_ of them
-    int crossingCount_ = 0;
-    std::vector<int> rows_;     // the first crossing of each row; -1: none
-    int top_ = 0, bottom_ = 0;  // rows with crossings
+    SilhouetteScanner scanner_;
 };
 
 }  // namespace fantascope::pattern

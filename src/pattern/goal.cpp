@@ -4,12 +4,6 @@
 #include <cmath>
 
 namespace fantascope::pattern {
-namespace {
-
-constexpr int kWhite = 65535;  // a 16-bit PNG's values are exact, and an 8-bit one's too: 65535 = 257 * 255
-
-}  // namespace
-
 Goal::Goal(const GreyImage& guide) : width_(guide.width()), height_(guide.height()) {
     const std::size_t columns = static_cast<std::size_t>(width_) + 1;
     sums_.assign(columns * (static_cast<std::size_t>(height_) + 1), 0);

@@ -36,10 +36,12 @@ Result<Options> checked(const ConfigNode& node, const Options& options) {
     return options;
 }
 
-Result<Options> readSearch(const ConfigNode& node, Options options) {
+// One section: the numbers that `declare` declares of it.
+template <class Declare>
+Result<Options> readSection(const ConfigNode& node, Options options, Declare declare) {
     ConfigFields fields(node);
     OptionalFields optional{fields};
-    declareSearch(optional, options);
+    declare(optional, options);
     TRY(fields.finish());
     return checked(node, options);
 }
@@ -72,7 +74,13 @@ Result<PatternSettings> readPatternSettings(const std::filesystem::path& file) {
     ConfigFields fields(TRY(ConfigNode::load(file)));
     fields.header("pattern-settings", kVersion);
     fields.optional().choice("guide_transfer", settings.guideTransfer, {name(GuideTransfer::Srgb), name(GuideTransfer::Linear)});
-    fields.optional().read("search", settings.search, [&](const ConfigNode& node) { return readSearch(node, settings.search); });
+    const auto section = [&](const char* name, auto declare) {
+        fields.optional().read(name, settings.search,
+                               [&](const ConfigNode& node) { return readSection(node, settings.search, declare); });
+    };
+    section("search", [](auto& optional, Options& options) { declareSearch(optional, options); });
+    section("refined", [](auto& optional, Options& options) { declareRefined(optional, options.refined); });
+    section("paper", [](auto& optional, Options& options) { declarePaper(optional, options.paper); });
     fields.optional().read("shapes", settings.search, [&](const ConfigNode& node) { return readShapes(node, settings.search); });
     fields.optional().list("colours", settings.search.colours, readColours, 1);
     fields.optional().read("motion", settings.motion, readMotion);

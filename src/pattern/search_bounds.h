@@ -10,15 +10,28 @@ template <class Fields>
 void declareSearch(Fields& fields, PatternSearch::Options& options) {
     fields.number("target_z", options.targetZ, 0, 1);
     fields.integer("rows", options.rows, 16, 4096);
-    fields.number("lambda_create", options.lambdaCreate, -1, 1);
-    fields.number("lambda_increase", options.lambdaIncrease, -1, 1);
-    fields.number("lambda_reduce", options.lambdaReduce, -1, 1);
-    fields.number("lambda_delete", options.lambdaDelete, -1, 1);
-    fields.number("lattice_cell", options.latticeCell, 0.1, 100);
-    fields.number("instance_cell", options.instanceCell, 0.1, 100);
-    fields.integer("candidates", options.candidates, 1, 1000);
-    fields.number("largest_amount", options.largestAmount, 0, 10);
-    fields.number("success_rate", options.successRate, 0.01, 0.99);
+}
+
+template <class Fields>
+void declareRefined(Fields& fields, PatternSearch::Options::Refined& refined) {
+    fields.number("z_weight", refined.zWeight, 0, 100);
+    fields.number("tone_weight", refined.toneWeight, 0, 100);
+    fields.number("overlap_weight", refined.overlapWeight, 0, 100);
+    fields.number("temperature", refined.temperature, 0, 10);
+    fields.number("polish", refined.polish, 0, 1);
+}
+
+template <class Fields>
+void declarePaper(Fields& fields, PatternSearch::Options::Paper& paper) {
+    fields.number("lambda_create", paper.lambdaCreate, -1, 1);
+    fields.number("lambda_increase", paper.lambdaIncrease, -1, 1);
+    fields.number("lambda_reduce", paper.lambdaReduce, -1, 1);
+    fields.number("lambda_delete", paper.lambdaDelete, -1, 1);
+    fields.number("lattice_cell", paper.latticeCell, 0.1, 100);
+    fields.number("instance_cell", paper.instanceCell, 0.1, 100);
+    fields.integer("candidates", paper.candidates, 1, 1000);
+    fields.number("largest_amount", paper.largestAmount, 0, 10);
+    fields.number("success_rate", paper.successRate, 0.01, 0.99);
 }
 
 template <class Fields>

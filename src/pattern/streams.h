@@ -16,6 +16,7 @@ struct Stream {
         SearchStart = 0x4706,      // the random pattern that a search begins with
         SearchCandidate = 0x4707,  // + iteration, slot
         TypicalViews = 0x4708,     // + shape: the rotations by which a shape's area is measured
+        RefinedMoves = 0x4709,     // the moves of the refined method
     };
 };
 

@@ -1,6 +1,6 @@
 #include "pattern/goal.h"
 
-#include "pattern/pattern_search.h"
+#include "pattern/paper_method.h"
 
 #include <gtest/gtest.h>
 

@@ -35,6 +35,7 @@ ShapePattern withShapes(std::initializer_list<const char*> names, std::uint64_t 
 
 PatternSearch::Options fewInstances(int iterations) {
     PatternSearch::Options options;
+    options.method = PatternSearch::Method::Paper;
     options.instances = 60;
     options.iterations = iterations;
     return options;
@@ -153,7 +154,7 @@ TEST(PatternSearch, deletes_where_the_guide_is_dark_unless_the_threshold_forbids
     EXPECT_EQ(emptied.pattern.instances.size(), 0u);
     EXPECT_EQ(emptied.summary.z, 0);
 
-    options.lambdaDelete = -0.999;
+    options.paper.lambdaDelete = -0.999;
     EXPECT_EQ(search(black, options).pattern.instances.size(), 30u);
 }
 
@@ -164,14 +165,14 @@ TEST(PatternSearch, creates_where_the_guide_is_light_unless_the_threshold_forbid
     options.size = {0.03, 0.06};  // too small to fill the picture, so that there is always more to create
     EXPECT_EQ(search(white, options).pattern.instances.size(), 60u);
 
-    options.lambdaCreate = 0.95;
+    options.paper.lambdaCreate = 0.95;
     const auto kept = search(white, options).pattern.instances;
     EXPECT_TRUE(std::all_of(kept.begin(), kept.end(), [](const ShapeInstance& instance) { return instance.id <= 30; }));
 }
 
 TEST(PatternSearch, grows_where_the_guide_is_light_and_shrinks_where_it_is_dark) {
     PatternSearch::Options options = fewInstances(150);
-    options.lambdaCreate = 0.999, options.lambdaDelete = -0.999;  // sizes alone
+    options.paper.lambdaCreate = 0.999, options.paper.lambdaDelete = -0.999;  // sizes alone
     options.size = {0.01, 0.2};
     const auto meanSize = [](const PatternSearch::Found& found) {
         double sum = 0;
@@ -191,7 +192,7 @@ TEST(PatternSearch, keeps_every_instance_within_the_settings) {
     PatternSearch::Options options = fewInstances(60);
     options.size = {0.03, 0.08};
     options.tilt = 0.3, options.turn = 0.5;
-    options.largestAmount = 3;  // wild
+    options.paper.largestAmount = 3;  // wild
     options.colours = {{{0.1, 0.5, 0.2}, {0.3, 0.9, 0.4}}, {{0, 0, 1}, {0, 0, 1}}};
     const auto found = search(halfWhite(), options);
     std::set<std::uint32_t> ids;
@@ -261,7 +262,7 @@ TEST(PatternSearch, z_is_that_of_the_pattern_as_it_is_read_back) {
 TEST(PatternSearch, options_that_break_a_rule_are_refused_with_name_value_and_rule) {
     EXPECT_EQ(refusal({}), "accepted");
     PatternSearch::Options options;
-    options.successRate = 1;
+    options.paper.successRate = 1;
     EXPECT_EQ(refusal(options), "success_rate = 1 must be in 0.01 .. 0.99");
     options = {};
     options.instances = 0;
@@ -281,8 +282,8 @@ TEST(PatternSearch, options_that_break_a_rule_are_refused_with_name_value_and_ru
 TEST(PatternSearch, thresholds_out_of_order_are_refused) {
     const auto thresholds = [](double remove, double reduce, double increase, double create) {
         PatternSearch::Options options;
-        options.lambdaDelete = remove, options.lambdaReduce = reduce, options.lambdaIncrease = increase,
-        options.lambdaCreate = create;
+        options.paper.lambdaDelete = remove, options.paper.lambdaReduce = reduce, options.paper.lambdaIncrease = increase,
+        options.paper.lambdaCreate = create;
         return refusal(options);
     };
     EXPECT_EQ(thresholds(-0.5, -0.1, 0.1, 0.5), "accepted");

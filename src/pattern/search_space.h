@@ -1,0 +1,56 @@
+#pragma once
+
+#include "pattern/goal.h"
+#include "pattern/pattern_search.h"
+#include "pattern/silhouette.h"
+
+#include "core/random.h"
+
+#include <glm/vec2.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fantascope::pattern {
+
+// What every search method looks for and may choose from: the guide, the shapes, and how large and how turned an instance may be.
+// Constant during a search. Thread: every method is reentrant.
+class SearchSpace {
+public:
+    // `guide`: stored values in the pattern's resolution. Both outlive it.
+    SearchSpace(const GreyImage& guide, std::span<const ElementalShape> shapes, std::uint64_t seed,
+                const PatternSearch::Options& options);
+
+    const PatternSearch::Options& options() const { return options_; }
+    std::uint64_t seed() const { return seed_; }
+    const Goal& goal() const { return goal_; }
+    glm::ivec2 pixels() const { return pixels_; }  // of the comparison
+    double aspect() const { return aspect_; }
+    const Silhouette& silhouette(std::uint32_t shape) const { return silhouettes_[shape]; }
+    // The side of a square as large as the shape is at size 1, on average over the allowed rotations; and the mean of all shapes.
+    double side(std::uint32_t shape) const { return sides_[shape]; }
+    double meanSide() const { return meanSide_; }
+    glm::dvec2 sizes() const { return sizes_; }  // the smallest and the largest
+
+    // An instance of a random shape, size and rotation, at a random point of `cell`; without an id.
+    ShapeInstance randomInstance(const PixelRectangle& cell, Rng& rng) const;
+    // The nearest instance that is allowed and whose numbers are short decimals, with its centre on the canvas: a file then holds,
+    // in few digits, exactly what was compared.
+    ShapeInstance allowed(ShapeInstance instance) const;
+
+private:
+    glm::dvec2 fittingSizes() const;
+
+    const PatternSearch::Options& options_;
+    const std::uint64_t seed_;
+    const Goal goal_;
+    const glm::ivec2 pixels_;
+    const double aspect_;
+    std::vector<Silhouette> silhouettes_;
+    std::vector<double> sides_;
+    double meanSide_ = 0;
+    glm::dvec2 sizes_{0.0};
+};
+
+}  // namespace fantascope::pattern

@@ -1,0 +1,211 @@
+#include "pattern/elemental_shape.h"
+#include "pattern/measure.h"
+#include "pattern/pattern_search.h"
+#include "pattern/running_score.h"
+
+#include "core/scratch_folder.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace fantascope::pattern {
+namespace {
+
+using StopReason = PatternSearch::StopReason;
+
+// Grey from black at the left to white at the right, at a width that is no whole number of words.
+GreyImage ramp(int width = 150, int height = 90) {
+    GreyImage guide(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) guide.at(x, y) = static_cast<float>(x) / static_cast<float>(width - 1);
+    return guide;
+}
+
+// Two white bars.
+GreyImage bars(int width = 150, int height = 90) {
+    GreyImage guide(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) guide.at(x, y) = x % 60 >= 20 && x % 60 < 50 ? 1.0f : 0.0f;
+    return guide;
+}
+
+ShapePattern withShapes(std::initializer_list<const char*> names, std::uint64_t seed = 1) {
+    ShapePattern pattern;
+    pattern.seed = seed;
+    for (const char* name : names) pattern.shapes.push_back(loadShape(name).value());
+    return pattern;
+}
+
+PatternSearch::Options refined(int iterations) {
+    PatternSearch::Options options;
+    options.method = PatternSearch::Method::Refined;
+    options.instances = 80;
+    options.iterations = iterations;
+    return options;
+}
+
+std::optional<StopReason> never(const PatternSearch::Progress&) { return std::nullopt; }
+
+PatternSearch::Found search(const GreyImage& guide, const PatternSearch::Options& options, std::uint64_t seed = 1,
+                            int threads = 1) {
+    return PatternSearch::run(guide, withShapes({"triangle", "leaf"}, seed), options, threads, never);
+}
+
+bool same(const ShapePattern& a, const ShapePattern& b) {
+    return std::equal(a.instances.begin(), a.instances.end(), b.instances.begin(), b.instances.end(),
+                      [](const ShapeInstance& x, const ShapeInstance& y) {
+                          return x.id == y.id && x.shape == y.shape && x.group == y.group && x.centre == y.centre &&
+                                 x.size == y.size && x.rotation == y.rotation && x.colour == y.colour;
+                      });
+}
+
+// Three instances here and there in one word and across two, up to many on one pixel and down again.
+TEST(LayerCounts, counts_what_comes_and_goes) {
+    LayerCounts counts(6);
+    std::vector<int> expected(64, 0);
+    const auto masks = [&] {
+        std::array<std::uint64_t, 3> is{};
+        for (int i = 0; i < 64; ++i)
+            if (const int n = expected[static_cast<std::size_t>(i)]; n < 3)
+                is[static_cast<std::size_t>(n)] |= std::uint64_t{1} << i;
+        return is;
+    };
+    Rng rng(1);
+    std::vector<std::uint64_t> lying;
+    for (int step = 0; step < 4000; ++step) {
+        const bool more = lying.empty() || rng.uniform() < (step < 2000 ? 0.7 : 0.3);
+        const std::size_t which = lying.empty() ? 0 : rng.below(static_cast<std::uint32_t>(lying.size()));
+        const std::uint64_t mask = more ? std::uint64_t{rng.bits()} << 32 | rng.bits() : lying[which];
+        for (int i = 0; i < 64; ++i)
+            if (mask >> i & 1) expected[static_cast<std::size_t>(i)] += more ? 1 : -1;
+        if (more) {
+            counts.add(4, mask);
+            lying.push_back(mask);
+        } else {
+            counts.take(4, mask);
+            lying.erase(lying.begin() + static_cast<std::ptrdiff_t>(which));
+        }
+        const auto is = masks();
+        ASSERT_EQ(counts.none(4), is[0]) << step;
+        ASSERT_EQ(counts.one(4), is[1]) << step;
+        ASSERT_EQ(counts.two(4), is[2]) << step;
+    }
+    EXPECT_EQ(counts.none(3), ~std::uint64_t{0}) << "the neighbour is left alone";
+}
+
+// The running sums are whole numbers and those of a fresh drawing. Example failure: a pixel under two instances is freed when one goes.
+TEST(RefinedMethod, after_many_moves_z_and_overlap_are_those_of_a_fresh_drawing) {
+    for (const GreyImage& guide : {ramp(), bars(), ramp(64, 33), ramp(1, 1), bars(200, 7)}) {
+        for (const int iterations : {0, 1, 60}) {
+            const auto found = search(guide, refined(iterations));
+            EXPECT_EQ(measure(found.pattern, guide).z, found.summary.z)
+                << guide.width() << " x " << guide.height() << ", " << iterations;
+        }
+    }
+}
+
+TEST(RefinedMethod, reads_as_the_drawing_better_than_it_began_and_than_the_papers_method) {
+    PatternSearch::Options paper = refined(40);
+    paper.method = PatternSearch::Method::Paper;
+    for (const GreyImage& guide : {ramp(), bars()}) {
+        const double start = measure(search(guide, refined(0)).pattern, guide).tone;
+        const PatternQuality found = measure(search(guide, refined(40)).pattern, guide);
+        EXPECT_LT(found.tone, 0.5 * start);
+        EXPECT_LT(found.tone, measure(search(guide, paper).pattern, guide).tone);
+    }
+}
+
+// A grey drawing is no black and white one. Example failure: z alone, which throws greys away.
+TEST(RefinedMethod, keeps_greys) {
+    constexpr int kWidth = 300, kHeight = 180;
+    PatternSearch::Options options = refined(100);
+    options.instances = 300;
+    const GreyImage guide = ramp(kWidth, kHeight);
+    const GreyImage seen = drawWhiteOnBlack(search(guide, options).pattern, kWidth, kHeight);
+    for (int fifth = 0; fifth < 5; ++fifth) {
+        double wanted = 0, got = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = fifth * 60; x < fifth * 60 + 60; ++x) {
+                wanted += guide.at(x, y) / (60 * kHeight);
+                got += seen.at(x, y) / (60 * kHeight);
+            }
+        EXPECT_NEAR(got, wanted, 0.05) << fifth;
+    }
+}
+
+TEST(RefinedMethod, overlap_is_what_its_weight_allows) {
+    PatternSearch::Options options = refined(60);
+    const GreyImage guide = bars();
+    const auto overlap = [&](double weight) {
+        options.refined.overlapWeight = weight;
+        return measure(search(guide, options).pattern, guide).overlap;
+    };
+    EXPECT_LT(overlap(1), 0.5 * overlap(0));
+}
+
+TEST(RefinedMethod, keeps_every_instance_within_the_settings) {
+    PatternSearch::Options options = refined(60);
+    options.size = {0.05, 0.12};
+    options.tilt = 0.3, options.turn = 0.5;
+    const auto found = search(bars(), options);
+    EXPECT_LE(found.pattern.instances.size(), options.instances);
+    std::set<std::uint32_t> ids;
+    constexpr double kStep = 1e-6;
+    for (const ShapeInstance& i : found.pattern.instances) {
+        EXPECT_TRUE(ids.insert(i.id).second);
+        EXPECT_LT(i.shape, 2u);
+        EXPECT_TRUE(i.centre.x >= 0 && i.centre.x <= found.pattern.aspect() && i.centre.y >= 0 && i.centre.y <= 1);
+        EXPECT_TRUE(i.size >= 0.05 - kStep && i.size <= 0.12 + kStep) << i.size;
+        EXPECT_LE(std::max(std::abs(i.rotation.x), std::abs(i.rotation.y)), 0.3 + kStep);
+        EXPECT_LE(std::abs(i.rotation.z), 0.5 + kStep);
+    }
+}
+
+TEST(RefinedMethod, the_same_seed_gives_the_same_pattern_on_any_number_of_threads) {
+    const auto one = search(ramp(), refined(10), 7, 1);
+    EXPECT_TRUE(same(one.pattern, search(ramp(), refined(10), 7, 3).pattern));
+    EXPECT_FALSE(same(one.pattern, search(ramp(), refined(10), 8, 1).pattern));
+}
+
+// The caller tells after a while how long the run will be. Example failure: what it cools by in the meantime is not what a run of that
+// many iterations cools by.
+TEST(RefinedMethod, a_planned_run_is_repeated_by_its_iterations) {
+    for (const int toldAt : {0, 2, 5}) {
+        const auto planned =
+            PatternSearch::run(ramp(), withShapes({"triangle", "leaf"}), refined(std::numeric_limits<int>::max()), 1, never,
+                               [&](const PatternSearch::Progress& now) -> std::optional<int> {
+                                   if (now.iterations < toldAt) return std::nullopt;
+                                   return 60;
+                               });
+        EXPECT_EQ(planned.summary.reason, StopReason::Time);
+        const auto repeated = search(ramp(), refined(planned.summary.iterations));
+        EXPECT_TRUE(same(planned.pattern, repeated.pattern)) << toldAt;
+        EXPECT_EQ(planned.summary.iterations, std::max(60, 20 * toldAt)) << "nothing cools before it is told";
+    }
+}
+
+TEST(RefinedMethod, stops_below_the_target_and_when_it_is_asked_to) {
+    PatternSearch::Options options = refined(100'000);
+    options.targetZ = 0.15;
+    const auto found = search(bars(), options);
+    EXPECT_EQ(found.summary.reason, StopReason::TargetReached);
+    EXPECT_LT(found.summary.z, 0.15);
+    const auto stopped = PatternSearch::run(bars(), withShapes({"triangle"}), refined(1000), 1,
+                                            [](const PatternSearch::Progress& now) -> std::optional<StopReason> {
+                                                if (now.iterations == 3) return StopReason::Interrupted;
+                                                return std::nullopt;
+                                            });
+    EXPECT_EQ(stopped.summary.iterations, 3);
+    EXPECT_EQ(stopped.summary.reason, StopReason::Interrupted);
+}
+
+TEST(RefinedMethod, a_black_guide_gives_no_shapes_and_a_white_one_is_filled) {
+    EXPECT_EQ(search(GreyImage(96, 54, 0.0f), refined(20)).pattern.instances.size(), 0u);
+    EXPECT_LT(search(GreyImage(96, 54, 1.0f), refined(100)).summary.z, 0.1);
+}
+
+}  // namespace
+}  // namespace fantascope::pattern
