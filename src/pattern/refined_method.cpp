@@ -23,6 +23,8 @@ constexpr double kWarm = 0.05;
 constexpr double kCoolest = 1e-3;
 // How often a dark place is looked for where light is wanted.
 constexpr int kLooks = 8;
+// Pixels that an instance must be worth: one that lies hidden under others is not.
+constexpr double kWorth = 0.5;
 
 class RefinedSearch {
 public:
@@ -32,6 +34,7 @@ public:
           score_(space),
           rng_(streamSeed(space.seed(), {Stream::RefinedMoves})) {
         const glm::dvec2 sizes = space.sizes();
+        most_ = std::min<std::size_t>(space.options().instances, LayerCounts::kMost);
         typicalArea_ = std::pow(space.meanSide() * space.pixels().y, 2) * sizes.x * sizes.y;
         score_.jitter(rng_);
         start();
@@ -90,7 +93,7 @@ private:
     void start() {
         const double light = space_.goal().mean() * space_.pixels().x * space_.pixels().y;
         const auto most = static_cast<std::size_t>(std::ceil(light / typicalArea_));
-        while (instances_.size() < std::min<std::size_t>(most, space_.options().instances)) {
+        while (instances_.size() < std::min(most, most_)) {
             place(space_.randomInstance(cellAround(lightPixel()), rng_));
             add();
         }
@@ -118,9 +121,9 @@ private:
         ++evaluations_;
         const double kind = rng_.uniform();
         if (kind < 0.05 || instances_.empty()) {
-            if (instances_.size() >= space_.options().instances) return;
+            if (instances_.size() >= most_) return;
             place(space_.randomInstance(cellAround(darkPixel()), rng_));
-            if (isGood(score_.propose({}, runs_)))
+            if (isGood(score_.propose({}, runs_) + kWorth))
                 keepNew();
             else
                 score_.reject({});
@@ -128,7 +131,7 @@ private:
         }
         const std::size_t index = rng_.below(static_cast<std::uint32_t>(instances_.size()));
         if (kind < 0.10) {
-            if (isGood(score_.propose(drawn_[index], {})))
+            if (isGood(score_.propose(drawn_[index], {}) - kWorth))
                 forget(index);
             else
                 score_.reject(drawn_[index]);
@@ -202,6 +205,7 @@ private:
     SilhouetteScanner scanner_;
     RunningScore score_;
     Rng rng_;
+    std::size_t most_ = 0;    // instances
     double typicalArea_ = 1;  // of an instance, pixels
     double temperature_ = 0;
     std::vector<ShapeInstance> instances_;

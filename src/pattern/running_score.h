@@ -22,7 +22,7 @@ using PixelRuns = std::vector<PixelRun>;
 // by a few operations on words, with a carry from plane to plane, instead of one on every pixel. Counts up to 65535.
 class LayerCounts {
 public:
-    static constexpr int kBits = 64, kPlanes = 16;
+    static constexpr int kBits = 64, kPlanes = 16, kMost = (1 << kPlanes) - 1;
 
     explicit LayerCounts(std::size_t words);
 

@@ -202,6 +202,14 @@ TEST(RefinedMethod, stops_below_the_target_and_when_it_is_asked_to) {
     EXPECT_EQ(stopped.summary.reason, StopReason::Interrupted);
 }
 
+// Example failure: what lies hidden costs nothing, and a pattern fills up with it.
+TEST(RefinedMethod, keeps_no_instance_that_shows_nothing) {
+    PatternSearch::Options options = refined(100);
+    options.instances = 100'000;
+    options.size = {0.5, 0.5};
+    EXPECT_EQ(search(GreyImage(1, 1, 1.0f), options).pattern.instances.size(), 1u);
+}
+
 TEST(RefinedMethod, a_black_guide_gives_no_shapes_and_a_white_one_is_filled) {
     EXPECT_EQ(search(GreyImage(96, 54, 0.0f), refined(20)).pattern.instances.size(), 0u);
     EXPECT_LT(search(GreyImage(96, 54, 1.0f), refined(100)).summary.z, 0.1);
