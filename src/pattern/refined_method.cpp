@@ -95,7 +95,8 @@ private:
         const auto most = static_cast<std::size_t>(std::ceil(light / typicalArea_));
         while (instances_.size() < std::min(most, most_)) {
             place(space_.randomInstance(cellAround(lightPixel()), rng_));
-            add();
+            score_.propose({}, runs_);
+            keepNew();
         }
     }
 
@@ -182,10 +183,6 @@ private:
                       [&](int y, int begin, int end) {
                           runs_.push_back({y, begin, end});
                       });
-    }
-    void add() {
-        score_.propose({}, runs_);
-        keepNew();
     }
     void keepNew() {
         score_.accept(runs_);

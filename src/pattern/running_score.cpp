@@ -146,7 +146,6 @@ void RunningScore::noteCovered(std::size_t word, int y, int first, std::uint64_t
         const int end = columnEnds_[cell(column)] - first;
         const std::uint64_t here = end < LayerCounts::kBits ? pixels & ((std::uint64_t{1} << end) - 1) : pixels;
         const int count = sign * std::popcount(here);
-        coveredChange_ += count;
         std::int32_t& change = blockChange_[cell(row + column)];
         if (change == 0) touchedBlocks_.push_back(row + column);
         change += count;
@@ -156,20 +155,21 @@ void RunningScore::noteCovered(std::size_t word, int y, int first, std::uint64_t
 
 double RunningScore::propose(const PixelRuns& out, const PixelRuns& in) {
     ++move_;
-    sumChange_ = coveredChange_ = severalChange_ = 0;
+    sumChange_ = 0;
+    std::int64_t several = 0;
     forEachWord(out, [&](std::size_t word, std::uint64_t mask, int y, int first) {
         const std::uint64_t freed = counts_.one(word) & mask;
-        severalChange_ -= std::popcount(counts_.two(word) & mask);
+        several -= std::popcount(counts_.two(word) & mask);
         counts_.take(word, mask);
         noteCovered(word, y, first, freed, -1);
     });
     forEachWord(in, [&](std::size_t word, std::uint64_t mask, int y, int first) {
-        severalChange_ += std::popcount(counts_.one(word) & mask);
+        several += std::popcount(counts_.one(word) & mask);
         noteCovered(word, y, first, counts_.none(word) & mask, 1);
     });
     const PatternSearch::Options::Refined& weights = space_.options().refined;
     return (weights.zWeight * static_cast<double>(sumChange_) + weights.toneWeight * toneChange()) / Goal::kWhite +
-           weights.overlapWeight * static_cast<double>(severalChange_);
+           weights.overlapWeight * static_cast<double>(several);
 }
 
 // Brings the move's changes from the blocks to the cells.
@@ -196,8 +196,6 @@ double RunningScore::toneChange() {
 void RunningScore::accept(const PixelRuns& in) {
     forEachWord(in, [&](std::size_t word, std::uint64_t mask, int, int) { counts_.add(word, mask); });
     sum_ += sumChange_;
-    covered_ += coveredChange_;
-    several_ += severalChange_;
     for (Scale& scale : scales_) {
         for (const std::int32_t here : scale.touched)
             scale.lack[cell(here)] -= std::int64_t{Goal::kWhite} * std::exchange(scale.change[cell(here)], 0);
@@ -214,8 +212,6 @@ void RunningScore::reject(const PixelRuns& out) {
 }
 
 double RunningScore::z() const { return static_cast<double>(sum_) / (static_cast<double>(Goal::kWhite) * width_ * height_); }
-
-double RunningScore::overlap() const { return covered_ == 0 ? 0 : static_cast<double>(several_) / static_cast<double>(covered_); }
 
 bool RunningScore::lacksLight(glm::ivec2 pixel) const {
     const std::size_t word = wordAt(pixel.x, pixel.y);

@@ -67,8 +67,7 @@ public:
     // Moves the lattice of the tone. Needed once before the first move.
     void jitter(Rng& rng);
 
-    double z() const;        // mean, 0..1
-    double overlap() const;  // the share of covered pixels that several instances cover
+    double z() const;  // mean, 0..1
     // Whether the place lacks light: the pixel is dark and its surrounding darker than in the guide.
     bool lacksLight(glm::ivec2 pixel) const;
 
@@ -100,9 +99,9 @@ private:
     std::vector<std::int32_t> rowOf_;                  // the first block of the block row of each y
     std::array<Scale, kScales.size()> scales_;
 
-    std::int64_t sum_ = 0, covered_ = 0, several_ = 0;  // |I - I'| in Goal's units; pixels
+    std::int64_t sum_ = 0;  // |I - I'| in Goal's units
     // The move at hand.
-    std::int64_t move_ = 0, sumChange_ = 0, coveredChange_ = 0, severalChange_ = 0;
+    std::int64_t move_ = 0, sumChange_ = 0;
     std::vector<std::int32_t> blockChange_;  // zero between moves
     std::vector<std::int32_t> touchedBlocks_;
 };

@@ -1,7 +1,7 @@
 #include "pattern/pattern_search.h"
 
-#include "pattern/elemental_shape.h"
 #include "pattern/measure.h"
+#include "pattern/search_helpers.h"
 
 #include "core/scratch_folder.h"
 
@@ -16,7 +16,6 @@ namespace fantascope::pattern {
 namespace {
 
 using testing::HasSubstr;
-using StopReason = PatternSearch::StopReason;
 
 // White in the left half, black in the right.
 GreyImage halfWhite(int width = 96, int height = 54) {
@@ -24,13 +23,6 @@ GreyImage halfWhite(int width = 96, int height = 54) {
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width / 2; ++x) guide.at(x, y) = 1;
     return guide;
-}
-
-ShapePattern withShapes(std::initializer_list<const char*> names, std::uint64_t seed = 1) {
-    ShapePattern pattern;
-    pattern.seed = seed;
-    for (const char* name : names) pattern.shapes.push_back(loadShape(name).value());
-    return pattern;
 }
 
 PatternSearch::Options fewInstances(int iterations) {
@@ -41,18 +33,9 @@ PatternSearch::Options fewInstances(int iterations) {
     return options;
 }
 
-std::optional<StopReason> never(const PatternSearch::Progress&) { return std::nullopt; }
-
 PatternSearch::Found search(const GreyImage& guide, const PatternSearch::Options& options, std::uint64_t seed = 1,
                             int threads = 1) {
     return PatternSearch::run(guide, withShapes({"triangle", "square"}, seed), options, threads, never);
-}
-
-bool same(const std::vector<ShapeInstance>& a, const std::vector<ShapeInstance>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const ShapeInstance& x, const ShapeInstance& y) {
-        return x.id == y.id && x.shape == y.shape && x.group == y.group && x.centre == y.centre && x.size == y.size &&
-               x.rotation == y.rotation && x.colour == y.colour;
-    });
 }
 
 std::string refusal(const PatternSearch::Options& options) {
