@@ -1,6 +1,8 @@
 #pragma once
 // Runs the built program as a user would.
 
+#include "scratch_folder.h"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -21,26 +23,6 @@ struct Outcome {
     std::string out, errors;
 };
 
-// A folder of a test's own, empty at first, removed at the end.
-class Folder {
-public:
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "fantascope-test.XXXXXX").string();
-        path_ = ::mkdtemp(name.data());
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
-
 inline std::string contentsOf(const std::filesystem::path& file) {
     std::ostringstream text;
     text << std::ifstream(file, std::ios::binary).rdbuf();
@@ -50,7 +32,7 @@ inline std::string contentsOf(const std::filesystem::path& file) {
 // Runs fantascope with `arguments` in `folder`, with further environment variables, and waits for it.
 inline Outcome runProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                           const std::vector<std::pair<std::string, std::string>>& environment = {}) {
-    const Folder captured;
+    const ScratchFolder captured;
     const std::string out = captured / "out", errors = captured / "errors";
     const pid_t child = ::fork();
     if (child == 0) {

@@ -2,10 +2,11 @@
 
 #include "pattern/elemental_shape.h"
 #include "pattern/shape_pattern.h"
-#include "show/show_folder.h"
+#include "show/replaced.h"
 
 #include "core/file.h"
 #include "core/image.h"
+#include "scratch_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -36,18 +37,18 @@ struct Checked {
     std::string refusal;  // "" if nothing was refused
 };
 
-Checked check(const ShowFolder& folder, const CheckOptions& options) {
+Checked check(const ScratchFolder& folder, const CheckOptions& options) {
     std::ostringstream out;
     const auto done = checkFiles(options, out);
     return {folder.relative(out.str()), done ? "" : folder.relative(done.error().message())};
 }
 
 TEST(Check, says_of_each_good_file_what_it_holds) {
-    const ShowFolder folder;
-    folder.write("show.yaml", kShow);
-    const auto site = folder.write("site.yaml", kSite);
+    const ScratchFolder folder;
+    folder.file("show.yaml", kShow);
+    const auto site = folder.file("site.yaml", kSite);
     const auto settings =
-        folder.write("fine.pattern-settings.yaml", "fantascope: pattern-settings\nversion: 1\nshapes: {instances: 40}\n");
+        folder.file("fine.pattern-settings.yaml", "fantascope: pattern-settings\nversion: 1\nshapes: {instances: 40}\n");
     const auto guide = folder.path() / "guide.png";
     ASSERT_TRUE(writePng(guide, GreyImage(64, 36)));
     const Checked checked = check(folder, {{folder.path() / "show.yaml", site, settings, guide}, std::nullopt});
@@ -60,17 +61,17 @@ TEST(Check, says_of_each_good_file_what_it_holds) {
 }
 
 TEST(Check, a_folder_stands_for_the_show_in_it) {
-    const ShowFolder folder;
-    folder.write("show.yaml", kShow);
+    const ScratchFolder folder;
+    folder.file("show.yaml", kShow);
     EXPECT_THAT(check(folder, {{folder.path()}, std::nullopt}).lines, HasSubstr("show, 2 cues"));
 }
 
 // A show may be right in itself and still not fit the place. Example failure: the technician learns it at nightfall.
 TEST(Check, a_show_is_held_against_the_site) {
-    const ShowFolder folder;
-    const auto site = folder.write("site.yaml", kSite);
-    const auto show = folder.write("show.yaml", kShow),
-               other = folder.write("other.yaml", replaced(std::string(kShow), "lamp: 1", "lmap: 1"));
+    const ScratchFolder folder;
+    const auto site = folder.file("site.yaml", kSite);
+    const auto show = folder.file("show.yaml", kShow),
+               other = folder.file("other.yaml", replaced(std::string(kShow), "lamp: 1", "lmap: 1"));
     const Checked fits = check(folder, {{show}, site});
     EXPECT_EQ(fits.lines,
               "ok site.yaml: site, 1 output, 1 fixture, 0 relays\n"
@@ -83,7 +84,7 @@ TEST(Check, a_show_is_held_against_the_site) {
 
 // Example failure: the show loads, and one of its pictures stays black for want of a file.
 TEST(Check, a_show_is_checked_with_the_patterns_and_guides_that_it_names) {
-    const ShowFolder folder;
+    const ScratchFolder folder;
     const auto patternFile = folder.path() / "leaves.pattern.yaml", guide = folder.path() / "leaves.png";
     pattern::ShapePattern pattern;
     pattern.guide = guide;
@@ -94,7 +95,7 @@ TEST(Check, a_show_is_checked_with_the_patterns_and_guides_that_it_names) {
     ASSERT_TRUE(writePng(guide, GreyImage(64, 36)));
     ASSERT_TRUE(pattern::writePattern(patternFile, pattern));
     const auto show =
-        folder.write("show.yaml", replaced(std::string(kShow), "{solid: [0.1, 0.1, 0.1]}", "{pattern: leaves.pattern.yaml}"));
+        folder.file("show.yaml", replaced(std::string(kShow), "{solid: [0.1, 0.1, 0.1]}", "{pattern: leaves.pattern.yaml}"));
     EXPECT_EQ(check(folder, {{show}, std::nullopt}).lines,
               "ok show.yaml: show, 2 cues, 1 look, 1 source\n"
               "ok leaves.pattern.yaml: pattern, 2 instances, 2 triangles\n"
@@ -107,13 +108,13 @@ TEST(Check, a_show_is_checked_with_the_patterns_and_guides_that_it_names) {
 
 // One mistake does not hide the next file's.
 TEST(Check, goes_on_after_a_refusal_and_counts_them) {
-    const ShowFolder folder;
+    const ScratchFolder folder;
     const auto truncated = folder.path() / "truncated.png";
     ASSERT_TRUE(writePng(truncated, GreyImage(64, 36, 0.5f)));
     const std::string png = readFile(truncated).value();
-    folder.write("truncated.png", png.substr(0, png.size() / 2));
-    const Checked checked = check(folder, {{folder.write("a.yaml", "fantascope: shoe\n"), folder.write("b.yaml", "version: 1\n"),
-                                            truncated, folder.path() / "absent.yaml", folder.write("site.yaml", kSite)},
+    folder.file("truncated.png", png.substr(0, png.size() / 2));
+    const Checked checked = check(folder, {{folder.file("a.yaml", "fantascope: shoe\n"), folder.file("b.yaml", "version: 1\n"),
+                                            truncated, folder.path() / "absent.yaml", folder.file("site.yaml", kSite)},
                                            std::nullopt});
     std::istringstream lines(checked.lines);
     std::string line;
@@ -127,8 +128,8 @@ TEST(Check, goes_on_after_a_refusal_and_counts_them) {
 }
 
 TEST(Check, a_file_that_is_named_twice_is_read_once) {
-    const ShowFolder folder;
-    const auto site = folder.write("site.yaml", kSite);
+    const ScratchFolder folder;
+    const auto site = folder.file("site.yaml", kSite);
     const Checked checked = check(folder, {{site, folder.path() / "." / "site.yaml"}, site});
     EXPECT_EQ(checked.lines, "ok site.yaml: site, 1 output, 1 fixture, 0 relays\n");
 }

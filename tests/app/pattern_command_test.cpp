@@ -4,8 +4,8 @@
 
 #include "core/file.h"
 #include "core/image.h"
-#include "core/scratch_folder.h"
 #include "program.h"
+#include "scratch_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

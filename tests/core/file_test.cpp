@@ -1,6 +1,6 @@
 #include "core/file.h"
 
-#include "core/scratch_folder.h"
+#include "scratch_folder.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 #include "core/mesh.h"
 
-#include "core/scratch_folder.h"
+#include "scratch_folder.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

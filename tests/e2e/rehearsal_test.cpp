@@ -24,7 +24,7 @@ void replace(std::string& text, const std::string& before, const std::string& af
 }
 
 // The default site with further lines in its simulation section.
-fs::path siteWith(const Folder& folder, const std::string& lines) {
+fs::path siteWith(const ScratchFolder& folder, const std::string& lines) {
     fs::copy(kSource / "config/simulated", folder / "site", fs::copy_options::recursive);
     std::ofstream(folder / "site/site.yaml", std::ios::app) << lines;
     return folder / "site";
@@ -41,7 +41,7 @@ Outcome rehearse(const fs::path& folder, std::vector<std::string> more,
 // Every part on a thread of its own, for the thread sanitizer's eyes above all. How punctual they are, and how
 // much a camera sees beside them on a machine without time to spare, is for bench/rehearsal to say.
 TEST(Rehearsal, in_real_time_reaches_every_cue) {
-    const Folder folder;
+    const ScratchFolder folder;
     const Outcome outcome =
         runProgram({"rehearse", "--seconds", "6", "--record", "rehearsal", "--report", "report.json"}, folder.path());
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
@@ -59,7 +59,7 @@ TEST(Rehearsal, in_real_time_reaches_every_cue) {
 }
 
 TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
-    const Folder folder;
+    const ScratchFolder folder;
     const Outcome outcome = rehearse(folder.path(), {"--seconds", "30"});
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
     const json report = json::parse(contentsOf(folder / "report.json"));
@@ -81,7 +81,7 @@ TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
 // The operator's word is only worth something if a rehearsal can be repeated. Example failure: a part that reads the real clock, a result
 // that depends on which thread came first.
 TEST(Rehearsal, is_the_same_byte_for_byte_in_another_folder_and_with_other_threads) {
-    const Folder one, other;
+    const ScratchFolder one, other;
     ASSERT_EQ(rehearse(one.path(), {"--seconds", "6"}, {{"LP_NUM_THREADS", "0"}}).status, 0);
     ASSERT_EQ(rehearse(other.path(), {"--seconds", "6"}, {{"LP_NUM_THREADS", "2"}}).status, 0);
     for (const char* file : {"frames.csv", "dmx.csv", "relays.csv", "left.mp4", "right.mp4", "contact-sheet.png"})
@@ -91,7 +91,7 @@ TEST(Rehearsal, is_the_same_byte_for_byte_in_another_folder_and_with_other_threa
 }
 
 TEST(Rehearsal, another_seed_gives_other_camera_noise_and_the_same_show) {
-    const Folder one, other;
+    const ScratchFolder one, other;
     ASSERT_EQ(rehearse(one.path(), {"--seconds", "3", "--by-hand", "--from", "Full", "--seed", "1"}).status, 0);
     ASSERT_EQ(rehearse(other.path(), {"--seconds", "3", "--by-hand", "--from", "Full", "--seed", "2"}).status, 0);
     EXPECT_EQ(contentsOf(one / "rehearsal/frames.csv"), contentsOf(other / "rehearsal/frames.csv"));
@@ -113,7 +113,7 @@ double meanScore(const json& series, double from, double to) {
 // The camera's score tells a technician which projector was knocked, and that it stands right again. It knows the nominal site alone.
 // Example failure: the comparison reads the simulated truth, so that a bump moves both sides.
 TEST(Rehearsal, the_cameras_score_rises_while_a_projector_is_bumped_and_only_for_its_output) {
-    const Folder folder;
+    const ScratchFolder folder;
     const fs::path site = siteWith(
         folder, "  faults:\n    - {at: 6, until: 12, kind: bump, output: left, move: [0.05, 0, 0], turn: [0, 1.5, 0.5]}\n");
     const Outcome outcome = rehearse(folder.path(), {"--seconds", "18", "--by-hand", "--from", "Full", "--site", site.string()});
@@ -130,7 +130,7 @@ TEST(Rehearsal, the_cameras_score_rises_while_a_projector_is_bumped_and_only_for
 }
 
 TEST(Rehearsal, an_unplugged_projector_goes_dark_and_comes_back_while_the_other_plays_on) {
-    const Folder folder;
+    const ScratchFolder folder;
     const fs::path site = siteWith(folder, "  faults:\n    - {at: 2, until: 4, kind: unplug, device: left}\n");
     ASSERT_EQ(rehearse(folder.path(), {"--seconds", "6", "--by-hand", "--from", "Full", "--site", site.string()}).status, 0);
     const json report = json::parse(contentsOf(folder / "report.json"));
@@ -141,7 +141,7 @@ TEST(Rehearsal, an_unplugged_projector_goes_dark_and_comes_back_while_the_other_
 
 // Each mistake ends with one message that says where and what to do, exit status 1, and nothing half written.
 TEST(Rehearsal, bad_input_is_refused_before_anything_is_shown) {
-    const Folder folder;
+    const ScratchFolder folder;
     const auto refused = [&](std::vector<std::string> arguments) {
         const Outcome outcome = rehearse(folder.path(), std::move(arguments));
         EXPECT_EQ(outcome.status, 1) << outcome.errors;
@@ -164,7 +164,7 @@ TEST(Rehearsal, bad_input_is_refused_before_anything_is_shown) {
 }
 
 TEST(Rehearsal, wrong_usage_has_its_own_exit_status) {
-    const Folder folder;
+    const ScratchFolder folder;
     EXPECT_EQ(runProgram({"rehearse", "--secnds", "5"}, folder.path()).status, 2);
     EXPECT_EQ(runProgram({"rehears"}, folder.path()).status, 2);
     EXPECT_EQ(runProgram({}, folder.path()).status, 2);

@@ -1,11 +1,12 @@
 #include "pattern/motion_file.h"
 #include "pattern/pattern_motion.h"
 #include "pattern/shape_pattern.h"
-#include "show/show_folder.h"
+#include "show/replaced.h"
 
 #include "core/config.h"
 #include "core/file.h"
 #include "core/random.h"
+#include "scratch_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -40,23 +41,23 @@ instances:
 )";
 
 // A folder with a pattern's shape file.
-struct PatternFolder : ShowFolder {
-    PatternFolder() { write("shapes/sculpture.obj", kMesh); }
-    std::filesystem::path file() const { return path() / "tree.pattern.yaml"; }
-    std::string bytes() const { return readFile(file()).value(); }
+struct PatternFolder : ScratchFolder {
+    PatternFolder() { file("shapes/sculpture.obj", kMesh); }
+    std::filesystem::path pattern() const { return path() / "tree.pattern.yaml"; }
+    std::string bytes() const { return readFile(pattern()).value(); }
 };
 
 // What readPattern says of the text, led by the file's name.
 std::string refusal(const std::string& text) {
     const PatternFolder folder;
-    const auto pattern = readPattern(folder.write("tree.pattern.yaml", text));
+    const auto pattern = readPattern(folder.file("tree.pattern.yaml", text));
     return pattern ? "accepted" : folder.relative(pattern.error().message());
 }
 std::string refusalAfter(std::string_view what, std::string_view by) {
     return refusal(replaced(std::string(kPattern), what, by));
 }
 
-ShapePattern sample(const PatternFolder& folder) { return readPattern(folder.write("tree.pattern.yaml", kPattern)).value(); }
+ShapePattern sample(const PatternFolder& folder) { return readPattern(folder.file("tree.pattern.yaml", kPattern)).value(); }
 
 // Every number as the search finds them: no short decimals.
 ShapePattern randomPattern(const PatternFolder& folder, std::uint32_t instances) {
@@ -121,12 +122,12 @@ TEST(PatternFile, absent_motion_keeps_every_default) {
 TEST(PatternFile, what_was_written_is_read_back) {
     const PatternFolder folder;
     const ShapePattern written = randomPattern(folder, 500);
-    ASSERT_TRUE(writePattern(folder.file(), written));
+    ASSERT_TRUE(writePattern(folder.pattern(), written));
     const std::string bytes = folder.bytes();
-    const ShapePattern once = readPattern(folder.file()).value();
-    ASSERT_TRUE(writePattern(folder.file(), once));
+    const ShapePattern once = readPattern(folder.pattern()).value();
+    ASSERT_TRUE(writePattern(folder.pattern(), once));
     EXPECT_EQ(folder.bytes(), bytes);
-    const ShapePattern twice = readPattern(folder.file()).value();
+    const ShapePattern twice = readPattern(folder.pattern()).value();
 
     EXPECT_EQ(once.guide, written.guide);
     EXPECT_EQ(once.guideTransfer, written.guideTransfer);
@@ -158,8 +159,8 @@ TEST(PatternFile, angles_keep_the_digits_that_a_person_wrote) {
 // A folder can be moved whole, and two runs in different places can be compared by their bytes.
 TEST(PatternFile, the_same_pattern_gives_the_same_bytes_in_whatever_folder) {
     const PatternFolder one, other;
-    ASSERT_TRUE(writePattern(one.file(), randomPattern(one, 20)));
-    ASSERT_TRUE(writePattern(other.file(), randomPattern(other, 20)));
+    ASSERT_TRUE(writePattern(one.pattern(), randomPattern(one, 20)));
+    ASSERT_TRUE(writePattern(other.pattern(), randomPattern(other, 20)));
     EXPECT_EQ(one.bytes(), other.bytes());
     EXPECT_THAT(one.bytes(), HasSubstr("guide: guides/tree.png\n"));
     EXPECT_THAT(one.bytes(), HasSubstr("  - file: shapes/sculpture.obj\n"));
@@ -208,10 +209,10 @@ TEST(PatternFile, a_shape_or_guide_that_cannot_be_had_is_refused_with_the_patter
                 HasSubstr(":9:5: shapes[0]: exactly one kind of shape is needed"));
 
     const PatternFolder folder;
-    folder.write("shapes/sculpture.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-    const auto pattern = readPattern(folder.write("tree.pattern.yaml", kPattern));
+    folder.file("shapes/sculpture.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    const auto pattern = readPattern(folder.file("tree.pattern.yaml", kPattern));
     ASSERT_FALSE(pattern);
-    EXPECT_THAT(pattern.error().message(), StartsWith(folder.file().string() + ":10:12: shapes[1].file: "));
+    EXPECT_THAT(pattern.error().message(), StartsWith(folder.pattern().string() + ":10:12: shapes[1].file: "));
     EXPECT_THAT(pattern.error().message(), HasSubstr("has no triangles"));
 }
 
@@ -222,7 +223,7 @@ TEST(PatternFile, what_could_not_be_read_again_is_not_written) {
     const auto expectRefusal = [&](auto spoil, const std::string& why) {
         ShapePattern bad = good;
         spoil(bad);
-        const auto written = writePattern(folder.file(), bad);
+        const auto written = writePattern(folder.pattern(), bad);
         ASSERT_FALSE(written) << why;
         EXPECT_THAT(written.error().message(), HasSubstr(why));
         EXPECT_EQ(folder.bytes(), kPattern);
@@ -298,7 +299,7 @@ std::set<std::string> keysBetween(const std::string& text, const std::string& op
 // A pattern that was written spells out every key, so its keys are those that the document must explain.
 TEST(PatternDocs, explain_every_key_and_no_other) {
     const PatternFolder folder;
-    ASSERT_TRUE(writePattern(folder.file(), sample(folder)));
+    ASSERT_TRUE(writePattern(folder.pattern(), sample(folder)));
     const std::string document = readFile(std::filesystem::path(FANTASCOPE_SOURCE_DIR) / "docs/pattern-format.md").value();
     EXPECT_EQ(keysBetween(document, "\n| `", "`"), keysBetween(folder.bytes(), "", ":"));
 

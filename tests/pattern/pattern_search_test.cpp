@@ -3,7 +3,7 @@
 #include "pattern/measure.h"
 #include "pattern/search_helpers.h"
 
-#include "core/scratch_folder.h"
+#include "scratch_folder.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 #include "pattern/pattern_settings.h"
 
-#include "core/scratch_folder.h"
+#include "scratch_folder.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,8 @@
 #include "show/playback.h"
 #include "show/show.h"
-#include "show/show_folder.h"
 #include "show/site.h"
+
+#include "scratch_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -17,12 +18,12 @@ const std::filesystem::path kSource = FANTASCOPE_SOURCE_DIR;
 
 // The default show as it stands, with files in the places of its patterns, which are made from its drawings.
 struct DefaultShow {
-    ShowFolder folder;
+    ScratchFolder folder;
     Result<Show> show = Error("not loaded");
 
     DefaultShow() {
-        for (const char* pattern : {"left.pattern.yaml", "right.pattern.yaml"}) folder.write(pattern, "");
-        show = Show::load(folder.write("show.yaml", readFile(kSource / "shows/light-movement/show.yaml").value()));
+        for (const char* pattern : {"left.pattern.yaml", "right.pattern.yaml"}) folder.file(pattern, "");
+        show = Show::load(folder.file("show.yaml", readFile(kSource / "shows/light-movement/show.yaml").value()));
     }
 };
 

@@ -2,8 +2,9 @@
 // that the program knows, no more and no fewer.
 
 #include "show/show.h"
-#include "show/show_folder.h"
 #include "show/site.h"
+
+#include "scratch_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -70,15 +71,15 @@ std::set<std::string> knownKeys(const std::string& example, const std::function<
 }
 
 std::string siteRefusal(const std::string& text) {
-    const ShowFolder folder;
-    const auto site = readSite(folder.write("site.yaml", text));
+    const ScratchFolder folder;
+    const auto site = readSite(folder.file("site.yaml", text));
     return site ? "" : site.error().message();
 }
 
 std::string showRefusal(const std::string& text) {
-    const ShowFolder folder;
-    folder.write("patterns/leaves.pattern.yaml", "");
-    const auto show = Show::load(folder.write("show.yaml", text));
+    const ScratchFolder folder;
+    folder.file("patterns/leaves.pattern.yaml", "");
+    const auto show = Show::load(folder.file("show.yaml", text));
     return show ? "" : show.error().message();
 }
 
@@ -93,10 +94,10 @@ TEST(Docs, the_example_of_a_show_loads_and_plays_on_the_example_of_a_site) {
     ASSERT_THAT(examples, SizeIs(1));
     ASSERT_THAT(showRefusal(examples[0]), IsEmpty());
 
-    const ShowFolder folder;
-    folder.write("patterns/leaves.pattern.yaml", "");
-    const auto show = Show::load(folder.write("show.yaml", examples[0]));
-    const auto site = readSite(folder.write("site.yaml", examplesIn(documentOf("site-format.md"))[0]));
+    const ScratchFolder folder;
+    folder.file("patterns/leaves.pattern.yaml", "");
+    const auto show = Show::load(folder.file("show.yaml", examples[0]));
+    const auto site = readSite(folder.file("site.yaml", examplesIn(documentOf("site-format.md"))[0]));
     const auto list = show->bind(*site);
     EXPECT_TRUE(list) << list.error().message();
 }

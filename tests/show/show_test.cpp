@@ -1,6 +1,8 @@
 #include "show/show.h"
 
-#include "show/show_folder.h"
+#include "show/replaced.h"
+
+#include "scratch_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -44,12 +46,12 @@ Site testSite() {
 }
 
 struct Loaded {
-    ShowFolder folder;
+    ScratchFolder folder;
     Result<Show> show = Error("not loaded");
 
     explicit Loaded(const std::string& text) {
-        folder.write("patterns/leaves.pattern.yaml", "");
-        show = Show::load(folder.write("show.yaml", text));
+        folder.file("patterns/leaves.pattern.yaml", "");
+        show = Show::load(folder.file("show.yaml", text));
     }
 };
 

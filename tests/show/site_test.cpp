@@ -1,6 +1,8 @@
 #include "show/site.h"
 
-#include "show/show_folder.h"
+#include "show/replaced.h"
+
+#include "scratch_folder.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
@@ -50,15 +52,15 @@ simulation: {seed: 3}
 
 // What readSite says of the text, led by the file's name.
 std::string refusal(const std::string& text) {
-    const ShowFolder folder;
-    const auto site = readSite(folder.write("site.yaml", text));
+    const ScratchFolder folder;
+    const auto site = readSite(folder.file("site.yaml", text));
     return site ? "accepted" : folder.relative(site.error().message());
 }
 std::string refusalAfter(std::string_view what, std::string_view by) { return refusal(replaced(std::string(kSite), what, by)); }
 
 TEST(Site, reads_everything_that_the_file_says) {
-    const ShowFolder folder;
-    const auto site = readSite(folder.write("site.yaml", kSite));
+    const ScratchFolder folder;
+    const auto site = readSite(folder.file("site.yaml", kSite));
     ASSERT_TRUE(site) << site.error().message();
 
     ASSERT_EQ(site->outputs.size(), 2u);
@@ -89,8 +91,8 @@ TEST(Site, reads_everything_that_the_file_says) {
 
 // The driver of a device reads its own keys, so the whole map must reach it.
 TEST(Site, hands_the_drivers_keys_on_unread) {
-    const ShowFolder folder;
-    const auto site = readSite(folder.write("site.yaml", kSite));
+    const ScratchFolder folder;
+    const auto site = readSite(folder.file("site.yaml", kSite));
     const auto entries = site->outputs[0].display.options.entries();
     ASSERT_EQ(entries->size(), 2u);
     EXPECT_EQ((*entries)[1].first, "colour");
@@ -99,8 +101,8 @@ TEST(Site, hands_the_drivers_keys_on_unread) {
 
 // Corners are the only thing that a technician may leave out for a straight projector.
 TEST(Site, without_corners_the_canvas_fills_the_picture) {
-    const ShowFolder folder;
-    const auto site = readSite(folder.write("site.yaml", kSite));
+    const ScratchFolder folder;
+    const auto site = readSite(folder.file("site.yaml", kSite));
     const Homography projectorFromCanvas = site->outputs[1].projectorFromCanvas(16.0 / 9);
     EXPECT_LT(glm::distance(projectorFromCanvas({16.0 / 9, 1}), glm::dvec2(1920, 1080)), 1e-9);
     EXPECT_LT(glm::distance(projectorFromCanvas({8.0 / 9, 0.5}), glm::dvec2(960, 540)), 1e-9);

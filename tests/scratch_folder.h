@@ -13,7 +13,7 @@
 
 namespace fantascope {
 
-// A folder of a test's own, gone with the object.
+// A folder of a test's own, empty at first, gone with the object.
 class ScratchFolder {
 public:
     ScratchFolder() {
@@ -21,10 +21,14 @@ public:
         FANTASCOPE_CHECK(mkdtemp(name.data()) != nullptr, "the temporary folder can be written to");
         path_ = name;
     }
-    ~ScratchFolder() { std::filesystem::remove_all(path_); }
+    ~ScratchFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
     ScratchFolder(const ScratchFolder&) = delete;
     ScratchFolder& operator=(const ScratchFolder&) = delete;
 
+    const std::filesystem::path& path() const { return path_; }
     std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
     // Makes a file and returns its path.
     std::filesystem::path file(const std::filesystem::path& name, std::string_view bytes) const {
@@ -37,6 +41,12 @@ public:
         for (const auto& entry : std::filesystem::directory_iterator(path_)) names.push_back(entry.path().filename());
         std::sort(names.begin(), names.end());
         return names;
+    }
+    // A message with the folder's name taken out, wherever it stands, so that a test can spell it.
+    std::string relative(std::string message) const {
+        const std::string prefix = path_.string() + "/";
+        for (std::size_t at; (at = message.find(prefix)) != std::string::npos;) message.erase(at, prefix.size());
+        return message;
     }
 
 private:
