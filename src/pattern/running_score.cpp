@@ -359,6 +359,14 @@ void RunningScore::accept(const PixelMask& out, const PixelMask& in) {
 
 double RunningScore::z() const { return static_cast<double>(sum_) / (static_cast<double>(Goal::kWhite) * width_ * height_); }
 
+GreyImage RunningScore::picture() const {
+    GreyImage picture(width_, height_);
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x)
+            if ((words_[wordAt(x / PixelMask::kBits, y)].none >> (x % PixelMask::kBits) & 1) == 0) picture.at(x, y) = 1;
+    return picture;
+}
+
 void RunningScore::findDarkPlaces() {
     darkness_.clear();
     const Scale& finest = scales_[0];

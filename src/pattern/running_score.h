@@ -103,7 +103,8 @@ public:
     // Makes the change that was proposed last, with the same masks.
     void accept(const PixelMask& out, const PixelMask& in);
 
-    double z() const;  // mean, 0..1
+    double z() const;           // mean, 0..1
+    GreyImage picture() const;  // the pattern white on black
 
     // Looks where light is lacking, in the search's region if it has one. What the next one gives is of this moment until it is called again.
     void findDarkPlaces();
