@@ -15,7 +15,7 @@ namespace {
 // Bold: a letter is drawn a few dozen pixels large and has to be read while it sways.
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf";
 constexpr int kPieces = 8;            // straight ones that a curve is cut into
-constexpr double kTolerance = 0.003;  // of an em
+constexpr double kTolerance = 0.004;  // of an em
 constexpr std::size_t kMostPoints = 80;
 
 struct Free {

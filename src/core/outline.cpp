@@ -1,11 +1,9 @@
 #include "core/outline.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Constrained_triangulation_plus_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polyline_simplification_2/Squared_distance_cost.h>
-#include <CGAL/Polyline_simplification_2/simplify.h>
 #include <glm/geometric.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include <map>
 
@@ -14,30 +12,24 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_2;
-using Vertex = CGAL::Polyline_simplification_2::Vertex_base_2<Kernel>;
-using Face = CGAL::Constrained_triangulation_face_base_2<Kernel>;
-using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex, Face>,
-                                                                 CGAL::Exact_predicates_tag>;  // rings that cross are cut there
-using Polylines = CGAL::Constrained_triangulation_plus_2<Triangulation>;
+using Triangulation =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Default, CGAL::Exact_predicates_tag>;  // rings may cross
 
 glm::dvec2 toGlm(const Point& point) { return {point.x(), point.y()}; }
 
-std::vector<Point> toCgal(const std::vector<glm::dvec2>& ring) {
-    std::vector<Point> points;
-    for (const glm::dvec2 point : ring) points.emplace_back(point.x, point.y);
-    return points;
-}
-
-// When points may no longer be taken away, the cheapest first.
-struct Stop {
-    double tolerance;
-    std::size_t most;
-
-    template <class VertexHandle>
-    bool operator()(const Polylines&, VertexHandle, double squaredDistance, std::size_t, std::size_t count) const {
-        return squaredDistance > tolerance * tolerance && count <= most;
+// After Douglas & Peucker (1973).
+Outline simplified(const Outline& outline, double tolerance) {
+    Outline result;
+    for (const auto& ring : outline.rings) {
+        std::vector<cv::Point2f> points, fewer;
+        for (const glm::dvec2 point : ring) points.emplace_back(static_cast<float>(point.x), static_cast<float>(point.y));
+        cv::approxPolyDP(points, fewer, tolerance, true);
+        if (fewer.size() < 3) continue;
+        auto& kept = result.rings.emplace_back();
+        for (const cv::Point2f point : fewer) kept.emplace_back(point.x, point.y);
     }
-};
+    return result;
+}
 
 // By the rings that a ray to the right crosses.
 bool isInside(const Outline& outline, glm::dvec2 point) {
@@ -60,29 +52,18 @@ std::size_t Outline::pointCount() const {
 }
 
 Outline simplified(const Outline& outline, double tolerance, std::size_t most) {
-    Polylines polylines;
-    for (const auto& ring : outline.rings) {
-        const std::vector<Point> points = toCgal(ring);
-        polylines.insert_constraint(points.begin(), points.end(), true);
-    }
-    CGAL::Polyline_simplification_2::simplify(polylines, CGAL::Polyline_simplification_2::Squared_distance_cost(),
-                                              Stop{tolerance, most});
-    Outline result;
-    for (auto id = polylines.constraints_begin(); id != polylines.constraints_end(); ++id) {
-        auto& ring = result.rings.emplace_back();
-        for (auto vertex = polylines.vertices_in_constraint_begin(*id); vertex != polylines.vertices_in_constraint_end(*id);
-             ++vertex)
-            ring.push_back(toGlm((*vertex)->point()));
-        if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-    }
+    constexpr double kCoarser = 1.25;
+    Outline result = simplified(outline, tolerance);
+    while (result.pointCount() > most) result = simplified(outline, tolerance *= kCoarser);
     return result;
 }
 
 TriangleMesh filled(const Outline& outline) {
     Triangulation triangulation;
     for (const auto& ring : outline.rings) {
-        const std::vector<Point> points = toCgal(ring);
-        if (points.size() > 2) triangulation.insert_constraint(points.begin(), points.end(), true);
+        std::vector<Point> points;
+        for (const glm::dvec2 point : ring) points.emplace_back(point.x, point.y);
+        triangulation.insert_constraint(points.begin(), points.end(), true);
     }
     TriangleMesh mesh;
     std::map<Triangulation::Vertex_handle, std::uint32_t> indices;

@@ -16,8 +16,8 @@ struct Outline {
     std::size_t pointCount() const;
 };
 
-// With as few points as stay within `tolerance` of the outline, and further until there are at most `most` or rings would touch;
-// a ring keeps at least three. The unit is that of the points.
+// With few points: the outline stays within `tolerance` of what it was, or farther if that is what it takes to have at most `most`
+// points, > 0. What is narrower may go, and rings that lie closer may cross. The unit is that of the points.
 Outline simplified(const Outline& outline, double tolerance, std::size_t most);
 
 // The region as triangles in z = 0, anticlockwise as seen from +z; none if it has no area.

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr int kTracedSide = 1024;
 // Every triangle costs time in each of a thousand copies: what is kept of the outline, as shares of the side.
 constexpr double kTolerance = 0.003;
-constexpr std::size_t kMostPoints = 80, kTooManyPoints = 4 * kMostPoints;
+constexpr std::size_t kMostPoints = 80, kMostRings = 20;
 // Edges of pixels, which a small picture has without smoothing, are no corners: pixels of the picture.
 constexpr double kSmoothing = 0.7, kStairs = 0.35;
 constexpr double kLeastClear = 0.01;      // transparent pixels, of all: fewer are the edge of a filled page
@@ -48,6 +48,8 @@ std::optional<cv::Mat> regionOf(const RgbaImage& picture) {
     cv::Mat grey, light;
     cv::cvtColor(pixels, grey, cv::COLOR_RGBA2GRAY);
     cv::threshold(grey, light, 0, 255, cv::THRESH_BINARY | cv::THRESH_OTSU);
+    const int lightCount = cv::countNonZero(light);
+    if (lightCount == 0 || lightCount == light.rows * light.cols) return std::nullopt;
     const double lightMean = cv::mean(grey, light)[0] / 255, darkMean = cv::mean(grey, ~light)[0] / 255;
     if (lightMean - darkMean < kLeastContrast) return std::nullopt;
     // The background is what most of the border shows.
@@ -99,12 +101,10 @@ Result<Outline> readOutline(const fs::path& path) {
     }
     const Outline rings = traced(*region, kTracedSide);
     if (rings.rings.empty()) return refused("shows nothing that has an area; fill the shape, or draw it larger");
+    if (rings.rings.size() > kMostRings)
+        return refused(fmt::format("is too intricate: it has {} parts and holes, {} may be", rings.rings.size(), kMostRings));
     const double pixel = 1.0 / std::max(picture.width(), picture.height());
-    Outline outline = simplified(rings, std::max(kTolerance, kStairs * pixel), kMostPoints);
-    if (outline.pointCount() > kTooManyPoints)
-        return refused(fmt::format("is too intricate: its outline needs {} points, {} may be; draw fewer parts and holes",
-                                   outline.pointCount(), kTooManyPoints));
-    return outline;
+    return simplified(rings, std::max(kTolerance, kStairs * pixel), kMostPoints);
 }
 
 }  // namespace fantascope

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace fantascope::pattern {
 namespace {
@@ -51,7 +52,8 @@ SearchSpace::SearchSpace(const GreyImage& guide, std::span<const ElementalShape>
     const auto own = [&](std::size_t index) { return index < options.shapes.size() ? options.shapes[index] : Options::Shape(); };
     double all = 0;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        shares_.push_back(all += own(i).share);
+        shares_.push_back(own(i).share);
+        all += own(i).share;
         areAlike_ = areAlike_ && own(i).share == own(0).share;
     }
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -62,6 +64,7 @@ SearchSpace::SearchSpace(const GreyImage& guide, std::span<const ElementalShape>
         sides_.push_back(typicalSide(silhouettes_.back(), limits_.back().tilt, limits_.back().turn,
                                      Rng(streamSeed(seed, {Stream::TypicalViews, i}))));
         meanSide_ += sides_.back() / (all / shape.share);
+        shares_[i] /= all;
     }
     setSizes();
 }
@@ -72,8 +75,7 @@ void SearchSpace::setSizes() {
     for (std::size_t i = 0; i < limits_.size(); ++i) {
         if (limits_[i].sizes == glm::dvec2(0.0)) limits_[i].sizes = common;
         areCommon = areCommon && limits_[i].sizes == common;
-        const double share = (shares_[i] - (i > 0 ? shares_[i - 1] : 0)) / shares_.back();
-        typicalSizes_ += share * sides_[i] / meanSide_ * limits_[i].sizes;
+        typicalSizes_ += shares_[i] * sides_[i] / meanSide_ * limits_[i].sizes;
     }
     if (areCommon) typicalSizes_ = common;  // to the last bit
 }
@@ -87,15 +89,23 @@ glm::dvec2 SearchSpace::fittingSizes() const {
     return {middle / spread, middle * spread};
 }
 
-std::uint32_t SearchSpace::randomShape(Rng& rng) const {
+std::uint32_t SearchSpace::randomShape(Rng& rng, std::span<const std::uint32_t> counts) const {
     if (areAlike_) return rng.below(static_cast<std::uint32_t>(shares_.size()));
-    const auto drawn = std::upper_bound(shares_.begin(), shares_.end() - 1, rng.uniform() * shares_.back());
-    return static_cast<std::uint32_t>(drawn - shares_.begin());
+    const double wanted = 1.0 + std::accumulate(counts.begin(), counts.end(), 0u);
+    const auto weight = [&](std::size_t i) {
+        return counts.empty() ? shares_[i] : std::max(0.0, shares_[i] * wanted - counts[i]);
+    };
+    double total = 0;
+    for (std::size_t i = 0; i < shares_.size(); ++i) total += weight(i);
+    double at = rng.uniform() * total;
+    std::uint32_t shape = 0;
+    while (shape + 1 < shares_.size() && (at -= weight(shape)) >= 0) ++shape;
+    return shape;
 }
 
-ShapeInstance SearchSpace::randomInstance(const PixelRectangle& cell, Rng& rng) const {
+ShapeInstance SearchSpace::randomInstance(const PixelRectangle& cell, Rng& rng, std::span<const std::uint32_t> counts) const {
     ShapeInstance instance;
-    instance.shape = randomShape(rng);
+    instance.shape = randomShape(rng, counts);
     instance.centre =
         glm::dvec2(rng.uniform(cell.begin.x, cell.end.x), rng.uniform(cell.begin.y, cell.end.y)) / double(pixels_.y);
     const auto& [sizes, tilt, turn] = limits_[instance.shape];
