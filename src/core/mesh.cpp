@@ -31,7 +31,7 @@ void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& sceneFr
         for (unsigned f = 0; f < part.mNumFaces; ++f) {
             const unsigned* corner = part.mFaces[f].mIndices;
             const glm::uvec3 triangle = first + glm::uvec3(corner[0], corner[mirrored ? 2 : 1], corner[mirrored ? 1 : 2]);
-            // In double: neither a giant's nor a dwarf's area leaves the range.
+            // In double: a giant's area is still a number.
             const glm::dvec3 a = mesh.vertices[triangle.x], b = mesh.vertices[triangle.y], c = mesh.vertices[triangle.z];
             if (glm::length(glm::cross(b - a, c - a)) > 0) mesh.triangles.push_back(triangle);
         }

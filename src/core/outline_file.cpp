@@ -23,7 +23,7 @@ constexpr int kTracedSide = 1024;
 constexpr double kTolerance = 0.003;
 constexpr std::size_t kMostPoints = 80, kMostRings = 20;
 // Edges of pixels, which a small picture has without smoothing, are no corners: pixels of the picture.
-constexpr double kSmoothing = 0.7, kStairs = 0.35;
+constexpr double kSmoothing = 0.5, kStairs = 0.35;
 constexpr double kLeastClear = 0.01;      // transparent pixels, of all: fewer are the edge of a filled page
 constexpr double kLeastContrast = 0.1;    // between the region and the rest, 0..1
 constexpr double kLeastPart = 1.0 / 500;  // of the largest part's area
