@@ -164,5 +164,19 @@ TEST(PatternSettings, what_is_wrong_is_refused_with_its_place) {
     EXPECT_THAT(refusal("motion: {group_major: {damping: two}}\n"), HasSubstr("motion.group_major.damping: a number"));
 }
 
+TEST(PatternSettings, the_documents_examples_load) {
+    const std::string document = readFile(std::filesystem::path(FANTASCOPE_SOURCE_DIR) / "docs/pattern-settings.md").value();
+    const SettingsFolder folder;
+    int examples = 0;
+    for (std::size_t at = 0; (at = document.find("```yaml\n", at)) != std::string::npos; ++examples) {
+        at += 8;
+        const std::size_t end = document.find("```\n", at);
+        const auto settings = readPatternSettings(folder.file("example.yaml", document.substr(at, end - at)));
+        EXPECT_TRUE(settings) << settings.error().message();
+        at = end;
+    }
+    EXPECT_EQ(examples, 2);
+}
+
 }  // namespace
 }  // namespace fantascope::pattern
