@@ -7,12 +7,11 @@
 #include "show/site.h"
 
 #include "core/config.h"
+#include "core/file.h"
 #include "core/image.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <deque>
 #include <iostream>
 #include <set>
@@ -79,9 +78,7 @@ Result<Finding> checkGuide(const fs::path& path) {
 // A picture may be a shape as well as a guide; it is taken for a guide.
 bool isShapeFile(const fs::path& path) {
     static const std::set<std::string> kEndings = {".svg", ".fbx", ".obj", ".gltf", ".glb", ".ply", ".stl"};
-    std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-    return kEndings.contains(ending);
+    return kEndings.contains(endingOf(path));
 }
 
 Result<Finding> checkShape(const fs::path& path) {

@@ -139,9 +139,11 @@ Result<std::vector<pattern::ShapeSettings>> chosenShapes(const Options& options,
 bool hasOtherFiles(const fs::path& file) {
     const auto text = readFile(file);
     const Report gltf = Report::parse(text ? *text : "", nullptr, false);
-    if (!gltf.is_object() || !gltf.contains("buffers")) return false;
-    return std::any_of(gltf["buffers"].begin(), gltf["buffers"].end(),
-                       [](const Report& buffer) { return !buffer.value("uri", "").starts_with("data:"); });
+    const auto buffers = gltf.find("buffers");
+    return buffers != gltf.end() && std::any_of(buffers->begin(), buffers->end(), [](const Report& buffer) {
+               const auto uri = buffer.find("uri");
+               return uri == buffer.end() || !uri->is_string() || !uri->get<std::string>().starts_with("data:");
+           });
 }
 
 // Names each file's shape as it will lie beside the pattern; what has to be put there is added to `files`.
@@ -152,7 +154,7 @@ Result<void> placeShapes(const fs::path& output, std::vector<pattern::ShapeSetti
         if (!shape.file.empty()) {
             const fs::path file = shape.file;
             files.push_back(materialFor(output, file, file.filename().string()));
-            if (files.back().copied && file.extension() == ".gltf" && hasOtherFiles(file))
+            if (files.back().copied && endingOf(file) == ".gltf" && hasOtherFiles(file))
                 return Error(fmt::format(
                     "{}: keeps its points in a second file and cannot be copied beside the pattern; export it as .glb", given));
             shape.name = files.back().name;

@@ -1,5 +1,6 @@
 #include "core/outline_file.h"
 
+#include "core/file.h"
 #include "core/image.h"
 #include "core/svg.h"
 
@@ -30,12 +31,6 @@ constexpr double kLeastPart = 1.0 / 500;  // of the largest part's area
 
 constexpr std::array<std::string_view, 8> kPictures = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".svg"};
 
-std::string endingOf(const fs::path& path) {
-    std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-    return ending;
-}
-
 // How much of each pixel belongs to the region, 0..1, its border at 1/2; nothing if the picture is of one colour.
 std::optional<cv::Mat> regionOf(const RgbaImage& picture) {
     const cv::Mat pixels(picture.height(), picture.width(), CV_8UC4, const_cast<Rgba8*>(picture.pixels().data()));
@@ -60,7 +55,7 @@ std::optional<cv::Mat> regionOf(const RgbaImage& picture) {
     return cv::Mat(cv::min(cv::max(region, 0), 1));
 }
 
-// Rings of pixels on the border of the region, of a picture that is at most `side` large afterwards.
+// The rings of pixels on the border of the region, once it is brought to `side`, in shares of it.
 Outline traced(const cv::Mat& region, int side) {
     const int largest = std::max(region.cols, region.rows);
     const double scale = double(side) / largest;
@@ -100,11 +95,12 @@ Result<Outline> readOutline(const fs::path& path) {
         region = cv::Mat(picture.height(), picture.width(), CV_32F, cv::Scalar(1));  // a drawing that fills its box
     }
     const Outline rings = traced(*region, kTracedSide);
-    if (rings.rings.empty()) return refused("shows nothing that has an area; fill the shape, or draw it larger");
     if (rings.rings.size() > kMostRings)
         return refused(fmt::format("is too intricate: it has {} parts and holes, {} may be", rings.rings.size(), kMostRings));
     const double pixel = 1.0 / std::max(picture.width(), picture.height());
-    return simplified(rings, std::max(kTolerance, kStairs * pixel), kMostPoints);
+    Outline outline = simplified(rings, std::max(kTolerance, kStairs * pixel), kMostPoints);
+    if (outline.rings.empty()) return refused("shows nothing that has an area; fill the shape, or draw it larger");
+    return outline;
 }
 
 }  // namespace fantascope

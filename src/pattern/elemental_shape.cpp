@@ -2,7 +2,6 @@
 
 #include "pattern/built_in_shapes.h"
 
-#include "core/check.h"
 #include "core/outline_file.h"
 
 #include <fmt/format.h>
@@ -48,7 +47,7 @@ glm::dvec3 surfaceCentre(const TriangleMesh& mesh) {
 }  // namespace
 
 Result<ElementalShape> makeShape(std::string name, TriangleMesh mesh) {
-    FANTASCOPE_CHECK(!mesh.triangles.empty(), "a mesh has triangles");
+    if (mesh.triangles.empty()) return Error(fmt::format("{}: shows nothing that has an area", name));
     if (mesh.triangles.size() > kMostTriangles)
         return Error(
             fmt::format("{}: has {} triangles, {} may be, for each is drawn in every copy; reduce the mesh to some hundred", name,

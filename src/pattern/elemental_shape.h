@@ -11,7 +11,7 @@
 namespace fantascope::pattern {
 
 // A mesh made an elemental shape: moved so that the centre of its surface (by area) is the origin, and scaled to radius 1.
-// Error: its front view, along -z, shows (nearly) no area, or it has too many triangles.
+// Error: it has no triangles or too many, or its front view, along -z, shows (nearly) no area.
 Result<ElementalShape> makeShape(std::string name, TriangleMesh mesh);
 
 // A built-in shape, as "maple-leaf" or "letter-A". Error: lists them.

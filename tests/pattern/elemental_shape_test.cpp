@@ -53,6 +53,7 @@ TEST(ElementalShape, is_centred_by_area_and_scaled_to_its_farthest_corner) {
 TEST(ElementalShape, a_mesh_without_a_front_view_is_refused_with_advice) {
     const TriangleMesh floor{{{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}}, {{0, 1, 2}}};
     EXPECT_THAT(refusal(makeShape("leaf.obj", floor)), HasSubstr("leaf.obj: seen from the front"));
+    EXPECT_THAT(refusal(makeShape("leaf.obj", {})), HasSubstr("leaf.obj: shows nothing"));
 }
 
 // Example failure: a scan of a million triangles is taken, and a thousand copies of it are drawn for a week.
