@@ -10,6 +10,7 @@
 #include "core/check.h"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -61,6 +62,8 @@ void checkColours(Bounds& bounds, const std::vector<Options::Colours>& colours) 
         }
 }
 
+bool byId(const ShapeInstance& a, const ShapeInstance& b) { return a.id < b.id; }
+
 }  // namespace
 
 Result<void> PatternSearch::Options::check() const {
@@ -91,6 +94,10 @@ Result<void> PatternSearch::Options::check() const {
         TRY(checkRotation("turn", shape.turn, kMostTurn));
     }
     if (colours.empty()) return Error("colours: at least one is needed");
+    if (region && !(region->from.x < region->to.x && region->from.y < region->to.y))
+        return Error("region: its left top corner comes first, then its right bottom one, in canvas heights");
+    if (region && method == Method::Paper)
+        return Error("region: the paper's method changes the whole pattern; only the refined one keeps to a region");
     return {};
 }
 
@@ -125,11 +132,26 @@ PatternSearch::Found PatternSearch::run(const GreyImage& guide, ShapePattern pat
     const GreyImage compared = pattern.height == guide.height() ? guide : resized(guide, pattern.width, pattern.height);
 
     const SearchSpace space(compared, pattern.shapes, pattern.seed, options);
+    const std::vector<ShapeInstance> given = pattern.instances;
     Summary summary = options.method == Method::Paper ? searchByPaper(space, pattern.instances, threads, askStop)
                                                       : searchRefined(space, pattern.instances, askStop, plan);
-    for (ShapeInstance& instance : pattern.instances)
+    const auto dress = [&](ShapeInstance& instance) {
         instance.colour = colourOf(instance, pattern.aspect(), pattern.seed, options);
-    assignGroups(pattern);
+    };
+    if (given.empty()) {
+        for (ShapeInstance& instance : pattern.instances) dress(instance);
+        assignGroups(pattern);
+    } else {
+        // What was there keeps its colour and its movement.
+        const std::uint32_t last = std::max_element(given.begin(), given.end(), byId)->id;
+        for (ShapeInstance& instance : pattern.instances) {
+            if (instance.id <= last) continue;
+            dress(instance);
+            instance.group = std::min_element(given.begin(), given.end(), [&](const ShapeInstance& a, const ShapeInstance& b) {
+                                 return glm::distance(a.centre, instance.centre) < glm::distance(b.centre, instance.centre);
+                             })->group;
+        }
+    }
     return {std::move(pattern), std::move(summary)};
 }
 
