@@ -111,6 +111,7 @@ struct PatternSearch {
         int iterations = 0;  // done so far
         double z = 1;        // of the reference solution
         std::size_t instances = 0;
+        std::function<GreyImage()> picture;  // draws the reference solution, white on black as it is compared
     };
     // Asked before every iteration: a reason to stop now, with the best pattern so far, or nothing.
     using AskStop = std::function<std::optional<StopReason>(const Progress&)>;

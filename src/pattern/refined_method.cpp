@@ -61,7 +61,8 @@ public:
         std::optional<int> planned;
         if (options.iterations < std::numeric_limits<int>::max()) planned = options.iterations;
         for (;; ++summary.iterations) {
-            const PatternSearch::Progress progress{summary.iterations, score_.z(), instances_.size() + kept_.size()};
+            const PatternSearch::Progress progress{summary.iterations, score_.z(), instances_.size() + kept_.size(),
+                                                   [this] { return score_.picture(); }};
             if (const auto reason = whyStop(progress, planned, askStop)) {
                 summary.reason = *reason;
                 break;

@@ -22,7 +22,7 @@ constexpr double kKernelSum = 1024;
 // A guide is black or white where it is no farther from it than about this.
 constexpr double kBinary = 0.02;
 // What the edges of greys weigh: at 1 they are as sharp as those of black and white, and greys become outlines.
-constexpr double kEdges = 0.5;
+constexpr double kEdges = 0.25;
 
 // How many bits of each byte are set, in that byte.
 std::uint64_t bitsOfBytes(std::uint64_t x) {
@@ -358,6 +358,14 @@ void RunningScore::accept(const PixelMask& out, const PixelMask& in) {
 }
 
 double RunningScore::z() const { return static_cast<double>(sum_) / (static_cast<double>(Goal::kWhite) * width_ * height_); }
+
+GreyImage RunningScore::picture() const {
+    GreyImage picture(width_, height_);
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x)
+            if ((words_[wordAt(x / PixelMask::kBits, y)].none >> (x % PixelMask::kBits) & 1) == 0) picture.at(x, y) = 1;
+    return picture;
+}
 
 void RunningScore::findDarkPlaces() {
     darkness_.clear();

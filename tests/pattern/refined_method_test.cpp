@@ -137,10 +137,8 @@ TEST(RunningScore, tone_is_the_difference_behind_two_gaussians) {
         score.accept({}, mask);
         coverage.add(space.silhouette(0), pose);
     }
-    GreyImage drawn(kWidth, kHeight);
-    coverage.forEachRun([&](int y, int begin, int end) {
-        for (int x = begin; x < end; ++x) drawn.at(x, y) = 1;
-    });
+    const GreyImage drawn = coverage.picture();
+    EXPECT_THAT(score.picture().pixels(), testing::ElementsAreArray(drawn.pixels()));
     // From a black picture to this one; all of it far from the picture's edges, beyond which nothing is.
     double expected = 0;
     for (const double sigma : {kHeight / 36.0, kHeight / 18.0}) {
