@@ -19,6 +19,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -43,6 +44,7 @@ struct Options {
     std::optional<std::uint32_t> instances;
     std::optional<double> seconds, targetZ;
     std::optional<int> iterations;
+    bool shadows = false;
     std::uint64_t seed = 1;
     int threads = hardwareThreads();
     PatternSearch::Method method = PatternSearch::Method::Refined;
@@ -86,6 +88,8 @@ void declare(CLI::App& command, Options& options) {
             {"refined", PatternSearch::Method::Refined}, {"paper", PatternSearch::Method::Paper}}))
         ->default_str("refined");
     command.add_option("--image", options.image, "Also write the pattern white on black, in the guide's size, as PNG");
+    command.add_flag("--shadows", options.shadows,
+                     "The shapes are dark and stand where the drawing is dark, as leaves do in a show's foliage");
     command.add_option("--seed", options.seed, "Another seed, another pattern; the same seed, the same pattern")
         ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
         ->capture_default_str();
@@ -125,6 +129,13 @@ Result<void> copyTo(const fs::path& folder, const Material& material) {
     if (!material.copied) return {};
     const std::string content = TRY(readFile(material.source));
     return writeFile(folder / material.name, content);
+}
+
+// The drawing of the shadows that shapes are to fill: what `guide` leaves dark, in the 8 bits of the file that it becomes.
+GreyImage shadowsOf(GreyImage guide) {
+    guide = inverted(std::move(guide));
+    for (float& value : guide.pixels()) value = std::round(value * 255) / 255;
+    return guide;
 }
 
 // Each with what the settings say of it alone.
@@ -246,7 +257,8 @@ Result<void> run(const Options& options) {
     TRY(checkWritable(options.output));
     for (const auto& file : {options.image, options.report})
         if (file) TRY(checkWritable(*file));
-    const GreyImage guide = TRY(readGrey(options.guide));
+    GreyImage guide = TRY(readGrey(options.guide));
+    if (options.shadows) guide = shadowsOf(std::move(guide));
     pattern::PatternSettings settings;
     if (options.settings) settings = TRY(pattern::readPatternSettings(*options.settings));
     settings.search.method = options.method;
@@ -257,7 +269,9 @@ Result<void> run(const Options& options) {
     std::vector<pattern::ShapeSettings> shapes = TRY(chosenShapes(options, settings));
     std::vector<Material> shapeFiles;
     TRY(placeShapes(options.output, shapes, shapeFiles));
-    const Material guideFile = materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
+    const Material guideFile = options.shadows
+                                   ? Material{{}, options.output.stem().stem().string() + ".shadows.png", false}
+                                   : materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
 
     ShapePattern pattern;
     pattern.guideTransfer = settings.guideTransfer;
@@ -275,6 +289,7 @@ Result<void> run(const Options& options) {
 
     // What the pattern names first, so that it never names what is not there.
     const fs::path folder = fs::absolute(options.output).parent_path();
+    if (options.shadows) TRY(writePng(folder / guideFile.name, guide));
     TRY(copyTo(folder, guideFile));
     for (const Material& file : shapeFiles) TRY(copyTo(folder, file));
     found.pattern.guide = folder / guideFile.name;

@@ -140,6 +140,11 @@ Result<void> writePng(const fs::path& path, const RgbaImage& image) {
 GreyImage resized(const GreyImage& image, int width, int height) { return resizedImage(image, width, height); }
 RgbaImage resized(const RgbaImage& image, int width, int height) { return resizedImage(image, width, height); }
 
+GreyImage inverted(GreyImage image) {
+    for (float& value : image.pixels()) value = 1 - value;
+    return image;
+}
+
 GreyImage blurred(const GreyImage& image, double sigma) {
     GreyImage result(image.width(), image.height());
     cv::Mat target = view(result);

@@ -67,6 +67,9 @@ Result<void> writePng(const std::filesystem::path& path, const RgbaImage& image)
 GreyImage resized(const GreyImage& image, int width, int height);
 RgbaImage resized(const RgbaImage& image, int width, int height);
 
+// Light for dark: 1 minus every value.
+GreyImage inverted(GreyImage image);
+
 // A separable Gaussian, in pixels; the border repeats the edge pixel. sigma > 0.
 GreyImage blurred(const GreyImage& image, double sigma);
 
