@@ -1,5 +1,6 @@
 #include "app/check_command.h"
 #include "app/command.h"
+#include "app/export_command.h"
 #include "app/pattern_command.h"
 #include "app/rehearse_command.h"
 
@@ -9,7 +10,7 @@ namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-constexpr AddCommand kCommands[] = {addPatternCommand, addRehearseCommand, addRunCommand, addCheckCommand};
+constexpr AddCommand kCommands[] = {addPatternCommand, addRehearseCommand, addRunCommand, addExportCommand, addCheckCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

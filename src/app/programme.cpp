@@ -23,17 +23,17 @@ struct Pictures {
 
 Result<Pictures> readPictures(const show::Show& show) {
     Pictures pictures;
-    for (const show::Source& source : show.sources) {
-        if (const auto* solid = std::get_if<show::SolidSource>(&source.picture)) {
+    for (const show::Source& declared : show.sources) {
+        if (const auto* solid = std::get_if<show::SolidSource>(&declared.picture)) {
             pictures.sources.emplace_back(render::SolidSource{solid->colour});
             pictures.guides.emplace_back();
             continue;
         }
-        const fs::path& file = std::get<show::PatternSource>(source.picture).file;
-        auto pattern = std::make_shared<const pattern::ShapePattern>(TRY(pattern::readPattern(file)));
-        pictures.guides.push_back(
-            Pictures::Guide{TRY(readGrey(pattern->guide).in(file.string() + ": guide")), pattern->aspect()});
-        pictures.sources.emplace_back(render::PatternSource{pattern, std::make_shared<const pattern::PatternMotion>(*pattern)});
+        const fs::path& file = std::get<show::PatternSource>(declared.picture).file;
+        render::PatternSource source = TRY(readPatternSource(file));
+        const pattern::ShapePattern& pattern = *source.pattern;
+        pictures.guides.push_back(Pictures::Guide{TRY(readGrey(pattern.guide).in(file.string() + ": guide")), pattern.aspect()});
+        pictures.sources.emplace_back(std::move(source));
     }
     return pictures;
 }
@@ -52,6 +52,12 @@ Result<std::vector<Watch::Comparisons>> compareWith(const std::vector<std::optio
 }
 
 }  // namespace
+
+Result<render::PatternSource> readPatternSource(const fs::path& file) {
+    auto pattern = std::make_shared<const pattern::ShapePattern>(TRY(pattern::readPattern(file)));
+    auto motion = std::make_shared<const pattern::PatternMotion>(*pattern);
+    return render::PatternSource{std::move(pattern), std::move(motion)};
+}
 
 Result<Programme> readProgramme(const RunOptions& options) {
     Programme programme;
