@@ -9,6 +9,7 @@
 #include "app/programme.h"
 #include "app/progress.h"
 #include "app/report.h"
+#include "app/site_models.h"
 #include "app/terminal_keys.h"
 
 #include "core/check.h"
@@ -131,17 +132,6 @@ private:
     std::int64_t tick_ = 0;
     show::ShowState state_;
 };
-
-Result<std::size_t> outputNamed(const show::Site& site, const std::string& name) {
-    std::vector<std::string> names;
-    for (const show::Output& output : site.outputs) names.push_back(output.name);
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-    const std::string nearest = nearestName(name, names);
-    return Error(fmt::format(
-        "{}: has no output '{}' ({})", site.file.string(), name,
-        nearest.empty() ? fmt::format("its outputs: {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", nearest)));
-}
 
 Result<Film> filmOfShow(const Options& options) {
     if (options.output.empty()) return Error("export needs --output NAME, the output of the site whose picture is wanted");

@@ -3,6 +3,7 @@
 #include "app/export_command.h"
 #include "app/pattern_command.h"
 #include "app/rehearse_command.h"
+#include "app/template_command.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +11,8 @@ namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-constexpr AddCommand kCommands[] = {addPatternCommand, addRehearseCommand, addRunCommand, addExportCommand, addCheckCommand};
+constexpr AddCommand kCommands[] = {addPatternCommand, addRehearseCommand, addRunCommand,
+                                    addExportCommand,  addTemplateCommand, addCheckCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 
