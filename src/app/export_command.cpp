@@ -2,17 +2,14 @@
 
 #include "app/data_folder.h"
 #include "app/frame_file.h"
+#include "app/frame_run.h"
 #include "app/geometry_options.h"
 #include "app/hand.h"
-#include "app/interrupt.h"
 #include "app/off_screen.h"
 #include "app/programme.h"
-#include "app/progress.h"
 #include "app/report.h"
 #include "app/site_models.h"
-#include "app/terminal_keys.h"
 
-#include "core/check.h"
 #include "core/config.h"
 #include "core/geometry.h"
 
@@ -21,7 +18,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iostream>
 #include <map>
 
 namespace fantascope::app {
@@ -179,33 +175,6 @@ bool isPattern(const fs::path& path) {
     return false;
 }
 
-enum class End { Whole, Interrupted };
-
-// Draws and writes the frames until all are there or somebody has had enough; `done` counts them.
-Result<End> write(const Film& film, std::int64_t frames, OffScreen& screen, FrameFile& file, std::int64_t& done) {
-    const Interrupt interrupt;
-    SteadyClock clock;
-    TerminalKeys keys;
-    Progress progress("export", clock, std::cerr, standardErrorIsTerminal());
-    for (bool paused = false; done < frames;) {
-        while (const auto key = keys.poll()) {
-            if (*key == ' ') paused = !paused;
-            if (*key == '\x1b') return End::Interrupted;
-        }
-        if (interrupt.requested()) return End::Interrupted;
-        progress.update(static_cast<double>(done) / static_cast<double>(frames),
-                        fmt::format("frame {} of {}{}", done, frames, paused ? "  paused, space goes on" : ""));
-        if (paused) {
-            clock.sleepUntil(clock.now() + std::chrono::milliseconds(50));
-            continue;
-        }
-        const Time time = tickTime(done, film.frameRate);
-        TRY(file.write(screen.draw(film.stateAt(time), time)));
-        ++done;
-    }
-    return End::Whole;
-}
-
 Result<void> run(const Options& options) {
     const Film film = TRY(isPattern(options.what) ? filmOfPattern(options) : filmOfShow(options));
     const double wanted = film.seconds * film.frameRate;
@@ -214,28 +183,22 @@ Result<void> run(const Options& options) {
 
     const auto screen = TRY(OffScreen::open(film.size, film.corners, film.sources));
     const auto file = TRY(FrameFile::open(options.file, film.size, film.frameRate, options.alpha));
-    std::int64_t done = 0;
-    const End end = TRY(write(film, frames, *screen, *file, done));
-    if (done > 0) TRY(file->finish());
+    const std::int64_t made = TRY(makeFrames("export", frames, [&](std::int64_t number) {
+        const Time time = tickTime(number, film.frameRate);
+        return file->write(screen->draw(film.stateAt(time), time));
+    }));
+    if (made > 0) TRY(file->finish());
     if (!options.report.empty()) {
         Report report;
-        report["frames"] = done;
-        report["frames_wanted"] = frames;
-        report["seconds"] = seconds(tickTime(done, film.frameRate));
+        report["frames"] = made;
+        report["seconds"] = seconds(tickTime(made, film.frameRate));
         report["fps"] = film.frameRate;
         report["size"] = {film.size.x, film.size.y};
         report["alpha"] = name(file->alpha());
-        report["stop_reason"] = end == End::Whole ? "length" : "interrupted";
+        report["stop_reason"] = made == frames ? "length" : "interrupted";
         TRY(writeReport(options.report, report));
     }
-    if (end == End::Interrupted)
-        fmt::print("{}: interrupted; {}\n", options.file.string(),
-                   done == 0 ? "no frame was done, nothing is written"
-                             : fmt::format("the first {} of {} frames are whole and play, {:.2f} s", done, frames,
-                                           seconds(tickTime(done, film.frameRate))));
-    else
-        fmt::print("{}: {} frames of {} x {}, {:g} a second, {:.2f} s\n", options.file.string(), done, film.size.x, film.size.y,
-                   film.frameRate, seconds(tickTime(done, film.frameRate)));
+    fmt::print("{}: {} x {}, {}\n", options.file.string(), film.size.x, film.size.y, outcomeOf(made, frames, film.frameRate));
     return {};
 }
 
