@@ -1,10 +1,9 @@
 #include "app/preview_command.h"
 
+#include "app/film.h"
 #include "app/frame_run.h"
 #include "app/geometry_options.h"
 #include "app/light_preview.h"
-#include "app/off_screen.h"
-#include "app/programme.h"
 #include "app/video_writer.h"
 
 #include "core/parallel.h"
@@ -19,10 +18,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kFilmSeconds = 10, kFilmRate = 30;  // of a film without --seconds; frames a second
-constexpr int kMaskRows = 1080;                      // of the projected picture
 
 struct Options {
-    fs::path pattern, scene, file;
+    FilmRequest mask;
+    fs::path scene, file;
     std::optional<double> seconds, fieldOfView;
     std::optional<glm::ivec2> size;
     PreviewPlaces places;
@@ -31,9 +30,13 @@ struct Options {
 };
 
 void declare(CLI::App& command, Options& options) {
-    command.add_option("PATTERN", options.pattern, "A *.pattern.yaml, or a picture such as the guide itself")->required();
+    command
+        .add_option("PATTERN", options.mask.what,
+                    "A *.pattern.yaml; a picture, such as the guide itself; or a show's folder, with --output and --cue")
+        ->required();
     command.add_option("--scene", options.scene, "The mesh that it falls on: FBX, OBJ, glTF, PLY or STL")->required();
     command.add_option("-o", options.file, "The picture to write, PNG, or a film of the sway, FILE.mp4")->required();
+    declareFilmOptions(command, options.mask);
     command
         .add_option("--seconds", options.seconds,
                     fmt::format("The moment of the sway that is shown; of a film, where it ends (default: 0; {})", kFilmSeconds))
@@ -61,20 +64,20 @@ void declare(CLI::App& command, Options& options) {
         ->check(CLI::Range(1, 256));
 }
 
-// What the projector is sent, at any moment.
+// What the projector is sent, at moments that rise.
 struct Mask {
-    std::unique_ptr<OffScreen> screen;         // null: a picture that does not move
+    std::optional<Film> film;                  // none: a picture that does not move
     std::shared_ptr<const RgbaImage> picture;  // of which the mask consists then
 
-    static Result<Mask> open(const fs::path& file) {
-        if (file.extension() != ".yaml") return Mask{nullptr, std::make_shared<const RgbaImage>(TRY(readRgba(file)))};
-        const render::PatternSource pattern = TRY(readPatternSource(file));
-        const glm::ivec2 size(std::max(2L, std::lround(kMaskRows * pattern.pattern->aspect())), kMaskRows);
-        return Mask{TRY(OffScreen::open(size, rectangleCorners(size.x, size.y), {pattern})), nullptr};
+    static Result<Mask> open(const FilmRequest& request) {
+        if (fs::is_regular_file(request.what) && request.what.extension() != ".yaml")
+            return Mask{std::nullopt, std::make_shared<const RgbaImage>(TRY(readRgba(request.what)))};
+        if (!request.output.empty() && request.cue.empty())
+            return Error(fmt::format("{}: which cue? Add --cue NAME", request.what.string()));
+        return Mask{TRY(Film::open(request)), nullptr};
     }
-    std::shared_ptr<const RgbaImage> at(Time time) const {
-        return screen ? std::make_shared<const RgbaImage>(screen->draw({{{0, 1.0f}}}, time)) : picture;
-    }
+    glm::ivec2 size() const { return film ? film->size() : glm::ivec2(picture->width(), picture->height()); }
+    std::shared_ptr<const RgbaImage> at(Time time) { return film ? std::make_shared<const RgbaImage>(film->at(time)) : picture; }
 };
 
 Result<void> run(const Options& options) {
@@ -84,14 +87,15 @@ Result<void> run(const Options& options) {
     TriangleMesh mesh = TRY(readMesh(options.scene));
     if (options.zUp)
         for (glm::vec3& vertex : mesh.vertices) vertex = {vertex.x, vertex.z, -vertex.y};
-    const Mask mask = TRY(Mask::open(options.pattern));
-    const auto first = mask.at(Time{});
+    FilmRequest request = options.mask;
+    request.canvas = true;  // the scene's own shape bends the light
+    Mask mask = TRY(Mask::open(request));
     PreviewPlaces places = options.places;
     if (options.fieldOfView) places.fieldOfView = radians(*options.fieldOfView);
-    const glm::ivec2 size = options.size.value_or(glm::ivec2(1280, 720)), maskSize(first->width(), first->height());
+    const glm::ivec2 size = options.size.value_or(glm::ivec2(1280, 720)), maskSize = mask.size();
     if (std::min(maskSize.x, maskSize.y) < site::ProjectedLight::kLeastSide)
-        return Error(
-            fmt::format("{}: a picture of {} x {} pixels cannot be projected", options.pattern.string(), maskSize.x, maskSize.y));
+        return Error(fmt::format("{}: a picture of {} x {} pixels cannot be projected", options.mask.what.string(), maskSize.x,
+                                 maskSize.y));
     LightPreview preview = TRY(LightPreview::create(std::move(mesh), places, maskSize, size,
                                                     film ? LightPreview::Use::Film : LightPreview::Use::Still, options.threads)
                                    .in(options.scene.string()));

@@ -201,7 +201,7 @@ TEST_F(ExportCommand, refuses_with_advice) {
         return outcome.errors;
     };
     const std::string show = kShow.string();
-    EXPECT_THAT(refusal({"export", show, "-o", "a.mp4"}), HasSubstr("--output NAME"));
+    EXPECT_THAT(refusal({"export", show, "-o", "a.mp4"}), HasSubstr("needs --output NAME"));
     EXPECT_THAT(refusal({"export", show, "--output", "lef", "-o", "a.mp4"}), HasSubstr("did you mean 'left'?"));
     EXPECT_THAT(refusal({"export", show, "--output", "left", "--cue", "Ful", "-o", "a.mp4"}), HasSubstr("Full"));
     EXPECT_THAT(refusal({"export", show, "--output", "left", "-o", "a.gif"}), HasSubstr("FILE.mov"));
