@@ -35,7 +35,7 @@ void declare(CLI::App& command, Options& options) {
         ->check(CLI::Range(0.001, 1e6));
     command.add_option("--fps", film.frameRate, "Frames a second of show time (default: the output's; a pattern: 30)")
         ->check(CLI::Range(1.0, 1000.0));
-    addSizeOption(command, "--size", film.size, "Of a frame (default: the output's; a pattern: 1080 rows)");
+    addSizeOption(command, "--size", film.size, "Of a frame (default: the output's; a pattern or a canvas: 1080 rows)");
     command
         .add_option(
             "--alpha", options.alpha,

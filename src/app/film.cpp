@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr double kShowSeconds = 60;  // of a show without --seconds, as in a rehearsal
 constexpr double kPatternRate = 30;  // frames a second of a pattern without --fps
-constexpr int kPatternRows = 1080;   // of a pattern without --size
+constexpr int kCanvasRows = 1080;    // of a pattern or a canvas without --size
 constexpr double kMostFrames = 10'000'000;
 
 // The patterns that a picture is made of.
@@ -108,7 +108,7 @@ Result<Film> Film::ofPattern(const FilmRequest& request) {
             fmt::format("{}: is a single pattern; --output, --site, --cue and --from are for shows", request.what.string()));
     const std::vector<render::PictureSource> sources = {TRY(readPatternSource(request.what))};
     Film film;
-    film.size_ = request.size.value_or(sizeOfCanvas(kPatternRows, *aspectOf(sources)));
+    film.size_ = request.size.value_or(sizeOfCanvas(kCanvasRows, *aspectOf(sources)));
     film.frameRate_ = request.frameRate.value_or(kPatternRate);
     film.seconds_ = request.seconds.value_or(loopOf(sources));
     film.screen_ = TRY(OffScreen::open(film.size_, rectangleCorners(film.size_.x, film.size_.y), sources));
@@ -133,7 +133,7 @@ Result<Film> Film::ofShow(const FilmRequest& request) {
     auto corners = output.corners;
     if (request.canvas) {
         if (const auto aspect = aspectOf(programme.sources); aspect && !request.size)
-            film.size_ = sizeOfCanvas(output.size.y, *aspect);
+            film.size_ = sizeOfCanvas(kCanvasRows, *aspect);
         corners = rectangleCorners(film.size_.x, film.size_.y);
     } else {
         for (glm::dvec2& corner : corners) corner *= glm::dvec2(film.size_) / glm::dvec2(output.size);

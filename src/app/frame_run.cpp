@@ -25,7 +25,7 @@ Result<std::int64_t> makeFrames(const std::string& label, std::int64_t count,
     while (made < count) {
         while (const auto key = keys.poll()) {
             if (*key == ' ') paused = !paused;
-            enough = enough || *key == kEscape;
+            enough = enough || (*key == kEscape && !keys.poll());  // an arrow key begins with it too
         }
         if (enough || interrupt.requested()) break;
         progress.update(static_cast<double>(made) / static_cast<double>(count),
