@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr double kShowSeconds = 60;  // of a show without --seconds, as in a rehearsal
 constexpr double kPatternRate = 30;  // frames a second of a pattern without --fps
 constexpr int kCanvasRows = 1080;    // of a pattern or a canvas without --size
-constexpr double kMostFrames = 10'000'000;
+constexpr double kMostFrames = 1e7;  // days of any show
 
 // The patterns that a picture is made of.
 std::vector<const render::PatternSource*> patternsIn(const render::PictureSource& source) {
@@ -72,6 +72,7 @@ private:
     show::ShowState state_;
 };
 
+// Of what kind a file is it says itself.
 bool isPattern(const fs::path& path) {
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored)) return false;

@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <string_view>
 
 namespace fantascope::app {
 namespace {
@@ -80,12 +82,13 @@ private:
     const Homography projectorFromPicture_;
 };
 
-// Between which lines of equal x, y and z a sample lies; the same number along an axis that its surface faces.
-glm::ivec3 cellOf(const Sample& sample, double grid) {
-    glm::ivec3 cell(0);
-    for (int axis = 0; axis < 3; ++axis)
-        if (std::abs(sample.normal[axis]) < kFlat) cell[axis] = static_cast<int>(std::floor(sample.point[axis] / grid));
-    return cell;
+// The number of the line of equal coordinate on an axis that runs between two samples of one object, if one does.
+std::optional<int> lineBetween(const Sample& a, const Sample& b, int axis, double grid) {
+    if (a.object != b.object || a.object < 0) return std::nullopt;
+    if (std::max(std::abs(a.normal[axis]), std::abs(b.normal[axis])) > kFlat) return std::nullopt;
+    const auto cell = [&](const Sample& sample) { return static_cast<int>(std::floor(sample.point[axis] / grid)); };
+    if (cell(a) == cell(b)) return std::nullopt;
+    return std::max(cell(a), cell(b));
 }
 
 bool outlined(const Sample& a, const Sample& b) {
@@ -102,7 +105,7 @@ glm::vec3 shaded(const Sample& sample, glm::vec3 towardsProjector) {
     return colour * (0.45f + 0.55f * cosine);
 }
 
-// Slanting lines, in whole pixels so that they do not swim with the picture's size.
+// Slanting lines.
 bool hatched(glm::dvec2 pixel, bool rising, double scale) {
     const double period = 16 * scale, along = (rising ? pixel.x + pixel.y : pixel.x - pixel.y) / period;
     return along - std::floor(along) < 0.18;
@@ -153,16 +156,13 @@ private:
         const glm::vec3 towards = glm::normalize(glm::vec3(survey_.view().projector.pose.position) - sample.point);
         glm::vec3 colour = shaded(sample, towards);
         if (sample.inTheWay && hatched(pixel, true, scale_)) colour = glm::mix(colour, kInTheWay, 0.6f);
-        const glm::ivec3 cell = cellOf(sample, grid_);
         for (const Sample* near : {&samples.at(x - 1, y), &samples.at(x + 1, y), &samples.at(x, y - 1), &samples.at(x, y + 1)})
-            for (int axis = 0; axis < 3; ++axis) {
-                const int other = cellOf(*near, grid_)[axis];
-                if (near->object != sample.object || other == cell[axis]) continue;
-                // The line of coordinate 0 in the colour of its axis.
-                const bool zero = std::max(other, cell[axis]) == 0;
-                colour = glm::mix(colour, zero ? kAxes[static_cast<std::size_t>(axis)] : kGrid, zero ? 0.9f : 0.55f);
-                return colour;
-            }
+            for (int axis = 0; axis < 3; ++axis)
+                if (const auto line = lineBetween(sample, *near, axis, grid_)) {
+                    // The line of coordinate 0 in the colour of its axis.
+                    if (*line == 0) return glm::mix(colour, kAxes[static_cast<std::size_t>(axis)], 0.9f);
+                    return glm::mix(colour, kGrid, 0.55f);
+                }
         return colour;
     }
 
@@ -215,19 +215,15 @@ private:
 void labelGrid(const Survey& survey, double grid, Lettering& lettering) {
     const glm::ivec2 size = survey.size();
     const double inset = 14 * lettering.unit();
-    const auto onSurface = [](const Sample& a, const Sample& b) {
-        return a.meets == Meets::Surface && b.meets == Meets::Surface && a.object == b.object;
-    };
     const auto walk = [&](glm::dvec2 from, glm::dvec2 step, int count, double room) {
         double free = 0;
         Sample before = survey.at(from);
         for (int i = 1; i < count; ++i) {
             const Sample here = survey.at(from + step * static_cast<double>(i));
-            const glm::ivec3 a = cellOf(before, grid), b = cellOf(here, grid);
             for (int axis = 0; axis < 3; ++axis) {
-                if (!onSurface(here, before) || a[axis] == b[axis] || i < free) continue;
-                const double value = std::max(a[axis], b[axis]) * grid;
-                lettering.write(fmt::format("{} {:g}", "xyz"[axis], value),
+                const auto line = lineBetween(before, here, axis, grid);
+                if (!line || here.meets != Meets::Surface || i < free) continue;
+                lettering.write(fmt::format("{} {:g}", "xyz"[axis], *line * grid),
                                 from + step * static_cast<double>(i) + glm::dvec2(3, -3));
                 free = i + room;
             }
