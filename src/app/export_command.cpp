@@ -45,6 +45,7 @@ void declare(CLI::App& command, Options& options) {
             std::map<std::string, Alpha>{{"none", Alpha::None}, {"stored", Alpha::Stored}, {"linear", Alpha::Linear}}));
     command.add_flag("--canvas", film.canvas, "The picture before the output's keystone, as a light mask wants it");
     command.add_option("--report", options.report, "Also write figures, as JSON (docs/report.md)");
+    command.footer("Meanwhile the space bar pauses and goes on; escape, q and Ctrl-C end it with the frames so far.");
 }
 
 Result<void> run(const Options& options) {

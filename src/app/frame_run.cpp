@@ -1,8 +1,7 @@
 #include "app/frame_run.h"
 
-#include "app/interrupt.h"
+#include "app/attendance.h"
 #include "app/progress.h"
-#include "app/terminal_keys.h"
 
 #include "core/clock.h"
 
@@ -14,26 +13,17 @@ namespace fantascope::app {
 
 Result<std::int64_t> makeFrames(const std::string& label, std::int64_t count,
                                 const std::function<Result<void>(std::int64_t number)>& make) {
-    constexpr Time kLook = std::chrono::milliseconds(50);  // how long a paused run looks away
-    constexpr char kEscape = '\x1b';
-    const Interrupt interrupt;
     SteadyClock clock;
-    TerminalKeys keys;
+    Attendance attendance(clock);
     Progress progress(label, clock, std::cerr, standardErrorIsTerminal());
-    bool paused = false, enough = false;
     std::int64_t made = 0;
-    while (made < count) {
-        while (const auto key = keys.poll()) {
-            if (*key == ' ') paused = !paused;
-            enough = enough || (*key == kEscape && !keys.poll());  // an arrow key begins with it too
-        }
-        if (enough || interrupt.requested()) break;
+    const auto tell = [&](const char* how) {
         progress.update(static_cast<double>(made) / static_cast<double>(count),
-                        fmt::format("frame {} of {}{}", made, count, paused ? "  paused, space goes on" : ""));
-        if (paused)
-            clock.sleepUntil(clock.now() + kLook);
-        else
-            TRY(make(made++));
+                        fmt::format("frame {} of {}{}", made, count, how));
+    };
+    for (; made < count && attendance.goesOn([&] { tell("  paused, space goes on"); }); ++made) {
+        tell("");
+        TRY(make(made));
     }
     return made;
 }

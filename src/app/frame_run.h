@@ -8,8 +8,8 @@
 
 namespace fantascope::app {
 
-// Makes frames 0, 1, ... `count` - 1, one after the other, while a person watches the bar: space pauses and goes on, escape and Ctrl-C end it
-// after the frame at hand. Returns how many were made. Error: make's.
+// Makes frames 0, 1, ... `count` - 1, one after the other, while a person watches the bar and may pause or end it (attendance.h). Returns how
+// many were made. Error: make's.
 Result<std::int64_t> makeFrames(const std::string& label, std::int64_t count,
                                 const std::function<Result<void>(std::int64_t number)>& make);
 

@@ -22,14 +22,6 @@ std::vector<Silhouette> silhouettesOf(const ShapePattern& pattern) {
 
 InstancePose restPose(const ShapeInstance& instance) { return {instance.centre, instance.size, instance.rotation}; }
 
-GreyImage image(const Coverage& coverage) {
-    GreyImage result(coverage.width(), coverage.height());
-    coverage.forEachRun([&](int y, int begin, int end) {
-        for (int x = begin; x < end; ++x) result.at(x, y) = 1;
-    });
-    return result;
-}
-
 double meanDifference(const GreyImage& a, const GreyImage& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.pixels().size(); ++i) sum += std::abs(double(a.pixels()[i]) - b.pixels()[i]);
@@ -67,7 +59,7 @@ PatternQuality measure(const ShapePattern& pattern, const GreyImage& guide) {
     const double sigma = pattern.height / 36.0;
     return {.z = goal.z(coverage),
             .zBound = goal.bound(),
-            .tone = meanDifference(blurred(compared, sigma), blurred(image(coverage), sigma)),
+            .tone = meanDifference(blurred(compared, sigma), blurred(coverage.picture(), sigma)),
             .overlap = overlapOf(pattern, silhouettes)};
 }
 
@@ -91,7 +83,7 @@ GreyImage drawWhiteOnBlack(const ShapePattern& pattern, int width, int height) {
     const std::vector<Silhouette> silhouettes = silhouettesOf(pattern);
     Coverage coverage(width, height);
     for (const ShapeInstance& instance : pattern.instances) coverage.add(silhouettes[instance.shape], restPose(instance));
-    return image(coverage);
+    return coverage.picture();
 }
 
 }  // namespace fantascope::pattern
