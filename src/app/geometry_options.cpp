@@ -35,20 +35,20 @@ CLI::Option* addParsed(CLI::App& command, const std::string& name, std::optional
     return command
         .add_option_function<std::string>(
             name, [&target, parse](const std::string& text) { target = parse(text); }, description)
-        ->check(CLI::Validator(refuse, form));
+        ->type_name(form)
+        ->check(CLI::Validator(refuse, ""));
 }
 
 }  // namespace
 
 CLI::Option* addSizeOption(CLI::App& command, const std::string& name, std::optional<glm::ivec2>& target,
                            const std::string& description) {
-    return addParsed(command, name, target, description, sizeFrom, fmt::format("WIDTHxHEIGHT, 2 .. {} px each", kLargestSide))
-        ->type_name("");
+    return addParsed(command, name, target, description, sizeFrom, fmt::format("WIDTHxHEIGHT, 2 .. {} px each", kLargestSide));
 }
 
 CLI::Option* addPointOption(CLI::App& command, const std::string& name, std::optional<glm::dvec3>& target,
                             const std::string& description) {
-    return addParsed(command, name, target, description, pointFrom, "X,Y,Z")->type_name("");
+    return addParsed(command, name, target, description, pointFrom, "X,Y,Z");
 }
 
 }  // namespace fantascope::app
