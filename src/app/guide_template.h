@@ -9,6 +9,7 @@
 
 #include <glm/vec2.hpp>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -40,8 +41,8 @@ struct CanvasView {
 // The picture to draw a guide over (Ji et al. 2015, section 5 and Figure 7b-c): the scene from the projector's point of view, in canvas space,
 // so that what is drawn over something lights it.
 struct GuideTemplate {
-    RgbaImage
-        picture;  // shaded scene, outlines, a grid in world metres, orientation marks, hatching where a point does not meet Surface
+    // Shaded scene, outlines, a grid in the site's metres, orientation marks, and hatching where a point does not meet Surface.
+    RgbaImage picture;
     Image<Meets> meets;          // of each pixel's centre
     Image<std::int32_t> object;  // the scene's object there, -1 for none
 };
