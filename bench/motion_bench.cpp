@@ -47,7 +47,7 @@ void posesAt(benchmark::State& state) {
     std::vector<InstancePose> poses(pattern.instances.size());
     std::int64_t refresh = 0;
     for (auto _ : state) {
-        motion.posesAt(tickTime(refresh++, 60), poses);
+        motion.posesAt(tickTime(refresh++, 60), {}, poses);
         benchmark::DoNotOptimize(poses.data());
     }
     perInstance(state);

@@ -14,6 +14,8 @@ namespace fantascope::pattern {
 struct PatternSettings {
     PatternSearch::Options search;
     MotionSettings motion;
+    // Magnitudes and ranges are to be fitted to the pattern that is found (fittedMotion); false where the file names one.
+    bool fitMotion = true;
     GuideTransfer guideTransfer = GuideTransfer::Srgb;
 };
 

@@ -22,7 +22,7 @@ Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& op
     return renderer;
 }
 
-void OutputRenderer::draw(const show::OutputState& state, Time time, unsigned framebuffer) {
+void OutputRenderer::draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer) {
     // Light adds: a source that stands in several layers is drawn once with the sum of their opacities.
     for (DrawnSource& source : sources_) source.opacity = 0;
     for (const show::LayerState& layer : state.layers) {
@@ -40,7 +40,7 @@ void OutputRenderer::draw(const show::OutputState& state, Time time, unsigned fr
     };
     for (DrawnSource& source : sources_) {
         if (source.opacity <= 0) continue;
-        source.placed.place(time, source.meshes.place());
+        source.placed.place(time, wind, source.meshes.place());
         gpu::LayerPicture& picture = pictures_[count];
         picture.begin();
         painter_.paint(source.meshes, source.placed.canvasEdges());

@@ -26,6 +26,10 @@ ShapePattern squares(std::initializer_list<glm::dvec2> centresInPixels) {
     return pattern;
 }
 
+LoopQuality loop(const ShapePattern& pattern, const GreyImage& guide, int threads = 1) {
+    return LoopMeasure(pattern, guide, threads).in({}, 20);
+}
+
 // A square's corners are not round numbers; its sides may round to one pixel more or less.
 constexpr double kOnePixelASide = 0.07;
 
@@ -72,13 +76,13 @@ TEST(Measure, white_on_black_keeps_its_place_in_any_size) {
 TEST(Measure, loop_z_is_z_when_nothing_moves_and_worse_when_the_shapes_leave_their_places) {
     ShapePattern pattern = squares({{30, 30}, {80, 60}});
     const GreyImage guide = drawWhiteOnBlack(pattern, 120, 90);
-    EXPECT_GT(loopZ(pattern, guide, 20, 1), 0.001);
-    EXPECT_EQ(loopZ(pattern, guide, 20, 1), loopZ(pattern, guide, 20, 3));
+    EXPECT_GT(loop(pattern, guide, 1).z, 0.001);
+    EXPECT_EQ(loop(pattern, guide, 1).z, loop(pattern, guide, 3).z);
     MotionSettings& motion = pattern.motion;
     for (AxisMotion* axis :
          {&motion.groupMajor, &motion.groupMinor, &motion.localTranslation, &motion.localTilt, &motion.localTurn})
         axis->magnitude = axis->range = 0;
-    EXPECT_EQ(loopZ(pattern, guide, 20, 1), 0);
+    EXPECT_EQ(loop(pattern, guide, 1).z, 0);
 }
 
 }  // namespace

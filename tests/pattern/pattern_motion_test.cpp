@@ -34,7 +34,7 @@ ShapePattern gridPattern(std::uint32_t instances, std::uint32_t groups) {
 
 std::vector<InstancePose> poses(const PatternMotion& motion, Time time, std::size_t count) {
     std::vector<InstancePose> out(count);
-    motion.posesAt(time, out);
+    motion.posesAt(time, {}, out);
     return out;
 }
 
