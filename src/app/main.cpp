@@ -1,6 +1,7 @@
 #include "app/check_command.h"
 #include "app/command.h"
 #include "app/pattern_command.h"
+#include "app/plot_command.h"
 #include "app/rehearse_command.h"
 
 #include <fmt/format.h>
@@ -9,7 +10,7 @@ namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-constexpr AddCommand kCommands[] = {addPatternCommand, addRehearseCommand, addRunCommand, addCheckCommand};
+constexpr AddCommand kCommands[] = {addPatternCommand, addRehearseCommand, addRunCommand, addCheckCommand, addPlotCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 
