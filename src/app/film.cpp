@@ -52,22 +52,21 @@ glm::ivec2 sizeOfCanvas(int rows, double aspect) { return {2 * std::max(1L, std:
 // Plays a show without its devices: GO is pressed as in a rehearsal.
 class ShowFrames {
 public:
-    ShowFrames(show::CueList cues, std::optional<show::Input> firstInput, std::size_t output, std::size_t presses, Time length)
-        : playback_(std::move(cues)), schedule_(presses, firstInput.has_value(), length), output_(output) {
+    ShowFrames(show::CueList cues, std::optional<show::Input> firstInput, std::size_t presses, Time length)
+        : playback_(std::move(cues)), schedule_(presses, firstInput.has_value(), length) {
         if (firstInput) playback_.apply(*firstInput);
     }
-    const show::OutputState& at(Time time) {
+    const show::ShowState& at(Time time) {
         for (; tickTime(tick_, Hand::kRate) <= time; ++tick_)
             if (const Time moment = tickTime(tick_, Hand::kRate); schedule_.due(moment))
                 playback_.apply({moment, show::Input::Kind::Go, 0});
         playback_.stateAt(time, state_);
-        return state_.outputs[output_];
+        return state_;
     }
 
 private:
     show::Playback playback_;
     GoSchedule schedule_;
-    std::size_t output_;
     std::int64_t tick_ = 0;
     show::ShowState state_;
 };
@@ -113,7 +112,7 @@ Result<Film> Film::ofPattern(const FilmRequest& request) {
     film.frameRate_ = request.frameRate.value_or(kPatternRate);
     film.seconds_ = request.seconds.value_or(loopOf(sources));
     film.screen_ = TRY(OffScreen::open(film.size_, rectangleCorners(film.size_.x, film.size_.y), sources));
-    film.stateAt_ = [state = show::OutputState{{{0, 1.0f}}}](Time) -> const show::OutputState& { return state; };
+    film.seenAt_ = [state = show::OutputState{{{0, 1.0f}}}](Time) { return Seen{state, {}}; };
     return film;
 }
 
@@ -153,8 +152,11 @@ Result<Film> Film::ofShow(const FilmRequest& request) {
         if (const double loop = loopOf(programme.sources); !request.seconds && loop > 0) film.seconds_ = loop;
     }
     const auto played =
-        std::make_shared<ShowFrames>(std::move(cues), programme.firstInput, index, toCome, fromSeconds(film.seconds_));
-    film.stateAt_ = [played](Time time) -> const show::OutputState& { return played->at(time); };
+        std::make_shared<ShowFrames>(std::move(cues), programme.firstInput, toCome, fromSeconds(film.seconds_));
+    film.seenAt_ = [played, index](Time time) {
+        const show::ShowState& state = played->at(time);
+        return Seen{state.outputs[index], state.winds[index]};
+    };
     return film;
 }
 

@@ -44,9 +44,16 @@ public:
     double frameRate() const { return frameRate_; }
     std::int64_t frames() const { return frames_; }  // at least 1
     // Stored values at show time `time`; times rise from call to call. Valid until the next call.
-    const RgbaImage& at(Time time) { return screen_->draw(stateAt_(time), time); }
+    const RgbaImage& at(Time time) {
+        const Seen seen = seenAt_(time);
+        return screen_->draw(seen.picture, seen.wind, time);
+    }
 
 private:
+    struct Seen {
+        const show::OutputState& picture;
+        Wind wind;
+    };
     static Result<Film> ofPattern(const FilmRequest& request);
     static Result<Film> ofShow(const FilmRequest& request);
 
@@ -54,7 +61,7 @@ private:
     double frameRate_ = 0, seconds_ = 0;
     std::int64_t frames_ = 0;
     std::unique_ptr<OffScreen> screen_;
-    std::function<const show::OutputState&(Time)> stateAt_;
+    std::function<Seen(Time)> seenAt_;
 };
 
 }  // namespace fantascope::app

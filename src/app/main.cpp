@@ -2,6 +2,7 @@
 #include "app/command.h"
 #include "app/export_command.h"
 #include "app/pattern_command.h"
+#include "app/plot_command.h"
 #include "app/preview_command.h"
 #include "app/rehearse_command.h"
 #include "app/template_command.h"
@@ -13,7 +14,7 @@ namespace {
 
 // Every subcommand of the program.
 constexpr AddCommand kCommands[] = {addPatternCommand,  addRehearseCommand, addRunCommand,  addExportCommand,
-                                    addTemplateCommand, addPreviewCommand,  addCheckCommand};
+                                    addTemplateCommand, addPreviewCommand,  addPlotCommand, addCheckCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

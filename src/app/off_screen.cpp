@@ -27,9 +27,9 @@ OffScreen::~OffScreen() {
     renderer_.reset();
 }
 
-const RgbaImage& OffScreen::draw(const show::OutputState& state, Time showTime) {
+const RgbaImage& OffScreen::draw(const show::OutputState& state, const Wind& wind, Time showTime) {
     FANTASCOPE_CHECK(display_->makeCurrent().has_value(), "nobody unplugs it");
-    renderer_->draw(state, showTime, display_->framebuffer());
+    renderer_->draw(state, wind, showTime, display_->framebuffer());
     tap_->capture(display_->framebuffer(), showTime);
     tap_->publish({});
     const render::ShownFrame* const frame = frames_->next(Time::max());

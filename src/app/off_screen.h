@@ -27,7 +27,7 @@ public:
     ~OffScreen();
 
     // Stored values as they would go to a projector. Valid until the next call.
-    const RgbaImage& draw(const show::OutputState& state, Time showTime);
+    const RgbaImage& draw(const show::OutputState& state, const Wind& wind, Time showTime);
 
 private:
     OffScreen() = default;

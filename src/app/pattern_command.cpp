@@ -8,6 +8,7 @@
 #include "pattern/built_in_shapes.h"
 #include "pattern/elemental_shape.h"
 #include "pattern/measure.h"
+#include "pattern/motion_fit.h"
 #include "pattern/pattern_search.h"
 #include "pattern/pattern_settings.h"
 
@@ -182,14 +183,16 @@ Result<void> placeShapes(const fs::path& output, std::vector<pattern::ShapeSetti
 }
 
 Report reportOf(PatternSearch::Method method, const PatternSearch::Found& found, const pattern::PatternQuality& quality,
-                double loopZ, Time took) {
+                const pattern::LoopQuality& loop, Time took) {
     Report report;
     report["method"] = name(method);
     report["z"] = quality.z;
     report["z_bound"] = quality.zBound;
     report["tone"] = quality.tone;
     report["overlap"] = quality.overlap;
-    report["loop_z"] = loopZ;
+    report["loop_z"] = loop.z;
+    report["loop_tone"] = loop.tone;
+    report["local_displacement"] = loop.localDisplacement;
     report["instances"] = found.pattern.instances.size();
     report["triangles"] = found.pattern.triangleCount();
     report["iterations"] = found.summary.iterations;
@@ -286,6 +289,7 @@ Result<void> run(const Options& options) {
     SteadyClock clock;
     PatternSearch::Found found = search(guide, std::move(pattern), settings.search, limit, options.threads, clock, window.get());
     const Time took = clock.now();
+    if (settings.fitMotion) found.pattern.motion = fittedMotion(found.pattern, guide, options.threads);
 
     // What the pattern names first, so that it never names what is not there.
     const fs::path folder = fs::absolute(options.output).parent_path();
@@ -297,10 +301,10 @@ Result<void> run(const Options& options) {
     if (options.image) TRY(writePng(*options.image, drawWhiteOnBlack(found.pattern, guide.width(), guide.height())));
 
     const pattern::PatternQuality quality = measure(found.pattern, guide);
-    const double loopZ = pattern::loopZ(found.pattern, guide, kLoopMoments, options.threads);
-    if (options.report) TRY(writeReport(*options.report, reportOf(settings.search.method, found, quality, loopZ, took)));
-    fmt::print("{}: {}, {} instances, tone {:.4f}, moving z {:.4f}\n", options.output.string(), found.summary.brief(),
-               found.pattern.instances.size(), quality.tone, loopZ);
+    const pattern::LoopQuality loop = pattern::LoopMeasure(found.pattern, guide, options.threads).in({}, kLoopMoments);
+    if (options.report) TRY(writeReport(*options.report, reportOf(settings.search.method, found, quality, loop, took)));
+    fmt::print("{}: {}, {} instances, tone {:.4f}, moving tone {:.4f}\n", options.output.string(), found.summary.brief(),
+               found.pattern.instances.size(), quality.tone, loop.tone);
     return {};
 }
 

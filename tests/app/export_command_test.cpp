@@ -60,7 +60,7 @@ public:
         for (glm::dvec2& corner : corners) corner *= glm::dvec2(size) / glm::dvec2(programme.site.outputs[0].size);
         screen_ = app::OffScreen::open(size, corners, programme.sources).value();
     }
-    const RgbaImage& at(Time time) { return screen_->draw(state_, time); }
+    const RgbaImage& at(Time time) { return screen_->draw(state_, {}, time); }
 
 private:
     show::OutputState state_;

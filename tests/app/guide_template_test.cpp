@@ -100,7 +100,7 @@ TEST_F(TemplateTest, what_is_drawn_over_a_thing_lights_that_thing) {
         return world.takeFromCamera()->image;
     };
     const RgbaImage dark = seen();
-    world.setFrame("left", std::make_shared<const RgbaImage>(screen->draw({{{0, 1.0f}}}, Time{})));
+    world.setFrame("left", std::make_shared<const RgbaImage>(screen->draw({{{0, 1.0f}}}, {}, Time{})));
     const RgbaImage lit = seen();
     const glm::dvec2 light =
         middleOf({lit.width(), lit.height()}, [&](int x, int y) { return std::max(0, lit.at(x, y).r - dark.at(x, y).r - 60); });

@@ -157,7 +157,7 @@ TEST_F(PreviewCommand, a_wall_that_faces_the_projector_shows_the_pattern_as_it_i
     const RgbaImage picture = readRgba(folder_ / "p.png").value();
     const auto source = readPatternSource(kPattern).value();
     const RgbaImage pattern =
-        OffScreen::open({320, 180}, rectangleCorners(320, 180), {source}).value()->draw({{{0, 1.0f}}}, std::chrono::seconds(3));
+        OffScreen::open({320, 180}, rectangleCorners(320, 180), {source}).value()->draw({{{0, 1.0f}}}, {}, std::chrono::seconds(3));
     const auto apart = [&](auto columnOf) {
         double sum = 0;
         for (int y = 0; y < 180; ++y)
