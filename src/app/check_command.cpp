@@ -45,7 +45,7 @@ Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>&
         finding.summary += fmt::format(", plays on {}", site->file.string());
     }
     for (const show::Source& source : show.sources)
-        if (const auto* pattern = std::get_if<show::PatternSource>(&source.picture)) finding.names.push_back(pattern->file);
+        for (const fs::path& pattern : show::patternsOf(source)) finding.names.push_back(pattern);
     return finding;
 }
 

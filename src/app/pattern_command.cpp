@@ -8,6 +8,7 @@
 #include "pattern/built_in_shapes.h"
 #include "pattern/elemental_shape.h"
 #include "pattern/measure.h"
+#include "pattern/motion_fit.h"
 #include "pattern/pattern_search.h"
 #include "pattern/pattern_settings.h"
 
@@ -19,6 +20,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -43,6 +45,7 @@ struct Options {
     std::optional<std::uint32_t> instances;
     std::optional<double> seconds, targetZ;
     std::optional<int> iterations;
+    bool shadows = false;
     std::uint64_t seed = 1;
     int threads = hardwareThreads();
     PatternSearch::Method method = PatternSearch::Method::Refined;
@@ -86,6 +89,8 @@ void declare(CLI::App& command, Options& options) {
             {"refined", PatternSearch::Method::Refined}, {"paper", PatternSearch::Method::Paper}}))
         ->default_str("refined");
     command.add_option("--image", options.image, "Also write the pattern white on black, in the guide's size, as PNG");
+    command.add_flag("--shadows", options.shadows,
+                     "The shapes are dark and stand where the drawing is dark, as leaves do in a show's foliage");
     command.add_option("--seed", options.seed, "Another seed, another pattern; the same seed, the same pattern")
         ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
         ->capture_default_str();
@@ -125,6 +130,13 @@ Result<void> copyTo(const fs::path& folder, const Material& material) {
     if (!material.copied) return {};
     const std::string content = TRY(readFile(material.source));
     return writeFile(folder / material.name, content);
+}
+
+// The drawing of the shadows that shapes are to fill: what `guide` leaves dark, in the 8 bits of the file that it becomes.
+GreyImage shadowsOf(GreyImage guide) {
+    guide = inverted(std::move(guide));
+    for (float& value : guide.pixels()) value = std::round(value * 255) / 255;
+    return guide;
 }
 
 // Each with what the settings say of it alone.
@@ -171,14 +183,16 @@ Result<void> placeShapes(const fs::path& output, std::vector<pattern::ShapeSetti
 }
 
 Report reportOf(PatternSearch::Method method, const PatternSearch::Found& found, const pattern::PatternQuality& quality,
-                double loopZ, Time took) {
+                const pattern::LoopQuality& loop, Time took) {
     Report report;
     report["method"] = name(method);
     report["z"] = quality.z;
     report["z_bound"] = quality.zBound;
     report["tone"] = quality.tone;
     report["overlap"] = quality.overlap;
-    report["loop_z"] = loopZ;
+    report["loop_z"] = loop.z;
+    report["loop_tone"] = loop.tone;
+    report["local_displacement"] = loop.localDisplacement;
     report["instances"] = found.pattern.instances.size();
     report["triangles"] = found.pattern.triangleCount();
     report["iterations"] = found.summary.iterations;
@@ -246,7 +260,8 @@ Result<void> run(const Options& options) {
     TRY(checkWritable(options.output));
     for (const auto& file : {options.image, options.report})
         if (file) TRY(checkWritable(*file));
-    const GreyImage guide = TRY(readGrey(options.guide));
+    GreyImage guide = TRY(readGrey(options.guide));
+    if (options.shadows) guide = shadowsOf(std::move(guide));
     pattern::PatternSettings settings;
     if (options.settings) settings = TRY(pattern::readPatternSettings(*options.settings));
     settings.search.method = options.method;
@@ -257,7 +272,9 @@ Result<void> run(const Options& options) {
     std::vector<pattern::ShapeSettings> shapes = TRY(chosenShapes(options, settings));
     std::vector<Material> shapeFiles;
     TRY(placeShapes(options.output, shapes, shapeFiles));
-    const Material guideFile = materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
+    const Material guideFile = options.shadows
+                                   ? Material{{}, options.output.stem().stem().string() + ".shadows.png", false}
+                                   : materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
 
     ShapePattern pattern;
     pattern.guideTransfer = settings.guideTransfer;
@@ -272,9 +289,11 @@ Result<void> run(const Options& options) {
     SteadyClock clock;
     PatternSearch::Found found = search(guide, std::move(pattern), settings.search, limit, options.threads, clock, window.get());
     const Time took = clock.now();
+    if (settings.fitMotion) found.pattern.motion = fittedMotion(found.pattern, guide, options.threads);
 
     // What the pattern names first, so that it never names what is not there.
     const fs::path folder = fs::absolute(options.output).parent_path();
+    if (options.shadows) TRY(writePng(folder / guideFile.name, guide));
     TRY(copyTo(folder, guideFile));
     for (const Material& file : shapeFiles) TRY(copyTo(folder, file));
     found.pattern.guide = folder / guideFile.name;
@@ -282,10 +301,10 @@ Result<void> run(const Options& options) {
     if (options.image) TRY(writePng(*options.image, drawWhiteOnBlack(found.pattern, guide.width(), guide.height())));
 
     const pattern::PatternQuality quality = measure(found.pattern, guide);
-    const double loopZ = pattern::loopZ(found.pattern, guide, kLoopMoments, options.threads);
-    if (options.report) TRY(writeReport(*options.report, reportOf(settings.search.method, found, quality, loopZ, took)));
-    fmt::print("{}: {}, {} instances, tone {:.4f}, moving z {:.4f}\n", options.output.string(), found.summary.brief(),
-               found.pattern.instances.size(), quality.tone, loopZ);
+    const pattern::LoopQuality loop = pattern::LoopMeasure(found.pattern, guide, options.threads).in({}, kLoopMoments);
+    if (options.report) TRY(writeReport(*options.report, reportOf(settings.search.method, found, quality, loop, took)));
+    fmt::print("{}: {}, {} instances, tone {:.4f}, moving tone {:.4f}\n", options.output.string(), found.summary.brief(),
+               found.pattern.instances.size(), quality.tone, loop.tone);
     return {};
 }
 

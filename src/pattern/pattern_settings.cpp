@@ -166,7 +166,11 @@ Result<PatternSettings> readPatternSettings(const std::filesystem::path& file) {
     section("paper", [](auto& optional, Options& options) { declarePaper(optional, options.paper); });
     fields.optional().read("shapes", settings, [&](const ConfigNode& node) { return readShapes(node, settings); });
     fields.optional().list("colours", settings.search.colours, readColours, 1);
-    fields.optional().read("motion", settings.motion, readMotion);
+    fields.optional().read("motion", settings.motion, [&](const ConfigNode& node) -> Result<MotionSettings> {
+        const MotionSettings motion = TRY(readMotion(node));
+        settings.fitMotion = !TRY(namesAmplitude(node));
+        return motion;
+    });
     TRY(fields.finish());
     return settings;
 }

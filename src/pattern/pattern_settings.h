@@ -21,6 +21,8 @@ struct ShapeSettings {
 struct PatternSettings {
     PatternSearch::Options search;
     MotionSettings motion;
+    // Magnitudes and ranges are to be fitted to the pattern that is found (fittedMotion); false where the file names one.
+    bool fitMotion = true;
     GuideTransfer guideTransfer = GuideTransfer::Srgb;
     std::vector<ShapeSettings> shapes;  // none is named twice
 

@@ -3,12 +3,13 @@
 #include "show/cue_list.h"
 #include "show/show_state.h"
 #include "show/site.h"
+#include "show/source.h"
+#include "show/wind.h"
 
 #include "core/config.h"
 #include "core/result.h"
 
-#include <glm/vec3.hpp>
-
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -17,18 +18,6 @@
 #include <vector>
 
 namespace fantascope::show {
-
-// Where a layer's picture comes from.
-struct PatternSource {
-    std::filesystem::path file;  // a *.pattern.yaml that exists; what is in it was not looked at
-};
-struct SolidSource {
-    glm::vec3 colour{0.0f};  // linear light, 0..1
-};
-struct Source {
-    std::string name;
-    std::variant<PatternSource, SolidSource> picture;
-};
 
 // Something that the show wants of a thing of the site, which it calls by name.
 template <class Wish>
@@ -43,7 +32,12 @@ struct NamedLook {
     using ChannelLevels = std::vector<Named<float>>;
     using Levels = std::variant<float, ChannelLevels>;  // one for all channels of a fixture, or each by its name
     std::string name;
-    std::vector<Named<OutputState>> outputs;
+    struct OutputWish {
+        OutputState layers;
+        std::optional<WindWish> wind;  // without it, that of the look
+    };
+    std::vector<Named<OutputWish>> outputs;
+    WindWish wind;
     std::vector<Named<Levels>> fixtures;
     std::vector<Named<bool>> relays;  // true: on
 };
@@ -62,6 +56,7 @@ struct Show {
     std::string title;
     Time goInterval{};
     Time blackoutFade{};
+    std::uint64_t seed = 1;  // of what is random in the show itself
     std::vector<Source> sources;
     std::vector<NamedLook> looks;
     std::vector<Cue> cues;

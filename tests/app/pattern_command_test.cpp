@@ -86,6 +86,22 @@ TEST_F(PatternCommand, refers_to_what_lies_beside_or_below_it) {
     EXPECT_FALSE(fs::exists(folder_ / "p.guide.png"));
 }
 
+// The paper's black shapes on white: shapes stand where the drawing is dark, and the drawing of the shadows goes with the pattern.
+TEST_F(PatternCommand, fills_what_the_drawing_leaves_dark_when_shapes_are_shadows) {
+    const Outcome done = find({"--shadows", "--iterations", "300", "--image", "out/p.png"});
+    ASSERT_EQ(done.status, 0) << done.errors;
+    EXPECT_THAT(written(), ElementsAre("p.pattern.yaml", "p.png", "p.shadows.png"));
+    const GreyImage guide = readGrey(folder_ / "guide.png").value(), shadows = readGrey(folder_ / "out/p.shadows.png").value();
+    EXPECT_EQ(pattern::readPattern(folder_ / "out/p.pattern.yaml")->guide, folder_ / "out/p.shadows.png");
+    const GreyImage shapes = readGrey(folder_ / "out/p.png").value();
+    double onLight = 0, onDark = 0;
+    for (std::size_t i = 0; i < guide.pixels().size(); ++i) {
+        EXPECT_EQ(shadows.pixels()[i], 1 - guide.pixels()[i]);
+        (guide.pixels()[i] > 0.5f ? onLight : onDark) += double{shapes.pixels()[i]};
+    }
+    EXPECT_GT(onDark, 10 * onLight);
+}
+
 // Anybody can compute z from the drawing and the picture.
 TEST_F(PatternCommand, reports_the_figures_of_the_picture_that_it_writes) {
     for (const auto& [method, evaluations] : {std::pair("paper", 1 + 12 * 30), {"refined", 1000 * 30}}) {

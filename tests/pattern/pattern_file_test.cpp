@@ -292,7 +292,7 @@ TEST(MotionFile, the_bounds_of_every_key_can_be_moved) {
                             pattern.motion = *motion;
                             const PatternMotion moved(pattern, 1);
                             std::vector<InstancePose> poses(pattern.instances.size());
-                            moved.posesAt(moved.period() / 3, poses);
+                            moved.posesAt(moved.period() / 3, {}, poses);
                             for (const InstancePose& pose : poses)
                                 EXPECT_TRUE(std::isfinite(pose.centre.x + pose.centre.y + pose.rotation.x + pose.rotation.y +
                                                           pose.rotation.z))

@@ -152,6 +152,14 @@ TEST(PatternSettings, what_is_wrong_with_a_shape_is_refused_with_its_place) {
     EXPECT_THAT(refusal("{file: roof.obj}, {file: shapes/../roof.obj}"), HasSubstr("twice"));
 }
 
+// A file that names one amplitude has thought of them.
+TEST(PatternSettings, movement_is_fitted_unless_an_amplitude_is_named) {
+    EXPECT_TRUE(read("")->fitMotion);
+    EXPECT_TRUE(read("motion: {direction: 20, local_turn: {beta: 2, damping: 0.5}}\n")->fitMotion);
+    EXPECT_FALSE(read("motion: {local_turn: {range: 10}}\n")->fitMotion);
+    EXPECT_FALSE(read("motion: {group_minor: {magnitude: 0.1}}\n")->fitMotion);
+}
+
 TEST(PatternSettings, what_is_wrong_is_refused_with_its_place) {
     EXPECT_THAT(refusal("serach: {}\n"), HasSubstr(":3:1: serach: unknown key (did you mean 'search'?)"));
     EXPECT_THAT(refusal("paper: {lambda_creat: 0.2}\n"), HasSubstr("did you mean 'lambda_create'?"));
