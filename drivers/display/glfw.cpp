@@ -20,13 +20,6 @@ constexpr Time kRetry = std::chrono::seconds(1);
 // A swap that takes more than this part of a period waited for a refresh; one that takes less only copied.
 constexpr double kWaitOfSwap = 0.25;
 
-// What GLFW says of the call that failed last.
-std::string whyGlfwFailed() {
-    const char* why = nullptr;
-    glfwGetError(&why);
-    return why != nullptr ? why : "unknown reason";
-}
-
 // A monitor, and the mode in which it shows a picture pixel by pixel.
 struct Screen {
     GLFWmonitor* monitor;
@@ -59,24 +52,6 @@ Result<Screen> screenNamed(const std::string& name, const DisplayRequest& reques
 }
 
 }  // namespace
-
-// The process's use of GLFW, for as long as a display needs it. Thread: the main thread.
-class GlfwDisplay::Glfw {
-public:
-    // Error: there is no X server.
-    static Result<std::shared_ptr<Glfw>> shared() {
-        static std::weak_ptr<Glfw> open;
-        if (auto glfw = open.lock()) return glfw;
-        if (!glfwInit()) return Error(fmt::format("{}; set DISPLAY, or start an X server", whyGlfwFailed()));
-        auto glfw = std::make_shared<Glfw>();
-        open = glfw;
-        return glfw;
-    }
-    Glfw() = default;
-    ~Glfw() { glfwTerminate(); }
-    Glfw(const Glfw&) = delete;
-    Glfw& operator=(const Glfw&) = delete;
-};
 
 Result<std::unique_ptr<DisplaySink>> GlfwDisplay::open(const ConfigNode& options, const DisplayRequest& request,
                                                        const Surroundings& around) {
@@ -117,7 +92,7 @@ DeviceStatus GlfwDisplay::status() const {
 std::int64_t GlfwDisplay::nextRefresh() const { return refreshes_.running(clock_.now()) + 1; }
 
 Result<void> GlfwDisplay::appear() {
-    if (!glfw_) glfw_ = TRY(Glfw::shared());
+    if (!glfw_) glfw_ = TRY(GlfwLibrary::shared());
     glfwPollEvents();  // monitors come and go by events
     Screen screen{nullptr, {}};
     if (!monitor_.empty()) screen = TRY(screenNamed(monitor_, request_));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "drivers/display/cable.h"
+#include "drivers/display/glfw_library.h"
 #include "drivers/display/refresh_train.h"
 #include "drivers/surroundings.h"
 
@@ -42,7 +43,6 @@ public:
     Result<Shown> presentWith(Time leading) override;
 
 private:
-    class Glfw;
     GlfwDisplay(const DisplayRequest& request, const Surroundings& around, std::string monitor);
 
     // Makes it Running, the first time or again. Error: what is missing and what to do about it.
@@ -62,7 +62,7 @@ private:
     Clock& clock_;
     Cable cable_;
     RefreshTrain refreshes_;
-    std::shared_ptr<Glfw> glfw_;
+    std::shared_ptr<GlfwLibrary> glfw_;
     GLFWwindow* window_ = nullptr;
     unsigned framebuffer_ = 0;
     int swapInterval_ = -1;  // not set yet

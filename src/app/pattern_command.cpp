@@ -1,8 +1,9 @@
 #include "app/pattern_command.h"
 
-#include "app/interrupt.h"
+#include "app/attendance.h"
 #include "app/progress.h"
 #include "app/report.h"
+#include "drivers/display/picture_window.h"
 
 #include "pattern/elemental_shape.h"
 #include "pattern/measure.h"
@@ -44,6 +45,7 @@ struct Options {
     std::uint64_t seed = 1;
     int threads = hardwareThreads();
     PatternSearch::Method method = PatternSearch::Method::Refined;
+    bool watch = false;
 };
 
 // Keeps a slip of the finger from writing a pattern over a picture.
@@ -88,6 +90,8 @@ void declare(CLI::App& command, Options& options) {
     command.add_option("--threads", options.threads, "How many to use; the pattern is the same for any number")
         ->check(CLI::Range(1, 256));
     command.add_option("--report", options.report, "Also write figures, as JSON");
+    command.add_flag("--watch", options.watch, "Show the pattern in a window while it is searched for");
+    command.footer("While it searches, the space bar pauses and goes on; escape, q and Ctrl-C end it with the best so far.");
 }
 
 // Whether `file` could be written, as far as can be told before the search; its folder need not be there yet.
@@ -176,31 +180,44 @@ Report reportOf(PatternSearch::Method method, const PatternSearch::Found& found,
     return report;
 }
 
-// Searches until the settings, the clock or Ctrl-C say stop.
+// How often a window shows the search.
+constexpr Time kShowEvery = std::chrono::milliseconds(50);
+constexpr glm::ivec2 kWindow{960, 540};
+
+// Searches until the settings, the clock or a person say stop. `window`: shows it; may be null.
 PatternSearch::Found search(const GreyImage& guide, ShapePattern pattern, const PatternSearch::Options& options,
-                            std::optional<double> limit, int threads, const Clock& clock) {
-    const Interrupt interrupt;
+                            std::optional<double> limit, int threads, Clock& clock, drivers::PictureWindow* window) {
+    Attendance attendance(clock, [&] { return window != nullptr ? window->pollKey() : std::nullopt; });
     Progress progress("pattern", clock, std::cerr, standardErrorIsTerminal());
-    const Time start = clock.now();
+    const auto worked = [&] { return clock.now() - attendance.paused(); };
+    const Time start = worked();
     std::optional<int> planned;
     if (options.iterations < std::numeric_limits<int>::max()) planned = options.iterations;
     // A search that cools by a plan is not stopped by the clock but by the plan: only then can it be repeated.
     const bool planning = options.method == PatternSearch::Method::Refined;
+    std::optional<Time> shown;
     const auto askStop = [&](const PatternSearch::Progress& now) -> std::optional<PatternSearch::StopReason> {
-        const double elapsed = seconds(clock.now() - start);
-        const double byTime = limit && elapsed < *limit ? elapsed / *limit : limit ? 1 : 0;
-        const double byCount = planned ? double(now.iterations) / *planned : 0;
-        progress.update(planning && planned ? byCount : std::max(byTime, byCount),
-                        fmt::format("z {:.4f}  {} instances", now.z, now.instances));
-        if (interrupt.requested()) return PatternSearch::StopReason::Interrupted;
-        if (limit && elapsed >= *limit && !(planning && planned)) return PatternSearch::StopReason::Time;
+        if (window != nullptr && (!shown || clock.now() - *shown >= kShowEvery)) {
+            window->show(now.picture());
+            shown = clock.now();
+        }
+        const auto tell = [&](const char* how) {
+            const double elapsed = seconds(worked() - start);
+            const double byTime = limit && elapsed < *limit ? elapsed / *limit : limit ? 1 : 0;
+            const double byCount = planned ? double(now.iterations) / *planned : 0;
+            progress.update(planning && planned ? byCount : std::max(byTime, byCount),
+                            fmt::format("z {:.4f}  {} instances{}", now.z, now.instances, how));
+        };
+        tell("");
+        if (!attendance.goesOn([&] { tell("  paused, space goes on"); })) return PatternSearch::StopReason::Interrupted;
+        if (limit && seconds(worked() - start) >= *limit && !(planning && planned)) return PatternSearch::StopReason::Time;
         return std::nullopt;
     };
     // From the speed of the first few hundredths, once it runs.
     std::optional<Time> running;
     const auto plan = [&](const PatternSearch::Progress& now) -> std::optional<int> {
-        if (!running) running = clock.now();
-        const double elapsed = seconds(clock.now() - *running), left = limit ? *limit - seconds(*running - start) : 0;
+        if (!running) running = worked();
+        const double elapsed = seconds(worked() - *running), left = limit ? *limit - seconds(*running - start) : 0;
         if (!limit || now.iterations == 0 || elapsed < 0.04 * left) return std::nullopt;
         planned = static_cast<int>(std::min(now.iterations * left / elapsed, double(std::numeric_limits<int>::max() - 1)));
         return planned;
@@ -229,8 +246,10 @@ Result<void> run(const Options& options) {
     pattern.seed = options.seed;
     pattern.shapes = std::move(material.shapes);
     pattern.motion = settings.motion;
-    const SteadyClock clock;
-    PatternSearch::Found found = search(guide, std::move(pattern), settings.search, limit, options.threads, clock);
+    std::unique_ptr<drivers::PictureWindow> window;
+    if (options.watch) window = TRY(drivers::PictureWindow::open(options.output.filename().string(), kWindow));
+    SteadyClock clock;
+    PatternSearch::Found found = search(guide, std::move(pattern), settings.search, limit, options.threads, clock, window.get());
     const Time took = clock.now();
     if (settings.fitMotion) found.pattern.motion = fittedMotion(found.pattern, guide, options.threads);
 

@@ -50,4 +50,12 @@ std::int64_t Coverage::count(const PixelRectangle& cell) const {
     return covered;
 }
 
+GreyImage Coverage::picture() const {
+    GreyImage picture(width_, height_);
+    forEachRun([&](int y, int begin, int end) {
+        for (int x = begin; x < end; ++x) picture.at(x, y) = 1;
+    });
+    return picture;
+}
+
 }  // namespace fantascope::pattern

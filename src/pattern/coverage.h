@@ -59,6 +59,8 @@ public:
         }
     }
 
+    GreyImage picture() const;  // white on black
+
 private:
     static constexpr int kBits = 64;
     std::uint64_t word(int x, int y) const {

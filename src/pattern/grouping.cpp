@@ -54,13 +54,15 @@ struct Belonging {
     explicit Belonging(std::size_t centres) : ratio(centres), share(centres) {}
 
     void measure(glm::dvec2 point, std::span<const glm::dvec2> centres, double m) {
+        const double exponent = 1 / (m - 1);
         nearest = std::numeric_limits<double>::max();
         for (std::size_t k = 0; k < centres.size(); ++k)
             nearest = std::min(nearest, ratio[k] = squaredDistance(point, centres[k]));
         sum = 0;
         for (std::size_t k = 0; k < centres.size(); ++k) {
             ratio[k] = ratio[k] > nearest ? nearest / ratio[k] : 1.0;
-            sum += share[k] = std::pow(ratio[k], 1 / (m - 1));
+            // The default's power, 2, would else be most of the work.
+            sum += share[k] = exponent == 2 ? ratio[k] * ratio[k] : std::pow(ratio[k], exponent);
         }
     }
 };

@@ -25,14 +25,6 @@ std::vector<Silhouette> silhouettesOf(const ShapePattern& pattern) {
 
 InstancePose restPose(const ShapeInstance& instance) { return {instance.centre, instance.size, instance.rotation}; }
 
-GreyImage image(const Coverage& coverage) {
-    GreyImage result(coverage.width(), coverage.height());
-    coverage.forEachRun([&](int y, int begin, int end) {
-        for (int x = begin; x < end; ++x) result.at(x, y) = 1;
-    });
-    return result;
-}
-
 // The standard deviation of the tone's Gaussian, in pixels.
 double toneSigma(const ShapePattern& pattern) { return pattern.height / 36.0; }
 
@@ -123,7 +115,7 @@ PatternQuality measure(const ShapePattern& pattern, const GreyImage& guide) {
     const double sigma = toneSigma(pattern);
     return {.z = goal.z(coverage),
             .zBound = goal.bound(),
-            .tone = meanDifference(blurred(compared, sigma), blurred(image(coverage), sigma)),
+            .tone = meanDifference(blurred(compared, sigma), blurred(coverage.picture(), sigma)),
             .overlap = overlapOf(pattern, silhouettes)};
 }
 
@@ -170,7 +162,7 @@ LoopQuality LoopMeasure::in(const Wind& wind, int moments) const {
         Coverage coverage(pattern.width, pattern.height);
         for (std::size_t i = 0; i < poses.size(); ++i) coverage.add(parts_->silhouettes[pattern.instances[i].shape], poses[i]);
         parts_->motion.posesAt(time, groupsAtRest, poses);
-        seen[static_cast<std::size_t>(moment)] = {parts_->goal.z(coverage), parts_->toneOf(image(coverage)),
+        seen[static_cast<std::size_t>(moment)] = {parts_->goal.z(coverage), parts_->toneOf(coverage.picture()),
                                                   parts_->squares(poses)};
     });
 
@@ -190,7 +182,7 @@ GreyImage drawWhiteOnBlack(const ShapePattern& pattern, int width, int height) {
     const std::vector<Silhouette> silhouettes = silhouettesOf(pattern);
     Coverage coverage(width, height);
     for (const ShapeInstance& instance : pattern.instances) coverage.add(silhouettes[instance.shape], restPose(instance));
-    return image(coverage);
+    return coverage.picture();
 }
 
 }  // namespace fantascope::pattern

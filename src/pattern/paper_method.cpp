@@ -89,7 +89,7 @@ private:
                                                      const PatternSearch::AskStop& askStop) const {
         if (reference.z < options_.targetZ) return PatternSearch::StopReason::TargetReached;
         if (iterations >= options_.iterations) return PatternSearch::StopReason::Iterations;
-        return askStop({iterations, reference.z, reference.instances.size()});
+        return askStop({iterations, reference.z, reference.instances.size(), [&] { return reference.coverage.picture(); }});
     }
 
     Candidate randomPattern() const {

@@ -11,6 +11,7 @@
 #include "core/random.h"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,8 @@ glm::vec3 colourOf(std::uint32_t id, std::uint64_t seed, const std::vector<Optio
     return {rounded(colour.r, 1e4), rounded(colour.g, 1e4), rounded(colour.b, 1e4)};
 }
 
+bool byId(const ShapeInstance& a, const ShapeInstance& b) { return a.id < b.id; }
+
 }  // namespace
 
 Result<void> PatternSearch::Options::check() const {
@@ -71,6 +74,10 @@ Result<void> PatternSearch::Options::check() const {
         return Error(
             fmt::format("size = [{}, {}] must be the smallest and the largest, 0 < smallest <= largest <= 2", size->x, size->y));
     if (colours.empty()) return Error("colours: at least one is needed");
+    if (region && !(region->from.x < region->to.x && region->from.y < region->to.y))
+        return Error("region: its left top corner comes first, then its right bottom one, in canvas heights");
+    if (region && method == Method::Paper)
+        return Error("region: the paper's method changes the whole pattern; only the refined one keeps to a region");
     return {};
 }
 
@@ -105,10 +112,23 @@ PatternSearch::Found PatternSearch::run(const GreyImage& guide, ShapePattern pat
     const GreyImage compared = pattern.height == guide.height() ? guide : resized(guide, pattern.width, pattern.height);
 
     const SearchSpace space(compared, pattern.shapes, pattern.seed, options);
+    const std::vector<ShapeInstance> given = pattern.instances;
     Summary summary = options.method == Method::Paper ? searchByPaper(space, pattern.instances, threads, askStop)
                                                       : searchRefined(space, pattern.instances, askStop, plan);
-    for (ShapeInstance& instance : pattern.instances) instance.colour = colourOf(instance.id, pattern.seed, options.colours);
-    assignGroups(pattern);
+    if (given.empty()) {
+        for (ShapeInstance& instance : pattern.instances) instance.colour = colourOf(instance.id, pattern.seed, options.colours);
+        assignGroups(pattern);
+    } else {
+        // What was there keeps its colour and its movement.
+        const std::uint32_t last = std::max_element(given.begin(), given.end(), byId)->id;
+        for (ShapeInstance& instance : pattern.instances) {
+            if (instance.id <= last) continue;
+            instance.colour = colourOf(instance.id, pattern.seed, options.colours);
+            instance.group = std::min_element(given.begin(), given.end(), [&](const ShapeInstance& a, const ShapeInstance& b) {
+                                 return glm::distance(a.centre, instance.centre) < glm::distance(b.centre, instance.centre);
+                             })->group;
+        }
+    }
     return {std::move(pattern), std::move(summary)};
 }
 

@@ -26,9 +26,20 @@ struct PatternSearch {
         Paper     // Ji et al. 2015, section 4.1, as written; see paper_method.h
     };
 
+    // A rectangle of the canvas, in canvas heights; its edges belong to it.
+    struct Region {
+        glm::dvec2 from{0.0}, to{1.0};
+        bool contains(glm::dvec2 point) const {
+            return point.x >= from.x && point.x <= to.x && point.y >= from.y && point.y <= to.y;
+        }
+    };
+
     // All defaults work with any guide and any shapes.
     struct Options {
         Method method = Method::Refined;
+
+        // Where a pattern that is given may change: instances whose centre lies elsewhere stay as they are. The refined method only.
+        std::optional<Region> region;
 
         // When it stops; the caller may stop it as well.
         double targetZ = 0;                                // z_0: once z is below it, 0..1
@@ -52,9 +63,9 @@ struct PatternSearch {
 
         struct Refined {
             // What a wrong pixel, a wrong tone and a pixel that several instances cover weigh against each other; 0 .. 100.
-            double zWeight = 0.6, toneWeight = 1, overlapWeight = 0.12;
+            double zWeight = 1, toneWeight = 0.5, overlapWeight = 0.12;
             // The temperature at the start, as the share of a typical instance's pixels that may be lost in a move; 0 .. 10.
-            double temperature = 0.1;
+            double temperature = 0.03;
             // The share of the iterations, the last ones, that accept nothing worse; 0 .. 1.
             double polish = 0.1;
         } refined;
@@ -85,6 +96,7 @@ struct PatternSearch {
         int iterations = 0;  // done so far
         double z = 1;        // of the reference solution
         std::size_t instances = 0;
+        std::function<GreyImage()> picture;  // draws the reference solution, white on black as it is compared
     };
     // Asked before every iteration: a reason to stop now, with the best pattern so far, or nothing.
     using AskStop = std::function<std::optional<StopReason>(const Progress&)>;
@@ -113,7 +125,8 @@ struct PatternSearch {
     };
 
     // `guide`: stored values, in any resolution. `pattern` brings seed, shapes (at least one), motion and what else the search
-    // does not touch; its resolution, instances and groups are filled. The result depends on these, the options and the number of
+    // does not touch; its resolution, instances and groups are filled. The refined method goes on from instances that it brings; what
+    // remains of them keeps its id, colour and group. The result depends on these, the options and the number of
     // iterations alone, not on `threads`. Options must pass check(). Thread: reentrant; askStop is called on the caller's.
     static Found run(const GreyImage& guide, ShapePattern pattern, const Options& options, int threads, const AskStop& askStop,
                      const Plan& plan = {});

@@ -6,18 +6,81 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <utility>
 
 namespace fantascope::pattern {
 namespace {
 
-constexpr int kBlocksOfHeight = 45;
+// The nodes of the finer Gaussian are so far from each other, as a share of the height; its sigma is height / 36.
+constexpr double kSpacing = 1 / 45.0;
+// One axis of the Gaussian's kernel at the nodes around, as whole numbers: sigma 1.217 nodes, which with the square that a node stands for
+// (variance 1/12) makes 1.25.
+constexpr int kReach = 3;
+constexpr std::array<double, 2 * kReach + 1> kKernel = {16, 86, 241, 338, 241, 86, 16};
+constexpr double kKernelSum = 1024;
+// A guide is black or white where it is no farther from it than about this.
+constexpr double kBinary = 0.02;
+// What the edges of greys weigh: at 1 they are as sharp as those of black and white, and greys become outlines.
+constexpr double kEdges = 0.5;
 
-int blockSide(int height) { return std::max(1, static_cast<int>(std::lround(double(height) / kBlocksOfHeight))); }
+// How many bits of each byte are set, in that byte.
+std::uint64_t bitsOfBytes(std::uint64_t x) {
+    x -= x >> 1 & 0x5555555555555555;
+    x = (x & 0x3333333333333333) + (x >> 2 & 0x3333333333333333);
+    return (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0f;
+}
 
-std::size_t cell(std::int32_t index) { return static_cast<std::size_t>(index); }
+std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
+
+void PixelMask::draw(SilhouetteScanner& scanner, const Silhouette& shape, const InstancePose& pose) {
+    runs_.clear();
+    int begin = std::numeric_limits<int>::max(), end = 0;
+    scanner.scan(shape, pose, [&](int y, int from, int to) {
+        runs_.push_back({y, from, to});
+        begin = std::min(begin, from);
+        end = std::max(end, to);
+    });
+    clear();
+    if (runs_.empty()) return;
+    left_ = begin / kBits, right_ = (end - 1) / kBits + 1;
+    top_ = runs_.front().y, bottom_ = runs_.back().y + 1;
+    const auto rows = at(bottom_ - top_);
+    words_.assign(at(right_ - left_) * rows, 0);
+    for (const Run& run : runs_) {
+        const int last = (run.end - 1) / kBits;
+        for (int column = run.begin / kBits; column <= last; ++column) {
+            const int first = column * kBits;
+            std::uint64_t mask = ~std::uint64_t{0};
+            if (run.begin > first) mask <<= run.begin - first;
+            if (run.end < first + kBits) mask &= (std::uint64_t{1} << (run.end - first)) - 1;
+            words_[at(column - left_) * rows + at(run.y - top_)] |= mask;
+        }
+    }
+}
+
+std::int64_t PixelMask::count() const {
+    std::int64_t count = 0;
+    if (!empty())
+        for (std::size_t i = 0; i < at(right_ - left_) * at(bottom_ - top_); ++i) count += std::popcount(words_[i]);
+    return count;
+}
+
+glm::ivec2 PixelMask::randomPixel(Rng& rng) const {
+    auto left = static_cast<int>(rng.below(static_cast<std::uint32_t>(count())));
+    for (int index = left_;; ++index)
+        for (int y = top_; y < bottom_; ++y) {
+            std::uint64_t bits = column(index).at(y);
+            if (const int here = std::popcount(bits); here <= left) {
+                left -= here;
+                continue;
+            }
+            for (; left > 0; --left) bits &= bits - 1;
+            return {index * kBits + std::countr_zero(bits), y};
+        }
+}
 
 LayerCounts::LayerCounts(std::size_t words) : planes_(2, std::vector<std::uint64_t>(words, 0)) {}
 
@@ -44,180 +107,299 @@ void LayerCounts::take(std::size_t word, std::uint64_t mask) {
 
 RunningScore::RunningScore(const SearchSpace& space)
     : space_(space),
+      region_(space.options().region),
       width_(space.pixels().x),
       height_(space.pixels().y),
-      block_(blockSide(height_)),
-      blocks_((width_ + block_ - 1) / block_ + 1, (height_ + block_ - 1) / block_ + 1),
-      counts_(wordAt(width_ - 1, height_ - 1) + 1),
-      costs_(wordAt(width_ - 1, height_ - 1) + 1),
-      columnOf_(static_cast<std::size_t>(width_)),
-      columnEnds_(static_cast<std::size_t>(blocks_.x)),
-      rowOf_(static_cast<std::size_t>(height_)),
-      sum_(space.goal().allBlack()),
-      blockChange_(static_cast<std::size_t>(blocks_.x) * static_cast<std::size_t>(blocks_.y), 0) {
-    for (Scale& scale : scales_) scale.cellOf.assign(blockChange_.size(), 0);
-    for (int first = 0; first < width_; first += LayerCounts::kBits)
-        for (int y = 0; y < height_; ++y)
-            for (int i = 0; i <= LayerCounts::kBits; ++i)
-                costs_[wordAt(first, y)][cell(i)] =
-                    static_cast<std::int32_t>(space.goal().cost(y, first, std::min(first + i, width_)));
+      block_(std::clamp(static_cast<int>(std::bit_floor(static_cast<unsigned>(kSpacing * height_))), 1, kLargestBlock)),
+      blocks_((width_ + block_ - 1) / block_, (height_ + block_ - 1) / block_),
+      counts_(wordAt((width_ - 1) / PixelMask::kBits + 1, 0)),
+      sum_(space.goal().allBlack()) {
+    measureGuide();
+    measureDetail();
 }
 
-std::size_t RunningScore::wordAt(int x, int y) const {
-    return static_cast<std::size_t>(x / LayerCounts::kBits) * static_cast<std::size_t>(height_) + static_cast<std::size_t>(y);
-}
-
-void RunningScore::jitter(Rng& rng) {
-    const auto below = [&](int count) { return static_cast<int>(rng.below(static_cast<std::uint32_t>(count))); };
-    const int left = below(block_), top = below(block_);
-    for (int x = 0; x < width_; ++x) columnOf_[cell(x)] = (x + left) / block_;
-    for (int column = 0; column < blocks_.x; ++column) columnEnds_[cell(column)] = (column + 1) * block_ - left;
-    for (int y = 0; y < height_; ++y) rowOf_[cell(y)] = (y + top) / block_ * blocks_.x;
-
-    // What each block lacks.
-    std::vector<std::int64_t> lack(blockChange_.size(), 0);
-    for (int y = 0; y < height_; ++y)
-        for (int column = 0; column < blocks_.x; ++column) {
-            const int begin = std::max(0, columnEnds_[cell(column)] - block_), end = std::min(width_, columnEnds_[cell(column)]);
-            if (begin < end) lack[cell(rowOf_[cell(y)] + column)] += space_.goal().guideSum({{begin, y}, {end, y + 1}});
-        }
-    for (int y = 0; y < height_; ++y)
-        for (int first = 0; first < width_; first += LayerCounts::kBits) {
-            const std::size_t word = wordAt(first, y);
-            const int rest = width_ - first;
-            std::uint64_t pixels = ~counts_.none(word);
-            if (rest < LayerCounts::kBits) pixels &= (std::uint64_t{1} << rest) - 1;
-            for (; pixels != 0; pixels &= pixels - 1)
-                lack[cell(rowOf_[cell(y)] + columnOf_[cell(first + std::countr_zero(pixels))])] -= Goal::kWhite;
-        }
-    for (std::size_t s = 0; s < scales_.size(); ++s) {
+// What a black picture lacks.
+void RunningScore::measureGuide() {
+    for (int y = 0; y < blocks_.y; ++y)
+        for (int x = 0; x < blocks_.x; ++x)
+            lack_.push_back(space_.goal().guideSum(
+                {{x * block_, y * block_}, {std::min((x + 1) * block_, width_), std::min((y + 1) * block_, height_)}}));
+    for (std::size_t s = 0; s < kScales; ++s) {
         Scale& scale = scales_[s];
-        const int side = kScales[s];
-        const glm::ivec2 shift(below(side), below(side));
-        const int columns = (blocks_.x + shift.x - 1) / side + 1, rows = (blocks_.y + shift.y - 1) / side + 1;
-        scale.lack.assign(cell(columns * rows), 0);
+        scale.side = std::max(1, static_cast<int>(std::lround(kSpacing * height_ / block_))) << s;
+        scale.nodes = (blocks_ + scale.side - 1) / scale.side;
+        scale.lack.assign(at(scale.nodes.x) * at(scale.nodes.y), 0);
         scale.change.assign(scale.lack.size(), 0);
-        scale.touchedIn.assign(scale.lack.size(), 0);
         std::size_t block = 0;
         for (int y = 0; y < blocks_.y; ++y)
-            for (int x = 0; x < blocks_.x; ++x, ++block) {
-                scale.cellOf[block] = (y + shift.y) / side * columns + (x + shift.x) / side;
-                scale.lack[cell(scale.cellOf[block])] += lack[block];
-            }
+            for (int x = 0; x < blocks_.x; ++x)
+                scale.change[scale.nodeAt({x, y})] -= static_cast<double>(lack_[block++]) / Goal::kWhite;
+        Box all;
+        all.add({0, 0}), all.add(scale.nodes - 1);
+        spreadChange(scale, all);
+        scale.lack.swap(scale.spread);
     }
 }
 
-// Calls use(word, mask, y, x of the word's first pixel) for the words of the runs.
-template <class Use>
-void RunningScore::forEachWord(const PixelRuns& runs, Use use) {
-    constexpr int kBits = LayerCounts::kBits;
-    for (const PixelRun& run : runs) {
-        const int last = (run.end - 1) / kBits;
-        for (int i = run.begin / kBits; i <= last; ++i) {
-            const int first = i * kBits;
-            std::uint64_t mask = ~std::uint64_t{0};
-            if (run.begin > first) mask <<= run.begin - first;
-            if (run.end < first + kBits) mask &= (std::uint64_t{1} << (run.end - first)) - 1;
-            use(wordAt(first, run.y), mask, run.y, first);
+// The pull of every pixel.
+void RunningScore::measureDetail() {
+    const Goal& goal = space_.goal();
+    // The guide's mean around each node: what a black picture lacks there, as a share of what it would lack of a white guide.
+    Scale& scale = scales_[0];
+    const std::vector<double> lack = scale.lack;
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x) scale.change[scale.nodeAt(glm::ivec2(x, y) / block_)] -= 1;
+    std::fill(scale.lack.begin(), scale.lack.end(), 0);
+    scale.spread.clear();
+    Box all;
+    all.add({0, 0}), all.add(scale.nodes - 1);
+    spreadChange(scale, all);
+    scale.lack = lack;
+
+    const auto pullAt = [&](int x, int y) {
+        const double value = goal.value(x, y), cost = 1 - 2 * value;
+        const double grey = std::min(value, 1 - value) / kBinary;
+        const double binary = grey > 4 ? 0 : std::exp(-grey * grey);
+        const std::size_t node = scale.nodeAt(glm::ivec2(x, y) / block_);
+        const double mean = 1 - 2 * lack[node] / scale.spread[node];
+        const double pull = binary * cost + kEdges * (1 - binary) * (cost - mean);
+        return static_cast<int>(std::lround(kPull * std::clamp(pull, -1.0, 1.0)));
+    };
+    std::array<int, PixelMask::kBits> pulls{};
+    for (int first = 0; first < width_; first += PixelMask::kBits)
+        for (int y = 0; y < height_; ++y) {
+            const int count = std::min(PixelMask::kBits, width_ - first);
+            bool same = true;
+            for (int i = 0; i < count; ++i) {
+                pulls[at(i)] = pullAt(first + i, y);
+                same = same && pulls[at(i)] == pulls[0];
+            }
+            words_.push_back({~std::uint64_t{0}, 0, 0, pulls[0], same ? -1 : static_cast<std::int32_t>(pulls_.size())});
+            if (same) continue;
+            auto& planes = pulls_.emplace_back();
+            for (int i = 0; i < count; ++i)
+                for (int plane = 0; plane < kPullPlanes; ++plane)
+                    planes[at(plane)] |= static_cast<std::uint64_t>((pulls[at(i)] + kOffset) >> plane & 1) << i;
+        }
+}
+
+// What covering these pixels of a word adds to the detail, in 1 / kPull.
+std::int64_t RunningScore::pullOf(const Word& word, std::uint64_t pixels) const {
+    if (word.pulls < 0) return std::int64_t{word.pull} * std::popcount(pixels);
+    const auto& planes = pulls_[at(word.pulls)];
+    std::int64_t sum = -std::int64_t{kOffset} * std::popcount(pixels);
+    for (int plane = 0; plane < kPullPlanes; ++plane) sum += std::int64_t{std::popcount(planes[at(plane)] & pixels)} << plane;
+    return sum;
+}
+
+// The blocks of one column of words and one row of blocks: so many pixels more and less are covered. `covered` and `freed` hold a byte for
+// each block of 8; of smaller blocks the pixels themselves, of one row.
+void RunningScore::noteBlocks(int column, int row, std::uint64_t covered, std::uint64_t freed, std::size_t part) {
+    const std::uint64_t lane = ~std::uint64_t{0} >> (PixelMask::kBits - block_);
+    const auto count = [&](std::uint64_t pixels) {
+        return static_cast<std::int32_t>(block_ == kLargestBlock ? pixels & lane
+                                                                 : static_cast<unsigned>(std::popcount(pixels & lane)));
+    };
+    // The words of the last column may reach over the picture's edge, their pixels do not.
+    for (std::int32_t x = column * (PixelMask::kBits / block_); (covered | freed) != 0;
+         ++x, covered >>= block_, freed >>= block_) {
+        const std::int32_t pixels = count(covered) - count(freed);
+        if (pixels == 0) continue;
+        blockChanges_.push_back({row * blocks_.x + x, pixels});
+        for (Scale& scale : scales_) {
+            scale.change[scale.nodeAt({x, row})] += pixels;
+            scale.touched[part].add(glm::ivec2(x, row) / scale.side);
         }
     }
 }
 
-// What covering these pixels of a word adds to the sum.
-std::int64_t RunningScore::costOf(std::size_t word, std::uint64_t pixels) const {
-    const std::array<std::int32_t, LayerCounts::kBits + 1>& costs = costs_[word];
-    std::int64_t cost = 0;
-    while (pixels != 0) {
-        const int begin = std::countr_zero(pixels), end = begin + std::countr_one(pixels >> begin);
-        cost += costs[cell(end)] - costs[cell(begin)];
-        if (end == LayerCounts::kBits) break;
-        pixels &= ~std::uint64_t{0} << end;
+double RunningScore::propose(const PixelMask& out, const PixelMask& in) {
+    blockChanges_.clear();
+    for (Scale& scale : scales_) {
+        scale.touched = {};
+        scale.spread.clear();
     }
-    return cost;
-}
-
-// These pixels of a word become covered (sign 1) or free (-1).
-void RunningScore::noteCovered(std::size_t word, int y, int first, std::uint64_t pixels, int sign) {
-    if (pixels == 0) return;
-    sumChange_ += sign * costOf(word, pixels);
-    const std::int32_t row = rowOf_[cell(y)];
-    while (pixels != 0) {
-        const std::int32_t column = columnOf_[cell(first + std::countr_zero(pixels))];
-        const int end = columnEnds_[cell(column)] - first;
-        const std::uint64_t here = end < LayerCounts::kBits ? pixels & ((std::uint64_t{1} << end) - 1) : pixels;
-        const int count = sign * std::popcount(here);
-        std::int32_t& change = blockChange_[cell(row + column)];
-        if (change == 0) touchedBlocks_.push_back(row + column);
-        change += count;
-        pixels ^= here;
+    std::int64_t several = 0, detail = 0;
+    const auto difference = [&](int left, int right, int top, int bottom, std::size_t part) {
+        for (int column = left; column < right; ++column) {
+            const PixelMask::Column outgoing = out.column(column), incoming = in.column(column);
+            const Word* words = words_.data() + wordAt(column, 0);
+            for (int y = top; y < bottom;) {
+                std::uint64_t coveredOfBlocks = 0, freedOfBlocks = 0;
+                const int row = y / block_;
+                const int end = block_ == kLargestBlock ? std::min(bottom, (row + 1) * block_) : y + 1;
+                for (; y < end; ++y) {
+                    const std::uint64_t before = outgoing.at(y), after = incoming.at(y);
+                    if (before == after) continue;
+                    const Word& word = words[y];
+                    const std::uint64_t comes = after & ~before, goes = before & ~after;
+                    several += std::popcount(word.one & comes) - std::popcount(word.two & goes);
+                    if (const std::uint64_t covered = word.none & comes; covered != 0) {
+                        detail += pullOf(word, covered);
+                        coveredOfBlocks += block_ == kLargestBlock ? bitsOfBytes(covered) : covered;
+                    }
+                    if (const std::uint64_t freed = word.one & goes; freed != 0) {
+                        detail -= pullOf(word, freed);
+                        freedOfBlocks += block_ == kLargestBlock ? bitsOfBytes(freed) : freed;
+                    }
+                }
+                if ((coveredOfBlocks | freedOfBlocks) != 0) noteBlocks(column, row, coveredOfBlocks, freedOfBlocks, part);
+            }
+        }
+    };
+    // Masks that are far from each other would make a rectangle that is mostly empty.
+    const bool apart = out.empty() || in.empty() || out.right() <= in.left() || in.right() <= out.left() ||
+                       out.bottom() <= in.top() || in.bottom() <= out.top();
+    if (apart) {
+        difference(out.left(), out.right(), out.top(), out.bottom(), 0);
+        difference(in.left(), in.right(), in.top(), in.bottom(), 1);
+    } else {
+        difference(std::min(out.left(), in.left()), std::max(out.right(), in.right()), std::min(out.top(), in.top()),
+                   std::max(out.bottom(), in.bottom()), 0);
     }
-}
-
-double RunningScore::propose(const PixelRuns& out, const PixelRuns& in) {
-    ++move_;
-    sumChange_ = 0;
-    std::int64_t several = 0;
-    forEachWord(out, [&](std::size_t word, std::uint64_t mask, int y, int first) {
-        const std::uint64_t freed = counts_.one(word) & mask;
-        several -= std::popcount(counts_.two(word) & mask);
-        counts_.take(word, mask);
-        noteCovered(word, y, first, freed, -1);
-    });
-    forEachWord(in, [&](std::size_t word, std::uint64_t mask, int y, int first) {
-        several += std::popcount(counts_.one(word) & mask);
-        noteCovered(word, y, first, counts_.none(word) & mask, 1);
-    });
     const PatternSearch::Options::Refined& weights = space_.options().refined;
-    return (weights.zWeight * static_cast<double>(sumChange_) + weights.toneWeight * toneChange()) / Goal::kWhite +
+    return weights.zWeight * static_cast<double>(detail) / kPull + weights.toneWeight * toneChange() +
            weights.overlapWeight * static_cast<double>(several);
 }
 
-// Brings the move's changes from the blocks to the cells.
+// What the move at hand changes at the nodes.
 double RunningScore::toneChange() {
-    for (const std::int32_t block : touchedBlocks_) {
-        const std::int32_t pixels = std::exchange(blockChange_[cell(block)], 0);
-        if (pixels == 0) continue;
-        for (Scale& scale : scales_) {
-            const std::int32_t here = scale.cellOf[cell(block)];
-            if (std::exchange(scale.touchedIn[cell(here)], move_) != move_) scale.touched.push_back(here);
-            scale.change[cell(here)] += pixels;
+    double sum = 0;
+    for (Scale& scale : scales_) {
+        // Where two changes reach the same nodes they are one.
+        auto& [first, second] = scale.touched;
+        if (!first.empty() && !second.empty() && glm::all(glm::lessThanEqual(first.least, second.most + 2 * kReach)) &&
+            glm::all(glm::lessThanEqual(second.least, first.most + 2 * kReach))) {
+            first.add(second.least), first.add(second.most);
+            second = {};
         }
+        for (const Box& box : scale.touched)
+            if (!box.empty()) sum += spreadChange(scale, box);
     }
-    touchedBlocks_.clear();
-    std::int64_t change = 0;
-    for (const Scale& scale : scales_)
-        for (const std::int32_t here : scale.touched) {
-            const std::int64_t lack = scale.lack[cell(here)];
-            change += std::abs(lack - std::int64_t{Goal::kWhite} * scale.change[cell(here)]) - std::abs(lack);
-        }
-    return static_cast<double>(change) / static_cast<double>(scales_.size());
+    return sum / (kScales * kKernelSum * kKernelSum * Goal::kWhite);
 }
 
-void RunningScore::accept(const PixelRuns& in) {
-    forEachWord(in, [&](std::size_t word, std::uint64_t mask, int, int) { counts_.add(word, mask); });
-    sum_ += sumChange_;
-    for (Scale& scale : scales_) {
-        for (const std::int32_t here : scale.touched)
-            scale.lack[cell(here)] -= std::int64_t{Goal::kWhite} * std::exchange(scale.change[cell(here)], 0);
-        scale.touched.clear();
+// Spreads the changes of a box over the nodes around and gives what that adds to the sum of |lack|. The changes are taken.
+double RunningScore::spreadChange(Scale& scale, const Box& box) {
+    const glm::ivec2 from = glm::max(box.least - kReach, glm::ivec2(0)), to = glm::min(box.most + kReach, scale.nodes - 1);
+    const int width = to.x - from.x + 1;
+    const std::size_t start = scale.spread.size();
+    scale.spread.resize(start + at(width) * at(to.y - from.y + 1), 0);
+    row_.resize(at(width));
+    for (int y = box.least.y; y <= box.most.y; ++y) {
+        std::fill(row_.begin(), row_.end(), 0);
+        double* changes = scale.change.data() + at(y) * at(scale.nodes.x);
+        for (int x = box.least.x; x <= box.most.x; ++x) {
+            const double pixels = std::exchange(changes[x], 0.0);
+            if (pixels == 0) continue;
+            const int first = std::max(x - kReach, from.x), last = std::min(x + kReach, to.x);
+            for (int i = first; i <= last; ++i) row_[at(i - from.x)] += pixels * kKernel[at(i - x + kReach)];
+        }
+        const int first = std::max(y - kReach, from.y), last = std::min(y + kReach, to.y);
+        for (int i = first; i <= last; ++i) {
+            const double weight = kKernel[at(i - y + kReach)] * Goal::kWhite;
+            double* out = scale.spread.data() + start + at(i - from.y) * at(width);
+            for (int x = 0; x < width; ++x) out[x] -= weight * row_[at(x)];
+        }
     }
+    double sum = 0;
+    for (int y = from.y; y <= to.y; ++y) {
+        const double* lack = scale.lack.data() + at(y) * at(scale.nodes.x) + from.x;
+        const double* change = scale.spread.data() + start + at(y - from.y) * at(width);
+        for (int x = 0; x < width; ++x) sum += std::abs(lack[x] + change[x]) - std::abs(lack[x]);
+    }
+    return sum;
 }
 
-void RunningScore::reject(const PixelRuns& out) {
-    forEachWord(out, [&](std::size_t word, std::uint64_t mask, int, int) { counts_.add(word, mask); });
+void RunningScore::accept(const PixelMask& out, const PixelMask& in) {
+    // What covering these pixels of a word adds to sum |I - I'|.
+    const auto costOf = [&](int column, int y, std::uint64_t pixels) {
+        std::int64_t cost = 0;
+        while (pixels != 0) {
+            const int begin = std::countr_zero(pixels), end = begin + std::countr_one(pixels >> begin);
+            cost += space_.goal().cost(y, column * PixelMask::kBits + begin, column * PixelMask::kBits + end);
+            if (end == PixelMask::kBits) break;
+            pixels &= ~std::uint64_t{0} << end;
+        }
+        return cost;
+    };
+    const auto update = [&](const PixelMask& mask, auto change) {
+        for (int column = mask.left(); column < mask.right(); ++column) {
+            const PixelMask::Column outgoing = out.column(column), incoming = in.column(column);
+            for (int y = mask.top(); y < mask.bottom(); ++y) {
+                const std::uint64_t before = outgoing.at(y), after = incoming.at(y);
+                if (before == after) continue;
+                const std::size_t index = wordAt(column, y);
+                Word& word = words_[index];
+                change(word, index, column, y, after & ~before, before & ~after);
+                word.none = counts_.none(index), word.one = counts_.one(index), word.two = counts_.two(index);
+            }
+        }
+    };
+    update(out, [&](const Word& word, std::size_t index, int column, int y, std::uint64_t, std::uint64_t goes) {
+        sum_ -= costOf(column, y, word.one & goes);
+        counts_.take(index, goes);
+    });
+    update(in, [&](const Word& word, std::size_t index, int column, int y, std::uint64_t comes, std::uint64_t) {
+        sum_ += costOf(column, y, word.none & comes);
+        counts_.add(index, comes);
+    });
+    for (const Change& change : blockChanges_) lack_[at(change.block)] -= std::int64_t{Goal::kWhite} * change.pixels;
     for (Scale& scale : scales_) {
-        for (const std::int32_t here : scale.touched) scale.change[cell(here)] = 0;
-        scale.touched.clear();
+        const double* change = scale.spread.data();
+        for (const Box& box : scale.touched) {
+            if (box.empty()) continue;
+            const glm::ivec2 from = glm::max(box.least - kReach, glm::ivec2(0)),
+                             to = glm::min(box.most + kReach, scale.nodes - 1);
+            for (int y = from.y; y <= to.y; ++y)
+                for (int x = from.x; x <= to.x; ++x) scale.lack[at(y) * at(scale.nodes.x) + at(x)] += *change++;
+        }
     }
 }
 
 double RunningScore::z() const { return static_cast<double>(sum_) / (static_cast<double>(Goal::kWhite) * width_ * height_); }
 
-bool RunningScore::lacksLight(glm::ivec2 pixel) const {
-    const std::size_t word = wordAt(pixel.x, pixel.y);
-    if ((counts_.none(word) >> (pixel.x % LayerCounts::kBits) & 1) == 0) return false;
-    const Scale& scale = scales_[0];
-    return scale.lack[cell(scale.cellOf[cell(rowOf_[cell(pixel.y)] + columnOf_[cell(pixel.x)])])] > 0;
+GreyImage RunningScore::picture() const {
+    GreyImage picture(width_, height_);
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x)
+            if ((words_[wordAt(x / PixelMask::kBits, y)].none >> (x % PixelMask::kBits) & 1) == 0) picture.at(x, y) = 1;
+    return picture;
+}
+
+void RunningScore::findDarkPlaces() {
+    darkness_.clear();
+    const Scale& finest = scales_[0];
+    std::int64_t sum = 0;
+    std::size_t block = 0;
+    for (int y = 0; y < blocks_.y; ++y)
+        for (int x = 0; x < blocks_.x; ++x, ++block) {
+            const bool counts = !region_ || region_->contains((glm::dvec2(x, y) + 0.5) * double(block_) / double(height_));
+            if (counts && finest.lack[finest.nodeAt({x, y})] > 0) sum += std::max<std::int64_t>(0, lack_[block]);
+            darkness_.push_back(sum);
+        }
+}
+
+glm::ivec2 RunningScore::darkPlace(Rng& rng) const {
+    const glm::ivec2 last = glm::ivec2(width_, height_) - 1;
+    if (darkness_.back() == 0) {
+        const glm::dvec2 from = region_ ? region_->from : glm::dvec2(0),
+                         to = region_ ? region_->to : glm::dvec2(space_.aspect(), 1);
+        return glm::clamp(glm::ivec2(glm::dvec2(rng.uniform(from.x, to.x), rng.uniform(from.y, to.y)) * double(height_)),
+                          glm::ivec2(0), last);
+    }
+    const auto wanted = static_cast<std::int64_t>(rng.uniform() * static_cast<double>(darkness_.back()));
+    const auto block = static_cast<int>(std::upper_bound(darkness_.begin(), darkness_.end(), wanted) - darkness_.begin());
+    const glm::ivec2 corner = glm::ivec2(block % blocks_.x, block / blocks_.x) * block_;
+    glm::ivec2 pixel(0);
+    constexpr int kLooks = 8;
+    for (int look = 0; look < kLooks; ++look) {
+        pixel = glm::min(
+            corner + glm::ivec2(rng.below(static_cast<std::uint32_t>(block_)), rng.below(static_cast<std::uint32_t>(block_))),
+            last);
+        if ((words_[wordAt(pixel.x / PixelMask::kBits, pixel.y)].none >> (pixel.x % PixelMask::kBits) & 1) != 0) break;
+    }
+    return pixel;
 }
 
 }  // namespace fantascope::pattern

@@ -8,21 +8,60 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <vector>
 
 namespace fantascope::pattern {
 
-// The pixels of one instance: x from `begin` to before `end` in row y. No pixel is in two runs of an instance.
-struct PixelRun {
-    int y, begin, end;
+// The pixels of one instance, 64 neighbours of a row in a word: the words of the rectangle around it, column by column.
+class PixelMask {
+public:
+    static constexpr int kBits = 64;
+
+    // Nothing.
+    void clear() { left_ = right_ = top_ = bottom_ = 0; }
+    // What the scanner draws of an instance.
+    void draw(SilhouetteScanner& scanner, const Silhouette& shape, const InstancePose& pose);
+
+    bool empty() const { return left_ == right_; }
+    int left() const { return left_; }  // columns of words, from `left` to before `right`
+    int right() const { return right_; }
+    int top() const { return top_; }  // rows
+    int bottom() const { return bottom_; }
+    // One column of words, whether it lies in the rectangle or not: at any row, 0 outside.
+    struct Column {
+        const std::uint64_t* words = nullptr;
+        int top = 0;
+        unsigned rows = 0;
+        std::uint64_t at(int y) const {
+            const auto row = static_cast<unsigned>(y - top);
+            return row < rows ? words[row] : 0;
+        }
+    };
+    Column column(int index) const {
+        if (index < left_ || index >= right_) return {};
+        const auto rows = static_cast<unsigned>(bottom_ - top_);
+        return {words_.data() + static_cast<std::size_t>(index - left_) * rows, top_, rows};
+    }
+    std::int64_t count() const;
+    // One of its pixels, all equally likely; it must have some.
+    glm::ivec2 randomPixel(Rng& rng) const;
+
+private:
+    struct Run {
+        int y, begin, end;
+    };
+    std::vector<Run> runs_;  // scratch, kept for its memory
+    std::vector<std::uint64_t> words_;
+    int left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;
 };
-using PixelRuns = std::vector<PixelRun>;
 
 // How many instances lie on each pixel, in bit planes: bit k of 64 neighbouring counts is one word, so that an instance comes and goes
 // by a few operations on words, with a carry from plane to plane, instead of one on every pixel. Counts up to 65535.
 class LayerCounts {
 public:
-    static constexpr int kBits = 64, kPlanes = 16, kMost = (1 << kPlanes) - 1;
+    static constexpr int kPlanes = 16, kMost = (1 << kPlanes) - 1;
 
     explicit LayerCounts(std::size_t words);
 
@@ -48,9 +87,10 @@ private:
 // whole numbers; after any number of moves they are those of a fresh drawing.
 //
 // What is held against the guide I, with I' the pattern white on black, in pixels of full difference:
-//   z        sum |I - I'|, the paper's goal (section 4.1)
-//   tone     the mean over three scales of sum |cell's I - cell's I'|, over square cells of height/22 to height/5: what remains when the
-//            eye blurs. The lattice of cells is moved at random now and then, so that it does not show in the pattern.
+//   detail   z = sum |I - I'|, the paper's goal (section 4.1), less what the tone sees better: where the guide is black or white a covered
+//            pixel adds 1 - 2 I, as in z; where it is grey, for which z would have black or white too, only half of what 1 - 2 I differs from
+//            its mean around, which keeps the edges of greys.
+//   tone     sum |G*I - G*I'|, the mean for two Gaussians G of sigma height/36 and height/18: what remains when the eye blurs
 //   overlap  the pixels that several instances cover
 //
 // Thread: thread-bound.
@@ -58,52 +98,79 @@ class RunningScore {
 public:
     explicit RunningScore(const SearchSpace& space);
 
-    // The change of the weighted sum if `out` (the runs of an instance that is drawn, or none) went and `in` came instead. The
-    // move is then half done: accept() or reject() it with the same runs.
-    double propose(const PixelRuns& out, const PixelRuns& in);
-    void accept(const PixelRuns& in);
-    void reject(const PixelRuns& out);
+    // The change of the weighted sum if `out` (an instance that is drawn, or nothing) went and `in` came instead. Nothing changes yet.
+    double propose(const PixelMask& out, const PixelMask& in);
+    // Makes the change that was proposed last, with the same masks.
+    void accept(const PixelMask& out, const PixelMask& in);
 
-    // Moves the lattice of the tone. Needed once before the first move.
-    void jitter(Rng& rng);
+    double z() const;           // mean, 0..1
+    GreyImage picture() const;  // the pattern white on black
 
-    double z() const;  // mean, 0..1
-    // Whether the place lacks light: the pixel is dark and its surrounding darker than in the guide.
-    bool lacksLight(glm::ivec2 pixel) const;
+    // Looks where light is lacking, in the search's region if it has one. What the next one gives is of this moment until it is called again.
+    void findDarkPlaces();
+    // A pixel without light in a block that lacks light, as does its surrounding, the likelier the more; any pixel where none does.
+    glm::ivec2 darkPlace(Rng& rng) const;
 
 private:
-    static constexpr std::array<int, 3> kScales = {2, 4, 9};  // sides of cells in blocks
-    struct Scale {
-        std::vector<std::int32_t> cellOf;     // of each block
-        std::vector<std::int64_t> lack;       // of each cell: sum I - I', in Goal's units
-        std::vector<std::int32_t> change;     // of its covered pixels in the move at hand; zero between moves
-        std::vector<std::int64_t> touchedIn;  // the last move that touched the cell
-        std::vector<std::int32_t> touched;    // the cells of the move at hand, each once
+    // Everything that a move asks of 64 pixels, side by side in memory; the words of a column are neighbours.
+    struct Word {
+        std::uint64_t none, one, two;  // as LayerCounts has them
+        std::int32_t pull;   // of each pixel, where it is the same for all, in 1 / kPull: what covering it adds to the detail
+        std::int32_t pulls;  // else the index in pulls_; -1
     };
-    // Words stand in columns, so that an instance's words are neighbours in memory: the inner loop waits for little else.
-    std::size_t wordAt(int x, int y) const;
-    template <class Use>
-    void forEachWord(const PixelRuns& runs, Use use);
-    std::int64_t costOf(std::size_t word, std::uint64_t pixels) const;
-    void noteCovered(std::size_t word, int y, int first, std::uint64_t pixels, int sign);
+    // What changes is counted in square blocks. Those of 8 pixels, which all but small pictures have, are counted together: the counts of
+    // a word's eight blocks are its bytes.
+    static constexpr int kLargestBlock = 8, kScales = 2;
+    struct Change {
+        std::int32_t block, pixels;
+    };
+    // A rectangle of nodes, ends included.
+    struct Box {
+        glm::ivec2 least{std::numeric_limits<int>::max()}, most{-1};
+        bool empty() const { return most.x < 0; }
+        void add(glm::ivec2 node) { least = glm::min(least, node), most = glm::max(most, node); }
+    };
+    // One Gaussian, sampled at nodes a little closer than its sigma. All values are whole numbers, in doubles.
+    struct Scale {
+        int side = 1;  // of the square of blocks around a node
+        glm::ivec2 nodes{0};
+        std::size_t nodeAt(glm::ivec2 block) const {
+            return static_cast<std::size_t>(block.y / side) * static_cast<std::size_t>(nodes.x) +
+                   static_cast<std::size_t>(block.x / side);
+        }
+        std::vector<double> lack;    // of each node: the Gaussian mean of I - I', in Goal's units * kKernelSum^2
+        std::vector<double> change;  // pixels covered more by the move at hand, in each square; zero between moves
+        std::array<Box, 2> touched;  // where they are
+        std::vector<double> spread;  // the changes of `lack` by the move at hand, box by box
+    };
+    std::size_t wordAt(int column, int y) const {
+        return static_cast<std::size_t>(column) * static_cast<std::size_t>(height_) + static_cast<std::size_t>(y);
+    }
+    void measureGuide();
+    void measureDetail();
+    std::int64_t pullOf(const Word& word, std::uint64_t pixels) const;
+    void noteBlocks(int column, int row, std::uint64_t covered, std::uint64_t freed, std::size_t part);
     double toneChange();
+    double spreadChange(Scale& scale, const Box& box);
 
     const SearchSpace& space_;
+    const std::optional<PatternSearch::Region> region_;
     const int width_, height_;
-    const int block_;    // the side of a block, pixels
-    glm::ivec2 blocks_;  // so many, the ones cut by the edges included
+    const int block_;          // the side of a block, pixels: 1, 2, 4 or 8
+    const glm::ivec2 blocks_;  // so many, those cut by the edges included
     LayerCounts counts_;
-    // Of each word: what covering the first 0, 1, ... 64 of its pixels would add to sum |I - I'|, in Goal's units.
-    std::vector<std::array<std::int32_t, LayerCounts::kBits + 1>> costs_;
-    std::vector<std::int32_t> columnOf_, columnEnds_;  // the block column of each x, and the first x after each column
-    std::vector<std::int32_t> rowOf_;                  // the first block of the block row of each y
-    std::array<Scale, kScales.size()> scales_;
+    std::vector<Word> words_;
+    // The pulls of 64 pixels, each + kOffset, in bit planes: a sum over any of them is a few counts of bits.
+    static constexpr int kPull = 63, kOffset = 64, kPullPlanes = 7;
+    std::vector<std::array<std::uint64_t, kPullPlanes>> pulls_;
+    std::vector<std::int64_t> lack_;  // of each block: sum I - I', in Goal's units
+    std::array<Scale, kScales> scales_;
 
-    std::int64_t sum_ = 0;  // |I - I'| in Goal's units
-    // The move at hand.
-    std::int64_t move_ = 0, sumChange_ = 0;
-    std::vector<std::int32_t> blockChange_;  // zero between moves
-    std::vector<std::int32_t> touchedBlocks_;
+    std::int64_t sum_ = 0;              // |I - I'| in Goal's units
+    std::vector<Change> blockChanges_;  // by the move at hand
+    std::vector<double> row_;           // scratch
+
+    std::vector<std::int64_t> darkness_;  // running sums over the blocks
 };
 
 }  // namespace fantascope::pattern

@@ -31,6 +31,8 @@ private:
     std::vector<glm::uvec3> triangles_;
     std::vector<Edge> edges_;
     std::vector<Side> sides_;
+    // Of a flat convex shape, the corners of its outline in order; else empty.
+    std::vector<std::uint32_t> convexOutline_;
 };
 
 // Turns silhouettes into runs of pixels, as an orthographic view sees them whose height is one canvas unit. A pixel belongs to a
@@ -45,7 +47,15 @@ public:
     // of them.
     template <class Use>
     void scan(const Silhouette& shape, const InstancePose& pose, Use use) {
-        followOutline(shape, pose);
+        project(shape, pose);
+        top_ = height_, bottom_ = 0;
+        if (!shape.convexOutline_.empty()) {
+            followConvexOutline(shape.convexOutline_);
+            for (int y = top_; y < bottom_; ++y)
+                if (const Row& row = convexRows_[static_cast<std::size_t>(y)]; row.begin < row.end) use(y, row.begin, row.end);
+            return;
+        }
+        followOutline(shape);
         for (int y = top_; y < bottom_; ++y) {
             int layers = 0, begin = 0;
             for (int i = std::exchange(rows_[static_cast<std::size_t>(y)], -1); i >= 0;) {
@@ -64,8 +74,14 @@ private:
         int change;  // of the number of triangles above each other, from there on
         int next;    // in the same row, x ascending; -1: none
     };
-    void followOutline(const Silhouette& shape, const InstancePose& pose);
-    void addEdge(glm::dvec2 from, glm::dvec2 to, int weight);
+    struct Row {
+        int begin, end;
+    };
+    void project(const Silhouette& shape, const InstancePose& pose);
+    void followOutline(const Silhouette& shape);
+    void followConvexOutline(const std::vector<std::uint32_t>& outline);
+    template <class Cross>
+    void followEdge(glm::dvec2 upper, glm::dvec2 lower, Cross cross);
 
     int width_, height_;
     // The silhouette at hand.
@@ -73,7 +89,8 @@ private:
     std::vector<int> facing_;            // triangles: 1 clockwise as seen, -1 anticlockwise, 0 edge-on
     std::vector<Crossing> crossings_;    // the first crossingCount_ of them
     int crossingCount_ = 0;
-    std::vector<int> rows_;     // the first crossing of each row; -1: none
+    std::vector<int> rows_;  // the first crossing of each row; -1: none
+    std::vector<Row> convexRows_;
     int top_ = 0, bottom_ = 0;  // rows with crossings
 };
 

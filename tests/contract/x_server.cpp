@@ -102,6 +102,20 @@ bool XServer::hasWindow(const std::string& title) const {
     return window != 0 && XGetWindowAttributes(connection.get(), window, &attributes) != 0 && attributes.map_state == IsViewable;
 }
 
+void XServer::pressKey(const std::string& title, const std::string& key) const {
+    const Connection connection = connectionTo(display_);
+    XEvent event{};
+    event.xkey.type = KeyPress;
+    event.xkey.display = connection.get();
+    event.xkey.window = windowTitled(connection.get(), title);
+    event.xkey.root = DefaultRootWindow(connection.get());
+    event.xkey.same_screen = True;
+    event.xkey.time = CurrentTime;
+    event.xkey.keycode = XKeysymToKeycode(connection.get(), XStringToKeysym(key.c_str()));
+    XSendEvent(connection.get(), event.xkey.window, True, KeyPressMask, &event);
+    XSync(connection.get(), False);
+}
+
 void XServer::closeWindow(const std::string& title) const {
     const Connection connection = connectionTo(display_);
     XEvent event{};

@@ -26,6 +26,8 @@ public:
     // What the screen shows in its row `y` from the top: 1280 pixels of red, green, blue as they are stored.
     std::vector<std::array<std::uint8_t, 3>> row(int y) const;
     bool hasWindow(const std::string& title) const;  // a visible one
+    // Presses a key while the window has the focus; the key's name as xmodmap has it: "space", "Escape", "a".
+    void pressKey(const std::string& title, const std::string& key) const;
     // Asks the window to close, as its close button does.
     void closeWindow(const std::string& title) const;
 

@@ -77,6 +77,8 @@ const std::vector<Row> kTable = {
     {"drivers/display", kOfDrivers, {}, {"OpenGL"}},
     {"drivers/display/headless", kOfDrivers, {}, {"OpenGL", "EGL"}},
     {"drivers/display/glfw", kOfDrivers, {}, {"OpenGL", "GLFW"}},
+    {"drivers/display/glfw_library", kOfDrivers, {}, {"GLFW"}},
+    {"drivers/display/picture_window", kOfDrivers, {}, {"OpenGL", "GLFW"}},
     {"drivers/dmx", kOfDrivers, {}, {"POSIX"}},
     {"drivers/modbus", kOfDrivers, {}, {"libmodbus"}},
     {"drivers/cue_controller", kOfDrivers, {}, {"libusb"}},
