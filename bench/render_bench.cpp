@@ -80,9 +80,8 @@ T valueOf(Result<T> result) {
 }
 
 // One frame on `outputs` displays: drawn one after the other, presented together.
-void drawFrame(benchmark::State& state, int outputs, int layers, int crystals) {
+void drawFrame(benchmark::State& state, int outputs, int layers, const std::vector<PictureSource>& sources) {
     ManualClock clock;
-    const std::vector<PictureSource> sources = {swayingCrystals(crystals), swayingCrystals(crystals)};
     std::vector<Output> all;
     for (int i = 0; i < outputs; ++i) {
         Output output;
@@ -115,15 +114,36 @@ void drawFrame(benchmark::State& state, int outputs, int layers, int crystals) {
         output.renderer.reset();
     }
 }
+void drawPatterns(benchmark::State& state, int outputs, int layers, int crystals) {
+    drawFrame(state, outputs, layers, {swayingCrystals(crystals), swayingCrystals(crystals)});
+}
+
+// The shadow of as many crystals, blurred with a disc of this radius in pixels of the canvas.
+void drawFoliage(benchmark::State& state) {
+    constexpr double kRows = 331;  // of the canvas, see the corners
+    FoliageSource foliage;
+    foliage.layers.push_back({swayingCrystals(kDefaultShow), {2 * static_cast<double>(state.range(0)) / kRows, nullptr}});
+    drawFrame(state, 1, 1, {foliage});
+}
+void drawCaustics(benchmark::State& state) {
+    drawFrame(state, 1, 1, {CausticsSource{glm::vec3(0.2f), {16.0 / 3, 3}, 1.2, 0.6, 0.02, 1}});
+}
+void drawMirrorBall(benchmark::State& state) {
+    drawFrame(state, 1, 1, {MirrorBallSource{glm::vec3(1), {16.0 / 3, 3}, {0, 0.4, 2.4}, 0.25, 0.02, {3.6, 1.6, 1.2}, 0.04, 40}});
+}
+
 void settings(benchmark::internal::Benchmark* bench) {
     bench->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 }
-BENCHMARK_CAPTURE(drawFrame, one_output, 1, 1, kDefaultShow)->Apply(settings);
-BENCHMARK_CAPTURE(drawFrame, one_output_in_a_crossfade, 1, 2, kDefaultShow)->Apply(settings);
-BENCHMARK_CAPTURE(drawFrame, two_outputs, 2, 1, kDefaultShow)->Apply(settings);
-BENCHMARK_CAPTURE(drawFrame, two_outputs_in_a_crossfade, 2, 2, kDefaultShow)->Apply(settings);
-BENCHMARK_CAPTURE(drawFrame, one_output_heavy, 1, 1, kHeavyShow)->Apply(settings);
-BENCHMARK_CAPTURE(drawFrame, one_output_black, 1, 0, kDefaultShow)->Apply(settings);
+BENCHMARK_CAPTURE(drawPatterns, one_output, 1, 1, kDefaultShow)->Apply(settings);
+BENCHMARK_CAPTURE(drawPatterns, one_output_in_a_crossfade, 1, 2, kDefaultShow)->Apply(settings);
+BENCHMARK_CAPTURE(drawPatterns, two_outputs, 2, 1, kDefaultShow)->Apply(settings);
+BENCHMARK_CAPTURE(drawPatterns, two_outputs_in_a_crossfade, 2, 2, kDefaultShow)->Apply(settings);
+BENCHMARK_CAPTURE(drawPatterns, one_output_heavy, 1, 1, kHeavyShow)->Apply(settings);
+BENCHMARK_CAPTURE(drawPatterns, one_output_black, 1, 0, kDefaultShow)->Apply(settings);
+BENCHMARK(drawFoliage)->ArgName("radius")->Arg(0)->Arg(2)->Arg(5)->Arg(10)->Arg(20)->Arg(40)->Arg(80)->Apply(settings);
+BENCHMARK(drawCaustics)->Apply(settings);
+BENCHMARK(drawMirrorBall)->Apply(settings);
 
 // The yardstick: what one multisampled picture needs at least, on one core: every sample's colour and depth cleared, then
 // averaged.

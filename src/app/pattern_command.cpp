@@ -5,6 +5,7 @@
 #include "app/report.h"
 #include "drivers/display/picture_window.h"
 
+#include "pattern/built_in_shapes.h"
 #include "pattern/elemental_shape.h"
 #include "pattern/measure.h"
 #include "pattern/motion_fit.h"
@@ -19,10 +20,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 namespace fantascope::app {
@@ -37,11 +40,12 @@ constexpr int kLoopMoments = 200;  // of the animated loop are judged: one in te
 
 struct Options {
     fs::path guide, output;
-    std::vector<std::string> shapes = {"triangle"};
+    std::vector<std::string> shapes;
     std::optional<fs::path> settings, image, report;
     std::optional<std::uint32_t> instances;
     std::optional<double> seconds, targetZ;
     std::optional<int> iterations;
+    bool shadows = false;
     std::uint64_t seed = 1;
     int threads = hardwareThreads();
     PatternSearch::Method method = PatternSearch::Method::Refined;
@@ -61,12 +65,13 @@ void declare(CLI::App& command, Options& options) {
         ->required()
         ->check(CLI::Validator(onlyYaml, "YAML"));
     command
-        .add_option("--shapes", options.shapes,
-                    fmt::format("Elemental shapes, separated by commas: {}, or mesh files (FBX, OBJ, glTF, PLY, STL)",
-                                fmt::join(pattern::builtInShapeNames(), ", ")))
+        .add_option(
+            "--shapes", options.shapes,
+            fmt::format("Elemental shapes, separated by commas: {}, or files (FBX, OBJ, glTF, PLY, STL, SVG, PNG); without, "
+                        "those that the settings name, or else triangle",
+                        pattern::builtInShapeList()))
         ->delimiter(',')
-        ->allow_extra_args(false)  // what follows the list is the next argument
-        ->capture_default_str();
+        ->allow_extra_args(false);  // what follows the list is the next argument
     command.add_option("--settings", options.settings, "The numerical parameters, *.pattern-settings.yaml");
     command.add_option("--instances", options.instances, "The most instances")->check(CLI::Range(1, 100'000));
     command
@@ -84,6 +89,8 @@ void declare(CLI::App& command, Options& options) {
             {"refined", PatternSearch::Method::Refined}, {"paper", PatternSearch::Method::Paper}}))
         ->default_str("refined");
     command.add_option("--image", options.image, "Also write the pattern white on black, in the guide's size, as PNG");
+    command.add_flag("--shadows", options.shadows,
+                     "The shapes are dark and stand where the drawing is dark, as leaves do in a show's foliage");
     command.add_option("--seed", options.seed, "Another seed, another pattern; the same seed, the same pattern")
         ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
         ->capture_default_str();
@@ -125,31 +132,54 @@ Result<void> copyTo(const fs::path& folder, const Material& material) {
     return writeFile(folder / material.name, content);
 }
 
-struct Shapes {
-    std::vector<pattern::ElementalShape> shapes;
-    std::vector<Material> files;
-};
+// The drawing of the shadows that shapes are to fill: what `guide` leaves dark, in the 8 bits of the file that it becomes.
+GreyImage shadowsOf(GreyImage guide) {
+    guide = inverted(std::move(guide));
+    for (float& value : guide.pixels()) value = std::round(value * 255) / 255;
+    return guide;
+}
 
-Result<Shapes> loadShapes(const Options& options) {
-    Shapes loaded;
-    for (const std::string& given : options.shapes) {
-        pattern::ElementalShape shape = TRY(pattern::loadShape(given));
-        const auto& builtIn = pattern::builtInShapeNames();
-        if (std::find(builtIn.begin(), builtIn.end(), given) == builtIn.end()) {
-            const fs::path file = given;
-            loaded.files.push_back(materialFor(options.output, file, file.filename().string()));
-            if (loaded.files.back().copied && file.extension() == ".gltf")
-                return Error(fmt::format(
-                    "{}: a .gltf keeps its points in a second file and cannot be copied beside the pattern; export it as .glb",
-                    given));
-            shape.name = loaded.files.back().name;
-            shape.file = fs::absolute(options.output).parent_path() / shape.name;
-        }
-        for (const auto& other : loaded.shapes)
-            if (other.name == shape.name) return Error(fmt::format("--shapes: {} is given twice", given));
-        loaded.shapes.push_back(std::move(shape));
+// Each with what the settings say of it alone.
+Result<std::vector<pattern::ShapeSettings>> chosenShapes(const Options& options, const pattern::PatternSettings& settings) {
+    if (options.shapes.empty() && !settings.shapes.empty()) return settings.shapes;
+    std::vector<pattern::ShapeSettings> chosen;
+    for (const std::string& name : options.shapes.empty() ? std::vector<std::string>{"triangle"} : options.shapes) {
+        pattern::ElementalShape shape = TRY(pattern::loadShape(name));
+        pattern::PatternSearch::Options::Shape own = settings.ownOf(shape);
+        chosen.push_back({std::move(shape), std::move(own)});
     }
-    return loaded;
+    return chosen;
+}
+
+// Whether a .gltf keeps its points in files of their own; one that holds them itself can be copied alone.
+bool hasOtherFiles(const fs::path& file) {
+    const auto text = readFile(file);
+    const Report gltf = Report::parse(text ? *text : "", nullptr, false);
+    const auto buffers = gltf.find("buffers");
+    return buffers != gltf.end() && std::any_of(buffers->begin(), buffers->end(), [](const Report& buffer) {
+               const auto uri = buffer.find("uri");
+               return uri == buffer.end() || !uri->is_string() || !uri->get<std::string>().starts_with("data:");
+           });
+}
+
+// Names each file's shape as it will lie beside the pattern; what has to be put there is added to `files`.
+Result<void> placeShapes(const fs::path& output, std::vector<pattern::ShapeSettings>& chosen, std::vector<Material>& files) {
+    std::set<std::string> names;
+    for (auto& [shape, own] : chosen) {
+        const std::string given = shape.file.empty() ? shape.name : shape.file.string();
+        if (!shape.file.empty()) {
+            const fs::path file = shape.file;
+            files.push_back(materialFor(output, file, file.filename().string()));
+            if (files.back().copied && endingOf(file) == ".gltf" && hasOtherFiles(file))
+                return Error(fmt::format(
+                    "{}: keeps its points in a second file and cannot be copied beside the pattern; export it as .glb", given));
+            shape.name = files.back().name;
+            shape.file = fs::absolute(output).parent_path() / shape.name;
+        }
+        if (!names.insert(shape.name).second)
+            return Error(fmt::format("the shape {}, or another of that name, is given twice", given));
+    }
+    return {};
 }
 
 Report reportOf(PatternSearch::Method method, const PatternSearch::Found& found, const pattern::PatternQuality& quality,
@@ -230,7 +260,8 @@ Result<void> run(const Options& options) {
     TRY(checkWritable(options.output));
     for (const auto& file : {options.image, options.report})
         if (file) TRY(checkWritable(*file));
-    const GreyImage guide = TRY(readGrey(options.guide));
+    GreyImage guide = TRY(readGrey(options.guide));
+    if (options.shadows) guide = shadowsOf(std::move(guide));
     pattern::PatternSettings settings;
     if (options.settings) settings = TRY(pattern::readPatternSettings(*options.settings));
     settings.search.method = options.method;
@@ -238,13 +269,20 @@ Result<void> run(const Options& options) {
     if (options.targetZ) settings.search.targetZ = *options.targetZ;
     if (options.iterations) settings.search.iterations = *options.iterations;
     const std::optional<double> limit = options.seconds || options.iterations ? options.seconds : kDefaultSeconds;
-    Shapes material = TRY(loadShapes(options));
-    const Material guideFile = materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
+    std::vector<pattern::ShapeSettings> shapes = TRY(chosenShapes(options, settings));
+    std::vector<Material> shapeFiles;
+    TRY(placeShapes(options.output, shapes, shapeFiles));
+    const Material guideFile = options.shadows
+                                   ? Material{{}, options.output.stem().stem().string() + ".shadows.png", false}
+                                   : materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
 
     ShapePattern pattern;
     pattern.guideTransfer = settings.guideTransfer;
     pattern.seed = options.seed;
-    pattern.shapes = std::move(material.shapes);
+    for (auto& [shape, own] : shapes) {
+        pattern.shapes.push_back(std::move(shape));
+        settings.search.shapes.push_back(std::move(own));
+    }
     pattern.motion = settings.motion;
     std::unique_ptr<drivers::PictureWindow> window;
     if (options.watch) window = TRY(drivers::PictureWindow::open(options.output.filename().string(), kWindow));
@@ -255,8 +293,9 @@ Result<void> run(const Options& options) {
 
     // What the pattern names first, so that it never names what is not there.
     const fs::path folder = fs::absolute(options.output).parent_path();
+    if (options.shadows) TRY(writePng(folder / guideFile.name, guide));
     TRY(copyTo(folder, guideFile));
-    for (const Material& file : material.files) TRY(copyTo(folder, file));
+    for (const Material& file : shapeFiles) TRY(copyTo(folder, file));
     found.pattern.guide = folder / guideFile.name;
     TRY(writePattern(options.output, found.pattern));
     if (options.image) TRY(writePng(*options.image, drawWhiteOnBlack(found.pattern, guide.width(), guide.height())));

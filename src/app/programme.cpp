@@ -3,37 +3,96 @@
 #include "app/site_models.h"
 
 #include "pattern/shape_pattern.h"
+#include "render/penumbra.h"
 
 #include "core/image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace fantascope::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-// The pictures of a show's sources, and for each the drawing that it should read as; none for a solid.
+// The pictures of a show's sources, and for each the drawing that it should read as, where there is one.
 struct Pictures {
-    std::vector<render::PictureSource> sources;
     struct Guide {
         GreyImage drawing;  // stored values, as the pattern was compared with them
         double canvasAspect = 1;
     };
+    std::vector<render::PictureSource> sources;
     std::vector<std::optional<Guide>> guides;
 };
+
+struct Picture {
+    render::PictureSource source;
+    std::optional<Pictures::Guide> guide;
+};
+
+Result<Pictures::Guide> readGuide(const pattern::ShapePattern& pattern, const fs::path& file) {
+    return Pictures::Guide{TRY(readGrey(pattern.guide).in(file.string() + ": guide")), pattern.aspect()};
+}
+
+Result<Picture> readPicture(const show::PatternSource& source) {
+    const render::PatternSource pattern = TRY(readPatternSource(source.file));
+    return Picture{pattern, TRY(readGuide(*pattern.pattern, source.file))};
+}
+
+Result<Picture> readPicture(const show::SolidSource& source) { return Picture{render::SolidSource{source.colour}, {}}; }
+
+// A picture of what a small hole throws, as linear light.
+Result<std::shared_ptr<const GreyImage>> readFilter(const fs::path& file) {
+    GreyImage picture = TRY(readGrey(file));
+    for (float& value : picture.pixels()) value = linearFromSrgb(value);
+    if (std::all_of(picture.pixels().begin(), picture.pixels().end(), [](float light) { return light == 0; }))
+        return Error(file.string() + ": a filter must not be all black");
+    return std::make_shared<const GreyImage>(std::move(picture));
+}
+
+Result<Picture> readPicture(const show::FoliageSource& source) {
+    render::FoliageSource foliage{source.light, source.shadow, {}};
+    std::optional<Pictures::Guide> guide;
+    for (const show::FoliageSource::Layer& layer : source.layers) {
+        render::ShadowLayer shadow;
+        shadow.leaves = TRY(readPatternSource(layer.pattern));
+        shadow.holes = layer.holes;
+        shadow.filter.width = render::penumbraWidth(layer.distance, source.sun) / source.height;
+        if (layer.filter) shadow.filter.picture = TRY(readFilter(*layer.filter));
+        if (!guide) {
+            guide = TRY(readGuide(*shadow.leaves.pattern, layer.pattern));
+            if (!layer.holes) guide->drawing = inverted(std::move(guide->drawing));
+        }
+        if (std::abs(shadow.leaves.pattern->aspect() - guide->canvasAspect) > 1e-6)
+            return Error(fmt::format(
+                "{}: its picture is {:.4f} times as wide as high, and {} is {:.4f} times; the layers of one "
+                "foliage need drawings of one shape",
+                layer.pattern.string(), shadow.leaves.pattern->aspect(), source.layers[0].pattern.string(), guide->canvasAspect));
+        foliage.layers.push_back(std::move(shadow));
+    }
+    return Picture{std::move(foliage), std::move(guide)};
+}
+
+Result<Picture> readPicture(const show::CausticsSource& source) {
+    return Picture{
+        render::CausticsSource{source.light, source.size, source.depth, source.waveLength, source.waveHeight, source.seed}, {}};
+}
+
+Result<Picture> readPicture(const show::MirrorBallSource& source) {
+    return Picture{render::MirrorBallSource{source.light, source.size, source.ball, source.radius, source.facet, source.lamp,
+                                            source.lampRadius, source.turn},
+                   {}};
+}
 
 Result<Pictures> readPictures(const show::Show& show) {
     Pictures pictures;
     for (const show::Source& source : show.sources) {
-        if (const auto* solid = std::get_if<show::SolidSource>(&source.picture)) {
-            pictures.sources.emplace_back(render::SolidSource{solid->colour});
-            pictures.guides.emplace_back();
-            continue;
-        }
-        const fs::path& file = std::get<show::PatternSource>(source.picture).file;
-        auto pattern = std::make_shared<const pattern::ShapePattern>(TRY(pattern::readPattern(file)));
-        pictures.guides.push_back(
-            Pictures::Guide{TRY(readGrey(pattern->guide).in(file.string() + ": guide")), pattern->aspect()});
-        pictures.sources.emplace_back(render::PatternSource{pattern, std::make_shared<const pattern::PatternMotion>(*pattern)});
+        Picture picture = TRY(std::visit([](const auto& kind) { return readPicture(kind); }, source.picture));
+        pictures.sources.push_back(std::move(picture.source));
+        pictures.guides.push_back(std::move(picture.guide));
     }
     return pictures;
 }
@@ -52,6 +111,12 @@ Result<std::vector<Watch::Comparisons>> compareWith(const std::vector<std::optio
 }
 
 }  // namespace
+
+Result<render::PatternSource> readPatternSource(const fs::path& file) {
+    auto pattern = std::make_shared<const pattern::ShapePattern>(TRY(pattern::readPattern(file)));
+    auto motion = std::make_shared<const pattern::PatternMotion>(*pattern);
+    return render::PatternSource{std::move(pattern), std::move(motion)};
+}
 
 Result<Programme> readProgramme(const RunOptions& options) {
     Programme programme;

@@ -22,7 +22,7 @@ constexpr double kKernelSum = 1024;
 // A guide is black or white where it is no farther from it than about this.
 constexpr double kBinary = 0.02;
 // What the edges of greys weigh: at 1 they are as sharp as those of black and white, and greys become outlines.
-constexpr double kEdges = 0.5;
+constexpr double kEdges = 0.25;
 
 // How many bits of each byte are set, in that byte.
 std::uint64_t bitsOfBytes(std::uint64_t x) {

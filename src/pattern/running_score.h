@@ -88,7 +88,7 @@ private:
 //
 // What is held against the guide I, with I' the pattern white on black, in pixels of full difference:
 //   detail   z = sum |I - I'|, the paper's goal (section 4.1), less what the tone sees better: where the guide is black or white a covered
-//            pixel adds 1 - 2 I, as in z; where it is grey, for which z would have black or white too, only half of what 1 - 2 I differs from
+//            pixel adds 1 - 2 I, as in z; where it is grey, for which z would have black or white too, only a quarter of what 1 - 2 I differs from
 //            its mean around, which keeps the edges of greys.
 //   tone     sum |G*I - G*I'|, the mean for two Gaussians G of sigma height/36 and height/18: what remains when the eye blurs
 //   overlap  the pixels that several instances cover

@@ -13,18 +13,18 @@ Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& op
     for (std::size_t i = 0; i < gpu::LightSum::kTogether; ++i)
         pictures.push_back(TRY(gpu::LayerPicture::create(options.size, options.samples)));
     auto sum = TRY(gpu::LightSum::create(pictures[0].samples(), options.shaders));
-    std::unique_ptr<OutputRenderer> renderer(new OutputRenderer(std::move(painter), std::move(pictures), std::move(sum)));
+    DrawingTools tools{std::move(painter), gpu::ProgramCache(options.shaders), pictures[0].samples()};
+    std::unique_ptr<OutputRenderer> renderer(new OutputRenderer(std::move(tools), std::move(pictures), std::move(sum)));
     for (const PictureSource& source : sources) {
-        PlacedSource placed = TRY(PlacedSource::create(source, options.size, options.corners));
-        gpu::InstancedMeshes meshes(placed.meshes(), placed.mirrored());
-        renderer->sources_.push_back({std::move(placed), std::move(meshes)});
+        auto drawn = TRY(makeDrawnSource(source, {options.size, options.corners}, renderer->tools_));
+        renderer->sources_.push_back({.drawn = std::move(drawn)});
     }
     return renderer;
 }
 
 void OutputRenderer::draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer) {
     // Light adds: a source that stands in several layers is drawn once with the sum of their opacities.
-    for (DrawnSource& source : sources_) source.opacity = 0;
+    for (Source& source : sources_) source.opacity = 0;
     for (const show::LayerState& layer : state.layers) {
         FANTASCOPE_CHECK(layer.source < sources_.size(), "a layer shows a source that the renderer was not given");
         sources_[layer.source].opacity += layer.opacity;
@@ -38,12 +38,10 @@ void OutputRenderer::draw(const show::OutputState& state, const Wind& wind, Time
         count = 0;
         light = gpu::Light::Added;
     };
-    for (DrawnSource& source : sources_) {
+    for (Source& source : sources_) {
         if (source.opacity <= 0) continue;
-        source.placed.place(time, wind, source.meshes.place());
         gpu::LayerPicture& picture = pictures_[count];
-        picture.begin();
-        painter_.paint(source.meshes, source.placed.canvasEdges());
+        source.drawn->paint(time, wind, picture);
         painted[count++] = {&picture, source.opacity};
         if (count == painted.size()) shine();
     }

@@ -1,9 +1,8 @@
 #pragma once
 
+#include "render/drawn_source.h"
 #include "render/gpu/layer_picture.h"
-#include "render/gpu/shape_painter.h"
 #include "render/picture_source.h"
-#include "render/placed_source.h"
 #include "show/show_state.h"
 
 #include "core/clock.h"
@@ -45,18 +44,17 @@ public:
     void draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer);
 
 private:
-    struct DrawnSource {
-        PlacedSource placed;
-        gpu::InstancedMeshes meshes;
+    struct Source {
+        std::unique_ptr<DrawnSource> drawn;
         float opacity = 0;  // in the frame that is being drawn
     };
-    OutputRenderer(gpu::ShapePainter painter, std::vector<gpu::LayerPicture> pictures, gpu::LightSum sum)
-        : painter_(std::move(painter)), pictures_(std::move(pictures)), sum_(std::move(sum)) {}
+    OutputRenderer(DrawingTools tools, std::vector<gpu::LayerPicture> pictures, gpu::LightSum sum)
+        : tools_(std::move(tools)), pictures_(std::move(pictures)), sum_(std::move(sum)) {}
 
-    gpu::ShapePainter painter_;
+    DrawingTools tools_;
     std::vector<gpu::LayerPicture> pictures_;  // LightSum::kTogether of them
     gpu::LightSum sum_;
-    std::vector<DrawnSource> sources_;
+    std::vector<Source> sources_;
 };
 
 }  // namespace fantascope::render

@@ -3,10 +3,15 @@
 #include "pattern/pattern_motion.h"
 #include "pattern/shape_pattern.h"
 
+#include "core/image.h"
+
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <cstdint>
 #include <memory>
 #include <variant>
+#include <vector>
 
 namespace fantascope::render {
 
@@ -21,7 +26,51 @@ struct SolidSource {
     glm::vec3 colour{1};  // linear light, 0..1
 };
 
+// What a point of light through a hole becomes, and so what every edge is blurred with.
+struct ShadowFilter {
+    double width = 0;                          // canvas heights; 0: sharp
+    std::shared_ptr<const GreyImage> picture;  // linear light, upright as it falls on the canvas, `width` wide; null: a disc
+};
+
+// Leaves at one distance, in the light.
+struct ShadowLayer {
+    PatternSource leaves;
+    ShadowFilter filter;
+    bool holes = false;  // the shapes are holes in what lets no other light through
+};
+
+// The light that falls through layers of leaves: where one keeps it off, the others change nothing. Beyond the canvas no leaf stands.
+// Source: Ji et al. 2015, section 5.
+struct FoliageSource {
+    glm::vec3 light{1};               // where nothing keeps it off: linear light, may exceed 1 where holes make little of it
+    glm::vec3 shadow{0};              // what is left in full shadow
+    std::vector<ShadowLayer> layers;  // at least one; all patterns of one aspect; holes are blurred
+};
+
+// Sunlight on the floor of wavy water, as the waves gather and scatter it.
+struct CausticsSource {
+    glm::vec3 light{1};     // of still water: linear light; the bright lines have several times as much
+    glm::dvec2 size{1};     // of the canvas on the floor, metres
+    double depth = 0;       // of the water, metres
+    double waveLength = 1;  // metres, on average
+    double waveHeight = 0;  // metres, root mean square
+    std::uint64_t seed = 1;
+};
+
+// The spots of a mirror ball that turns in a lamp's beam, on a wall. Places are metres from the canvas's middle: right, up, out of the
+// wall.
+struct MirrorBallSource {
+    glm::vec3 light{1};     // of a spot as far from the lamp as the wall behind the ball, and as straight: linear light
+    glm::dvec2 size{1};     // of the canvas on the wall, metres
+    glm::dvec3 ball{0};     // its centre; before the wall
+    double radius = 0;      // metres
+    double facet = 0;       // a mirror's edge, metres
+    glm::dvec3 lamp{0};     // outside the ball, before the wall
+    double lampRadius = 0;  // metres
+    double turn = 1;        // seconds for one turn; below 0 the other way round
+};
+
 // What a layer can show, in the order of Show::sources.
-using PictureSource = std::variant<PatternSource, SolidSource>;
+using PictureSource = std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource>;
 
 }  // namespace fantascope::render

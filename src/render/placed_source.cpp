@@ -1,7 +1,6 @@
 #include "render/placed_source.h"
 
 #include "core/check.h"
-#include "core/geometry.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -34,25 +33,15 @@ PatternSource asPattern(const SolidSource& solid) {
     return {std::make_shared<const pattern::ShapePattern>(std::move(square)), nullptr};
 }
 
-// Projector pixels, y down, to OpenGL's picture, y up and -1 .. 1.
-glm::dmat3 clipFromProjector(glm::ivec2 size) { return {2.0 / size.x, 0, 0, 0, -2.0 / size.y, 0, -1, 1, 1}; }
-
 }  // namespace
 
-Result<PlacedSource> PlacedSource::create(const PictureSource& source, glm::ivec2 size,
-                                          const std::array<glm::dvec2, 4>& corners) {
-    const auto* pattern = std::get_if<PatternSource>(&source);
-    PatternSource placed = pattern != nullptr ? *pattern : asPattern(std::get<SolidSource>(source));
-    FANTASCOPE_CHECK(placed.pattern != nullptr, "a pattern source has a pattern");
+Result<PlacedSource> PlacedSource::create(const PatternSource& source, const CanvasPlace& place) {
+    FANTASCOPE_CHECK(source.pattern != nullptr, "a pattern source has a pattern");
+    return PlacedSource(source, TRY(render::clipFromCanvas(source.pattern->aspect(), place)));
+}
 
-    const std::array<glm::dvec2, 4> canvas = rectangleCorners(placed.pattern->aspect(), 1);
-    const Homography projectorFromCanvas = TRY(Homography::fromCorners(canvas, corners));
-    glm::dmat3 clipFromCanvas = clipFromProjector(size) * projectorFromCanvas.matrix();
-    // A projective map is free in scale: the least w of the canvas becomes 1, so that depths of 0 .. 1 stay in front of the far
-    // plane.
-    double least = INFINITY;
-    for (const glm::dvec2 corner : canvas) least = std::min(least, (clipFromCanvas * glm::dvec3(corner, 1)).z);
-    return PlacedSource(std::move(placed), clipFromCanvas / least);
+Result<PlacedSource> PlacedSource::create(const SolidSource& source, const CanvasPlace& place) {
+    return create(asPattern(source), place);
 }
 
 PlacedSource::PlacedSource(PatternSource source, const glm::dmat3& clipFromCanvas)

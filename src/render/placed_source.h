@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/canvas_warp.h"
 #include "render/gpu/instanced_meshes.h"
 #include "render/picture_source.h"
 
@@ -8,7 +9,6 @@
 #include "core/wind.h"
 
 #include <glm/mat3x3.hpp>
-#include <glm/vec2.hpp>
 
 #include <array>
 #include <span>
@@ -16,14 +16,14 @@
 
 namespace fantascope::render {
 
-// One picture source as it stands in one output's picture: which meshes, and at any time where their instances are, through the
+// One light pattern as it stands in one output's picture: which meshes, and at any time where their instances are, through the
 // warp. Instances are opaque to each other: of two, the later one in the pattern's order lies on top, whole. Thread:
 // thread-bound.
 class PlacedSource {
 public:
-    // `corners`: where the canvas's corners go in the output's `size` pixels, from the canvas's top left clockwise.
     // Error: corners that are not those of a picture.
-    static Result<PlacedSource> create(const PictureSource& source, glm::ivec2 size, const std::array<glm::dvec2, 4>& corners);
+    static Result<PlacedSource> create(const PatternSource& source, const CanvasPlace& place);
+    static Result<PlacedSource> create(const SolidSource& source, const CanvasPlace& place);
 
     // The meshes with the number of their instances, in the order in which place() fills them.
     std::vector<gpu::InstancedMeshes::Mesh> meshes() const;

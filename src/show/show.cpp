@@ -46,28 +46,6 @@ Result<std::size_t> find(std::string_view name, const std::vector<std::string>& 
     return Error(fmt::format("no {} is called '{}' ({})", what, name, advice));
 }
 
-Result<PatternSource> readPatternSource(const ConfigNode& node) {
-    const std::filesystem::path file = TRY(node.path());
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored))
-        return node.error(fmt::format("there is no file {0}; make it with 'fantascope pattern GUIDE -o {0}'", file.string()));
-    return PatternSource{file};
-}
-
-Result<Source> readSource(const std::string& name, const ConfigNode& node) {
-    std::optional<PatternSource> pattern;
-    std::optional<SolidSource> solid;
-    ConfigFields fields(node);
-    fields.optional().read("pattern", pattern, readPatternSource);
-    fields.optional().read("solid", solid, [](const ConfigNode& colour) -> Result<SolidSource> {
-        return SolidSource{glm::vec3(TRY(colour.vector3(0, 1)))};
-    });
-    TRY(fields.finish());
-    if (pattern.has_value() == solid.has_value()) return node.error("exactly one kind of source is needed: 'pattern' or 'solid'");
-    if (pattern) return Source{name, *pattern};
-    return Source{name, *solid};
-}
-
 // The layers of one output of a look.
 Result<OutputState> readLayers(const ConfigNode& node, const std::vector<std::string>& sources) {
     OutputState output;

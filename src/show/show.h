@@ -3,12 +3,11 @@
 #include "show/cue_list.h"
 #include "show/show_state.h"
 #include "show/site.h"
+#include "show/source.h"
 #include "show/wind.h"
 
 #include "core/config.h"
 #include "core/result.h"
-
-#include <glm/vec3.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -19,18 +18,6 @@
 #include <vector>
 
 namespace fantascope::show {
-
-// Where a layer's picture comes from.
-struct PatternSource {
-    std::filesystem::path file;  // a *.pattern.yaml that exists; what is in it was not looked at
-};
-struct SolidSource {
-    glm::vec3 colour{0.0f};  // linear light, 0..1
-};
-struct Source {
-    std::string name;
-    std::variant<PatternSource, SolidSource> picture;
-};
 
 // Something that the show wants of a thing of the site, which it calls by name.
 template <class Wish>

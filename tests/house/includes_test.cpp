@@ -30,6 +30,9 @@ const std::map<std::string_view, Names> kLibraries = {
     {"yaml-cpp", {"yaml-cpp/"}},
     {"spdlog", {"spdlog/"}},
     {"assimp", {"assimp/"}},
+    {"CGAL", {"CGAL/"}},
+    {"FreeType", {"ft2build.h", "freetype/"}},
+    {"librsvg", {"librsvg/"}},
     {"FFTW", {"fftw3.h"}},
     {"cairo", {"cairo.h", "cairo-svg.h"}},
     {"OpenGL", {"epoxy/gl.h"}},
@@ -56,7 +59,7 @@ struct Row {
 const Names kOfDrivers = {"core", "device", "drivers/surroundings.h", "drivers/site/world.h", "drivers/site/plug.h"};
 
 const std::vector<Row> kTable = {
-    {"core", {}, {"Eigen"}, {"OpenCV", "yaml-cpp", "spdlog", "assimp", "POSIX"}},
+    {"core", {}, {"Eigen"}, {"OpenCV", "yaml-cpp", "spdlog", "assimp", "CGAL", "FreeType", "librsvg", "POSIX"}},
     {"device", {"core"}, {}, {}},
     {"pattern", {"core"}, {"Eigen"}, {"FFTW"}},
     {"theatre", {"core"}, {"Eigen"}, {"FFTW"}},

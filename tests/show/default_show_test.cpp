@@ -59,5 +59,25 @@ TEST(DefaultShow, steps_through_its_evening_on_the_simulated_site) {
     EXPECT_EQ(seen.size(), loaded.show->sources.size());
 }
 
+// Every show that comes with the program plays on the simulated site, with all the files that it names.
+TEST(Shows, load_and_play_on_the_simulated_site) {
+    const auto site = readSite(kSource / "config/simulated/site.yaml");
+    ASSERT_TRUE(site) << site.error().message();
+    int shows = 0;
+    for (const auto& folder : std::filesystem::directory_iterator(kSource / "shows")) {
+        const auto show = Show::load(folder.path());
+        ASSERT_TRUE(show) << show.error().message();
+        const auto list = show->bind(*site);
+        ASSERT_TRUE(list) << list.error().message();
+        std::set<std::uint32_t> seen;
+        for (const auto& cue : list->cues)
+            for (const OutputState& output : cue.look.outputs)
+                for (const LayerState& layer : output.layers) seen.insert(layer.source);
+        EXPECT_EQ(seen.size(), show->sources.size()) << folder.path() << ": a source is never shown";
+        ++shows;
+    }
+    EXPECT_GE(shows, 2);
+}
+
 }  // namespace
 }  // namespace fantascope::show

@@ -138,10 +138,71 @@ TEST(ShowFile, pattern_files_are_there_and_inside_the_show) {
 
 TEST(ShowFile, a_source_is_of_exactly_one_kind) {
     const std::string_view kinds = "{solid: [0.1, 0.2, 0.3]}";
-    const std::string answer = "show.yaml:6:8: sources.dim: exactly one kind of source is needed: 'pattern' or 'solid'";
+    const std::string answer =
+        "show.yaml:6:8: sources.dim: exactly one kind of source is needed: 'pattern', 'solid', "
+        "'foliage', 'caustics' or 'mirror_ball'";
     EXPECT_EQ(refusalAfter(kinds, "{}"), answer);
     EXPECT_EQ(refusalAfter(kinds, "{solid: [0, 0, 0], pattern: patterns/leaves.pattern.yaml}"), answer);
     EXPECT_THAT(refusalAfter(kinds, "{solid: [0, 0]}"), HasSubstr("sources.dim.solid: a list of exactly 3 items is needed"));
+}
+
+std::string foliage(const std::string& keys,
+                    const std::string& layers = "[{leaves: patterns/leaves.pattern.yaml, distance: 6}]") {
+    return "{foliage: {height: 3, " + keys + "layers: " + layers + "}}";
+}
+
+// Angles are degrees in the file and radians inside; what is not said has its default.
+TEST(ShowFile, foliage_has_layers_at_their_distances) {
+    const std::string_view solid = "{solid: [0.1, 0.2, 0.3]}";
+    Loaded loaded(replaced(std::string(kShow), solid,
+                           foliage("sun: 2, light: [1, 0.9, 0.5], ",
+                                   "[{leaves: patterns/leaves.pattern.yaml, distance: 6}, {holes: patterns/leaves.pattern.yaml, "
+                                   "distance: 9, filter: patterns/leaves.pattern.yaml}]")));
+    ASSERT_TRUE(loaded.show) << loaded.show.error().message();
+    const auto& source = std::get<FoliageSource>(loaded.show->sources[1].picture);
+    EXPECT_EQ(source.height, 3);
+    EXPECT_EQ(source.sun, radians(2));
+    EXPECT_EQ(source.light, glm::dvec3(1, 0.9, 0.5));
+    EXPECT_EQ(source.shadow, glm::dvec3(0));
+    ASSERT_EQ(source.layers.size(), 2u);
+    EXPECT_FALSE(source.layers[0].holes);
+    EXPECT_EQ(source.layers[0].filter, std::nullopt);
+    EXPECT_EQ(source.layers[0].distance, 6);
+    EXPECT_TRUE(source.layers[1].holes);
+    EXPECT_TRUE(source.layers[1].filter.has_value());
+    EXPECT_THAT(patternsOf(loaded.show->sources[1]), testing::SizeIs(2));
+
+    const Loaded bare(replaced(std::string(kShow), solid, foliage("")));
+    EXPECT_EQ(std::get<FoliageSource>(bare.show->sources[1].picture).sun, radians(0.53));
+}
+
+TEST(ShowFile, foliage_that_cannot_be_is_refused) {
+    const std::string_view solid = "{solid: [0.1, 0.2, 0.3]}";
+    EXPECT_THAT(refusalAfter(solid, foliage("", "[]")), HasSubstr("foliage.layers: a list of at least 1 items is needed"));
+    EXPECT_THAT(refusalAfter(solid, foliage("", "[{distance: 3}]")), HasSubstr("exactly one of 'leaves' and 'holes' is needed"));
+    EXPECT_THAT(refusalAfter(solid, foliage("", "[{leaves: no.yaml, distance: 3}]")), HasSubstr("there is no file no.yaml"));
+    EXPECT_THAT(refusalAfter(solid, foliage("", "[{leaves: patterns/leaves.pattern.yaml, distance: 3, filter: sun.png}]")),
+                HasSubstr("there is no file sun.png; it is a picture"));
+    EXPECT_THAT(refusalAfter(solid, foliage("sun: 50, ")),
+                HasSubstr("layers[0]: from 6 m away the sun is blurred over 2.4 times"));
+    EXPECT_THAT(refusalAfter(solid, foliage("sunn: 1, ")), HasSubstr("unknown key (did you mean 'sun'?)"));
+}
+
+// The one-line forms are whole, and impossible places are refused.
+TEST(ShowFile, water_and_mirrors_need_no_numbers) {
+    const std::string_view solid = "{solid: [0.1, 0.2, 0.3]}";
+    const Loaded both(
+        replaced(std::string(kShow), "dim: {solid: [0.1, 0.2, 0.3]}", "dim: {caustics: {}}\n  ball: {mirror_ball: {}}"));
+    ASSERT_TRUE(both.show) << both.show.error().message();
+    EXPECT_TRUE(std::holds_alternative<CausticsSource>(both.show->sources[1].picture));
+    EXPECT_TRUE(std::holds_alternative<MirrorBallSource>(both.show->sources[2].picture));
+    EXPECT_THAT(refusalAfter(solid, "{caustics: {wave_length: 0.01}}"), HasSubstr("too short to be seen"));
+    EXPECT_THAT(refusalAfter(solid, "{caustics: {wave_height: 0.3}}"), HasSubstr("too steep"));
+    EXPECT_THAT(refusalAfter(solid, "{caustics: {depth: 900}}"), HasSubstr("scatters the light all over"));
+    EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {ball: [0, 0, 0.1]}}"), HasSubstr("before the wall"));
+    EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {lamp: [0, 0.5, 2.2]}}"), HasSubstr("inside the ball"));
+    EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {facet: 0.001}}"), HasSubstr("has mirrors of 0.005 m to 0.25 m"));
+    EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {turn: 0}}"), HasSubstr("a turn takes a second at least"));
 }
 
 // Fades match layers by their source: with two of one, which goes where would be a guess.

@@ -20,6 +20,10 @@ unsigned VertexArrayKind::create() { return created(glCreateVertexArrays); }
 void VertexArrayKind::destroy(unsigned name) { glDeleteVertexArrays(1, &name); }
 unsigned RenderbufferKind::create() { return created(glCreateRenderbuffers); }
 void RenderbufferKind::destroy(unsigned name) { glDeleteRenderbuffers(1, &name); }
+unsigned TextureKind::create() {
+    return created([](GLsizei count, GLuint* names) { glCreateTextures(GL_TEXTURE_2D, count, names); });
+}
+void TextureKind::destroy(unsigned name) { glDeleteTextures(1, &name); }
 unsigned MultisampleTextureKind::create() {
     return created([](GLsizei count, GLuint* names) { glCreateTextures(GL_TEXTURE_2D_MULTISAMPLE, count, names); });
 }

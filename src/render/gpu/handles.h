@@ -36,6 +36,10 @@ struct RenderbufferKind {
     static unsigned create();
     static void destroy(unsigned name);
 };
+struct TextureKind {  // two-dimensional
+    static unsigned create();
+    static void destroy(unsigned name);
+};
 struct MultisampleTextureKind {
     static unsigned create();
     static void destroy(unsigned name);
@@ -52,6 +56,7 @@ struct ProgramKind {
 using Buffer = Handle<BufferKind>;
 using VertexArray = Handle<VertexArrayKind>;
 using Renderbuffer = Handle<RenderbufferKind>;
+using Texture = Handle<TextureKind>;
 using MultisampleTexture = Handle<MultisampleTextureKind>;
 using Framebuffer = Handle<FramebufferKind>;
 using Program = Handle<ProgramKind>;

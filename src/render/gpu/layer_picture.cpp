@@ -13,6 +13,7 @@ namespace fantascope::render::gpu {
 namespace {
 
 constexpr GLfloat kBlack[] = {0, 0, 0, 1};
+constexpr GLfloat kUncovered[] = {0, 0, 0, 0};
 
 // Of assets/shaders/resolve.frag: the first layer's; the others' follow.
 constexpr GLint kOpacity = 0;
@@ -45,7 +46,7 @@ void LayerPicture::begin() {
     const GLfloat farthest = 1;
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.name());
     glViewport(0, 0, size_.x, size_.y);
-    glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, 0, kBlack);
+    glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, 0, kUncovered);
     glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &farthest);
 }
 

@@ -17,13 +17,13 @@ namespace fantascope::render::gpu {
 // each.
 //
 // A sample holds the square root of its linear light in 8 bits: nearly the spacing of sRGB, and cheap, where a software OpenGL
-// would spend most of a frame on encoding every sample. Thread: the context's.
+// would spend most of a frame on encoding every sample. Its alpha is 1 where something was painted, else 0. Thread: the context's.
 class LayerPicture {
 public:
     // Error: more samples or pixels than this OpenGL has.
     static Result<LayerPicture> create(glm::ivec2 size, int samples);
 
-    // Makes it the target of drawing, all black.
+    // Makes it the target of drawing, all black and uncovered.
     void begin();
 
     int samples() const { return samples_; }  // a pixel; at least as many as were asked for

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <utility>
 
 namespace fantascope::render::gpu {
 namespace {
@@ -45,6 +46,16 @@ Result<Handle<ShaderKind<kStage>>> compiled(const std::filesystem::path& file, c
     return shader;
 }
 
+// Links what is attached; `files` for the message.
+Result<Program> linked(Program program, const std::string& files) {
+    glLinkProgram(program.name());
+    GLint good = GL_FALSE;
+    glGetProgramiv(program.name(), GL_LINK_STATUS, &good);
+    if (good != GL_TRUE)
+        return Error(fmt::format("{} do not link:\n{}", files, logOf(program.name(), glGetProgramiv, glGetProgramInfoLog)));
+    return program;
+}
+
 }  // namespace
 
 Result<Program> loadProgram(const std::filesystem::path& vertexShader, const std::filesystem::path& fragmentShader,
@@ -54,15 +65,19 @@ Result<Program> loadProgram(const std::filesystem::path& vertexShader, const std
     Program program;
     glAttachShader(program.name(), vertex.name());
     glAttachShader(program.name(), fragment.name());
-    glLinkProgram(program.name());
-    glDetachShader(program.name(), vertex.name());
-    glDetachShader(program.name(), fragment.name());
-    GLint good = GL_FALSE;
-    glGetProgramiv(program.name(), GL_LINK_STATUS, &good);
-    if (good != GL_TRUE)
-        return Error(fmt::format("{} and {} do not link:\n{}", vertexShader.string(), fragmentShader.string(),
-                                 logOf(program.name(), glGetProgramiv, glGetProgramInfoLog)));
-    return program;
+    Program whole = TRY(linked(std::move(program), fmt::format("{} and {}", vertexShader.string(), fragmentShader.string())));
+    glDetachShader(whole.name(), vertex.name());
+    glDetachShader(whole.name(), fragment.name());
+    return whole;
+}
+
+Result<Program> loadProgram(const std::filesystem::path& computeShader, const std::string& definitions) {
+    const auto compute = TRY(compiled<GL_COMPUTE_SHADER>(computeShader, definitions));
+    Program program;
+    glAttachShader(program.name(), compute.name());
+    Program whole = TRY(linked(std::move(program), fmt::format("the parts of {}", computeShader.string())));
+    glDetachShader(whole.name(), compute.name());
+    return whole;
 }
 
 }  // namespace fantascope::render::gpu

@@ -13,5 +13,7 @@ namespace fantascope::render::gpu {
 // preprocessor for both, put after it. Error: names the file and gives the compiler's or linker's log.
 Result<Program> loadProgram(const std::filesystem::path& vertexShader, const std::filesystem::path& fragmentShader,
                             const std::string& definitions = {});
+// The same of a compute shader.
+Result<Program> loadProgram(const std::filesystem::path& computeShader, const std::string& definitions);
 
 }  // namespace fantascope::render::gpu

@@ -1,0 +1,90 @@
+#include "render/drawn_mirror_ball.h"
+
+#include "render/gpu/canvas_painter.h"
+#include "render/gpu/light_canvas.h"
+#include "render/gpu/spot_painter.h"
+
+#include "core/geometry.h"
+#include "core/random.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace fantascope::render {
+namespace {
+
+using Facet = gpu::SpotPainter::Facet;
+
+constexpr std::uint64_t kSeed = 1;
+constexpr double kAskew = radians(0.6);  // the standard deviation of a mirror that somebody glued on
+
+class DrawnMirrorBall : public DrawnSource {
+public:
+    DrawnMirrorBall(const MirrorBallSource& source, gpu::LightCanvas canvas, gpu::SpotPainter spots, gpu::CanvasPainter painter)
+        : light_(source.light),
+          turn_(source.turn),
+          canvas_(std::move(canvas)),
+          spots_(std::move(spots)),
+          painter_(std::move(painter)) {}
+
+    void paint(Time time, const Wind&, gpu::LayerPicture& picture) override {
+        canvas_.begin();
+        spots_.paint(static_cast<float>(2 * std::numbers::pi * std::fmod(seconds(time) / turn_, 1)));
+        canvas_.end();
+        picture.begin();
+        const std::array pictures = {gpu::CanvasPainter::Picture{.texture = canvas_.texture()}};
+        painter_.paint(pictures, nullptr, glm::vec3(0), light_);
+    }
+
+private:
+    glm::vec3 light_;
+    double turn_;
+    gpu::LightCanvas canvas_;
+    gpu::SpotPainter spots_;
+    gpu::CanvasPainter painter_;
+};
+
+}  // namespace
+
+std::vector<Facet> mirrorFacets(double radius, double facet) {
+    Rng rng(kSeed);
+    std::vector<Facet> facets;
+    const auto rings = std::max(1L, std::lround(std::numbers::pi * radius / facet));
+    for (long ring = 0; ring < rings; ++ring) {
+        const double polar = std::numbers::pi * (static_cast<double>(ring) + 0.5) / static_cast<double>(rings);
+        const double around = 2 * std::numbers::pi * radius * std::sin(polar);
+        const auto count = std::max(1L, static_cast<long>(around / facet));
+        const double begin = rng.uniform();
+        for (long i = 0; i < count; ++i) {
+            const double angle = 2 * std::numbers::pi * (static_cast<double>(i) + begin) / static_cast<double>(count);
+            const glm::dvec3 outwards(std::sin(polar) * std::sin(angle), std::cos(polar), std::sin(polar) * std::cos(angle));
+            const glm::dvec3 askew{rng.normal(), rng.normal(), rng.normal()};  // drawn in this order
+            facets.push_back({outwards, glm::normalize(outwards + kAskew * askew)});
+        }
+    }
+    return facets;
+}
+
+Result<std::unique_ptr<DrawnSource>> makeDrawnMirrorBall(const MirrorBallSource& source, const CanvasPlace& place,
+                                                         DrawingTools& tools) {
+    const double aspect = source.size.x / source.size.y, rows = std::ceil(canvasRows(aspect, place));
+    gpu::SpotPainter::Scene scene;
+    scene.ball = source.ball;
+    scene.lamp = source.lamp;
+    scene.ballRadius = static_cast<float>(source.radius);
+    scene.halfFacet = static_cast<float>(source.facet / 2);
+    scene.lampRadius = static_cast<float>(source.lampRadius);
+    scene.canvas = source.size;
+    auto canvas = TRY(gpu::LightCanvas::create(glm::ivec2(std::ceil(aspect * rows), rows)));
+    auto spots = TRY(gpu::SpotPainter::create(mirrorFacets(source.radius, source.facet), scene, tools.programs));
+    auto painter = TRY(gpu::CanvasPainter::create(TRY(clipFromUnitCanvas(aspect, place)), 1, 0, tools.programs));
+    return std::unique_ptr<DrawnSource>(new DrawnMirrorBall(source, std::move(canvas), std::move(spots), std::move(painter)));
+}
+
+}  // namespace fantascope::render

@@ -1,0 +1,155 @@
+#include "show/source.h"
+
+#include "core/geometry.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace fantascope::show {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Seen from the Earth (Ji et al. 2015, section 5.1, say 0.5).
+constexpr double kSun = radians(0.53);
+
+// Limits. Metres, seconds.
+constexpr double kSmallest = 0.001, kLargest = 1000;
+constexpr double kWidestBlur = 2;            // canvas heights
+constexpr double kBrightest = 100;
+constexpr double kShortestWave = 1.0 / 20;   // canvas heights
+constexpr double kSteepestWave = 0.1;        // height to length
+constexpr double kSmallestFacet = 1.0 / 50;  // of the ball's radius
+constexpr double kLongestTurn = 3600;
+
+Result<fs::path> readFile(const ConfigNode& node, std::string_view advice) {
+    const fs::path file = TRY(node.path());
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored)) return node.error(fmt::format("there is no file {}; {}", file.string(), advice));
+    return file;
+}
+
+Result<fs::path> readPatternFile(const ConfigNode& node) {
+    return readFile(node, fmt::format("make it with 'fantascope pattern GUIDE -o {}'", TRY(node.path()).string()));
+}
+
+Result<FoliageSource::Layer> readLeaves(const ConfigNode& node, const FoliageSource& foliage) {
+    FoliageSource::Layer layer;
+    std::optional<fs::path> leaves, holes;
+    ConfigFields fields(node);
+    fields.optional().read("leaves", leaves, readPatternFile);
+    fields.optional().read("holes", holes, readPatternFile);
+    fields.number("distance", layer.distance, 0, kLargest, "m");
+    fields.optional().read("filter", layer.filter, [](const ConfigNode& file) {
+        return readFile(file, "it is a picture (PNG, JPEG or TIFF) of the light that one small hole throws");
+    });
+    TRY(fields.finish());
+    if (leaves.has_value() == holes.has_value()) return node.error("exactly one of 'leaves' and 'holes' is needed");
+    layer.holes = holes.has_value();
+    layer.pattern = leaves ? *leaves : *holes;
+    const double blur = layer.distance * std::tan(foliage.sun) / foliage.height;
+    if (blur > kWidestBlur)
+        return node.error(
+            fmt::format("from {} m away the sun is blurred over {:.1f} times the canvas's height; at most {} times; "
+                        "take a smaller 'distance' or 'sun'",
+                        layer.distance, blur, kWidestBlur));
+    return layer;
+}
+
+Result<FoliageSource> readFoliage(const ConfigNode& node) {
+    FoliageSource foliage;
+    foliage.sun = kSun;
+    std::vector<ConfigNode> layers;
+    ConfigFields fields(node);
+    fields.number("height", foliage.height, kSmallest, kLargest, "m");
+    fields.optional().vector3("light", foliage.light, 0, kBrightest);
+    fields.optional().vector3("shadow", foliage.shadow, 0, 1);
+    fields.optional().angle("sun", foliage.sun, 0, 60);
+    fields.read("layers", layers, [](const ConfigNode& list) { return list.items(1); });
+    TRY(fields.finish());
+    for (const ConfigNode& layer : layers) foliage.layers.push_back(TRY(readLeaves(layer, foliage)));
+    return foliage;
+}
+
+Result<CausticsSource> readCaustics(const ConfigNode& node) {
+    CausticsSource caustics;
+    ConfigFields fields(node);
+    fields.optional().vector3("light", caustics.light, 0, kBrightest);
+    fields.optional().vector2("size", caustics.size, kSmallest, kLargest, "m");
+    fields.optional().number("depth", caustics.depth, 0, kLargest, "m");
+    fields.optional().number("wave_length", caustics.waveLength, kSmallest, kLargest, "m");
+    fields.optional().number("wave_height", caustics.waveHeight, 0, kLargest, "m");
+    fields.optional().integer("seed", caustics.seed, 0, std::numeric_limits<std::int64_t>::max());
+    TRY(fields.finish());
+    if (caustics.waveLength < kShortestWave * caustics.size.y)
+        return node.error(fmt::format("waves of {} m are too short to be seen on a canvas that is {} m high; at least {} m",
+                                      caustics.waveLength, caustics.size.y, kShortestWave * caustics.size.y));
+    if (caustics.waveHeight > kSteepestWave * caustics.waveLength)
+        return node.error(fmt::format("waves {} m high and {} m long are too steep; at most {} m high", caustics.waveHeight,
+                                      caustics.waveLength, kSteepestWave * caustics.waveLength));
+    if (caustics.depth * caustics.waveHeight / caustics.waveLength > caustics.size.y)
+        return node.error(
+            fmt::format("water {} m deep scatters the light all over a canvas that is {} m high; take less of "
+                        "'depth' or 'wave_height'",
+                        caustics.depth, caustics.size.y));
+    return caustics;
+}
+
+Result<MirrorBallSource> readMirrorBall(const ConfigNode& node) {
+    MirrorBallSource mirrors;
+    ConfigFields fields(node);
+    fields.optional().vector3("light", mirrors.light, 0, kBrightest);
+    fields.optional().vector2("size", mirrors.size, kSmallest, kLargest, "m");
+    fields.optional().vector3("ball", mirrors.ball, -kLargest, kLargest, "m");
+    fields.optional().number("radius", mirrors.radius, kSmallest, kLargest, "m");
+    fields.optional().number("facet", mirrors.facet, kSmallest / 10, kLargest, "m");
+    fields.optional().vector3("lamp", mirrors.lamp, -kLargest, kLargest, "m");
+    fields.optional().number("lamp_radius", mirrors.lampRadius, kSmallest / 10, kLargest, "m");
+    fields.optional().number("turn", mirrors.turn, -kLongestTurn, kLongestTurn, "s");
+    TRY(fields.finish());
+    if (mirrors.ball.z <= mirrors.radius || mirrors.lamp.z <= 0)
+        return node.error("the ball and the lamp stand before the wall: the third number of 'ball' and 'lamp' says how far");
+    if (glm::distance(mirrors.ball, mirrors.lamp) <= mirrors.radius) return node.error("the lamp is inside the ball");
+    if (mirrors.facet < kSmallestFacet * mirrors.radius || mirrors.facet > mirrors.radius)
+        return node.error(fmt::format("a ball of {} m radius has mirrors of {} m to {} m", mirrors.radius,
+                                      kSmallestFacet * mirrors.radius, mirrors.radius));
+    if (std::abs(mirrors.turn) < 1) return node.error("a turn takes a second at least");
+    return mirrors;
+}
+
+}  // namespace
+
+Result<Source> readSource(const std::string& name, const ConfigNode& node) {
+    Source source{name, {}};
+    int kinds = 0;
+    ConfigFields fields(node);
+    const auto kind = [&](std::string_view key, auto read) {
+        fields.optional().read(key, source.picture, [&kinds, read](const ConfigNode& value) -> Result<decltype(Source::picture)> {
+            ++kinds;
+            return decltype(Source::picture)(TRY(read(value)));
+        });
+    };
+    kind("pattern", [](const ConfigNode& file) -> Result<PatternSource> { return PatternSource{TRY(readPatternFile(file))}; });
+    kind("solid",
+         [](const ConfigNode& colour) -> Result<SolidSource> { return SolidSource{glm::vec3(TRY(colour.vector3(0, 1)))}; });
+    kind("foliage", readFoliage);
+    kind("caustics", readCaustics);
+    kind("mirror_ball", readMirrorBall);
+    TRY(fields.finish());
+    if (kinds != 1)
+        return node.error("exactly one kind of source is needed: 'pattern', 'solid', 'foliage', 'caustics' or 'mirror_ball'");
+    return source;
+}
+
+std::vector<fs::path> patternsOf(const Source& source) {
+    if (const auto* pattern = std::get_if<PatternSource>(&source.picture)) return {pattern->file};
+    std::vector<fs::path> files;
+    if (const auto* foliage = std::get_if<FoliageSource>(&source.picture))
+        for (const FoliageSource::Layer& layer : foliage->layers) files.push_back(layer.pattern);
+    return files;
+}
+
+}  // namespace fantascope::show
