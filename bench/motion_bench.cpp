@@ -40,14 +40,15 @@ void construct(benchmark::State& state) {
 }
 BENCHMARK(construct)->Arg(50)->Arg(350)->Unit(benchmark::kMillisecond);
 
-// Steps of 60 Hz, as a projector asks for them.
+// Steps of 60 Hz, as a projector asks for them, in a wind that turns.
 void posesAt(benchmark::State& state) {
     const ShapePattern pattern = scattered(state.range(0));
     const PatternMotion motion(pattern);
     std::vector<InstancePose> poses(pattern.instances.size());
+    constexpr Wind kWind{.strength = 1.5, .ownDirection = 0.5, .direction = {0.3, 0.4}};
     std::int64_t refresh = 0;
     for (auto _ : state) {
-        motion.posesAt(tickTime(refresh++, 60), poses);
+        motion.posesAt(tickTime(refresh++, 60), kWind, poses);
         benchmark::DoNotOptimize(poses.data());
     }
     perInstance(state);

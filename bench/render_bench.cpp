@@ -102,7 +102,7 @@ void drawFrame(benchmark::State& state, int outputs, int layers, const std::vect
         clock.advance(tickTime(1, 30));
         for (Output& output : all) {
             FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "nobody unplugs it");
-            output.renderer->draw(look, clock.now(), output.sink->framebuffer());
+            output.renderer->draw(look, {}, clock.now(), output.sink->framebuffer());
         }
         for (Output& output : all) FANTASCOPE_CHECK(output.sink->presentWith(clock.now()).has_value(), "nobody unplugs it");
     };

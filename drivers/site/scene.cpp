@@ -30,12 +30,15 @@ float meet(glm::vec3 origin, glm::vec3 direction, glm::vec3 corner, glm::vec3 ed
 }  // namespace
 
 Scene::Scene(const std::vector<SceneObject>& objects) {
-    for (const SceneObject& object : objects)
+    for (const SceneObject& object : objects) {
+        const auto index = static_cast<std::uint32_t>(reflectances_.size());
+        reflectances_.push_back(object.reflectance);
         for (const glm::uvec3& corners : object.mesh.triangles) {
             const glm::vec3 a = object.mesh.vertices[corners.x], b = object.mesh.vertices[corners.y],
                             c = object.mesh.vertices[corners.z];
-            triangles_.push_back({a, b - a, c - a, object.reflectance});
+            triangles_.push_back({a, b - a, c - a, index});
         }
+    }
     if (triangles_.empty()) return;
     nodes_.reserve(2 * triangles_.size());
     nodes_.emplace_back();
@@ -134,7 +137,8 @@ std::optional<Scene::Hit> Scene::nearest(glm::vec3 origin, glm::vec3 direction) 
     });
     if (met == nullptr) return std::nullopt;
     const glm::vec3 normal = glm::normalize(glm::cross(met->edge1, met->edge2));
-    return Hit{distance, origin + direction * distance, glm::dot(normal, direction) > 0 ? -normal : normal, met->reflectance};
+    return Hit{distance, origin + direction * distance, glm::dot(normal, direction) > 0 ? -normal : normal,
+               reflectances_[met->object], met->object};
 }
 
 bool Scene::blocked(glm::vec3 from, glm::vec3 to) const {

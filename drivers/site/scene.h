@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace fantascope::site {
@@ -17,6 +18,7 @@ namespace fantascope::site {
 struct SceneObject {
     TriangleMesh mesh;           // world metres
     glm::vec3 reflectance{0.5};  // of a matt surface, linear RGB, 0..1
+    std::string name = {};       // for people
 };
 
 // All surfaces of the site, for asking what a ray meets. Immutable; thread-safe.
@@ -28,6 +30,7 @@ public:
         float distance = 0;
         glm::vec3 point{0}, normal{0};  // unit, on the side that the ray came from: every surface has two sides
         glm::vec3 reflectance{0};
+        std::size_t object = 0;  // its place among the objects
     };
     // The first surface along the ray. `direction` is unit.
     std::optional<Hit> nearest(glm::vec3 origin, glm::vec3 direction) const;
@@ -36,7 +39,8 @@ public:
 
 private:
     struct Triangle {
-        glm::vec3 corner, edge1, edge2, reflectance;
+        glm::vec3 corner, edge1, edge2;
+        std::uint32_t object;
         glm::vec3 centre() const { return corner + (edge1 + edge2) / 3.0f; }
     };
     struct Box {
@@ -56,6 +60,7 @@ private:
     template <class Test>
     void visit(glm::vec3 origin, glm::vec3 direction, const float& limit, Test test) const;
 
+    std::vector<glm::vec3> reflectances_;  // of the objects
     std::vector<Triangle> triangles_;
     std::vector<Node> nodes_;
 };

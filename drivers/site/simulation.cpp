@@ -74,10 +74,9 @@ Result<TriangleMesh> readPlacedMesh(const ConfigNode& node) {
 Result<SceneObject> readObject(const ConfigNode& node) {
     SceneObject object;
     glm::dvec3 reflectance{0.5};
-    std::string name;  // for the file's readers
     std::optional<TriangleMesh> rectangle, box, mesh;
     ConfigFields fields(node);
-    fields.text("name", name);
+    fields.text("name", object.name);
     fields.optional().read("rectangle", rectangle, readRectangle);
     fields.optional().read("box", box, readBox);
     fields.optional().read("mesh", mesh, readPlacedMesh);

@@ -1,11 +1,13 @@
 #include "app/check_command.h"
 
+#include "pattern/elemental_shape.h"
 #include "pattern/pattern_settings.h"
 #include "pattern/shape_pattern.h"
 #include "show/show.h"
 #include "show/site.h"
 
 #include "core/config.h"
+#include "core/file.h"
 #include "core/image.h"
 
 #include <fmt/format.h>
@@ -64,12 +66,24 @@ Result<Finding> checkPattern(const fs::path& path, const std::optional<show::Sit
 
 Result<Finding> checkPatternSettings(const fs::path& path, const std::optional<show::Site>&) {
     const pattern::PatternSettings settings = TRY(pattern::readPatternSettings(path));
-    return Finding{fmt::format("pattern settings, at most {}", counted(settings.search.instances, "instance")), {}};
+    const std::string shapes = settings.shapes.empty() ? "" : ", " + counted(settings.shapes.size(), "shape");
+    return Finding{fmt::format("pattern settings, at most {}{}", counted(settings.search.instances, "instance"), shapes), {}};
 }
 
 Result<Finding> checkGuide(const fs::path& path) {
     const GreyImage guide = TRY(readGrey(path));
     return Finding{fmt::format("guide, {} x {} px", guide.width(), guide.height()), {}};
+}
+
+// A picture may be a shape as well as a guide; it is taken for a guide.
+bool isShapeFile(const fs::path& path) {
+    static const std::set<std::string> kEndings = {".svg", ".fbx", ".obj", ".gltf", ".glb", ".ply", ".stl"};
+    return kEndings.contains(endingOf(path));
+}
+
+Result<Finding> checkShape(const fs::path& path) {
+    const pattern::ElementalShape shape = TRY(pattern::readShapeFile(path, path.string()));
+    return Finding{fmt::format("elemental shape, {}", counted(shape.mesh.triangles.size(), "triangle")), {}};
 }
 
 using Check = Result<Finding> (*)(const fs::path&, const std::optional<show::Site>&);
@@ -91,11 +105,14 @@ Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>&
     std::error_code ignored;
     if (fs::is_directory(path, ignored))
         return fs::exists(path / "site.yaml", ignored) ? checkSite(path / "site.yaml", site) : checkShow(path, site);
-    return path.extension() == ".yaml" ? checkYaml(path, site) : checkGuide(path);
+    if (path.extension() == ".yaml") return checkYaml(path, site);
+    return isShapeFile(path) ? checkShape(path) : checkGuide(path);
 }
 
 void declareOptions(CLI::App& command, CheckOptions& options) {
-    command.add_option("path", options.paths, "Show and site folders, show, site and pattern files, guide images")
+    command
+        .add_option("path", options.paths,
+                    "Show and site folders, show, site and pattern files, guide images, shapes (SVG, meshes)")
         ->required()
         ->type_name("PATH");
     command

@@ -51,7 +51,7 @@ Result<void> FrameLoop::prepare() {
         if (!output.display.makeCurrent()) continue;
         TRY(makeRenderer(output));
         for (const show::OutputState& state : {everything, show::OutputState{}})
-            output.renderer->draw(state, Time{}, output.display.framebuffer());
+            output.renderer->draw(state, Wind{}, Time{}, output.display.framebuffer());
     }
     return {};
 }
@@ -61,7 +61,7 @@ Result<void> FrameLoop::draw(Output& output, std::size_t index, Time showTime, O
     const Time began = clock_.now();
     if (!output.display.makeCurrent()) return {};  // lost; its status says so, and it comes back by itself
     TRY(makeRenderer(output));
-    output.renderer->draw(state_.outputs[index], showTime, output.display.framebuffer());
+    output.renderer->draw(state_.outputs[index], state_.winds[index], showTime, output.display.framebuffer());
     if (output.tap) output.tap->capture(output.display.framebuffer(), showTime);
     report.frame.add(clock_.now() - began);
     output.drawn = true;

@@ -1,7 +1,11 @@
 #include "app/check_command.h"
 #include "app/command.h"
+#include "app/export_command.h"
 #include "app/pattern_command.h"
+#include "app/plot_command.h"
+#include "app/preview_command.h"
 #include "app/rehearse_command.h"
+#include "app/template_command.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +13,8 @@ namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-constexpr AddCommand kCommands[] = {addPatternCommand, addRehearseCommand, addRunCommand, addCheckCommand};
+constexpr AddCommand kCommands[] = {addPatternCommand,  addRehearseCommand, addRunCommand,  addExportCommand,
+                                    addTemplateCommand, addPreviewCommand,  addPlotCommand, addCheckCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

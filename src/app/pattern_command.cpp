@@ -5,8 +5,10 @@
 #include "app/report.h"
 #include "drivers/display/picture_window.h"
 
+#include "pattern/built_in_shapes.h"
 #include "pattern/elemental_shape.h"
 #include "pattern/measure.h"
+#include "pattern/motion_fit.h"
 #include "pattern/pattern_search.h"
 #include "pattern/pattern_settings.h"
 
@@ -23,6 +25,7 @@
 #include <iostream>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 namespace fantascope::app {
@@ -37,7 +40,7 @@ constexpr int kLoopMoments = 200;  // of the animated loop are judged: one in te
 
 struct Options {
     fs::path guide, output;
-    std::vector<std::string> shapes = {"triangle"};
+    std::vector<std::string> shapes;
     std::optional<fs::path> settings, image, report;
     std::optional<std::uint32_t> instances;
     std::optional<double> seconds, targetZ;
@@ -62,12 +65,13 @@ void declare(CLI::App& command, Options& options) {
         ->required()
         ->check(CLI::Validator(onlyYaml, "YAML"));
     command
-        .add_option("--shapes", options.shapes,
-                    fmt::format("Elemental shapes, separated by commas: {}, or mesh files (FBX, OBJ, glTF, PLY, STL)",
-                                fmt::join(pattern::builtInShapeNames(), ", ")))
+        .add_option(
+            "--shapes", options.shapes,
+            fmt::format("Elemental shapes, separated by commas: {}, or files (FBX, OBJ, glTF, PLY, STL, SVG, PNG); without, "
+                        "those that the settings name, or else triangle",
+                        pattern::builtInShapeList()))
         ->delimiter(',')
-        ->allow_extra_args(false)  // what follows the list is the next argument
-        ->capture_default_str();
+        ->allow_extra_args(false);  // what follows the list is the next argument
     command.add_option("--settings", options.settings, "The numerical parameters, *.pattern-settings.yaml");
     command.add_option("--instances", options.instances, "The most instances")->check(CLI::Range(1, 100'000));
     command
@@ -135,42 +139,60 @@ GreyImage shadowsOf(GreyImage guide) {
     return guide;
 }
 
-struct Shapes {
-    std::vector<pattern::ElementalShape> shapes;
-    std::vector<Material> files;
-};
-
-Result<Shapes> loadShapes(const Options& options) {
-    Shapes loaded;
-    for (const std::string& given : options.shapes) {
-        pattern::ElementalShape shape = TRY(pattern::loadShape(given));
-        const auto& builtIn = pattern::builtInShapeNames();
-        if (std::find(builtIn.begin(), builtIn.end(), given) == builtIn.end()) {
-            const fs::path file = given;
-            loaded.files.push_back(materialFor(options.output, file, file.filename().string()));
-            if (loaded.files.back().copied && file.extension() == ".gltf")
-                return Error(fmt::format(
-                    "{}: a .gltf keeps its points in a second file and cannot be copied beside the pattern; export it as .glb",
-                    given));
-            shape.name = loaded.files.back().name;
-            shape.file = fs::absolute(options.output).parent_path() / shape.name;
-        }
-        for (const auto& other : loaded.shapes)
-            if (other.name == shape.name) return Error(fmt::format("--shapes: {} is given twice", given));
-        loaded.shapes.push_back(std::move(shape));
+// Each with what the settings say of it alone.
+Result<std::vector<pattern::ShapeSettings>> chosenShapes(const Options& options, const pattern::PatternSettings& settings) {
+    if (options.shapes.empty() && !settings.shapes.empty()) return settings.shapes;
+    std::vector<pattern::ShapeSettings> chosen;
+    for (const std::string& name : options.shapes.empty() ? std::vector<std::string>{"triangle"} : options.shapes) {
+        pattern::ElementalShape shape = TRY(pattern::loadShape(name));
+        pattern::PatternSearch::Options::Shape own = settings.ownOf(shape);
+        chosen.push_back({std::move(shape), std::move(own)});
     }
-    return loaded;
+    return chosen;
+}
+
+// Whether a .gltf keeps its points in files of their own; one that holds them itself can be copied alone.
+bool hasOtherFiles(const fs::path& file) {
+    const auto text = readFile(file);
+    const Report gltf = Report::parse(text ? *text : "", nullptr, false);
+    const auto buffers = gltf.find("buffers");
+    return buffers != gltf.end() && std::any_of(buffers->begin(), buffers->end(), [](const Report& buffer) {
+               const auto uri = buffer.find("uri");
+               return uri == buffer.end() || !uri->is_string() || !uri->get<std::string>().starts_with("data:");
+           });
+}
+
+// Names each file's shape as it will lie beside the pattern; what has to be put there is added to `files`.
+Result<void> placeShapes(const fs::path& output, std::vector<pattern::ShapeSettings>& chosen, std::vector<Material>& files) {
+    std::set<std::string> names;
+    for (auto& [shape, own] : chosen) {
+        const std::string given = shape.file.empty() ? shape.name : shape.file.string();
+        if (!shape.file.empty()) {
+            const fs::path file = shape.file;
+            files.push_back(materialFor(output, file, file.filename().string()));
+            if (files.back().copied && endingOf(file) == ".gltf" && hasOtherFiles(file))
+                return Error(fmt::format(
+                    "{}: keeps its points in a second file and cannot be copied beside the pattern; export it as .glb", given));
+            shape.name = files.back().name;
+            shape.file = fs::absolute(output).parent_path() / shape.name;
+        }
+        if (!names.insert(shape.name).second)
+            return Error(fmt::format("the shape {}, or another of that name, is given twice", given));
+    }
+    return {};
 }
 
 Report reportOf(PatternSearch::Method method, const PatternSearch::Found& found, const pattern::PatternQuality& quality,
-                double loopZ, Time took) {
+                const pattern::LoopQuality& loop, Time took) {
     Report report;
     report["method"] = name(method);
     report["z"] = quality.z;
     report["z_bound"] = quality.zBound;
     report["tone"] = quality.tone;
     report["overlap"] = quality.overlap;
-    report["loop_z"] = loopZ;
+    report["loop_z"] = loop.z;
+    report["loop_tone"] = loop.tone;
+    report["local_displacement"] = loop.localDisplacement;
     report["instances"] = found.pattern.instances.size();
     report["triangles"] = found.pattern.triangleCount();
     report["iterations"] = found.summary.iterations;
@@ -247,7 +269,9 @@ Result<void> run(const Options& options) {
     if (options.targetZ) settings.search.targetZ = *options.targetZ;
     if (options.iterations) settings.search.iterations = *options.iterations;
     const std::optional<double> limit = options.seconds || options.iterations ? options.seconds : kDefaultSeconds;
-    Shapes material = TRY(loadShapes(options));
+    std::vector<pattern::ShapeSettings> shapes = TRY(chosenShapes(options, settings));
+    std::vector<Material> shapeFiles;
+    TRY(placeShapes(options.output, shapes, shapeFiles));
     const Material guideFile = options.shadows
                                    ? Material{{}, options.output.stem().stem().string() + ".shadows.png", false}
                                    : materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
@@ -255,28 +279,32 @@ Result<void> run(const Options& options) {
     ShapePattern pattern;
     pattern.guideTransfer = settings.guideTransfer;
     pattern.seed = options.seed;
-    pattern.shapes = std::move(material.shapes);
+    for (auto& [shape, own] : shapes) {
+        pattern.shapes.push_back(std::move(shape));
+        settings.search.shapes.push_back(std::move(own));
+    }
     pattern.motion = settings.motion;
     std::unique_ptr<drivers::PictureWindow> window;
     if (options.watch) window = TRY(drivers::PictureWindow::open(options.output.filename().string(), kWindow));
     SteadyClock clock;
     PatternSearch::Found found = search(guide, std::move(pattern), settings.search, limit, options.threads, clock, window.get());
     const Time took = clock.now();
+    if (settings.fitMotion) found.pattern.motion = fittedMotion(found.pattern, guide, options.threads);
 
     // What the pattern names first, so that it never names what is not there.
     const fs::path folder = fs::absolute(options.output).parent_path();
     if (options.shadows) TRY(writePng(folder / guideFile.name, guide));
     TRY(copyTo(folder, guideFile));
-    for (const Material& file : material.files) TRY(copyTo(folder, file));
+    for (const Material& file : shapeFiles) TRY(copyTo(folder, file));
     found.pattern.guide = folder / guideFile.name;
     TRY(writePattern(options.output, found.pattern));
     if (options.image) TRY(writePng(*options.image, drawWhiteOnBlack(found.pattern, guide.width(), guide.height())));
 
     const pattern::PatternQuality quality = measure(found.pattern, guide);
-    const double loopZ = pattern::loopZ(found.pattern, guide, kLoopMoments, options.threads);
-    if (options.report) TRY(writeReport(*options.report, reportOf(settings.search.method, found, quality, loopZ, took)));
-    fmt::print("{}: {}, {} instances, tone {:.4f}, moving z {:.4f}\n", options.output.string(), found.summary.brief(),
-               found.pattern.instances.size(), quality.tone, loopZ);
+    const pattern::LoopQuality loop = pattern::LoopMeasure(found.pattern, guide, options.threads).in({}, kLoopMoments);
+    if (options.report) TRY(writeReport(*options.report, reportOf(settings.search.method, found, quality, loop, took)));
+    fmt::print("{}: {}, {} instances, tone {:.4f}, moving tone {:.4f}\n", options.output.string(), found.summary.brief(),
+               found.pattern.instances.size(), quality.tone, loop.tone);
     return {};
 }
 

@@ -33,17 +33,12 @@ struct Picture {
     std::optional<Pictures::Guide> guide;
 };
 
-Result<render::PatternSource> readMovingPattern(const fs::path& file) {
-    auto pattern = std::make_shared<const pattern::ShapePattern>(TRY(pattern::readPattern(file)));
-    return render::PatternSource{pattern, std::make_shared<const pattern::PatternMotion>(*pattern)};
-}
-
 Result<Pictures::Guide> readGuide(const pattern::ShapePattern& pattern, const fs::path& file) {
     return Pictures::Guide{TRY(readGrey(pattern.guide).in(file.string() + ": guide")), pattern.aspect()};
 }
 
 Result<Picture> readPicture(const show::PatternSource& source) {
-    const render::PatternSource pattern = TRY(readMovingPattern(source.file));
+    const render::PatternSource pattern = TRY(readPatternSource(source.file));
     return Picture{pattern, TRY(readGuide(*pattern.pattern, source.file))};
 }
 
@@ -63,7 +58,7 @@ Result<Picture> readPicture(const show::FoliageSource& source) {
     std::optional<Pictures::Guide> guide;
     for (const show::FoliageSource::Layer& layer : source.layers) {
         render::ShadowLayer shadow;
-        shadow.leaves = TRY(readMovingPattern(layer.pattern));
+        shadow.leaves = TRY(readPatternSource(layer.pattern));
         shadow.holes = layer.holes;
         shadow.filter.width = render::penumbraWidth(layer.distance, source.sun) / source.height;
         if (layer.filter) shadow.filter.picture = TRY(readFilter(*layer.filter));
@@ -116,6 +111,12 @@ Result<std::vector<Watch::Comparisons>> compareWith(const std::vector<std::optio
 }
 
 }  // namespace
+
+Result<render::PatternSource> readPatternSource(const fs::path& file) {
+    auto pattern = std::make_shared<const pattern::ShapePattern>(TRY(pattern::readPattern(file)));
+    auto motion = std::make_shared<const pattern::PatternMotion>(*pattern);
+    return render::PatternSource{std::move(pattern), std::move(motion)};
+}
 
 Result<Programme> readProgramme(const RunOptions& options) {
     Programme programme;

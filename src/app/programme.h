@@ -10,6 +10,7 @@
 
 #include "core/result.h"
 
+#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct Programme {
     std::vector<render::PictureSource> sources;   // in the order of Show::sources
     std::vector<Watch::Comparisons> comparisons;  // [output][source]
 };
+
+// A pattern with its movement, ready to be drawn. Error: as pattern::readPattern.
+Result<render::PatternSource> readPatternSource(const std::filesystem::path& file);
 
 // Error: the first file that cannot be used, with its place and what to do.
 Result<Programme> readProgramme(const RunOptions& options);

@@ -123,7 +123,8 @@ public:
 
     // Once all parts have ended.
     Result<RunReport> report() {
-        TRY(std::move(recorded_).in("recording"));
+        record(Time::max());  // the last frame's moment came with the end of the parts
+        TRY(std::move(recorded_.written).in("recording"));
         RunReport report;
         report.length = length_;
         report.stopReason = options_.length && report.length >= *options_.length ? "length" : "interrupted";
@@ -203,15 +204,17 @@ private:
     }
 
     Part recorder() {
+        recorded_.readers = tapEveryOutput();
         // Half a refresh after the frames became visible.
-        return {"recording", frameRate(), start_ + tickTime(1, 2 * frameRate()),
-                [this, readers = tapEveryOutput()](Time moment) {
-                    for (render::FrameReader* reader : readers)
-                        while (const render::ShownFrame* frame = reader->next(moment))
-                            if (recorded_)
-                                recorded_ = recording_->frame(frame->output, frame->image, frame->shown.refresh, frame->showTime);
-                },
+        return {"recording", frameRate(), start_ + tickTime(1, 2 * frameRate()), [this](Time moment) { record(moment); },
                 Rank::Watch};
+    }
+    // What became visible until a moment and was not recorded yet.
+    void record(Time moment) {
+        for (render::FrameReader* reader : recorded_.readers)
+            while (const render::ShownFrame* frame = reader->next(moment))
+                if (recorded_.written)
+                    recorded_.written = recording_->frame(frame->output, frame->image, frame->shown.refresh, frame->showTime);
     }
 
     // What the machine itself misses: a thread of the render thread's rank that does nothing, at the leading output's rate.
@@ -254,7 +257,10 @@ private:
     std::optional<TerminalKeys> keys_;
     News news_;
     std::atomic<bool> quit_ = false;
-    Result<void> recorded_;
+    struct Recorded {
+        std::vector<render::FrameReader*> readers;  // none where nothing is recorded
+        Result<void> written;
+    } recorded_;
     Time length_{};
     std::int64_t framesBefore_ = 0, yardstickTicks_ = 0, yardstickLate_ = 0;
 };

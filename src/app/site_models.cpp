@@ -1,6 +1,10 @@
 #include "app/site_models.h"
 
+#include "core/config.h"
+
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace fantascope::app {
 namespace {
@@ -17,6 +21,17 @@ Result<vision::CameraModel> cameraOf(const show::Site& site) {
 }
 
 }  // namespace
+
+Result<std::size_t> outputNamed(const show::Site& site, const std::string& name) {
+    std::vector<std::string> names;
+    for (const show::Output& output : site.outputs) names.push_back(output.name);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    const std::string nearest = nearestName(name, names);
+    return Error(fmt::format(
+        "{}: has no output '{}' ({})", site.file.string(), name,
+        nearest.empty() ? fmt::format("its outputs: {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", nearest)));
+}
 
 Result<site::NominalSite> simulationOf(const show::Site& site) {
     site::NominalSite nominal;

@@ -10,6 +10,9 @@
 
 namespace fantascope::app {
 
+// The index of an output. Error: the site has none of this name; says which one was perhaps meant.
+Result<std::size_t> outputNamed(const show::Site& site, const std::string& name);
+
 // Error: the site lacks a projector's place, the camera or a usable optic; names what to add to the site file.
 Result<site::NominalSite> simulationOf(const show::Site& site);
 

@@ -4,12 +4,17 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <bit>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/opt.h>
+#include <libavutil/pixdesc.h>
 #include <libswscale/swscale.h>
 }
 
@@ -18,6 +23,29 @@ namespace fantascope::app {
 namespace fs = std::filesystem;
 
 namespace {
+
+static_assert(std::endian::native == std::endian::little, "16-bit pictures are handed over as they lie in memory");
+constexpr AVPixelFormat kFrom8Bit = AV_PIX_FMT_RGBA, kFrom16Bit = AV_PIX_FMT_RGBA64LE;
+
+struct Coding {
+    const char *encoder, *container;
+    AVPixelFormat format;
+    std::vector<std::pair<const char*, const char*>> options;  // the encoder's own
+};
+
+Coding codingOf(VideoKind kind) {
+    switch (kind) {
+        case VideoKind::Recording:  // the quickest preset that still holds fine light on black
+            return {"libx264", "mp4", AV_PIX_FMT_YUV420P, {{"preset", "ultrafast"}, {"crf", "20"}}};
+        case VideoKind::Film:
+            return {"libx264", "mp4", AV_PIX_FMT_YUV420P, {{"preset", "fast"}, {"crf", "16"}}};
+        case VideoKind::ProRes4444:
+            return {"prores_ks", "mov", AV_PIX_FMT_YUVA444P10LE, {{"profile", "4444"}, {"alpha_bits", "16"}, {"vendor", "apl0"}}};
+        case VideoKind::Lossless:
+            return {"ffv1", "matroska", kFrom16Bit, {{"level", "3"}, {"slicecrc", "1"}}};
+    }
+    return {};
+}
 
 std::string reason(int code) {
     char text[AV_ERROR_MAX_STRING_SIZE] = {};
@@ -35,10 +63,11 @@ struct VideoWriter::Impl {
     AVStream* stream = nullptr;
     AVFrame* frame = nullptr;
     AVPacket* packet = nullptr;
-    SwsContext* yuvFromRgba = nullptr;
+    SwsContext* fromPicture = nullptr;
+    AVPixelFormat pictureFormat = AV_PIX_FMT_NONE;  // that fromPicture converts
 
     ~Impl() {
-        sws_freeContext(yuvFromRgba);
+        sws_freeContext(fromPicture);
         av_packet_free(&packet);
         av_frame_free(&frame);
         avcodec_free_context(&encoder);
@@ -59,6 +88,9 @@ struct VideoWriter::Impl {
         int code = avcodec_send_frame(encoder, picture);
         if (code < 0) return error("encoding failed", code);
         while ((code = avcodec_receive_packet(encoder, packet)) >= 0) {
+            // Each frame's time on the screen is the distance to the next one, but nothing follows the last: without a duration of its own
+            // it would be shown for no time at all, and players drop it.
+            packet->duration = 1;
             av_packet_rescale_ts(packet, encoder->time_base, stream->time_base);
             packet->stream_index = stream->index;
             if (code = av_interleaved_write_frame(container, packet); code < 0) return error("cannot be written", code);
@@ -66,12 +98,34 @@ struct VideoWriter::Impl {
         if (code != AVERROR(EAGAIN) && code != AVERROR_EOF) return error("encoding failed", code);
         return {};
     }
+
+    bool holdsRgb() const { return (av_pix_fmt_desc_get(encoder->pix_fmt)->flags & AV_PIX_FMT_FLAG_RGB) != 0; }
+
+    void convertFrom(AVPixelFormat format) {
+        if (format == pictureFormat) return;
+        sws_freeContext(fromPicture);
+        pictureFormat = format;
+        fromPicture = sws_getContext(encoder->width, encoder->height, format, encoder->width, encoder->height, encoder->pix_fmt,
+                                     SWS_BILINEAR | SWS_ACCURATE_RND, nullptr, nullptr, nullptr);
+        const int* const bt709 = sws_getCoefficients(SWS_CS_ITU709);
+        constexpr int kFull = 1, kOne = 1 << 16;
+        sws_setColorspaceDetails(fromPicture, bt709, kFull, bt709, holdsRgb() ? kFull : 0, 0, kOne, kOne);
+    }
+
+    Result<void> write(const void* pixels, int stride, AVPixelFormat format, std::int64_t number) {
+        if (const int code = av_frame_make_writable(frame); code < 0) return error("no memory for a frame", code);
+        convertFrom(format);
+        const auto* rows = static_cast<const std::uint8_t*>(pixels);
+        sws_scale(fromPicture, &rows, &stride, 0, encoder->height, frame->data, frame->linesize);
+        frame->pts = number;
+        return encode(frame);
+    }
 };
 
 VideoWriter::VideoWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 VideoWriter::~VideoWriter() = default;
 
-Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, glm::ivec2 size, double frameRate) {
+Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, glm::ivec2 size, double frameRate, VideoKind kind) {
     FANTASCOPE_CHECK(size.x >= 2 && size.y >= 2 && frameRate >= 1 && frameRate <= 1000, "a video has a size and a frame rate");
     av_log_set_level(AV_LOG_ERROR);
     auto impl = std::make_unique<Impl>();
@@ -81,29 +135,36 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, glm
     std::error_code failure;
     if (file.has_parent_path()) fs::create_directories(file.parent_path(), failure);
 
-    const AVCodec* codec = avcodec_find_encoder_by_name("libx264");
+    const Coding coding = codingOf(kind);
+    const AVCodec* codec = avcodec_find_encoder_by_name(coding.encoder);
     if (codec == nullptr)
-        return Error(fmt::format("{}: no H.264 encoder here; install Debian's libavcodec with libx264", file.string()));
-    if (const int code = avformat_alloc_output_context2(&impl->container, nullptr, "mp4", nullptr); code < 0)
-        return impl->error("no MP4 container", code);
+        return Error(
+            fmt::format("{}: no encoder {} here; install Debian's libavcodec, which has it", file.string(), coding.encoder));
+    if (const int code = avformat_alloc_output_context2(&impl->container, nullptr, coding.container, nullptr); code < 0)
+        return impl->error("no such container", code);
     impl->container->flags |= AVFMT_FLAG_BITEXACT;
     impl->encoder = avcodec_alloc_context3(codec);
     AVCodecContext& encoder = *impl->encoder;
-    encoder.width = size.x & ~1;
-    encoder.height = size.y & ~1;
-    encoder.pix_fmt = AV_PIX_FMT_YUV420P;
+    const bool halvesColours = av_pix_fmt_desc_get(coding.format)->log2_chroma_w > 0;
+    encoder.width = halvesColours ? size.x & ~1 : size.x;
+    encoder.height = halvesColours ? size.y & ~1 : size.y;
+    encoder.pix_fmt = coding.format;
+    encoder.color_primaries = AVCOL_PRI_BT709;
+    encoder.color_trc = AVCOL_TRC_IEC61966_2_1;
+    encoder.colorspace = impl->holdsRgb() ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
+    encoder.color_range = impl->holdsRgb() ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
     encoder.time_base = av_d2q(1 / frameRate, 1'000'000);
     encoder.framerate = av_inv_q(encoder.time_base);
     encoder.thread_count = 1;
-    encoder.flags |= AV_CODEC_FLAG_BITEXACT | AV_CODEC_FLAG_GLOBAL_HEADER;
-    // A rehearsal must not slow the show that it records: the quickest preset that still holds fine light on black.
-    av_opt_set(encoder.priv_data, "preset", "ultrafast", 0);
-    av_opt_set(encoder.priv_data, "crf", "20", 0);
+    encoder.flags |= AV_CODEC_FLAG_BITEXACT;
+    if (impl->container->oformat->flags & AVFMT_GLOBALHEADER) encoder.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+    for (const auto& [name, value] : coding.options) av_opt_set(encoder.priv_data, name, value, 0);
     if (const int code = avcodec_open2(&encoder, codec, nullptr); code < 0)
         return impl->error("the encoder refuses this size or rate", code);
 
     impl->stream = avformat_new_stream(impl->container, nullptr);
     impl->stream->time_base = encoder.time_base;
+    impl->stream->avg_frame_rate = encoder.framerate;
     avcodec_parameters_from_context(impl->stream->codecpar, &encoder);
     if (const int code = avio_open(&impl->container->pb, impl->aside.c_str(), AVIO_FLAG_WRITE); code < 0)
         return impl->error("cannot be written", code);
@@ -114,21 +175,30 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, glm
     impl->frame->format = encoder.pix_fmt;
     impl->frame->width = encoder.width;
     impl->frame->height = encoder.height;
+    // Some encoders ask the frame for these.
+    impl->frame->color_primaries = encoder.color_primaries;
+    impl->frame->color_trc = encoder.color_trc;
+    impl->frame->colorspace = encoder.colorspace;
+    impl->frame->color_range = encoder.color_range;
     if (const int code = av_frame_get_buffer(impl->frame, 0); code < 0) return impl->error("no memory for a frame", code);
-    impl->yuvFromRgba = sws_getContext(encoder.width, encoder.height, AV_PIX_FMT_RGBA, encoder.width, encoder.height,
-                                       encoder.pix_fmt, SWS_BILINEAR, nullptr, nullptr, nullptr);
     return std::unique_ptr<VideoWriter>(new VideoWriter(std::move(impl)));
 }
 
 Result<void> VideoWriter::write(const RgbaImage& picture, std::int64_t number) {
-    FANTASCOPE_CHECK(picture.width() == impl_->pictureSize.x && picture.height() == impl_->pictureSize.y,
-                     "a picture of another size");
-    if (const int code = av_frame_make_writable(impl_->frame); code < 0) return impl_->error("no memory for a frame", code);
-    const auto* rows = reinterpret_cast<const std::uint8_t*>(picture.pixels().data());
-    const int stride = picture.width() * 4;
-    sws_scale(impl_->yuvFromRgba, &rows, &stride, 0, impl_->encoder->height, impl_->frame->data, impl_->frame->linesize);
-    impl_->frame->pts = number;
-    return impl_->encode(impl_->frame);
+    FANTASCOPE_CHECK(glm::ivec2(picture.width(), picture.height()) == impl_->pictureSize, "a picture of another size");
+    if (impl_->encoder->pix_fmt == kFrom16Bit) {  // libswscale would make 254 / 255 of white
+        Rgba16Image wide(picture.width(), picture.height());
+        const auto word = [](std::uint8_t byte) { return static_cast<std::uint16_t>(257 * byte); };
+        std::transform(picture.pixels().begin(), picture.pixels().end(), wide.pixels().begin(),
+                       [&](Rgba8 pixel) { return Rgba16{word(pixel.r), word(pixel.g), word(pixel.b), word(pixel.a)}; });
+        return write(wide, number);
+    }
+    return impl_->write(picture.pixels().data(), picture.width() * static_cast<int>(sizeof(Rgba8)), kFrom8Bit, number);
+}
+
+Result<void> VideoWriter::write(const Rgba16Image& picture, std::int64_t number) {
+    FANTASCOPE_CHECK(glm::ivec2(picture.width(), picture.height()) == impl_->pictureSize, "a picture of another size");
+    return impl_->write(picture.pixels().data(), picture.width() * static_cast<int>(sizeof(Rgba16)), kFrom16Bit, number);
 }
 
 Result<void> VideoWriter::finish() {

@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -50,6 +52,12 @@ Result<void> writeFile(const fs::path& path, std::string_view bytes) {
     if (::rename(aside.c_str(), path.c_str()) != 0) return abandon(errno);
     ::close(descriptor);
     return {};
+}
+
+std::string endingOf(const fs::path& path) {
+    std::string ending = path.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    return ending;
 }
 
 }  // namespace fantascope

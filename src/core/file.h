@@ -15,4 +15,7 @@ Result<std::string> readFile(const std::filesystem::path& path);
 // failure leaves nothing behind. Makes missing folders. Error: names the file and the reason.
 Result<void> writeFile(const std::filesystem::path& path, std::string_view bytes);
 
+// By which a file's kind is told, in small letters: ".png" of "leaf.PNG"; "" if there is none.
+std::string endingOf(const std::filesystem::path& path);
+
 }  // namespace fantascope

@@ -23,6 +23,9 @@ cv::Mat view(const GreyImage& image) {
 cv::Mat view(const RgbaImage& image) {
     return {image.height(), image.width(), CV_8UC4, const_cast<Rgba8*>(image.pixels().data())};
 }
+cv::Mat view(const Rgba16Image& image) {
+    return {image.height(), image.width(), CV_16UC4, const_cast<Rgba16*>(image.pixels().data())};
+}
 
 // Where a JPEG's own data begin: after the segments of its head, each of them 0xff, a marker and a length that counts itself. A
 // thumbnail in one of them is a whole JPEG, with an end of its own.
@@ -72,11 +75,19 @@ Result<cv::Mat> decode(const fs::path& path) {
 
 std::uint8_t toByte(float value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f)); }
 
-Result<void> encode(const fs::path& path, const cv::Mat& picture) {
+// `effort`: 1 is quick, 9 small.
+Result<void> encode(const fs::path& path, const cv::Mat& picture, int effort) {
     FANTASCOPE_CHECK(!picture.empty(), "an empty image was to be written");
     std::vector<std::uint8_t> bytes;
-    cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6});
+    cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, effort});
     return writeFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+template <class Pixel>
+Result<void> encodeColours(const fs::path& path, const Image<Pixel>& image, int effort) {
+    cv::Mat swapped;
+    cv::cvtColor(view(image), swapped, cv::COLOR_RGBA2BGRA);
+    return encode(path, swapped, effort);
 }
 
 template <class Pixel>
@@ -128,14 +139,13 @@ Result<RgbaImage> readRgba(const fs::path& path) {
 Result<void> writePng(const fs::path& path, const GreyImage& image) {
     Image<std::uint8_t> bytes(image.width(), image.height());
     std::transform(image.pixels().begin(), image.pixels().end(), bytes.pixels().begin(), toByte);
-    return encode(path, {bytes.height(), bytes.width(), CV_8UC1, bytes.pixels().data()});
+    return encode(path, {bytes.height(), bytes.width(), CV_8UC1, bytes.pixels().data()}, 6);
 }
 
-Result<void> writePng(const fs::path& path, const RgbaImage& image) {
-    cv::Mat swapped;
-    cv::cvtColor(view(image), swapped, cv::COLOR_RGBA2BGRA);
-    return encode(path, swapped);
-}
+Result<void> writePng(const fs::path& path, const RgbaImage& image) { return encodeColours(path, image, 6); }
+Result<void> writePng(const fs::path& path, const Rgba16Image& image) {
+    return encodeColours(path, image, 3);
+}  // they come by the thousand
 
 GreyImage resized(const GreyImage& image, int width, int height) { return resizedImage(image, width, height); }
 RgbaImage resized(const RgbaImage& image, int width, int height) { return resizedImage(image, width, height); }

@@ -47,7 +47,14 @@ struct Rgba8 {
     friend bool operator==(const Rgba8&, const Rgba8&) = default;
 };
 
+// The same in 16 bits.
+struct Rgba16 {
+    std::uint16_t r = 0, g = 0, b = 0, a = 65535;
+    friend bool operator==(const Rgba16&, const Rgba16&) = default;
+};
+
 using RgbaImage = Image<Rgba8>;
+using Rgba16Image = Image<Rgba16>;
 using GreyImage = Image<float>;  // values 0..1; whether stored or linear is said where one is used
 
 // The sRGB transfer function (IEC 61966-2-1), 0..1 to 0..1.
@@ -59,9 +66,11 @@ float srgbFromLinear(float linear);
 Result<GreyImage> readGrey(const std::filesystem::path& path);
 Result<RgbaImage> readRgba(const std::filesystem::path& path);
 
-// PNG, 8 bits a channel, written aside and renamed. The same picture gives the same bytes.
+// PNG, 8 bits a channel where the picture has no more, written aside and renamed. Alpha is straight (not premultiplied). The same picture
+// gives the same bytes.
 Result<void> writePng(const std::filesystem::path& path, const GreyImage& image);
 Result<void> writePng(const std::filesystem::path& path, const RgbaImage& image);
+Result<void> writePng(const std::filesystem::path& path, const Rgba16Image& image);
 
 // Area-averaging when it shrinks, bilinear when it grows. width, height > 0.
 GreyImage resized(const GreyImage& image, int width, int height);

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace fantascope {
 namespace {
@@ -29,11 +31,27 @@ void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& sceneFr
         for (unsigned f = 0; f < part.mNumFaces; ++f) {
             const unsigned* corner = part.mFaces[f].mIndices;
             const glm::uvec3 triangle = first + glm::uvec3(corner[0], corner[mirrored ? 2 : 1], corner[mirrored ? 1 : 2]);
-            const glm::vec3 a = mesh.vertices[triangle.x], b = mesh.vertices[triangle.y], c = mesh.vertices[triangle.z];
+            // In double: a giant's area is still a number.
+            const glm::dvec3 a = mesh.vertices[triangle.x], b = mesh.vertices[triangle.y], c = mesh.vertices[triangle.z];
             if (glm::length(glm::cross(b - a, c - a)) > 0) mesh.triangles.push_back(triangle);
         }
     }
     for (unsigned child = 0; child < node.mNumChildren; ++child) append(scene, *node.mChildren[child], sceneFromNode, mesh);
+}
+
+// An FBX says which of its axes point right, up and to the viewer, and assimp passes that on without heeding it.
+aiMatrix4x4 sceneFromFile(const aiScene& scene) {
+    aiMatrix4x4 turned;
+    constexpr std::pair<unsigned, const char*> kAxes[] = {{0, "CoordAxis"}, {1, "UpAxis"}, {2, "FrontAxis"}};
+    for (const auto& [row, key] : kAxes) {
+        int axis = 0, sign = 0;
+        if (scene.mMetaData == nullptr || !scene.mMetaData->Get(key, axis) ||
+            !scene.mMetaData->Get(std::string(key) + "Sign", sign))
+            return {};
+        for (int column = 0; column < 3; ++column) turned[row][column] = column == axis ? static_cast<float>(sign) : 0.0f;
+    }
+    const bool areThree = std::abs(aiMatrix3x3(turned).Determinant()) == 1;
+    return areThree ? turned : aiMatrix4x4();
 }
 
 bool isFinite(const glm::vec3& point) { return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z); }
@@ -52,7 +70,7 @@ Result<TriangleMesh> readMesh(const std::filesystem::path& path) {
     if (scene == nullptr)
         return refused(fmt::format("not a mesh that can be read: {}; export it as FBX, OBJ or glTF", importer.GetErrorString()));
     TriangleMesh mesh;
-    append(*scene, *scene->mRootNode, aiMatrix4x4(), mesh);
+    append(*scene, *scene->mRootNode, sceneFromFile(*scene), mesh);
     if (!std::all_of(mesh.vertices.begin(), mesh.vertices.end(), isFinite))
         return refused("a vertex coordinate is not a finite number");
     if (mesh.triangles.empty())

@@ -16,9 +16,9 @@ struct TriangleMesh {
     std::vector<glm::uvec3> triangles;  // indices into vertices
 };
 
-// All triangle meshes of an FBX, OBJ, glTF, PLY or STL file as one, node transforms applied, in the file's own units; polygons are cut into
-// triangles, equal vertices joined, triangles with no area dropped. Error: names the file: missing, not a mesh, no triangle left, or a
-// coordinate that is not finite.
+// All triangle meshes of an FBX, OBJ, glTF, PLY or STL file as one, node transforms applied, in the file's own units, turned y up and
+// facing +z where the file says which of its axes those are (FBX); polygons are cut into triangles, equal vertices joined, triangles with
+// no area dropped. Error: names the file: missing, not a mesh, no triangle left, or a coordinate that is not finite.
 Result<TriangleMesh> readMesh(const std::filesystem::path& path);
 
 }  // namespace fantascope

@@ -1,15 +1,15 @@
 #include "pattern/elemental_shape.h"
 
-#include "core/check.h"
-#include "core/config.h"
+#include "pattern/built_in_shapes.h"
+
+#include "core/outline_file.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numbers>
+#include <utility>
 
 namespace fantascope::pattern {
 namespace {
@@ -18,51 +18,8 @@ namespace fs = std::filesystem;
 
 // A front view with less area than this (in radius^2) is a line to the eye.
 constexpr double kLeastFrontArea = 1e-3;
-
-// A convex outline, anticlockwise, as a fan.
-TriangleMesh fan(std::vector<glm::vec3> outline) {
-    TriangleMesh mesh{std::move(outline), {}};
-    for (std::uint32_t i = 2; i < mesh.vertices.size(); ++i) mesh.triangles.emplace_back(0, i - 1, i);
-    return mesh;
-}
-
-// Corners on the unit circle, standing on a side.
-TriangleMesh regularPolygon(int corners) {
-    std::vector<glm::vec3> outline;
-    for (int i = 0; i < corners; ++i) {
-        const double angle = 2 * std::numbers::pi * (i + 0.5) / corners - std::numbers::pi / 2;
-        outline.emplace_back(std::cos(angle), std::sin(angle), 0);
-    }
-    return fan(std::move(outline));
-}
-
-// Two arcs that meet in a tip above and below, as wide as a half of its length.
-TriangleMesh leaf() {
-    constexpr int kSides = 8;  // straight pieces an arc
-    // The arc through the tips (0, +-1) and the flank (1/2, 0) has its centre at (-3/4, 0).
-    const double radius = 1.25, tip = std::asin(1 / radius);
-    std::vector<glm::vec3> outline;
-    for (const double side : {1.0, -1.0})
-        for (int i = 0; i < kSides; ++i) {
-            const double angle = tip * (2.0 * i / kSides - 1);
-            outline.emplace_back(side * (radius * std::cos(angle) - 0.75), side * radius * std::sin(angle), 0);
-        }
-    return fan(std::move(outline));
-}
-
-struct BuiltIn {
-    std::string name;
-    std::function<TriangleMesh()> mesh;
-};
-const std::vector<BuiltIn>& builtIns() {
-    static const std::vector<BuiltIn> shapes = {
-        {"triangle", [] { return regularPolygon(3); }},
-        {"square", [] { return regularPolygon(4); }},
-        {"circle", [] { return regularPolygon(24); }},
-        {"leaf", leaf},
-    };
-    return shapes;
-}
+// A thousand copies of more are drawn and compared in no useful time.
+constexpr std::size_t kMostTriangles = 20'000;
 
 // The area that the triangles cover when projected along z, those in front of each other counted each; a fold of a surface cannot
 // hide all.
@@ -89,17 +46,12 @@ glm::dvec3 surfaceCentre(const TriangleMesh& mesh) {
 
 }  // namespace
 
-const std::vector<std::string>& builtInShapeNames() {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> list;
-        for (const BuiltIn& shape : builtIns()) list.push_back(shape.name);
-        return list;
-    }();
-    return names;
-}
-
 Result<ElementalShape> makeShape(std::string name, TriangleMesh mesh) {
-    FANTASCOPE_CHECK(!mesh.triangles.empty(), "a mesh has triangles");
+    if (mesh.triangles.empty()) return Error(fmt::format("{}: shows nothing that has an area", name));
+    if (mesh.triangles.size() > kMostTriangles)
+        return Error(
+            fmt::format("{}: has {} triangles, {} may be, for each is drawn in every copy; reduce the mesh to some hundred", name,
+                        mesh.triangles.size(), kMostTriangles));
     const glm::dvec3 centre = surfaceCentre(mesh);
     double radius = 0;
     for (const glm::uvec3& t : mesh.triangles)
@@ -112,17 +64,23 @@ Result<ElementalShape> makeShape(std::string name, TriangleMesh mesh) {
     return ElementalShape{std::move(name), std::move(mesh)};
 }
 
+Result<ElementalShape> readShapeFile(const fs::path& file, const std::string& name) {
+    TriangleMesh mesh = isOutlineFile(file) ? filled(TRY(readOutline(file))) : TRY(readMesh(file));
+    ElementalShape shape = TRY(makeShape(name, std::move(mesh)));
+    shape.file = file;
+    return shape;
+}
+
+Result<ElementalShape> builtInShape(const std::string& name) {
+    TriangleMesh mesh = TRY(builtInMesh(name));
+    return makeShape(name, std::move(mesh));
+}
+
 Result<ElementalShape> loadShape(const std::string& nameOrFile) {
-    for (const BuiltIn& shape : builtIns())
-        if (shape.name == nameOrFile) return makeShape(shape.name, shape.mesh());
     const fs::path file = nameOrFile;
-    if (!file.has_extension() && !fs::exists(file)) {
-        const std::string nearest = nearestName(file.filename().string(), builtInShapeNames());
-        return Error(fmt::format("'{}' is not a shape: neither a file nor one of {}{}", nameOrFile,
-                                 fmt::join(builtInShapeNames(), ", "),
-                                 nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest)));
-    }
-    return makeShape(nameOrFile, TRY(readMesh(file)));
+    if (isBuiltInShape(nameOrFile)) return builtInShape(nameOrFile);
+    if (!file.has_extension() && !fs::exists(file)) return builtInShape(nameOrFile).in("neither a file nor built in");
+    return readShapeFile(file, nameOrFile);
 }
 
 }  // namespace fantascope::pattern

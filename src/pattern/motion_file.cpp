@@ -69,6 +69,15 @@ Result<MotionSettings> readMotion(const ConfigNode& node) {
     return motion;
 }
 
+Result<bool> namesAmplitude(const ConfigNode& node) {
+    for (const auto& [key, value] : TRY(node.entries())) {
+        if (!value.isMap()) continue;
+        for (const auto& [ofAxis, number] : TRY(value.entries()))
+            if (ofAxis == "magnitude" || ofAxis == "range") return true;
+    }
+    return false;
+}
+
 std::string motionText(const MotionSettings& motion) {
     std::string text = fmt::format(
         "motion:\n  frames: {}\n  rate: {}\n  deviation: {}\n  direction: {}\n  instances_per_group: {}\n  fuzziness: {}\n",

@@ -142,7 +142,8 @@ private:
         const double amount = paper_.largestAmount * std::pow(rng.uniform(), 1 / share);
         if (g < paper_.lambdaReduce) instance.size *= 1 - std::min(amount, 1.0) * rng.uniform();
         if (g > paper_.lambdaIncrease) instance.size *= 1 + amount * rng.uniform();
-        instance.size = std::clamp(instance.size, space_.sizes().x, space_.sizes().y);
+        const glm::dvec2 sizes = space_.sizes(instance.shape);
+        instance.size = std::clamp(instance.size, sizes.x, sizes.y);
 
         const auto shift = [&] { return amount * rng.uniform(-1, 1); };
         instance.centre.x += instance.size * shift();

@@ -1,10 +1,9 @@
-#include "pattern/elemental_shape.h"
 #include "pattern/motion_file.h"
+#include "pattern/shape_fields.h"
 #include "pattern/shape_pattern.h"
 
 #include "core/config.h"
 #include "core/file.h"
-#include "core/mesh.h"
 
 #include <fmt/format.h>
 
@@ -31,30 +30,12 @@ Result<glm::ivec2> readSize(const ConfigNode& node) {
     return glm::ivec2(TRY(sides[0].integer(1, kMostPixels)), TRY(sides[1].integer(1, kMostPixels)));
 }
 
-Result<ElementalShape> readBuiltIn(const ConfigNode& node) {
-    return loadShape(builtInShapeNames()[TRY(node.choice(builtInShapeNames()))]);
-}
-
-Result<ElementalShape> readShapeFile(const ConfigNode& node) {
-    const fs::path file = TRY(node.path());
-    auto mesh = readMesh(file);
-    if (!mesh) return node.error(mesh.error().message());
-    const std::string name = TRY(node.text());
-    auto shape = makeShape(name, std::move(*mesh));
-    if (!shape) return node.error(shape.error().message());
-    shape->file = file;
-    return shape;
-}
-
 Result<ElementalShape> readShape(const ConfigNode& node) {
-    std::optional<ElementalShape> builtIn, fromFile;
+    ShapeFields shape;
     ConfigFields fields(node);
-    fields.optional().read("builtin", builtIn, readBuiltIn);
-    fields.optional().read("file", fromFile, readShapeFile);
+    shape.declare(fields);
     TRY(fields.finish());
-    if (builtIn.has_value() == fromFile.has_value())
-        return node.error("exactly one kind of shape is needed: 'builtin' or 'file'");
-    return std::move(builtIn ? *builtIn : *fromFile);
+    return std::move(shape).chosen(node);
 }
 
 Result<ShapeInstance> readInstance(const ConfigNode& node, const ShapePattern& pattern) {
@@ -139,7 +120,7 @@ Result<void> writePattern(const fs::path& file, const ShapePattern& pattern) {
     add("size: [{}, {}]\nseed: {}\ngroups: {}\nshapes:\n", pattern.width, pattern.height, pattern.seed, pattern.groups);
     for (const ElementalShape& shape : pattern.shapes) {
         if (shape.file.empty())
-            add("  - builtin: {}\n", shape.name);
+            add("  - builtin: {}\n", fantascope::quoted(shape.name));
         else
             add("  - file: {}\n", TRY(relativeTo(file, shape.file)));
     }

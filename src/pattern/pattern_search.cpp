@@ -1,28 +1,26 @@
 #include "pattern/pattern_search.h"
 
 #include "pattern/grouping.h"
+#include "pattern/instance_colour.h"
 #include "pattern/paper_method.h"
 #include "pattern/refined_method.h"
 #include "pattern/search_bounds.h"
 #include "pattern/search_space.h"
-#include "pattern/streams.h"
 
 #include "core/check.h"
-#include "core/random.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 namespace fantascope::pattern {
 namespace {
 
 using Options = PatternSearch::Options;
-
-double rounded(double value, double steps) { return std::round(value * steps) / steps; }
 
 // Finds the first number that is out of its bounds.
 struct Bounds {
@@ -38,11 +36,30 @@ struct Bounds {
     }
 };
 
-glm::vec3 colourOf(std::uint32_t id, std::uint64_t seed, const std::vector<Options::Colours>& colours) {
-    Rng rng(streamSeed(seed, {Stream::InstanceColour, id}));
-    const Options::Colours& range = colours[rng.below(static_cast<std::uint32_t>(colours.size()))];
-    const glm::dvec3 colour = glm::mix(range.from, range.to, rng.uniform());
-    return {rounded(colour.r, 1e4), rounded(colour.g, 1e4), rounded(colour.b, 1e4)};
+// The ranges: what no bounds of a single number say.
+Result<void> checkSize(const std::optional<glm::dvec2>& size) {
+    if (!size || (0 < size->x && size->x <= size->y && size->y <= 2)) return {};
+    return Error(
+        fmt::format("size = [{}, {}] must be the smallest and the largest, 0 < smallest <= largest <= 2", size->x, size->y));
+}
+
+Result<void> checkRotation(std::string_view option, const std::optional<glm::dvec2>& range, double mostDegrees) {
+    const double most = radians(mostDegrees);
+    if (!range || (-most <= range->x && range->x <= range->y && range->y <= most && range->y - range->x <= radians(360)))
+        return {};
+    const glm::dvec2 degrees = *range * (180 / std::numbers::pi);
+    return Error(
+        fmt::format("{0} = [{1:.6g}, {2:.6g}] degrees must run from the smaller to the larger, -{3} .. {3}, and not further "
+                    "than once round",
+                    option, degrees.x, degrees.y, mostDegrees));
+}
+
+void checkColours(Bounds& bounds, const std::vector<Options::Colours>& colours) {
+    for (const Options::Colours& range : colours)
+        for (int i = 0; i < 3; ++i) {
+            bounds.number("colours", range.from[i], 0, 1);
+            bounds.number("colours", range.to[i], 0, 1);
+        }
 }
 
 bool byId(const ShapeInstance& a, const ShapeInstance& b) { return a.id < b.id; }
@@ -57,11 +74,11 @@ Result<void> PatternSearch::Options::check() const {
     declarePaper(bounds, copy.paper);
     declareShapes(bounds, copy);
     bounds.integer("iterations", copy.iterations, 0, std::numeric_limits<int>::max());
-    for (Colours& range : copy.colours)
-        for (int i = 0; i < 3; ++i) {
-            bounds.number("colours", range.from[i], 0, 1);
-            bounds.number("colours", range.to[i], 0, 1);
-        }
+    checkColours(bounds, colours);
+    for (Shape& shape : copy.shapes) {
+        declareShape(bounds, shape);
+        checkColours(bounds, shape.colours);
+    }
     TRY(bounds.broken);
     const auto& [lambdaCreate, lambdaIncrease, lambdaReduce, lambdaDelete] =
         std::tie(paper.lambdaCreate, paper.lambdaIncrease, paper.lambdaReduce, paper.lambdaDelete);
@@ -70,9 +87,12 @@ Result<void> PatternSearch::Options::check() const {
         return Error(fmt::format(
             "-1 < lambda_delete <= lambda_reduce <= 0 <= lambda_increase <= lambda_create < 1 must hold, here are {}, {}, {}, {}",
             lambdaDelete, lambdaReduce, lambdaIncrease, lambdaCreate));
-    if (size && !(0 < size->x && size->x <= size->y && size->y <= 2))
-        return Error(
-            fmt::format("size = [{}, {}] must be the smallest and the largest, 0 < smallest <= largest <= 2", size->x, size->y));
+    TRY(checkSize(size));
+    for (const Shape& shape : shapes) {
+        TRY(checkSize(shape.size));
+        TRY(checkRotation("tilt", shape.tilt, kMostTilt));
+        TRY(checkRotation("turn", shape.turn, kMostTurn));
+    }
     if (colours.empty()) return Error("colours: at least one is needed");
     if (region && !(region->from.x < region->to.x && region->from.y < region->to.y))
         return Error("region: its left top corner comes first, then its right bottom one, in canvas heights");
@@ -115,15 +135,18 @@ PatternSearch::Found PatternSearch::run(const GreyImage& guide, ShapePattern pat
     const std::vector<ShapeInstance> given = pattern.instances;
     Summary summary = options.method == Method::Paper ? searchByPaper(space, pattern.instances, threads, askStop)
                                                       : searchRefined(space, pattern.instances, askStop, plan);
+    const auto dress = [&](ShapeInstance& instance) {
+        instance.colour = colourOf(instance, pattern.aspect(), pattern.seed, options);
+    };
     if (given.empty()) {
-        for (ShapeInstance& instance : pattern.instances) instance.colour = colourOf(instance.id, pattern.seed, options.colours);
+        for (ShapeInstance& instance : pattern.instances) dress(instance);
         assignGroups(pattern);
     } else {
         // What was there keeps its colour and its movement.
         const std::uint32_t last = std::max_element(given.begin(), given.end(), byId)->id;
         for (ShapeInstance& instance : pattern.instances) {
             if (instance.id <= last) continue;
-            instance.colour = colourOf(instance.id, pattern.seed, options.colours);
+            dress(instance);
             instance.group = std::min_element(given.begin(), given.end(), [&](const ShapeInstance& a, const ShapeInstance& b) {
                                  return glm::distance(a.centre, instance.centre) < glm::distance(b.centre, instance.centre);
                              })->group;

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -55,11 +56,25 @@ struct PatternSearch {
         double tilt = radians(40);   // the largest rotation about x and y, 0 .. pi: beyond, flat shapes are slivers
         double turn = radians(180);  // the largest rotation about z, 0 .. pi
 
+        // Colours in linear light, 0..1: those between two, or those of a picture of stored sRGB values that is laid over the canvas,
+        // each instance's the mean of what lies under it.
         struct Colours {
             glm::dvec3 from{1.0}, to{1.0};
+            std::shared_ptr<const RgbaImage> picture = nullptr;  // never empty
         };
-        // An instance gets a colour between the two of one entry, linear light, 0..1; never empty.
+        // An instance gets a colour of one entry; never empty.
         std::vector<Colours> colours = std::vector<Colours>(1);
+
+        // What one shape has of its own; what is absent is as for all.
+        struct Shape {
+            double share = 1;  // of the new instances, in proportion to the other shapes' shares; 0.001 .. 1000
+            std::optional<glm::dvec2> size;
+            std::optional<glm::dvec2> tilt;  // [from, to], -pi <= from <= to <= pi
+            std::optional<glm::dvec2> turn;  // [from, to], -2 pi <= from <= to <= 2 pi, at most 2 pi apart
+            std::vector<Colours> colours;    // empty: as for all
+        };
+        // In the order of the pattern's; a shape beyond the last entry has nothing of its own.
+        std::vector<Shape> shapes;
 
         struct Refined {
             // What a wrong pixel, a wrong tone and a pixel that several instances cover weigh against each other; 0 .. 100.

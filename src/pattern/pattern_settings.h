@@ -7,14 +7,27 @@
 #include "core/result.h"
 
 #include <filesystem>
+#include <vector>
 
 namespace fantascope::pattern {
+
+// A shape that the settings name, and what it has of its own.
+struct ShapeSettings {
+    ElementalShape shape;
+    PatternSearch::Options::Shape own;
+};
 
 // The numerical parameters of sections 4.1 and 4.2 (Ji et al. 2015), which an artist seldom changes.
 struct PatternSettings {
     PatternSearch::Options search;
     MotionSettings motion;
+    // Magnitudes and ranges are to be fitted to the pattern that is found (fittedMotion); false where the file names one.
+    bool fitMotion = true;
     GuideTransfer guideTransfer = GuideTransfer::Srgb;
+    std::vector<ShapeSettings> shapes;  // none is named twice
+
+    // What `shape` has of its own: of these the one of the same name or file; nothing if there is none.
+    PatternSearch::Options::Shape ownOf(const ElementalShape& shape) const;
 };
 
 // *.pattern-settings.yaml (docs/pattern-settings.md), strict; every key may be absent and then has the default of its field here.

@@ -43,7 +43,8 @@ public:
           scanner_(space.pixels().x, space.pixels().y),
           score_(space),
           rng_(streamSeed(space.seed(), {Stream::RefinedMoves})),
-          most_(std::min<std::size_t>(space.options().instances, LayerCounts::kMost)) {
+          most_(std::min<std::size_t>(space.options().instances, LayerCounts::kMost)),
+          counts_(space.shapeCount()) {
         const glm::dvec2 sizes = space.sizes();
         typicalArea_ = std::pow(space.meanSide() * space.pixels().y, 2) * sizes.x * sizes.y;
         continues_ = !given.empty();
@@ -128,6 +129,7 @@ private:
             score_.propose(kNothing, mask_);
             score_.accept(kNothing, mask_);
             nextId_ = std::max(nextId_, instance.id + 1);
+            ++counts_[instance.shape];
             if (isInRegion(instance)) {
                 instances_.push_back(instance);
                 drawn_.push_back(mask_);
@@ -144,7 +146,7 @@ private:
 
     ShapeInstance newInstance() {
         const glm::ivec2 pixel = score_.darkPlace(rng_);
-        return space_.randomInstance({pixel, pixel + 1}, rng_);
+        return space_.randomInstance({pixel, pixel + 1}, rng_, counts_);
     }
 
     void move() {
@@ -180,7 +182,8 @@ private:
             tilt_.learn(replace(index, tilted));
         } else {
             ShapeInstance scaled = instances_[index];
-            scaled.size = std::clamp(scaled.size * std::exp(scale_.amount(rng_)), space_.sizes().x, space_.sizes().y);
+            const glm::dvec2 sizes = space_.sizes(scaled.shape);
+            scaled.size = std::clamp(scaled.size * std::exp(scale_.amount(rng_)), sizes.x, sizes.y);
             aboutPivot(scaled, index, glm::dmat2(scaled.size / instances_[index].size));
             scale_.learn(replace(index, scaled));
         }
@@ -199,6 +202,7 @@ private:
         if (!isInRegion(proposed_) || !isGood(score_.propose(drawn_[index], mask_))) return false;
         score_.accept(drawn_[index], mask_);
         std::swap(drawn_[index], mask_);
+        --counts_[instances_[index].shape], ++counts_[proposed_.shape];
         instances_[index] = proposed_;
         return true;
     }
@@ -214,10 +218,12 @@ private:
         score_.accept(kNothing, mask_);
         instances_.push_back(proposed_);
         instances_.back().id = nextId_++;
+        ++counts_[proposed_.shape];
         drawn_.push_back(mask_);
     }
     void forget(std::size_t index) {
         score_.accept(drawn_[index], kNothing);
+        --counts_[instances_[index].shape];
         std::swap(instances_[index], instances_.back());
         std::swap(drawn_[index], drawn_.back());
         instances_.pop_back();
@@ -237,6 +243,7 @@ private:
     std::vector<ShapeInstance> instances_;  // those that may change
     std::vector<PixelMask> drawn_;          // of each
     std::vector<ShapeInstance> kept_;       // those that may not
+    std::vector<std::uint32_t> counts_;     // of each shape, among both
     std::uint32_t nextId_ = 1;
     std::int64_t evaluations_ = 0;
     ShapeInstance proposed_;

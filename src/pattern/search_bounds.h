@@ -41,4 +41,11 @@ void declareShapes(Fields& fields, PatternSearch::Options& options) {
     fields.angle("turn", options.turn, 0, 180);
 }
 
+template <class Fields>
+void declareShape(Fields& fields, PatternSearch::Options::Shape& shape) {
+    fields.number("share", shape.share, 0.001, 1000);
+}
+// The ends of a shape's own rotations, degrees to both sides.
+constexpr double kMostTilt = 180, kMostTurn = 360;
+
 }  // namespace fantascope::pattern

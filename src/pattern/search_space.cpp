@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace fantascope::pattern {
 namespace {
@@ -22,14 +23,14 @@ constexpr Sizes sizesFor(PatternSearch::Method method) {
 }
 constexpr double kSmallestMiddle = 2, kLargestMiddle = 0.25;
 
-double typicalSide(const Silhouette& shape, const Options& options, Rng rng) {
+double typicalSide(const Silhouette& shape, glm::dvec2 tilt, glm::dvec2 turn, Rng rng) {
     constexpr int kViews = 64, kPixels = 128;
     std::int64_t covered = 0;
     for (int i = 0; i < kViews; ++i) {
         Coverage view(kPixels, kPixels);
-        const glm::dvec3 rotation(rng.uniform(-options.tilt, options.tilt), rng.uniform(-options.tilt, options.tilt),
-                                  rng.uniform(-options.turn, options.turn));
-        view.add(shape, {{0.5, 0.5}, 0.5, rotation});
+        // In this order: it is part of what a seed means.
+        const double z = rng.uniform(turn.x, turn.y), y = rng.uniform(tilt.x, tilt.y), x = rng.uniform(tilt.x, tilt.y);
+        view.add(shape, {{0.5, 0.5}, 0.5, {x, y, z}});
         covered += view.count({{0, 0}, {kPixels, kPixels}});
     }
     constexpr double kPixelsOfUnit = kPixels * 0.5;  // the shape was drawn at size 0.5
@@ -48,12 +49,35 @@ SearchSpace::SearchSpace(const GreyImage& guide, std::span<const ElementalShape>
       goal_(guide),
       pixels_(guide.width(), guide.height()),
       aspect_(double(pixels_.x) / pixels_.y) {
-    for (const ElementalShape& shape : shapes) {
-        silhouettes_.emplace_back(shape.mesh);
-        sides_.push_back(typicalSide(silhouettes_.back(), options, Rng(streamSeed(seed, {Stream::TypicalViews, sides_.size()}))));
-        meanSide_ += sides_.back() / static_cast<double>(shapes.size());
+    const auto own = [&](std::size_t index) { return index < options.shapes.size() ? options.shapes[index] : Options::Shape(); };
+    double all = 0;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        shares_.push_back(own(i).share);
+        all += own(i).share;
+        areAlike_ = areAlike_ && own(i).share == own(0).share;
     }
-    sizes_ = options.size ? *options.size : fittingSizes();
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const Options::Shape shape = own(i);
+        limits_.push_back({shape.size.value_or(glm::dvec2(0.0)), shape.tilt.value_or(glm::dvec2(-options.tilt, options.tilt)),
+                           shape.turn.value_or(glm::dvec2(-options.turn, options.turn))});
+        silhouettes_.emplace_back(shapes[i].mesh);
+        sides_.push_back(typicalSide(silhouettes_.back(), limits_.back().tilt, limits_.back().turn,
+                                     Rng(streamSeed(seed, {Stream::TypicalViews, i}))));
+        meanSide_ += sides_.back() / (all / shape.share);
+        shares_[i] /= all;
+    }
+    setSizes();
+}
+
+void SearchSpace::setSizes() {
+    const glm::dvec2 common = options_.size ? *options_.size : fittingSizes();
+    bool areCommon = true;
+    for (std::size_t i = 0; i < limits_.size(); ++i) {
+        if (limits_[i].sizes == glm::dvec2(0.0)) limits_[i].sizes = common;
+        areCommon = areCommon && limits_[i].sizes == common;
+        typicalSizes_ += shares_[i] * sides_[i] / meanSide_ * limits_[i].sizes;
+    }
+    if (areCommon) typicalSizes_ = common;  // to the last bit
 }
 
 // Sizes with which the most instances light as much as the guide is white, and a little more.
@@ -65,26 +89,43 @@ glm::dvec2 SearchSpace::fittingSizes() const {
     return {middle / spread, middle * spread};
 }
 
-ShapeInstance SearchSpace::randomInstance(const PixelRectangle& cell, Rng& rng) const {
+std::uint32_t SearchSpace::randomShape(Rng& rng, std::span<const std::uint32_t> counts) const {
+    if (areAlike_) return rng.below(static_cast<std::uint32_t>(shares_.size()));
+    const double wanted = 1.0 + std::accumulate(counts.begin(), counts.end(), 0u);
+    const auto weight = [&](std::size_t i) {
+        return counts.empty() ? shares_[i] : std::max(0.0, shares_[i] * wanted - counts[i]);
+    };
+    double total = 0;
+    for (std::size_t i = 0; i < shares_.size(); ++i) total += weight(i);
+    double at = rng.uniform() * total;
+    std::uint32_t shape = 0;
+    while (shape + 1 < shares_.size() && (at -= weight(shape)) >= 0) ++shape;
+    return shape;
+}
+
+ShapeInstance SearchSpace::randomInstance(const PixelRectangle& cell, Rng& rng, std::span<const std::uint32_t> counts) const {
     ShapeInstance instance;
-    instance.shape = rng.below(static_cast<std::uint32_t>(silhouettes_.size()));
+    instance.shape = randomShape(rng, counts);
     instance.centre =
         glm::dvec2(rng.uniform(cell.begin.x, cell.end.x), rng.uniform(cell.begin.y, cell.end.y)) / double(pixels_.y);
-    instance.size = sizes_.x * std::pow(sizes_.y / sizes_.x, rng.uniform());
-    instance.rotation = {rng.uniform(-options_.tilt, options_.tilt), rng.uniform(-options_.tilt, options_.tilt),
-                         rng.uniform(-options_.turn, options_.turn)};
+    const auto& [sizes, tilt, turn] = limits_[instance.shape];
+    instance.size = sizes.x * std::pow(sizes.y / sizes.x, rng.uniform());
+    instance.rotation = {rng.uniform(tilt.x, tilt.y), rng.uniform(tilt.x, tilt.y), rng.uniform(turn.x, turn.y)};
     return allowed(instance);
 }
 
 ShapeInstance SearchSpace::allowed(ShapeInstance instance) const {
+    const auto& [sizes, tilt, turn] = limits_[instance.shape];
     const double right = std::floor(aspect_ * 1e6) / 1e6;
     instance.centre.x = std::clamp(rounded(instance.centre.x, 1e6), 0.0, right);
     instance.centre.y = std::clamp(rounded(instance.centre.y, 1e6), 0.0, 1.0);
-    instance.size = rounded(std::clamp(instance.size, sizes_.x, sizes_.y), 1e6);
-    const double turned = std::remainder(instance.rotation.z, 2 * std::numbers::pi);  // a free turn has no ends
-    instance.rotation = {roundedAngle(std::clamp(instance.rotation.x, -options_.tilt, options_.tilt)),
-                         roundedAngle(std::clamp(instance.rotation.y, -options_.tilt, options_.tilt)),
-                         roundedAngle(std::clamp(turned, -options_.turn, options_.turn))};
+    instance.size = rounded(std::clamp(instance.size, sizes.x, sizes.y), 1e6);
+    // A free turn has no ends: the one of equal turns that is nearest to the middle.
+    const double middle = (turn.x + turn.y) / 2;
+    const double turned = middle + std::remainder(instance.rotation.z - middle, 2 * std::numbers::pi);
+    instance.rotation = {roundedAngle(std::clamp(instance.rotation.x, tilt.x, tilt.y)),
+                         roundedAngle(std::clamp(instance.rotation.y, tilt.x, tilt.y)),
+                         roundedAngle(std::clamp(turned, turn.x, turn.y))};
     return instance;
 }
 

@@ -62,6 +62,7 @@ struct ShapePattern {
 
     double aspect() const { return static_cast<double>(width) / height; }
     std::size_t triangleCount() const;  // of all instances
+    double meanSize() const;            // of all instances, canvas heights; 0 without any
 };
 
 // Rotation, size and the turned-over y of an orthographic view: canvas point = centre + (m * v).xy, and (m * v).z grows towards the viewer.

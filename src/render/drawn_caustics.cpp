@@ -25,7 +25,7 @@ public:
           rays_(std::move(rays)),
           painter_(std::move(painter)) {}
 
-    void paint(Time time, gpu::LayerPicture& picture) override {
+    void paint(Time time, const Wind&, gpu::LayerPicture& picture) override {
         water_.at(time, waves_);
         canvas_.begin();
         rays_.paint(waves_);

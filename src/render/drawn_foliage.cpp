@@ -38,9 +38,9 @@ public:
         return BlurredLayer(DrawnInstances(std::move(placed)), std::move(picture), std::move(convolution), blurred, layer.holes);
     }
 
-    void draw(Time time, DrawingTools& tools) {
+    void draw(Time time, const Wind& wind, DrawingTools& tools) {
         picture_.begin();
-        instances_.paint(time, DrawnInstances::Bounds::Picture, tools.painter);
+        instances_.paint(time, wind, DrawnInstances::Bounds::Picture, tools.painter);
         convolution_.run(picture_, holes_ ? glm::vec2(0, 1) : glm::vec2(1, -1));
     }
     const gpu::CanvasPainter::Picture& blurred() const { return blurred_; }
@@ -75,10 +75,10 @@ public:
         for (const BlurredLayer& layer : blurred_) pictures_.push_back(layer.blurred());
     }
 
-    void paint(Time time, gpu::LayerPicture& picture) override {
-        for (BlurredLayer& layer : blurred_) layer.draw(time, tools_);
+    void paint(Time time, const Wind& wind, gpu::LayerPicture& picture) override {
+        for (BlurredLayer& layer : blurred_) layer.draw(time, wind, tools_);
         if (sharpPicture_) sharpPicture_->begin();
-        for (DrawnInstances& layer : sharp_) layer.paint(time, DrawnInstances::Bounds::Canvas, tools_.painter);
+        for (DrawnInstances& layer : sharp_) layer.paint(time, wind, DrawnInstances::Bounds::Canvas, tools_.painter);
         picture.begin();
         painter_.paint(pictures_, sharpPicture_ ? &*sharpPicture_ : nullptr, dark_, bright_);
     }

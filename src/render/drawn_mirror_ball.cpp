@@ -33,7 +33,7 @@ public:
           spots_(std::move(spots)),
           painter_(std::move(painter)) {}
 
-    void paint(Time time, gpu::LayerPicture& picture) override {
+    void paint(Time time, const Wind&, gpu::LayerPicture& picture) override {
         canvas_.begin();
         spots_.paint(static_cast<float>(2 * std::numbers::pi * std::fmod(seconds(time) / turn_, 1)));
         canvas_.end();

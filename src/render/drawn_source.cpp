@@ -14,9 +14,9 @@ class DrawnShapes : public DrawnSource {
 public:
     DrawnShapes(PlacedSource placed, DrawingTools& tools) : tools_(tools), instances_(std::move(placed)) {}
 
-    void paint(Time time, gpu::LayerPicture& picture) override {
+    void paint(Time time, const Wind& wind, gpu::LayerPicture& picture) override {
         picture.begin();
-        instances_.paint(time, DrawnInstances::Bounds::Canvas, tools_.painter);
+        instances_.paint(time, wind, DrawnInstances::Bounds::Canvas, tools_.painter);
     }
 
 private:
@@ -50,9 +50,9 @@ Result<std::unique_ptr<DrawnSource>> makeDrawnSource(const PictureSource& source
 
 DrawnInstances::DrawnInstances(PlacedSource placed) : placed_(std::move(placed)), meshes_(placed_.meshes(), placed_.mirrored()) {}
 
-void DrawnInstances::paint(Time time, Bounds bounds, gpu::ShapePainter& painter) {
+void DrawnInstances::paint(Time time, const Wind& wind, Bounds bounds, gpu::ShapePainter& painter) {
     constexpr glm::vec3 kEverywhere{0, 0, 1};
-    placed_.place(time, meshes_.place());
+    placed_.place(time, wind, meshes_.place());
     painter.paint(meshes_, bounds == Bounds::Canvas ? placed_.canvasEdges()
                                                     : std::array{kEverywhere, kEverywhere, kEverywhere, kEverywhere});
 }

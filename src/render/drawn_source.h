@@ -10,6 +10,7 @@
 
 #include "core/clock.h"
 #include "core/result.h"
+#include "core/wind.h"
 
 #include <memory>
 
@@ -26,8 +27,8 @@ struct DrawingTools {
 class DrawnSource {
 public:
     virtual ~DrawnSource() = default;
-    // Paints all of the source as it stands at show time `time`, at full opacity. `picture` is begun by this. No allocation.
-    virtual void paint(Time time, gpu::LayerPicture& picture) = 0;
+    // Paints all of the source as it stands at show time `time`, in the wind of then, at full opacity. `picture` is begun by this. No allocation.
+    virtual void paint(Time time, const Wind& wind, gpu::LayerPicture& picture) = 0;
 };
 
 // `tools` outlives it. Error: corners that are not those of a picture; a shader that does not compile; more pixels than this OpenGL has.
@@ -40,7 +41,7 @@ public:
 
     enum class Bounds { Canvas, Picture };  // what cuts shapes that reach over it
     // Paints into the picture that has begun.
-    void paint(Time time, Bounds bounds, gpu::ShapePainter& painter);
+    void paint(Time time, const Wind& wind, Bounds bounds, gpu::ShapePainter& painter);
 
 private:
     PlacedSource placed_;

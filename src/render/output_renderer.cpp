@@ -22,7 +22,7 @@ Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& op
     return renderer;
 }
 
-void OutputRenderer::draw(const show::OutputState& state, Time time, unsigned framebuffer) {
+void OutputRenderer::draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer) {
     // Light adds: a source that stands in several layers is drawn once with the sum of their opacities.
     for (Source& source : sources_) source.opacity = 0;
     for (const show::LayerState& layer : state.layers) {
@@ -41,7 +41,7 @@ void OutputRenderer::draw(const show::OutputState& state, Time time, unsigned fr
     for (Source& source : sources_) {
         if (source.opacity <= 0) continue;
         gpu::LayerPicture& picture = pictures_[count];
-        source.drawn->paint(time, picture);
+        source.drawn->paint(time, wind, picture);
         painted[count++] = {&picture, source.opacity};
         if (count == painted.size()) shine();
     }

@@ -7,6 +7,7 @@
 
 #include "core/clock.h"
 #include "core/result.h"
+#include "core/wind.h"
 
 #include <glm/vec2.hpp>
 
@@ -38,9 +39,9 @@ public:
     // pixels or samples than this OpenGL has.
     static Result<std::unique_ptr<OutputRenderer>> create(const Options& options, std::span<const PictureSource> sources);
 
-    // Draws what the show shows on this output at show time `time` into `framebuffer`, the display's. Layers name sources by
-    // their index in create()'s. No allocation once every source has been shown.
-    void draw(const show::OutputState& state, Time time, unsigned framebuffer);
+    // Draws what the show shows on this output at show time `time`, in the wind of then, into `framebuffer`, the display's. Layers
+    // name sources by their index in create()'s. No allocation once every source has been shown.
+    void draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer);
 
 private:
     struct Source {

@@ -74,9 +74,9 @@ bool PlacedSource::mirrored() const {
     return glm::determinant(clipFromCanvas_) > 0;
 }
 
-void PlacedSource::place(Time time, std::span<gpu::Instance> out) {
+void PlacedSource::place(Time time, const Wind& wind, std::span<gpu::Instance> out) {
     FANTASCOPE_CHECK(out.size() == order_.size(), "one place for each instance");
-    if (source_.motion) source_.motion->posesAt(time, poses_);
+    if (source_.motion) source_.motion->posesAt(time, wind, poses_);
 
     // Each instance has a slice of the depths 0 .. 1 to itself, the last instance the nearest. Clip z is that depth and w the
     // warp's, so the map of space to clip space is projective: whatever lies behind a point of the canvas keeps its order.

@@ -6,6 +6,7 @@
 
 #include "core/clock.h"
 #include "core/result.h"
+#include "core/wind.h"
 
 #include <glm/mat3x3.hpp>
 
@@ -31,8 +32,8 @@ public:
     // The canvas's edges: a clip space point (x, y, z, w) is on the canvas when its (x, y, w) has no negative dot product with
     // any.
     const std::array<glm::vec3, 4>& canvasEdges() const { return canvasEdges_; }
-    // All instances at show time `time`. No allocation.
-    void place(Time time, std::span<gpu::Instance> out);
+    // All instances at show time `time`, in the wind of then. No allocation.
+    void place(Time time, const Wind& wind, std::span<gpu::Instance> out);
 
 private:
     PlacedSource(PatternSource source, const glm::dmat3& clipFromCanvas);

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "show/show_state.h"
+#include "show/wind.h"
 
 #include "core/clock.h"
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -13,13 +15,15 @@ namespace fantascope::show {
 struct CueList {
     struct Cue {
         Look look;
-        Time fade{};                 // from whatever is seen when the cue is entered to its look
-        std::optional<Time> follow;  // after being entered, the next cue is entered by itself
+        Time fade{};                       // from whatever is seen when the cue is entered to its look
+        std::optional<Time> follow;        // after being entered, the next cue is entered by itself
+        std::vector<WindWish> winds = {};  // one for each output; one that is missing is the usual wind
     };
     std::vector<Cue> cues;
-    Look dark;            // what is seen before the first cue: black pictures, levels 0, relays in their safe states
-    Time goInterval{};    // after a cue was entered, GO is ignored for this long
-    Time blackoutFade{};  // from full light to none and back
+    Look dark;               // what is seen before the first cue: black pictures, levels 0, relays in their safe states
+    Time goInterval{};       // after a cue was entered, GO is ignored for this long
+    Time blackoutFade{};     // from full light to none and back
+    std::uint64_t seed = 1;  // of everything random in the show itself: its gusts
 };
 
 }  // namespace fantascope::show

@@ -79,7 +79,9 @@ std::string_view nameOf(Outcome outcome) {
     return "unknown";
 }
 
-Playback::Playback(CueList list) : list_(std::move(list)) {
+Playback::Playback(CueList list) : list_(std::move(list)), gusts_(list_.seed) {
+    const std::size_t outputs = list_.dark.outputs.size();
+    usualWinds_.assign(outputs, WindCourse(WindWish()));
     const auto examine = [&](const Look& look) {
         FANTASCOPE_CHECK(look.outputs.size() == list_.dark.outputs.size() && look.levels.size() == list_.dark.levels.size() &&
                              look.relays.size() == list_.dark.relays.size(),
@@ -87,7 +89,10 @@ Playback::Playback(CueList list) : list_(std::move(list)) {
         for (const OutputState& output : look.outputs)
             for (const LayerState& layer : output.layers) mostLayers_ = std::max<std::size_t>(mostLayers_, layer.source + 1);
     };
-    for (const CueList::Cue& cue : list_.cues) examine(cue.look);
+    for (CueList::Cue& cue : list_.cues) {
+        examine(cue.look);
+        cue.winds.resize(outputs);
+    }
 }
 
 Outcome Playback::apply(Input input) {
@@ -124,10 +129,14 @@ Outcome Playback::apply(Input input) {
 void Playback::enter(int cue, Time at) {
     std::erase_if(entries_, [&](const Entry& entry) { return entry.at > at; });
     for (;;) {
+        const CueList::Cue& entered = list_.cues[static_cast<std::size_t>(cue)];
         Look from;
         lookAt(at, from);
-        entries_.push_back({at, cue, std::move(from)});
-        const std::optional<Time> follow = list_.cues[static_cast<std::size_t>(cue)].follow;
+        std::vector<WindCourse> winds;
+        for (std::size_t i = 0; i < entered.winds.size(); ++i)
+            winds.emplace_back(windsAt(at)[i], entered.winds[i], at, entered.fade);
+        entries_.push_back({at, cue, std::move(from), std::move(winds)});
+        const std::optional<Time> follow = entered.follow;
         if (!follow || static_cast<std::size_t>(cue) + 1 == list_.cues.size()) return;
         at += *follow;
         ++cue;
@@ -138,6 +147,10 @@ void Playback::stateAt(Time time, ShowState& out) const {
     out.time = time;
     out.cue = cueAt(time);
     lookAt(time, out);
+    const std::vector<WindCourse>& winds = windsAt(time);
+    const double lull = gusts_.lullAt(time);
+    out.winds.resize(winds.size());
+    std::transform(winds.begin(), winds.end(), out.winds.begin(), [&](const WindCourse& wind) { return wind.at(time, lull); });
     const Shutter* shutter = lastBy(time, shutters_);
     out.blackout = shutter && shutter->dark;
     if (const float light = lightAt(time); light < 1) dim(out, light);
@@ -147,6 +160,11 @@ void Playback::stateAt(Time time, ShowState& out) const {
 int Playback::cueAt(Time time) const {
     const Entry* entry = lastBy(time, entries_);
     return entry ? entry->cue : -1;
+}
+
+const std::vector<WindCourse>& Playback::windsAt(Time time) const {
+    const Entry* entry = lastBy(time, entries_);
+    return entry ? entry->winds : usualWinds_;
 }
 
 // What is seen, blackout aside.

@@ -2,6 +2,7 @@
 
 #include "show/cue_list.h"
 #include "show/show_state.h"
+#include "show/wind.h"
 
 #include "core/clock.h"
 
@@ -35,6 +36,7 @@ std::string_view nameOf(Outcome outcome);
 // - A cue that is entered fades, in its `fade`, from what is seen at that moment (the middle of another fade, perhaps) to its
 // look:
 //   opacities, matched by source, and levels move linearly, both being linear light. Relays take their new state at once.
+// - The wind of each output goes to what the cue asks for, in its fade and without a jump (WindCourse), whether there is light or not.
 // - A cue with `follow` is left for the next one by itself, that time after it was entered in whatever way, unless an input
 // enters
 //   another one first.
@@ -61,7 +63,8 @@ private:
     struct Entry {
         Time at{};
         int cue = 0;
-        Look from;  // what was seen then, blackout aside
+        Look from;                      // what was seen then, blackout aside
+        std::vector<WindCourse> winds;  // from then on, one for each output
     };
     // The operator took the light away or gave it back.
     struct Shutter {
@@ -74,13 +77,16 @@ private:
     void enter(int cue, Time at);
     void lookAt(Time time, Look& out) const;
     float lightAt(Time time) const;
+    const std::vector<WindCourse>& windsAt(Time time) const;
 
     CueList list_;
-    std::size_t mostLayers_ = 0;     // that one output can have: one of each source
-    std::vector<Entry> entries_;     // by time, those in the future last
-    std::vector<Shutter> shutters_;  // by time
-    std::vector<Time> taken_;        // when each input took effect
-    Time newest_ = Time::min();      // of all inputs, ignored ones included
+    Gusts gusts_;
+    std::vector<WindCourse> usualWinds_;  // before the first cue
+    std::size_t mostLayers_ = 0;          // that one output can have: one of each source
+    std::vector<Entry> entries_;          // by time, those in the future last
+    std::vector<Shutter> shutters_;       // by time
+    std::vector<Time> taken_;             // when each input took effect
+    Time newest_ = Time::min();           // of all inputs, ignored ones included
 };
 
 }  // namespace fantascope::show

@@ -1,8 +1,11 @@
 #include "show/show.h"
 
+#include "core/geometry.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -22,6 +25,7 @@ constexpr double kLongestGoInterval = 5;
 constexpr double kLongestBlackoutFade = 10;
 constexpr double kLongestFade = 3600;
 constexpr double kLongestFollow = 86400;
+constexpr double kStrongestWind = 4;  // times what a pattern was made for
 
 template <class Range>
 std::vector<std::string> namesOf(const Range& things) {
@@ -64,6 +68,34 @@ Result<OutputState> readLayers(const ConfigNode& node, const std::vector<std::st
     return output;
 }
 
+Result<WindWish> readWind(const ConfigNode& node) {
+    WindWish wind;
+    ConfigFields fields(node);
+    fields.optional().number("strength", wind.strength, 0, kStrongestWind);
+    fields.optional().number("gusts", wind.gusts, 0, 1);
+    fields.optional().read("direction", wind.direction, [](const ConfigNode& value) -> Result<std::optional<double>> {
+        return std::optional(radians(TRY(value.number(-360, 360, "degrees"))));
+    });
+    TRY(fields.finish());
+    return wind;
+}
+
+// An output of a look: its layers, or a map with them and a wind of its own.
+Result<NamedLook::OutputWish> readOutput(const ConfigNode& node, const std::vector<std::string>& sources) {
+    NamedLook::OutputWish output;
+    if (!node.isMap()) {
+        output.layers = TRY(readLayers(node, sources));
+        return output;
+    }
+    ConfigFields fields(node);
+    fields.read("layers", output.layers, [&](const ConfigNode& layers) { return readLayers(layers, sources); });
+    fields.optional().read("wind", output.wind, [](const ConfigNode& wind) -> Result<std::optional<WindWish>> {
+        return std::optional(TRY(readWind(wind)));
+    });
+    TRY(fields.finish());
+    return output;
+}
+
 Result<float> readLevel(const ConfigNode& node) { return static_cast<float>(TRY(node.number(0, 1))); }
 
 Result<bool> readSwitch(const ConfigNode& node) { return TRY(node.choice({"off", "on"})) == 1; }
@@ -89,10 +121,11 @@ Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, cons
     look.name = name;
     ConfigFields fields(node);
     fields.optional().read("outputs", look.outputs, [&](const ConfigNode& map) {
-        return readNamed<OutputState>(map, [&](const ConfigNode& layers) { return readLayers(layers, sources); });
+        return readNamed<NamedLook::OutputWish>(map, [&](const ConfigNode& output) { return readOutput(output, sources); });
     });
     fields.optional().read("fixtures", look.fixtures,
                            [](const ConfigNode& map) { return readNamed<NamedLook::Levels>(map, readLevels); });
+    fields.optional().read("wind", look.wind, readWind);
     fields.optional().read("relays", look.relays, [](const ConfigNode& map) { return readNamed<bool>(map, readSwitch); });
     TRY(fields.finish());
     return look;
@@ -146,7 +179,7 @@ Look darkLook(const Site& site) {
 Result<Look> bindLook(const NamedLook& named, const Site& site) {
     Look look = darkLook(site);
     for (const auto& output : named.outputs)
-        look.outputs[TRY(indexOf(output, namesOf(site.outputs), "output", site))] = output.wish;
+        look.outputs[TRY(indexOf(output, namesOf(site.outputs), "output", site))] = output.wish.layers;
     for (const auto& relay : named.relays) look.relays[TRY(indexOf(relay, namesOf(site.relays), "relay", site))] = relay.wish;
     for (const auto& fixture : named.fixtures) {
         const std::size_t index = TRY(indexOf(fixture, namesOf(site.fixtures), "fixture", site));
@@ -163,6 +196,15 @@ Result<Look> bindLook(const NamedLook& named, const Site& site) {
     return look;
 }
 
+// Its outputs are those of `site`.
+std::vector<WindWish> bindWinds(const NamedLook& named, const Site& site) {
+    std::vector<WindWish> winds(site.outputs.size(), named.wind);
+    for (const auto& output : named.outputs)
+        for (std::size_t i = 0; i < winds.size(); ++i)
+            if (output.wish.wind && site.outputs[i].name == output.name) winds[i] = *output.wish.wind;
+    return winds;
+}
+
 }  // namespace
 
 Result<Show> Show::load(const std::filesystem::path& fileOrFolder) {
@@ -177,6 +219,7 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder) {
     fields.text("title", show.title);
     fields.optional().time("go_interval", show.goInterval, 0, kLongestGoInterval);
     fields.optional().time("blackout_fade", show.blackoutFade, 0, kLongestBlackoutFade);
+    fields.optional().integer("seed", show.seed, 0, std::numeric_limits<std::int64_t>::max());
     fields.read("sources", show.sources, [](const ConfigNode& node) -> Result<std::vector<Source>> {
         std::vector<Source> sources;
         for (const auto& [name, source] : TRY(node.entries())) sources.push_back(TRY(readSource(name, source)));
@@ -197,10 +240,11 @@ Result<CueList> Show::bind(const Site& site) const {
     for (const NamedLook& look : looks) bound.push_back(TRY(bindLook(look, site)));
 
     CueList list;
-    for (const Cue& cue : cues) list.cues.push_back({bound[cue.look], cue.fade, cue.follow});
+    for (const Cue& cue : cues) list.cues.push_back({bound[cue.look], cue.fade, cue.follow, bindWinds(looks[cue.look], site)});
     list.dark = darkLook(site);
     list.goInterval = goInterval;
     list.blackoutFade = blackoutFade;
+    list.seed = seed;
     return list;
 }
 

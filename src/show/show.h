@@ -4,10 +4,12 @@
 #include "show/show_state.h"
 #include "show/site.h"
 #include "show/source.h"
+#include "show/wind.h"
 
 #include "core/config.h"
 #include "core/result.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -30,7 +32,12 @@ struct NamedLook {
     using ChannelLevels = std::vector<Named<float>>;
     using Levels = std::variant<float, ChannelLevels>;  // one for all channels of a fixture, or each by its name
     std::string name;
-    std::vector<Named<OutputState>> outputs;
+    struct OutputWish {
+        OutputState layers;
+        std::optional<WindWish> wind;  // without it, that of the look
+    };
+    std::vector<Named<OutputWish>> outputs;
+    WindWish wind;
     std::vector<Named<Levels>> fixtures;
     std::vector<Named<bool>> relays;  // true: on
 };
@@ -49,6 +56,7 @@ struct Show {
     std::string title;
     Time goInterval{};
     Time blackoutFade{};
+    std::uint64_t seed = 1;  // of what is random in the show itself
     std::vector<Source> sources;
     std::vector<NamedLook> looks;
     std::vector<Cue> cues;

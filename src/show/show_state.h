@@ -2,6 +2,7 @@
 // The one value that the show gives out: what is to be seen at one moment. Renderer and lighting read it; nothing flows back.
 
 #include "core/clock.h"
+#include "core/wind.h"
 
 #include <cstdint>
 #include <vector>
@@ -31,6 +32,7 @@ struct Look {
 
 // The look of one moment of show time. Value type; reused from frame to frame, so that its vectors keep their capacity.
 struct ShowState : Look {
+    std::vector<Wind> winds;   // one for each of Site::outputs
     Time time{};               // show time
     int cue = -1;              // index into Show::cues of the cue that was entered last; -1 before the first
     bool blackout = false;     // the operator holds the pictures and the lamps dark

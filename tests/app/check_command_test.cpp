@@ -106,6 +106,24 @@ TEST(Check, a_show_is_checked_with_the_patterns_and_guides_that_it_names) {
     EXPECT_EQ(checked.refusal, "1 of 3 files refused");
 }
 
+TEST(Check, a_shape_is_checked_as_a_pattern_would_take_it) {
+    const ScratchFolder folder;
+    const auto drawing = folder.file(
+                   "a.svg", "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='M1 1 h6 v3 h-6 z'/></svg>"),
+               empty = folder.file("b.SVG", "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'/>"),
+               floor = folder.file("c.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n"),
+               settings = folder.file(
+                   "s.yaml", "fantascope: pattern-settings\nversion: 1\nshapes: {each: [{file: a.svg}, {builtin: leaf}]}\n"),
+               broken = folder.file("t.yaml", "fantascope: pattern-settings\nversion: 1\nshapes: {each: [{file: b.SVG}]}\n");
+    const Checked checked = check(folder, {{drawing, empty, floor, settings, broken}, std::nullopt});
+    EXPECT_THAT(checked.lines, HasSubstr("ok a.svg: elemental shape, 2 triangles\n"));
+    EXPECT_THAT(checked.lines, HasSubstr("\nb.SVG: draws nothing that has an area"));
+    EXPECT_THAT(checked.lines, HasSubstr("\nc.obj: seen from the front"));
+    EXPECT_THAT(checked.lines, HasSubstr("\nok s.yaml: pattern settings, at most 1000 instances, 2 shapes\n"));
+    EXPECT_THAT(checked.lines, HasSubstr("\nt.yaml:3:24: shapes.each[0].file: b.SVG: draws nothing"));
+    EXPECT_EQ(checked.refusal, "3 of 5 files refused");
+}
+
 // One mistake does not hide the next file's.
 TEST(Check, goes_on_after_a_refusal_and_counts_them) {
     const ScratchFolder folder;

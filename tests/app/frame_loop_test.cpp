@@ -2,8 +2,13 @@
 
 #include "app/running_show.h"
 
+#include "pattern/elemental_shape.h"
+#include "pattern/pattern_motion.h"
+
 #include <gmock/gmock.h>
 
+#include <array>
+#include <memory>
 #include <utility>
 
 namespace fantascope::app {
@@ -151,6 +156,42 @@ TEST_F(FrameLoopPart, measures_a_press_to_the_refresh_that_shows_it) {
     step(3);
     EXPECT_EQ(loop_->inputToFrame().count(), 1u);
     EXPECT_NEAR(loop_->inputToFrame().maxMs(), 2000.0 / 30, 0.01);
+}
+
+// Example failure: the wind of the one output blows on the other, or none arrives at all.
+TEST(FrameLoopWind, each_output_sways_in_its_own) {
+    pattern::ShapePattern square;
+    square.width = 16, square.height = 9;
+    square.motion.frames = 240;
+    square.shapes.push_back(valueOf(pattern::loadShape("square")));
+    pattern::ShapeInstance instance;
+    instance.centre = {0.9, 0.5};
+    instance.size = 0.3;
+    square.instances.push_back(instance);
+    const auto pattern = std::make_shared<const pattern::ShapePattern>(square);
+    const render::PatternSource source{pattern, std::make_shared<const pattern::PatternMotion>(square)};
+
+    RunningShow run;
+    show::CueList cues = run.cues;
+    cues.cues.resize(1);
+    for (show::OutputState& output : cues.cues[0].look.outputs) output.layers = {{0, 1.0f}};
+    cues.cues[0].fade = Time{};
+    cues.cues[0].winds = {{.strength = 0}, {.strength = 4}};
+    FrameLoop loop(run.site, cues, {source}, FANTASCOPE_SOURCE_DIR "/assets", run.devices, run.clock);
+    const std::array<render::FrameReader*, 2> readers{&loop.tap(0), &loop.tap(1)};
+    ASSERT_TRUE(loop.prepare());
+    loop.begin(run.clock.now());
+    ASSERT_TRUE(loop.replica().give({run.clock.now(), show::Input::Kind::Go}));
+    std::array<RgbaImage, 2> before;
+    std::array<int, 2> changes{};
+    for (int frame = 0; frame < 360; ++frame) {
+        ASSERT_TRUE(loop.step());
+        for (std::size_t output = 0; output < 2; ++output)
+            while (const render::ShownFrame* const shown = readers[output]->next(Time::max()))
+                if (frame > 330 && std::exchange(before[output], shown->image) != shown->image) ++changes[output];
+    }
+    EXPECT_EQ(changes[0], 1) << "the first picture, and no other after it";
+    EXPECT_GT(changes[1], 20);
 }
 
 }  // namespace

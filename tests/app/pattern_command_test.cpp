@@ -159,6 +159,53 @@ TEST_F(PatternCommand, takes_its_numbers_from_a_settings_file_and_the_line_has_t
     EXPECT_THAT(text("out/p.pattern.yaml"), HasSubstr("frames: 100"));
 }
 
+// A settings file can say it all; the line still selects. Example failure: its shape files are looked for where the program runs.
+TEST_F(PatternCommand, takes_shapes_from_the_settings_unless_the_line_names_them) {
+    folder_.file("in/leaf.svg", "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='M1 1 h6 v3 h-6 z'/></svg>");
+    folder_.file("in/s.yaml",
+                 "fantascope: pattern-settings\nversion: 1\nshapes: {each: [{builtin: letter-A, colours: [{from: [1, 0, 0]}]}, "
+                 "{file: leaf.svg, size: [0.05, 0.06]}]}\n");
+    ASSERT_EQ(find({"--iterations", "5", "--settings", "in/s.yaml"}).status, 0);
+    EXPECT_THAT(written(), ElementsAre("p.guide.png", "p.leaf.svg", "p.pattern.yaml"));
+    auto pattern = pattern::readPattern(folder_ / "out/p.pattern.yaml").value();
+    ASSERT_EQ(pattern.shapes.size(), 2u);
+    EXPECT_EQ(pattern.shapes[0].name, "letter-A");
+    for (const auto& instance : pattern.instances) {
+        EXPECT_EQ(instance.colour, instance.shape == 0 ? glm::vec3(1, 0, 0) : glm::vec3(1));
+        if (instance.shape == 1) {
+            EXPECT_NEAR(instance.size, 0.055, 0.005001);
+        }
+    }
+    ASSERT_EQ(find({"--iterations", "5", "--settings", "in/s.yaml", "--shapes", "circle,in/leaf.svg"}).status, 0);
+    pattern = pattern::readPattern(folder_ / "out/p.pattern.yaml").value();
+    EXPECT_EQ(pattern.shapes[0].name, "circle");
+    for (const auto& instance : pattern.instances)
+        if (instance.shape == 1) {
+            EXPECT_NEAR(instance.size, 0.055, 0.005001);
+        }
+}
+
+// A .gltf with its points in a second file would lose them on its way beside the pattern; one that holds them itself does not.
+TEST_F(PatternCommand, copies_a_gltf_only_if_it_is_whole) {
+    const auto gltf = [](const std::string& uri) {
+        return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": ")" +
+               uri + "\"}]}";
+    };
+    folder_.file("a.gltf", gltf("data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"));
+    folder_.file("b.gltf", gltf("b.bin"));
+    folder_.file("b.bin", std::string("\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0", 36));
+    const Outcome whole = find({"--iterations", "2", "--shapes", "a.gltf"});
+    EXPECT_EQ(whole.status, 0) << whole.errors;
+    const Outcome parted = find({"--iterations", "2", "--shapes", "b.gltf"});
+    EXPECT_EQ(parted.status, 1);
+    EXPECT_THAT(parted.errors, HasSubstr("export it as .glb"));
+    EXPECT_EQ(run({"pattern", "guide.png", "-o", "p.pattern.yaml", "--iterations", "2", "--shapes", "b.gltf"}).status, 0)
+        << "where it is it has all it needs";
+}
+
 // The world refuses: one message, status 1, and nothing is written.
 TEST_F(PatternCommand, bad_input_is_refused_with_one_message_and_leaves_nothing) {
     const auto refusal = [&](const std::string& guide, const Arguments& more = {}) {
@@ -185,6 +232,10 @@ TEST_F(PatternCommand, bad_input_is_refused_with_one_message_and_leaves_nothing)
     EXPECT_THAT(refusal("guide.png", {"--shapes", "points.obj"}), HasSubstr("points.obj: "));
     folder_.file("floor.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
     EXPECT_THAT(refusal("guide.png", {"--shapes", "floor.obj"}), HasSubstr("floor.obj: seen from the front"));
+    folder_.file("empty.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>");
+    EXPECT_THAT(refusal("guide.png", {"--shapes", "empty.svg"}), HasSubstr("empty.svg: draws nothing that has an area"));
+    ASSERT_TRUE(writePng(folder_ / "white.png", GreyImage(9, 9, 1)));
+    EXPECT_THAT(refusal("guide.png", {"--shapes", "white.png"}), HasSubstr("white.png: is of one colour"));
     EXPECT_THAT(refusal("guide.png", {"--shapes", "circel"}), HasSubstr("did you mean 'circle'?"));
     EXPECT_THAT(refusal("guide.png", {"--shapes", "circle,circle"}), HasSubstr("given twice"));
 

@@ -1,5 +1,7 @@
 #include "app/recording.h"
 
+#include "app/video_reader.h"
+
 #include "core/file.h"
 
 #include <gmock/gmock.h>
@@ -38,10 +40,11 @@ protected:
 TEST_F(RecordingTest, leaves_a_video_an_output_the_traces_and_the_contact_sheet) {
     record(folder_);
     for (const char* name : {"left.mp4", "right.mp4"}) {
-        const auto video = readFile(folder_ / name);
-        ASSERT_TRUE(video);
-        EXPECT_THAT(video->substr(0, 16), HasSubstr("ftyp"));
-        EXPECT_THAT(*video, HasSubstr("moov"));
+        // Example failure: the last frame has no duration, so that players leave it out and count a faster rate.
+        const Video video = readVideo(folder_ / name);
+        EXPECT_EQ(video.frames.size(), 5u);
+        EXPECT_NEAR(video.seconds, 5.0 / 30, 1e-3);
+        EXPECT_NEAR(video.framesPerSecond, 30, 1e-6);
     }
     EXPECT_THAT(*readFile(folder_ / "dmx.csv"), HasSubstr("\n1.000000,1,7 0 9\n"));
     EXPECT_THAT(*readFile(folder_ / "frames.csv"), HasSubstr("\n12,0.396000,right,"));

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <numeric>
 
 namespace fantascope {
@@ -67,6 +68,8 @@ TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
     for (const json& cue : report["cues"]) entered.push_back(cue["name"]);
     EXPECT_EQ(entered, kCues);
     EXPECT_EQ(report["frames"], 2 * 30 * 30);
+    const std::string recorded = contentsOf(folder / "rehearsal/frames.csv");
+    EXPECT_EQ(std::count(recorded.begin(), recorded.end(), '\n'), 1 + 2 * 30 * 30) << "every frame shown, the last one too";
     EXPECT_EQ(report["late_frames"], 0);
     EXPECT_EQ(report["input_to_frame_ms"]["count"], 6);
     EXPECT_EQ(report["stop_reason"], "length");

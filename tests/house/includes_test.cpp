@@ -30,7 +30,11 @@ const std::map<std::string_view, Names> kLibraries = {
     {"yaml-cpp", {"yaml-cpp/"}},
     {"spdlog", {"spdlog/"}},
     {"assimp", {"assimp/"}},
+    {"CGAL", {"CGAL/"}},
+    {"FreeType", {"ft2build.h", "freetype/"}},
+    {"librsvg", {"librsvg/"}},
     {"FFTW", {"fftw3.h"}},
+    {"cairo", {"cairo.h", "cairo-svg.h"}},
     {"OpenGL", {"epoxy/gl.h"}},
     {"EGL", {"epoxy/egl.h"}},
     {"GLFW", {"GLFW/"}},
@@ -55,17 +59,18 @@ struct Row {
 const Names kOfDrivers = {"core", "device", "drivers/surroundings.h", "drivers/site/world.h", "drivers/site/plug.h"};
 
 const std::vector<Row> kTable = {
-    {"core", {}, {"Eigen"}, {"OpenCV", "yaml-cpp", "spdlog", "assimp", "POSIX"}},
+    {"core", {}, {"Eigen"}, {"OpenCV", "yaml-cpp", "spdlog", "assimp", "CGAL", "FreeType", "librsvg", "POSIX"}},
     {"device", {"core"}, {}, {}},
     {"pattern", {"core"}, {"Eigen"}, {"FFTW"}},
     {"theatre", {"core"}, {"Eigen"}, {"FFTW"}},
+    {"plot", {"core", "pattern"}, {}, {"cairo"}},
     {"vision", {"core"}, {"Eigen"}, {"OpenCV"}},
     {"show", {"core"}, {}, {}},
     {"render", {"core", "pattern", "theatre", "show/show_state.h", "device/display_sink.h"}, {}, {"libav"}},
     {"render/gpu", {"core", "pattern", "theatre", "show/show_state.h", "device/display_sink.h", "render"}, {}, {"OpenGL"}},
     {"console", {"core", "show", "device/status.h"}, {}, {"nlohmann-json"}},
     {"app",
-     {"core", "device", "pattern", "theatre", "vision", "show", "render", "console", "drivers"},
+     {"core", "device", "pattern", "theatre", "plot", "vision", "show", "render", "console", "drivers"},
      {"CLI11", "nlohmann-json"},
      {"libav", "OpenCV", "POSIX"}},
 

@@ -1,5 +1,6 @@
 #include "pattern/coverage.h"
 
+#include "pattern/built_in_shapes.h"
 #include "pattern/elemental_shape.h"
 
 #include "core/random.h"

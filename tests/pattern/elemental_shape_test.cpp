@@ -1,14 +1,21 @@
 #include "pattern/elemental_shape.h"
 
+#include "pattern/built_in_shapes.h"
+
+#include "core/image.h"
+#include "scratch_folder.h"
+
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace fantascope::pattern {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 double radiusOf(const TriangleMesh& mesh) {
@@ -19,16 +26,12 @@ double radiusOf(const TriangleMesh& mesh) {
 
 std::string refusal(const Result<ElementalShape>& shape) { return shape ? "accepted" : shape.error().message(); }
 
-TEST(ElementalShape, built_in_shapes_reach_to_radius_one_and_face_the_viewer) {
+TEST(ElementalShape, built_in_shapes_reach_to_radius_one) {
     for (const std::string& name : builtInShapeNames()) {
         const auto shape = loadShape(name);
         ASSERT_TRUE(shape) << shape.error().message();
         EXPECT_EQ(shape->name, name);
         EXPECT_NEAR(radiusOf(shape->mesh), 1, 1e-6) << name;
-        for (const glm::uvec3& t : shape->mesh.triangles) {
-            const auto& v = shape->mesh.vertices;
-            EXPECT_GT(glm::cross(v[t.y] - v[t.x], v[t.z] - v[t.x]).z, 0) << name;
-        }
     }
 }
 
@@ -50,11 +53,61 @@ TEST(ElementalShape, is_centred_by_area_and_scaled_to_its_farthest_corner) {
 TEST(ElementalShape, a_mesh_without_a_front_view_is_refused_with_advice) {
     const TriangleMesh floor{{{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}}, {{0, 1, 2}}};
     EXPECT_THAT(refusal(makeShape("leaf.obj", floor)), HasSubstr("leaf.obj: seen from the front"));
+    EXPECT_THAT(refusal(makeShape("leaf.obj", {})), HasSubstr("leaf.obj: shows nothing"));
+}
+
+// Example failure: a scan of a million triangles is taken, and a thousand copies of it are drawn for a week.
+TEST(ElementalShape, a_huge_mesh_is_refused_with_advice) {
+    TriangleMesh strip;
+    for (std::uint32_t i = 0; i < 200'000; ++i) {
+        strip.vertices.emplace_back(i / 2, i % 2, 0);
+        if (i >= 2) strip.triangles.emplace_back(i - 2, i - 1, i);
+    }
+    EXPECT_THAT(refusal(makeShape("scan.obj", strip)),
+                AllOf(HasSubstr("scan.obj: has 199998 triangles"), HasSubstr("reduce the mesh")));
+}
+
+// A relief's depth does not show, but turns with it: the front view is orthographic.
+TEST(ElementalShape, of_a_mesh_in_space_the_front_is_seen) {
+    const ScratchFolder folder;
+    const auto roof = readShapeFile(
+        folder.file("roof.obj", "v -1 0 0\nv 0 0 1\nv 1 0 0\nv -1 2 0\nv 0 2 1\nv 1 2 0\nf 1 2 5 4\nf 2 3 6 5\n"), "roof");
+    ASSERT_TRUE(roof) << roof.error().message();
+    EXPECT_EQ(roof->name, "roof");
+    EXPECT_EQ(roof->file, folder / "roof.obj");
+    float nearest = -1, farthest = 1;
+    for (const glm::vec3 vertex : roof->mesh.vertices)
+        nearest = std::max(nearest, vertex.z), farthest = std::min(farthest, vertex.z);
+    EXPECT_NEAR(nearest - farthest, 1 / std::sqrt(1 + 1 + 0.25), 1e-6) << "deep as it was, in shares of its radius";
+}
+
+// However a file draws it, the shape is one: a plate twice as wide as high.
+TEST(ElementalShape, meshes_svg_and_pictures_are_all_shapes) {
+    const ScratchFolder folder;
+    GreyImage picture(100, 80, 1);
+    for (int y = 20; y < 50; ++y)
+        for (int x = 20; x < 80; ++x) picture.at(x, y) = 0;
+    ASSERT_TRUE(writePng(folder / "plate.PNG", picture));
+    folder.file("plate.svg", "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='M1 1 h6 v3 h-6 z'/></svg>");
+    folder.file("plate.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    for (const char* name : {"plate.PNG", "plate.svg", "plate.obj"}) {
+        const auto shape = loadShape(folder / name);
+        ASSERT_TRUE(shape) << shape.error().message();
+        EXPECT_EQ(shape->file, folder / name);
+        for (const glm::vec3 vertex : shape->mesh.vertices)
+            if (glm::length(vertex) > 0.9) {
+                EXPECT_NEAR(std::abs(vertex.x), 2 / std::sqrt(5.0), 0.04) << name;
+                EXPECT_NEAR(std::abs(vertex.y), 1 / std::sqrt(5.0), 0.04) << name;
+            }
+    }
+    folder.file("letter-form.svg", readFile(folder / "plate.svg").value());
+    EXPECT_EQ(loadShape(folder / "letter-form.svg")->file, folder / "letter-form.svg") << "no letter";
 }
 
 TEST(ElementalShape, an_unknown_name_is_answered_with_the_nearest) {
     EXPECT_THAT(refusal(loadShape("triangel")), HasSubstr("did you mean 'triangle'?"));
-    EXPECT_THAT(refusal(loadShape("zzz")), HasSubstr("neither a file nor one of triangle, square, circle, leaf"));
+    EXPECT_THAT(refusal(loadShape("zzz")),
+                HasSubstr("neither a file nor built in: 'zzz' is not one of triangle, square, circle, leaf"));
     EXPECT_THAT(refusal(loadShape("nowhere/leaf.obj")), HasSubstr("nowhere/leaf.obj: cannot be read"));
 }
 

@@ -1,9 +1,12 @@
 #include "pattern/measure.h"
 
 #include "pattern/elemental_shape.h"
+#include "pattern/pattern_motion.h"
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 namespace fantascope::pattern {
@@ -24,6 +27,10 @@ ShapePattern squares(std::initializer_list<glm::dvec2> centresInPixels) {
     for (const glm::dvec2 centre : centresInPixels)
         pattern.instances.push_back(square(static_cast<std::uint32_t>(pattern.instances.size()), centre / 90.0, kThirtyPixels));
     return pattern;
+}
+
+LoopQuality loop(const ShapePattern& pattern, const GreyImage& guide, int threads = 1) {
+    return LoopMeasure(pattern, guide, threads).in({}, 20);
 }
 
 // A square's corners are not round numbers; its sides may round to one pixel more or less.
@@ -72,13 +79,54 @@ TEST(Measure, white_on_black_keeps_its_place_in_any_size) {
 TEST(Measure, loop_z_is_z_when_nothing_moves_and_worse_when_the_shapes_leave_their_places) {
     ShapePattern pattern = squares({{30, 30}, {80, 60}});
     const GreyImage guide = drawWhiteOnBlack(pattern, 120, 90);
-    EXPECT_GT(loopZ(pattern, guide, 20, 1), 0.001);
-    EXPECT_EQ(loopZ(pattern, guide, 20, 1), loopZ(pattern, guide, 20, 3));
+    EXPECT_GT(loop(pattern, guide, 1).z, 0.001);
+    EXPECT_EQ(loop(pattern, guide, 1).z, loop(pattern, guide, 3).z);
     MotionSettings& motion = pattern.motion;
     for (AxisMotion* axis :
          {&motion.groupMajor, &motion.groupMinor, &motion.localTranslation, &motion.localTilt, &motion.localTurn})
         axis->magnitude = axis->range = 0;
-    EXPECT_EQ(loopZ(pattern, guide, 20, 1), 0);
+    EXPECT_EQ(loop(pattern, guide, 1).z, 0);
+}
+
+TEST(Measure, loop_tone_without_movement_is_that_at_rest) {
+    ShapePattern pattern = squares({{30, 30}, {80, 60}});
+    pattern.width = 480, pattern.height = 360;
+    GreyImage guide(480, 360);
+    for (int y = 0; y < 360; ++y)
+        for (int x = 0; x < 480; ++x) guide.at(x, y) = static_cast<float>(x) / 480;
+    const double still = measure(pattern, guide).tone;
+    EXPECT_NEAR(LoopMeasure(pattern, guide, 1).in({.strength = 0}, 1).tone, still, 0.02 * still);
+    EXPECT_EQ(LoopMeasure(pattern, guide, 1).in({.strength = 0}, 1).localDisplacement, 0);
+}
+
+// Vertex by vertex, over the same moments. Example failure: the groups' movement counts, or sizes are taken for widths.
+TEST(Measure, local_displacement_is_how_far_the_vertices_stray_whatever_the_groups_do) {
+    ShapePattern pattern = squares({{30, 30}, {80, 60}});
+    pattern.instances[0].rotation = {0.3, -0.4, 1};
+    const GreyImage guide(120, 90);
+    constexpr int kMoments = 40;
+    const double measured = LoopMeasure(pattern, guide, 2).in({}, kMoments).localDisplacement;
+
+    ShapePattern local = pattern;
+    local.motion.groupMajor.range = local.motion.groupMinor.range = 0;
+    const PatternMotion motion(local);
+    double squares = 0, count = 0;
+    for (int moment = 0; moment < kMoments; ++moment) {
+        std::vector<InstancePose> poses(2);
+        motion.posesAt(motion.period() * moment / kMoments, {}, poses);
+        for (std::size_t i = 0; i < 2; ++i)
+            for (const glm::dvec3 vertex : pattern.shapes[0].mesh.vertices) {
+                const ShapeInstance& rest = pattern.instances[i];
+                const InstancePose at{rest.centre, rest.size, rest.rotation};
+                const glm::dvec2 moved =
+                    poses[i].centre - rest.centre + glm::dvec2(canvasFromShape(poses[i]) * vertex - canvasFromShape(at) * vertex);
+                squares += glm::dot(moved, moved), count += 1;
+            }
+    }
+    EXPECT_NEAR(measured, std::sqrt(squares / count) / kThirtyPixels, 1e-9);
+    EXPECT_GT(measured, 0.01);
+    pattern.motion.groupMajor.range = 0.3;
+    EXPECT_NEAR(LoopMeasure(pattern, guide, 2).in({}, kMoments).localDisplacement, measured, 1e-9);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "core/config.h"
 #include "core/file.h"
+#include "core/image.h"
 #include "core/random.h"
 #include "scratch_folder.h"
 
@@ -76,6 +77,33 @@ ShapePattern randomPattern(const PatternFolder& folder, std::uint32_t instances)
                                      {light(), light(), light()}});
     }
     return pattern;
+}
+
+// Example failure: '#' begins a comment where it is not quoted.
+TEST(PatternFile, every_kind_of_shape_comes_back) {
+    const PatternFolder folder;
+    folder.file("leaf.svg", "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='M1 1 h6 v3 h-6 z'/></svg>");
+    GreyImage dark(40, 40, 1);
+    for (int y = 10; y < 30; ++y)
+        for (int x = 10; x < 30; ++x) dark.at(x, y) = 0;
+    ASSERT_TRUE(writePng(folder / "shapes/leaf.png", dark));
+    const std::string kinds =
+        "  - {builtin: maple-leaf}\n  - {builtin: letter-A}\n  - {builtin: 'letter-#'}\n  - {builtin: \"letter-'\"}\n  - "
+        "{builtin: letter-é}\n"
+        "  - {file: leaf.svg}\n  - {file: shapes/leaf.png}\n";
+    const std::string text = replaced(std::string(kPattern), "motion:", kinds + "motion:");
+    const auto pattern = readPattern(folder.file("tree.pattern.yaml", text));
+    ASSERT_TRUE(pattern) << pattern.error().message();
+    ASSERT_EQ(pattern->shapes.size(), 9u);
+    EXPECT_EQ(pattern->shapes[4].name, "letter-#");
+    EXPECT_EQ(pattern->shapes[8].file, folder / "shapes/leaf.png");
+    ASSERT_TRUE(writePattern(folder.pattern(), *pattern));
+    const auto again = readPattern(folder.pattern());
+    ASSERT_TRUE(again) << again.error().message();
+    for (std::size_t i = 0; i < pattern->shapes.size(); ++i) {
+        EXPECT_EQ(again->shapes[i].name, pattern->shapes[i].name);
+        EXPECT_EQ(again->shapes[i].mesh.vertices, pattern->shapes[i].mesh.vertices) << pattern->shapes[i].name;
+    }
 }
 
 TEST(PatternFile, is_read_in_canvas_units_and_radians) {
@@ -202,7 +230,8 @@ TEST(PatternFile, a_shape_or_guide_that_cannot_be_had_is_refused_with_the_patter
                 HasSubstr(":10:12: shapes[1].file: '/sculpture.obj' is absolute"));
     EXPECT_THAT(refusalAfter("guides/tree.png", "/tree.png"), HasSubstr(":3:8: guide: '/tree.png' is absolute"));
     EXPECT_THAT(refusalAfter("guides/tree.png", "../tree.png"), HasSubstr("guide: '../tree.png' leaves this file's folder"));
-    EXPECT_THAT(refusalAfter("{builtin: triangle}", "{builtin: triangel}"), HasSubstr(":9:15: shapes[0].builtin: one of "));
+    EXPECT_THAT(refusalAfter("{builtin: triangle}", "{builtin: triangel}"),
+                HasSubstr(":9:15: shapes[0].builtin: 'triangel' is not one of "));
     EXPECT_THAT(refusalAfter("{builtin: triangle}", "{builtin: triangel}"), HasSubstr("(did you mean 'triangle'?)"));
     EXPECT_THAT(refusalAfter("{builtin: triangle}", "{}"), HasSubstr(":9:5: shapes[0]: exactly one kind of shape is needed"));
     EXPECT_THAT(refusalAfter("{builtin: triangle}", "{builtin: square, file: shapes/sculpture.obj}"),
@@ -263,7 +292,7 @@ TEST(MotionFile, the_bounds_of_every_key_can_be_moved) {
                             pattern.motion = *motion;
                             const PatternMotion moved(pattern, 1);
                             std::vector<InstancePose> poses(pattern.instances.size());
-                            moved.posesAt(moved.period() / 3, poses);
+                            moved.posesAt(moved.period() / 3, {}, poses);
                             for (const InstancePose& pose : poses)
                                 EXPECT_TRUE(std::isfinite(pose.centre.x + pose.centre.y + pose.rotation.x + pose.rotation.y +
                                                           pose.rotation.z))

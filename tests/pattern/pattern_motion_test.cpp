@@ -1,5 +1,7 @@
 #include "pattern/pattern_motion.h"
 
+#include "allocations.h"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -32,9 +34,9 @@ ShapePattern gridPattern(std::uint32_t instances, std::uint32_t groups) {
     return pattern;
 }
 
-std::vector<InstancePose> poses(const PatternMotion& motion, Time time, std::size_t count) {
+std::vector<InstancePose> poses(const PatternMotion& motion, Time time, std::size_t count, const Wind& wind = {}) {
     std::vector<InstancePose> out(count);
-    motion.posesAt(time, out);
+    motion.posesAt(time, wind, out);
     return out;
 }
 
@@ -45,11 +47,12 @@ struct Movement {
     glm::dvec2 shift;
     glm::dvec3 turn;
 };
-std::vector<Movement> movements(const ShapePattern& pattern, const PatternMotion& motion, std::size_t instance, int samples) {
+std::vector<Movement> movements(const ShapePattern& pattern, const PatternMotion& motion, std::size_t instance, int samples,
+                                const Wind& wind = {}) {
     std::vector<Movement> result;
     const ShapeInstance& rest = pattern.instances[instance];
     for (int k = 0; k < samples; ++k) {
-        const InstancePose pose = poses(motion, motion.period() * k / samples, pattern.instances.size())[instance];
+        const InstancePose pose = poses(motion, motion.period() * k / samples, pattern.instances.size(), wind)[instance];
         result.push_back({pose.centre - rest.centre, pose.rotation - rest.rotation});
     }
     return result;
@@ -258,6 +261,68 @@ TEST(PatternMotion, keeps_the_size_of_every_instance) {
     const ShapePattern pattern = gridPattern(5, 1);
     const auto moved = poses(PatternMotion(pattern), 3s, 5);
     for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(moved[i].size, pattern.instances[i].size);
+}
+
+// A range is a range times the strength, above 1 too. Example failure: one that is cut off, or a strength that moves the range's
+// peak but not what lies below it.
+TEST(PatternMotion, is_proportional_to_the_strength_of_the_wind) {
+    const ShapePattern pattern = gridPattern(kCount, 3);
+    const PatternMotion motion(pattern);
+    for (const double strength : {0.25, 1.0, 3.5})
+        for (const std::size_t instance : {0u, 17u}) {
+            const auto usual = movements(pattern, motion, instance, 50),
+                       blown = movements(pattern, motion, instance, 50, {.strength = strength});
+            for (std::size_t k = 0; k < usual.size(); ++k) {
+                EXPECT_LT(glm::length(blown[k].shift - strength * usual[k].shift), 1e-15);
+                EXPECT_LT(glm::length(blown[k].turn - strength * usual[k].turn), 1e-14);
+            }
+        }
+}
+
+// Example failure: a group that still drifts, or an angle that keeps its last value.
+TEST(PatternMotion, without_wind_is_rest) {
+    const ShapePattern pattern = gridPattern(kCount, 3);
+    const PatternMotion motion(pattern);
+    for (const Time time : {0s, 3s, 5s}) {
+        const auto still = poses(motion, time, kCount, {.strength = 0});
+        for (std::size_t i = 0; i < kCount; ++i) {
+            EXPECT_EQ(still[i].centre, pattern.instances[i].centre);
+            EXPECT_EQ(still[i].rotation, pattern.instances[i].rotation);
+        }
+    }
+}
+
+// A wind from a pattern's own direction is no other wind; one from elsewhere turns what the groups do and leaves the shapes' own
+// movement alone. Example failure: the pattern's direction and the wind's add up.
+TEST(PatternMotion, groups_sway_along_the_wind) {
+    ShapePattern pattern = groupsOnly(6, 3);
+    pattern.motion.direction = 0.7;
+    ShapePattern turned = pattern;
+    turned.motion.direction = 2.1;
+    const PatternMotion motion(pattern), expected(turned);
+    const Wind across{.ownDirection = 0, .direction = {std::cos(2.1), std::sin(2.1)}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto blown = movements(pattern, motion, i, 50, across), own = movements(turned, expected, i, 50);
+        for (std::size_t k = 0; k < own.size(); ++k) EXPECT_LT(glm::length(blown[k].shift - own[k].shift), 1e-15);
+    }
+
+    ShapePattern local = gridPattern(3, 2);
+    local.motion.groupMajor.range = local.motion.groupMinor.range = 0;
+    const PatternMotion still(local);
+    EXPECT_EQ(poses(still, 3s, 3, across)[1].centre, poses(still, 3s, 3)[1].centre);
+    EXPECT_EQ(poses(still, 3s, 3, across)[1].rotation, poses(still, 3s, 3)[1].rotation);
+}
+
+// The render thread asks with every frame and must not wait for the heap.
+TEST(PatternMotion, asking_allocates_nothing) {
+    const ShapePattern pattern = gridPattern(kCount, 3);
+    const PatternMotion motion(pattern);
+    std::vector<InstancePose> out(kCount);
+    const std::int64_t before = allocationsSoFar();
+    for (Time time{}; time < 20s; time += 7ms)
+        motion.posesAt(time, {.strength = 2, .ownDirection = 0.5, .direction = {0.5, 0}}, out);
+    EXPECT_EQ(allocationsSoFar(), before);
+    EXPECT_GT(before, 0);
 }
 
 TEST(PatternMotion, of_an_empty_pattern_is_empty) {

@@ -1,5 +1,8 @@
 #include "pattern/pattern_settings.h"
 
+#include "pattern/elemental_shape.h"
+
+#include "core/image.h"
 #include "scratch_folder.h"
 
 #include <gmock/gmock.h>
@@ -59,6 +62,104 @@ TEST(PatternSettings, every_section_is_read_with_angles_in_degrees) {
     EXPECT_EQ(settings->motion.localTurn.magnitude, MotionSettings().localTurn.magnitude);
 }
 
+// A folder with a drawing of a shape, a mesh and a picture of colours.
+struct SettingsFolder : ScratchFolder {
+    SettingsFolder() {
+        file("shapes/leaf.svg", "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='M1 1 h6 v3 h-6 z'/></svg>");
+        file("roof.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        EXPECT_TRUE(writePng(path() / "autumn.png", RgbaImage(3000, 20, {200, 100, 0, 255})));
+    }
+    Result<PatternSettings> read(const std::string& body) const {
+        return readPatternSettings(file("light.pattern-settings.yaml", "fantascope: pattern-settings\nversion: 1\n" + body));
+    }
+    std::string refusal(const std::string& body) const {
+        const auto settings = read(body);
+        return settings ? "accepted" : relative(settings.error().message());
+    }
+};
+
+TEST(PatternSettings, shapes_have_settings_of_their_own) {
+    const SettingsFolder folder;
+    const auto settings = folder.read(
+        "colours: [{picture: autumn.png}]\n"
+        "shapes:\n"
+        "  tilt: 30\n"
+        "  each:\n"
+        "    - {builtin: maple-leaf, share: 3, size: [0.02, 0.04], tilt: 10, turn: [150, 210], colours: [{from: [1, 0, 0]}, "
+        "{picture: autumn.png}]}\n"
+        "    - {file: shapes/leaf.svg, tilt: [5, 10], turn: 20}\n"
+        "    - {builtin: letter-A}\n");
+    ASSERT_TRUE(settings) << settings.error().message();
+    EXPECT_EQ(settings->search.tilt, radians(30));
+    ASSERT_EQ(settings->shapes.size(), 3u);
+    const auto& [maple, mapleOwn] = settings->shapes[0];
+    EXPECT_EQ(maple.name, "maple-leaf");
+    EXPECT_EQ(mapleOwn.share, 3);
+    EXPECT_EQ(mapleOwn.size, glm::dvec2(0.02, 0.04));
+    EXPECT_EQ(mapleOwn.tilt, glm::dvec2(radians(-10), radians(10)));
+    EXPECT_EQ(mapleOwn.turn, glm::dvec2(radians(150), radians(210)));
+    ASSERT_EQ(mapleOwn.colours.size(), 2u);
+    EXPECT_EQ(mapleOwn.colours[0].to, glm::dvec3(1, 0, 0));
+    EXPECT_EQ(mapleOwn.colours[1].picture->at(0, 0).g, 100);
+    EXPECT_LE(mapleOwn.colours[1].picture->width(), 1024) << "a large picture is not kept whole";
+    const auto& [leaf, leafOwn] = settings->shapes[1];
+    EXPECT_EQ(leaf.file, folder / "shapes/leaf.svg");
+    EXPECT_EQ(leafOwn.tilt, glm::dvec2(radians(5), radians(10)));
+    EXPECT_EQ(leafOwn.turn, glm::dvec2(radians(-20), radians(20)));
+    const auto& letter = settings->shapes[2].own;
+    EXPECT_EQ(letter.share, 1);
+    EXPECT_FALSE(letter.size || letter.tilt || letter.turn);
+    EXPECT_TRUE(letter.colours.empty());
+    EXPECT_TRUE(settings->search.colours[0].picture);
+}
+
+// The command line may name the same shapes in another order and the files by another path.
+TEST(PatternSettings, a_shapes_own_settings_are_found_by_name_or_file) {
+    const SettingsFolder folder;
+    const auto settings = folder.read(
+        "shapes: {each: [{builtin: leaf, share: 2}, {file: shapes/leaf.svg, share: 3}, {file: roof.obj, share: 4}]}\n");
+    ASSERT_TRUE(settings) << settings.error().message();
+    EXPECT_EQ(settings->ownOf(loadShape("leaf").value()).share, 2);
+    EXPECT_EQ(settings->ownOf(loadShape("circle").value()).share, 1);
+    EXPECT_EQ(settings->ownOf(loadShape((folder / "shapes/../shapes/leaf.svg").string()).value()).share, 3);
+    EXPECT_EQ(settings->ownOf(loadShape((folder / "roof.obj").string()).value()).share, 4);
+    folder.file("other/roof.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(settings->ownOf(loadShape((folder / "other/roof.obj").string()).value()).share, 1) << "another file of that name";
+}
+
+TEST(PatternSettings, what_is_wrong_with_a_shape_is_refused_with_its_place) {
+    const SettingsFolder folder;
+    const auto refusal = [&](const std::string& shape) { return folder.refusal("shapes: {each: [" + shape + "]}\n"); };
+    const std::string at = "light.pattern-settings.yaml:3:";
+    EXPECT_THAT(refusal(""), HasSubstr("at least 1"));
+    EXPECT_THAT(refusal("{share: 1}"), HasSubstr(at + "17: shapes.each[0]: exactly one kind of shape is needed"));
+    EXPECT_THAT(refusal("{builtin: mapel-leaf}"), HasSubstr("shapes.each[0].builtin: 'mapel-leaf' is not one of"));
+    EXPECT_THAT(refusal("{builtin: mapel-leaf}"), HasSubstr("did you mean 'maple-leaf'?"));
+    EXPECT_THAT(refusal("{file: none.svg}"), HasSubstr("none.svg: cannot be read"));
+    EXPECT_THAT(refusal("{file: ../leaf.svg}"), HasSubstr("shapes.each[0].file: "));
+    EXPECT_THAT(refusal("{builtin: leaf, shares: 2}"), HasSubstr("did you mean 'share'?"));
+    EXPECT_THAT(refusal("{builtin: leaf, share: 0}"), HasSubstr("shapes.each[0].share: 0 is out of range"));
+    EXPECT_THAT(refusal("{builtin: leaf, size: [0.2, 0.1]}"), HasSubstr(at + "17: shapes.each[0]: size = [0.2, 0.1]"));
+    EXPECT_THAT(refusal("{builtin: leaf, turn: [50, 20]}"),
+                HasSubstr("turn = [50, 20] degrees must run from the smaller to the larger"));
+    EXPECT_THAT(refusal("{builtin: leaf, turn: [-200, 200]}"), HasSubstr("once round"));
+    EXPECT_THAT(refusal("{builtin: leaf, turn: -5}"), HasSubstr("0 .. 180 degrees"));
+    EXPECT_THAT(refusal("{builtin: leaf, tilt: [0, 200]}"), HasSubstr("-180 .. 180 degrees"));
+    EXPECT_THAT(refusal("{builtin: leaf, colours: []}"), HasSubstr("at least 1"));
+    EXPECT_THAT(refusal("{builtin: leaf, colours: [{picture: none.png}]}"), HasSubstr("none.png: cannot be read"));
+    EXPECT_THAT(refusal("{builtin: leaf, colours: [{picture: autumn.png, from: [1, 1, 1]}]}"), HasSubstr("another entry"));
+    EXPECT_THAT(refusal("{builtin: leaf}, {builtin: leaf}"), HasSubstr("shapes.each[1]: leaf is given twice"));
+    EXPECT_THAT(refusal("{file: roof.obj}, {file: shapes/../roof.obj}"), HasSubstr("twice"));
+}
+
+// A file that names one amplitude has thought of them.
+TEST(PatternSettings, movement_is_fitted_unless_an_amplitude_is_named) {
+    EXPECT_TRUE(read("")->fitMotion);
+    EXPECT_TRUE(read("motion: {direction: 20, local_turn: {beta: 2, damping: 0.5}}\n")->fitMotion);
+    EXPECT_FALSE(read("motion: {local_turn: {range: 10}}\n")->fitMotion);
+    EXPECT_FALSE(read("motion: {group_minor: {magnitude: 0.1}}\n")->fitMotion);
+}
+
 TEST(PatternSettings, what_is_wrong_is_refused_with_its_place) {
     EXPECT_THAT(refusal("serach: {}\n"), HasSubstr(":3:1: serach: unknown key (did you mean 'search'?)"));
     EXPECT_THAT(refusal("paper: {lambda_creat: 0.2}\n"), HasSubstr("did you mean 'lambda_create'?"));
@@ -69,6 +170,20 @@ TEST(PatternSettings, what_is_wrong_is_refused_with_its_place) {
     EXPECT_THAT(refusal("colours: []\n"), HasSubstr("at least 1"));
     EXPECT_THAT(refusal("colours: [{to: [1, 1, 1]}]\n"), HasSubstr("'from' is missing"));
     EXPECT_THAT(refusal("motion: {group_major: {damping: two}}\n"), HasSubstr("motion.group_major.damping: a number"));
+}
+
+TEST(PatternSettings, the_documents_examples_load) {
+    const std::string document = readFile(std::filesystem::path(FANTASCOPE_SOURCE_DIR) / "docs/pattern-settings.md").value();
+    const SettingsFolder folder;
+    int examples = 0;
+    for (std::size_t at = 0; (at = document.find("```yaml\n", at)) != std::string::npos; ++examples) {
+        at += 8;
+        const std::size_t end = document.find("```\n", at);
+        const auto settings = readPatternSettings(folder.file("example.yaml", document.substr(at, end - at)));
+        EXPECT_TRUE(settings) << settings.error().message();
+        at = end;
+    }
+    EXPECT_EQ(examples, 2);
 }
 
 }  // namespace

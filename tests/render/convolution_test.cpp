@@ -69,7 +69,7 @@ struct Gpu {
         layer->begin();
         const PatternSource source = resting(mosaic(picture));
         DrawnInstances instances(PlacedSource::create(source, place).value());
-        if (!source.pattern->instances.empty()) instances.paint(Time{}, DrawnInstances::Bounds::Picture, painter);
+        if (!source.pattern->instances.empty()) instances.paint(Time{}, {}, DrawnInstances::Bounds::Picture, painter);
         convolution->run(*layer, fromCoverage);
         GreyImage result(size.x, size.y);
         glGetTextureImage(convolution->texture(), 0, GL_RED, GL_FLOAT, static_cast<GLsizei>(result.pixels().size_bytes()),

@@ -220,6 +220,17 @@ TEST(OutputRenderer, shows_the_pattern_as_it_stands_at_the_show_time) {
     EXPECT_EQ(output.frame({{0, 1}}, source.motion->period() + std::chrono::seconds(9)), at9);
 }
 
+TEST(OutputRenderer, shows_the_pattern_in_the_wind_that_it_is_given) {
+    const PatternSource source = moving(smallPattern());
+    DrawnOutput output(kSize, keystone(kSize), {source, PatternSource{source.pattern, nullptr}});
+    const show::OutputState layers{{{0, 1}}};
+    const RgbaImage usual = output.frame(layers, std::chrono::seconds(1)),
+                    strong = output.frame(layers, std::chrono::seconds(1), {.strength = 3}),
+                    none = output.frame(layers, std::chrono::seconds(1), {.strength = 0});
+    EXPECT_GT(difference(usual, strong).rms, 5);
+    EXPECT_EQ(none, output.frame({{1, 1}}));
+}
+
 TEST(OutputRenderer, allocates_nothing_once_it_runs) {
     DrawnOutput output(kSize, keystone(kSize), {moving(smallPattern()), moving(smallPattern()), SolidSource{}});
     FrameReader& reader = output.tap().addReader();

@@ -124,9 +124,9 @@ DrawnOutput::~DrawnOutput() {
     renderer_.reset();
 }
 
-const RgbaImage& DrawnOutput::frame(const show::OutputState& state, Time time) {
+const RgbaImage& DrawnOutput::frame(const show::OutputState& state, Time time, const Wind& wind) {
     FANTASCOPE_CHECK(sink_->makeCurrent().has_value(), "nobody unplugs it");
-    renderer_->draw(state, time, sink_->framebuffer());
+    renderer_->draw(state, wind, time, sink_->framebuffer());
     tap_->capture(sink_->framebuffer(), time);
     tap_->publish(valueOf(sink_->present()));
     const ShownFrame* const frame = newest_->next(Time::max());

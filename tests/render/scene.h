@@ -41,7 +41,7 @@ public:
     ~DrawnOutput();
 
     // Draws and presents one frame, and returns it as it was shown.
-    const RgbaImage& frame(const show::OutputState& state, Time time = Time::zero());
+    const RgbaImage& frame(const show::OutputState& state, Time time = Time::zero(), const Wind& wind = {});
     // All layers by source and opacity.
     const RgbaImage& frame(const std::vector<show::LayerState>& layers, Time time = Time::zero()) {
         return frame(show::OutputState{layers}, time);

@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
+#include <utility>
 
 namespace fantascope::show {
 namespace {
@@ -265,12 +267,19 @@ CueList randomCues(Rng& rng) {
         look.relays.push_back(static_cast<std::uint8_t>(rng.below(2)));
         return look;
     };
+    const auto wind = [&] {
+        WindWish wish{4 * rng.uniform(), rng.uniform(), std::nullopt};
+        if (rng.uniform() < 0.7) wish.direction = rng.uniform(-2 * std::numbers::pi, 2 * std::numbers::pi);
+        return wish;
+    };
     CueList list;
+    list.seed = rng.bits();
     list.dark = {std::vector<OutputState>(kOutputs), std::vector<float>(kChannels, 0.0f), {1}};
     list.goInterval = 300ms;
     list.blackoutFade = 500ms;
     for (std::uint32_t i = 0, count = 2 + rng.below(5); i < count; ++i) {
         CueList::Cue cue{look(), fromSeconds(0.5 + 3 * rng.uniform()), std::nullopt};
+        for (int output = 0; output < kOutputs; ++output) cue.winds.push_back(wind());
         if (i + 1 < count && rng.uniform() < 0.4) cue.follow = fromSeconds(5 * rng.uniform());
         list.cues.push_back(std::move(cue));
     }
@@ -342,6 +351,66 @@ TEST(Playback, no_level_and_no_opacity_ever_steps) {
             before = now;
         }
     }
+}
+
+// The wind goes without a jump, and without a jerk, through every cue, cuts among them, whatever it interrupts; and no wind
+// that was not asked for. Example failure: a wind that fades like a level, whose rate jumps; a cut that is a cut for the wind too.
+TEST(Playback, neither_a_wind_nor_its_rate_of_change_ever_steps) {
+    for (std::uint64_t seed = 300; seed < 310; ++seed) {
+        Rng rng(seed);
+        CueList list = randomCues(rng);
+        for (std::size_t i = 0; i < list.cues.size(); i += 2) list.cues[i].fade = Time{};
+        const std::vector<Input> inputs = randomInputs(rng, 40);
+        Playback playback(list);
+        for (const Input& input : inputs) playback.apply(input);
+        double strongest = 1;
+        for (const CueList::Cue& cue : list.cues)
+            for (const WindWish& wish : cue.winds) strongest = std::max(strongest, wish.strength);
+
+        // Four numbers of two outputs. None changes by more than 4 within a fifth of a second or so, and its rate of change takes as
+        // long: a step would be all of that within 1 ms.
+        using Numbers = std::vector<double>;
+        const auto numbers = [&](Time time) {
+            Numbers all;
+            for (const Wind& wind : stateOf(playback, time).winds)
+                all.insert(all.end(), {wind.strength, wind.ownDirection, wind.direction.x, wind.direction.y});
+            return all;
+        };
+        constexpr Time kStep = 1ms;
+        Numbers before = numbers(-2 * kStep), last = numbers(-kStep);
+        for (Time time{}; time < inputs.back().at + 5s; time += kStep) {
+            const Numbers now = numbers(time);
+            for (std::size_t i = 0; i < now.size(); ++i) {
+                ASSERT_LE(std::abs(now[i] - last[i]), 0.02) << "seed " << seed << " at " << seconds(time);
+                ASSERT_LE(std::abs((now[i] - last[i]) - (last[i] - before[i])), 5e-5)
+                    << "seed " << seed << " at " << seconds(time);
+                if (i % 4 == 0) {
+                    ASSERT_TRUE(now[i] >= 0 && now[i] <= strongest) << now[i];
+                }
+            }
+            before = std::exchange(last, now);
+        }
+    }
+}
+
+// Example failure: one wind for all, that of the last output.
+TEST(Playback, a_wind_stays_on_its_output) {
+    CueList list = threeCues();
+    for (CueList::Cue& cue : list.cues) cue.look.outputs.resize(2);
+    list.dark.outputs.resize(2);
+    list.cues[0].winds = {{3, 0, std::nullopt}, {0, 0, 0.5}};
+    const ShowState state = stateOf(after(list, {go(0s)}), 60s);
+    ASSERT_EQ(state.winds.size(), 2u);
+    EXPECT_NEAR(state.winds[0].strength, 3, 1e-9);
+    EXPECT_NEAR(state.winds[0].ownDirection, 1, 1e-9);
+    EXPECT_NEAR(state.winds[1].strength, 0, 1e-9);
+    EXPECT_NEAR(state.winds[1].direction.x, std::cos(0.5), 1e-9);
+}
+
+// A show without a word of wind is the show that it was.
+TEST(Playback, without_a_wind_patterns_sway_as_they_are) {
+    const Playback playback = after(threeCues(), {go(0s), go(1s), jump(5s, 0)});
+    for (const Time time : {-1s, 0s, 2s, 60s}) EXPECT_THAT(stateOf(playback, time).winds, ElementsAre(Wind{}));
 }
 
 // The renderer is handed what it can draw: no source twice, no layer without light, nothing out of range.

@@ -279,5 +279,35 @@ TEST(ShowBind, names_that_the_site_does_not_have_are_refused_with_place_and_the_
                 EndsWith("no relay is called 'road' (there is none at all) in site.yaml"));
 }
 
+// Example failure: the wind of the one output that has its own is everybody's, or goes by the show's order instead of the site's.
+TEST(ShowBind, gives_each_output_its_own_wind_or_that_of_the_look) {
+    const Loaded loaded(replaced(
+        replaced(std::string(kShow), "  bright:\n", "  bright:\n    wind: {strength: 2, gusts: 0.25, direction: 90}\n"),
+        "left: [{source: leaves, opacity: 0.5}, {source: dim}]", "left: {layers: [{source: leaves}], wind: {strength: 0.5}}"));
+    ASSERT_TRUE(loaded.show) << loaded.show.error().message();
+    const auto list = loaded.show->bind(testSite());
+    ASSERT_TRUE(list) << list.error().message();
+    const std::vector<WindWish>&dark = list->cues[0].winds, &bright = list->cues[1].winds;
+    ASSERT_EQ(bright.size(), 2u);
+    EXPECT_EQ(bright[0].strength, 2);
+    EXPECT_EQ(bright[0].gusts, 0.25);
+    EXPECT_EQ(bright[0].direction, radians(90));
+    EXPECT_EQ(bright[1].strength, 0.5);
+    EXPECT_EQ(bright[1].gusts, 0);
+    EXPECT_EQ(bright[1].direction, std::nullopt);
+    for (const WindWish& wind : dark) EXPECT_EQ(wind.strength, 1);
+    EXPECT_THAT(list->cues[1].look.outputs[1].layers, ElementsAre(LayerState{0, 1.0f}));
+}
+
+TEST(ShowFile, a_wind_out_of_its_range_is_refused) {
+    const auto refusalOf = [](const std::string& wind) {
+        return refusalAfter("  bright:\n", "  bright:\n    wind: " + wind + "\n");
+    };
+    EXPECT_EQ(refusalOf("{strength: 5}"), "show.yaml:10:22: looks.bright.wind.strength: 5 is out of range, 0 .. 4 is allowed");
+    EXPECT_THAT(refusalOf("{gusts: -0.1}"), HasSubstr("looks.bright.wind.gusts: -0.1 is out of range, 0 .. 1"));
+    EXPECT_THAT(refusalOf("{direction: 400}"), HasSubstr("-360 .. 360 degrees"));
+    EXPECT_THAT(refusalOf("{strenght: 1}"), HasSubstr("did you mean 'strength'?"));
+}
+
 }  // namespace
 }  // namespace fantascope::show

@@ -1,0 +1,102 @@
+#include "plot/chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fantascope::plot {
+namespace {
+
+constexpr double kText = 12;  // points
+constexpr Stroke kFrame{{0.2, 0.2, 0.2}, 1};
+constexpr Stroke kGrid{{0.88, 0.88, 0.88}, 1};
+
+// 0..1 along the axis.
+double along(const Axis& axis, double value) {
+    if (axis.logarithmic) return std::log(value / axis.from) / std::log(axis.to / axis.from);
+    return (value - axis.from) / (axis.to - axis.from);
+}
+
+// What stands at a mark; a power of ten as one, for 0.0001 takes too much room.
+std::string markOf(const Axis& axis, double tick) {
+    return axis.logarithmic && std::abs(std::log10(tick)) > 2.5 ? fmt::format("1e{}", std::lround(std::log10(tick)))
+                                                                : fmt::format("{:.4g}", tick);
+}
+
+}  // namespace
+
+std::vector<double> ticks(const Axis& axis, int most) {
+    std::vector<double> marks;
+    if (axis.logarithmic) {
+        const int first = static_cast<int>(std::ceil(std::log10(axis.from) - 1e-9)),
+                  last = static_cast<int>(std::floor(std::log10(axis.to) + 1e-9));
+        const int step = std::max(1, (last - first + most) / std::max(1, most));
+        for (int exponent = first; exponent <= last; exponent += step) marks.push_back(std::pow(10, exponent));
+        return marks;
+    }
+    const double least = (axis.to - axis.from) / most, decade = std::pow(10, std::floor(std::log10(least)));
+    double step = 10 * decade;
+    for (const double round : {5, 2, 1})
+        if (round * decade >= least) step = round * decade;
+    for (double i = std::ceil(axis.from / step - 1e-9); i * step <= axis.to + 1e-9 * step; ++i)
+        marks.push_back(i * step + 0.0);  // never -0
+    return marks;
+}
+
+Axis axisAround(std::span<const double> values, std::string label) {
+    double low = 0, high = 0;
+    for (const double value : values) low = std::min(low, value), high = std::max(high, value);
+    if (low == high) high = 1;
+    const double room = 0.05 * (high - low);
+    return {low < 0 ? low - room : 0, high > 0 ? high + room : 0, std::move(label)};
+}
+
+Chart::Chart(Page& page, glm::dvec2 topLeft, glm::dvec2 bottomRight, Axis x, Axis y)
+    : page_(page), topLeft_(topLeft), bottomRight_(bottomRight), x_(std::move(x)), y_(std::move(y)) {
+    const glm::dvec2 size = bottomRight - topLeft;
+    for (const double tick : ticks(x_, std::max(2, static_cast<int>(size.x / 80)))) {
+        const double at = topLeft.x + along(x_, tick) * size.x;
+        page.line({at, topLeft.y}, {at, bottomRight.y}, kGrid);
+        page.text(fmt::format("{:.4g}", tick), {at, bottomRight.y + kText}, kText, Anchor::Middle);
+    }
+    for (const double tick : ticks(y_, std::max(2, static_cast<int>(size.y / 40)))) {
+        const double at = bottomRight.y - along(y_, tick) * size.y;
+        page.line({topLeft.x, at}, {bottomRight.x, at}, kGrid);
+        page.text(markOf(y_, tick), {topLeft.x - 6, at}, kText, Anchor::Right);
+    }
+    page.frame(topLeft, bottomRight, kFrame);
+    page.text(x_.label, {(topLeft.x + bottomRight.x) / 2, bottomRight.y + 2.4 * kText}, kText, Anchor::Middle);
+    page.text(y_.label, {topLeft.x - 5 * kText, (topLeft.y + bottomRight.y) / 2}, kText, Anchor::Middle, true);
+}
+
+glm::dvec2 Chart::onPage(glm::dvec2 point) const {
+    const glm::dvec2 size = bottomRight_ - topLeft_;
+    return {topLeft_.x + along(x_, point.x) * size.x, bottomRight_.y - along(y_, point.y) * size.y};
+}
+
+void Chart::line(std::span<const glm::dvec2> points, const Stroke& stroke) {
+    std::vector<glm::dvec2> placed;
+    for (const glm::dvec2 point : points) placed.push_back(onPage(point));
+    page_.clip(topLeft_, bottomRight_);
+    page_.line(placed, stroke);
+    page_.endClip();
+}
+
+void Chart::discs(std::span<const glm::dvec2> points, double radius, glm::dvec3 colour) {
+    page_.clip(topLeft_, bottomRight_);
+    for (const glm::dvec2 point : points) page_.disc(onPage(point), radius, colour);
+    page_.endClip();
+}
+
+void Chart::title(std::string_view text) { page_.text(text, {topLeft_.x, topLeft_.y - kText}, kText + 2, Anchor::Left); }
+
+void Chart::legend(std::string_view text, const Stroke& stroke) {
+    const double y = topLeft_.y + (1 + 1.4 * legends_++) * kText, x = bottomRight_.x - 8;
+    page_.cover({x - 36 - page_.textWidth(text, kText), y - 0.7 * kText}, {x + 4, y + 0.7 * kText}, 0.8);
+    page_.line({x - 24, y}, {x, y}, {stroke.colour, std::max(stroke.width, 2.0), 1, stroke.dashed});
+    page_.text(text, {x - 30, y}, kText, Anchor::Right);
+}
+
+}  // namespace fantascope::plot

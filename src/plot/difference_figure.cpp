@@ -1,0 +1,109 @@
+#include "pattern/measure.h"
+#include "pattern/silhouette.h"
+
+#include "plot/figures.h"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace fantascope::plot {
+namespace {
+
+constexpr double kCell = 2;                     // the side of a cell, in sides of a square as large as a shape
+constexpr std::size_t kMostInstanceCells = 50;  // more would hide the picture
+constexpr double kText = 13;                    // points
+
+// From red over white to blue, dark at both ends; sRGB. -1 <= difference <= 1.
+glm::dvec3 diverging(double difference) {
+    constexpr std::array<glm::dvec3, 3> kPattern{{{1, 1, 1}, {0.94, 0.42, 0.32}, {0.55, 0, 0.12}}},
+        kGuide{{{1, 1, 1}, {0.35, 0.6, 0.87}, {0.03, 0.19, 0.5}}};
+    const auto& colours = difference < 0 ? kPattern : kGuide;
+    const double at = 2 * std::abs(difference);
+    return at < 1 ? glm::mix(colours[0], colours[1], at) : glm::mix(colours[1], colours[2], at - 1);
+}
+
+Rgba8 stored(glm::dvec3 colour) {
+    const auto byte = [](double value) { return static_cast<std::uint8_t>(std::lround(255 * value)); };
+    return {byte(colour.r), byte(colour.g), byte(colour.b), 255};
+}
+
+// The side of a square as large as each instance is on the canvas, in canvas heights.
+std::vector<double> sidesOf(const pattern::ShapePattern& pattern) {
+    std::vector<pattern::Silhouette> silhouettes;
+    for (const pattern::ElementalShape& shape : pattern.shapes) silhouettes.emplace_back(shape.mesh);
+    pattern::SilhouetteScanner scanner(pattern.width, pattern.height);
+    std::vector<double> sides;
+    for (const pattern::ShapeInstance& instance : pattern.instances) {
+        double area = 0;  // pixels
+        scanner.scan(silhouettes[instance.shape], {instance.centre, instance.size, instance.rotation},
+                     [&](int, int begin, int end) { area += end - begin; });
+        sides.push_back(std::sqrt(area) / pattern.height);
+    }
+    return sides;
+}
+
+// What the colours stand for, from -1 at the left to 1 at the right.
+void drawKey(Page& page, glm::dvec2 topLeft, glm::dvec2 bottomRight) {
+    constexpr int kSteps = 200;
+    RgbaImage colours(kSteps + 1, 1);
+    for (int i = 0; i <= kSteps; ++i) colours.at(i, 0) = stored(diverging(2.0 * i / kSteps - 1));
+    page.picture(colours, topLeft, bottomRight);
+    page.frame(topLeft, bottomRight, {});
+    for (const double value : {-1.0, -0.5, 0.0, 0.5, 1.0})
+        page.text(fmt::format("{:g}", value), {glm::mix(topLeft.x, bottomRight.x, (value + 1) / 2), bottomRight.y + kText}, kText,
+                  Anchor::Middle);
+    const double middle = (topLeft.y + bottomRight.y) / 2;
+    page.text("pattern alone", {topLeft.x - 10, middle}, kText, Anchor::Right);
+    page.text("guide alone", {bottomRight.x + 10, middle}, kText, Anchor::Left);
+}
+
+}  // namespace
+
+RgbaImage differencePicture(const pattern::ShapePattern& pattern, const GreyImage& guide) {
+    const GreyImage wanted = resized(guide, pattern.width, pattern.height),
+                    drawn = drawWhiteOnBlack(pattern, pattern.width, pattern.height);
+    RgbaImage picture(pattern.width, pattern.height);
+    for (int y = 0; y < pattern.height; ++y)
+        for (int x = 0; x < pattern.width; ++x) picture.at(x, y) = stored(diverging(double{wanted.at(x, y)} - drawn.at(x, y)));
+    return picture;
+}
+
+Page differenceFigure(const pattern::ShapePattern& pattern, const GreyImage& guide) {
+    constexpr Stroke kLattice{{0.36, 0.2, 0.08}, 0.8, 0.7}, kInstance{{0.93, 0.72, 0}, 1.6};
+    constexpr double kMargin = 20, kBelow = 90, kWidth = 1200;
+    const double height = kWidth / pattern.aspect();  // also points a canvas height
+    const glm::dvec2 origin(kMargin), end = origin + glm::dvec2(kWidth, height);
+    Page page(static_cast<int>(kWidth + 2 * kMargin), static_cast<int>(std::lround(height + 2 * kMargin + kBelow)));
+    page.picture(differencePicture(pattern, guide), origin, end);
+
+    const std::vector<double> sides = sidesOf(pattern);
+    page.clip(origin, end);
+    if (!sides.empty()) {
+        double mean = 0;
+        for (const double side : sides) mean += side / static_cast<double>(sides.size());
+        const double cell = std::max(kCell * mean, 2.0 / pattern.height) * height;
+        for (double x = origin.x + cell; x < end.x; x += cell) page.line({x, origin.y}, {x, end.y}, kLattice);
+        for (double y = origin.y + cell; y < end.y; y += cell) page.line({origin.x, y}, {end.x, y}, kLattice);
+    }
+    const std::size_t step = std::max<std::size_t>(1, sides.size() / kMostInstanceCells);
+    for (std::size_t i = 0; i < sides.size(); i += step) {
+        const glm::dvec2 centre = origin + height * pattern.instances[i].centre, half(kCell / 2 * sides[i] * height);
+        page.frame(centre - half, centre + half, kInstance);
+    }
+    page.endClip();
+    page.frame(origin, end, {});
+
+    const double key = end.y + 22, middle = kMargin + kWidth / 2;
+    drawKey(page, {middle - 200, key}, {middle + 200, key + 16});
+    page.text(fmt::format(
+                  "difference guide - pattern, of {}: brown the evaluation lattice, yellow the cells of every {} instance of {}",
+                  pattern.guide.filename().string(), step == 1 ? "" : fmt::format("{}th", step), sides.size()),
+              {middle, key + 58}, kText, Anchor::Middle);
+    return page;
+}
+
+}  // namespace fantascope::plot

@@ -1,0 +1,252 @@
+// `fantascope export` as a person runs it, its files read back as another program would.
+
+#include "app/off_screen.h"
+#include "app/programme.h"
+#include "app/video_reader.h"
+
+#include "core/geometry.h"
+#include "core/image.h"
+#include "program.h"
+#include "scratch_folder.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
+
+namespace fantascope {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const fs::path kShow = FANTASCOPE_SOURCE_DIR "/shows/light-movement";
+
+class ExportCommand : public testing::Test {
+protected:
+    Outcome run(const std::vector<std::string>& arguments) const { return runProgram(arguments, folder_.path()); }
+    // `export SHOW --output left --size 160x90 --cue Full --seconds 0.5 --fps 12 -o ...`
+    Outcome exportLeft(const std::string& target, const std::vector<std::string>& more = {},
+                       const std::string& length = "0.5") const {
+        std::vector<std::string> arguments = {"export", kShow.string(), "--output", "left",  "--size", "160x90", "--cue",
+                                              "Full",   "--seconds",    length,     "--fps", "12",     "-o",     target};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    }
+    RgbaImage frame(const std::string& name) const { return readRgba(folder_ / name).value(); }
+
+    const ScratchFolder folder_;
+};
+
+// The left output of the default show at full light, drawn here by the renderer itself.
+class Drawn {
+public:
+    explicit Drawn(glm::ivec2 size) {
+        app::RunOptions options;
+        options.show = kShow;
+        options.site = FANTASCOPE_SOURCE_DIR "/config/simulated";
+        options.fromCue = "Full";
+        const app::Programme programme = app::readProgramme(options).value();
+        show::Playback playback(programme.cues);
+        playback.apply(*programme.firstInput);
+        show::ShowState later;
+        playback.stateAt(std::chrono::minutes(1), later);
+        state_ = later.outputs[0];
+        auto corners = programme.site.outputs[0].corners;
+        for (glm::dvec2& corner : corners) corner *= glm::dvec2(size) / glm::dvec2(programme.site.outputs[0].size);
+        screen_ = app::OffScreen::open(size, corners, programme.sources).value();
+    }
+    const RgbaImage& at(Time time) { return screen_->draw(state_, {}, time); }
+
+private:
+    show::OutputState state_;
+    std::unique_ptr<app::OffScreen> screen_;
+};
+
+int mostApart(const RgbaImage& a, const RgbaImage& b) {
+    int most = 0;
+    for (std::size_t i = 0; i < a.pixels().size(); ++i) {
+        const Rgba8 p = a.pixels()[i], q = b.pixels()[i];
+        for (const int apart : {p.r - q.r, p.g - q.g, p.b - q.b}) most = std::max(most, std::abs(apart));
+    }
+    return most;
+}
+
+// A picture with straight alpha laid over black in stored values, as a player does.
+RgbaImage overBlack(const Rgba16Image& picture) {
+    RgbaImage result(picture.width(), picture.height());
+    for (std::size_t i = 0; i < result.pixels().size(); ++i) {
+        const Rgba16 pixel = picture.pixels()[i];
+        const auto laid = [&](std::uint16_t channel) {
+            return static_cast<std::uint8_t>(std::lround(255.0 * channel / 65535 * pixel.a / 65535));
+        };
+        result.pixels()[i] = {laid(pixel.r), laid(pixel.g), laid(pixel.b), 255};
+    }
+    return result;
+}
+
+// Example failures: the frame after, the refresh's time instead of the frame's, a fade that still runs.
+TEST_F(ExportCommand, frame_k_is_what_the_renderer_draws_at_k_over_the_rate) {
+    const Outcome done = exportLeft("frames", {"--alpha", "none", "--report", "r.json"});
+    ASSERT_EQ(done.status, 0) << done.errors;
+    Drawn drawn({160, 90});
+    for (int k = 0; k < 6; ++k) {
+        const RgbaImage picture = frame(fmt::format("frames/frame-{:06}.png", k));
+        EXPECT_EQ(picture, drawn.at(tickTime(k, 12))) << k;
+        if (k > 0) {
+            EXPECT_NE(picture, drawn.at(tickTime(k - 1, 12))) << "it moves";
+        }
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "frames/frame-000006.png"));
+    const auto report = nlohmann::json::parse(contentsOf(folder_ / "r.json"));
+    EXPECT_EQ(report["frames"], 6);
+    EXPECT_EQ(report["seconds"], 0.5);
+    EXPECT_EQ(report["stop_reason"], "length");
+}
+
+TEST_F(ExportCommand, videos_have_every_frame_for_as_long_as_the_next) {
+    for (const auto& [name, codec] : {std::pair("a.mp4", "h264"), {"a.mov", "prores"}, {"a.mkv", "ffv1"}}) {
+        SCOPED_TRACE(name);
+        const Outcome done = exportLeft(name, {}, "2.5");
+        ASSERT_EQ(done.status, 0) << done.errors;
+        const Video video = readVideo(folder_ / name);
+        EXPECT_EQ(video.codec, codec);
+        ASSERT_EQ(video.frames.size(), 30u);
+        EXPECT_NEAR(video.seconds, 2.5, 2e-3);
+        EXPECT_NEAR(video.framesPerSecond, 12, 1e-2);
+        for (int k = 0; k < 30; ++k) EXPECT_NEAR(video.times[static_cast<std::size_t>(k)], k / 12.0, 1e-3);
+    }
+    for (const auto& entry : fs::directory_iterator(folder_.path())) EXPECT_NE(entry.path().extension(), ".part");
+}
+
+TEST_F(ExportCommand, what_has_alpha_gives_the_frame_again_over_black) {
+    ASSERT_EQ(exportLeft("a.mkv").status, 0);
+    ASSERT_EQ(exportLeft("a.mov").status, 0);
+    ASSERT_EQ(exportLeft("frames").status, 0);
+    const Video lossless = readVideo(folder_ / "a.mkv"), prores = readVideo(folder_ / "a.mov");
+    Drawn drawn({160, 90});
+    for (int k = 0; k < 6; ++k) {
+        const RgbaImage& wanted = drawn.at(tickTime(k, 12));
+        const auto i = static_cast<std::size_t>(k);
+        EXPECT_LE(mostApart(overBlack(lossless.frames[i]), wanted), 1);
+        // Of a picture with 8 bits left, as readRgba gives it, two roundings are left.
+        const RgbaImage png = frame(fmt::format("frames/frame-{:06}.png", k));
+        Rgba16Image wide(png.width(), png.height());
+        for (std::size_t p = 0; p < png.pixels().size(); ++p) {
+            const auto word = [](std::uint8_t byte) { return static_cast<std::uint16_t>(257 * byte); };
+            const Rgba8 pixel = png.pixels()[p];
+            wide.pixels()[p] = {word(pixel.r), word(pixel.g), word(pixel.b), word(pixel.a)};
+        }
+        EXPECT_LE(mostApart(overBlack(wide), wanted), 1);
+        // ProRes is a lossy coding, of few steps.
+        const RgbaImage laid = overBlack(prores.frames[i]);
+        double sum = 0;
+        for (std::size_t p = 0; p < laid.pixels().size(); ++p) sum += std::abs(laid.pixels()[p].g - wanted.pixels()[p].g);
+        EXPECT_LT(sum / static_cast<double>(laid.pixels().size()), 1.0);
+    }
+    // Clear outside the picture, opaque where a shape shines.
+    EXPECT_EQ(lossless.frames[0].at(0, 0).a, 0);
+    EXPECT_GT(std::ranges::max(lossless.frames[0].pixels(), {}, &Rgba16::a).a, 60000);
+}
+
+// What the projector would get in a rehearsal, by the rehearsal's own hashes of its frames.
+TEST_F(ExportCommand, plays_the_cues_as_a_rehearsal_does) {
+    const auto fnv = [](const RgbaImage& picture) {
+        std::uint64_t hash = 0xcbf29ce484222325u;
+        for (const Rgba8& pixel : picture.pixels())
+            for (const std::uint8_t byte : {pixel.r, pixel.g, pixel.b}) hash = (hash ^ byte) * 0x100000001b3u;
+        return hash;
+    };
+    ASSERT_EQ(run({"rehearse", "--seconds", "6", "--record", "rehearsal", "--as-fast-as-possible"}).status, 0);
+    ASSERT_EQ(
+        run({"export", kShow.string(), "--output", "right", "--seconds", "6", "--fps", "3", "--alpha", "none", "-o", "frames"})
+            .status,
+        0);
+    const std::string csv = contentsOf(folder_ / "rehearsal/frames.csv");
+    for (int k = 1; k < 18; ++k) {
+        const RgbaImage picture = frame(fmt::format("frames/frame-{:06}.png", k));
+        EXPECT_THAT(csv, HasSubstr(fmt::format(",{:.6f},right,{:016x}\n", k / 3.0, fnv(picture)))) << k;
+    }
+}
+
+TEST_F(ExportCommand, a_pattern_alone_fills_the_frame_and_loops) {
+    const std::string pattern = (kShow / "left.pattern.yaml").string();
+    ASSERT_EQ(run({"export", pattern, "--size", "96x54", "--fps", "1", "--alpha", "none", "-o", "frames"}).status, 0);
+    // 2000 frames at 30 Hz are one loop; at one frame a second the 67 frames come round to within a frame.
+    EXPECT_TRUE(fs::exists(folder_ / "frames/frame-000066.png"));
+    EXPECT_FALSE(fs::exists(folder_ / "frames/frame-000067.png"));
+    EXPECT_THAT(run({"export", pattern, "--cue", "Full", "-o", "more"}).errors, HasSubstr("are for shows"));
+}
+
+// The canvas is what a light mask wants: the keystone is for the projector alone.
+TEST_F(ExportCommand, leaves_the_keystone_out_when_asked_to) {
+    ASSERT_EQ(exportLeft("warped", {"--alpha", "none"}, "0.01").status, 0);
+    ASSERT_EQ(exportLeft("straight", {"--alpha", "none", "--canvas"}, "0.01").status, 0);
+    ASSERT_EQ(run({"export", (kShow / "left.pattern.yaml").string(), "--size", "160x90", "--seconds", "0.01", "--alpha", "none",
+                   "-o", "pattern"})
+                  .status,
+              0);
+    EXPECT_EQ(frame("straight/frame-000000.png"), frame("pattern/frame-000000.png"));
+    EXPECT_NE(frame("warped/frame-000000.png"), frame("pattern/frame-000000.png"));
+}
+
+TEST_F(ExportCommand, refuses_with_advice) {
+    const auto refusal = [&](const std::vector<std::string>& arguments) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 1) << outcome.errors;
+        return outcome.errors;
+    };
+    const std::string show = kShow.string();
+    EXPECT_THAT(refusal({"export", show, "-o", "a.mp4"}), HasSubstr("needs --output NAME"));
+    EXPECT_THAT(refusal({"export", show, "--output", "lef", "-o", "a.mp4"}), HasSubstr("did you mean 'left'?"));
+    EXPECT_THAT(refusal({"export", show, "--output", "left", "--cue", "Ful", "-o", "a.mp4"}), HasSubstr("Full"));
+    EXPECT_THAT(refusal({"export", show, "--output", "left", "-o", "a.gif"}), HasSubstr("FILE.mov"));
+    EXPECT_THAT(refusal({"export", show, "--output", "left", "-o", "a.mp4", "--alpha", "stored"}), HasSubstr("no alpha"));
+    ASSERT_EQ(exportLeft("frames").status, 0);
+    EXPECT_THAT(exportLeft("frames").errors, HasSubstr("there are frames in it already"));
+    EXPECT_EQ(run({"export", show, "--output", "left", "-o", "a.mp4", "--size", "160"}).status, 2);
+    EXPECT_EQ(run({"export", show, "--output", "left", "-o", "a.mp4", "--cue", "Full", "--from", "Full"}).status, 2);
+    EXPECT_FALSE(fs::exists(folder_ / "a.mp4"));
+}
+
+// Ctrl-C, once the first line of progress says that frames are being drawn: what is there by then is a whole file.
+TEST_F(ExportCommand, ctrl_c_leaves_a_file_that_plays) {
+    for (const char* name : {"a.mp4", "a.mov", "a.mkv"}) {
+        SCOPED_TRACE(name);
+        std::array<int, 2> pipe{};
+        ASSERT_EQ(::pipe(pipe.data()), 0);
+        const pid_t child = ::fork();
+        if (child == 0) {
+            ::dup2(pipe[1], STDERR_FILENO);
+            ::close(pipe[0]);
+            if (::chdir(folder_.path().c_str()) == 0)
+                ::execl(FANTASCOPE_PROGRAM, "fantascope", "export", kShow.c_str(), "--output", "left", "--cue", "Full", "--size",
+                        "160x90", "--seconds", "100000", "-o", name, "--report", "r.json", nullptr);
+            ::_exit(127);
+        }
+        ::close(pipe[1]);
+        // Two lines of progress: at the beginning, and some frames later.
+        char byte = 0;
+        for (int lines = 0; lines < 2;) {
+            ASSERT_EQ(::read(pipe[0], &byte, 1), 1);
+            lines += byte == '\n';
+        }
+        ::kill(child, SIGINT);
+        int status = 0;
+        ASSERT_EQ(::waitpid(child, &status, 0), child);
+        ::close(pipe[0]);
+        EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+        const auto report = nlohmann::json::parse(contentsOf(folder_ / "r.json"));
+        EXPECT_EQ(report["stop_reason"], "interrupted");
+        EXPECT_GT(report["frames"], 0);
+        const Video video = readVideo(folder_ / name);
+        EXPECT_EQ(video.frames.size(), report["frames"].get<std::size_t>());
+    }
+}
+
+}  // namespace
+}  // namespace fantascope
