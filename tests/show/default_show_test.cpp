@@ -65,6 +65,7 @@ TEST(Shows, load_and_play_on_the_simulated_site) {
     ASSERT_TRUE(site) << site.error().message();
     int shows = 0;
     for (const auto& folder : std::filesystem::directory_iterator(kSource / "shows")) {
+        if (!std::filesystem::exists(folder.path() / "show.yaml")) continue;  // drawings alone, of a show to come
         const auto show = Show::load(folder.path());
         ASSERT_TRUE(show) << show.error().message();
         const auto list = show->bind(*site);
