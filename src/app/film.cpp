@@ -26,8 +26,11 @@ constexpr double kMostFrames = 1e7;  // days of any show
 
 // The patterns that a picture is made of.
 std::vector<const render::PatternSource*> patternsIn(const render::PictureSource& source) {
-    if (const auto* pattern = std::get_if<render::PatternSource>(&source)) return {pattern};
-    return {};
+    std::vector<const render::PatternSource*> patterns;
+    if (const auto* pattern = std::get_if<render::PatternSource>(&source)) patterns.push_back(pattern);
+    if (const auto* foliage = std::get_if<render::FoliageSource>(&source))
+        for (const render::ShadowLayer& layer : foliage->layers) patterns.push_back(&layer.leaves);
+    return patterns;
 }
 
 // How long the slowest of all movements takes to come round; 0 where nothing moves.
@@ -151,8 +154,7 @@ Result<Film> Film::ofShow(const FilmRequest& request) {
         toCome = 0;
         if (const double loop = loopOf(programme.sources); !request.seconds && loop > 0) film.seconds_ = loop;
     }
-    const auto played =
-        std::make_shared<ShowFrames>(std::move(cues), programme.firstInput, toCome, fromSeconds(film.seconds_));
+    const auto played = std::make_shared<ShowFrames>(std::move(cues), programme.firstInput, toCome, fromSeconds(film.seconds_));
     film.seenAt_ = [played, index](Time time) {
         const show::ShowState& state = played->at(time);
         return Seen{state.outputs[index], state.winds[index]};

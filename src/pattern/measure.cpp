@@ -162,7 +162,7 @@ LoopQuality LoopMeasure::in(const Wind& wind, int moments) const {
         Coverage coverage(pattern.width, pattern.height);
         for (std::size_t i = 0; i < poses.size(); ++i) coverage.add(parts_->silhouettes[pattern.instances[i].shape], poses[i]);
         parts_->motion.posesAt(time, groupsAtRest, poses);
-        seen[static_cast<std::size_t>(moment)] = {parts_->goal.z(coverage), parts_->toneOf(image(coverage)),
+        seen[static_cast<std::size_t>(moment)] = {parts_->goal.z(coverage), parts_->toneOf(coverage.picture()),
                                                   parts_->squares(poses)};
     });
 

@@ -13,7 +13,8 @@ namespace fantascope::render {
 // paper calls it a radius once and a diameter once, and only the diameter is physical.
 double penumbraWidth(double distance, double angle);
 
-// A round spot of light of this diameter in pixels, at least 0: what each pixel of it is covered by, divided by the sum. Odd sides, as small as they can be.
+// A round spot of light of this diameter in pixels, at least 0: how much of each pixel it covers, divided by the sum. Odd sides, as
+// small as they can be.
 GreyImage discFilter(double diameter);
 
 // A picture as a filter, `width` pixels wide, its middle in the middle: averaged over areas, divided by the sum. `light`: linear light, some
@@ -26,8 +27,7 @@ GreyImage pictureFilter(const GreyImage& light, double width);
 struct BlurGrid {
     double pitch = 0;    // canvas heights from pixel to pixel
     glm::ivec2 size{0};  // pixels, a frame of one around the canvas included, so that its edges can be interpolated too
-    int block =
-        1;  // pixels to a pixel, each way, in which it is painted: the finest that matter, so that no small hole is missed
+    int block = 1;       // painted pixels to one of these, each way: painting is finer, so that no small hole is missed
     GreyImage filter;
 
     static constexpr double kLeastRadius = 4;

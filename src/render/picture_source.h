@@ -39,7 +39,8 @@ struct ShadowLayer {
     bool holes = false;  // the shapes are holes in what lets no other light through
 };
 
-// The light that falls through layers of leaves: where one keeps it off, the others change nothing. Beyond the canvas no leaf stands.
+// The light that falls through layers of leaves: the product of what each lets through. Where no shape is, beyond the canvas too, a
+// layer of leaves lets all of it through and one of holes none.
 // Source: Ji et al. 2015, section 5.
 struct FoliageSource {
     glm::vec3 light{1};               // where nothing keeps it off: linear light, may exceed 1 where holes make little of it

@@ -18,7 +18,8 @@ constexpr double kSun = radians(0.53);
 
 // Limits. Metres, seconds.
 constexpr double kSmallest = 0.001, kLargest = 1000;
-constexpr double kWidestBlur = 2;            // canvas heights
+constexpr double kWidestBlur = 2;  // canvas heights
+constexpr std::size_t kMostLayers = 8;
 constexpr double kBrightest = 100;
 constexpr double kShortestWave = 1.0 / 20;   // canvas heights
 constexpr double kSteepestWave = 0.1;        // height to length
@@ -68,7 +69,7 @@ Result<FoliageSource> readFoliage(const ConfigNode& node) {
     fields.optional().vector3("light", foliage.light, 0, kBrightest);
     fields.optional().vector3("shadow", foliage.shadow, 0, 1);
     fields.optional().angle("sun", foliage.sun, 0, 60);
-    fields.read("layers", layers, [](const ConfigNode& list) { return list.items(1); });
+    fields.read("layers", layers, [](const ConfigNode& list) { return list.items(1, kMostLayers); });
     TRY(fields.finish());
     for (const ConfigNode& layer : layers) foliage.layers.push_back(TRY(readLeaves(layer, foliage)));
     return foliage;

@@ -11,9 +11,10 @@ namespace fantascope::show {
 
 // The wind that a look asks for on one output.
 struct WindWish {
-    double strength = 1;              // that of the strongest gust; 0 .. 4, 1 is what the patterns were made for
-    double gusts = 0;                 // 0..1: the share of the strength that comes and goes
-    std::optional<double> direction;  // radians from the canvas's x axis towards its y axis; without it each pattern has its own
+    double strength = 1;  // that of the strongest gust; 0 .. 4, 1 is what the patterns were made for
+    double gusts = 0;     // 0..1: the share of the strength that comes and goes
+    // Radians from the canvas's x axis towards its y axis; without it each pattern has its own.
+    std::optional<double> direction = std::nullopt;
 };
 
 // The slow come and go of gusts: a sum of waves whose phases come from a random stream of their own. It has neither a beginning nor

@@ -8,6 +8,8 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <string>
 
@@ -21,6 +23,19 @@ TEST(GoldenFrames, a_swaying_pattern_through_a_keystone) {
     DrawnOutput output(kSize, keystone(kSize), {moving(smallPattern())});
     EXPECT_TRUE(looksLikeGolden("pattern-at-0s", output.frame({{0, 1}}, Time::zero())));
     EXPECT_TRUE(looksLikeGolden("pattern-at-12s", output.frame({{0, 1}}, std::chrono::seconds(12))));
+}
+
+// A sharp and a blurred layer of leaves, the floor of a pond and a mirror ball's spots.
+TEST(GoldenFrames, light_through_leaves_on_water_and_from_mirrors) {
+    FoliageSource foliage{glm::vec3(1, 0.93f, 0.76f), glm::vec3(0.01f), {}};
+    foliage.layers.push_back({moving(smallPattern()), {}});
+    foliage.layers.push_back({moving(smallPattern()), {0.1, nullptr}});
+    DrawnOutput output(kSize, keystone(kSize),
+                       {foliage, CausticsSource{glm::vec3(0.1f, 0.15f, 0.17f), {16.0 / 3, 3}, 1.2, 0.55, 0.02, 1},
+                        MirrorBallSource{glm::vec3(3), {16.0 / 3, 3}, {0, 0.5, 2.2}, 0.25, 0.03, {2.6, 1.8, 1}, 0.05, 60}});
+    const std::array<const char*, 3> names = {"foliage", "caustics", "mirror-ball"};
+    for (std::uint32_t source = 0; source < names.size(); ++source)
+        EXPECT_TRUE(looksLikeGolden(names[source], output.frame({{source, 1}}, std::chrono::seconds(12))));
 }
 
 // The comparison itself: a picture that is a pixel off, or a shade darker, is not the golden one.

