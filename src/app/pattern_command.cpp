@@ -41,7 +41,8 @@ constexpr int kLoopMoments = 200;  // of the animated loop are judged: one in te
 struct Options {
     fs::path guide, output;
     std::vector<std::string> shapes;
-    std::optional<fs::path> settings, image, report;
+    std::optional<fs::path> settings, image, report, start;
+    std::vector<double> region;  // left, top, right, bottom; or none
     std::optional<std::uint32_t> instances;
     std::optional<double> seconds, targetZ;
     std::optional<int> iterations;
@@ -88,6 +89,15 @@ void declare(CLI::App& command, Options& options) {
         ->transform(CLI::CheckedTransformer(std::map<std::string, PatternSearch::Method>{
             {"refined", PatternSearch::Method::Refined}, {"paper", PatternSearch::Method::Paper}}))
         ->default_str("refined");
+    const auto* start = command.add_option("--start", options.start,
+                                           "Go on from this pattern, with its shapes, seed and movement; the refined method");
+    command
+        .add_option(
+            "--region", options.region,
+            "With --start: LEFT,TOP,RIGHT,BOTTOM in canvas heights; instances whose centre lies elsewhere stay as they are")
+        ->delimiter(',')
+        ->expected(4)
+        ->needs(start);
     command.add_option("--image", options.image, "Also write the pattern white on black, in the guide's size, as PNG");
     command.add_flag("--shadows", options.shadows,
                      "The shapes are dark and stand where the drawing is dark, as leaves do in a show's foliage");
@@ -140,7 +150,13 @@ GreyImage shadowsOf(GreyImage guide) {
 }
 
 // Each with what the settings say of it alone.
-Result<std::vector<pattern::ShapeSettings>> chosenShapes(const Options& options, const pattern::PatternSettings& settings) {
+Result<std::vector<pattern::ShapeSettings>> chosenShapes(const Options& options, const pattern::PatternSettings& settings,
+                                                         const std::optional<ShapePattern>& start) {
+    if (start) {
+        std::vector<pattern::ShapeSettings> chosen;
+        for (const pattern::ElementalShape& shape : start->shapes) chosen.push_back({shape, settings.ownOf(shape)});
+        return chosen;
+    }
     if (options.shapes.empty() && !settings.shapes.empty()) return settings.shapes;
     std::vector<pattern::ShapeSettings> chosen;
     for (const std::string& name : options.shapes.empty() ? std::vector<std::string>{"triangle"} : options.shapes) {
@@ -210,6 +226,22 @@ Report reportOf(PatternSearch::Method method, const PatternSearch::Found& found,
     return report;
 }
 
+// The pattern to go on from. Error: the file's; it cannot be gone on from as was asked.
+Result<ShapePattern> startingPattern(const Options& options, const GreyImage& guide) {
+    const std::string file = options.start->string();
+    if (options.method != PatternSearch::Method::Refined)
+        return Error("--start: the paper's method begins with a random pattern; leave --method out");
+    if (!options.shapes.empty()) return Error(fmt::format("--start: {} has its shapes; leave --shapes out", file));
+    ShapePattern pattern = TRY(pattern::readPattern(*options.start));
+    const double aspect = double(guide.width()) / guide.height();
+    // A pattern's own is rounded to whole pixels.
+    if (std::abs(aspect - pattern.aspect()) * pattern.height > 1)
+        return Error(fmt::format("{}: its canvas is {:.4f} times as wide as high, and {} {:.4f} times; they cannot be compared",
+                                 file, pattern.aspect(), options.guide.string(), aspect));
+    if (pattern.instances.empty()) return Error(fmt::format("{}: has no instances to go on from; leave --start out", file));
+    return pattern;
+}
+
 // How often a window shows the search.
 constexpr Time kShowEvery = std::chrono::milliseconds(50);
 constexpr glm::ivec2 kWindow{960, 540};
@@ -268,8 +300,13 @@ Result<void> run(const Options& options) {
     if (options.instances) settings.search.instances = *options.instances;
     if (options.targetZ) settings.search.targetZ = *options.targetZ;
     if (options.iterations) settings.search.iterations = *options.iterations;
+    std::optional<ShapePattern> start;
+    if (options.start) start = TRY(startingPattern(options, guide));
+    if (!options.region.empty())
+        settings.search.region = {{options.region[0], options.region[1]}, {options.region[2], options.region[3]}};
+    TRY(settings.search.check());
     const std::optional<double> limit = options.seconds || options.iterations ? options.seconds : kDefaultSeconds;
-    std::vector<pattern::ShapeSettings> shapes = TRY(chosenShapes(options, settings));
+    std::vector<pattern::ShapeSettings> shapes = TRY(chosenShapes(options, settings, start));
     std::vector<Material> shapeFiles;
     TRY(placeShapes(options.output, shapes, shapeFiles));
     const Material guideFile = options.shadows
@@ -278,18 +315,22 @@ Result<void> run(const Options& options) {
 
     ShapePattern pattern;
     pattern.guideTransfer = settings.guideTransfer;
-    pattern.seed = options.seed;
+    pattern.seed = start ? start->seed : options.seed;
     for (auto& [shape, own] : shapes) {
         pattern.shapes.push_back(std::move(shape));
         settings.search.shapes.push_back(std::move(own));
     }
-    pattern.motion = settings.motion;
+    pattern.motion = start ? start->motion : settings.motion;
+    if (start) {
+        pattern.groups = start->groups;
+        pattern.instances = std::move(start->instances);
+    }
     std::unique_ptr<drivers::PictureWindow> window;
     if (options.watch) window = TRY(drivers::PictureWindow::open(options.output.filename().string(), kWindow));
     SteadyClock clock;
     PatternSearch::Found found = search(guide, std::move(pattern), settings.search, limit, options.threads, clock, window.get());
     const Time took = clock.now();
-    if (settings.fitMotion) found.pattern.motion = fittedMotion(found.pattern, guide, options.threads);
+    if (settings.fitMotion && !start) found.pattern.motion = fittedMotion(found.pattern, guide, options.threads);
 
     // What the pattern names first, so that it never names what is not there.
     const fs::path folder = fs::absolute(options.output).parent_path();

@@ -287,5 +287,44 @@ TEST_F(PatternCommand, ctrl_c_keeps_the_best_so_far) {
     EXPECT_TRUE(pattern::readPattern(folder_ / "out" / "p.pattern.yaml"));
 }
 
+// Something stands before the right half; there the pattern changes, elsewhere it must not. Example failure: colours, groups or
+// movement of what stays are drawn anew.
+TEST_F(PatternCommand, goes_on_from_a_pattern_in_a_region) {
+    ASSERT_EQ(find({"--iterations", "20", "--seed", "5", "--shapes", "sculpture.obj"}).status, 0);
+    const pattern::ShapePattern before = pattern::readPattern(folder_ / "out" / "p.pattern.yaml").value();
+    const Outcome outcome = run({"pattern", "guide.png", "-o", "out/q.pattern.yaml", "--start", "out/p.pattern.yaml", "--region",
+                                 "0.9,0,1.8,1", "--iterations", "5"});
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    const pattern::ShapePattern after = pattern::readPattern(folder_ / "out" / "q.pattern.yaml").value();
+    EXPECT_EQ(after.seed, 5u);
+    EXPECT_EQ(after.groups, before.groups);
+    EXPECT_EQ(after.motion.localTurn.range, before.motion.localTurn.range);
+    int elsewhere = 0;
+    for (const pattern::ShapeInstance& instance : after.instances) {
+        if (instance.centre.x >= 0.9) continue;
+        ++elsewhere;
+        const auto was = std::find_if(before.instances.begin(), before.instances.end(),
+                                      [&](const auto& other) { return other.id == instance.id; });
+        ASSERT_NE(was, before.instances.end());
+        EXPECT_EQ(instance.centre, was->centre);
+        EXPECT_EQ(instance.group, was->group);
+    }
+    EXPECT_GT(elsewhere, 5);
+
+    const auto refused = [&](Arguments more) {
+        Arguments arguments = {"pattern", "guide.png", "-o", "out/q.pattern.yaml", "--start", "out/p.pattern.yaml"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    };
+    EXPECT_THAT(refused({"--method", "paper"}).errors, HasSubstr("leave --method out"));
+    EXPECT_THAT(refused({"--shapes", "leaf"}).errors, HasSubstr("leave --shapes out"));
+    EXPECT_THAT(refused({"--region", "1,0,0.5,1"}).errors, HasSubstr("left top corner comes first"));
+    EXPECT_EQ(refused({"--region", "1,0,1.5"}).status, 2);
+    EXPECT_EQ(find({"--region", "0,0,1,1"}).status, 2) << "a region of what?";
+    EXPECT_TRUE(writePng(folder_ / "square.png", GreyImage(36, 36)));
+    EXPECT_THAT(run({"pattern", "square.png", "-o", "out/q.pattern.yaml", "--start", "out/p.pattern.yaml"}).errors,
+                HasSubstr("cannot be compared"));
+}
+
 }  // namespace
 }  // namespace fantascope
