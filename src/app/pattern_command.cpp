@@ -89,8 +89,8 @@ void declare(CLI::App& command, Options& options) {
         ->transform(CLI::CheckedTransformer(std::map<std::string, PatternSearch::Method>{
             {"refined", PatternSearch::Method::Refined}, {"paper", PatternSearch::Method::Paper}}))
         ->default_str("refined");
-    const auto* start = command.add_option("--start", options.start,
-                                           "Go on from this pattern, with its shapes, seed and movement; the refined method");
+    auto* start = command.add_option("--start", options.start,
+                                     "Go on from this pattern, with its shapes, seed and movement; the refined method");
     command
         .add_option(
             "--region", options.region,

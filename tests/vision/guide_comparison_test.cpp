@@ -96,11 +96,6 @@ double score(const GreyImage& guide, const RgbaImage& frame) {
     return GuideComparison(nominalView(), guide).compare(frame).value_or(NAN);
 }
 
-GreyImage inverted(GreyImage image) {
-    for (float& value : image.pixels()) value = 1 - value;
-    return image;
-}
-
 TEST(GuideComparison, is_near_zero_for_the_guide_itself_and_far_from_it_for_other_pictures) {
     const GreyImage guide = spiral();
     GreyImage mirrored = guide;
