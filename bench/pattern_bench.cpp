@@ -169,9 +169,7 @@ PatternSearch::Found search(const Task& task, Method method, double limit, std::
     std::optional<double> running;
     const auto plan = [&](const PatternSearch::Progress& now) -> std::optional<int> {
         if (!running) running = processorSeconds();
-        const double elapsed = processorSeconds() - *running, left = limit - (*running - start);
-        if (now.iterations == 0 || elapsed < 0.04 * left) return std::nullopt;
-        return static_cast<int>(now.iterations * left / elapsed);
+        return PatternSearch::iterationsWithin(limit - (*running - start), now.iterations, processorSeconds() - *running);
     };
     return PatternSearch::run(task.guide, blank(task, seed), options, 1, askStop, plan);
 }

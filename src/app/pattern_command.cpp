@@ -23,6 +23,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -280,8 +281,7 @@ PatternSearch::Found search(const GreyImage& guide, ShapePattern pattern, const 
     const auto plan = [&](const PatternSearch::Progress& now) -> std::optional<int> {
         if (!running) running = worked();
         const double elapsed = seconds(worked() - *running), left = limit ? *limit - seconds(*running - start) : 0;
-        if (!limit || now.iterations == 0 || elapsed < 0.04 * left) return std::nullopt;
-        planned = static_cast<int>(std::min(now.iterations * left / elapsed, double(std::numeric_limits<int>::max() - 1)));
+        if (limit) planned = PatternSearch::iterationsWithin(left, now.iterations, elapsed);
         return planned;
     };
     return PatternSearch::run(guide, std::move(pattern), options, threads, askStop, plan);
@@ -299,13 +299,17 @@ Result<void> run(const Options& options) {
     settings.search.method = options.method;
     if (options.instances) settings.search.instances = *options.instances;
     if (options.targetZ) settings.search.targetZ = *options.targetZ;
-    if (options.iterations) settings.search.iterations = *options.iterations;
+    if (options.iterations || options.seconds)
+        settings.search.iterations = options.iterations.value_or(std::numeric_limits<int>::max());
     std::optional<ShapePattern> start;
     if (options.start) start = TRY(startingPattern(options, guide));
     if (!options.region.empty())
         settings.search.region = {{options.region[0], options.region[1]}, {options.region[2], options.region[3]}};
     TRY(settings.search.check());
-    const std::optional<double> limit = options.seconds || options.iterations ? options.seconds : kDefaultSeconds;
+    const bool limited = settings.seconds || settings.search.iterations < std::numeric_limits<int>::max();
+    const std::optional<double> limit = options.seconds || options.iterations ? options.seconds
+                                        : limited                             ? settings.seconds
+                                                                              : kDefaultSeconds;
     std::vector<pattern::ShapeSettings> shapes = TRY(chosenShapes(options, settings, start));
     std::vector<Material> shapeFiles;
     TRY(placeShapes(options.output, shapes, shapeFiles));

@@ -73,7 +73,6 @@ Result<void> PatternSearch::Options::check() const {
     declareRefined(bounds, copy.refined);
     declarePaper(bounds, copy.paper);
     declareShapes(bounds, copy);
-    bounds.integer("iterations", copy.iterations, 0, std::numeric_limits<int>::max());
     checkColours(bounds, colours);
     for (Shape& shape : copy.shapes) {
         declareShape(bounds, shape);
@@ -122,6 +121,13 @@ std::string_view name(PatternSearch::StopReason reason) {
 }
 
 std::string_view name(PatternSearch::Method method) { return method == PatternSearch::Method::Refined ? "refined" : "paper"; }
+
+std::optional<int> PatternSearch::iterationsWithin(double budget, int done, double elapsed) {
+    constexpr double kEnough = 0.04;  // of the budget; less than the refined method's warm part
+    constexpr double kFaster = 1.1;   // a cool search keeps fewer moves, which takes less time
+    if (done == 0 || elapsed < kEnough * budget) return std::nullopt;
+    return static_cast<int>(std::min(kFaster * done * budget / elapsed, double(std::numeric_limits<int>::max() - 1)));
+}
 
 PatternSearch::Found PatternSearch::run(const GreyImage& guide, ShapePattern pattern, const Options& options, int threads,
                                         const AskStop& askStop, const Plan& plan) {

@@ -120,6 +120,10 @@ struct PatternSearch {
     // Options::iterations the run repeats.
     using Plan = std::function<std::optional<int>(const Progress&)>;
 
+    // What a Plan may answer: how many iterations fit into `budget` seconds when the first `done` took `elapsed`; nothing while that is
+    // too few to tell.
+    static std::optional<int> iterationsWithin(double budget, int done, double elapsed);
+
     // Iteration by iteration, for a picture as Figure 5.
     struct Iteration {
         double zMin = 1, zMax = 1;  // of the candidates; with the refined method both are z after the iteration

@@ -150,6 +150,17 @@ Result<PatternSettings> readShapes(const ConfigNode& node, PatternSettings setti
     return settings;
 }
 
+Result<PatternSettings> readSearch(const ConfigNode& node, PatternSettings settings) {
+    ConfigFields fields(node);
+    OptionalFields optional{fields};
+    declareSearch(optional, settings.search);
+    fields.optional().read("seconds", settings.seconds, [](const ConfigNode& at) -> Result<std::optional<double>> {
+        return std::optional(TRY(at.number(0.001, 1e6, "seconds")));
+    });
+    TRY(fields.finish());
+    return settings;
+}
+
 }  // namespace
 
 Result<PatternSettings> readPatternSettings(const std::filesystem::path& file) {
@@ -161,7 +172,7 @@ Result<PatternSettings> readPatternSettings(const std::filesystem::path& file) {
         fields.optional().read(name, settings.search,
                                [&](const ConfigNode& node) { return readSection(node, settings.search, declare); });
     };
-    section("search", [](auto& optional, Options& options) { declareSearch(optional, options); });
+    fields.optional().read("search", settings, [&](const ConfigNode& node) { return readSearch(node, settings); });
     section("refined", [](auto& optional, Options& options) { declareRefined(optional, options.refined); });
     section("paper", [](auto& optional, Options& options) { declarePaper(optional, options.paper); });
     fields.optional().read("shapes", settings, [&](const ConfigNode& node) { return readShapes(node, settings); });

@@ -7,6 +7,7 @@
 #include "core/result.h"
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace fantascope::pattern {
@@ -25,6 +26,7 @@ struct PatternSettings {
     bool fitMotion = true;
     GuideTransfer guideTransfer = GuideTransfer::Srgb;
     std::vector<ShapeSettings> shapes;  // none is named twice
+    std::optional<double> seconds;      // after which the caller is to stop the search; > 0
 
     // What `shape` has of its own: of these the one of the same name or file; nothing if there is none.
     PatternSearch::Options::Shape ownOf(const ElementalShape& shape) const;

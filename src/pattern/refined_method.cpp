@@ -19,8 +19,9 @@ constexpr double kWarm = 0.05;
 constexpr double kCoolest = 0.03;
 // Of how many places the best is taken when the search begins.
 constexpr int kTries = 4;
-// How often the search looks where light is lacking while it begins.
+// How often the search looks where light is lacking: while it begins, and then in iterations.
 constexpr std::size_t kLooks = 50;
+constexpr int kLookEvery = 4;
 // Pixels that an instance must be worth: one that lies hidden under others is not.
 constexpr double kWorth = 0.5;
 
@@ -73,7 +74,7 @@ public:
                     planned = std::max(*total, static_cast<int>(std::ceil(summary.iterations / kWarm)));
             temperature_ = temperatureAt(summary.iterations, planned);
             const double before = score_.z();
-            score_.findDarkPlaces();
+            if (summary.iterations % kLookEvery == 0) score_.findDarkPlaces();
             for (int i = 0; i < kMoves; ++i) move();
             summary.history.push_back({score_.z(), score_.z(), score_.z() < before});
         }

@@ -111,6 +111,7 @@ RunningScore::RunningScore(const SearchSpace& space)
       width_(space.pixels().x),
       height_(space.pixels().y),
       block_(std::clamp(static_cast<int>(std::bit_floor(static_cast<unsigned>(kSpacing * height_))), 1, kLargestBlock)),
+      blockShift_(std::countr_zero(static_cast<unsigned>(block_))),
       blocks_((width_ + block_ - 1) / block_, (height_ + block_ - 1) / block_),
       counts_(wordAt((width_ - 1) / PixelMask::kBits + 1, 0)),
       sum_(space.goal().allBlack()) {
@@ -126,14 +127,16 @@ void RunningScore::measureGuide() {
                 {{x * block_, y * block_}, {std::min((x + 1) * block_, width_), std::min((y + 1) * block_, height_)}}));
     for (std::size_t s = 0; s < kScales; ++s) {
         Scale& scale = scales_[s];
-        scale.side = std::max(1, static_cast<int>(std::lround(kSpacing * height_ / block_))) << s;
-        scale.nodes = (blocks_ + scale.side - 1) / scale.side;
+        const int side = std::max(1, static_cast<int>(std::lround(kSpacing * height_ / block_))) << s;
+        scale.nodes = (blocks_ + side - 1) / side;
+        for (int x = 0; x < blocks_.x; ++x) scale.columns.push_back(x / side);
+        for (int y = 0; y < blocks_.y; ++y) scale.rows.push_back(y / side);
         scale.lack.assign(at(scale.nodes.x) * at(scale.nodes.y), 0);
         scale.change.assign(scale.lack.size(), 0);
         std::size_t block = 0;
         for (int y = 0; y < blocks_.y; ++y)
             for (int x = 0; x < blocks_.x; ++x)
-                scale.change[scale.nodeAt({x, y})] -= static_cast<double>(lack_[block++]) / Goal::kWhite;
+                scale.change[scale.at(scale.nodeOf({x, y}))] -= static_cast<double>(lack_[block++]) / Goal::kWhite;
         Box all;
         all.add({0, 0}), all.add(scale.nodes - 1);
         spreadChange(scale, all);
@@ -148,7 +151,7 @@ void RunningScore::measureDetail() {
     Scale& scale = scales_[0];
     const std::vector<double> lack = scale.lack;
     for (int y = 0; y < height_; ++y)
-        for (int x = 0; x < width_; ++x) scale.change[scale.nodeAt(glm::ivec2(x, y) / block_)] -= 1;
+        for (int x = 0; x < width_; ++x) scale.change[scale.at(scale.nodeOf(glm::ivec2(x, y) / block_))] -= 1;
     std::fill(scale.lack.begin(), scale.lack.end(), 0);
     scale.spread.clear();
     Box all;
@@ -160,7 +163,7 @@ void RunningScore::measureDetail() {
         const double value = goal.value(x, y), cost = 1 - 2 * value;
         const double grey = std::min(value, 1 - value) / kBinary;
         const double binary = grey > 4 ? 0 : std::exp(-grey * grey);
-        const std::size_t node = scale.nodeAt(glm::ivec2(x, y) / block_);
+        const std::size_t node = scale.at(scale.nodeOf(glm::ivec2(x, y) / block_));
         const double mean = 1 - 2 * lack[node] / scale.spread[node];
         const double pull = binary * cost + kEdges * (1 - binary) * (cost - mean);
         return static_cast<int>(std::lround(kPull * std::clamp(pull, -1.0, 1.0)));
@@ -172,9 +175,10 @@ void RunningScore::measureDetail() {
             bool same = true;
             for (int i = 0; i < count; ++i) {
                 pulls[at(i)] = pullAt(first + i, y);
-                same = same && pulls[at(i)] == pulls[0];
+                same = same && pulls[at(i)] == pulls[0] && goal.value(first + i, y) == goal.value(first, y);
             }
-            words_.push_back({~std::uint64_t{0}, 0, 0, pulls[0], same ? -1 : static_cast<std::int32_t>(pulls_.size())});
+            const auto cost = static_cast<std::int32_t>(goal.cost(y, first, first + 1));
+            words_.push_back({~std::uint64_t{0}, 0, 0, pulls[0], cost, same ? -1 : static_cast<std::int32_t>(pulls_.size())});
             if (same) continue;
             auto& planes = pulls_.emplace_back();
             for (int i = 0; i < count; ++i)
@@ -201,14 +205,15 @@ void RunningScore::noteBlocks(int column, int row, std::uint64_t covered, std::u
                                                                  : static_cast<unsigned>(std::popcount(pixels & lane)));
     };
     // The words of the last column may reach over the picture's edge, their pixels do not.
-    for (std::int32_t x = column * (PixelMask::kBits / block_); (covered | freed) != 0;
+    for (std::int32_t x = column * (PixelMask::kBits >> blockShift_); (covered | freed) != 0;
          ++x, covered >>= block_, freed >>= block_) {
         const std::int32_t pixels = count(covered) - count(freed);
         if (pixels == 0) continue;
         blockChanges_.push_back({row * blocks_.x + x, pixels});
         for (Scale& scale : scales_) {
-            scale.change[scale.nodeAt({x, row})] += pixels;
-            scale.touched[part].add(glm::ivec2(x, row) / scale.side);
+            const glm::ivec2 node = scale.nodeOf({x, row});
+            scale.change[scale.at(node)] += pixels;
+            scale.touched[part].add(node);
         }
     }
 }
@@ -226,7 +231,7 @@ double RunningScore::propose(const PixelMask& out, const PixelMask& in) {
             const Word* words = words_.data() + wordAt(column, 0);
             for (int y = top; y < bottom;) {
                 std::uint64_t coveredOfBlocks = 0, freedOfBlocks = 0;
-                const int row = y / block_;
+                const int row = y >> blockShift_;
                 const int end = block_ == kLargestBlock ? std::min(bottom, (row + 1) * block_) : y + 1;
                 for (; y < end; ++y) {
                     const std::uint64_t before = outgoing.at(y), after = incoming.at(y);
@@ -313,7 +318,8 @@ double RunningScore::spreadChange(Scale& scale, const Box& box) {
 
 void RunningScore::accept(const PixelMask& out, const PixelMask& in) {
     // What covering these pixels of a word adds to sum |I - I'|.
-    const auto costOf = [&](int column, int y, std::uint64_t pixels) {
+    const auto costOf = [&](const Word& word, int column, int y, std::uint64_t pixels) {
+        if (word.pulls < 0) return std::int64_t{word.cost} * std::popcount(pixels);
         std::int64_t cost = 0;
         while (pixels != 0) {
             const int begin = std::countr_zero(pixels), end = begin + std::countr_one(pixels >> begin);
@@ -329,20 +335,28 @@ void RunningScore::accept(const PixelMask& out, const PixelMask& in) {
             for (int y = mask.top(); y < mask.bottom(); ++y) {
                 const std::uint64_t before = outgoing.at(y), after = incoming.at(y);
                 if (before == after) continue;
-                const std::size_t index = wordAt(column, y);
-                Word& word = words_[index];
-                change(word, index, column, y, after & ~before, before & ~after);
-                word.none = counts_.none(index), word.one = counts_.one(index), word.two = counts_.two(index);
+                change(words_[wordAt(column, y)], wordAt(column, y), column, y, after & ~before, before & ~after);
             }
         }
     };
-    update(out, [&](const Word& word, std::size_t index, int column, int y, std::uint64_t, std::uint64_t goes) {
-        sum_ -= costOf(column, y, word.one & goes);
+    update(out, [&](Word& word, std::size_t index, int column, int y, std::uint64_t, std::uint64_t goes) {
+        if (goes == 0) return;
+        const std::uint64_t freed = word.one & goes, several = goes & ~(word.one | word.two);
+        if (freed != 0) sum_ -= costOf(word, column, y, freed);
+        const std::uint64_t third = several != 0 ? counts_.three(index) & several : 0;
         counts_.take(index, goes);
+        word.none |= freed;
+        word.one = (word.one & ~goes) | (word.two & goes);
+        word.two = (word.two & ~goes) | third;
     });
-    update(in, [&](const Word& word, std::size_t index, int column, int y, std::uint64_t comes, std::uint64_t) {
-        sum_ += costOf(column, y, word.none & comes);
+    update(in, [&](Word& word, std::size_t index, int column, int y, std::uint64_t comes, std::uint64_t) {
+        if (comes == 0) return;
+        const std::uint64_t covered = word.none & comes;
+        if (covered != 0) sum_ += costOf(word, column, y, covered);
         counts_.add(index, comes);
+        word.two = (word.two & ~comes) | (word.one & comes);
+        word.one = (word.one & ~comes) | covered;
+        word.none &= ~comes;
     });
     for (const Change& change : blockChanges_) lack_[at(change.block)] -= std::int64_t{Goal::kWhite} * change.pixels;
     for (Scale& scale : scales_) {
@@ -375,7 +389,7 @@ void RunningScore::findDarkPlaces() {
     for (int y = 0; y < blocks_.y; ++y)
         for (int x = 0; x < blocks_.x; ++x, ++block) {
             const bool counts = !region_ || region_->contains((glm::dvec2(x, y) + 0.5) * double(block_) / double(height_));
-            if (counts && finest.lack[finest.nodeAt({x, y})] > 0) sum += std::max<std::int64_t>(0, lack_[block]);
+            if (counts && finest.lack[finest.at(finest.nodeOf({x, y}))] > 0) sum += std::max<std::int64_t>(0, lack_[block]);
             darkness_.push_back(sum);
         }
 }

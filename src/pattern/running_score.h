@@ -65,10 +65,8 @@ public:
 
     explicit LayerCounts(std::size_t words);
 
-    // Of the pixels of a word: those with no instance, with just one, with just two.
-    std::uint64_t none(std::size_t word) const { return ~above(word, 0); }
-    std::uint64_t one(std::size_t word) const { return planes_[0][word] & ~above(word, 1); }
-    std::uint64_t two(std::size_t word) const { return planes_[1][word] & ~planes_[0][word] & ~above(word, 2); }
+    // Of the pixels of a word: those with just three instances.
+    std::uint64_t three(std::size_t word) const { return planes_[0][word] & planes_[1][word] & ~above(word, 2); }
     // One more, or one less, on the pixels of a mask; there must be one to take.
     void add(std::size_t word, std::uint64_t mask);
     void take(std::size_t word, std::uint64_t mask);
@@ -114,8 +112,10 @@ public:
 private:
     // Everything that a move asks of 64 pixels, side by side in memory; the words of a column are neighbours.
     struct Word {
-        std::uint64_t none, one, two;  // as LayerCounts has them
-        std::int32_t pull;   // of each pixel, where it is the same for all, in 1 / kPull: what covering it adds to the detail
+        std::uint64_t none, one, two;  // the pixels with no instance, with just one, with just two
+        // Of each pixel, where it is the same for all: what covering it adds to the detail, in 1 / kPull, and to sum |I - I'|, in
+        // Goal's units.
+        std::int32_t pull, cost;
         std::int32_t pulls;  // else the index in pulls_; -1
     };
     // What changes is counted in square blocks. Those of 8 pixels, which all but small pictures have, are counted together: the counts of
@@ -132,11 +132,14 @@ private:
     };
     // One Gaussian, sampled at nodes a little closer than its sigma. All values are whole numbers, in doubles.
     struct Scale {
-        int side = 1;  // of the square of blocks around a node
         glm::ivec2 nodes{0};
-        std::size_t nodeAt(glm::ivec2 block) const {
-            return static_cast<std::size_t>(block.y / side) * static_cast<std::size_t>(nodes.x) +
-                   static_cast<std::size_t>(block.x / side);
+        std::vector<std::int32_t> columns,
+            rows;  // which node's each column and row of blocks is; each has a square of blocks around it
+        glm::ivec2 nodeOf(glm::ivec2 block) const {
+            return {columns[static_cast<std::size_t>(block.x)], rows[static_cast<std::size_t>(block.y)]};
+        }
+        std::size_t at(glm::ivec2 node) const {
+            return static_cast<std::size_t>(node.y) * static_cast<std::size_t>(nodes.x) + static_cast<std::size_t>(node.x);
         }
         std::vector<double> lack;    // of each node: the Gaussian mean of I - I', in Goal's units * kKernelSum^2
         std::vector<double> change;  // pixels covered more by the move at hand, in each square; zero between moves
@@ -157,6 +160,7 @@ private:
     const std::optional<PatternSearch::Region> region_;
     const int width_, height_;
     const int block_;          // the side of a block, pixels: 1, 2, 4 or 8
+    const int blockShift_;     // its logarithm to base 2
     const glm::ivec2 blocks_;  // so many, those cut by the edges included
     LayerCounts counts_;
     std::vector<Word> words_;

@@ -2,6 +2,8 @@
 
 #include "pattern/pattern_search.h"
 
+#include <limits>
+
 namespace fantascope::pattern {
 
 // The numbers of PatternSearch::Options, each with its key and bounds, section by section as in a settings file. `fields` has
@@ -9,6 +11,7 @@ namespace fantascope::pattern {
 template <class Fields>
 void declareSearch(Fields& fields, PatternSearch::Options& options) {
     fields.number("target_z", options.targetZ, 0, 1);
+    fields.integer("iterations", options.iterations, 0, std::numeric_limits<int>::max());
     fields.integer("rows", options.rows, 16, 4096);
 }
 
