@@ -22,44 +22,49 @@ namespace {
 
 constexpr glm::ivec2 kSize{640, 360};
 constexpr int kSamples = 4;
-constexpr int kDefaultShow = 110, kHeavyShow = 330;  // crystals of 60 facets
 
-// A closed crystal of 60 facets: a sphere of six segments, as many rings.
-TriangleMesh crystal() {
-    constexpr std::uint32_t kSegments = 6, kRings = 6;
+// A closed crystal of 2 * segments * (rings - 1) facets.
+TriangleMesh crystal(std::uint32_t segments, std::uint32_t rings) {
     TriangleMesh mesh;
     mesh.vertices.push_back({0, 1, 0});
-    for (std::uint32_t ring = 1; ring < kRings; ++ring)
-        for (std::uint32_t segment = 0; segment < kSegments; ++segment) {
-            const double polar = std::numbers::pi * ring / kRings, around = 2 * std::numbers::pi * segment / kSegments;
+    for (std::uint32_t ring = 1; ring < rings; ++ring)
+        for (std::uint32_t segment = 0; segment < segments; ++segment) {
+            const double polar = std::numbers::pi * ring / rings, around = 2 * std::numbers::pi * segment / segments;
             mesh.vertices.push_back({std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around)});
         }
     mesh.vertices.push_back({0, -1, 0});
     const auto bottom = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
-    for (std::uint32_t segment = 0; segment < kSegments; ++segment) {
-        const std::uint32_t next = (segment + 1) % kSegments;
+    for (std::uint32_t segment = 0; segment < segments; ++segment) {
+        const std::uint32_t next = (segment + 1) % segments;
         mesh.triangles.push_back({0, 1 + next, 1 + segment});
-        for (std::uint32_t ring = 0; ring + 2 < kRings; ++ring) {
-            const std::uint32_t upper = 1 + ring * kSegments, lower = upper + kSegments;
+        for (std::uint32_t ring = 0; ring + 2 < rings; ++ring) {
+            const std::uint32_t upper = 1 + ring * segments, lower = upper + segments;
             mesh.triangles.push_back({upper + segment, upper + next, lower + segment});
             mesh.triangles.push_back({upper + next, lower + next, lower + segment});
         }
-        mesh.triangles.push_back({bottom, bottom - kSegments + segment, bottom - kSegments + next});
+        mesh.triangles.push_back({bottom, bottom - segments + segment, bottom - segments + next});
     }
     return mesh;
 }
 
-PatternSource swayingCrystals(int count) {
+struct Crystals {
+    int count;
+    std::uint32_t segments = 6, rings = 6;  // of 60 facets
+    double largest = 0.06;                  // canvas heights
+};
+constexpr Crystals kDefaultShow{110}, kHeavyShow{330}, kThreeThousand{3000, 10, 11, 0.03};
+
+PatternSource swayingCrystals(const Crystals& crystals) {
     pattern::ShapePattern pattern;
     pattern.width = kSize.x;
     pattern.height = kSize.y;
-    pattern.shapes.push_back({"crystal", crystal()});
+    pattern.shapes.push_back({"crystal", crystal(crystals.segments, crystals.rings)});
     Rng rng(1);
-    for (std::uint32_t id = 0; id < static_cast<std::uint32_t>(count); ++id) {
+    for (std::uint32_t id = 0; id < static_cast<std::uint32_t>(crystals.count); ++id) {
         pattern::ShapeInstance instance;
         instance.id = id;
         instance.centre = {rng.uniform(0, pattern.aspect()), rng.uniform()};
-        instance.size = rng.uniform(0.02, 0.06);
+        instance.size = rng.uniform(crystals.largest / 3, crystals.largest);
         instance.rotation = {rng.uniform(0, 3), rng.uniform(0, 3), rng.uniform(0, 3)};
         pattern.instances.push_back(instance);
     }
@@ -80,17 +85,19 @@ T valueOf(Result<T> result) {
 }
 
 // One frame on `outputs` displays: drawn one after the other, presented together.
-void drawFrame(benchmark::State& state, int outputs, int layers, const std::vector<PictureSource>& sources) {
+void drawFrame(benchmark::State& state, int outputs, int layers, const std::vector<PictureSource>& sources,
+               glm::ivec2 size = kSize) {
     ManualClock clock;
     std::vector<Output> all;
     for (int i = 0; i < outputs; ++i) {
         Output output;
         const ConfigNode options = valueOf(ConfigNode::parse("driver: headless", "bench"));
-        output.sink = valueOf(drivers::HeadlessDisplay::open(options, {"output", kSize, 30}, {clock}));
+        output.sink = valueOf(drivers::HeadlessDisplay::open(options, {"output", size, 30}, {clock}));
         FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "a new display is there");
         OutputRenderer::Options keystone;
-        keystone.size = kSize;
+        keystone.size = size;
         keystone.corners = {{{40, 20}, {610, 5}, {630, 350}, {10, 340}}};
+        for (glm::dvec2& corner : keystone.corners) corner *= glm::dvec2(size) / glm::dvec2(kSize);
         keystone.samples = kSamples;
         keystone.shaders = FANTASCOPE_SOURCE_DIR "/assets/shaders";
         output.renderer = valueOf(OutputRenderer::create(keystone, sources));
@@ -114,9 +121,10 @@ void drawFrame(benchmark::State& state, int outputs, int layers, const std::vect
         output.renderer.reset();
     }
 }
-void drawPatterns(benchmark::State& state, int outputs, int layers, int crystals) {
+void drawPatterns(benchmark::State& state, int outputs, int layers, const Crystals& crystals) {
     drawFrame(state, outputs, layers, {swayingCrystals(crystals), swayingCrystals(crystals)});
 }
+void drawThreeThousand(benchmark::State& state) { drawFrame(state, 1, 1, {swayingCrystals(kThreeThousand)}, {1280, 720}); }
 
 // The shadow of as many crystals, blurred with a disc of this radius in pixels of the canvas.
 void drawFoliage(benchmark::State& state) {
@@ -141,6 +149,7 @@ BENCHMARK_CAPTURE(drawPatterns, two_outputs, 2, 1, kDefaultShow)->Apply(settings
 BENCHMARK_CAPTURE(drawPatterns, two_outputs_in_a_crossfade, 2, 2, kDefaultShow)->Apply(settings);
 BENCHMARK_CAPTURE(drawPatterns, one_output_heavy, 1, 1, kHeavyShow)->Apply(settings);
 BENCHMARK_CAPTURE(drawPatterns, one_output_black, 1, 0, kDefaultShow)->Apply(settings);
+BENCHMARK(drawThreeThousand)->Apply(settings);
 BENCHMARK(drawFoliage)->ArgName("radius")->Arg(0)->Arg(2)->Arg(5)->Arg(10)->Arg(20)->Arg(40)->Arg(80)->Apply(settings);
 BENCHMARK(drawCaustics)->Apply(settings);
 BENCHMARK(drawMirrorBall)->Apply(settings);

@@ -1,13 +1,18 @@
 #include "pattern/pattern_settings.h"
 
 #include "pattern/elemental_shape.h"
+#include "pattern/motion_file.h"
+#include "pattern/search_bounds.h"
 
+#include "core/file.h"
 #include "core/image.h"
 #include "scratch_folder.h"
 
 #include <gmock/gmock.h>
 
+#include <map>
 #include <numbers>
+#include <string>
 
 namespace fantascope::pattern {
 namespace {
@@ -158,6 +163,40 @@ TEST(PatternSettings, movement_is_fitted_unless_an_amplitude_is_named) {
     EXPECT_TRUE(read("motion: {direction: 20, local_turn: {beta: 2, damping: 0.5}}\n")->fitMotion);
     EXPECT_FALSE(read("motion: {local_turn: {range: 10}}\n")->fitMotion);
     EXPECT_FALSE(read("motion: {group_minor: {magnitude: 0.1}}\n")->fitMotion);
+}
+
+// The numbers of options, by their keys.
+struct Collected {
+    std::map<std::string, double> numbers;
+
+    void number(const char* key, double value, double, double) { numbers[key] = value; }
+    void integer(const char* key, double value, double, double) { numbers[key] = value; }
+    void angle(const char* key, double value, double, double) { numbers[key] = value; }
+};
+std::map<std::string, double> numbersOf(PatternSearch::Options options) {
+    Collected collected;
+    declareSearch(collected, options);
+    declareRefined(collected, options.refined);
+    declarePaper(collected, options.paper);
+    declareShapes(collected, options);
+    return collected.numbers;
+}
+
+// The file that people copy from. Example failure: a default was changed, or a new number is not in it.
+TEST(PatternSettings, the_file_of_defaults_holds_every_number_and_changes_nothing) {
+    const std::string file = FANTASCOPE_SOURCE_DIR "/assets/defaults.pattern-settings.yaml";
+    const auto settings = readPatternSettings(file);
+    ASSERT_TRUE(settings) << settings.error().message();
+    const auto numbers = numbersOf(PatternSearch::Options());
+    EXPECT_EQ(numbersOf(settings->search), numbers);
+    EXPECT_EQ(motionText(settings->motion), motionText(MotionSettings()));
+    EXPECT_TRUE(settings->fitMotion);
+    EXPECT_FALSE(settings->search.size);
+    EXPECT_FALSE(settings->seconds);
+    EXPECT_EQ(settings->search.colours.size(), 1u);
+    EXPECT_EQ(settings->search.colours[0].from, PatternSearch::Options::Colours().from);
+    const std::string text = readFile(file).value();
+    for (const auto& [key, value] : numbers) EXPECT_THAT(text, HasSubstr(key));
 }
 
 TEST(PatternSettings, what_is_wrong_is_refused_with_its_place) {
