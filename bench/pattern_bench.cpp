@@ -1,10 +1,13 @@
 // What the search for a pattern reaches, both methods side by side: one row for each guide, method and time, with the work done beside the
-// seconds. Seconds are those of the processor, on one thread, so that a busy machine gives the same figures.
+// seconds. Seconds are those of the processor, on one thread. "redraw": whether the search's own z is that of a fresh drawing; "strays": how far
+// local movement carries the shapes' corners over the loop, in mean sizes (LoopQuality).
 
 #include "pattern/elemental_shape.h"
 #include "pattern/measure.h"
+#include "pattern/motion_fit.h"
 #include "pattern/pattern_search.h"
 
+#include "core/parallel.h"
 #include "core/random.h"
 
 #include <CLI/CLI.hpp>
@@ -132,6 +135,8 @@ ElementalShape pebble() {
     return makeShape("pebble", mesh).value();
 }
 
+constexpr int kLoopMoments = 200;
+
 using Method = PatternSearch::Method;
 
 struct Task {
@@ -174,15 +179,19 @@ PatternSearch::Found search(const Task& task, Method method, double limit, std::
     return PatternSearch::run(task.guide, blank(task, seed), options, 1, askStop, plan);
 }
 
-// Prints what a search reaches; returns its z.
+// Prints what a search reaches, and what the loop with fitted movement does to it; returns its z.
 double row(const Task& task, Method method, double limit, const Options& options) {
     const double start = processorSeconds();
-    const PatternSearch::Found found = search(task, method, limit, options.seed);
+    PatternSearch::Found found = search(task, method, limit, options.seed);
     const double took = processorSeconds() - start;
     const PatternQuality quality = measure(found.pattern, task.guide);
-    fmt::print("{:<18} {:<8} {:>6.2f} {:>8.4f} {:>8.4f} {:>7.4f} {:>7.3f} {:>9} {:>11} {:>10.0f}\n", task.name, name(method),
-               took, quality.z, quality.zBound, quality.tone, quality.overlap, found.pattern.instances.size(),
-               found.summary.evaluations, static_cast<double>(found.summary.evaluations) / took);
+    found.pattern.motion = fittedMotion(found.pattern, task.guide, hardwareThreads());
+    const LoopQuality loop = LoopMeasure(found.pattern, task.guide, hardwareThreads()).in({}, kLoopMoments);
+    fmt::print(
+        "{:<18} {:<8} {:>6.2f} {:>8.4f} {:>8.4f} {:>7.4f} {:>7.3f} {:>9} {:>11} {:>10.0f} {:>6} {:>8.4f} {:>9.4f} {:>7.3f}\n",
+        task.name, name(method), took, quality.z, quality.zBound, quality.tone, quality.overlap, found.pattern.instances.size(),
+        found.summary.evaluations, static_cast<double>(found.summary.evaluations) / took,
+        found.summary.z == quality.z ? "same" : "OTHER", loop.z, loop.tone, loop.localDisplacement);
     std::fflush(stdout);
     if (options.images) {
         std::filesystem::create_directories(*options.images);
@@ -208,8 +217,9 @@ void compare(const Task& task, double paperZ, double limit, const Options& optio
 
 int run(const Options& options) {
     fmt::print("yardstick: {:.3f} s to count the bits of 1000 pictures\n\n", yardstick());
-    fmt::print("{:<18} {:<8} {:>6} {:>8} {:>8} {:>7} {:>7} {:>9} {:>11} {:>10}\n", "guide", "method", "CPU s", "z", "z bound",
-               "tone", "overlap", "instances", "evaluations", "a second");
+    fmt::print("{:<18} {:<8} {:>6} {:>8} {:>8} {:>7} {:>7} {:>9} {:>11} {:>10} {:>6} {:>8} {:>9} {:>7}\n", "guide", "method",
+               "CPU s", "z", "z bound", "tone", "overlap", "instances", "evaluations", "a second", "redraw", "loop z",
+               "loop tone", "strays");
     const std::vector<Task> tasks = {{"lettering", lettering(), "triangle", {1, 5}, {1, 5, 60}, true},
                                      {"lettering-pebbles", lettering(), "pebble", {5}, {5}, true},
                                      {"soft", soft(), "triangle", {5, 30}, {5, 30}, false},
