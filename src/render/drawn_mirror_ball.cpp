@@ -1,7 +1,6 @@
 #include "render/drawn_mirror_ball.h"
 
-#include "render/gpu/canvas_painter.h"
-#include "render/gpu/light_canvas.h"
+#include "render/canvas_light.h"
 #include "render/gpu/spot_painter.h"
 
 #include "core/geometry.h"
@@ -10,7 +9,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -26,28 +24,18 @@ constexpr double kAskew = radians(0.6);  // the standard deviation of a mirror t
 
 class DrawnMirrorBall : public DrawnSource {
 public:
-    DrawnMirrorBall(const MirrorBallSource& source, gpu::LightCanvas canvas, gpu::SpotPainter spots, gpu::CanvasPainter painter)
-        : light_(source.light),
-          turn_(source.turn),
-          canvas_(std::move(canvas)),
-          spots_(std::move(spots)),
-          painter_(std::move(painter)) {}
+    DrawnMirrorBall(double turn, CanvasLight light, gpu::SpotPainter spots)
+        : turn_(turn), light_(std::move(light)), spots_(std::move(spots)) {}
 
     void paint(Time time, const Wind&, gpu::LayerPicture& picture) override {
-        canvas_.begin();
-        spots_.paint(static_cast<float>(2 * std::numbers::pi * std::fmod(seconds(time) / turn_, 1)));
-        canvas_.end();
-        picture.begin();
-        const std::array pictures = {gpu::CanvasPainter::Picture{.texture = canvas_.texture()}};
-        painter_.paint(pictures, nullptr, glm::vec3(0), light_);
+        const auto angle = static_cast<float>(2 * std::numbers::pi * std::fmod(seconds(time) / turn_, 1));
+        light_.paint(picture, [&] { spots_.paint(angle); });
     }
 
 private:
-    glm::vec3 light_;
-    double turn_;
-    gpu::LightCanvas canvas_;
+    double turn_;  // seconds
+    CanvasLight light_;
     gpu::SpotPainter spots_;
-    gpu::CanvasPainter painter_;
 };
 
 }  // namespace
@@ -73,7 +61,6 @@ std::vector<Facet> mirrorFacets(double radius, double facet) {
 
 Result<std::unique_ptr<DrawnSource>> makeDrawnMirrorBall(const MirrorBallSource& source, const CanvasPlace& place,
                                                          DrawingTools& tools) {
-    const double aspect = source.size.x / source.size.y, rows = std::ceil(canvasRows(aspect, place));
     gpu::SpotPainter::Scene scene;
     scene.ball = source.ball;
     scene.lamp = source.lamp;
@@ -81,10 +68,9 @@ Result<std::unique_ptr<DrawnSource>> makeDrawnMirrorBall(const MirrorBallSource&
     scene.halfFacet = static_cast<float>(source.facet / 2);
     scene.lampRadius = static_cast<float>(source.lampRadius);
     scene.canvas = source.size;
-    auto canvas = TRY(gpu::LightCanvas::create(glm::ivec2(std::ceil(aspect * rows), rows)));
+    auto light = TRY(CanvasLight::create(source.size.x / source.size.y, source.light, place, tools));
     auto spots = TRY(gpu::SpotPainter::create(mirrorFacets(source.radius, source.facet), scene, tools.programs));
-    auto painter = TRY(gpu::CanvasPainter::create(TRY(clipFromUnitCanvas(aspect, place)), 1, 0, tools.programs));
-    return std::unique_ptr<DrawnSource>(new DrawnMirrorBall(source, std::move(canvas), std::move(spots), std::move(painter)));
+    return std::unique_ptr<DrawnSource>(new DrawnMirrorBall(source.turn, std::move(light), std::move(spots)));
 }
 
 }  // namespace fantascope::render
