@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -29,6 +30,17 @@ inline std::string contentsOf(const std::filesystem::path& file) {
     return text.str();
 }
 
+// Becomes fantascope, in a child process.
+[[noreturn]] inline void execute(const std::vector<std::string>& arguments) {
+    std::vector<char*> words{const_cast<char*>(FANTASCOPE_PROGRAM)};
+    for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+    words.push_back(nullptr);
+    ::execv(FANTASCOPE_PROGRAM, words.data());
+    ::_exit(127);
+}
+
+inline int statusOf(int waited) { return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited); }
+
 // Runs fantascope with `arguments` in `folder`, with further environment variables, and waits for it.
 inline Outcome runProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                           const std::vector<std::pair<std::string, std::string>>& environment = {}) {
@@ -41,15 +53,33 @@ inline Outcome runProgram(const std::vector<std::string>& arguments, const std::
         ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
         ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
         ::dup2(::open(errors.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
-        std::vector<char*> words{const_cast<char*>(FANTASCOPE_PROGRAM)};
-        for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
-        words.push_back(nullptr);
-        ::execv(FANTASCOPE_PROGRAM, words.data());
-        ::_exit(127);
+        execute(arguments);
     }
     int status = 0;
     ::waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contentsOf(out), contentsOf(errors)};
+    return {statusOf(status), contentsOf(out), contentsOf(errors)};
+}
+
+// Runs fantascope with `arguments` in `folder`, presses Ctrl-C once it has told `lines` lines of progress, and waits for it: the exit
+// status, or 128 + the signal; -1 if it ended before.
+inline int interruptProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder, int lines) {
+    int pipe[2];
+    if (::pipe(pipe) != 0) return -1;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        if (::chdir(folder.c_str()) != 0) ::_exit(127);
+        ::dup2(pipe[1], STDERR_FILENO);
+        ::close(pipe[0]);
+        execute(arguments);
+    }
+    ::close(pipe[1]);
+    char byte = 0;
+    while (lines > 0 && ::read(pipe[0], &byte, 1) == 1) lines -= byte == '\n';
+    ::kill(child, SIGINT);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ::close(pipe[0]);
+    return lines > 0 ? -1 : statusOf(status);
 }
 
 }  // namespace fantascope

@@ -318,16 +318,17 @@ Result<void> run(const Options& options) {
                                    : materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
 
     ShapePattern pattern;
-    pattern.guideTransfer = settings.guideTransfer;
-    pattern.seed = start ? start->seed : options.seed;
+    if (start) {
+        pattern = *start;
+        pattern.shapes.clear();  // they come back by the names that they have beside the new file
+    } else {
+        pattern.guideTransfer = settings.guideTransfer;
+        pattern.seed = options.seed;
+        pattern.motion = settings.motion;
+    }
     for (auto& [shape, own] : shapes) {
         pattern.shapes.push_back(std::move(shape));
         settings.search.shapes.push_back(std::move(own));
-    }
-    pattern.motion = start ? start->motion : settings.motion;
-    if (start) {
-        pattern.groups = start->groups;
-        pattern.instances = std::move(start->instances);
     }
     std::unique_ptr<drivers::PictureWindow> window;
     if (options.watch) window = TRY(drivers::PictureWindow::open(options.output.filename().string(), kWindow));

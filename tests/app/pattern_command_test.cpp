@@ -12,9 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <csignal>
 #include <string>
 #include <vector>
 
@@ -264,25 +262,10 @@ TEST_F(PatternCommand, wrong_usage_has_a_status_of_its_own_and_points_to_the_hel
 // The artist's stop: Ctrl-C keeps the best pattern so far. The signal is sent once the first line of progress says that the
 // search runs.
 TEST_F(PatternCommand, ctrl_c_keeps_the_best_so_far) {
-    std::array<int, 2> pipe{};
-    ASSERT_EQ(::pipe(pipe.data()), 0);
-    const pid_t child = ::fork();
-    if (child == 0) {
-        ::dup2(pipe[1], STDERR_FILENO);
-        ::close(pipe[0]);
-        if (::chdir((folder_ / ".").c_str()) == 0)
-            ::execl(FANTASCOPE_PROGRAM, "fantascope", "pattern", "guide.png", "-o", "out/p.pattern.yaml", "--instances", "40",
-                    "--seconds", "100000", "--report", "out/r.json", nullptr);
-        ::_exit(127);
-    }
-    ::close(pipe[1]);
-    char firstByte = 0;
-    ASSERT_EQ(::read(pipe[0], &firstByte, 1), 1);
-    ::kill(child, SIGINT);
-    int status = 0;
-    ASSERT_EQ(::waitpid(child, &status, 0), child);
-    ::close(pipe[0]);
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    EXPECT_EQ(interruptProgram({"pattern", "guide.png", "-o", "out/p.pattern.yaml", "--instances", "40", "--seconds", "100000",
+                                "--report", "out/r.json"},
+                               folder_ / ".", 1),
+              0);
     EXPECT_EQ(report()["stop_reason"], "interrupted");
     EXPECT_TRUE(pattern::readPattern(folder_ / "out" / "p.pattern.yaml"));
 }
@@ -290,7 +273,8 @@ TEST_F(PatternCommand, ctrl_c_keeps_the_best_so_far) {
 // Something stands before the right half; there the pattern changes, elsewhere it must not. Example failure: colours, groups or
 // movement of what stays are drawn anew.
 TEST_F(PatternCommand, goes_on_from_a_pattern_in_a_region) {
-    ASSERT_EQ(find({"--iterations", "20", "--seed", "5", "--shapes", "sculpture.obj"}).status, 0);
+    ASSERT_TRUE(writeFile(folder_ / "linear.yaml", "fantascope: pattern-settings\nversion: 1\nguide_transfer: linear\n"));
+    ASSERT_EQ(find({"--iterations", "20", "--seed", "5", "--shapes", "sculpture.obj", "--settings", "linear.yaml"}).status, 0);
     const pattern::ShapePattern before = pattern::readPattern(folder_ / "out" / "p.pattern.yaml").value();
     const Outcome outcome = run({"pattern", "guide.png", "-o", "out/q.pattern.yaml", "--start", "out/p.pattern.yaml", "--region",
                                  "0.9,0,1.8,1", "--iterations", "5"});
@@ -298,6 +282,7 @@ TEST_F(PatternCommand, goes_on_from_a_pattern_in_a_region) {
     const pattern::ShapePattern after = pattern::readPattern(folder_ / "out" / "q.pattern.yaml").value();
     EXPECT_EQ(after.seed, 5u);
     EXPECT_EQ(after.groups, before.groups);
+    EXPECT_EQ(after.guideTransfer, pattern::GuideTransfer::Linear);
     EXPECT_EQ(after.motion.localTurn.range, before.motion.localTurn.range);
     int elsewhere = 0;
     for (const pattern::ShapeInstance& instance : after.instances) {
