@@ -25,6 +25,12 @@ std::vector<Silhouette> silhouettesOf(const ShapePattern& pattern) {
 
 InstancePose restPose(const ShapeInstance& instance) { return {instance.centre, instance.size, instance.rotation}; }
 
+Coverage coverageAtRest(const ShapePattern& pattern, const std::vector<Silhouette>& silhouettes, int width, int height) {
+    Coverage coverage(width, height);
+    for (const ShapeInstance& instance : pattern.instances) coverage.add(silhouettes[instance.shape], restPose(instance));
+    return coverage;
+}
+
 // The standard deviation of the tone's Gaussian, in pixels.
 double toneSigma(const ShapePattern& pattern) { return pattern.height / 36.0; }
 
@@ -109,8 +115,7 @@ std::vector<VertexMoments> verticesOf(const ShapePattern& pattern) {
 PatternQuality measure(const ShapePattern& pattern, const GreyImage& guide) {
     const GreyImage compared = resized(guide, pattern.width, pattern.height);
     const std::vector<Silhouette> silhouettes = silhouettesOf(pattern);
-    Coverage coverage(pattern.width, pattern.height);
-    for (const ShapeInstance& instance : pattern.instances) coverage.add(silhouettes[instance.shape], restPose(instance));
+    const Coverage coverage = coverageAtRest(pattern, silhouettes, pattern.width, pattern.height);
     const Goal goal(compared);
     const double sigma = toneSigma(pattern);
     return {.z = goal.z(coverage),
@@ -179,10 +184,7 @@ LoopQuality LoopMeasure::in(const Wind& wind, int moments) const {
 }
 
 GreyImage drawWhiteOnBlack(const ShapePattern& pattern, int width, int height) {
-    const std::vector<Silhouette> silhouettes = silhouettesOf(pattern);
-    Coverage coverage(width, height);
-    for (const ShapeInstance& instance : pattern.instances) coverage.add(silhouettes[instance.shape], restPose(instance));
-    return coverage.picture();
+    return coverageAtRest(pattern, silhouettesOf(pattern), width, height).picture();
 }
 
 }  // namespace fantascope::pattern
