@@ -276,7 +276,7 @@ PatternSearch::Found search(const GreyImage& guide, ShapePattern pattern, const 
         if (limit && seconds(worked() - start) >= *limit && !(planning && planned)) return PatternSearch::StopReason::Time;
         return std::nullopt;
     };
-    // From the speed of the first few hundredths, once it runs.
+    // From the speed of the first tenth, once it runs.
     std::optional<Time> running;
     const auto plan = [&](const PatternSearch::Progress& now) -> std::optional<int> {
         if (!running) running = worked();

@@ -123,8 +123,8 @@ std::string_view name(PatternSearch::StopReason reason) {
 std::string_view name(PatternSearch::Method method) { return method == PatternSearch::Method::Refined ? "refined" : "paper"; }
 
 std::optional<int> PatternSearch::iterationsWithin(double budget, int done, double elapsed) {
-    constexpr double kEnough = 0.04;  // of the budget; less than the refined method's warm part
-    constexpr double kFaster = 1.1;   // a cool search keeps fewer moves, which takes less time
+    constexpr double kEnough = 0.1;  // of the budget; less than the refined method's warm part
+    constexpr double kFaster = 1.2;  // a cool search keeps fewer moves, which takes less time
     if (done == 0 || elapsed < kEnough * budget) return std::nullopt;
     return static_cast<int>(std::min(kFaster * done * budget / elapsed, double(std::numeric_limits<int>::max() - 1)));
 }

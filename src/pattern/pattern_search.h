@@ -79,8 +79,11 @@ struct PatternSearch {
         struct Refined {
             // What a wrong pixel, a wrong tone and a pixel that several instances cover weigh against each other; 0 .. 100.
             double zWeight = 1, toneWeight = 0.5, overlapWeight = 0.12;
+            // The share of the covered pixels that several instances may cover at no cost where the guide is white; 0 .. 1. Shapes that
+            // lie a little on each other open no gaps when they sway.
+            double overlapFree = 0.13;
             // The temperature at the start, as the share of a typical instance's pixels that may be lost in a move; 0 .. 10.
-            double temperature = 0.03;
+            double temperature = 0.015;
             // The share of the iterations, the last ones, that accept nothing worse; 0 .. 1.
             double polish = 0.1;
         } refined;

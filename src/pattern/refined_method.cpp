@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMoves = 1000;  // an iteration
 // The share of the run before the temperature begins to fall; the caller has so long to say how long the run will be.
-constexpr double kWarm = 0.05;
+constexpr double kWarm = 0.12;
 // How far the temperature falls until the polish.
 constexpr double kCoolest = 0.03;
 // Of how many places the best is taken when the search begins.
@@ -29,10 +29,11 @@ constexpr double kWorth = 0.5;
 class Step {
 public:
     explicit Step(double most) : step_(most), most_(most) {}
-    double amount(Rng& rng) const { return step_ * rng.normal(); }
+    double amount(Rng& rng) const { return step_ * rng.uniform(-kReach, kReach); }
     void learn(bool accepted) { step_ = std::clamp(step_ * (accepted ? kGrow : kShrink), kLeast * most_, most_); }
 
 private:
+    static constexpr double kReach = 1.7;                                 // of a standard deviation of 1, nearly
     static constexpr double kGrow = 1.02, kShrink = 0.99, kLeast = 0.02;  // kGrow * kShrink^2 is 1, nearly
     double step_, most_;
 };
@@ -156,12 +157,12 @@ private:
         if (kind < 0.03 || instances_.empty()) {
             if (instances_.size() + kept_.size() >= most_) return;
             place(newInstance());
-            if (isGood(score_.propose(kNothing, mask_) + kWorth)) keepNew();
+            if (isGood(kNothing, mask_, -kWorth)) keepNew();
             return;
         }
         const std::size_t index = rng_.below(static_cast<std::uint32_t>(instances_.size()));
         if (kind < 0.06) {
-            if (isGood(score_.propose(drawn_[index], kNothing) - kWorth)) forget(index);
+            if (isGood(drawn_[index], kNothing, kWorth)) forget(index);
         } else if (kind < 0.10) {
             ShapeInstance elsewhere = newInstance();
             elsewhere.id = instances_[index].id;
@@ -200,7 +201,7 @@ private:
     // Puts another instance in the place of one, if that is good.
     bool replace(std::size_t index, const ShapeInstance& instance) {
         place(space_.allowed(instance));
-        if (!isInRegion(proposed_) || !isGood(score_.propose(drawn_[index], mask_))) return false;
+        if (!isInRegion(proposed_) || !isGood(drawn_[index], mask_, 0)) return false;
         score_.accept(drawn_[index], mask_);
         std::swap(drawn_[index], mask_);
         --counts_[instances_[index].shape], ++counts_[proposed_.shape];
@@ -208,7 +209,12 @@ private:
         return true;
     }
 
-    bool isGood(double change) { return change <= 0 || (temperature_ > 0 && rng_.uniform() < std::exp(-change / temperature_)); }
+    // The most that a move may make the pattern worse: a change c is below it with probability exp(-c / temperature).
+    // `bonus` pixels may be lost besides.
+    bool isGood(const PixelMask& out, const PixelMask& in, double bonus) {
+        const double most = bonus + (temperature_ > 0 ? -temperature_ * std::log(1 - rng_.uniform()) : 0);
+        return score_.propose(out, in, most) <= most;
+    }
 
     // Draws the instance that is proposed into mask_.
     void place(const ShapeInstance& instance) {

@@ -21,6 +21,8 @@ constexpr std::array<double, 2 * kReach + 1> kKernel = {16, 86, 241, 338, 241, 8
 constexpr double kKernelSum = 1024;
 // A guide is black or white where it is no farther from it than about this.
 constexpr double kBinary = 0.02;
+// A guide that is lighter is as good as white to the overlap: light has no room there to lie side by side.
+constexpr double kWhite = 0.9;
 // What the edges of greys weigh: at 1 they are as sharp as those of black and white, and greys become outlines.
 constexpr double kEdges = 0.25;
 
@@ -173,12 +175,15 @@ void RunningScore::measureDetail() {
         for (int y = 0; y < height_; ++y) {
             const int count = std::min(PixelMask::kBits, width_ - first);
             bool same = true;
+            std::uint64_t white = 0;
             for (int i = 0; i < count; ++i) {
+                if (goal.value(first + i, y) > kWhite) white |= std::uint64_t{1} << i;
                 pulls[at(i)] = pullAt(first + i, y);
                 same = same && pulls[at(i)] == pulls[0] && goal.value(first + i, y) == goal.value(first, y);
             }
             const auto cost = static_cast<std::int32_t>(goal.cost(y, first, first + 1));
-            words_.push_back({~std::uint64_t{0}, 0, 0, pulls[0], cost, same ? -1 : static_cast<std::int32_t>(pulls_.size())});
+            words_.push_back(
+                {~std::uint64_t{0}, 0, 0, white, pulls[0], cost, same ? -1 : static_cast<std::int32_t>(pulls_.size())});
             if (same) continue;
             auto& planes = pulls_.emplace_back();
             for (int i = 0; i < count; ++i)
@@ -198,7 +203,7 @@ std::int64_t RunningScore::pullOf(const Word& word, std::uint64_t pixels) const 
 
 // The blocks of one column of words and one row of blocks: so many pixels more and less are covered. `covered` and `freed` hold a byte for
 // each block of 8; of smaller blocks the pixels themselves, of one row.
-void RunningScore::noteBlocks(int column, int row, std::uint64_t covered, std::uint64_t freed, std::size_t part) {
+void RunningScore::noteBlocks(int column, int row, std::uint64_t covered, std::uint64_t freed, int part) {
     const std::uint64_t lane = ~std::uint64_t{0} >> (PixelMask::kBits - block_);
     const auto count = [&](std::uint64_t pixels) {
         return static_cast<std::int32_t>(block_ == kLargestBlock ? pixels & lane
@@ -209,23 +214,15 @@ void RunningScore::noteBlocks(int column, int row, std::uint64_t covered, std::u
          ++x, covered >>= block_, freed >>= block_) {
         const std::int32_t pixels = count(covered) - count(freed);
         if (pixels == 0) continue;
-        blockChanges_.push_back({row * blocks_.x + x, pixels});
-        for (Scale& scale : scales_) {
-            const glm::ivec2 node = scale.nodeOf({x, row});
-            scale.change[scale.at(node)] += pixels;
-            scale.touched[part].add(node);
-        }
+        blockChanges_.push_back({{x, row}, pixels, part});
     }
 }
 
-double RunningScore::propose(const PixelMask& out, const PixelMask& in) {
+double RunningScore::propose(const PixelMask& out, const PixelMask& in, double most) {
     blockChanges_.clear();
-    for (Scale& scale : scales_) {
-        scale.touched = {};
-        scale.spread.clear();
-    }
+    coveredWhiteChange_ = severalWhiteChange_ = 0;
     std::int64_t several = 0, detail = 0;
-    const auto difference = [&](int left, int right, int top, int bottom, std::size_t part) {
+    const auto difference = [&](int left, int right, int top, int bottom, int part) {
         for (int column = left; column < right; ++column) {
             const PixelMask::Column outgoing = out.column(column), incoming = in.column(column);
             const Word* words = words_.data() + wordAt(column, 0);
@@ -238,12 +235,16 @@ double RunningScore::propose(const PixelMask& out, const PixelMask& in) {
                     if (before == after) continue;
                     const Word& word = words[y];
                     const std::uint64_t comes = after & ~before, goes = before & ~after;
-                    several += std::popcount(word.one & comes) - std::popcount(word.two & goes);
-                    if (const std::uint64_t covered = word.none & comes; covered != 0) {
-                        detail += pullOf(word, covered);
-                        coveredOfBlocks += block_ == kLargestBlock ? bitsOfBytes(covered) : covered;
+                    const std::uint64_t second = word.one & comes, alone = word.two & goes;
+                    several += std::popcount(second) - std::popcount(alone);
+                    severalWhiteChange_ += std::popcount(second & word.white) - std::popcount(alone & word.white);
+                    if (const std::uint64_t first = word.none & comes; first != 0) {
+                        coveredWhiteChange_ += std::popcount(first & word.white);
+                        detail += pullOf(word, first);
+                        coveredOfBlocks += block_ == kLargestBlock ? bitsOfBytes(first) : first;
                     }
                     if (const std::uint64_t freed = word.one & goes; freed != 0) {
+                        coveredWhiteChange_ -= std::popcount(freed & word.white);
                         detail -= pullOf(word, freed);
                         freedOfBlocks += block_ == kLargestBlock ? bitsOfBytes(freed) : freed;
                     }
@@ -263,14 +264,43 @@ double RunningScore::propose(const PixelMask& out, const PixelMask& in) {
                    std::max(out.bottom(), in.bottom()), 0);
     }
     const PatternSearch::Options::Refined& weights = space_.options().refined;
-    return weights.zWeight * static_cast<double>(detail) / kPull + weights.toneWeight * toneChange() +
-           weights.overlapWeight * static_cast<double>(several);
+    const double overlapChange = static_cast<double>(several - severalWhiteChange_) +
+                                 overlap(coveredWhite_ + coveredWhiteChange_, severalWhite_ + severalWhiteChange_) -
+                                 overlap(coveredWhite_, severalWhite_);
+    const double others = weights.zWeight * static_cast<double>(detail) / kPull + weights.overlapWeight * overlapChange;
+    // A pixel more or less changes the tone by one pixel at most.
+    Scale& finest = scales_[0];
+    gather(finest);
+    double pixels = 0;
+    for (const Box& box : finest.touched)
+        for (int y = box.least.y; y <= box.most.y; ++y)
+            for (int x = box.least.x; x <= box.most.x; ++x) pixels += std::abs(finest.change[finest.at({x, y})]);
+    const double least = others - weights.toneWeight * pixels;
+    if (least <= most) return others + weights.toneWeight * toneChange();
+    for (const Change& change : blockChanges_) finest.change[finest.at(finest.nodeOf(change.block))] = 0;
+    return least;
+}
+
+double RunningScore::overlap(std::int64_t coveredWhite, std::int64_t severalWhite) const {
+    const double free = space_.options().refined.overlapFree * static_cast<double>(coveredWhite);
+    return std::max(0.0, static_cast<double>(severalWhite) - free);
+}
+
+void RunningScore::gather(Scale& scale) {
+    scale.touched = {};
+    scale.spread.clear();
+    for (const Change& change : blockChanges_) {
+        const glm::ivec2 node = scale.nodeOf(change.block);
+        scale.change[scale.at(node)] += change.pixels;
+        scale.touched[at(change.part)].add(node);
+    }
 }
 
 // What the move at hand changes at the nodes.
 double RunningScore::toneChange() {
     double sum = 0;
     for (Scale& scale : scales_) {
+        if (&scale != &scales_[0]) gather(scale);
         // Where two changes reach the same nodes they are one.
         auto& [first, second] = scale.touched;
         if (!first.empty() && !second.empty() && glm::all(glm::lessThanEqual(first.least, second.most + 2 * kReach)) &&
@@ -358,7 +388,9 @@ void RunningScore::accept(const PixelMask& out, const PixelMask& in) {
         word.one = (word.one & ~comes) | covered;
         word.none &= ~comes;
     });
-    for (const Change& change : blockChanges_) lack_[at(change.block)] -= std::int64_t{Goal::kWhite} * change.pixels;
+    coveredWhite_ += coveredWhiteChange_, severalWhite_ += severalWhiteChange_;
+    for (const Change& change : blockChanges_)
+        lack_[at(change.block.y * blocks_.x + change.block.x)] -= std::int64_t{Goal::kWhite} * change.pixels;
     for (Scale& scale : scales_) {
         const double* change = scale.spread.data();
         for (const Box& box : scale.touched) {

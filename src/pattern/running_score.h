@@ -89,15 +89,17 @@ private:
 //            pixel adds 1 - 2 I, as in z; where it is grey, for which z would have black or white too, only a quarter of what 1 - 2 I differs from
 //            its mean around, which keeps the edges of greys.
 //   tone     sum |G*I - G*I'|, the mean for two Gaussians G of sigma height/36 and height/18: what remains when the eye blurs
-//   overlap  the pixels that several instances cover
+//   overlap  the pixels that several instances cover; where the guide is white, as far as they are more than a given share of those that any
+//            covers
 //
 // Thread: thread-bound.
 class RunningScore {
 public:
     explicit RunningScore(const SearchSpace& space);
 
-    // The change of the weighted sum if `out` (an instance that is drawn, or nothing) went and `in` came instead. Nothing changes yet.
-    double propose(const PixelMask& out, const PixelMask& in);
+    // The change of the weighted sum if `out` (an instance that is drawn, or nothing) went and `in` came instead; if it is more than `most`,
+    // something above `most` that took less to find. Nothing changes yet.
+    double propose(const PixelMask& out, const PixelMask& in, double most = std::numeric_limits<double>::infinity());
     // Makes the change that was proposed last, with the same masks.
     void accept(const PixelMask& out, const PixelMask& in);
 
@@ -113,6 +115,7 @@ private:
     // Everything that a move asks of 64 pixels, side by side in memory; the words of a column are neighbours.
     struct Word {
         std::uint64_t none, one, two;  // the pixels with no instance, with just one, with just two
+        std::uint64_t white;           // of the guide
         // Of each pixel, where it is the same for all: what covering it adds to the detail, in 1 / kPull, and to sum |I - I'|, in
         // Goal's units.
         std::int32_t pull, cost;
@@ -122,7 +125,9 @@ private:
     // a word's eight blocks are its bytes.
     static constexpr int kLargestBlock = 8, kScales = 2;
     struct Change {
-        std::int32_t block, pixels;
+        glm::ivec2 block;
+        std::int32_t pixels;
+        std::int32_t part;  // of the two masks' difference: those far from each other are spread apart
     };
     // A rectangle of nodes, ends included.
     struct Box {
@@ -152,8 +157,10 @@ private:
     void measureGuide();
     void measureDetail();
     std::int64_t pullOf(const Word& word, std::uint64_t pixels) const;
-    void noteBlocks(int column, int row, std::uint64_t covered, std::uint64_t freed, std::size_t part);
+    void noteBlocks(int column, int row, std::uint64_t covered, std::uint64_t freed, int part);
+    double overlap(std::int64_t coveredWhite, std::int64_t severalWhite) const;
     double toneChange();
+    void gather(Scale& scale);
     double spreadChange(Scale& scale, const Box& box);
 
     const SearchSpace& space_;
@@ -170,9 +177,12 @@ private:
     std::vector<std::int64_t> lack_;  // of each block: sum I - I', in Goal's units
     std::array<Scale, kScales> scales_;
 
-    std::int64_t sum_ = 0;              // |I - I'| in Goal's units
-    std::vector<Change> blockChanges_;  // by the move at hand
-    std::vector<double> row_;           // scratch
+    std::int64_t sum_ = 0;                              // |I - I'| in Goal's units
+    std::int64_t coveredWhite_ = 0, severalWhite_ = 0;  // white pixels with an instance, with several
+    // By the move at hand.
+    std::int64_t coveredWhiteChange_ = 0, severalWhiteChange_ = 0;
+    std::vector<Change> blockChanges_;
+    std::vector<double> row_;  // scratch
 
     std::vector<std::int64_t> darkness_;  // running sums over the blocks
 };

@@ -20,6 +20,7 @@ void declareRefined(Fields& fields, PatternSearch::Options::Refined& refined) {
     fields.number("z_weight", refined.zWeight, 0, 100);
     fields.number("tone_weight", refined.toneWeight, 0, 100);
     fields.number("overlap_weight", refined.overlapWeight, 0, 100);
+    fields.number("overlap_free", refined.overlapFree, 0, 1);
     fields.number("temperature", refined.temperature, 0, 10);
     fields.number("polish", refined.polish, 0, 1);
 }

@@ -73,7 +73,7 @@ TEST(LayerCounts, counts_what_comes_and_goes) {
 // rejected move leaves a trace, or a cell that lies in two words is counted twice.
 TEST(RunningScore, changes_add_up_whatever_the_way) {
     PatternSearch::Options options = refined(1);
-    options.refined.zWeight = 0.7, options.refined.toneWeight = 1.3, options.refined.overlapWeight = 0.4;
+    options.refined.zWeight = 0.7, options.refined.toneWeight = 1.3, options.refined.overlapWeight = 0.4, options.refined.overlapFree = 0.3;
     const GreyImage guide = ramp();
     const ShapePattern pattern = withShapes({"triangle", "leaf"});
     const SearchSpace space(guide, pattern.shapes, 1, options);
@@ -92,7 +92,11 @@ TEST(RunningScore, changes_add_up_whatever_the_way) {
         const bool takes = !lying.empty() && rng.uniform() < 0.6, puts = !takes || rng.uniform() < 0.7;
         const std::size_t which = takes ? rng.below(static_cast<std::uint32_t>(lying.size())) : 0;
         const PixelMask out = takes ? lying[which] : PixelMask{}, in = puts ? randomMask() : PixelMask{};
-        const double change = moved.propose(out, in);
+        const double most = rng.uniform(-30, 30), limited = moved.propose(out, in, most), change = moved.propose(out, in);
+        if (change <= most)
+            ASSERT_EQ(limited, change);
+        else
+            ASSERT_GT(limited, most) << "found sooner, not found otherwise";
         if (rng.uniform() < 0.5) continue;
         moved.accept(out, in);
         onTheWay += change;
@@ -197,6 +201,20 @@ TEST(RefinedMethod, overlap_is_what_its_weight_allows) {
         return measure(search(guide, options).pattern, guide).overlap;
     };
     EXPECT_LT(overlap(1), 0.5 * overlap(0));
+    // Where it is free shapes use it, and no more than is free.
+    options.refined.overlapFree = 0.3;
+    EXPECT_GT(overlap(1), 0.25);
+    EXPECT_LT(overlap(1), 0.32);
+}
+
+// Only white leaves no room to lie side by side. Example failure: shapes are spent on each other where the drawing is grey.
+TEST(RefinedMethod, overlap_is_free_in_white_alone) {
+    PatternSearch::Options options = refined(60);
+    options.refined.overlapWeight = 1, options.refined.overlapFree = 1;
+    GreyImage grey = bars();
+    for (float& value : grey.pixels()) value *= 0.6f;
+    EXPECT_LT(measure(search(grey, options).pattern, grey).overlap,
+              0.1 * measure(search(bars(), options).pattern, bars()).overlap);
 }
 
 TEST(RefinedMethod, keeps_every_instance_within_the_settings) {
@@ -226,7 +244,7 @@ TEST(RefinedMethod, the_same_seed_gives_the_same_pattern_on_any_number_of_thread
 // The caller tells after a while how long the run will be. Example failure: what it cools by in the meantime is not what a run of that
 // many iterations cools by.
 TEST(RefinedMethod, a_planned_run_is_repeated_by_its_iterations) {
-    for (const int toldAt : {0, 2, 5}) {
+    for (const int toldAt : {0, 5, 20}) {
         const auto planned =
             PatternSearch::run(ramp(), withShapes({"triangle", "leaf"}), refined(std::numeric_limits<int>::max()), 1, never,
                                [&](const PatternSearch::Progress& now) -> std::optional<int> {
@@ -236,7 +254,10 @@ TEST(RefinedMethod, a_planned_run_is_repeated_by_its_iterations) {
         EXPECT_EQ(planned.summary.reason, StopReason::Time);
         const auto repeated = search(ramp(), refined(planned.summary.iterations));
         EXPECT_TRUE(same(planned.pattern.instances, repeated.pattern.instances)) << toldAt;
-        EXPECT_EQ(planned.summary.iterations, std::max(60, 20 * toldAt)) << "nothing cools before it is told";
+        if (toldAt <= 5)
+            EXPECT_EQ(planned.summary.iterations, 60);
+        else
+            EXPECT_GT(planned.summary.iterations, 5 * toldAt) << "what was told late still has all of its cooling before it";
     }
 }
 
@@ -283,8 +304,8 @@ TEST(RefinedMethod, going_on_makes_a_pattern_no_worse) {
 
 TEST(PatternSearch, a_budget_of_time_becomes_iterations_once_the_speed_is_known) {
     EXPECT_EQ(PatternSearch::iterationsWithin(10, 0, 5), std::nullopt);
-    EXPECT_EQ(PatternSearch::iterationsWithin(10, 30, 0.1), std::nullopt);
-    const auto planned = PatternSearch::iterationsWithin(10, 30, 0.5);
+    EXPECT_EQ(PatternSearch::iterationsWithin(10, 30, 0.5), std::nullopt);
+    const auto planned = PatternSearch::iterationsWithin(10, 60, 1);
     ASSERT_TRUE(planned);
     EXPECT_GE(*planned, 600);
     EXPECT_LE(*planned, 800);
