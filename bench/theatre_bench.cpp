@@ -1,0 +1,64 @@
+// What a generation of the search costs besides evaluating it. Yardsticks of the machine stand beside it.
+
+#include "theatre/cma_es.h"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace fantascope::theatre {
+namespace {
+
+constexpr int kPopulation = 40;
+
+// blocks x size coordinates, decomposed every `interval` generations (0: the tutorial's rule).
+void generation(benchmark::State& state) {
+    const auto blocks = static_cast<std::size_t>(state.range(0)), size = static_cast<std::size_t>(state.range(1));
+    const std::size_t n = blocks * size;
+    CmaEs::Options options{.populationSize = kPopulation, .blocks = std::vector<int>(blocks, static_cast<int>(size))};
+    options.decompositionInterval = static_cast<int>(state.range(2));
+    CmaEs search(std::vector<double>(n, 3.0), options);
+    Rng rng(1);
+    std::vector<double> values(kPopulation);
+    for (auto _ : state) {
+        const std::span<const double> candidates = search.ask(rng);
+        for (std::size_t k = 0; k < values.size(); ++k) values[k] = candidates[k * n];
+        search.tell(values);
+    }
+}
+BENCHMARK(generation)
+    ->ArgNames({"blocks", "size", "interval"})
+    ->ArgsProduct({{1, 3, 6}, {45}, {0, 5, 1 << 30}})
+    ->ArgsProduct({{1}, {135, 270}, {0, 5, 1 << 30}})
+    ->Unit(benchmark::kMicrosecond);
+
+// Yardstick: the normal variables of a generation.
+void yardstickNormals(benchmark::State& state) {
+    Rng rng(1);
+    std::vector<double> normals(static_cast<std::size_t>(state.range(0) * kPopulation));
+    for (auto _ : state) {
+        for (double& normal : normals) normal = rng.normal();
+        benchmark::DoNotOptimize(normals.data());
+    }
+}
+BENCHMARK(yardstickNormals)->Arg(45)->Arg(135)->Arg(270)->Unit(benchmark::kMicrosecond);
+
+// Yardstick: a plain product of a size x size matrix and the population; a generation has three such products a block.
+void yardstickProduct(benchmark::State& state) {
+    const auto size = static_cast<std::size_t>(state.range(0));
+    std::vector<double> matrix(size * size, 0.5), population(size * kPopulation, 0.25), product(size * kPopulation);
+    for (auto _ : state) {
+        for (std::size_t k = 0; k < kPopulation; ++k) {
+            double* const column = &product[k * size];
+            std::fill_n(column, size, 0.0);
+            for (std::size_t j = 0; j < size; ++j)
+                for (std::size_t i = 0; i < size; ++i) column[i] += matrix[j * size + i] * population[k * size + j];
+        }
+        benchmark::DoNotOptimize(product.data());
+    }
+}
+BENCHMARK(yardstickProduct)->Arg(45)->Arg(135)->Arg(270)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace fantascope::theatre
