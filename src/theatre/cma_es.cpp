@@ -20,13 +20,13 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::ptrdiff_t kLongestHistory = 20000;  // generations, B.3
+constexpr std::ptrdiff_t kLongestHistory = 20000;  // generations (B.3)
 constexpr int kStagnationInterval = 10;            // generations; medians of a long history cost as much as an update
 
 double square(double x) { return x * x; }
 
 Eigen::Map<VectorXd> vectorOf(std::vector<double>& values) { return {values.data(), std::ssize(values)}; }
-Eigen::Map<const VectorXd> vectorOf(std::span<const double> values) { return {values.data(), std::ssize(values)}; }
+Eigen::Map<const VectorXd> vectorOf(const std::vector<double>& values) { return {values.data(), std::ssize(values)}; }
 
 // w' (49), by rank.
 VectorXd rawWeights(int populationSize) {
@@ -55,33 +55,34 @@ struct CmaEs::Block {
     MatrixXd weighted, rotated;  // scratch of learn
     VectorXd rotatedMean;        // scratch of tell
 
-    Block(Index first, Index size, int populationSize, int interval);
+    Block(Index first, Index size, const Options& options);
     // Steps y of this block's coordinates, a candidate a column, best first, and the mean's own step.
     void learn(const Eigen::Ref<const MatrixXd, 0, Eigen::OuterStride<>>& y, const Eigen::Ref<const VectorXd>& meanStep,
                double muEffective, bool learnsPath);
     void decompose();
 };
 
-CmaEs::Block::Block(Index first, Index size, int populationSize, int interval)
-    : first(first), size(size), interval(interval), solver(size) {
+CmaEs::Block::Block(Index first, Index size, const Options& options) : first(first), size(size), solver(size) {
     const double n = static_cast<double>(size);
-    const VectorXd raw = rawWeights(populationSize);
-    const Index mu = populationSize / 2, others = populationSize - mu;
+    const VectorXd raw = rawWeights(options.populationSize), better = raw.cwiseMax(0), worse = raw.cwiseMin(0);
+    const Index mu = options.populationSize / 2, others = options.populationSize - mu;
     const double muEffective = effective(raw.head(mu)), muEffectiveMinus = effective(raw.tail(others));
 
     cC = (4 + muEffective / n) / (n + 4 + 2 * muEffective / n);                                       // (56)
     c1 = 2 / (square(n + 1.3) + muEffective);                                                         // (57)
     cMu = std::min(1 - c1, 2 * (muEffective - 2 + 1 / muEffective) / (square(n + 2) + muEffective));  // (58)
     const double alpha =
-        std::min({1 + c1 / cMu, 1 + 2 * muEffectiveMinus / (muEffective + 2), (1 - c1 - cMu) / (n * cMu)});          // (50)-(52)
-    weights = raw.cwiseMax(0) / raw.cwiseMax(0).sum() + alpha * raw.cwiseMin(0) / raw.cwiseMin(0).cwiseAbs().sum();  // (53)
+        std::min({1 + c1 / cMu, 1 + 2 * muEffectiveMinus / (muEffective + 2), (1 - c1 - cMu) / (n * cMu)});  // (50)-(52)
+    weights = better / better.sum() - alpha * worse / worse.sum();                                           // (53)
+    if (!options.negativeWeights) weights.conservativeResize(mu);
 
-    if (interval == 0) this->interval = std::max(1, static_cast<int>(1 / (10 * n * (c1 + cMu))));  // B.2
+    // The tutorial's interval (B.2) is n times shorter, which changes nothing but the time: a tenth of the matrix is new at most.
+    interval = std::max(1, static_cast<int>(0.1 / (c1 + cMu)));
     path = VectorXd::Zero(size);
     C = B = BD = MatrixXd::Identity(size, size);
     D = VectorXd::Ones(size);
-    weighted.resize(size, populationSize);
-    rotated.resize(size, others);
+    weighted.resize(size, weights.size());
+    rotated.resize(size, weights.size() - mu);
     rotatedMean.resize(size);
 }
 
@@ -90,18 +91,17 @@ void CmaEs::Block::learn(const Eigen::Ref<const MatrixXd, 0, Eigen::OuterStride<
     path *= 1 - cC;
     if (learnsPath) path += std::sqrt(cC * (2 - cC) * muEffective) * meanStep;  // (45)
 
-    // A negative weight counts for a step of the expected length n, in whatever direction (46); |C^(-1/2) y| = |D^-1 B^T y|.
-    const double n = static_cast<double>(size);
-    const Index mu = y.cols() - rotated.cols();
-    rotated.noalias() = B.transpose() * y.rightCols(rotated.cols());
-    for (Index i = 0; i < y.cols(); ++i) {
-        double weight = weights[i];
-        if (i >= mu) weight *= n / (rotated.col(i - mu).cwiseQuotient(D).squaredNorm() + 1e-8);
-        weighted.col(i) = cMu * weight * y.col(i);
+    for (Index i = 0; i < weights.size(); ++i) weighted.col(i) = cMu * weights[i] * y.col(i);
+    if (const Index worse = rotated.cols(); worse > 0) {
+        // A negative weight counts for a step of the expected length, in whatever direction: |C^(-1/2) y| = |D^-1 B^T y| (46).
+        rotated.noalias() = B.transpose() * y.rightCols(worse);
+        for (Index i = 0; i < worse; ++i)
+            weighted.rightCols(worse).col(i) *=
+                static_cast<double>(size) / (rotated.col(i).cwiseQuotient(D).squaredNorm() + 1e-8);
     }
     C *= 1 + (learnsPath ? 0 : c1 * cC * (2 - cC)) - c1 - cMu * weights.sum();
     C.selfadjointView<Eigen::Lower>().rankUpdate(path, c1);
-    C.triangularView<Eigen::Lower>() += weighted * y.transpose();  // (47)
+    C.triangularView<Eigen::Lower>() += weighted * y.leftCols(weights.size()).transpose();  // (47)
     if (++age >= interval) decompose();
 }
 
@@ -131,9 +131,6 @@ Result<void> CmaEs::Options::check(std::size_t dimensions) const {
     const std::int64_t sum = std::accumulate(blocks.begin(), blocks.end(), std::int64_t{0});
     if (!blocks.empty() && sum != static_cast<std::int64_t>(dimensions))
         return wrong(fmt::format("blocks of {} coordinates in all for a start of {}: they must be as many", sum, dimensions));
-    if (decompositionInterval < 0)
-        return wrong(
-            fmt::format("decomposition interval {}: it must be >= 1 generation, or 0 for the default", decompositionInterval));
     for (const auto& [what, tolerance] : {std::pair{"tolFun", tolFun}, {"tolHistFun", tolHistFun}, {"tolX", tolX}})
         if (!(tolerance >= 0)) return wrong(fmt::format("{} {}: a tolerance must be >= 0", what, tolerance));
     for (const auto& [what, limit] : {std::pair{"tolXUp", tolXUp}, {"conditionCov", conditionCov}})
@@ -167,7 +164,7 @@ CmaEs::CmaEs(std::span<const double> mean, const Options& options)
     chi_ = std::sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * square(n)));                          // E |N(0, I)|
     Index first = 0;
     for (const int size : options_.blocks) {
-        blocks_.emplace_back(first, size, lambda, options.decompositionInterval);
+        blocks_.emplace_back(first, size, options);
         first += size;
     }
 
@@ -186,10 +183,10 @@ std::span<double> CmaEs::ask(Rng& rng) {
     const Index n = std::ssize(mean_), lambda = options_.populationSize;
     const Eigen::Map<const MatrixXd> z(normals_.data(), n, lambda);
     Eigen::Map<MatrixXd> x(candidates_.data(), n, lambda);
+    const auto mean = vectorOf(std::as_const(mean_)), scales = vectorOf(std::as_const(options_.scales));
     for (const Block& block : blocks_)
         x.middleRows(block.first, block.size).noalias() = block.BD * z.middleRows(block.first, block.size);  // (39)
-    x.array().colwise() *= sigma_ * vectorOf(options_.scales).array();
-    x.colwise() += vectorOf(mean_);  // (40)
+    for (Index k = 0; k < lambda; ++k) x.col(k) = mean + sigma_ * scales.cwiseProduct(x.col(k));             // (40)
     return candidates_;
 }
 
@@ -198,7 +195,7 @@ void CmaEs::tell(std::span<const double> values) {
     rankCandidates(values);
     const Index n = std::ssize(mean_), lambda = options_.populationSize, mu = lambda / 2;
     const Eigen::Map<const MatrixXd> x(candidates_.data(), n, lambda);
-    const auto scales = vectorOf(std::span(std::as_const(options_.scales)));
+    const auto scales = vectorOf(std::as_const(options_.scales));
     auto mean = vectorOf(mean_);
     Eigen::Map<MatrixXd> y(steps_.data(), n, lambda);  // best first
     for (Index i = 0; i < lambda; ++i) y.col(i) = (x.col(ranking_[i]) - mean).cwiseQuotient(sigma_ * scales);
@@ -249,7 +246,8 @@ void CmaEs::rankCandidates(std::span<const double> values) {
 // Whether the newest 30 % of the last generations are no better than the first 30 % of them, by the median.
 bool CmaEs::stagnates(const std::vector<double>& history) {
     const auto n = std::ssize(mean_), lambda = std::ptrdiff_t{options_.populationSize};
-    const std::ptrdiff_t window = std::max(std::ptrdiff_t{generation_ / 5}, 120 + 30 * n / lambda), part = window * 3 / 10;
+    const std::ptrdiff_t window = std::min(std::max(std::ptrdiff_t{generation_ / 5}, 120 + 30 * n / lambda), kLongestHistory);
+    const std::ptrdiff_t part = window * 3 / 10;
     if (std::ssize(history) < window) return false;
     const auto median = [&](auto begin) {
         sorted_.assign(begin, begin + part);
@@ -278,7 +276,7 @@ std::optional<CmaEs::StopReason> CmaEs::reasonToStop() {
         if (!(block.condition <= options_.conditionCov)) return StopReason::ConditionCov;
     }
     // A part of a standard deviation that rounding swallows, along one axis a generation or along any coordinate.
-    const auto mean = vectorOf(std::span(mean_)), scales = vectorOf(std::span(std::as_const(options_.scales)));
+    const auto mean = vectorOf(std::as_const(mean_)), scales = vectorOf(std::as_const(options_.scales));
     for (const Block& block : blocks_) {
         const auto m = mean.segment(block.first, block.size).array(), unit = scales.segment(block.first, block.size).array();
         if ((m == m + 0.2 * sigma_ * unit * block.C.diagonal().array().sqrt()).any()) return StopReason::NoEffectCoordinate;

@@ -21,29 +21,31 @@ namespace fantascope::theatre {
 //         search.tell(values);
 //     }
 //
-// The tutorial's default strategy, negative weights included. Its covariance matrix may be made of blocks along the diagonal for variables
-// that are known to belong together (the joints of one actor): each block learns its own matrix at the faster rates of its own
-// dimension, while the ranking and the step size are common.
+// The tutorial's default strategy. Its covariance matrix may be made of blocks along the diagonal, for variables known to belong together
+// (the joints of one actor): each block learns its own matrix and path at the faster rates of its own dimension, while the ranking and
+// the step size are common.
 //
 // Only the order of the values matters, save for the stop criteria that look at them. Same start, options and Rng: same bytes.
-// No generation allocates. Thread: one at a time.
+// No generation allocates, but for one vector inside Eigen when a block is decomposed. Thread: one at a time.
 class CmaEs {
 public:
     struct Options {
-        int populationSize = 40;  // lambda
-        double sigma = 1;         // the first step size, in units of `scales`
-        std::vector<double>
-            scales{};  // one a coordinate, in its unit; none: all 1. sigma * scales are the first standard deviations
-        std::vector<int> blocks{};      // sizes of consecutive blocks; none: one, which is the full strategy
-        int decompositionInterval = 0;  // generations that sample from one decomposition of the matrix; 0: the tutorial's (B.2)
+        int populationSize = 40;       // lambda
+        double sigma = 1;              // the first step size: sigma * scales are the first standard deviations
+        std::vector<double> scales{};  // one a coordinate, in its unit; none: all 1
+        std::vector<int> blocks{};     // sizes of consecutive blocks; none: one, which is the full strategy
+        // Whether the worse half of a generation narrows the matrix (53). That takes up to a quarter fewer evaluations, but the
+        // search breaks down where many candidates are repaired; a penalty on candidates left where they are does no harm.
+        bool negativeWeights = false;
 
-        // When to stop (B.3). A tolerance of 0 or an infinite limit turns its criterion off; stagnation has a switch.
+        // When to stop (B.3). A tolerance of 0 or an infinite limit turns its criterion off, but equal values always stop, and so does
+        // a step that rounding swallows.
         double tolFun = 1e-11;  // range of the best values of the last 10 + ceil(30 n / lambda) generations and of all the newest
         double tolHistFun = 1e-12;   // range of those best values alone
         double tolX = 1e-12;         // all standard deviations and path components, against the first sigma
         double tolXUp = 1e4;         // the longest axis, against the first sigma
         double conditionCov = 1e14;  // condition number of a block
-        bool stagnation = true;      // medians of best and of middle values no longer fall
+        bool stagnation = true;      // neither the best nor the middle values fall any more
 
         // What is wrong with them for a start of `dimensions` coordinates.
         Result<void> check(std::size_t dimensions) const;
@@ -63,9 +65,9 @@ public:
     CmaEs& operator=(CmaEs&&) noexcept;
     ~CmaEs();
 
-    // A new generation: populationSize candidates of n coordinates, one after the other, valid until the next ask. A candidate may be repaired in place,
-    // for instance moved within bounds; whatever stands there when tell is called is what its value belongs to. It must be finite and
-    // should stay near, since a point far outside the distribution shakes it.
+    // A new generation: populationSize candidates of dimensions() coordinates, one after the other, valid until the next ask. A
+    // candidate may be repaired in place, for instance moved within bounds; what stands there when tell is called is what its value
+    // belongs to. It must be finite, and near: a point far outside the distribution shakes it.
     std::span<double> ask(Rng& rng);
 
     // The value of each candidate. One that is not a finite number is as bad as can be; among equals the first is the better.

@@ -42,26 +42,29 @@ def rastrigin(x):
     return float(np.sum(x * x + 10 - 10 * np.cos(2 * math.pi * x)))
 
 
-# function, dimensions, population, every coordinate of the start, sigma, target, most evaluations
-CASES = [(f, n, 40, start, sigma, 1e-8, 400_000)
+# function, dimensions, population, every coordinate of the start, sigma, target, most evaluations, whether with negative weights
+CASES = [(f, n, 40, start, sigma, 1e-8, 400_000, 1)
          for f, start, sigma in ((sphere, 3, 2), (ellipsoid, 3, 2), (rotated_ellipsoid, 3, 2), (rosenbrock, 0, 0.5))
          for n in (5, 10, 20)]
 CASES += [
-    (sphere, 10, 10, 3, 2, 1e-8, 100_000),
-    (ellipsoid, 10, 10, 3, 2, 1e-8, 100_000),
-    (cigar, 10, 10, 3, 2, 1e-8, 100_000),
+    (sphere, 10, 10, 3, 2, 1e-8, 100_000, 1),
+    (ellipsoid, 10, 10, 3, 2, 1e-8, 100_000, 1),
+    (cigar, 10, 10, 3, 2, 1e-8, 100_000, 1),
     # Steps far too short at first: this is what h_sigma is for.
-    (rotated_ellipsoid, 10, 10, 3, 1e-4, 1e-8, 100_000),
-    (cigar, 20, 40, 3, 1e-4, 1e-8, 100_000),
+    (rotated_ellipsoid, 10, 10, 3, 1e-4, 1e-8, 100_000, 1),
+    (cigar, 20, 40, 3, 1e-4, 1e-8, 100_000, 1),
     # Some runs end in a local minimum.
-    (rastrigin, 3, 40, 3, 2, 1e-8, 20_000),
-    (rastrigin, 5, 40, 3, 2, 1e-8, 20_000),
+    (rastrigin, 3, 40, 3, 2, 1e-8, 20_000, 1),
+    (rastrigin, 5, 40, 3, 2, 1e-8, 20_000, 1),
 ]
+CASES += [case[:-1] + (0,) for case in CASES if case[1] in (3, 10)]
 
 
 def evaluations(case, seed):
-    function, n, population, start, sigma, target, most = case
+    function, n, population, start, sigma, target, most, negative = case
     search = cmaes.CMA(mean=np.full(n, float(start)), sigma=sigma, population_size=population, seed=seed)
+    if not negative:
+        search._weights = np.maximum(search._weights, 0)
     for count in range(population, most + 1, population):
         points = [search.ask() for _ in range(population)]
         values = [function(x) for x in points]
@@ -75,11 +78,11 @@ def evaluations(case, seed):
 
 def main():
     print(f"# Made by tests/theatre/reference_cmaes.py with python3-cmaes {cmaes.__version__}, seeds 1 to {SEEDS}.")
-    print("# function dimensions population start sigma target most | evaluations of each run")
+    print("# function dimensions population start sigma target most negative | evaluations of each run")
     with multiprocessing.Pool() as pool:
         for case in CASES:
             counts = sorted(pool.starmap(evaluations, [(case, seed) for seed in range(1, SEEDS + 1)]))
-            print(case[0].__name__, *(f"{value:g}" for value in case[1:6]), case[6], "|", *counts, flush=True)
+            print(case[0].__name__, *(f"{value:g}" for value in case[1:6]), *case[6:], "|", *counts, flush=True)
 
 
 if __name__ == "__main__":
