@@ -1,11 +1,10 @@
 #include "theatre/cma_es.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <cstdint>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -158,8 +157,9 @@ double rankDifference(const std::vector<double>& a, const std::vector<double>& b
 }
 
 // reference_cmaes.txt holds what another CMA-ES needed. A fault in a learning rate, a path or the damping makes the search slower or
-// faster long before it stops converging. Were both the same algorithm, all the differences together would pass this bound by chance
-// less than once in 10,000 choices of the seeds: two-sided, 4.7 standard deviations are 2.6e-6, times 28 cases.
+// faster long before it stops converging: tried by hand, a doubled c_mu or d_sigma, a missing h_sigma and a d_sigma without its maximum or
+// without c_sigma are all found. Were both the same algorithm, one of the cases would pass this bound by chance in less than one of
+// 10,000 choices of the seeds: two-sided, 4.7 standard deviations are 2.6e-6, times 28 cases.
 TEST(CmaEs, needs_as_many_evaluations_as_an_independent_implementation) {
     std::ifstream file(FANTASCOPE_SOURCE_DIR "/tests/theatre/reference_cmaes.txt");
     int cases = 0;
@@ -177,14 +177,11 @@ TEST(CmaEs, needs_as_many_evaluations_as_an_independent_implementation) {
         CmaEs::Options options = stepsOf(sigma, populationSize);
         options.negativeWeights = negative == 1;
         options.tolXUp = kInfinity;  // some start with steps far too short
-        for (std::uint64_t seed = 1; seed <= 51; ++seed)
+        for (std::uint64_t seed = 1; seed <= 21; ++seed)
             ours.push_back(minimise(kFunctions.at(function), at(start, n), options, seed, target, most).evaluations);
         const double difference = rankDifference(ours, reference);
-        std::nth_element(ours.begin(), ours.begin() + 25, ours.end());
-        EXPECT_LT(std::abs(difference), 4.7) << line << "\nmedian of ours: " << ours[25];
-        if (std::getenv("SHOW"))
-            fmt::print("{:20} {:3} {:3} {:8} {} ours {:8} reference {:8} z {:6.2f}\n", function, n, populationSize, sigma,
-                       negative, ours[25], reference[25], difference);
+        std::nth_element(ours.begin(), ours.begin() + 10, ours.end());
+        EXPECT_LT(std::abs(difference), 4.7) << line << "\nmedian of ours: " << ours[10];
         ++cases;
     }
     EXPECT_EQ(cases, 28);
@@ -254,7 +251,6 @@ TEST(CmaEs, with_blocks_learns_a_function_of_blocks_faster) {
         slowestWithBlocks = std::max(slowestWithBlocks, minimise(blocksOfTen, at(3, 30), blocks, seed, 1e-8, 200000).evaluations);
         fastestFull = std::min(fastestFull, minimise(blocksOfTen, at(3, 30), full, seed, 1e-8, 200000).evaluations);
     }
-    if (std::getenv("SHOW")) fmt::print("blocks {} full {}\n", slowestWithBlocks, fastestFull);
     EXPECT_LT(slowestWithBlocks, fastestFull / 1.5);
 }
 
