@@ -162,6 +162,8 @@ CmaEs::CmaEs(std::span<const double> mean, const Options& options)
     cSigma_ = (muEffective_ + 2) / (n + muEffective_ + 5);                                   // (55)
     dSigma_ = 1 + 2 * std::max(0.0, std::sqrt((muEffective_ - 1) / (n + 1)) - 1) + cSigma_;  // (55)
     chi_ = std::sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * square(n)));                          // E |N(0, I)|
+    blocks_.reserve(
+        options_.blocks.size());  // an Eigen solver must not move before it has solved: it would copy what is not set yet
     Index first = 0;
     for (const int size : options_.blocks) {
         blocks_.emplace_back(first, size, options);
