@@ -1,0 +1,37 @@
+#pragma once
+
+#include "theatre/posed_body.h"
+
+#include <glm/vec2.hpp>
+
+#include <span>
+#include <vector>
+
+namespace fantascope::theatre {
+
+// How a body stands: Won & Lee 2016, equation 6. The support polygon is the convex hull of the discs in which it touches the ground; the ground
+// seen from above, (x, z) in metres.
+struct Contact {
+    glm::dvec2 place{0};
+    double radius = 0;
+};
+
+// What is no higher than this above the ground touches it: flesh gives way.
+constexpr double kTouch = 0.01;
+
+// The discs where a body touches the floor: of a sphere of radius r whose lowest point is h above it, all that is below kTouch. A body that touches
+// nothing has the place of its lowest point, with no radius, and `touches` false.
+struct Contacts {
+    std::vector<Contact> discs;
+    bool touches = false;
+};
+void findContacts(std::span<const PlacedCapsule> capsules, Contacts& contacts);
+
+// Margin(SP_n, COM_n): the signed distance from the mass centre, seen from above, to the boundary of the support polygon, metres; positive
+// inside, negative outside. Of one contact, or two, the polygon is the disc, or the band around the line.
+double supportMargin(const Contacts& contacts, const glm::dvec3& massCentre);
+
+// Area(SP_n), square metres.
+double supportArea(const Contacts& contacts);
+
+}  // namespace fantascope::theatre

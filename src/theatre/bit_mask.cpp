@@ -1,0 +1,103 @@
+#include "theatre/bit_mask.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace fantascope::theatre {
+
+void BitMask::clear() {
+    if (rowsFrom_ < rowsTo_)
+        std::fill(words_.begin() + static_cast<std::ptrdiff_t>(index(rowsFrom_)),
+                  words_.begin() + static_cast<std::ptrdiff_t>(index(rowsTo_)), 0);
+    rowsFrom_ = 1 << 30, rowsTo_ = 0;
+}
+
+void BitMask::fill(int y, int from, int to) {
+    from = std::max(from, 0), to = std::min(to, width_);
+    if (from >= to) return;
+    std::uint64_t* words = words_.data() + index(y);
+    const int first = from / kBits, last = (to - 1) / kBits;
+    const std::uint64_t begin = ~std::uint64_t{0} << (from % kBits), end = ~std::uint64_t{0} >> (kBits - 1 - (to - 1) % kBits);
+    if (first == last) {
+        words[first] |= begin & end;
+    } else {
+        words[first] |= begin;
+        for (int i = first + 1; i < last; ++i) words[i] = ~std::uint64_t{0};
+        words[last] |= end;
+    }
+    spread(y, y + 1);
+}
+
+void BitMask::fill(int y, std::span<const float> from, std::span<const float> to) {
+    const auto width = static_cast<float>(width_);
+    std::uint64_t* words = words_.data() + index(y);
+    for (std::size_t row = 0; row < from.size(); ++row, words += stride_) {
+        const int begin = static_cast<int>(std::ceil(std::clamp(from[row], 0.0f, width) - 0.5f));
+        const int last = static_cast<int>(std::floor(std::clamp(to[row], 0.0f, width) - 0.5f));
+        if (begin > last) continue;
+        const int firstWord = begin / kBits, lastWord = last / kBits;
+        const std::uint64_t head = ~std::uint64_t{0} << (begin % kBits), tail = ~std::uint64_t{0} >> (kBits - 1 - last % kBits);
+        if (firstWord == lastWord) {
+            words[firstWord] |= head & tail;
+        } else {
+            words[firstWord] |= head;
+            for (int i = firstWord + 1; i < lastWord; ++i) words[i] = ~std::uint64_t{0};
+            words[lastWord] |= tail;
+        }
+    }
+    spread(y, y + static_cast<int>(from.size()));
+}
+
+void BitMask::add(const BitMask& other) {
+    if (other.rowsFrom_ >= other.rowsTo_) return;
+    const std::size_t from = index(other.rowsFrom_), to = index(other.rowsTo_);
+    for (std::size_t i = from; i < to; ++i) words_[i] |= other.words_[i];
+    spread(other.rowsFrom_, other.rowsTo_);
+}
+
+std::int64_t BitMask::count() const {
+    std::int64_t count = 0;
+    for (const std::uint64_t word : words_) count += std::popcount(word);
+    return count;
+}
+
+std::int64_t differing(const BitMask& a, const BitMask& b) {
+    std::int64_t count = 0;
+    for (std::size_t i = 0; i < a.words_.size(); ++i) count += std::popcount(a.words_[i] ^ b.words_[i]);
+    return count;
+}
+
+bool operator==(const BitMask& a, const BitMask& b) {
+    return a.width_ == b.width_ && a.height_ == b.height_ && a.words_ == b.words_;
+}
+
+void ConvexFiller::fill(std::span<const glm::vec2> polygon, BitMask& mask) {
+    float top = std::numeric_limits<float>::max(), bottom = -top;
+    for (const glm::vec2& point : polygon) top = std::min(top, point.y), bottom = std::max(bottom, point.y);
+    // The first row whose centre is not above y, and the last whose is not below it, within the mask.
+    const auto height = static_cast<float>(mask.height());
+    const auto rowFrom = [&](float y) { return static_cast<int>(std::ceil(std::clamp(y, 0.0f, height) - 0.5f)); };
+    const auto rowTo = [&](float y) { return static_cast<int>(std::floor(std::clamp(y, 0.0f, height) - 0.5f)); };
+    const int first = rowFrom(top), last = rowTo(bottom);
+    if (first > last) return;
+    const auto rows = static_cast<std::size_t>(last - first + 1);
+    left_.assign(rows, 0);
+    right_.assign(rows, 0);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        glm::vec2 a = polygon[i], b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+        // Down on the right, up on the left.
+        std::vector<float>& side = b.y > a.y ? right_ : left_;
+        if (a.y > b.y) std::swap(a, b);
+        const int from = rowFrom(a.y), to = rowTo(b.y);
+        if (from > to) continue;
+        const float slope = (b.x - a.x) / (b.y - a.y);
+        float x = a.x + (static_cast<float>(from) + 0.5f - a.y) * slope;
+        for (auto row = static_cast<std::size_t>(from - first); row <= static_cast<std::size_t>(to - first); ++row, x += slope)
+            side[row] = x;
+    }
+    mask.fill(first, left_, right_);
+}
+
+}  // namespace fantascope::theatre

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "core/image.h"
+
+#include <glm/vec2.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fantascope::theatre {
+
+// A black and white picture, 64 neighbours of a row in a word, the lowest bit on the left; bits beyond the width are 0. `rowsFrom` and
+// `rowsTo` bound the rows that have any bit.
+class BitMask {
+public:
+    static constexpr int kBits = 64;
+
+    BitMask() = default;
+    BitMask(int width, int height)
+        : width_(width),
+          height_(height),
+          stride_((width + kBits - 1) / kBits),
+          words_(static_cast<std::size_t>(stride_ * height), 0) {}
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    int stride() const { return stride_; }  // words a row
+    int rowsFrom() const { return rowsFrom_; }
+    int rowsTo() const { return rowsTo_; }  // one beyond the last
+    std::span<std::uint64_t> row(int y) { return std::span(words_).subspan(index(y), static_cast<std::size_t>(stride_)); }
+    std::span<const std::uint64_t> row(int y) const {
+        return std::span(words_).subspan(index(y), static_cast<std::size_t>(stride_));
+    }
+    bool at(int x, int y) const {
+        return x >= 0 && y >= 0 && x < width_ && y < height_ &&
+               (words_[index(y) + static_cast<std::size_t>(x / kBits)] >> (x % kBits) & 1) != 0;
+    }
+
+    void clear();
+    // White from `from` to before `to`, cut at the edges.
+    void fill(int y, int from, int to);
+    // The same in rows below each other, in pixels with fractions: white where a pixel's centre lies between.
+    void fill(int y, std::span<const float> from, std::span<const float> to);
+    void add(const BitMask& other);
+    void noteRow(int y) { spread(y, y + 1); }  // words of this row were set through row()
+    std::int64_t count() const;
+    friend std::int64_t differing(const BitMask& a, const BitMask& b);
+    friend bool operator==(const BitMask& a, const BitMask& b);
+
+private:
+    std::size_t index(int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(stride_); }
+    void spread(int from, int to) { rowsFrom_ = std::min(rowsFrom_, from), rowsTo_ = std::max(rowsTo_, to); }
+
+    int width_ = 0, height_ = 0, stride_ = 0;
+    int rowsFrom_ = 1 << 30, rowsTo_ = 0;
+    std::vector<std::uint64_t> words_;
+};
+
+// The pixels in which two masks of one size differ.
+std::int64_t differing(const BitMask& a, const BitMask& b);
+
+// Fills a convex polygon; points in pixels, clockwise as seen.
+class ConvexFiller {
+public:
+    void fill(std::span<const glm::vec2> polygon, BitMask& mask);
+
+private:
+    std::vector<float> left_, right_;  // scratch, kept for its memory
+};
+
+}  // namespace fantascope::theatre

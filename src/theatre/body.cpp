@@ -1,0 +1,186 @@
+#include "theatre/body.h"
+
+#include "theatre/posed_body.h"
+
+#include "core/check.h"
+#include "core/geometry.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <numbers>
+
+namespace fantascope::theatre {
+namespace {
+
+using glm::dvec3;
+
+// Builds a body in shares of the stature, from the middle to the left; what is on the left is mirrored to the right.
+class Builder {
+public:
+    explicit Builder(double stature) : stature_(stature) { body_.stature = stature; }
+
+    std::uint32_t root(dvec3 place) { return add("pelvis", 0, place, {}, 0); }
+    // `place`: of the joint in the T-pose, from the floor's middle.
+    std::uint32_t add(std::string name, std::uint32_t parent, dvec3 place, JointMotion motion, std::size_t freedoms) {
+        places_.push_back(place);
+        Body::Joint joint;
+        joint.name = std::move(name);
+        joint.parent = parent;
+        joint.offset = stature_ * (body_.joints.empty() ? place : place - places_[parent]);
+        joint.motion = motion;
+        joint.first = body_.freedoms;
+        body_.freedoms += freedoms;
+        body_.joints.push_back(std::move(joint));
+        return static_cast<std::uint32_t>(body_.joints.size() - 1);
+    }
+    std::uint32_t add(std::string name, std::uint32_t parent, dvec3 place, const JointMotion& motion) {
+        return add(std::move(name), parent, place, motion, motion.size());
+    }
+    // Places in the T-pose, from the floor's middle.
+    void capsule(std::uint32_t joint, dvec3 from, double fromRadius, dvec3 to, double toRadius) {
+        body_.capsules.push_back({joint, stature_ * (from - places_[joint]), stature_ * (to - places_[joint]),
+                                  stature_ * fromRadius, stature_ * toRadius});
+    }
+    void mass(std::uint32_t joint, double share, dvec3 centre) {
+        // Body mass index 22: the middle of what the World Health Organization calls normal.
+        body_.joints[joint].mass = share * 22 * stature_ * stature_;
+        body_.joints[joint].massCentre = stature_ * (centre - places_[joint]);
+    }
+    dvec3 local(std::uint32_t joint, dvec3 place) const { return stature_ * (place - places_[joint]); }
+    Body& body() { return body_; }
+
+private:
+    double stature_;
+    Body body_;
+    std::vector<dvec3> places_;
+};
+
+glm::dquat about(dvec3 axis, double degrees) { return rotationOf(radians(degrees) * axis); }
+
+constexpr dvec3 kX{1, 0, 0}, kY{0, 1, 0}, kZ{0, 0, 1};
+
+// Leg and arm of one side: `side` is 1 on the left and -1 on the right.
+void addLeg(Builder& b, std::uint32_t pelvis, double side) {
+    const std::string s = side > 0 ? "left " : "right ";
+    const auto at = [&](double x, double y, double z) { return dvec3(side * x, y, z); };
+    // Flexion 120, extension 25, abduction 45 (more with the hip bent), rotation 45 both ways.
+    const auto hip =
+        b.add(s + "hip", pelvis, at(0.052, 0.530, 0),
+              JointMotion::conicAxial(-kY, about(kZ, side * 12) * about(kX, -46), radians(72), radians(-45), radians(45)));
+    const auto knee = b.add(s + "knee", hip, at(0.052, 0.285, 0), JointMotion::axial(kX, 0, radians(140)));
+    // Plantarflexion 50, dorsiflexion 20, inversion 35.
+    const auto ankle = b.add(s + "ankle", knee, at(0.052, 0.039, 0), JointMotion::conic(-kY, about(kX, 15), radians(35)));
+    b.capsule(hip, at(0.052, 0.515, 0), 0.048, at(0.052, 0.290, 0.002), 0.034);
+    b.capsule(knee, at(0.052, 0.285, 0.002), 0.034, at(0.052, 0.230, -0.004), 0.034);
+    b.capsule(knee, at(0.052, 0.230, -0.004), 0.034, at(0.052, 0.045, -0.004), 0.021);
+    b.capsule(ankle, at(0.052, 0.020, -0.020), 0.020, at(0.045, 0.013, 0.096), 0.013);
+    b.capsule(ankle, at(0.052, 0.020, -0.020), 0.020, at(0.072, 0.012, 0.078), 0.012);
+    b.mass(hip, 0.1447, at(0.052, 0.530 - 0.245 * 0.385, 0));
+    b.mass(knee, 0.0457, at(0.052, 0.285 - 0.246 * 0.443, 0));
+    b.mass(ankle, 0.0133, at(0.052, 0.019, -0.041 + 0.152 * 0.42));
+}
+
+void addArm(Builder& b, std::uint32_t thorax, double side) {
+    const std::string s = side > 0 ? "left " : "right ";
+    const auto at = [&](double x, double y, double z) { return dvec3(side * x, y, z); };
+    const dvec3 along = side * kX;
+    // Elevation 30, depression 10, forward and back 20.
+    const auto clavicle =
+        b.add(s + "clavicle", thorax, at(0.016, 0.806, 0.010), JointMotion::conic(along, about(kZ, side * 8), radians(20)));
+    // Up 180, forward 180, back 40, across the chest; rotation 80 both ways.
+    const auto shoulder = b.add(s + "shoulder", clavicle, at(0.108, 0.812, 0),
+                                JointMotion::conicAxial(along, about(kY, -side * 40), radians(112), radians(-80), radians(80)));
+    const auto elbow = b.add(s + "elbow", shoulder, at(0.294, 0.812, 0), JointMotion::axial(-side * kY, 0, radians(148)));
+    // Flexion 80, extension 70, to the sides 20 and 30; the forearm's rotation of 80 both ways is here too.
+    const auto wrist = b.add(s + "wrist", elbow, at(0.440, 0.812, 0),
+                             JointMotion::conicAxial(along, {1, 0, 0, 0}, radians(55), radians(-80), radians(80)));
+    b.capsule(clavicle, at(0.030, 0.796, 0), 0.036, at(0.100, 0.808, 0), 0.035);
+    b.capsule(shoulder, at(0.108, 0.808, 0), 0.033, at(0.290, 0.812, 0), 0.025);
+    b.capsule(elbow, at(0.294, 0.812, 0), 0.025, at(0.340, 0.812, 0), 0.025);
+    b.capsule(elbow, at(0.340, 0.812, 0), 0.025, at(0.436, 0.812, 0), 0.016);
+    b.capsule(wrist, at(0.446, 0.812, 0), 0.016, at(0.480, 0.812, 0), 0.021);
+    b.capsule(wrist, at(0.480, 0.812, 0), 0.021, at(0.539, 0.812, 0), 0.009);
+    b.mass(shoulder, 0.0263, at(0.108 + 0.186 * 0.576, 0.812, 0));
+    b.mass(elbow, 0.0150, at(0.294 + 0.146 * 0.457, 0.812, 0));
+    b.mass(wrist, 0.0058, at(0.440 + 0.038, 0.812, 0));
+}
+
+std::vector<std::array<std::uint32_t, 2>> pairsApart(const Body& body) {
+    PosedBody atRest;
+    atRest.pose(body, std::vector<double>(body.restPose(dvec3(0), {1, 0, 0, 0})));
+    std::vector<std::array<std::uint32_t, 2>> pairs;
+    for (std::uint32_t i = 0; i < body.capsules.size(); ++i)
+        for (std::uint32_t j = i + 1; j < body.capsules.size(); ++j) {
+            const std::uint32_t a = body.capsules[i].joint, b = body.capsules[j].joint;
+            const bool neighbours = a == b || body.joints[a].parent == b || body.joints[b].parent == a;
+            if (!neighbours && penetration(atRest.capsule(i), atRest.capsule(j)) <= 0) pairs.push_back({i, j});
+        }
+    return pairs;
+}
+
+}  // namespace
+
+Body humanBody(double stature) {
+    Builder b(stature);
+    const auto pelvis = b.root({0, 0.530, 0});
+    // Bending forward 85, back 35, sideways 35, turning 35, in two places.
+    const auto lumbar = b.add("lumbar", pelvis, {0, 0.590, -0.010}, JointMotion::spherical(about(kX, 14), radians(36)));
+    const auto thorax = b.add("thorax", lumbar, {0, 0.680, -0.012}, JointMotion::spherical(about(kX, 8), radians(28)));
+    // 45 every way, rotation 60.
+    const auto neck = b.add("neck", thorax, {0, 0.830, -0.004},
+                            JointMotion::conicAxial(kY, {1, 0, 0, 0}, radians(45), radians(-60), radians(60)));
+
+    b.capsule(pelvis, {-0.045, 0.540, -0.004}, 0.052, {0.045, 0.540, -0.004}, 0.052);
+    b.capsule(pelvis, {-0.036, 0.585, 0}, 0.052, {0.036, 0.585, 0}, 0.052);
+    b.capsule(lumbar, {-0.024, 0.645, 0.002}, 0.054, {0.024, 0.645, 0.002}, 0.054);
+    for (const double side : {1.0, -1.0}) b.capsule(thorax, {side * 0.031, 0.705, 0.002}, 0.054, {side * 0.034, 0.785, 0}, 0.053);
+    b.capsule(neck, {0, 0.820, -0.006}, 0.034, {0, 0.890, 0.002}, 0.032);
+    b.capsule(neck, {0, 0.893, 0.014}, 0.036, {0, 0.947, 0.002}, 0.053);
+    b.mass(neck, 0.0681, {0, 0.922, 0.004});
+    b.mass(thorax, 0.1571, {0, 0.790, 0});
+    b.mass(lumbar, 0.1549, {0, 0.665, 0});
+    b.mass(pelvis, 0.1182, {0, 0.560, 0});
+    for (const double side : {1.0, -1.0}) addArm(b, thorax, side);
+    for (const double side : {1.0, -1.0}) addLeg(b, pelvis, side);
+
+    Body body = std::move(b.body());
+    body.apart = pairsApart(body);
+    body.head = neck;
+    body.eyes = b.local(neck, {0, 0.936, 0.050});
+    return body;
+}
+
+double Body::mass() const {
+    double sum = 0;
+    for (const Joint& joint : joints) sum += joint.mass;
+    return sum;
+}
+
+std::uint32_t Body::joint(std::string_view name) const {
+    const auto found = std::find_if(joints.begin(), joints.end(), [&](const Joint& joint) { return joint.name == name; });
+    FANTASCOPE_CHECK(found != joints.end(), "a joint is named that the body has");
+    return static_cast<std::uint32_t>(found - joints.begin());
+}
+
+std::vector<double> Body::restPose(glm::dvec3 rootPosition, const glm::dquat& rootOrientation) const {
+    std::vector<double> pose(freedoms, 0);
+    const dvec3 turn = vectorOf(rootOrientation);
+    for (int i = 0; i < 3; ++i)
+        pose[static_cast<std::size_t>(i)] = rootPosition[i], pose[static_cast<std::size_t>(i) + 3] = turn[i];
+    for (std::size_t i = 1; i < joints.size(); ++i)
+        joints[i].motion.numbers({1, 0, 0, 0}, std::span(pose).subspan(joints[i].first, joints[i].motion.size()));
+    return pose;
+}
+
+void Body::limit(std::span<double> freedoms) const {
+    const dvec3 turn(freedoms[3], freedoms[4], freedoms[5]);
+    if (glm::length(turn) > std::numbers::pi) {
+        const dvec3 same = vectorOf(rotationOf(turn));
+        for (int i = 0; i < 3; ++i) freedoms[static_cast<std::size_t>(i) + 3] = same[i];
+    }
+    for (std::size_t i = 1; i < joints.size(); ++i)
+        joints[i].motion.limit(freedoms.subspan(joints[i].first, joints[i].motion.size()));
+}
+
+}  // namespace fantascope::theatre

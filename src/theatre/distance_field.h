@@ -1,0 +1,13 @@
+#pragma once
+
+#include "theatre/bit_mask.h"
+
+#include "core/image.h"
+
+namespace fantascope::theatre {
+
+// Of every pixel of a mask, the distance to its contour, pixels: positive in the white, negative outside; exact distances between pixel
+// centres, less a half (Felzenszwalb & Huttenlocher 2012).
+GreyImage signedDistance(const BitMask& mask);
+
+}  // namespace fantascope::theatre

@@ -1,0 +1,90 @@
+#include "theatre/energy_terms.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fantascope::theatre {
+namespace {
+
+double squaredMillimetres(double depth) { return depth > 0 ? 1e6 * depth * depth : 0; }
+
+// Calls visit(depth) for the pairs of capsules that may touch.
+template <class Visit>
+void forPairs(const Body& body, const PosedBody& posed, Visit visit) {
+    for (const auto& [a, b] : body.apart)
+        if (areNear(posed.capsule(a), posed.capsule(b))) visit(penetration(posed.capsule(a), posed.capsule(b)));
+}
+template <class Visit>
+void forPairs(const PosedBody& a, const PosedBody& b, Visit visit) {
+    for (const PlacedCapsule& one : a.capsules())
+        for (const PlacedCapsule& other : b.capsules())
+            if (areNear(one, other)) visit(penetration(one, other));
+}
+
+template <class Visit>
+void forStage(const PosedBody& posed, Visit visit) {
+    for (const PlacedCapsule& capsule : posed.capsules()) {
+        visit(capsule.fromRadius - std::min(capsule.from.y, capsule.from.z));
+        visit(capsule.toRadius - std::min(capsule.to.y, capsule.to.z));
+    }
+}
+
+}  // namespace
+
+double unseen(const glm::dvec3& eyes, const glm::dvec3& gaze, const glm::dvec3& screenMiddle) {
+    const glm::dvec3 wanted = screenMiddle - eyes;
+    const double distance = glm::length(wanted);
+    const double off = std::acos(std::clamp(glm::dot(gaze, wanted) / distance, -1.0, 1.0)) - kSight;
+    // Beyond a right angle to the cone's side its apex is nearest.
+    const double near = off <= 0 ? 0 : off < std::numbers::pi / 2 ? distance * std::sin(off) : distance;
+    // The screen's plane is at z = 0: the cone reaches it if one of its rays goes towards -z.
+    const double away = std::acos(std::clamp(-gaze.z, -1.0, 1.0)) - kSight - std::numbers::pi / 2;
+    return near * near + (away > 0 ? kUnseen * (1 + away) : 0);
+}
+
+double depthInItself(const Body& body, const PosedBody& posed) {
+    double sum = 0;
+    forPairs(body, posed, [&](double depth) { sum += squaredMillimetres(depth); });
+    return sum;
+}
+
+double depthInOther(const PosedBody& a, const PosedBody& b) {
+    double sum = 0;
+    forPairs(a, b, [&](double depth) { sum += squaredMillimetres(depth); });
+    return sum;
+}
+
+double depthInStage(const PosedBody& posed) {
+    double sum = 0;
+    forStage(posed, [&](double depth) { sum += squaredMillimetres(depth); });
+    return sum;
+}
+
+double deepestInItself(const Body& body, const PosedBody& posed) {
+    double most = 0;
+    forPairs(body, posed, [&](double depth) { most = std::max(most, depth); });
+    return most;
+}
+
+double deepestInOther(const PosedBody& a, const PosedBody& b) {
+    double most = 0;
+    forPairs(a, b, [&](double depth) { most = std::max(most, depth); });
+    return most;
+}
+
+double deepestInStage(const PosedBody& posed) {
+    double most = 0;
+    forStage(posed, [&](double depth) { most = std::max(most, depth); });
+    return most;
+}
+
+int ownerChanges(std::span<const int> owners) {
+    int changes = 0;
+    for (std::size_t i = 0; i < owners.size(); ++i) changes += owners[i] != owners[(i + 1) % owners.size()];
+    return changes;
+}
+
+}  // namespace fantascope::theatre

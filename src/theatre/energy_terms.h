@@ -1,0 +1,39 @@
+#pragma once
+
+#include "theatre/balance.h"
+#include "theatre/posed_body.h"
+#include "theatre/stage.h"
+
+#include <span>
+
+namespace fantascope::theatre {
+
+// The terms of an actor's own (Won & Lee 2016, equations 5 and 6), in the units of EnergyTerms.
+
+// What a support polygon and a margin of balance are wanted to have; more is worth nothing.
+constexpr double kAmpleArea = 0.1;     // square metres
+constexpr double kAmpleMargin = 0.03;  // metres
+// Half the angle of the cone that approximates what one sees: the field of both eyes.
+constexpr double kSight = 1.0472;
+
+// (5) The squared distance from the screen's middle to the nearest point of the cone of sight, square metres. A cone that does not reach the
+// screen costs kUnseen and more the farther it is turned away: infinity would leave a search without a direction.
+constexpr double kUnseen = 1000;
+double unseen(const glm::dvec3& eyes, const glm::dvec3& gaze, const glm::dvec3& screenMiddle);
+
+// (6) PtDepth(B_n, B_n): the sum over capsules that must be apart of their squared depth in each other, square millimetres.
+double depthInItself(const Body& body, const PosedBody& posed);
+// (6) PtDepth(B_n, B_m).
+double depthInOther(const PosedBody& a, const PosedBody& b);
+// (6) PtDepth(B_n, E_k) of the floor and the screen, summed over the capsules' ends.
+double depthInStage(const PosedBody& posed);
+
+// The deepest of the same, metres, for reports: how far the floor, the screen, one's own body or another's is in the way.
+double deepestInItself(const Body& body, const PosedBody& posed);
+double deepestInOther(const PosedBody& a, const PosedBody& b);
+double deepestInStage(const PosedBody& posed);
+
+// (4) How often the owner changes from one point of the contour to the next, around.
+int ownerChanges(std::span<const int> owners);
+
+}  // namespace fantascope::theatre

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "theatre/body.h"
+
+#include <glm/mat3x3.hpp>
+
+namespace fantascope::theatre {
+
+// A cone with round ends in the stage's frame, metres.
+struct PlacedCapsule {
+    glm::dvec3 from{0}, to{0};
+    double fromRadius = 0, toRadius = 0;
+    double reach = 0;  // of a ball around its middle that holds it
+
+    glm::dvec3 middle() const { return 0.5 * (from + to); }
+};
+
+// Whether the balls around two capsules meet; most pairs' do not.
+inline bool areNear(const PlacedCapsule& a, const PlacedCapsule& b) {
+    const glm::dvec3 between = a.middle() - b.middle();
+    const double reach = a.reach + b.reach;
+    return between.x * between.x + between.y * between.y + between.z * between.z < reach * reach;
+}
+
+// Where two capsules are nearest to each other: the spheres around the nearest points of their axes.
+struct CapsuleTouch {
+    double depth = 0;                    // of the spheres in each other, metres; negative: their distance
+    glm::dvec3 onFirst{0}, onSecond{0};  // the spheres' centres
+    glm::dvec3 normal{0, 1, 0};          // from the second to the first, unit
+};
+CapsuleTouch touching(const PlacedCapsule& a, const PlacedCapsule& b);
+inline double penetration(const PlacedCapsule& a, const PlacedCapsule& b) { return touching(a, b).depth; }
+
+// A body in a pose: where forward kinematics puts its joints and capsules. Metres, stage frame. It keeps its memory from pose to pose.
+// Thread: thread-bound.
+class PosedBody {
+public:
+    void pose(const Body& body, std::span<const double> freedoms);
+
+    const glm::dvec3& place(std::size_t joint) const { return places_[joint]; }
+    const glm::dquat& turn(std::size_t joint) const { return turns_[joint]; }
+    const PlacedCapsule& capsule(std::size_t index) const { return capsules_[index]; }
+    std::span<const PlacedCapsule> capsules() const { return capsules_; }
+    glm::dvec3 massCentre() const { return massCentre_; }
+    // A point of a joint's frame.
+    glm::dvec3 point(std::size_t joint, const glm::dvec3& local) const { return places_[joint] + turns_[joint] * local; }
+    // The height of the lowest point of the capsules.
+    double lowest() const;
+
+    // What a small change of each freedom turns about: `axes` of the rotations, about the place of the freedom's joint; the root's first three
+    // freedoms are shifts along x, y and z. All of body.freedoms, in the stage's frame.
+    void axes(const Body& body, std::span<const double> freedoms, std::span<glm::dvec3> axes) const;
+
+private:
+    std::vector<glm::dvec3> places_;
+    std::vector<glm::dquat> turns_;
+    std::vector<PlacedCapsule> capsules_;
+    glm::dvec3 massCentre_{0};
+};
+
+}  // namespace fantascope::theatre

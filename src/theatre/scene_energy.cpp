@@ -1,0 +1,99 @@
+#include "theatre/scene_energy.h"
+
+#include "theatre/energy_terms.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
+namespace fantascope::theatre {
+
+SceneEnergy::SceneEnergy(const PoseProblem& problem)
+    : problem_(problem), disc_(std::max(1.0, kDiscRadius / problem.target.pixelsOf256)), actors_(problem.actors.size()) {
+    const BitMask& mask = problem.target.mask;
+    shadow_ = BitMask(mask.width(), mask.height());
+    for (Actor& actor : actors_) actor.shadow = shadow_;
+    nearest_.resize(problem.target.contour.size());
+    owners_.resize(nearest_.size());
+}
+
+void SceneEnergy::pose(std::span<const double> freedoms) {
+    for (std::size_t i = 0; i < actors_.size(); ++i) {
+        pose(i, freedoms.first(problem_.actors[i].freedoms));
+        freedoms = freedoms.subspan(problem_.actors[i].freedoms);
+    }
+}
+
+void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
+    const Body& body = problem_.actors[index];
+    Actor& actor = actors_[index];
+    actor.body.pose(body, freedoms);
+    actor.shadow.clear();
+    for (const PlacedCapsule& capsule : actor.body.capsules()) caster_.add(problem_.target.frame, capsule, actor.shadow);
+
+    findContacts(actor.body.capsules(), actor.contacts);
+    actor.margin = supportMargin(actor.contacts, actor.body.massCentre());
+    const ScreenFrame& frame = problem_.target.frame;
+    const glm::dvec2 middle = frame.metresAt(0.5 * glm::dvec2(frame.width(), frame.height()));
+    actor.own = {};
+    actor.own.visible = unseen(actor.body.point(body.head, body.eyes), actor.body.turn(body.head) * body.gaze, {middle, 0});
+    actor.own.floor = 100 * std::max(0.0, actor.body.lowest());
+    actor.own.supportArea = 1e4 * std::max(0.0, kAmpleArea - supportArea(actor.contacts));
+    actor.own.margin = 100 * std::max(0.0, kAmpleMargin - actor.margin);
+    actor.own.people = depthInItself(body, actor.body);
+    actor.own.surroundings = depthInStage(actor.body);
+}
+
+const EnergyTerms& SceneEnergy::terms() {
+    terms_ = {};
+    shadow_.clear();
+    for (std::size_t i = 0; i < actors_.size(); ++i) {
+        const Actor& actor = actors_[i];
+        shadow_.add(actor.shadow);
+        terms_.visible += actor.own.visible;
+        terms_.floor += actor.own.floor;
+        terms_.supportArea += actor.own.supportArea;
+        terms_.margin += actor.own.margin;
+        terms_.people += actor.own.people;
+        terms_.surroundings += actor.own.surroundings;
+        for (std::size_t j = i + 1; j < actors_.size(); ++j) terms_.people += depthInOther(actor.body, actors_[j].body);
+    }
+    terms_.coverage = static_cast<double>(differing(shadow_, problem_.target.mask)) / problem_.target.area;
+    compareContours();
+    terms_.coherence = ownerChanges(owners_);
+    return terms_;
+}
+
+// Equation 2, from the target's contour to the nearest points of the shadow's. Whose (equation 4): the actor whose shadow holds that point; of
+// several the one whose the last point was, else the first.
+void SceneEnergy::compareContours() {
+    contour_.find(shadow_);
+    const PoseTarget& target = problem_.target;
+    const double scale = target.pixelsOf256 * target.pixelsOf256;
+    int owner = 0;
+    std::optional<glm::ivec2> pixel;
+    for (std::size_t i = 0; i < target.contour.size(); ++i) {
+        const ContourPoint& wanted = target.contour[i];
+        pixel = contour_.nearest(wanted.pixel, pixel);
+        if (!pixel) {
+            // No shadow at all: as far as the picture is wide.
+            terms_.contourPoint += scale * target.mask.width() * target.mask.width();
+            nearest_[i] = {};
+        } else {
+            const ContourPoint got = disc_.at(shadow_, *pixel);
+            const glm::dvec2 away = wanted.pixel - got.pixel, turned = wanted.normal - got.normal;
+            const double bent = wanted.curvature - got.curvature;
+            terms_.contourPoint += scale * glm::dot(away, away);
+            terms_.contourNormal += glm::dot(turned, turned);
+            terms_.contourCurvature += bent * bent;
+            if (!actors_[static_cast<std::size_t>(owner)].shadow.at(pixel->x, pixel->y))
+                owner = static_cast<int>(std::find_if(actors_.begin(), actors_.end(),
+                                                      [&](const Actor& actor) { return actor.shadow.at(pixel->x, pixel->y); }) -
+                                         actors_.begin());
+            nearest_[i] = got;
+        }
+        owners_[i] = owner;
+    }
+}
+
+}  // namespace fantascope::theatre

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "theatre/balance.h"
+#include "theatre/capsule_shadow.h"
+#include "theatre/pose_problem.h"
+
+#include <span>
+#include <vector>
+
+namespace fantascope::theatre {
+
+// The energy of the actors' poses (Won & Lee 2016, equation 1). What an actor alone decides (pose, shadow, balance, sight) is kept until he
+// moves, so that one who moves costs no more than one.
+// Thread: thread-bound.
+class SceneEnergy {
+public:
+    // `problem` must live on.
+    explicit SceneEnergy(const PoseProblem& problem);
+
+    // Poses one actor, or all: freedoms of all actors, one after the other.
+    void pose(std::size_t actor, std::span<const double> freedoms);
+    void pose(std::span<const double> freedoms);
+    // Of the poses last given.
+    const EnergyTerms& terms();
+    double energy() { return terms().total(problem_.weights); }
+
+    const BitMask& shadow() const { return shadow_; }  // of all; after terms()
+    const BitMask& shadow(std::size_t actor) const { return actors_[actor].shadow; }
+    const PosedBody& posed(std::size_t actor) const { return actors_[actor].body; }
+    double margin(std::size_t actor) const { return actors_[actor].margin; }  // metres
+    bool touches(std::size_t actor) const { return actors_[actor].contacts.touches; }
+    const BitMask& contour() const { return contour_.pixels(); }  // of the shadow of all; after terms()
+    // Of each of the target's contour points: the nearest point of the shadow's contour and the actor whose it is; after terms().
+    std::span<const ContourPoint> nearest() const { return nearest_; }
+    std::span<const int> owners() const { return owners_; }
+
+private:
+    struct Actor {
+        PosedBody body;
+        BitMask shadow;
+        Contacts contacts;
+        double margin = 0;
+        EnergyTerms own;  // what depends on this actor alone
+    };
+    void compareContours();
+
+    const PoseProblem& problem_;
+    ContourDisc disc_;
+    std::vector<Actor> actors_;
+    CapsuleShadow caster_;
+    BitMask shadow_;
+    Contour contour_;
+    std::vector<ContourPoint> nearest_;
+    std::vector<int> owners_;
+    EnergyTerms terms_;
+};
+
+}  // namespace fantascope::theatre

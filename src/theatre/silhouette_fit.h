@@ -1,0 +1,48 @@
+#pragma once
+
+#include "theatre/scene_energy.h"
+
+#include "core/image.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace fantascope::theatre {
+
+// Moves actors' limbs so that the outline of their shadow goes where the target's is: Levenberg-Marquardt steps (Levenberg 1944,
+// Marquardt 1963) on how far each point of the shadow's contour is from the target's along its normal, with the analytic
+// derivative of the shadow by the joints. The residuals are reweighted at each step so that their squares add up to what equations 2, 3 and
+// 6 charge; a step is kept only if the energy itself falls. From poses that are far from the target it finds nothing: it finishes what a
+// global search has begun.
+// Thread: thread-bound.
+class SilhouetteFit {
+public:
+    // `problem` must live on.
+    explicit SilhouetteFit(const PoseProblem& problem);
+    ~SilhouetteFit();
+
+    // Lowers the energy of `freedoms` (of all actors, within their limits) by no more than `steps` steps that were kept or not; gives
+    // the energy. `energy` is left posed so. `moves`: for each freedom whether it may change; empty: all may.
+    double run(SceneEnergy& energy, std::span<double> freedoms, int steps, std::span<const char> moves = {});
+
+    std::int64_t evaluations() const { return evaluations_; }  // of the energy, so far
+
+private:
+    struct ActorSystem;
+    void linearise(SceneEnergy& energy, std::span<const double> freedoms);
+    void addContour(SceneEnergy& energy);
+    void addPhysics(SceneEnergy& energy, std::span<const double> freedoms);
+
+    const PoseProblem& problem_;
+    GreyImage distance_;  // of the target, signedDistance()
+    ContourDisc disc_;
+    std::vector<std::unique_ptr<ActorSystem>> actors_;
+    std::vector<std::size_t> first_;  // freedom of each actor
+    std::vector<double> trial_;
+    PosedBody nudged_;
+    Contacts contacts_;
+    std::int64_t evaluations_ = 0;
+};
+
+}  // namespace fantascope::theatre

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "core/geometry.h"
+#include "core/image.h"
+#include "core/result.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace fantascope::theatre {
+
+// Where the theatre plays: metres, +y up, the floor at y = 0, the screen upright at z = 0, the light before it at +z. The audience sits
+// behind the screen; x runs to the right for whoever stands at the light and looks at the screen reversed, that is: +x is the right side of
+// the picture that the light throws, as seen from the light's side.
+struct Stage {
+    glm::dvec3 light{0, 0, 7};
+    // Where the actors' pelvises may be.
+    glm::dvec3 from{-3, 0, 0.5}, to{3, 3, 4.5};
+};
+
+// A picture laid on the screen: target, shadow and masks share its pixels. Pixel (column, row), row 0 at the top, is centred at
+// half-integers.
+class ScreenFrame {
+public:
+    // `left`, `top`: of the picture, metres on the screen; `pixel`: the side of a pixel, metres.
+    ScreenFrame(const Stage& stage, double left, double top, double pixel, int width, int height);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    double pixel() const { return pixel_; }
+    glm::dvec2 pixelAt(double x, double y) const { return {(x - left_) / pixel_, (top_ - y) / pixel_}; }
+    glm::dvec2 metresAt(glm::dvec2 pixel) const { return {left_ + pixel.x * pixel_, top_ - pixel.y * pixel_}; }
+    // Where the shadow of a point falls; the point is nearer to the screen than the light is.
+    glm::dvec2 shadow(const glm::dvec3& point) const {
+        const glm::dvec3 d = fromLight(point);
+        return foot_ + focus_ / d.z * glm::dvec2(d);
+    }
+
+    // As a pinhole camera at the light that looks at the screen: pixels from metres by foot + focus * (x, y) / z.
+    glm::dvec2 foot() const { return foot_; }              // the pixel before the light
+    double focus() const { return focus_; }                // the light's distance from the screen, pixels
+    glm::dvec3 fromLight(const glm::dvec3& point) const {  // x right, y down, z towards the screen
+        return {point.x - light_.x, light_.y - point.y, light_.z - point.z};
+    }
+
+private:
+    glm::dvec3 light_;
+    double left_, top_, pixel_;
+    int width_, height_;
+    glm::dvec2 foot_;
+    double focus_;
+};
+
+}  // namespace fantascope::theatre
