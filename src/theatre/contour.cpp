@@ -14,9 +14,9 @@
 namespace fantascope::theatre {
 namespace {
 
-// `count` bits of a row from column x on, x may lie outside.
+// `count` bits of a row, 1..64, from column x on; x may lie outside.
 std::uint64_t window(std::span<const std::uint64_t> row, int x, int count) {
-    const std::uint64_t mask = (std::uint64_t{1} << count) - 1;
+    const std::uint64_t mask = ~std::uint64_t{0} >> (BitMask::kBits - count);
     if (x < 0) return x + count <= 0 ? 0 : (row[0] << -x) & mask;
     const auto word = static_cast<std::size_t>(x / BitMask::kBits);
     const int shift = x % BitMask::kBits;
@@ -26,35 +26,38 @@ std::uint64_t window(std::span<const std::uint64_t> row, int x, int count) {
     return bits & mask;
 }
 
-// Of the numbers 0..31, those with bit k, as a mask.
-constexpr std::array<std::uint64_t, 5> kPlanes = {0xaaaaaaaa, 0xcccccccc, 0xf0f0f0f0, 0xff00ff00, 0xffff0000};
-
 }  // namespace
 
-ContourDisc::ContourDisc(double radius) : radius_(static_cast<int>(radius)), exactRadius_(radius) {
-    FANTASCOPE_CHECK(radius >= 1 && radius_ <= 15, "a disc fits into half a word");
-    for (int y = -radius_; y <= radius_; ++y) halves_.push_back(static_cast<int>(std::sqrt(radius * radius - y * y)));
+ContourDisc::ContourDisc(double radius) : radius_(static_cast<int>(radius)) {
+    FANTASCOPE_CHECK(radius >= 1 && radius_ <= 7, "a disc is small enough for a table of its rows");
+    const int width = 2 * radius_ + 1;
+    for (int y = -radius_; y <= radius_; ++y) {
+        const int half = static_cast<int>(std::sqrt(radius * radius - y * y));
+        rows_.push_back(((std::uint64_t{1} << (2 * half + 1)) - 1) << (radius_ - half));
+        full_ += 2 * half + 1;
+    }
+    for (unsigned bits = 0; bits < 1u << width; ++bits) {
+        int moment = 0;
+        for (int x = 0; x < width; ++x) moment += (bits >> x & 1) != 0 ? x - radius_ : 0;
+        table_.push_back({static_cast<std::int8_t>(std::popcount(bits)), static_cast<std::int8_t>(moment)});
+    }
 }
 
 ContourPoint ContourDisc::at(const BitMask& mask, glm::ivec2 pixel) const {
-    int area = 0, full = 0;
+    int area = 0;
     glm::ivec2 moment(0);
-    for (int dy = -radius_; dy <= radius_; ++dy) {
-        const int half = halves_[static_cast<std::size_t>(dy + radius_)], y = pixel.y + dy;
-        full += 2 * half + 1;
-        if (y < 0 || y >= mask.height()) continue;
-        const std::uint64_t bits = window(mask.row(y), pixel.x - half, 2 * half + 1);
-        const int count = std::popcount(bits);
-        int x = -half * count;
-        for (std::size_t k = 0; k < kPlanes.size(); ++k) x += std::popcount(bits & kPlanes[k]) << k;
-        area += count;
-        moment += glm::ivec2(x, dy * count);
+    const int from = std::max(-radius_, -pixel.y), to = std::min(radius_, mask.height() - 1 - pixel.y);
+    for (int dy = from; dy <= to; ++dy) {
+        const std::uint64_t bits = window(mask.row(pixel.y + dy), pixel.x - radius_, 2 * radius_ + 1);
+        const Row row = table_[bits & rows_[static_cast<std::size_t>(dy + radius_)]];
+        area += row.count;
+        moment += glm::ivec2(row.moment, dy * row.count);
     }
     ContourPoint point{pixel};
-    const double length = std::hypot(moment.x, moment.y);
+    const double length = glm::length(glm::dvec2(moment));
     if (length > 0) point.normal = -glm::dvec2(moment) / length;
     // The pixel itself is white and lies on the line: half of what the disc's middle row takes.
-    const double share = (area - radius_ - 0.5) / (full - 2 * radius_ - 1);
+    const double share = (area - radius_ - 0.5) / (full_ - 2 * radius_ - 1);
     point.curvature = 3 * std::numbers::pi * (0.5 - share);
     return point;
 }
@@ -86,35 +89,43 @@ std::optional<glm::ivec2> Contour::nearest(glm::ivec2 pixel, std::optional<glm::
         const glm::ivec2 away = *other - pixel;
         least = away.x * away.x + away.y * away.y + 1;  // one that is as near is still found in its turn
     }
-    const auto look = [&](int y) {
+    const auto take = [&](int x, int y) {
+        const glm::ivec2 away = glm::ivec2(x, y) - pixel;
+        const int distance = away.x * away.x + away.y * away.y;
+        if (distance < least) least = distance, best = glm::ivec2(x, y);
+    };
+    // All that is less than half a word away lies in one word around the pixel's column: its own column and those on the left, then those
+    // on the right.
+    constexpr int kHalf = BitMask::kBits / 2;
+    const auto lookNear = [&](int y) {
+        const std::uint64_t bits = window(pixels_.row(y), pixel.x - kHalf, BitMask::kBits);
+        const std::uint64_t left = bits << (kHalf - 1), right = bits >> (kHalf + 1);
+        if (left != 0) take(pixel.x - std::countl_zero(left), y);
+        if (right != 0) take(pixel.x + 1 + std::countr_zero(right), y);
+    };
+    // The first set bit on the left and on the right, word by word.
+    const auto lookFar = [&](int y) {
         const auto row = pixels_.row(y);
-        const int dy = y - pixel.y, square = dy * dy;
-        const int word = std::clamp(pixel.x / BitMask::kBits, 0, pixels_.stride() - 1), bit = pixel.x - word * BitMask::kBits;
-        const auto take = [&](int x) {
-            const int dx = x - pixel.x, distance = dx * dx + square;
-            if (distance < least) least = distance, best = glm::ivec2(x, y);
-        };
-        const auto reaches = [&](int dx) { return dx < 0 || dx * dx + square < least; };
-        // To the left, the pixel's own column included, then to the right.
-        std::uint64_t bits =
-            bit < 0 ? 0 : row[static_cast<std::size_t>(word)] & (bit >= 63 ? ~std::uint64_t{0} : (std::uint64_t{2} << bit) - 1);
-        for (int i = word;; bits = row[static_cast<std::size_t>(i)]) {
+        const int last = pixels_.stride() - 1, own = std::clamp(pixel.x / BitMask::kBits, 0, last);
+        const std::uint64_t upTo = ~std::uint64_t{0} >> (BitMask::kBits - 1 - std::clamp(pixel.x - own * BitMask::kBits, 0, 63));
+        std::uint64_t bits = row[static_cast<std::size_t>(own)] & upTo;
+        for (int i = own; bits != 0 || i > 0; bits = row[static_cast<std::size_t>(--i)])
             if (bits != 0) {
-                take(i * BitMask::kBits + 63 - std::countl_zero(bits));
+                take(i * BitMask::kBits + 63 - std::countl_zero(bits), y);
                 break;
             }
-            if (--i < 0 || !reaches(pixel.x - (i * BitMask::kBits + 63))) break;
-        }
-        bits = bit < 0     ? row[static_cast<std::size_t>(word)]
-               : bit >= 63 ? 0
-                           : row[static_cast<std::size_t>(word)] & ~((std::uint64_t{2} << bit) - 1);
-        for (int i = word;; bits = row[static_cast<std::size_t>(i)]) {
+        bits = row[static_cast<std::size_t>(own)] & ~upTo;
+        for (int i = own; bits != 0 || i < last; bits = row[static_cast<std::size_t>(++i)])
             if (bits != 0) {
-                take(i * BitMask::kBits + std::countr_zero(bits));
+                take(i * BitMask::kBits + std::countr_zero(bits), y);
                 break;
             }
-            if (++i >= pixels_.stride() || !reaches(i * BitMask::kBits - pixel.x)) break;
-        }
+    };
+    const auto look = [&](int y) {
+        if (least > kHalf * kHalf)
+            lookFar(y);
+        else
+            lookNear(y);
     };
     const int from = std::max(0, pixels_.rowsFrom()), to = pixels_.rowsTo() - 1;
     for (int away = 0;; ++away) {

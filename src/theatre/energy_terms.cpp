@@ -20,8 +20,9 @@ void forPairs(const Body& body, const PosedBody& posed, Visit visit) {
 template <class Visit>
 void forPairs(const PosedBody& a, const PosedBody& b, Visit visit) {
     for (const PlacedCapsule& one : a.capsules())
-        for (const PlacedCapsule& other : b.capsules())
-            if (areNear(one, other)) visit(penetration(one, other));
+        if (b.isNear(one))
+            for (const PlacedCapsule& other : b.capsules())
+                if (areNear(one, other)) visit(penetration(one, other));
 }
 
 template <class Visit>

@@ -8,6 +8,13 @@ namespace {
 
 constexpr double kMargin = 1.0 / 3;  // of the silhouette's height, around it
 
+void sampleContour(PoseTarget& target, std::size_t points) {
+    target.area = static_cast<double>(target.mask.count());
+    const ContourDisc disc(std::max(1.0, kDiscRadius / target.pixelsOf256));
+    for (const glm::ivec2 point : sampled(outerContour(target.mask), points))
+        target.contour.push_back(disc.at(target.mask, point));
+}
+
 }  // namespace
 
 Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage, double height, int rows) {
@@ -43,10 +50,28 @@ Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage
                                       static_cast<int>(std::floor(bottom - (above - y - (j + 0.5) / 3) * step)));
             if (white > 4) target.mask.fill(y, x, x + 1);
         }
-    target.area = static_cast<double>(target.mask.count());
-    const ContourDisc disc(std::max(1.0, kDiscRadius / target.pixelsOf256));
-    for (const glm::ivec2 point : sampled(outerContour(target.mask), kContourPoints))
-        target.contour.push_back(disc.at(target.mask, point));
+    sampleContour(target, kContourPoints);
+    return target;
+}
+
+PoseTarget PoseTarget::halved(const Stage& stage) const {
+    const int width = (mask.width() + 1) / 2, height = (mask.height() + 1) / 2;
+    const glm::dvec2 leftBottom = frame.metresAt({0, mask.height()});
+    const double pixel = 2 * frame.pixel();
+    PoseTarget target{ScreenFrame(stage, leftBottom.x, leftBottom.y + height * pixel, pixel, width, height),
+                      BitMask(width, height),
+                      0,
+                      {},
+                      2 * pixelsOf256};
+    // From the floor up; a pixel is white if half of it is.
+    const int cut = 2 * height - mask.height();
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            int white = 0;
+            for (int i = 0; i < 4; ++i) white += mask.at(2 * x + i % 2, 2 * y - cut + i / 2);
+            if (white >= 2) target.mask.fill(y, x, x + 1);
+        }
+    sampleContour(target, contour.size() / 2);
     return target;
 }
 

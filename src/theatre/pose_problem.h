@@ -12,23 +12,28 @@
 
 namespace fantascope::theatre {
 
+// Points sampled on the target's contour; the radius of the disc that normals and curvatures are read in, pixels of the target's 256 rows.
+constexpr std::size_t kContourPoints = 200;
+constexpr double kDiscRadius = 6;
+
 // A target silhouette on the screen, ready to be compared with: masks of target and shadows share its frame.
 struct PoseTarget {
     // The picture's silhouette (what is lighter than a half) becomes `height` metres high on the screen, its lowest row on the floor, its middle
     // before the light, and `rows` pixels high in masks. Beyond it the masks have a margin of a third, for shadows that stick out. Error: nothing
     // white, nothing black, an island of fewer than kFewest pixels, or two that are far from each other.
     static Result<PoseTarget> from(const GreyImage& picture, const Stage& stage, double height, int rows);
+    // The same in pixels of twice the side, with half as many points: for a search's first look.
+    PoseTarget halved(const Stage& stage) const;
 
     ScreenFrame frame;
     BitMask mask;
     double area = 0;  // pixels
     std::vector<ContourPoint> contour;
     double pixelsOf256 = 1;  // of the target's height, a pixel of the mask is so many of 256
-};
 
-// Points sampled on the target's contour; the radius of the disc that normals and curvatures are read in, pixels of the target's 256 rows.
-constexpr std::size_t kContourPoints = 200;
-constexpr double kDiscRadius = 6;
+    // The energy's sums over points are those of kContourPoints, however many there are.
+    double perPoint() const { return double(kContourPoints) / static_cast<double>(contour.size()); }
+};
 
 struct PoseProblem {
     Stage stage;

@@ -1,5 +1,6 @@
 #include "theatre/posed_body.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -47,19 +48,16 @@ void PosedBody::pose(const Body& body, std::span<const double> freedoms) {
         mass += joint.mass;
     }
     massCentre_ = moment / mass;
+    least_ = glm::dvec3(std::numeric_limits<double>::infinity());
+    most_ = -least_;
     for (std::size_t i = 0; i < capsules_.size(); ++i) {
         const Capsule& capsule = body.capsules[i];
-        capsules_[i] = {point(capsule.joint, capsule.from), point(capsule.joint, capsule.to), capsule.fromRadius,
-                        capsule.toRadius,
-                        0.5 * glm::length(capsule.to - capsule.from) + std::max(capsule.fromRadius, capsule.toRadius)};
+        PlacedCapsule& placed = capsules_[i];
+        placed = {point(capsule.joint, capsule.from), point(capsule.joint, capsule.to), capsule.fromRadius, capsule.toRadius,
+                  capsule.reach};
+        least_ = glm::min(least_, glm::min(placed.from - placed.fromRadius, placed.to - placed.toRadius));
+        most_ = glm::max(most_, glm::max(placed.from + placed.fromRadius, placed.to + placed.toRadius));
     }
-}
-
-double PosedBody::lowest() const {
-    double lowest = std::numeric_limits<double>::infinity();
-    for (const PlacedCapsule& capsule : capsules_)
-        lowest = std::min({lowest, capsule.from.y - capsule.fromRadius, capsule.to.y - capsule.toRadius});
-    return lowest;
 }
 
 void PosedBody::axes(const Body& body, std::span<const double> freedoms, std::span<glm::dvec3> axes) const {

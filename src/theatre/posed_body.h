@@ -45,7 +45,14 @@ public:
     // A point of a joint's frame.
     glm::dvec3 point(std::size_t joint, const glm::dvec3& local) const { return places_[joint] + turns_[joint] * local; }
     // The height of the lowest point of the capsules.
-    double lowest() const;
+    double lowest() const { return least_.y; }
+    // Whether a capsule's ball reaches into the box around the body.
+    bool isNear(const PlacedCapsule& capsule) const {
+        const glm::dvec3 middle = capsule.middle();
+        for (int i = 0; i < 3; ++i)
+            if (middle[i] + capsule.reach < least_[i] || middle[i] - capsule.reach > most_[i]) return false;
+        return true;
+    }
 
     // What a small change of each freedom turns about: `axes` of the rotations, about the place of the freedom's joint; the root's first three
     // freedoms are shifts along x, y and z. All of body.freedoms, in the stage's frame.
@@ -55,7 +62,7 @@ private:
     std::vector<glm::dvec3> places_;
     std::vector<glm::dquat> turns_;
     std::vector<PlacedCapsule> capsules_;
-    glm::dvec3 massCentre_{0};
+    glm::dvec3 massCentre_{0}, least_{0}, most_{0};  // least_, most_: the corners of the box around the capsules
 };
 
 }  // namespace fantascope::theatre

@@ -69,7 +69,7 @@ const EnergyTerms& SceneEnergy::terms() {
 void SceneEnergy::compareContours() {
     contour_.find(shadow_);
     const PoseTarget& target = problem_.target;
-    const double scale = target.pixelsOf256 * target.pixelsOf256;
+    const double scale = target.pixelsOf256 * target.pixelsOf256, each = target.perPoint();
     int owner = 0;
     std::optional<glm::ivec2> pixel;
     for (std::size_t i = 0; i < target.contour.size(); ++i) {
@@ -77,15 +77,15 @@ void SceneEnergy::compareContours() {
         pixel = contour_.nearest(wanted.pixel, pixel);
         if (!pixel) {
             // No shadow at all: as far as the picture is wide.
-            terms_.contourPoint += scale * target.mask.width() * target.mask.width();
+            terms_.contourPoint += each * scale * target.mask.width() * target.mask.width();
             nearest_[i] = {};
         } else {
             const ContourPoint got = disc_.at(shadow_, *pixel);
             const glm::dvec2 away = wanted.pixel - got.pixel, turned = wanted.normal - got.normal;
             const double bent = wanted.curvature - got.curvature;
-            terms_.contourPoint += scale * glm::dot(away, away);
-            terms_.contourNormal += glm::dot(turned, turned);
-            terms_.contourCurvature += bent * bent;
+            terms_.contourPoint += each * scale * glm::dot(away, away);
+            terms_.contourNormal += each * glm::dot(turned, turned);
+            terms_.contourCurvature += each * bent * bent;
             if (!actors_[static_cast<std::size_t>(owner)].shadow.at(pixel->x, pixel->y))
                 owner = static_cast<int>(std::find_if(actors_.begin(), actors_.end(),
                                                       [&](const Actor& actor) { return actor.shadow.at(pixel->x, pixel->y); }) -

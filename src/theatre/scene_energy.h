@@ -23,6 +23,7 @@ public:
     // Of the poses last given.
     const EnergyTerms& terms();
     double energy() { return terms().total(problem_.weights); }
+    double lastEnergy() const { return terms_.total(problem_.weights); }  // of the terms last asked for
 
     const BitMask& shadow() const { return shadow_; }  // of all; after terms()
     const BitMask& shadow(std::size_t actor) const { return actors_[actor].shadow; }

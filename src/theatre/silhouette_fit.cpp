@@ -146,12 +146,14 @@ void SilhouetteFit::addContour(SceneEnergy& energy) {
                                 frame.focus() * capsule.toRadius / e.z, glm::dot(to - from, to - from)});
         }
     const PoseWeights& weights = problem_.weights;
-    const double squarePixel = target.pixelsOf256 * target.pixelsOf256;
+    const double squarePixel = target.pixelsOf256 * target.pixelsOf256 * target.perPoint();
     // `residual`: how far beyond its place the outline is along the outward normal, pixels.
     const auto add = [&](glm::dvec2 pixel, glm::dvec2 normal, double residual, double weight) {
         const Outline* nearest = nullptr;
         double least = 1e30, share = 0;
+        const glm::ivec2 whole(pixel);
         for (const Outline& outline : outlines) {
+            if (!energy.shadow(outline.actor).at(whole.x, whole.y)) continue;
             const glm::dvec2 away = pixel - outline.from;
             const double t = outline.square > 0 ? std::clamp(glm::dot(away, outline.along) / outline.square, 0.0, 1.0) : 0;
             const double distance = glm::length(away - t * outline.along) - std::lerp(outline.fromRadius, outline.toRadius, t);

@@ -1,0 +1,74 @@
+#include "theatre/freedom_search.h"
+
+#include "theatre/cma_es.h"
+
+#include "core/check.h"
+
+#include <algorithm>
+
+namespace fantascope::theatre {
+
+FreedomSearch::FreedomSearch(const PoseProblem& problem) : problem_(problem) {}
+
+double FreedomSearch::scaleOf(std::size_t freedom) { return freedom < 3 ? 0.3 : freedom < Body::kRootFreedoms ? 0.5 : 0.35; }
+
+double FreedomSearch::run(SceneEnergy& energy, std::span<double> freedoms, std::span<const std::size_t> which,
+                          const Settings& settings, Rng& rng, const std::function<bool(int)>& beforeGeneration) {
+    FANTASCOPE_CHECK(!which.empty(), "a search has something to change");
+    // Those of each actor that plays: his number, his first freedom, and which of `which` are his.
+    struct Part {
+        std::size_t actor, first, from, to;
+    };
+    std::vector<Part> parts;
+    CmaEs::Options options;
+    options.populationSize = settings.population;
+    options.sigma = settings.sigma;
+    // It is ended by its generations: what is searched changes on the way.
+    options.tolFun = options.tolHistFun = options.tolX = 0;
+    options.stagnation = false;
+    std::vector<double> start;
+    std::size_t first = 0, next = 0;
+    for (std::size_t actor = 0; actor < problem_.actors.size(); ++actor) {
+        const std::size_t from = next, end = first + problem_.actors[actor].freedoms;
+        for (; next < which.size() && which[next] < end; ++next) {
+            options.scales.push_back(scaleOf(which[next] - first));
+            start.push_back(freedoms[which[next]]);
+        }
+        if (next > from) {
+            parts.push_back({actor, first, from, next});
+            options.blocks.push_back(static_cast<int>(next - from));
+        }
+        first = end;
+    }
+
+    energy.pose(freedoms);
+    candidate_.assign(freedoms.begin(), freedoms.end());
+    values_.resize(static_cast<std::size_t>(settings.population));
+    CmaEs search(start, options);
+    double best = 0;
+    for (int generation = 0; generation < settings.generations && !search.stopReason(); ++generation) {
+        if (beforeGeneration && !beforeGeneration(generation)) break;
+        const std::span<double> candidates = search.ask(rng);
+        for (std::size_t k = 0; k < values_.size(); ++k) {
+            const auto own = candidates.subspan(k * which.size(), which.size());
+            for (std::size_t i = 0; i < which.size(); ++i) candidate_[which[i]] = own[i];
+            for (const Part& part : parts) {
+                const Body& body = problem_.actors[part.actor];
+                const auto pose = std::span(candidate_).subspan(part.first, body.freedoms);
+                body.limit(pose);
+                energy.pose(part.actor, pose);
+            }
+            for (std::size_t i = 0; i < which.size(); ++i) own[i] = candidate_[which[i]];
+            values_[k] = energy.energy();
+            ++evaluations_;
+        }
+        const auto least = std::min_element(values_.begin(), values_.end());
+        best = *least;
+        for (std::size_t i = 0; i < which.size(); ++i)
+            freedoms[which[i]] = candidates[static_cast<std::size_t>(least - values_.begin()) * which.size() + i];
+        search.tell(values_);
+    }
+    return best;
+}
+
+}  // namespace fantascope::theatre

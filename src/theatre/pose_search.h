@@ -1,0 +1,84 @@
+#pragma once
+
+#include "theatre/pose_problem.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace fantascope::theatre {
+
+// Discovery of principal poses (Won & Lee 2016, section 4): poses of all actors at once whose shadow is the target's.
+//
+// A trial's length is a number of evaluations of the energy, never a time: the same problem, seed and options give the same poses, byte for
+// byte, on any number of threads.
+// Thread: reentrant.
+class PoseSearch {
+public:
+    struct Options {
+        std::int64_t evaluations = 40'000;  // of a trial; 1000 or more
+        int population = 40;                // lambda of the CMA-ES
+
+        // Error: names the option that is out of range.
+        Result<void> check() const;
+    };
+
+    enum class StopReason { NotRun, Evaluations, Interrupted };
+
+    // How good poses are, for people and reports.
+    struct Actor {
+        double margin = 0;          // of balance, metres
+        bool touches = false;       // the floor
+        double lowest = 0;          // height of the lowest point, metres
+        double deepest = 0;         // in the own body, another's, the floor or the screen, metres
+        bool withinLimits = false;  // all joint angle measures between their bounds
+    };
+    struct Quality {
+        double energy = 0;
+        EnergyTerms terms;
+        double iou = 0;                           // of shadow and target, intersection over union
+        double contourMean = 0, contourMost = 0;  // |p - p'|, pixels of a target 256 high
+        std::vector<Actor> actors;
+
+        // Everyone stands with kStandMargin to spare, within the joints' limits, nobody deeper than kMostDepth in anything.
+        bool isValid() const;
+    };
+    static constexpr double kStandMargin = 0.01, kMostDepth = 0.02;  // metres
+
+    struct Trial {
+        std::vector<double> freedoms;  // of all actors, one after the other
+        Quality quality;
+        std::uint64_t seed = 0;
+        std::int64_t evaluations = 0;
+        StopReason reason = StopReason::NotRun;
+        std::vector<double>
+            history;  // of the local search: the best energy after each change, in coarse pixels and then in fine ones
+    };
+
+    struct Progress {
+        std::int64_t evaluations = 0;
+        double energy = 0;
+    };
+    // Asked now and then; true ends the trial with the best so far.
+    using AskStop = std::function<bool(const Progress&)>;
+
+    // The actors' T-poses in a row before the screen, looking at it.
+    static std::vector<double> start(const PoseProblem& problem);
+
+    // One trial. The global stage, CMA-ES with a block of the covariance for each actor, plays with weak physics, which stiffens
+    // on the way; then the outline is fitted while physics becomes what holds people up; then iterated local search: a limb, an
+    // actor or a random change is searched anew, fitted again, and kept by the rule of simulated annealing.
+    static Trial run(const PoseProblem& problem, std::uint64_t seed, const Options& options, const AskStop& askStop = {});
+
+    // Trials with seeds of their own, derived from `seed`, on so many threads; in the order of their numbers.
+    static std::vector<Trial> runTrials(const PoseProblem& problem, std::uint64_t seed, int trials, const Options& options,
+                                        int threads, const AskStop& askStop = {});
+
+    static Quality measure(const PoseProblem& problem, std::span<const double> freedoms);
+};
+
+std::string_view name(PoseSearch::StopReason reason);
+
+}  // namespace fantascope::theatre

@@ -1,0 +1,132 @@
+#include "theatre/pose_search.h"
+
+#include "theatre/energy_terms.h"
+#include "theatre/freedom_search.h"
+#include "theatre/scene_energy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fantascope::theatre {
+namespace {
+
+// A hill, for `actors` people: white below a half ellipse.
+PoseProblem hill(int actors, double height = 1.5, int rows = 128) {
+    GreyImage picture(240, 140);
+    for (int y = 20; y < 120; ++y)
+        for (int x = 0; x < 240; ++x)
+            if (std::hypot((x + 0.5 - 120) / 80, (y + 0.5 - 120) / 100) < 1) picture.at(x, y) = 1;
+    const Stage stage;
+    PoseProblem problem{stage, PoseTarget::from(picture, stage, height, rows).value(), {}, {}};
+    for (int i = 0; i < actors; ++i) problem.actors.push_back(humanBody(1.6 + 0.1 * i));
+    return problem;
+}
+
+PoseSearch::Options evaluations(std::int64_t count) {
+    PoseSearch::Options options;
+    options.evaluations = count;
+    return options;
+}
+
+TEST(PoseSearch, begins_with_people_who_stand_apart_and_look_at_the_screen) {
+    for (int actors = 1; actors <= 8; ++actors) {
+        const PoseProblem problem = hill(actors);
+        const auto start = PoseSearch::start(problem);
+        const auto quality = PoseSearch::measure(problem, start);
+        EXPECT_TRUE(quality.isValid()) << actors;
+        EXPECT_EQ(quality.terms.visible, 0) << actors;
+        EXPECT_EQ(quality.terms.people, 0) << actors;
+        for (const auto& actor : quality.actors) EXPECT_NEAR(actor.lowest, 0, 1e-3);
+    }
+}
+
+// The easy wrong version finds the shape with people who fall, or people who stand and no shape.
+TEST(PoseSearch, finds_a_shape_that_people_can_hold) {
+    const PoseProblem problem = hill(2);
+    const auto before = PoseSearch::measure(problem, PoseSearch::start(problem));
+    const auto trial = PoseSearch::run(problem, 1, evaluations(8000));
+    EXPECT_LT(before.iou, 0.4);
+    EXPECT_GT(trial.quality.iou, 0.85);
+    EXPECT_TRUE(trial.quality.isValid());
+    EXPECT_LT(trial.quality.energy, 0.3 * before.energy);
+    EXPECT_EQ(trial.reason, PoseSearch::StopReason::Evaluations);
+    EXPECT_GE(trial.evaluations, 8000);
+}
+
+TEST(PoseSearch, the_same_seed_gives_the_same_poses_on_any_number_of_threads) {
+    const PoseProblem problem = hill(2);
+    const auto one = PoseSearch::runTrials(problem, 5, 3, evaluations(1000), 1);
+    const auto two = PoseSearch::runTrials(problem, 5, 3, evaluations(1000), 3);
+    ASSERT_EQ(one.size(), 3u);
+    for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].freedoms, two[i].freedoms) << i;
+    EXPECT_NE(one[0].freedoms, one[1].freedoms) << "trials have seeds of their own";
+    EXPECT_EQ(one[1].freedoms, PoseSearch::run(problem, one[1].seed, evaluations(1000)).freedoms)
+        << "a trial is repeated by its seed";
+    EXPECT_NE(one[0].freedoms, PoseSearch::runTrials(problem, 6, 1, evaluations(1000), 1)[0].freedoms);
+}
+
+TEST(PoseSearch, stops_when_it_is_asked_to_with_what_it_has) {
+    const PoseProblem problem = hill(1);
+    const auto trial = PoseSearch::run(problem, 1, evaluations(1'000'000), [](const PoseSearch::Progress&) { return true; });
+    EXPECT_EQ(trial.reason, PoseSearch::StopReason::Interrupted);
+    EXPECT_LT(trial.evaluations, 1'000'000);
+    EXPECT_EQ(trial.freedoms.size(), problem.freedoms());
+}
+
+TEST(PoseSearch, options_out_of_range_are_refused) {
+    EXPECT_TRUE(evaluations(1000).check());
+    EXPECT_FALSE(evaluations(999).check());
+    PoseSearch::Options options;
+    options.population = 2;
+    ASSERT_FALSE(options.check());
+    EXPECT_NE(options.check().error().message().find("population"), std::string::npos);
+}
+
+// Every reason why poses are not valid, one at a time.
+TEST(PoseSearch, poses_that_nobody_can_hold_are_not_valid) {
+    const PoseProblem problem = hill(2);
+    const auto start = PoseSearch::start(problem);
+    const auto valid = [&](auto change) {
+        auto freedoms = start;
+        change(freedoms);
+        return PoseSearch::measure(problem, freedoms).isValid();
+    };
+    const std::size_t second = problem.actors[0].freedoms;
+    EXPECT_TRUE(valid([](auto&) {}));
+    EXPECT_FALSE(valid([](auto& f) { f[1] += 0.05; })) << "floats";
+    EXPECT_FALSE(valid([](auto& f) { f[1] -= 0.05; })) << "in the floor";
+    EXPECT_FALSE(valid([&](auto& f) { std::copy(f.begin(), f.begin() + 3, f.begin() + static_cast<std::ptrdiff_t>(second)); }))
+        << "in each other";
+    EXPECT_FALSE(valid([&](auto& f) {
+        const std::size_t knee = problem.actors[0].joints[problem.actors[0].joint("left knee")].first;
+        f[knee] = -0.3;
+    })) << "a knee bent forward";
+    EXPECT_FALSE(valid([](auto& f) { f[2] = 0.02; })) << "in the screen";
+}
+
+TEST(FreedomSearch, changes_nothing_but_what_it_was_given) {
+    const PoseProblem problem = hill(2);
+    SceneEnergy energy(problem);
+    FreedomSearch search(problem);
+    const auto start = PoseSearch::start(problem);
+    auto freedoms = start;
+    energy.pose(freedoms);
+    const double before = energy.energy();
+    const std::size_t second = problem.actors[0].freedoms;
+    const std::vector<std::size_t> which = {0, 2, second, second + 2, second + 10};
+    Rng rng(1);
+    const double after = search.run(energy, freedoms, which, {0.5, 12, 25}, rng);
+    EXPECT_LT(after, before);
+    EXPECT_EQ(search.evaluations(), 12 * 25);
+    for (std::size_t i = 0; i < freedoms.size(); ++i) {
+        const bool given = std::find(which.begin(), which.end(), i) != which.end();
+        EXPECT_EQ(freedoms[i] != start[i], given) << i;
+    }
+    energy.pose(freedoms);
+    EXPECT_DOUBLE_EQ(energy.energy(), after) << "what it tells is what it left";
+}
+
+}  // namespace
+}  // namespace fantascope::theatre
