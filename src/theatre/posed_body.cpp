@@ -15,7 +15,7 @@ CapsuleTouch touching(const PlacedCapsule& a, const PlacedCapsule& b) {
     const double c = glm::dot(along, between), f = glm::dot(other, between), crossing = aa * bb - ab * ab;
     double s = crossing > 1e-12 * aa * bb ? std::clamp((ab * f - c * bb) / crossing, 0.0, 1.0) : 0;
     double t = bb > 0 ? (ab * s + f) / bb : 0;
-    if (t < 0 || t > 1) {
+    if (bb == 0 || t < 0 || t > 1) {
         t = std::clamp(t, 0.0, 1.0);
         s = aa > 0 ? std::clamp((ab * t - c) / aa, 0.0, 1.0) : 0;
     }
