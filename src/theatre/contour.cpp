@@ -54,7 +54,7 @@ ContourPoint ContourDisc::at(const BitMask& mask, glm::ivec2 pixel) const {
     const double length = std::hypot(moment.x, moment.y);
     if (length > 0) point.normal = -glm::dvec2(moment) / length;
     // The pixel itself is white and lies on the line: half of what the disc's middle row takes.
-    const double share = (area - radius_ - 0.5) / (full - 2 * radius_ - 1);
+    const double share = (area - radius_ - 0.5) / full;
     point.curvature = 3 * std::numbers::pi * (0.5 - share);
     return point;
 }
