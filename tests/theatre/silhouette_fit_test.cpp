@@ -118,5 +118,34 @@ TEST(SilhouetteFit, GivesTheSameTwiceAndCountsItsEvaluations) {
     EXPECT_EQ(once, again);
 }
 
+// Each term of physics alone is a way downhill: nothing but it is weighed.
+TEST(SilhouetteFit, MendsWhatPhysicsForbids) {
+    const auto share = [](double PoseWeights::*weight, std::vector<double> poses, PoseProblem& problem) {
+        problem.weights = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+        problem.weights.*weight = 1;
+        SceneEnergy energy(problem);
+        energy.pose(poses);
+        const double before = energy.energy();
+        EXPECT_GT(before, 1);
+        return SilhouetteFit(problem).run(energy, poses, 40) / before;
+    };
+    Scene scene;
+    std::vector<double> close = aRow(scene.problem, {-0.65, 0.65}, 2);
+    close[scene.problem.actors[0].freedoms + 1] += 0.2;  // hands in each other, the shorter lifted to the other's height
+    EXPECT_LT(share(&PoseWeights::w10, close, scene.problem), 0.01) << "people";
+    std::vector<double> moved = scene.wanted;
+    moved[1] -= 0.05;
+    EXPECT_LT(share(&PoseWeights::w11, moved, scene.problem), 0.01) << "floor";
+    EXPECT_LT(share(&PoseWeights::w11, aRow(scene.problem, {-0.75, 0.75}, 0.05), scene.problem), 0.01) << "screen";
+    moved[1] += 0.15;
+    EXPECT_LT(share(&PoseWeights::w7, moved, scene.problem), 0.05) << "height";
+    moved = scene.wanted;
+    const Body& body = scene.problem.actors[0];
+    moved[body.joints[body.joint("lumbar")].first] -= 0.36;
+    moved[body.joints[body.joint("thorax")].first] -= 0.33;
+    // Feet that are let go of leave no way: less is asked.
+    EXPECT_LT(share(&PoseWeights::w9, moved, scene.problem), 0.7) << "balance";
+}
+
 }  // namespace
 }  // namespace fantascope::theatre
