@@ -91,7 +91,8 @@ void ConvexFiller::fill(std::span<const glm::vec2> polygon, BitMask& mask) {
         std::vector<float>& side = b.y > a.y ? right_ : left_;
         if (a.y > b.y) std::swap(a, b);
         const int from = rowFrom(a.y), to = rowTo(b.y);
-        if (from > to) continue;
+        // A level edge through centres has no slope; its ends are those of its neighbours.
+        if (from > to || a.y == b.y) continue;
         const float slope = (b.x - a.x) / (b.y - a.y);
         float x = a.x + (static_cast<float>(from) + 0.5f - a.y) * slope;
         for (auto row = static_cast<std::size_t>(from - first); row <= static_cast<std::size_t>(to - first); ++row, x += slope)

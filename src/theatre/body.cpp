@@ -40,8 +40,7 @@ public:
     // Places in the T-pose, from the floor's middle.
     void capsule(std::uint32_t joint, dvec3 from, double fromRadius, dvec3 to, double toRadius) {
         body_.capsules.push_back({joint, stature_ * (from - places_[joint]), stature_ * (to - places_[joint]),
-                                  stature_ * fromRadius, stature_ * toRadius,
-                                  stature_ * (0.5 * glm::length(to - from) + std::max(fromRadius, toRadius))});
+                                  stature_ * fromRadius, stature_ * toRadius});
     }
     void mass(std::uint32_t joint, double share, dvec3 centre) {
         // Body mass index 22: the middle of what the World Health Organization calls normal.

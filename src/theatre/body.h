@@ -17,7 +17,6 @@ struct Capsule {
     std::uint32_t joint = 0;
     glm::dvec3 from{0}, to{0};
     double fromRadius = 0, toRadius = 0;
-    double reach = 0;  // of a ball around its middle that holds it
 };
 
 // A body of rigid segments that turn about joints (Won & Lee 2016, section 3: M_n = (v_0, q_0, q_1 .. q_M)). Joint 0 is the root; a joint's

@@ -26,38 +26,54 @@ std::uint64_t window(std::span<const std::uint64_t> row, int x, int count) {
     return bits & mask;
 }
 
+// Of the bits of half a row: how many are set, and the sum of their places.
+constexpr int kHalf = 16;
+struct Bits {
+    std::uint8_t count = 0, places = 0;
+};
+std::vector<Bits> bitsTable() {
+    std::vector<Bits> table(1u << kHalf);
+    for (unsigned bits = 1; bits < table.size(); ++bits) {
+        const int lowest = std::countr_zero(bits);
+        const Bits rest = table[bits & (bits - 1)];
+        table[bits] = {static_cast<std::uint8_t>(rest.count + 1), static_cast<std::uint8_t>(rest.places + lowest)};
+    }
+    return table;
+}
+
 }  // namespace
 
 ContourDisc::ContourDisc(double radius) : radius_(static_cast<int>(radius)) {
-    FANTASCOPE_CHECK(radius >= 1 && radius_ <= 7, "a disc is small enough for a table of its rows");
-    const int width = 2 * radius_ + 1;
+    FANTASCOPE_CHECK(radius >= 1 && radius_ < kHalf, "a disc's row fits into two halves of a table");
     for (int y = -radius_; y <= radius_; ++y) {
         const int half = static_cast<int>(std::sqrt(radius * radius - y * y));
         rows_.push_back(((std::uint64_t{1} << (2 * half + 1)) - 1) << (radius_ - half));
         full_ += 2 * half + 1;
     }
-    for (unsigned bits = 0; bits < 1u << width; ++bits) {
-        int moment = 0;
-        for (int x = 0; x < width; ++x) moment += (bits >> x & 1) != 0 ? x - radius_ : 0;
-        table_.push_back({static_cast<std::int8_t>(std::popcount(bits)), static_cast<std::int8_t>(moment)});
-    }
 }
 
 ContourPoint ContourDisc::at(const BitMask& mask, glm::ivec2 pixel) const {
+    static const std::vector<Bits> table = bitsTable();
     int area = 0;
     glm::ivec2 moment(0);
-    const int from = std::max(-radius_, -pixel.y), to = std::min(radius_, mask.height() - 1 - pixel.y);
+    const int from = std::max(-radius_, -pixel.y), to = std::min(radius_, mask.height() - 1 - pixel.y), width = 2 * radius_ + 1;
     for (int dy = from; dy <= to; ++dy) {
-        const std::uint64_t bits = window(mask.row(pixel.y + dy), pixel.x - radius_, 2 * radius_ + 1);
-        const Row row = table_[bits & rows_[static_cast<std::size_t>(dy + radius_)]];
-        area += row.count;
-        moment += glm::ivec2(row.moment, dy * row.count);
+        const std::uint64_t bits =
+            window(mask.row(pixel.y + dy), pixel.x - radius_, width) & rows_[static_cast<std::size_t>(dy + radius_)];
+        const Bits low = table[bits & (table.size() - 1)];
+        int count = low.count, places = low.places;
+        if (width > kHalf) {
+            const Bits high = table[bits >> kHalf];
+            count += high.count, places += high.places + kHalf * high.count;
+        }
+        area += count;
+        moment += glm::ivec2(places - radius_ * count, dy * count);
     }
     ContourPoint point{pixel};
     const double length = glm::length(glm::dvec2(moment));
     if (length > 0) point.normal = -glm::dvec2(moment) / length;
     // The pixel itself is white and lies on the line: half of what the disc's middle row takes.
-    const double share = (area - radius_ - 0.5) / (full_ - 2 * radius_ - 1);
+    const double share = (area - radius_ - 0.5) / full_;
     point.curvature = 3 * std::numbers::pi * (0.5 - share);
     return point;
 }

@@ -28,11 +28,6 @@ public:
 private:
     int radius_, full_ = 0;
     std::vector<std::uint64_t> rows_;  // of the disc, from the bit 0 at its left edge
-    // Of each row of bits as wide as the disc: how many are set, and the sum of their distances from the middle.
-    struct Row {
-        std::int8_t count, moment;
-    };
-    std::vector<Row> table_;
 };
 
 // The contour of a mask, for questions about its nearest point.

@@ -1,5 +1,9 @@
 #include "theatre/pose_problem.h"
 
+#include "theatre/distance_field.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +11,57 @@ namespace fantascope::theatre {
 namespace {
 
 constexpr double kMargin = 1.0 / 3;  // of the silhouette's height, around it
+
+// White pixels that hang together, over corners too.
+struct Island {
+    std::int64_t area = 0;
+    glm::ivec2 pixel{0};  // its first
+    int left = 0, right = 0;
+};
+
+// Runs of a row join those that they touch in the row above: no more memory than the runs take.
+std::vector<Island> findIslands(const BitMask& mask) {
+    struct Run {
+        int from, to;
+        std::size_t island;
+    };
+    std::vector<Island> islands;
+    std::vector<std::size_t> parents;
+    const auto rootOf = [&](std::size_t i) {
+        while (parents[i] != i) i = parents[i] = parents[parents[i]];
+        return i;
+    };
+    std::vector<Run> above, here;
+    for (int y = 0; y < mask.height(); ++y) {
+        here.clear();
+        for (int x = 0; x < mask.width(); ++x) {
+            if (!mask.at(x, y)) continue;
+            const int from = x;
+            while (mask.at(x, y)) ++x;
+            here.push_back({from, x, islands.size()});
+            parents.push_back(islands.size());
+            islands.push_back({x - from, {from, y}, from, x});
+        }
+        auto first = above.begin();
+        for (const Run& run : here) {
+            while (first != above.end() && first->to < run.from) ++first;
+            for (auto other = first; other != above.end() && other->from <= run.to; ++other) {
+                const std::size_t a = rootOf(other->island), b = rootOf(run.island);
+                if (a == b) continue;
+                const std::size_t keep = std::min(a, b), gone = std::max(a, b);
+                parents[gone] = keep;
+                islands[keep].area += islands[gone].area;
+                islands[keep].left = std::min(islands[keep].left, islands[gone].left);
+                islands[keep].right = std::max(islands[keep].right, islands[gone].right);
+            }
+        }
+        std::swap(above, here);
+    }
+    std::vector<Island> whole;
+    for (std::size_t i = 0; i < islands.size(); ++i)
+        if (parents[i] == i) whole.push_back(islands[i]);
+    return whole;
+}
 
 void sampleContour(PoseTarget& target, std::size_t points) {
     target.area = static_cast<double>(target.mask.count());
@@ -18,6 +73,9 @@ void sampleContour(PoseTarget& target, std::size_t points) {
 }  // namespace
 
 Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage, double height, int rows) {
+    if (std::max(picture.width(), picture.height()) > kMostSide)
+        return Error(fmt::format("it is {} x {} pixels; no side may have more than {}: scale it down, some 500 are enough",
+                                 picture.width(), picture.height(), kMostSide));
     BitMask whole(picture.width(), picture.height());
     for (int y = 0; y < picture.height(); ++y)
         for (int x = 0; x < picture.width(); ++x)
@@ -26,8 +84,19 @@ Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage
     if (whole.count() == std::int64_t{picture.width()} * picture.height())
         return Error("all of it is white; a silhouette is white on black, with some black around");
     int left = picture.width(), right = 0;
-    for (const glm::ivec2 pixel : outerContour(whole)) left = std::min(left, pixel.x), right = std::max(right, pixel.x + 1);
-    int top = whole.rowsFrom(), bottom = whole.rowsTo();
+    for (const Island& island : findIslands(whole)) {
+        if (island.area < kFewest)
+            return Error(fmt::format(
+                "at column {}, row {} is a white speck of {} pixels; remove it, or draw it larger: fewer than {} are no "
+                "silhouette",
+                island.pixel.x, island.pixel.y, island.area, kFewest));
+        left = std::min(left, island.left), right = std::max(right, island.right);
+    }
+    const int top = whole.rowsFrom(), bottom = whole.rowsTo();
+    if (right - left > kWidest * (bottom - top))
+        return Error(
+            fmt::format("its silhouette is {} pixels wide and {} high; no more than {} times as wide as high can be played",
+                        right - left, bottom - top, kWidest));
 
     // One pixel of the mask is `step` pixels of the picture; it is sampled at the mask's pixels' centres by area.
     const double step = double(bottom - top) / rows, pixel = height / rows;
@@ -50,6 +119,17 @@ Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage
                                       static_cast<int>(std::floor(bottom - (above - y - (j + 0.5) / 3) * step)));
             if (white > 4) target.mask.fill(y, x, x + 1);
         }
+    // Islands are near if they hang together once each has grown by half of how far apart they may be.
+    const GreyImage grown = signedDistance(target.mask);
+    BitMask joined(width, above);
+    for (int y = 0; y < above; ++y)
+        for (int x = 0; x < width; ++x)
+            if (grown.at(x, y) > -0.5 * kFarApart * rows) joined.fill(y, x, x + 1);
+    if (const std::vector<Island> apart = findIslands(joined); apart.size() > 1)
+        return Error(
+            fmt::format("it has {} parts that are farther from each other than {:.0f} % of its height; join them, or play each "
+                        "as a target of its own",
+                        apart.size(), 100 * kFarApart));
     sampleContour(target, kContourPoints);
     return target;
 }

@@ -16,7 +16,7 @@ CapsuleTouch touching(const PlacedCapsule& a, const PlacedCapsule& b) {
     const double c = glm::dot(along, between), f = glm::dot(other, between), crossing = aa * bb - ab * ab;
     double s = crossing > 1e-12 * aa * bb ? std::clamp((ab * f - c * bb) / crossing, 0.0, 1.0) : 0;
     double t = bb > 0 ? (ab * s + f) / bb : 0;
-    if (t < 0 || t > 1) {
+    if (bb == 0 || t < 0 || t > 1) {
         t = std::clamp(t, 0.0, 1.0);
         s = aa > 0 ? std::clamp((ab * t - c) / aa, 0.0, 1.0) : 0;
     }
@@ -53,8 +53,8 @@ void PosedBody::pose(const Body& body, std::span<const double> freedoms) {
     for (std::size_t i = 0; i < capsules_.size(); ++i) {
         const Capsule& capsule = body.capsules[i];
         PlacedCapsule& placed = capsules_[i];
-        placed = {point(capsule.joint, capsule.from), point(capsule.joint, capsule.to), capsule.fromRadius, capsule.toRadius,
-                  capsule.reach};
+        placed = {point(capsule.joint, capsule.from), point(capsule.joint, capsule.to), capsule.fromRadius, capsule.toRadius, 0};
+        placed.reach = 0.5 * glm::length(placed.to - placed.from) + std::max(placed.fromRadius, placed.toRadius);
         least_ = glm::min(least_, glm::min(placed.from - placed.fromRadius, placed.to - placed.toRadius));
         most_ = glm::max(most_, glm::max(placed.from + placed.fromRadius, placed.to + placed.toRadius));
     }

@@ -1,0 +1,91 @@
+#include "theatre/balance.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace fantascope::theatre {
+namespace {
+
+using glm::dvec3;
+
+Contacts on(std::vector<Contact> discs) { return {std::move(discs), true}; }
+// The hull is felt in 48 directions.
+constexpr double kShare = 0.003;
+
+TEST(SupportMargin, OfASquareIsTheDistanceToItsNearestSide) {
+    const Contacts square = on({{{0, 0}, 0}, {{1, 0}, 0}, {{1, 1}, 0}, {{0, 1}, 0}, {{0.5, 0.4}, 0}});
+    EXPECT_NEAR(supportMargin(square, {0.5, 9, 0.5}), 0.5, 1e-9);
+    EXPECT_NEAR(supportMargin(square, {0.3, 1, 0.6}), 0.3, 1e-9);
+    EXPECT_NEAR(supportMargin(square, {0.3, 1, 0.9}), 0.1, 1e-9);
+    EXPECT_NEAR(supportMargin(square, {1, 1, 0.5}), 0, 1e-9);
+    EXPECT_NEAR(supportMargin(square, {1.2, 1, 0.5}), -0.2, 1e-9);
+    EXPECT_NEAR(supportMargin(square, {0.5, 1, -0.4}), -0.4, 1e-9);
+    // Beyond a corner it is the distance to the corner.
+    EXPECT_NEAR(supportMargin(square, {1.3, 1, 1.4}), -0.5, kShare * 0.5);
+    EXPECT_NEAR(supportArea(square), 1, 1e-9);
+}
+
+TEST(SupportMargin, OfFeetReachesAroundTheirDiscs) {
+    const Contacts square = on({{{0, 0}, 0.1}, {{1, 0}, 0.1}, {{1, 1}, 0.1}, {{0, 1}, 0.1}});
+    EXPECT_NEAR(supportMargin(square, {0.5, 1, 0.9}), 0.2, 1e-9);
+    EXPECT_NEAR(supportArea(square), 1 + 0.4 + std::numbers::pi * 0.01, kShare);
+}
+
+TEST(SupportMargin, OfOneContactIsOfItsDisc) {
+    const Contacts disc = on({{{2, 3}, 0.2}});
+    EXPECT_NEAR(supportMargin(disc, {2, 1, 3}), 0.2, 1e-9);
+    EXPECT_NEAR(supportMargin(disc, {2.09, 1, 3.12}), 0.05, 1e-3);
+    EXPECT_NEAR(supportMargin(disc, {2.3, 1, 3.4}), -0.3, 1e-3);
+    EXPECT_NEAR(supportArea(disc), std::numbers::pi * 0.04, kShare * 0.13);
+}
+
+TEST(SupportMargin, OfTwoContactsIsOfTheBandAround) {
+    const Contacts band = on({{{0, 0}, 0.05}, {{2, 0}, 0.05}});
+    EXPECT_NEAR(supportMargin(band, {1, 1, 0}), 0.05, 1e-9);
+    EXPECT_NEAR(supportMargin(band, {1, 1, 0.03}), 0.02, 1e-9);
+    EXPECT_NEAR(supportMargin(band, {0.4, 1, -0.5}), -0.45, 1e-3);
+    EXPECT_NEAR(supportMargin(band, {2.35, 1, 0}), -0.3, 1e-9);
+    EXPECT_NEAR(supportArea(band), 2 * 0.1 + std::numbers::pi * 0.0025, 1e-3);
+    // Points alone: nothing to stand on.
+    EXPECT_NEAR(supportMargin(on({{{0, 0}, 0}, {{2, 0}, 0}}), {1, 1, 0}), 0, 1e-9);
+    EXPECT_NEAR(supportArea(on({{{0, 0}, 0}, {{2, 0}, 0}})), 0, 1e-12);
+}
+
+PlacedCapsule ball(dvec3 place, double radius) { return {place, place, radius, radius, radius}; }
+
+TEST(FindContacts, CutsBallsAtTheTouchingHeight) {
+    Contacts contacts;
+    // Resting, sunk by 1 cm, and lifted by 5 mm; both ends of a ball touch.
+    findContacts(std::vector{ball({1, 0.1, 2}, 0.1), ball({3, 0.09, 2}, 0.1), ball({5, 0.105, 2}, 0.1), ball({7, 0.5, 2}, 0.1)},
+                 contacts);
+    EXPECT_TRUE(contacts.touches);
+    ASSERT_EQ(contacts.discs.size(), 6u);
+    EXPECT_EQ(contacts.discs[0].place, glm::dvec2(1, 2));
+    const auto chord = [](double above) { return std::sqrt(0.01 - above * above); };
+    EXPECT_NEAR(contacts.discs[0].radius, chord(0.09), 1e-12);
+    EXPECT_NEAR(contacts.discs[2].radius, chord(0.08), 1e-12);
+    EXPECT_NEAR(contacts.discs[4].radius, chord(0.095), 1e-12);
+}
+
+TEST(FindContacts, NothingSunkIsWiderThanTheBall) {
+    Contacts contacts;
+    findContacts(std::vector{ball({0, -3, 0}, 0.1)}, contacts);
+    EXPECT_NEAR(contacts.discs[0].radius, 0.1, 1e-12);
+}
+
+TEST(FindContacts, WhatTouchesNothingStandsOnItsLowestPoint) {
+    Contacts contacts;
+    findContacts(std::vector{ball({0, 0.1, 0}, 0.1)}, contacts);
+    findContacts(std::vector{ball({4, 2, 5}, 0.3), PlacedCapsule{{0, 3, 0}, {1, 1.9, 2}, 0.3, 0.1, 2}}, contacts);
+    EXPECT_FALSE(contacts.touches);
+    ASSERT_EQ(contacts.discs.size(), 1u);
+    EXPECT_EQ(contacts.discs[0].place, glm::dvec2(4, 5));
+    EXPECT_EQ(contacts.discs[0].radius, 0);
+    EXPECT_NEAR(supportMargin(contacts, {4, 3, 5.3}), -0.3, 1e-9);
+    EXPECT_NEAR(supportArea(contacts), 0, 1e-12);
+}
+
+}  // namespace
+}  // namespace fantascope::theatre

@@ -1,0 +1,117 @@
+#include "theatre/energy_terms.h"
+
+#include "theatre/pose_weights.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace fantascope::theatre {
+namespace {
+
+using glm::dvec3;
+using std::numbers::pi;
+
+// Eyes 4 m before the middle of the screen, turned by an angle to the side.
+double turned(double angle) { return unseen({1, 2, 4}, {std::sin(angle), 0, -std::cos(angle)}, {1, 2, 0}); }
+
+TEST(Unseen, IsNothingInSight) {
+    EXPECT_NEAR(turned(0), 0, 1e-9);
+    EXPECT_NEAR(turned(0.99 * kSight), 0, 1e-9);
+    EXPECT_NEAR(turned(-0.99 * kSight), 0, 1e-9);
+}
+
+TEST(Unseen, IsTheSquaredDistanceToTheConesSide) {
+    EXPECT_NEAR(turned(kSight + 0.3), std::pow(4 * std::sin(0.3), 2), 1e-9);
+    EXPECT_NEAR(turned(-kSight - 0.3), std::pow(4 * std::sin(0.3), 2), 1e-9);
+    // At and beyond a right angle the nearest point is in the eyes.
+    EXPECT_NEAR(turned(kSight + pi / 2 - 1e-9), 16, 1e-6);
+    // Looking to the floor beside one's feet.
+    EXPECT_NEAR(unseen({0, 1, 3}, {0, -1, 0}, {0, 1, 0}), std::pow(3 * std::sin(pi / 2 - kSight), 2), 1e-6);
+}
+
+TEST(Unseen, IsGradedWhereTheConeMissesTheScreen) {
+    EXPECT_NEAR(turned(kSight + pi / 2 + 0.2), 16 + kUnseen * 1.2, 1e-6);
+    EXPECT_NEAR(turned(pi), 16 + kUnseen * (1 + pi / 2 - kSight), 1e-6);
+    double last = 0;
+    for (double angle = kSight + 0.01; angle < pi; angle += 0.01) {
+        EXPECT_GE(turned(angle), last - 1e-9);
+        last = turned(angle);
+    }
+}
+
+// Three balls in a row on three joints; the first and the third are to be kept apart.
+struct Balls {
+    Body body;
+    PosedBody posed;
+    explicit Balls(const std::vector<dvec3>& places, double radius = 0.1) {
+        body.joints.resize(places.size());
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            body.joints[i].mass = 1;
+            if (i > 0) body.joints[i].motion = JointMotion::axial({0, 1, 0}, -1, 1), body.joints[i].first = 5 + i;
+            if (i > 0) body.joints[i].offset = places[i] - places[0];
+            body.capsules.push_back({static_cast<std::uint32_t>(i), {}, {}, radius, radius});
+        }
+        body.freedoms = 5 + places.size();
+        if (places.size() > 2) body.apart = {{0, 2}};
+        std::vector<double> pose(body.freedoms, 0);
+        for (int i = 0; i < 3; ++i) pose[static_cast<std::size_t>(i)] = places[0][i];
+        posed.pose(body, pose);
+    }
+};
+
+TEST(Depth, InItselfCountsThePairsToKeepApart) {
+    // 1: inside both. The first and the third are 17 cm apart with radii of 10: 30 mm deep.
+    const Balls deep({{0, 1, 1}, {0.08, 1, 1}, {0.17, 1, 1}});
+    EXPECT_NEAR(depthInItself(deep.body, deep.posed), 900, 1e-6);
+    EXPECT_NEAR(deepestInItself(deep.body, deep.posed), 0.03, 1e-9);
+    const Balls clear({{0, 1, 1}, {0.08, 1, 1}, {0.21, 1, 1}});
+    EXPECT_EQ(depthInItself(clear.body, clear.posed), 0);
+    EXPECT_EQ(deepestInItself(clear.body, clear.posed), 0);
+}
+
+TEST(Depth, InOthersSumsSquares) {
+    const Balls one({{0, 1, 1}, {1, 1, 1}}), other({{0, 1.19, 1}, {1, 1, 1.18}});
+    EXPECT_NEAR(depthInOther(one.posed, other.posed), 100 + 400, 1e-6);
+    EXPECT_NEAR(depthInOther(other.posed, one.posed), 100 + 400, 1e-6);
+    EXPECT_NEAR(deepestInOther(one.posed, other.posed), 0.02, 1e-9);
+    EXPECT_EQ(depthInOther(one.posed, Balls({{5, 1, 1}}).posed), 0);
+}
+
+TEST(Depth, InTheStageIsOfFloorAndScreen) {
+    // A capsule without length has two ends, and each counts.
+    EXPECT_NEAR(depthInStage(Balls({{0, 0.09, 1}}).posed), 2 * 100, 1e-6);
+    EXPECT_NEAR(depthInStage(Balls({{0, 1, 0.08}}).posed), 2 * 400, 1e-6);
+    EXPECT_NEAR(depthInStage(Balls({{0, -0.1, 1}}).posed), 2 * 40000, 1e-6);
+    EXPECT_NEAR(deepestInStage(Balls({{0, 1, 0.08}, {1, 0.06, 1}}).posed), 0.04, 1e-9);
+    EXPECT_EQ(depthInStage(Balls({{0, 0.1, 0.1}}).posed), 0);
+    EXPECT_EQ(deepestInStage(Balls({{0, 5, 5}}).posed), 0);
+}
+
+TEST(OwnerChanges, CountAround) {
+    EXPECT_EQ(ownerChanges(std::vector<int>{}), 0);
+    EXPECT_EQ(ownerChanges(std::vector{2}), 0);
+    EXPECT_EQ(ownerChanges(std::vector{1, 1, 1}), 0);
+    EXPECT_EQ(ownerChanges(std::vector{0, 0, 1, 1}), 2);
+    EXPECT_EQ(ownerChanges(std::vector{0, 1, 1, 0}), 2);
+    EXPECT_EQ(ownerChanges(std::vector{0, 1, 2}), 3);
+    EXPECT_EQ(ownerChanges(std::vector{0, 1, 0, 1}), 4);
+}
+
+TEST(EnergyTerms, TotalIsWeightedByTheTables) {
+    EnergyTerms terms;
+    double* const all[] = {&terms.contourPoint, &terms.contourNormal, &terms.contourCurvature, &terms.coverage, &terms.coherence,
+                           &terms.visible,      &terms.floor,         &terms.supportArea,      &terms.margin,   &terms.people,
+                           &terms.surroundings, &terms.hint};
+    PoseWeights weights{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 2};
+    const double wanted[] = {2, 3, 5, 7, 11, 13, 34, 38, 46, 58, 62, 37};
+    for (std::size_t i = 0; i < std::size(all); ++i) {
+        *all[i] = 1;
+        EXPECT_EQ(terms.total(weights), wanted[i]) << i;
+        *all[i] = 0;
+    }
+}
+
+}  // namespace
+}  // namespace fantascope::theatre
