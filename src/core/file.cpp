@@ -54,6 +54,17 @@ Result<void> writeFile(const fs::path& path, std::string_view bytes) {
     return {};
 }
 
+Result<std::string> relativeTo(const std::filesystem::path& file, const std::filesystem::path& path) {
+    std::error_code noWorkingDirectory;  // then the paths stay as they are
+    const auto absolute = [&](const std::filesystem::path& p) {
+        return std::filesystem::absolute(p, noWorkingDirectory).lexically_normal();
+    };
+    const std::filesystem::path relative = absolute(path).lexically_relative(absolute(file).parent_path());
+    if (relative.empty() || *relative.begin() == "..")
+        return Error(fmt::format("{}: '{}' lies outside its folder; copy it there first", file.string(), path.string()));
+    return relative.generic_string();
+}
+
 std::string endingOf(const fs::path& path) {
     std::string ending = path.extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });

@@ -15,6 +15,10 @@ Result<std::string> readFile(const std::filesystem::path& path);
 // failure leaves nothing behind. Makes missing folders. Error: names the file and the reason.
 Result<void> writeFile(const std::filesystem::path& path, std::string_view bytes);
 
+// `path` as a file that is read wherever it lies names it: relative to the file's folder, with slashes. By the names alone: a link in the
+// folder counts as what it is called. Error: it lies outside the folder.
+Result<std::string> relativeTo(const std::filesystem::path& file, const std::filesystem::path& path);
+
 // By which a file's kind is told, in small letters: ".png" of "leaf.PNG"; "" if there is none.
 std::string endingOf(const std::filesystem::path& path);
 

@@ -88,16 +88,6 @@ Result<ShapePattern> patternOf(const ConfigNode& root) {
     return pattern;
 }
 
-// `path` as `file` names it. By the names alone: a link in the folder counts as what it is called.
-Result<std::string> relativeTo(const fs::path& file, const fs::path& path) {
-    std::error_code noWorkingDirectory;  // then the paths stay as they are
-    const auto absolute = [&](const fs::path& p) { return fs::absolute(p, noWorkingDirectory).lexically_normal(); };
-    const fs::path relative = absolute(path).lexically_relative(absolute(file).parent_path());
-    if (relative.empty() || *relative.begin() == "..")
-        return Error(fmt::format("{}: '{}' lies outside its folder; copy it there first", file.string(), path.string()));
-    return fantascope::quoted(relative.generic_string());
-}
-
 std::string instanceText(const ShapeInstance& instance) {
     const auto& [id, shape, group, centre, size, rotation, colour] = instance;
     return fmt::format(
@@ -111,8 +101,8 @@ std::string instanceText(const ShapeInstance& instance) {
 Result<ShapePattern> readPattern(const fs::path& file) { return patternOf(TRY(ConfigNode::load(file))); }
 
 Result<void> writePattern(const fs::path& file, const ShapePattern& pattern) {
-    std::string text =
-        fmt::format("fantascope: pattern\nversion: {}\nguide: {}\n", kVersion, TRY(relativeTo(file, pattern.guide)));
+    std::string text = fmt::format("fantascope: pattern\nversion: {}\nguide: {}\n", kVersion,
+                                   fantascope::quoted(TRY(relativeTo(file, pattern.guide))));
     const auto add = [&]<class... Values>(fmt::format_string<Values...> format, Values&&... values) {
         fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
     };
@@ -122,7 +112,7 @@ Result<void> writePattern(const fs::path& file, const ShapePattern& pattern) {
         if (shape.file.empty())
             add("  - builtin: {}\n", fantascope::quoted(shape.name));
         else
-            add("  - file: {}\n", TRY(relativeTo(file, shape.file)));
+            add("  - file: {}\n", fantascope::quoted(TRY(relativeTo(file, shape.file))));
     }
     text += motionText(pattern.motion);
     text += pattern.instances.empty() ? "instances: []\n" : "instances:\n";

@@ -226,7 +226,7 @@ std::vector<PoseSearch::Trial> PoseSearch::runTrials(const PoseProblem& problem,
     parallelFor(trials, threads, [&](int i) {
         const auto number = static_cast<std::uint64_t>(i);
         found[static_cast<std::size_t>(i)] =
-            run(problem, streamSeed(seed, {static_cast<std::uint64_t>(Stream::Trial), number}), options, askStop);
+            run(problem, streamSeed(seed, {static_cast<std::uint64_t>(Stream::Trial), number}) >> 1, options, askStop);
     });
     return found;
 }

@@ -72,7 +72,7 @@ public:
     // actor or a random change is searched anew, fitted again, and kept by the rule of simulated annealing.
     static Trial run(const PoseProblem& problem, std::uint64_t seed, const Options& options, const AskStop& askStop = {});
 
-    // Trials with seeds of their own, derived from `seed`, on so many threads; in the order of their numbers.
+    // Trials with seeds of their own (63 bits), derived from `seed`, on so many threads; in the order of their numbers.
     static std::vector<Trial> runTrials(const PoseProblem& problem, std::uint64_t seed, int trials, const Options& options,
                                         int threads, const AskStop& askStop = {});
 

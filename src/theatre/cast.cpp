@@ -1,0 +1,142 @@
+#include "theatre/cast.h"
+
+#include "core/config.h"
+#include "core/file.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace fantascope::theatre {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kVersion = 1;
+constexpr std::size_t kMostActors = 50, kMostFrames = 100'000;
+constexpr double kFarthest = 100, kLeastStature = 0.5, kMostStature = 2.5;  // metres
+constexpr double kRounding = 1e-6, kLimitRounding = 1.7453e-5;              // of a quaternion's length; radians
+
+Result<glm::dquat> readTurn(const ConfigNode& node) {
+    const auto parts = TRY(node.items(4, 4));
+    double values[4];
+    for (std::size_t i = 0; i < 4; ++i) values[i] = TRY(parts[i].number(-1, 1));
+    const glm::dquat turn(values[0], values[1], values[2], values[3]);
+    if (std::abs(glm::length(turn) - 1) > kRounding)
+        return node.error(
+            fmt::format("a turn is a quaternion [w, x, y, z] of length 1, this one's is {:.4f}", glm::length(turn)));
+    return turn;
+}
+
+// The joints by their names, each once.
+Result<ActorPose> readPose(const ConfigNode& node, const Body& body) {
+    ActorPose pose;
+    pose.turns.resize(body.joints.size());
+    ConfigFields fields(node);
+    fields.vector3("root", pose.root, -kFarthest, kFarthest, "m");
+    for (std::size_t i = 0; i < body.joints.size(); ++i)
+        fields.read(body.joints[i].name, pose.turns[i], [&](const ConfigNode& at) -> Result<glm::dquat> {
+            const glm::dquat turn = TRY(readTurn(at));
+            if (i == 0) return turn;
+            for (const JointLimit& limit : body.joints[i].motion.limits())
+                if (const double measure = limit.measure(turn);
+                    measure < limit.low - kLimitRounding || measure > limit.high + kLimitRounding)
+                    return at.error(
+                        fmt::format("the {} cannot turn like this: {:.1f} degrees, and {:.1f} .. {:.1f} are its limits",
+                                    body.joints[i].name, measure * 180 / std::numbers::pi, limit.low * 180 / std::numbers::pi,
+                                    limit.high * 180 / std::numbers::pi));
+            return turn;
+        });
+    TRY(fields.finish());
+    return pose;
+}
+
+Result<Cast::Actor> readActor(const ConfigNode& node) {
+    Cast::Actor actor;
+    ConfigNode poses;
+    ConfigFields fields(node);
+    fields.number("stature", actor.stature, kLeastStature, kMostStature, "m");
+    fields.read("poses", poses, [](const ConfigNode& at) -> Result<ConfigNode> { return at; });
+    TRY(fields.finish());
+    const Body body = humanBody(actor.stature);
+    for (const ConfigNode& pose : TRY(poses.items(1, kMostFrames))) actor.poses.push_back(TRY(readPose(pose, body)));
+    return actor;
+}
+
+Result<Cast> castOf(const ConfigNode& root) {
+    Cast cast;
+    ConfigFields fields(root);
+    fields.header("cast", kVersion);
+    fields.path("target", cast.target);
+    fields.number("height", cast.height, 0.1, 20, "m");
+    fields.vector3("light", cast.stage.light, -kFarthest, kFarthest, "m");
+    fields.optional().number("frames_per_second", cast.framesPerSecond, 0, 1000);
+    fields.integer("seed", cast.seed, 0, std::numeric_limits<std::int64_t>::max());
+    ConfigNode actors;
+    fields.read("actors", actors, [](const ConfigNode& at) -> Result<ConfigNode> { return at; });
+    TRY(fields.finish());
+    for (const ConfigNode& node : TRY(actors.items(1, kMostActors))) {
+        cast.actors.push_back(TRY(readActor(node)));
+        if (cast.actors.back().poses.size() != cast.actors.front().poses.size())
+            return node.error(fmt::format("{} poses, and the first actor has {}; each has one a frame",
+                                          cast.actors.back().poses.size(), cast.actors.front().poses.size()));
+    }
+    return cast;
+}
+
+}  // namespace
+
+ActorPose poseOf(const Body& body, std::span<const double> freedoms) {
+    ActorPose pose{{freedoms[0], freedoms[1], freedoms[2]}, {rotationOf({freedoms[3], freedoms[4], freedoms[5]})}};
+    for (std::size_t i = 1; i < body.joints.size(); ++i) {
+        const JointMotion& motion = body.joints[i].motion;
+        pose.turns.push_back(motion.orientation(freedoms.subspan(body.joints[i].first, motion.size())));
+    }
+    return pose;
+}
+
+std::vector<double> freedomsOf(const Body& body, const ActorPose& pose) {
+    std::vector<double> freedoms = body.restPose(pose.root, pose.turns[0]);
+    for (std::size_t i = 1; i < body.joints.size(); ++i) {
+        const JointMotion& motion = body.joints[i].motion;
+        motion.numbers(pose.turns[i], std::span(freedoms).subspan(body.joints[i].first, motion.size()));
+    }
+    return freedoms;
+}
+
+Result<Cast> readCast(const fs::path& file) { return castOf(TRY(ConfigNode::load(file))); }
+
+Result<void> writeCast(const fs::path& file, const Cast& cast) {
+    const glm::dvec3 light = cast.stage.light;
+    std::string text =
+        fmt::format("fantascope: cast\nversion: {}\ntarget: {}\nheight: {}\nlight: [{}, {}, {}]\n", kVersion,
+                    fantascope::quoted(TRY(relativeTo(file, cast.target))), cast.height, light.x, light.y, light.z);
+    const auto add = [&]<class... Values>(fmt::format_string<Values...> format, Values&&... values) {
+        fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
+    };
+    if (cast.framesPerSecond > 0) add("frames_per_second: {}\n", cast.framesPerSecond);
+    add("seed: {}\nactors:\n", cast.seed);
+    for (const Cast::Actor& actor : cast.actors) {
+        const Body body = humanBody(actor.stature);
+        add("  - stature: {}\n    poses:\n", actor.stature);
+        for (const ActorPose& pose : actor.poses) {
+            add("      - root: [{}, {}, {}]\n", pose.root.x, pose.root.y, pose.root.z);
+            for (std::size_t i = 0; i < pose.turns.size(); ++i) {
+                const glm::dquat& turn = pose.turns[i];
+                add("        {}: [{}, {}, {}, {}]\n", body.joints[i].name, turn.w, turn.x, turn.y, turn.z);
+            }
+        }
+    }
+    // What could not be read back is found before a good file is lost to it.
+    if (const auto readable = castOf(TRY(ConfigNode::parse(text, file))); !readable)
+        return readable.error().in("not written, as it could not be read again");
+    return writeFile(file, text);
+}
+
+}  // namespace fantascope::theatre

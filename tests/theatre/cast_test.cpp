@@ -1,0 +1,114 @@
+#include "theatre/cast.h"
+
+#include "core/file.h"
+#include "core/random.h"
+#include "scratch_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace fantascope::theatre {
+namespace {
+
+using testing::HasSubstr;
+
+class CastFile : public testing::Test {
+protected:
+    // Two people, two frames, every joint somewhere within its limits.
+    Cast cast() const {
+        Cast cast;
+        cast.target = folder_ / "target \"x\".png";
+        cast.height = 1.85;
+        cast.stage.light = {0.25, 0.1, 6.5};
+        cast.framesPerSecond = 12.5;
+        cast.seed = 77;
+        Rng rng(3);
+        for (const double stature : {1.2, 1.8}) {
+            const Body body = humanBody(stature);
+            cast.actors.push_back({stature, {}});
+            for (int frame = 0; frame < 2; ++frame) {
+                std::vector<double> freedoms(body.freedoms);
+                for (double& freedom : freedoms) freedom = rng.uniform(-1.5, 1.5);
+                body.limit(freedoms);
+                cast.actors.back().poses.push_back(poseOf(body, freedoms));
+            }
+        }
+        return cast;
+    }
+    std::string refusal(const std::string& from, const std::string& to) {
+        EXPECT_TRUE(writeCast(folder_ / "a.cast.yaml", cast()));
+        std::string text = readFile(folder_ / "a.cast.yaml").value();
+        const auto at = text.find(from);
+        EXPECT_NE(at, std::string::npos) << from;
+        const auto end = from.back() == ':' ? text.find('\n', at) : at + from.size();
+        text.replace(at, end - at, to);
+        EXPECT_TRUE(writeFile(folder_ / "b.cast.yaml", text));
+        const auto read = readCast(folder_ / "b.cast.yaml");
+        return read ? "read" : read.error().message();
+    }
+    ScratchFolder folder_;
+};
+
+TEST_F(CastFile, comes_back_as_it_was) {
+    const Cast written = cast();
+    ASSERT_TRUE(writeCast(folder_ / "a.cast.yaml", written));
+    const auto read = readCast(folder_ / "a.cast.yaml");
+    ASSERT_TRUE(read) << read.error().message();
+    EXPECT_EQ(read->target, written.target);
+    EXPECT_EQ(read->height, written.height);
+    EXPECT_EQ(read->stage.light, written.stage.light);
+    EXPECT_EQ(read->framesPerSecond, written.framesPerSecond);
+    EXPECT_EQ(read->seed, written.seed);
+    ASSERT_EQ(read->actors.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(read->actors[i].stature, written.actors[i].stature);
+        ASSERT_EQ(read->actors[i].poses.size(), 2u);
+        for (std::size_t frame = 0; frame < 2; ++frame) {
+            EXPECT_EQ(read->actors[i].poses[frame].root, written.actors[i].poses[frame].root);
+            EXPECT_EQ(read->actors[i].poses[frame].turns, written.actors[i].poses[frame].turns) << "to the last bit";
+        }
+    }
+}
+
+// What a search works with comes back from what the file keeps.
+TEST_F(CastFile, poses_and_freedoms_are_two_ways_to_say_the_same) {
+    const Body body = humanBody(1.7);
+    Rng rng(9);
+    for (int i = 0; i < 200; ++i) {
+        std::vector<double> freedoms(body.freedoms);
+        for (double& freedom : freedoms) freedom = rng.uniform(-1.5, 1.5);
+        body.limit(freedoms);
+        const auto back = freedomsOf(body, poseOf(body, freedoms));
+        for (std::size_t k = 0; k < freedoms.size(); ++k) EXPECT_NEAR(back[k], freedoms[k], 1e-9) << k;
+    }
+}
+
+TEST_F(CastFile, says_where_a_file_is_wrong) {
+    EXPECT_THAT(refusal("left knee:", "left knee: [0.7071067811865476, -0.7071067811865476, 0, 0]"),
+                AllOf(HasSubstr("b.cast.yaml:"), HasSubstr("left knee"), HasSubstr("cannot turn like this: -90.0 degrees")));
+    EXPECT_THAT(refusal("left knee:", "left knee: [0.5, 0, 0, 0]"), HasSubstr("length 1"));
+    EXPECT_THAT(refusal("left knee:", "left kne: [1, 0, 0, 0]"), HasSubstr("did you mean 'left knee'?"));
+    EXPECT_THAT(refusal("stature: 1.2", "stature: 12"), HasSubstr("0.5 .. 2.5"));
+    EXPECT_THAT(refusal("version: 1", "version: 2"), HasSubstr("version"));
+    EXPECT_THAT(refusal("target:", "target: ../target.png"), HasSubstr("target"));
+}
+
+TEST_F(CastFile, frames_must_be_as_many_for_everyone) {
+    Cast uneven = cast();
+    uneven.actors[1].poses.pop_back();
+    const auto written = writeCast(folder_ / "a.cast.yaml", uneven);
+    ASSERT_FALSE(written);
+    EXPECT_THAT(written.error().message(), AllOf(HasSubstr("not written"), HasSubstr("1 poses, and the first actor has 2")));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a.cast.yaml"));
+}
+
+TEST_F(CastFile, its_target_lies_beside_it) {
+    Cast away = cast();
+    away.target = "/somewhere/else.png";
+    const auto written = writeCast(folder_ / "a.cast.yaml", away);
+    ASSERT_FALSE(written);
+    EXPECT_THAT(written.error().message(), HasSubstr("copy it there first"));
+}
+
+}  // namespace
+}  // namespace fantascope::theatre
