@@ -12,7 +12,9 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace fantascope::theatre {
@@ -25,7 +27,9 @@ constexpr double kGlobalShare = 0.3;             // of the evaluations, in pixel
 constexpr double kCoarseShare = 0.8;             // so far they are used; the rest sees every pixel
 constexpr double kWeak = 0.01, kLessWeak = 0.1;  // stiffness at the beginning and at the end of the global stage
 constexpr double kGlobalSigma = 0.5;
-constexpr std::array kStiffer = {0.01, 0.03, 0.1, 0.3, 1.0};
+constexpr std::array kStiffer = {0.01, 0.03, 0.1};  // while the outline is fitted
+constexpr double kHeld = 0.1,
+                 kHeldBy = 0.87;  // at the beginning of the coarse local search, and the share of it by which it is 1
 constexpr int kFitSteps = 20, kRefitSteps = 12, kLastFitSteps = 60;
 // How much energy a change may cost at the beginning of the local search, and the share of it at the end.
 constexpr double kHot = 6, kCool = 0.05;
@@ -47,8 +51,8 @@ public:
     PoseSearch::Trial run() {
         searchGlobally(coarse_);
         stiffen(coarse_);
-        searchLocally(coarse_, kCoarseShare);
-        searchLocally(fine_, 1);
+        searchLocally(coarse_, kCoarseShare, kHeld);
+        searchLocally(fine_, 1, 1);
         fine_.fit.run(fine_.energy, trial_.freedoms, kLastFitSteps);
         trial_.evaluations = evaluations();
         return std::move(trial_);
@@ -85,7 +89,7 @@ private:
             });
     }
 
-    // People who lean are made to stand while the outline holds.
+    // The outline first, then a little more of standing.
     void stiffen(Workshop& shop) {
         for (const double stiffness : kStiffer) {
             shop.problem.weights.stiffness = stiffness;
@@ -93,22 +97,29 @@ private:
         }
     }
 
-    // Iterated local search until a share of the evaluations is spent.
-    void searchLocally(Workshop& shop, double share) {
-        const auto limit = static_cast<std::int64_t>(share * static_cast<double>(options_.evaluations));
-        shop.energy.pose(trial_.freedoms);
-        double current = shop.energy.energy(), best = current;
+    // Iterated local search until a share of the evaluations is spent, while physics becomes what holds people up.
+    void searchLocally(Workshop& shop, double share, double stiffness) {
+        const auto first = evaluations(), last = static_cast<std::int64_t>(share * static_cast<double>(options_.evaluations));
         std::vector<double> here = trial_.freedoms, next;
-        while (evaluations() < limit && goesOn(best)) {
+        double best = std::numeric_limits<double>::infinity();
+        while (evaluations() < last) {
+            const double done = double(evaluations() - first) / double(last - first);
+            shop.problem.weights.stiffness = std::pow(stiffness, std::max(0.0, 1 - done / kHeldBy));
+            shop.energy.pose(here);
+            double current = shop.energy.energy();
+            if (!goesOn(current)) break;
+
             next = here;
             change(shop, next);
             const double found = shop.fit.run(shop.energy, next, kRefitSteps);
             const double progress = double(evaluations()) / double(options_.evaluations);
             const double tolerance = -kHot * std::pow(kCool, progress) * std::log(1 - rng_.uniform());
             if (found < current + tolerance) here = next, current = found;
-            if (current < best) best = current, trial_.freedoms = here;
+            // While physics stiffens energies cannot be compared: the newest is the best.
+            if (stiffness < 1 || current < best) best = current, trial_.freedoms = here;
             trial_.history.push_back(best);
         }
+        shop.problem.weights.stiffness = 1;
     }
 
     // One actor anew, one of his limbs, or a step in the dark.
@@ -122,11 +133,11 @@ private:
         const double kind = rng_.uniform();
         if (kind < 0.4) {
             for (std::size_t k = 0; k < body.freedoms; ++k) which.push_back(first + k);
-            shop.search.run(shop.energy, freedoms, which, {0.3, 16, 20}, rng_);
+            shop.search.run(shop.energy, freedoms, which, {0.3, 16, 10}, rng_);
         } else if (kind < 0.8) {
             for (const std::size_t k : limb(body, 1 + rng_.below(static_cast<std::uint32_t>(body.joints.size() - 1))))
                 which.push_back(first + k);
-            shop.search.run(shop.energy, freedoms, which, {0.8, 12, 15}, rng_);
+            shop.search.run(shop.energy, freedoms, which, {0.8, 12, 8}, rng_);
         } else {
             const auto own = std::span(freedoms).subspan(first, body.freedoms);
             for (std::size_t k = 0; k < own.size(); ++k) own[k] += 0.4 * FreedomSearch::scaleOf(k) * rng_.normal();

@@ -67,9 +67,9 @@ public:
     // The actors' T-poses in a row before the screen, looking at it.
     static std::vector<double> start(const PoseProblem& problem);
 
-    // One trial. The global stage, CMA-ES with a block of the covariance for each actor, plays with weak physics, which stiffens
-    // on the way; then the outline is fitted while physics becomes what holds people up; then iterated local search: a limb, an
-    // actor or a random change is searched anew, fitted again, and kept by the rule of simulated annealing.
+    // One trial. The global stage, CMA-ES with a block of the covariance for each actor, plays with weak physics; then the outline is
+    // fitted; then iterated local search: a limb, an actor or a random change is searched anew, fitted, and kept by the rule of simulated
+    // annealing, while physics stiffens until it holds people up.
     static Trial run(const PoseProblem& problem, std::uint64_t seed, const Options& options, const AskStop& askStop = {});
 
     // Trials with seeds of their own (63 bits), derived from `seed`, on so many threads; in the order of their numbers.
