@@ -38,7 +38,8 @@ void forStage(const PosedBody& posed, Visit visit) {
 double unseen(const glm::dvec3& eyes, const glm::dvec3& gaze, const glm::dvec3& screenMiddle) {
     const glm::dvec3 wanted = screenMiddle - eyes;
     const double distance = glm::length(wanted);
-    const double off = std::acos(std::clamp(glm::dot(gaze, wanted) / distance, -1.0, 1.0)) - kSight;
+    // Eyes at the middle itself see it.
+    const double off = distance > 0 ? std::acos(std::clamp(glm::dot(gaze, wanted) / distance, -1.0, 1.0)) - kSight : 0;
     // Beyond a right angle to the cone's side its apex is nearest.
     const double near = off <= 0 ? 0 : off < std::numbers::pi / 2 ? distance * std::sin(off) : distance;
     // The screen's plane is at z = 0: the cone reaches it if one of its rays goes towards -z.

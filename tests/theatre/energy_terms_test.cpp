@@ -19,6 +19,7 @@ double turned(double angle) { return unseen({1, 2, 4}, {std::sin(angle), 0, -std
 TEST(Unseen, IsNothingInSight) {
     EXPECT_NEAR(turned(0), 0, 1e-9);
     EXPECT_NEAR(turned(0.99 * kSight), 0, 1e-9);
+    EXPECT_EQ(unseen({1, 2, 0}, {0, 0, -1}, {1, 2, 0}), 0) << "eyes at the screen's middle";
     EXPECT_NEAR(turned(-0.99 * kSight), 0, 1e-9);
 }
 
