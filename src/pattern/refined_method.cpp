@@ -209,8 +209,8 @@ private:
         return true;
     }
 
-    // The most that a move may make the pattern worse: a change c is below it with probability exp(-c / temperature).
-    // `bonus` pixels may be lost besides.
+    // Whether a move is kept: one that makes the pattern worse by c with probability exp(-c / temperature). `bonus` pixels may be lost
+    // besides. How much worse it may be is drawn first, so that a move beyond it can be given up early.
     bool isGood(const PixelMask& out, const PixelMask& in, double bonus) {
         const double most = bonus + (temperature_ > 0 ? -temperature_ * std::log(1 - rng_.uniform()) : 0);
         return score_.propose(out, in, most) <= most;

@@ -6,6 +6,23 @@
 #include <limits>
 
 namespace fantascope::theatre {
+namespace {
+
+// Both ends included.
+void setBits(std::uint64_t* words, int first, int last) {
+    constexpr int kBits = BitMask::kBits;
+    const int firstWord = first / kBits, lastWord = last / kBits;
+    const std::uint64_t head = ~std::uint64_t{0} << (first % kBits), tail = ~std::uint64_t{0} >> (kBits - 1 - last % kBits);
+    if (firstWord == lastWord) {
+        words[firstWord] |= head & tail;
+        return;
+    }
+    words[firstWord] |= head;
+    for (int i = firstWord + 1; i < lastWord; ++i) words[i] = ~std::uint64_t{0};
+    words[lastWord] |= tail;
+}
+
+}  // namespace
 
 void BitMask::clear() {
     if (rowsFrom_ < rowsTo_)
@@ -17,16 +34,7 @@ void BitMask::clear() {
 void BitMask::fill(int y, int from, int to) {
     from = std::max(from, 0), to = std::min(to, width_);
     if (from >= to) return;
-    std::uint64_t* words = words_.data() + index(y);
-    const int first = from / kBits, last = (to - 1) / kBits;
-    const std::uint64_t begin = ~std::uint64_t{0} << (from % kBits), end = ~std::uint64_t{0} >> (kBits - 1 - (to - 1) % kBits);
-    if (first == last) {
-        words[first] |= begin & end;
-    } else {
-        words[first] |= begin;
-        for (int i = first + 1; i < last; ++i) words[i] = ~std::uint64_t{0};
-        words[last] |= end;
-    }
+    setBits(words_.data() + index(y), from, to - 1);
     spread(y, y + 1);
 }
 
@@ -34,18 +42,9 @@ void BitMask::fill(int y, std::span<const float> from, std::span<const float> to
     const auto width = static_cast<float>(width_);
     std::uint64_t* words = words_.data() + index(y);
     for (std::size_t row = 0; row < from.size(); ++row, words += stride_) {
-        const int begin = static_cast<int>(std::ceil(std::clamp(from[row], 0.0f, width) - 0.5f));
+        const int first = static_cast<int>(std::ceil(std::clamp(from[row], 0.0f, width) - 0.5f));
         const int last = static_cast<int>(std::floor(std::clamp(to[row], 0.0f, width) - 0.5f));
-        if (begin > last) continue;
-        const int firstWord = begin / kBits, lastWord = last / kBits;
-        const std::uint64_t head = ~std::uint64_t{0} << (begin % kBits), tail = ~std::uint64_t{0} >> (kBits - 1 - last % kBits);
-        if (firstWord == lastWord) {
-            words[firstWord] |= head & tail;
-        } else {
-            words[firstWord] |= head;
-            for (int i = firstWord + 1; i < lastWord; ++i) words[i] = ~std::uint64_t{0};
-            words[lastWord] |= tail;
-        }
+        if (first <= last) setBits(words, first, last);
     }
     spread(y, y + static_cast<int>(from.size()));
 }

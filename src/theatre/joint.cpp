@@ -195,10 +195,4 @@ std::vector<JointLimit> JointMotion::limits() const {
     return {};
 }
 
-double JointMotion::reach(std::size_t number) const {
-    if (kind_ == Kind::Axial) return 0.5 * (high_ - low_);
-    if (kind_ == Kind::ConicAxial && number == 2) return 0.5 * (high_ - low_);
-    return cone_;
-}
-
 }  // namespace fantascope::theatre

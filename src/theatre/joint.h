@@ -53,8 +53,6 @@ public:
     void axes(std::span<const double> numbers, std::span<glm::dvec3> axes) const;
     // The bounds as measures of an orientation.
     std::vector<JointLimit> limits() const;
-    // How far each number can go from none: a scale for steps.
-    double reach(std::size_t number) const;
 
 private:
     glm::dvec3 swing(std::span<const double> numbers) const;

@@ -9,13 +9,10 @@
 
 namespace fantascope::theatre {
 
-// Where the theatre plays: metres, +y up, the floor at y = 0, the screen upright at z = 0, the light before it at +z. The audience sits
-// behind the screen; x runs to the right for whoever stands at the light and looks at the screen reversed, that is: +x is the right side of
-// the picture that the light throws, as seen from the light's side.
+// Where the theatre plays: metres, +y up, the floor at y = 0, the screen upright at z = 0, the light before it at +z; +x is to the right as
+// seen from the light, and so in the picture.
 struct Stage {
     glm::dvec3 light{0, 0, 7};
-    // Where the actors' pelvises may be.
-    glm::dvec3 from{-3, 0, 0.5}, to{3, 3, 4.5};
 };
 
 // A picture laid on the screen: target, shadow and masks share its pixels. Pixel (column, row), row 0 at the top, is centred at

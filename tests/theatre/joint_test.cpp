@@ -167,14 +167,5 @@ TEST(JointMotion, AxesAreWhatANumberTurnsAbout) {
         }
 }
 
-TEST(JointMotion, ReachIsHalfTheRange) {
-    const std::vector<JointMotion> all = motions();
-    EXPECT_DOUBLE_EQ(all[0].reach(0), 1.4);
-    EXPECT_DOUBLE_EQ(all[1].reach(1), 0.6);
-    EXPECT_DOUBLE_EQ(all[2].reach(1), 1.9);
-    EXPECT_DOUBLE_EQ(all[2].reach(2), 0.95);
-    EXPECT_DOUBLE_EQ(all[3].reach(2), 2);
-}
-
 }  // namespace
 }  // namespace fantascope::theatre
