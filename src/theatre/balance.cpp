@@ -37,21 +37,17 @@ std::pair<const Contact*, double> farthest(const Contacts& contacts, glm::dvec2 
 
 }  // namespace
 
-void findContacts(std::span<const PlacedCapsule> capsules, Contacts& contacts) {
+void findContacts(std::span<const PlacedSphere> spheres, Contacts& contacts) {
     contacts.discs.clear();
     double lowest = std::numeric_limits<double>::infinity();
     glm::dvec2 lowestPlace(0);
-    const auto end = [&](const glm::dvec3& centre, double radius) {
+    for (const auto& [centre, radius] : spheres) {
         const double height = centre.y - radius;
         if (height < lowest) lowest = height, lowestPlace = {centre.x, centre.z};
-        if (height > kTouch) return;
+        if (height > kTouch) continue;
         // The cap of the sphere below kTouch; of one that is pressed into the ground no more than its great circle.
         const double cap = std::min(kTouch - height, radius);
         contacts.discs.push_back({{centre.x, centre.z}, std::sqrt(cap * (2 * radius - cap))});
-    };
-    for (const PlacedCapsule& capsule : capsules) {
-        end(capsule.from, capsule.fromRadius);
-        end(capsule.to, capsule.toRadius);
     }
     contacts.touches = !contacts.discs.empty();
     if (!contacts.touches) contacts.discs.push_back({lowestPlace, 0});

@@ -25,7 +25,7 @@ struct Contacts {
     std::vector<Contact> discs;
     bool touches = false;
 };
-void findContacts(std::span<const PlacedCapsule> capsules, Contacts& contacts);
+void findContacts(std::span<const PlacedSphere> spheres, Contacts& contacts);
 
 // Margin(SP_n, COM_n): the signed distance from the mass centre, seen from above, to the boundary of the support polygon, metres; positive
 // inside, negative outside. Of one contact, or two, the polygon is the disc, or the band around the line.

@@ -10,15 +10,16 @@ namespace {
 
 // Both ends included.
 void setBits(std::uint64_t* words, int first, int last) {
-    constexpr int kBits = BitMask::kBits;
-    const int firstWord = first / kBits, lastWord = last / kBits;
-    const std::uint64_t head = ~std::uint64_t{0} << (first % kBits), tail = ~std::uint64_t{0} >> (kBits - 1 - last % kBits);
+    constexpr unsigned kBits = BitMask::kBits;
+    const unsigned from = static_cast<unsigned>(first), to = static_cast<unsigned>(last), firstWord = from / kBits,
+                   lastWord = to / kBits;
+    const std::uint64_t head = ~std::uint64_t{0} << (from % kBits), tail = ~std::uint64_t{0} >> (kBits - 1 - to % kBits);
     if (firstWord == lastWord) {
         words[firstWord] |= head & tail;
         return;
     }
     words[firstWord] |= head;
-    for (int i = firstWord + 1; i < lastWord; ++i) words[i] = ~std::uint64_t{0};
+    for (unsigned i = firstWord + 1; i < lastWord; ++i) words[i] = ~std::uint64_t{0};
     words[lastWord] |= tail;
 }
 
@@ -42,9 +43,9 @@ void BitMask::fill(int y, std::span<const float> from, std::span<const float> to
     const auto width = static_cast<float>(width_);
     std::uint64_t* words = words_.data() + index(y);
     for (std::size_t row = 0; row < from.size(); ++row, words += stride_) {
-        const int first = static_cast<int>(std::ceil(std::clamp(from[row], 0.0f, width) - 0.5f));
-        const int last = static_cast<int>(std::floor(std::clamp(to[row], 0.0f, width) - 0.5f));
-        if (first <= last) setBits(words, first, last);
+        const int first = static_cast<int>(std::max(0.0f, std::min(from[row], width)) + 0.5f);
+        const int end = static_cast<int>(std::max(0.0f, std::min(to[row], width)) + 0.5f);
+        if (first < end) setBits(words, first, end - 1);
     }
     spread(y, y + static_cast<int>(from.size()));
 }

@@ -39,8 +39,8 @@ public:
     }
     // Places in the T-pose, from the floor's middle.
     void capsule(std::uint32_t joint, dvec3 from, double fromRadius, dvec3 to, double toRadius) {
-        body_.capsules.push_back({joint, stature_ * (from - places_[joint]), stature_ * (to - places_[joint]),
-                                  stature_ * fromRadius, stature_ * toRadius});
+        const std::uint32_t first = sphere(joint, from, fromRadius);
+        body_.capsules.push_back({joint, first, sphere(joint, to, toRadius)});
     }
     void mass(std::uint32_t joint, double share, dvec3 centre) {
         // Body mass index 22: the middle of what the World Health Organization calls normal.
@@ -51,9 +51,28 @@ public:
     Body& body() { return body_; }
 
 private:
+    // One that is there already serves again: of the same joint, or around a joint between two segments, where it is at rest in both.
+    std::uint32_t sphere(std::uint32_t joint, dvec3 place, double radius) {
+        for (std::uint32_t i = 0; i < ends_.size(); ++i) {
+            const End& end = ends_[i];
+            const bool isBetween = (body_.joints[joint].parent == end.joint && place == places_[joint]) ||
+                                   (body_.joints[end.joint].parent == joint && place == places_[end.joint]);
+            if (end.place == place && end.radius == radius && (end.joint == joint || isBetween)) return i;
+        }
+        ends_.push_back({joint, place, radius});
+        body_.spheres.push_back({joint, local(joint, place), stature_ * radius});
+        return static_cast<std::uint32_t>(ends_.size() - 1);
+    }
+
+    struct End {
+        std::uint32_t joint;
+        dvec3 place;
+        double radius;
+    };
     double stature_;
     Body body_;
     std::vector<dvec3> places_;
+    std::vector<End> ends_;
 };
 
 glm::dquat about(dvec3 axis, double degrees) { return rotationOf(radians(degrees) * axis); }

@@ -12,11 +12,17 @@
 
 namespace fantascope::theatre {
 
-// A cone with round ends, fixed to a joint: the hull of two spheres. Metres, in the joint's frame.
+// A sphere fixed to a joint; metres, in the joint's frame.
+struct Sphere {
+    std::uint32_t joint = 0;
+    glm::dvec3 centre{0};
+    double radius = 0;
+};
+
+// A cone with round ends, fixed to a joint: the hull of two of the body's spheres.
 struct Capsule {
     std::uint32_t joint = 0;
-    glm::dvec3 from{0}, to{0};
-    double fromRadius = 0, toRadius = 0;
+    std::uint32_t from = 0, to = 0;  // spheres of this joint's, or at the place of a joint that hangs on it
 };
 
 // A body of rigid segments that turn about joints (Won & Lee 2016, section 3: M_n = (v_0, q_0, q_1 .. q_M)). Joint 0 is the root; a joint's
@@ -39,7 +45,8 @@ struct Body {
 
     double stature = 0;
     std::vector<Joint> joints;
-    std::vector<Capsule> capsules;
+    std::vector<Sphere> spheres;
+    std::vector<Capsule> capsules;  // the ends of those that meet are one sphere
     // The pairs of capsules that must not run into each other: neither on one joint or on neighbours, nor in each other at rest.
     std::vector<std::array<std::uint32_t, 2>> apart;
     std::size_t freedoms = kRootFreedoms;

@@ -15,7 +15,7 @@ namespace fantascope::theatre {
 struct BodyMesh {
     static constexpr std::size_t kInfluences = 4;
 
-    TriangleMesh atRest;                                          // metres, in the stage's frame, of the body's rest pose
+    TriangleMesh atRest;                                         // metres, in the stage's frame, of the body's rest pose
     std::vector<std::array<std::uint16_t, kInfluences>> joints;  // of each vertex; those with no share are 0
     std::vector<std::array<float, kInfluences>> shares;          // of each, adding up to 1, the largest first
 

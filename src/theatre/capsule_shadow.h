@@ -4,30 +4,26 @@
 #include "theatre/posed_body.h"
 #include "theatre/stage.h"
 
-#include <array>
+#include <vector>
 
 namespace fantascope::theatre {
 
-// The shadow of a capsule: the convex hull of two ellipses, since the light's tangent planes of a sphere at d (from the light) with radius
-// r are those whose unit normal n has n.d = r. It is drawn as a polygon of its outermost points in kDirections directions, on the true
-// outline; between them it lies inside by at most 1 - cos(pi / kDirections) of the ellipse's size.
+// The shadows of spheres and capsules. A sphere's is an ellipse; a capsule's is the convex hull of its ends' ellipses: they and the
+// quadrilateral between the points where the light's two tangent planes of both spheres touch them.
 // Thread: thread-bound.
 class CapsuleShadow {
 public:
-    static constexpr int kDirections = 20;
-
-    // Adds the shadow to a mask of the frame's size. A capsule that reaches the light's height above the screen, where it would throw no
-    // bounded shadow, adds nothing and gives false.
+    // Adds the shadow to a mask of the frame's size. A sphere that reaches the light's height above the screen, where it would throw no
+    // bounded shadow, adds nothing and gives false, and so does what hangs on it.
+    bool add(const ScreenFrame& frame, const PlacedSphere& sphere, BitMask& mask);
     bool add(const ScreenFrame& frame, const PlacedCapsule& capsule, BitMask& mask);
+    bool add(const ScreenFrame& frame, const PosedBody& body, BitMask& mask);
 
 private:
-    struct Reach {
-        std::array<float, kDirections> far, x, y;
-    };
-    static void feel(const glm::vec3& d, float radius, Reach& reach);
+    // What a capsule's shadow has beyond those of its ends.
+    void addBetween(const ScreenFrame& frame, const PlacedCapsule& capsule, BitMask& mask);
 
-    Reach from_, to_;
-    std::array<glm::vec2, kDirections> outline_;
+    std::vector<float> left_, right_;  // of the rows of an ellipse; scratch, kept for its memory
     ConvexFiller filler_;
 };
 

@@ -27,10 +27,7 @@ void forPairs(const PosedBody& a, const PosedBody& b, Visit visit) {
 
 template <class Visit>
 void forStage(const PosedBody& posed, Visit visit) {
-    for (const PlacedCapsule& capsule : posed.capsules()) {
-        visit(capsule.fromRadius - std::min(capsule.from.y, capsule.from.z));
-        visit(capsule.toRadius - std::min(capsule.to.y, capsule.to.z));
-    }
+    for (const auto& [centre, radius] : posed.spheres()) visit(radius - std::min(centre.y, centre.z));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ double unseen(const glm::dvec3& eyes, const glm::dvec3& gaze, const glm::dvec3& 
 double depthInItself(const Body& body, const PosedBody& posed);
 // (6) PtDepth(B_n, B_m).
 double depthInOther(const PosedBody& a, const PosedBody& b);
-// (6) PtDepth(B_n, E_k) of the floor and the screen, summed over the capsules' ends.
+// (6) PtDepth(B_n, E_k) of the floor and the screen, summed over the spheres.
 double depthInStage(const PosedBody& posed);
 
 // The deepest of the same, metres, for reports: how far the floor, the screen, one's own body or another's is in the way.

@@ -33,6 +33,7 @@ CapsuleTouch touching(const PlacedCapsule& a, const PlacedCapsule& b) {
 void PosedBody::pose(const Body& body, std::span<const double> freedoms) {
     places_.resize(body.joints.size());
     turns_.resize(body.joints.size());
+    spheres_.resize(body.spheres.size());
     capsules_.resize(body.capsules.size());
     places_[0] = {freedoms[0], freedoms[1], freedoms[2]};
     turns_[0] = rotationOf({freedoms[3], freedoms[4], freedoms[5]});
@@ -50,13 +51,16 @@ void PosedBody::pose(const Body& body, std::span<const double> freedoms) {
     massCentre_ = moment / mass;
     least_ = glm::dvec3(std::numeric_limits<double>::infinity());
     most_ = -least_;
+    for (std::size_t i = 0; i < spheres_.size(); ++i) {
+        const Sphere& sphere = body.spheres[i];
+        const PlacedSphere placed = spheres_[i] = {point(sphere.joint, sphere.centre), sphere.radius};
+        least_ = glm::min(least_, placed.centre - placed.radius);
+        most_ = glm::max(most_, placed.centre + placed.radius);
+    }
     for (std::size_t i = 0; i < capsules_.size(); ++i) {
-        const Capsule& capsule = body.capsules[i];
-        PlacedCapsule& placed = capsules_[i];
-        placed = {point(capsule.joint, capsule.from), point(capsule.joint, capsule.to), capsule.fromRadius, capsule.toRadius, 0};
-        placed.reach = 0.5 * glm::length(placed.to - placed.from) + std::max(placed.fromRadius, placed.toRadius);
-        least_ = glm::min(least_, glm::min(placed.from - placed.fromRadius, placed.to - placed.toRadius));
-        most_ = glm::max(most_, glm::max(placed.from + placed.fromRadius, placed.to + placed.toRadius));
+        const PlacedSphere &from = spheres_[body.capsules[i].from], &to = spheres_[body.capsules[i].to];
+        const double reach = 0.5 * glm::distance(from.centre, to.centre) + std::max(from.radius, to.radius);
+        capsules_[i] = {from.centre, to.centre, from.radius, to.radius, reach};
     }
 }
 

@@ -6,6 +6,12 @@
 
 namespace fantascope::theatre {
 
+// In the stage's frame, metres.
+struct PlacedSphere {
+    glm::dvec3 centre{0};
+    double radius = 0;
+};
+
 // A cone with round ends in the stage's frame, metres.
 struct PlacedCapsule {
     glm::dvec3 from{0}, to{0};
@@ -39,6 +45,7 @@ public:
 
     const glm::dvec3& place(std::size_t joint) const { return places_[joint]; }
     const glm::dquat& turn(std::size_t joint) const { return turns_[joint]; }
+    std::span<const PlacedSphere> spheres() const { return spheres_; }
     const PlacedCapsule& capsule(std::size_t index) const { return capsules_[index]; }
     std::span<const PlacedCapsule> capsules() const { return capsules_; }
     glm::dvec3 massCentre() const { return massCentre_; }
@@ -61,8 +68,9 @@ public:
 private:
     std::vector<glm::dvec3> places_;
     std::vector<glm::dquat> turns_;
+    std::vector<PlacedSphere> spheres_;
     std::vector<PlacedCapsule> capsules_;
-    glm::dvec3 massCentre_{0}, least_{0}, most_{0};  // least_, most_: the corners of the box around the capsules
+    glm::dvec3 massCentre_{0}, least_{0}, most_{0};  // least_, most_: the corners of the box around the spheres
 };
 
 }  // namespace fantascope::theatre

@@ -29,9 +29,9 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     Actor& actor = actors_[index];
     actor.body.pose(body, freedoms);
     actor.shadow.clear();
-    for (const PlacedCapsule& capsule : actor.body.capsules()) caster_.add(problem_.target.frame, capsule, actor.shadow);
+    caster_.add(problem_.target.frame, actor.body, actor.shadow);
 
-    findContacts(actor.body.capsules(), actor.contacts);
+    findContacts(actor.body.spheres(), actor.contacts);
     actor.margin = supportMargin(actor.contacts, actor.body.massCentre());
     const ScreenFrame& frame = problem_.target.frame;
     const glm::dvec2 middle = frame.metresAt(0.5 * glm::dvec2(frame.width(), frame.height()));

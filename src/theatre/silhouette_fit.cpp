@@ -3,8 +3,6 @@
 #include "theatre/distance_field.h"
 #include "theatre/energy_terms.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -27,55 +25,17 @@ constexpr double kNudge = 1e-6;  // for the derivative of the margin
 
 }  // namespace
 
-// The normal equations of one actor: a residual moves with one actor's joints alone, or with two that touch, each of whom is then asked for half.
-struct SilhouetteFit::ActorSystem {
-    explicit ActorSystem(const Body& body)
-        : axes(body.freedoms),
-          jointOf(body.freedoms, 0),
-          above(body.joints.size(), 0),
-          hessian(static_cast<Eigen::Index>(body.freedoms), static_cast<Eigen::Index>(body.freedoms)),
-          gradient(static_cast<Eigen::Index>(body.freedoms)),
-          row(static_cast<Eigen::Index>(body.freedoms)),
-          step(static_cast<Eigen::Index>(body.freedoms)) {
-        for (std::size_t i = 1; i < body.joints.size(); ++i) {
-            for (std::size_t k = 0; k < body.joints[i].motion.size(); ++k) jointOf[body.joints[i].first + k] = i;
-            above[i] = above[body.joints[i].parent] | std::uint64_t{1} << i;
-        }
-    }
-    // Adds weight * residual^2 with the residual's derivative in `row`.
-    void add(double residual, double weight) {
-        hessian.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-        gradient += weight * residual * row;
-    }
-    // Adds to `row` how a point that turns with `joint` moves along `direction` with each freedom.
-    void addRow(const PosedBody& body, std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction) {
-        for (std::size_t k = 0; k < 3; ++k) row[static_cast<Eigen::Index>(k)] += direction[static_cast<int>(k)];
-        for (std::size_t k = 3; k < axes.size(); ++k) {
-            const std::size_t j = jointOf[k];
-            if (j != 0 && (above[joint] >> j & 1) == 0) continue;
-            row[static_cast<Eigen::Index>(k)] += glm::dot(direction, glm::cross(axes[k], point - body.place(j)));
-        }
-    }
-
-    std::vector<glm::dvec3> axes;
-    std::vector<std::size_t> jointOf;  // of each freedom
-    std::vector<std::uint64_t> above;  // of each joint: itself and those above it, the root excepted, as bits
-    Eigen::MatrixXd hessian;
-    Eigen::VectorXd gradient, row, step;
-};
-
 SilhouetteFit::SilhouetteFit(const PoseProblem& problem)
     : problem_(problem),
       distance_(signedDistance(problem.target.mask)),
       disc_(std::max(1.0, kDiscRadius / problem.target.pixelsOf256)) {
     std::size_t first = 0;
     for (const Body& body : problem.actors) {
-        actors_.push_back(std::make_unique<ActorSystem>(body));
+        equations_.emplace_back(body);
         first_.push_back(first);
         first += body.freedoms;
     }
 }
-SilhouetteFit::~SilhouetteFit() = default;
 
 double SilhouetteFit::run(SceneEnergy& energy, std::span<double> freedoms, int steps, std::span<const char> moves) {
     energy.pose(freedoms);
@@ -86,15 +46,10 @@ double SilhouetteFit::run(SceneEnergy& energy, std::span<double> freedoms, int s
     for (int i = 0; i < steps && damping < kMostDamping; ++i) {
         if (!isLinear) linearise(energy, freedoms), isLinear = true;
         trial_.assign(freedoms.begin(), freedoms.end());
-        for (std::size_t a = 0; a < actors_.size(); ++a) {
-            ActorSystem& actor = *actors_[a];
-            Eigen::MatrixXd damped = actor.hessian;
-            damped.diagonal() = damped.diagonal() * (1 + damping);
-            damped.diagonal().array() += 1e-2 * damping + 1e-9;
-            actor.step = damped.selfadjointView<Eigen::Lower>().ldlt().solve(-actor.gradient);
+        for (std::size_t a = 0; a < equations_.size(); ++a) {
             const std::size_t first = first_[a], count = problem_.actors[a].freedoms;
-            for (std::size_t k = 0; k < count; ++k)
-                if (moves.empty() || moves[first + k] != 0) trial_[first + k] += actor.step[static_cast<Eigen::Index>(k)];
+            const Eigen::VectorXd& step = equations_[a].step(damping, moves.empty() ? moves : moves.subspan(first, count));
+            for (std::size_t k = 0; k < count; ++k) trial_[first + k] += step[static_cast<Eigen::Index>(k)];
             problem_.actors[a].limit(std::span(trial_).subspan(first, count));
         }
         energy.pose(trial_);
@@ -116,15 +71,11 @@ double SilhouetteFit::run(SceneEnergy& energy, std::span<double> freedoms, int s
 void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> freedoms) {
     energy.pose(freedoms);
     energy.terms();
-    for (std::size_t a = 0; a < actors_.size(); ++a) {
-        ActorSystem& actor = *actors_[a];
-        actor.hessian.setZero();
-        actor.gradient.setZero();
-        const Body& body = problem_.actors[a];
-        energy.posed(a).axes(body, freedoms.subspan(first_[a], body.freedoms), actor.axes);
-    }
+    for (std::size_t a = 0; a < equations_.size(); ++a)
+        equations_[a].begin(energy.posed(a), freedoms.subspan(first_[a], problem_.actors[a].freedoms));
     addContour(energy);
     addPhysics(energy, freedoms);
+    for (PoseEquations& equations : equations_) equations.finish();
 }
 
 // A point of the shadow's contour belongs to the capsule on whose outline it lies: of those whose shadow is nearest, the first.
@@ -132,46 +83,48 @@ void SilhouetteFit::addContour(SceneEnergy& energy) {
     const PoseTarget& target = problem_.target;
     const ScreenFrame& frame = target.frame;
     struct Outline {
-        std::size_t actor, capsule;
         glm::dvec2 from, along;
         double fromRadius, toRadius, square;
     };
-    std::vector<Outline> outlines;
-    for (std::size_t a = 0; a < actors_.size(); ++a)
-        for (std::size_t c = 0; c < energy.posed(a).capsules().size(); ++c) {
-            const PlacedCapsule& capsule = energy.posed(a).capsule(c);
+    std::vector<std::vector<Outline>> outlines(equations_.size());
+    for (std::size_t a = 0; a < outlines.size(); ++a)
+        for (const PlacedCapsule& capsule : energy.posed(a).capsules()) {
             const glm::dvec3 d = frame.fromLight(capsule.from), e = frame.fromLight(capsule.to);
             const glm::dvec2 from = frame.shadow(capsule.from), to = frame.shadow(capsule.to);
-            outlines.push_back({a, c, from, to - from, frame.focus() * capsule.fromRadius / d.z,
-                                frame.focus() * capsule.toRadius / e.z, glm::dot(to - from, to - from)});
+            outlines[a].push_back({from, to - from, frame.focus() * capsule.fromRadius / d.z,
+                                   frame.focus() * capsule.toRadius / e.z, glm::dot(to - from, to - from)});
         }
     const PoseWeights& weights = problem_.weights;
     const double squarePixel = target.pixelsOf256 * target.pixelsOf256 * target.perPoint();
     // `residual`: how far beyond its place the outline is along the outward normal, pixels.
     const auto add = [&](glm::dvec2 pixel, glm::dvec2 normal, double residual, double weight) {
-        const Outline* nearest = nullptr;
-        double least = 1e30, share = 0;
+        std::size_t owner = 0, index = 0;
+        double least = 3, share = 0;
+        bool isFound = false;
         const glm::ivec2 whole(pixel);
-        for (const Outline& outline : outlines) {
-            if (!energy.shadow(outline.actor).at(whole.x, whole.y)) continue;
-            const glm::dvec2 away = pixel - outline.from;
-            const double t = outline.square > 0 ? std::clamp(glm::dot(away, outline.along) / outline.square, 0.0, 1.0) : 0;
-            const double distance = glm::length(away - t * outline.along) - std::lerp(outline.fromRadius, outline.toRadius, t);
-            if (distance < least) least = distance, nearest = &outline, share = t;
+        for (std::size_t a = 0; a < outlines.size(); ++a) {
+            if (!energy.shadow(a).at(whole.x, whole.y)) continue;
+            for (std::size_t c = 0; c < outlines[a].size(); ++c) {
+                const Outline& outline = outlines[a][c];
+                const glm::dvec2 away = pixel - outline.from;
+                const double t = outline.square > 0 ? std::clamp(glm::dot(away, outline.along) / outline.square, 0.0, 1.0) : 0;
+                const glm::dvec2 aside = away - t * outline.along;
+                const double reach = least + std::lerp(outline.fromRadius, outline.toRadius, t);
+                if (reach <= 0 || glm::dot(aside, aside) >= reach * reach) continue;
+                least = glm::length(aside) - (reach - least);
+                isFound = true, owner = a, index = c, share = t;
+            }
         }
-        if (nearest == nullptr || least > 3) return;
-        const PosedBody& body = energy.posed(nearest->actor);
-        const PlacedCapsule& capsule = body.capsule(nearest->capsule);
+        if (!isFound) return;
+        const PosedBody& body = energy.posed(owner);
+        const PlacedCapsule& capsule = body.capsule(index);
         const double radius = std::lerp(capsule.fromRadius, capsule.toRadius, share);
         const glm::dvec3 point = glm::mix(capsule.from, capsule.to, share) + radius * glm::dvec3(normal.x, -normal.y, 0);
         // The derivative of foot + focus (x, y) / z along the normal, by metres of the stage: x right, y up, z to the light.
         const glm::dvec3 d = frame.fromLight(point);
         const double scale = frame.focus() / d.z, forward = (normal.x * d.x + normal.y * d.y) / d.z;
-        ActorSystem& actor = *actors_[nearest->actor];
-        actor.row.setZero();
-        actor.addRow(body, problem_.actors[nearest->actor].capsules[nearest->capsule].joint, point,
-                     scale * glm::dvec3(normal.x, -normal.y, forward));
-        actor.add(residual, weight);
+        equations_[owner].addPoint(problem_.actors[owner].capsules[index].joint, point,
+                                   scale * glm::dvec3(normal.x, -normal.y, forward), residual, weight);
     };
 
     // Equation 2: the contour's points pull the nearest point of the shadow's contour.
@@ -203,58 +156,56 @@ void SilhouetteFit::addContour(SceneEnergy& energy) {
 void SilhouetteFit::addPhysics(SceneEnergy& energy, std::span<const double> freedoms) {
     PoseWeights weights = problem_.weights;
     for (double* weight : {&weights.w7, &weights.w9, &weights.w10, &weights.w11}) *weight *= weights.stiffness;
-    for (std::size_t a = 0; a < actors_.size(); ++a) {
-        ActorSystem& actor = *actors_[a];
+    for (std::size_t a = 0; a < equations_.size(); ++a) {
+        PoseEquations& equations = equations_[a];
         const Body& body = problem_.actors[a];
         const PosedBody& posed = energy.posed(a);
+        // `own`: whether the other capsule is this body's too, on this joint; another's actor is asked for his half in his turn.
         const auto addPair = [&](const PlacedCapsule& one, const PlacedCapsule& other, std::size_t joint,
-                                 std::optional<std::size_t> ownOther) {
+                                 std::optional<std::size_t> own) {
             if (!areNear(one, other)) return;
             const CapsuleTouch touch = touching(one, other);
             if (touch.depth <= 0) return;
-            actor.row.setZero();
-            actor.addRow(posed, joint, touch.onFirst, -1000.0 * touch.normal);
-            if (ownOther) actor.addRow(posed, *ownOther, touch.onSecond, 1000.0 * touch.normal);
-            actor.add(ownOther ? 1000 * touch.depth : 500 * touch.depth, weights.w10);
+            const glm::dvec3 apart = -1000.0 * touch.normal;
+            if (own)
+                equations.addPoints(joint, touch.onFirst, apart, *own, touch.onSecond, -apart, 1000 * touch.depth, weights.w10);
+            else
+                equations.addPoint(joint, touch.onFirst, apart, 500 * touch.depth, weights.w10);
         };
         for (const auto& [i, j] : body.apart)
             addPair(posed.capsule(i), posed.capsule(j), body.capsules[i].joint, body.capsules[j].joint);
-        for (std::size_t b = 0; b < actors_.size(); ++b)
+        for (std::size_t b = 0; b < equations_.size(); ++b)
             if (b != a)
                 for (std::size_t i = 0; i < posed.capsules().size(); ++i)
                     for (const PlacedCapsule& other : energy.posed(b).capsules())
                         addPair(posed.capsule(i), other, body.capsules[i].joint, std::nullopt);
-        for (std::size_t i = 0; i < posed.capsules().size(); ++i) {
-            const PlacedCapsule& capsule = posed.capsule(i);
-            for (const auto& [centre, radius] :
-                 {std::pair(capsule.from, capsule.fromRadius), std::pair(capsule.to, capsule.toRadius)})
-                for (const int axis : {1, 2})
-                    if (const double depth = radius - centre[axis]; depth > 0) {
-                        glm::dvec3 direction(0);
-                        direction[axis] = -1000;
-                        actor.row.setZero();
-                        actor.addRow(posed, body.capsules[i].joint, centre, direction);
-                        actor.add(1000 * depth, weights.w11);
-                    }
+        for (std::size_t i = 0; i < posed.spheres().size(); ++i) {
+            const auto& [centre, radius] = posed.spheres()[i];
+            for (const int axis : {1, 2})
+                if (const double depth = radius - centre[axis]; depth > 0) {
+                    glm::dvec3 direction(0);
+                    direction[axis] = -1000;
+                    equations.addPoint(body.spheres[i].joint, centre, direction, 1000 * depth, weights.w11);
+                }
         }
         // The margin and the height above the floor, by small nudges.
         const double lacking = 100 * (kAmpleMargin - energy.margin(a)), height = 100 * posed.lowest();
         if (lacking <= 0 && height <= 0) continue;
         std::vector<double> nudged(freedoms.begin() + static_cast<std::ptrdiff_t>(first_[a]),
                                    freedoms.begin() + static_cast<std::ptrdiff_t>(first_[a] + body.freedoms));
-        Eigen::VectorXd heights(actor.row.size());
+        const auto size = static_cast<Eigen::Index>(body.freedoms);
+        Eigen::VectorXd margins(size), heights(size);
         for (std::size_t k = 0; k < body.freedoms; ++k) {
             nudged[k] += kNudge;
             nudged_.pose(body, nudged);
             nudged[k] -= kNudge;
-            findContacts(nudged_.capsules(), contacts_);
-            actor.row[static_cast<Eigen::Index>(k)] =
+            findContacts(nudged_.spheres(), contacts_);
+            margins[static_cast<Eigen::Index>(k)] =
                 -100 * (supportMargin(contacts_, nudged_.massCentre()) - energy.margin(a)) / kNudge;
             heights[static_cast<Eigen::Index>(k)] = 100 * (nudged_.lowest() - posed.lowest()) / kNudge;
         }
-        if (lacking > 0) actor.add(lacking, 0.5 * weights.w9 / std::max(kNearest, lacking));
-        actor.row = heights;
-        if (height > 0) actor.add(height, 0.5 * weights.w7 / std::max(kNearest, height));
+        if (lacking > 0) equations.addRow(margins, lacking, 0.5 * weights.w9 / std::max(kNearest, lacking));
+        if (height > 0) equations.addRow(heights, height, 0.5 * weights.w7 / std::max(kNearest, height));
     }
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "theatre/pose_equations.h"
 #include "theatre/scene_energy.h"
 
 #include "core/image.h"
 
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -20,7 +20,6 @@ class SilhouetteFit {
 public:
     // `problem` must live on.
     explicit SilhouetteFit(const PoseProblem& problem);
-    ~SilhouetteFit();
 
     // Lowers the energy of `freedoms` (of all actors, within their limits) by no more than `steps` steps that were kept or not; gives
     // the energy. `energy` is left posed so. `moves`: for each freedom whether it may change; empty: all may.
@@ -29,7 +28,6 @@ public:
     std::int64_t evaluations() const { return evaluations_; }  // of the energy, so far
 
 private:
-    struct ActorSystem;
     void linearise(SceneEnergy& energy, std::span<const double> freedoms);
     void addContour(SceneEnergy& energy);
     void addPhysics(SceneEnergy& energy, std::span<const double> freedoms);
@@ -37,8 +35,8 @@ private:
     const PoseProblem& problem_;
     GreyImage distance_;  // of the target, signedDistance()
     ContourDisc disc_;
-    std::vector<std::unique_ptr<ActorSystem>> actors_;
-    std::vector<std::size_t> first_;  // freedom of each actor
+    std::vector<PoseEquations> equations_;  // of each actor: a residual moves with his joints alone
+    std::vector<std::size_t> first_;        // freedom of each actor
     std::vector<double> trial_;
     PosedBody nudged_;
     Contacts contacts_;

@@ -52,7 +52,9 @@ struct Balls {
             body.joints[i].mass = 1;
             if (i > 0) body.joints[i].motion = JointMotion::axial({0, 1, 0}, -1, 1), body.joints[i].first = 5 + i;
             if (i > 0) body.joints[i].offset = places[i] - places[0];
-            body.capsules.push_back({static_cast<std::uint32_t>(i), {}, {}, radius, radius});
+            const auto index = static_cast<std::uint32_t>(i);
+            body.spheres.push_back({index, {}, radius});
+            body.capsules.push_back({index, index, index});
         }
         body.freedoms = 5 + places.size();
         if (places.size() > 2) body.apart = {{0, 2}};
@@ -81,10 +83,9 @@ TEST(Depth, InOthersSumsSquares) {
 }
 
 TEST(Depth, InTheStageIsOfFloorAndScreen) {
-    // A capsule without length has two ends, and each counts.
-    EXPECT_NEAR(depthInStage(Balls({{0, 0.09, 1}}).posed), 2 * 100, 1e-6);
-    EXPECT_NEAR(depthInStage(Balls({{0, 1, 0.08}}).posed), 2 * 400, 1e-6);
-    EXPECT_NEAR(depthInStage(Balls({{0, -0.1, 1}}).posed), 2 * 40000, 1e-6);
+    EXPECT_NEAR(depthInStage(Balls({{0, 0.09, 1}}).posed), 100, 1e-6);
+    EXPECT_NEAR(depthInStage(Balls({{0, 1, 0.08}}).posed), 400, 1e-6);
+    EXPECT_NEAR(depthInStage(Balls({{0, -0.1, 1}}).posed), 40000, 1e-6);
     EXPECT_NEAR(deepestInStage(Balls({{0, 1, 0.08}, {1, 0.06, 1}}).posed), 0.04, 1e-9);
     EXPECT_EQ(depthInStage(Balls({{0, 0.1, 0.1}}).posed), 0);
     EXPECT_EQ(deepestInStage(Balls({{0, 5, 5}}).posed), 0);

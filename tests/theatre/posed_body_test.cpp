@@ -22,7 +22,8 @@ Body twoRods() {
     body.joints[1].motion = JointMotion::axial(kZ, -pi, pi);
     body.joints[1].first = Body::kRootFreedoms;
     body.freedoms = Body::kRootFreedoms + 1;
-    body.capsules = {{0, {0, 0, 0}, {1, 0, 0}, 0.1, 0.2}, {1, {0, 0, 0}, {1, 0, 0}, 0.2, 0.3}};
+    body.spheres = {{0, {0, 0, 0}, 0.1}, {0, {1, 0, 0}, 0.2}, {1, {1, 0, 0}, 0.3}};
+    body.capsules = {{0, 0, 1}, {1, 1, 2}};
     return body;
 }
 

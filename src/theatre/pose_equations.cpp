@@ -1,0 +1,103 @@
+#include "theatre/pose_equations.h"
+
+#include <Eigen/Cholesky>
+#include <glm/geometric.hpp>
+
+namespace fantascope::theatre {
+
+PoseEquations::PoseEquations(const Body& body)
+    : body_(body),
+      jointOf_(body.freedoms, 0),
+      above_(body.joints.size(), 1),
+      axes_(body.freedoms),
+      screws_(body.freedoms),
+      squares_(body.joints.size()),
+      pulls_(body.joints.size()) {
+    for (std::size_t i = 1; i < body.joints.size(); ++i) {
+        for (std::size_t k = 0; k < body.joints[i].motion.size(); ++k) jointOf_[body.joints[i].first + k] = i;
+        above_[i] = above_[body.joints[i].parent] | std::uint64_t{1} << i;
+    }
+    const auto size = static_cast<Eigen::Index>(body.freedoms);
+    hessian_.resize(size, size);
+    damped_.resize(size, size);
+    for (Eigen::VectorXd* vector : {&gradient_, &row_, &step_}) vector->resize(size);
+}
+
+void PoseEquations::begin(const PosedBody& posed, std::span<const double> freedoms) {
+    posed.axes(body_, freedoms, axes_);
+    for (std::size_t k = 0; k < screws_.size(); ++k) {
+        const glm::dvec3 turn = k < 3 ? glm::dvec3(0) : axes_[k];
+        const glm::dvec3 shift = k < 3 ? axes_[k] : glm::cross(posed.place(jointOf_[k]), axes_[k]);
+        screws_[k] << shift.x, shift.y, shift.z, turn.x, turn.y, turn.z;
+    }
+    for (Spatials& square : squares_) square.setZero();
+    for (Spatial& pull : pulls_) pull.setZero();
+    hessian_.setZero();
+    gradient_.setZero();
+}
+
+PoseEquations::Spatial PoseEquations::spatial(const glm::dvec3& point, const glm::dvec3& direction) const {
+    const glm::dvec3 moment = glm::cross(point, direction);
+    return (Spatial() << direction.x, direction.y, direction.z, moment.x, moment.y, moment.z).finished();
+}
+
+void PoseEquations::addPoint(std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction, double residual,
+                             double weight) {
+    const Spatial asked = spatial(point, direction);
+    squares_[joint].noalias() += weight * asked * asked.transpose();
+    pulls_[joint] += weight * residual * asked;
+}
+
+void PoseEquations::addTo(Eigen::VectorXd& row, std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction) const {
+    const Spatial asked = spatial(point, direction);
+    for (std::size_t k = 0; k < screws_.size(); ++k)
+        if ((above_[joint] >> jointOf_[k] & 1) != 0) row[static_cast<Eigen::Index>(k)] += screws_[k].dot(asked);
+}
+
+void PoseEquations::addPoints(std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction, std::size_t otherJoint,
+                              const glm::dvec3& otherPoint, const glm::dvec3& otherDirection, double residual, double weight) {
+    row_.setZero();
+    addTo(row_, joint, point, direction);
+    addTo(row_, otherJoint, otherPoint, otherDirection);
+    addRow(row_, residual, weight);
+}
+
+void PoseEquations::addRow(const Eigen::VectorXd& row, double residual, double weight) {
+    hessian_.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
+    gradient_ += weight * residual * row;
+}
+
+void PoseEquations::finish() {
+    for (std::size_t i = body_.joints.size() - 1; i > 0; --i) {
+        squares_[body_.joints[i].parent] += squares_[i];
+        pulls_[body_.joints[i].parent] += pulls_[i];
+    }
+    // Two freedoms move together what hangs on the lower of their joints, if one is above the other.
+    for (std::size_t k = 0; k < screws_.size(); ++k) {
+        const std::size_t joint = jointOf_[k];
+        const Spatial asked = squares_[joint] * screws_[k];
+        gradient_[static_cast<Eigen::Index>(k)] += screws_[k].dot(pulls_[joint]);
+        for (std::size_t l = 0; l <= k; ++l)
+            if ((above_[joint] >> jointOf_[l] & 1) != 0)
+                hessian_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) += screws_[l].dot(asked);
+    }
+}
+
+const Eigen::VectorXd& PoseEquations::step(double damping, std::span<const char> moves) {
+    damped_ = hessian_;
+    step_ = -gradient_;
+    damped_.diagonal() *= 1 + damping;
+    damped_.diagonal().array() += 1e-2 * damping + 1e-9;
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+        if (moves[i] != 0) continue;
+        const auto k = static_cast<Eigen::Index>(i);
+        damped_.row(k).setZero();
+        damped_.col(k).setZero();
+        damped_(k, k) = 1;
+        step_[k] = 0;
+    }
+    damped_.selfadjointView<Eigen::Lower>().ldlt().solveInPlace(step_);
+    return step_;
+}
+
+}  // namespace fantascope::theatre
