@@ -1,5 +1,6 @@
 #include "theatre/balance.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -35,6 +36,12 @@ std::pair<const Contact*, double> farthest(const Contacts& contacts, glm::dvec2 
     return {best, far};
 }
 
+// Of the cap of a sphere that lies so deep below a plane; of one that is pressed into the ground no more than its great circle.
+double capRadius(double radius, double depth) {
+    const double cap = std::min(depth, radius);
+    return std::sqrt(cap * (2 * radius - cap));
+}
+
 }  // namespace
 
 void findContacts(std::span<const PlacedSphere> spheres, Contacts& contacts) {
@@ -44,13 +51,26 @@ void findContacts(std::span<const PlacedSphere> spheres, Contacts& contacts) {
     for (const auto& [centre, radius] : spheres) {
         const double height = centre.y - radius;
         if (height < lowest) lowest = height, lowestPlace = {centre.x, centre.z};
-        if (height > kTouch) continue;
-        // The cap of the sphere below kTouch; of one that is pressed into the ground no more than its great circle.
-        const double cap = std::min(kTouch - height, radius);
-        contacts.discs.push_back({{centre.x, centre.z}, std::sqrt(cap * (2 * radius - cap))});
+        if (height <= kTouch) contacts.discs.push_back({{centre.x, centre.z}, capRadius(radius, kTouch - height)});
     }
     contacts.touches = !contacts.discs.empty();
     if (!contacts.touches) contacts.discs.push_back({lowestPlace, 0});
+}
+
+void findBearings(std::span<const PlacedSphere> spheres, double bearing, Contacts& contacts) {
+    contacts.discs.clear();
+    const auto heightOf = [](const PlacedSphere& sphere) { return sphere.centre.y - sphere.radius; };
+    const auto lowest = std::min_element(spheres.begin(), spheres.end(),
+                                         [&](const PlacedSphere& a, const PlacedSphere& b) { return heightOf(a) < heightOf(b); });
+    const glm::dvec2 lowestPlace(lowest->centre.x, lowest->centre.z);
+    const double ground = heightOf(*lowest);
+    contacts.touches = ground <= kTouch;
+    for (const PlacedSphere& sphere : spheres) {
+        const double share = std::min(1.0, 1 - (heightOf(sphere) - ground - kTouch / 2) / bearing);
+        if (share > 0)
+            contacts.discs.push_back({glm::mix(lowestPlace, glm::dvec2(sphere.centre.x, sphere.centre.z), share),
+                                      share * capRadius(sphere.radius, kTouch)});
+    }
 }
 
 double supportMargin(const Contacts& contacts, const glm::dvec3& massCentre) {

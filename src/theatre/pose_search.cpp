@@ -63,6 +63,11 @@ private:
     struct Workshop {
         explicit Workshop(PoseProblem given) : problem(std::move(given)), energy(problem), search(problem), fit(problem) {}
         std::int64_t evaluations() const { return search.evaluations() + fit.evaluations(); }
+        // What is not stiff is not sharp either: a foot far above the ground bears a little.
+        void setStiffness(double stiffness) {
+            problem.weights.stiffness = stiffness;
+            problem.weights.bearing = PoseWeights().bearing / std::sqrt(stiffness);
+        }
 
         PoseProblem problem;
         SceneEnergy energy;
@@ -82,17 +87,17 @@ private:
         std::iota(all.begin(), all.end(), std::size_t{0});
         const int generations =
             std::max(1, static_cast<int>(kGlobalShare * static_cast<double>(options_.evaluations) / options_.population));
-        shop.search.run(
-            shop.energy, trial_.freedoms, all, {kGlobalSigma, options_.population, generations}, rng_, [&](int generation) {
-                shop.problem.weights.stiffness = kWeak * std::pow(kLessWeak / kWeak, double(generation) / generations);
-                return goesOn(shop.energy.lastEnergy());
-            });
+        shop.search.run(shop.energy, trial_.freedoms, all, {kGlobalSigma, options_.population, generations}, rng_,
+                        [&](int generation) {
+                            shop.setStiffness(kWeak * std::pow(kLessWeak / kWeak, double(generation) / generations));
+                            return goesOn(shop.energy.lastEnergy());
+                        });
     }
 
     // The outline first, then a little more of standing.
     void stiffen(Workshop& shop) {
         for (const double stiffness : kStiffer) {
-            shop.problem.weights.stiffness = stiffness;
+            shop.setStiffness(stiffness);
             shop.fit.run(shop.energy, trial_.freedoms, kFitSteps);
         }
     }
@@ -104,7 +109,7 @@ private:
         double best = std::numeric_limits<double>::infinity();
         while (evaluations() < last) {
             const double done = double(evaluations() - first) / double(last - first);
-            shop.problem.weights.stiffness = std::pow(stiffness, std::max(0.0, 1 - done / kHeldBy));
+            shop.setStiffness(std::pow(stiffness, std::max(0.0, 1 - done / kHeldBy)));
             shop.energy.pose(here);
             double current = shop.energy.energy();
             if (!goesOn(current)) break;
@@ -119,7 +124,7 @@ private:
             if (stiffness < 1 || current < best) best = current, trial_.freedoms = here;
             trial_.history.push_back(best);
         }
-        shop.problem.weights.stiffness = 1;
+        shop.setStiffness(1);
     }
 
     // One actor anew, one of his limbs, or a step in the dark.
@@ -257,10 +262,12 @@ PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<co
         quality.contourMean += off / static_cast<double>(problem.target.contour.size());
         quality.contourMost = std::max(quality.contourMost, off);
     }
+    Contacts contacts;
     for (std::size_t i = 0; i < problem.actors.size(); ++i) {
         const Body& body = problem.actors[i];
         const PosedBody& posed = energy.posed(i);
-        Actor actor{energy.margin(i), energy.touches(i), posed.lowest(),
+        findContacts(posed.spheres(), contacts);
+        Actor actor{supportMargin(contacts, posed.massCentre()), contacts.touches, posed.lowest(),
                     std::max(deepestInItself(body, posed), deepestInStage(posed)),
                     isWithinLimits(body, freedoms.first(body.freedoms))};
         for (std::size_t j = 0; j < problem.actors.size(); ++j)

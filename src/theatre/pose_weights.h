@@ -14,6 +14,7 @@ struct PoseWeights {
     double w12 = 0.25;                         // hints
     // A factor on all of physics: the paper's balance is near 0.1 in our units, a pose that a person can hold needs 1.
     double stiffness = 1;
+    double bearing = 0.005;  // how gradually what is higher bears less: findBearings(), metres
 };
 
 // The terms of equations 1 to 7 without their weights; what is unstated in the paper is chosen so that its weights balance them.
@@ -24,7 +25,7 @@ struct EnergyTerms {
     double coverage = 0;          // (3) differing area, in areas of the target
     double coherence = 0;         // (4) changes of actor around the contour
     double visible = 0;           // (5) sum of squared metres; graded where the paper has infinity
-    double floor = 0;             // (6) sum of heights above the floor, centimetres
+    double floor = 0;             // (6) sum of heights above the floor, millimetres
     double supportArea = 0;       // (6) sum of what the areas lack of kAmpleArea, square centimetres: a larger one is better
     double margin = 0;            // (6) sum of what the margins lack of kAmpleMargin, centimetres
     double people = 0;            // (6) sum of squared depths in themselves and in others, square millimetres

@@ -28,9 +28,8 @@ public:
     const BitMask& shadow() const { return shadow_; }  // of all; after terms()
     const BitMask& shadow(std::size_t actor) const { return actors_[actor].shadow; }
     const PosedBody& posed(std::size_t actor) const { return actors_[actor].body; }
-    double margin(std::size_t actor) const { return actors_[actor].margin; }  // metres
-    bool touches(std::size_t actor) const { return actors_[actor].contacts.touches; }
-    const BitMask& contour() const { return contour_.pixels(); }  // of the shadow of all; after terms()
+    double margin(std::size_t actor) const { return actors_[actor].margin; }  // on findBearings(), metres
+    const BitMask& contour() const { return contour_.pixels(); }              // of the shadow of all; after terms()
     // Of each of the target's contour points: the nearest point of the shadow's contour and the actor whose it is; after terms().
     std::span<const ContourPoint> nearest() const { return nearest_; }
     std::span<const int> owners() const { return owners_; }

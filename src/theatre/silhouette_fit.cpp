@@ -18,8 +18,10 @@ constexpr int kShadowPoints = 500;
 constexpr double kFarthest = 12;
 // A hole's edge lies deep in the target: it is asked to go as far as this.
 constexpr double kIntoHole = 6;
-// Residuals nearer to nothing than this are weighted as if they were this: pixels, centimetres.
+// Residuals nearer to nothing than this are weighted as if they were this: pixels, centimetres; millimetres
+// of height.
 constexpr double kNearest = 0.7;
+constexpr double kHold = 0.002;  // how much a bearing point resists, in w9 a squared millimetre
 constexpr double kFirstDamping = 0.1, kMostDamping = 1e5;
 constexpr double kNudge = 1e-6;  // for the derivative of the margin
 
@@ -188,8 +190,14 @@ void SilhouetteFit::addPhysics(SceneEnergy& energy, std::span<const double> free
                     equations.addPoint(body.spheres[i].joint, centre, direction, 1000 * depth, weights.w11);
                 }
         }
+        // What bears is not let go of lightly: the margin would be another one then.
+        for (std::size_t i = 0; i < posed.spheres().size(); ++i) {
+            const auto& [centre, radius] = posed.spheres()[i];
+            if (centre.y - radius < posed.lowest() + kTouch)
+                equations.addPoint(body.spheres[i].joint, centre, {0, 1000, 0}, 0, kHold * weights.w9);
+        }
         // The margin and the height above the floor, by small nudges.
-        const double lacking = 100 * (kAmpleMargin - energy.margin(a)), height = 100 * posed.lowest();
+        const double lacking = 100 * (kAmpleMargin - energy.margin(a)), height = 1000 * posed.lowest();
         if (lacking <= 0 && height <= 0) continue;
         std::vector<double> nudged(freedoms.begin() + static_cast<std::ptrdiff_t>(first_[a]),
                                    freedoms.begin() + static_cast<std::ptrdiff_t>(first_[a] + body.freedoms));
@@ -199,10 +207,10 @@ void SilhouetteFit::addPhysics(SceneEnergy& energy, std::span<const double> free
             nudged[k] += kNudge;
             nudged_.pose(body, nudged);
             nudged[k] -= kNudge;
-            findContacts(nudged_.spheres(), contacts_);
+            findBearings(nudged_.spheres(), problem_.weights.bearing, contacts_);
             margins[static_cast<Eigen::Index>(k)] =
                 -100 * (supportMargin(contacts_, nudged_.massCentre()) - energy.margin(a)) / kNudge;
-            heights[static_cast<Eigen::Index>(k)] = 100 * (nudged_.lowest() - posed.lowest()) / kNudge;
+            heights[static_cast<Eigen::Index>(k)] = 1000 * (nudged_.lowest() - posed.lowest()) / kNudge;
         }
         if (lacking > 0) equations.addRow(margins, lacking, 0.5 * weights.w9 / std::max(kNearest, lacking));
         if (height > 0) equations.addRow(heights, height, 0.5 * weights.w7 / std::max(kNearest, height));

@@ -87,5 +87,41 @@ TEST(FindContacts, WhatTouchesNothingStandsOnItsLowestPoint) {
     EXPECT_NEAR(supportArea(contacts), 0, 1e-12);
 }
 
+// By hand: a ball of 10 cm on the floor, one 5 mm above it, one a half and one wholly faded.
+TEST(FindBearings, WhatIsHigherBearsLess) {
+    Contacts contacts;
+    const double bearing = 0.02;
+    const std::vector balls{ball({0, 0.1, 0}, 0.1), ball({1, 0.105, 0}, 0.1), ball({0, 0.115, 2}, 0.1),
+                            ball({4, 0.1251, 4}, 0.1)};
+    findBearings(balls, bearing, contacts);
+    ASSERT_EQ(contacts.discs.size(), 3u);
+    const double whole = std::sqrt(0.01 - 0.09 * 0.09);
+    EXPECT_EQ(contacts.discs[0].place, glm::dvec2(0));
+    EXPECT_NEAR(contacts.discs[1].radius, whole, 1e-12);
+    EXPECT_NEAR(contacts.discs[1].place.x, 1, 1e-12);
+    EXPECT_NEAR(contacts.discs[2].radius, 0.5 * whole, 1e-9);
+    EXPECT_NEAR(contacts.discs[2].place.y, 1, 1e-9);
+    EXPECT_TRUE(contacts.touches);
+}
+
+TEST(FindBearings, IsAsIfOnTheFloorAndWithoutJumps) {
+    const glm::dvec3 centre(0.4, 1, 0.2);
+    double last = 0;
+    for (int i = 0; i <= 300; ++i) {
+        Contacts low, high;
+        const double up = 1e-4 * i;
+        findBearings(std::vector{ball({0, 0.1, 0}, 0.1), ball({1, 0.1 + up, 0}, 0.1)}, 0.02, low);
+        findBearings(std::vector{ball({0, 0.4, 0}, 0.1), ball({1, 0.4 + up, 0}, 0.1)}, 0.02, high);
+        const double margin = supportMargin(low, centre);
+        EXPECT_NEAR(margin, supportMargin(high, centre), 1e-9);
+        if (i > 0) {
+            EXPECT_NEAR(margin, last, 0.01) << i;
+        }
+        last = margin;
+    }
+    // On both feet it is the band between them that holds, on one the disc.
+    EXPECT_LT(last, -0.3);
+}
+
 }  // namespace
 }  // namespace fantascope::theatre

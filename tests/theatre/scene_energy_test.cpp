@@ -45,7 +45,6 @@ TEST(SceneEnergy, OfTheTargetsOwnPosesIsNothingInContourAndCoverage) {
     // Two people upright on the floor, apart, their arms out.
     EXPECT_NEAR(terms.floor, 0, 1e-6);
     EXPECT_NEAR(terms.people + terms.surroundings, 0, 1e-6);
-    EXPECT_TRUE(energy.touches(0) && energy.touches(1));
     EXPECT_GT(energy.margin(0), 0.03);
     EXPECT_EQ(terms.margin, 0);
 }
@@ -77,14 +76,13 @@ TEST(SceneEnergy, TermsOfTheLiftedAndOfTheSunken) {
     std::vector<double> pose = aRow(problem, {0}, 2);
     makeTarget(problem, pose);
     SceneEnergy energy(problem);
-    // 30 cm up: nothing touches, and the mass centre is off the one lowest point.
+    energy.pose(pose);
+    const double margin = energy.margin(0);
+    // 30 cm up: but for the height he stands as before.
     pose[1] += 0.3;
     energy.pose(pose);
-    EXPECT_NEAR(energy.terms().floor, 30, 1e-6);
-    EXPECT_FALSE(energy.touches(0));
-    EXPECT_NEAR(energy.terms().margin, 100 * (kAmpleMargin - energy.margin(0)), 1e-9);
-    EXPECT_LT(energy.margin(0), 0);
-    EXPECT_NEAR(energy.terms().supportArea, 1e4 * kAmpleArea, 1e-6);
+    EXPECT_NEAR(energy.terms().floor, 300, 1e-6);
+    EXPECT_NEAR(energy.margin(0), margin, 1e-9);
     EXPECT_EQ(energy.terms().surroundings, 0);
     pose[1] -= 0.31;
     energy.pose(pose);
