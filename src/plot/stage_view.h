@@ -1,0 +1,39 @@
+#pragma once
+
+#include "theatre/bit_mask.h"
+#include "theatre/stage.h"
+
+#include "core/image.h"
+#include "core/mesh.h"
+#include "plot/rendering.h"
+
+#include <glm/vec3.hpp>
+
+#include <vector>
+
+namespace fantascope::plot {
+
+// What an outsider would see on the stage of a shadow theatre: the lamp and its beam to the target, the actors on the floor, and behind
+// them the screen with their shadow and the target's outline in red. Metres, the stage's frame.
+struct StageView {
+    struct Actor {
+        TriangleMesh mesh;
+        glm::dvec3 colour{0.5};  // sRGB, 0..1
+    };
+
+    theatre::Stage stage;
+    theatre::ScreenFrame frame;
+    theatre::BitMask shadow, target;  // both of the frame's size
+    std::vector<Actor> actors;
+    std::vector<Actor> props{};  // platforms and whatever else stands there
+
+    // From behind the lamp, from the right and above, and from the right alone: cameras that see lamp, people and screen in a picture of
+    // this aspect.
+    Camera overview(double aspect) const;
+    Camera fromTheSide(double aspect) const;
+
+    // Opaque. The floor has a line a metre and is darker where something stands close above it. Thread: reentrant.
+    RgbaImage draw(const Camera& camera, int width, int height) const;
+};
+
+}  // namespace fantascope::plot
