@@ -35,9 +35,6 @@ glm::vec3 linear(const glm::dvec3& colour) {
     return {linearFromSrgb(float(colour.r)), linearFromSrgb(float(colour.g)), linearFromSrgb(float(colour.b))};
 }
 
-// 0 below `from`, 1 above `to`, smooth between.
-float step(float from, float to, float value) { return glm::smoothstep(from, to, value); }
-
 // A parallelogram.
 void addFace(TriangleMesh& mesh, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v) {
     const auto first = static_cast<unsigned>(mesh.vertices.size());
@@ -185,7 +182,7 @@ glm::vec3 matt(const glm::vec3& colour, const glm::vec3& normal, const glm::vec3
                             0.18f * std::max(0.0f, glm::dot(normal, fill)) * glm::vec3(0.85f, 0.93f, 1.0f) +
                             glm::mix(glm::vec3(0.10f, 0.095f, 0.09f), glm::vec3(0.27f, 0.28f, 0.30f), sky);
     const float rim = std::max(0.0f, glm::dot(normal, toCamera));  // a little darker where the surface turns away
-    return colour * light * glm::mix(0.72f, 1.0f, step(0, 0.55f, rim));
+    return colour * light * glm::mix(0.72f, 1.0f, glm::smoothstep(0.0f, 0.55f, rim));
 }
 
 Surface mattSurface(TriangleMesh mesh, const glm::vec3& colour, const glm::vec3& camera) {
@@ -203,7 +200,7 @@ Surface floorOf(const StageView& view, const ContactShade& contact) {
                 const float x = std::abs(place.x - std::round(place.x)), z = std::abs(place.z - std::round(place.z));
                 const float line = x < kGridLine || z < kGridLine ? 0.6f : 0.0f;
                 const glm::vec3 colour = glm::mix(kFloor, kGrid, line) * (1 - 0.9f * std::min(1.0f, 1.5f * contact.at(place)));
-                const float far = step(0.45f * reach, reach, glm::distance(place, middle));
+                const float far = glm::smoothstep(0.45f * reach, reach, glm::distance(place, middle));
                 return glm::vec4(glm::mix(colour, kBackground, far), 1);
             }};
 }
@@ -222,9 +219,9 @@ Surface screenOf(const StageView& view) {
                 const glm::vec2 at(frame.pixelAt(place.x, place.y));
                 const float falloff = glm::distance(foot, glm::vec2(place)) / 6;
                 glm::vec3 colour = kCloth / (1 + falloff * falloff);
-                colour = glm::mix(colour, kShadow, step(-0.5f, 0.5f, sampled(shadow, at)));
+                colour = glm::mix(colour, kShadow, glm::smoothstep(-0.5f, 0.5f, sampled(shadow, at)));
                 const float off = std::abs(sampled(target, at)) * pixel;
-                if (hasTarget) colour = glm::mix(kRed, colour, step(half - 0.5f * pixel, half + 0.5f * pixel, off));
+                if (hasTarget) colour = glm::mix(kRed, colour, glm::smoothstep(half - 0.5f * pixel, half + 0.5f * pixel, off));
                 return glm::vec4(colour, 1);
             }};
 }
