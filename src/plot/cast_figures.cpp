@@ -15,10 +15,9 @@ namespace fantascope::plot {
 namespace {
 
 constexpr double kText = 14, kLine = 20, kMargin = 24;  // points
-constexpr double kShadowHeight = 683;                   // a mask of 512 rows and a third around them
 constexpr int kSamples = 3;                             // a pixel has so many in each direction
 constexpr glm::dvec3 kPaper{0.975}, kOthers{0.82}, kMissed{1, 0.87, 0.87}, kRed{0.86, 0.05, 0.1};
-constexpr Stroke kOutline{{0, 0, 0}, 1.8}, kFrame{{0.6, 0.6, 0.6}, 1};
+constexpr Stroke kOutline{{0, 0, 0}, 1.6}, kFrame{{0.6, 0.6, 0.6}, 1};
 
 // What covers a place: a bit for each actor, and the target's.
 using Cover = std::uint64_t;
@@ -109,19 +108,50 @@ RgbaImage painted(const Covers& covers, double perPixel, int width, int height, 
     return picture;
 }
 
-// A size in whole points with the target's aspect.
-glm::dvec2 sizeOf(const theatre::BitMask& target, double height) {
-    return glm::max(glm::dvec2(1), glm::round(glm::dvec2(height * target.width() / target.height(), height)));
+theatre::BitMask cut(const theatre::BitMask& mask, glm::ivec2 from, glm::ivec2 to) {
+    theatre::BitMask part(to.x - from.x, to.y - from.y);
+    for (int y = 0; y < part.height(); ++y)
+        for (int x = 0; x < part.width(); ++x)
+            if (mask.at(from.x + x, from.y + y)) part.fill(y, x, x + 1);
+    return part;
 }
 
-void drawOutline(Page& page, const theatre::BitMask& target, glm::dvec2 topLeft, glm::dvec2 size, double width) {
-    Stroke stroke = kOutline;
-    stroke.width = width;
+// Masks without the rows and columns around them in which none has anything, but for a little room.
+struct Cropped {
+    Cropped(std::span<const ActorShadow> of, const theatre::BitMask& wholeTarget) : actors(of.begin(), of.end()) {
+        glm::ivec2 from(wholeTarget.width(), wholeTarget.height()), to(0);
+        for (int y = 0; y < wholeTarget.height(); ++y)
+            for (int x = 0; x < wholeTarget.width(); ++x) {
+                const auto isWhite = [&](const ActorShadow& actor) { return actor.mask.at(x, y); };
+                if (!wholeTarget.at(x, y) && std::none_of(of.begin(), of.end(), isWhite)) continue;
+                from = glm::min(from, glm::ivec2(x, y)), to = glm::max(to, glm::ivec2(x + 1, y + 1));
+            }
+        if (from.x >= to.x) from = glm::ivec2(0), to = {wholeTarget.width(), wholeTarget.height()};
+        const int room = 1 + (to.y - from.y) / 16;
+        from = glm::max(from - room, glm::ivec2(0));
+        to = glm::min(to + room, glm::ivec2(wholeTarget.width(), wholeTarget.height()));
+        target = cut(wholeTarget, from, to);
+        for (ActorShadow& actor : actors) actor.mask = cut(actor.mask, from, to);
+    }
+    // The largest in whole points with this aspect.
+    glm::dvec2 fitting(double width, double height) const {
+        const glm::dvec2 size(target.width(), target.height());
+        return glm::max(glm::dvec2(1), glm::round(std::min(width / size.x, height / size.y) * size));
+    }
+
+    std::vector<ActorShadow> actors;
+    theatre::BitMask target;
+};
+
+template <class Ink>
+void drawShadow(Page& page, const Covers& covers, const theatre::BitMask& target, glm::dvec2 topLeft, glm::dvec2 size, Ink ink) {
+    page.picture(painted(covers, target.height() / size.y, static_cast<int>(size.x), static_cast<int>(size.y), ink), topLeft,
+                 topLeft + size);
     const double scale = size.y / target.height();
     page.clip(topLeft, topLeft + size);
     for (std::vector<glm::dvec2> ring : maskOutline(target)) {
         for (glm::dvec2& point : ring) point = topLeft + scale * point;
-        page.line(ring, stroke);
+        page.line(ring, kOutline);
     }
     page.endClip();
     page.frame(topLeft, topLeft + size, kFrame);
@@ -153,12 +183,8 @@ std::string titleOf(std::size_t actor, const ActorShadow& shadow) { return fmt::
 
 }  // namespace
 
-RgbaImage shadowPicture(std::span<const ActorShadow> actors, const theatre::BitMask& target, int width, int height) {
-    return painted(Covers(actors, target), double(target.height()) / height, width, height, inkOf);
-}
-
 Page stageFigure(const StageView& view, const Camera& camera) {
-    constexpr int kWidth = 1280, kHeight = 640;
+    constexpr int kWidth = 1280, kHeight = static_cast<int>(kWidth / kStageAspect);
     Page page(kWidth, kHeight);
     page.picture(view.draw(camera, kWidth, kHeight), {0, 0}, {kWidth, kHeight});
     for (std::size_t i = 0; i < view.actors.size(); ++i) {
@@ -174,8 +200,9 @@ Page stageFigure(const StageView& view, const Camera& camera) {
 }
 
 Page shadowFigure(std::span<const ActorShadow> actors, const theatre::BitMask& target, std::span<const std::string> lines) {
-    const glm::dvec2 size = sizeOf(target, kShadowHeight);
-    const std::string several = "several", missed = "the target without shadow", out = "shadow beyond the target",
+    const Cropped cropped(actors, target);
+    const glm::dvec2 size = cropped.fitting(760, 600);
+    const std::string several = "several at once", missed = "the target without shadow", out = "shadow beyond the target",
                       edge = "target";
     double column = 0;
     {
@@ -189,8 +216,7 @@ Page shadowFigure(std::span<const ActorShadow> actors, const theatre::BitMask& t
     Page page(static_cast<int>(std::ceil(size.x + column + 3 * kMargin)),
               static_cast<int>(std::ceil(std::max(size.y, rows) + 2 * kMargin)));
     const glm::dvec2 origin(kMargin);
-    page.picture(shadowPicture(actors, target, static_cast<int>(size.x), static_cast<int>(size.y)), origin, origin + size);
-    drawOutline(page, target, origin, size, kOutline.width);
+    drawShadow(page, Covers(cropped.actors, cropped.target), cropped.target, origin, size, inkOf);
 
     glm::dvec2 at = origin + glm::dvec2(size.x + kMargin, 0);
     Cover all = 0;
@@ -212,9 +238,10 @@ Page shadowFigure(std::span<const ActorShadow> actors, const theatre::BitMask& t
 }
 
 Page actorsFigure(std::span<const ActorShadow> actors, const theatre::BitMask& target) {
-    constexpr double kHeight = 300, kMostWidth = 1280;
-    const glm::dvec2 size = sizeOf(target, kHeight);
-    const Covers covers(actors, target);
+    constexpr double kMostWidth = 1280;
+    const Cropped cropped(actors, target);
+    const glm::dvec2 size = cropped.fitting(380, 300);
+    const Covers covers(cropped.actors, cropped.target);
     double width = size.x;
     std::size_t lines = 0;
     {
@@ -236,10 +263,8 @@ Page actorsFigure(std::span<const ActorShadow> actors, const theatre::BitMask& t
         drawBadge(page, i, origin + 12.0);
         page.text(titleOf(i, actors[i]), origin + glm::dvec2(34, 12), kText, Anchor::Left);
         const glm::dvec2 topLeft = origin + glm::dvec2(0, 34);
-        page.picture(painted(covers, target.height() / size.y, static_cast<int>(size.x), static_cast<int>(size.y),
-                             [&](Cover cover, const glm::dvec2& at) { return inkOfOne(cover, i, at); }),
-                     topLeft, topLeft + size);
-        drawOutline(page, target, topLeft, size, 1.4);
+        drawShadow(page, covers, cropped.target, topLeft, size,
+                   [&](Cover cover, const glm::dvec2& at) { return inkOfOne(cover, i, at); });
         glm::dvec2 at = topLeft + glm::dvec2(0, size.y + 18);
         for (const std::string& note : actors[i].notes) {
             page.text(note, at, kText, Anchor::Left);
@@ -250,15 +275,17 @@ Page actorsFigure(std::span<const ActorShadow> actors, const theatre::BitMask& t
 }
 
 Page solutionsFigure(std::span<const SolutionCell> solutions, const theatre::BitMask& target) {
-    constexpr double kHeight = 220, kMostWidth = 1440, kGap = 8;
-    const glm::dvec2 shadow = sizeOf(target, kHeight);
-    double viewWidth = 0;
+    constexpr double kMostShadow = 340, kMostWidth = 1480, kGap = 8;
+    const glm::dvec2 view(kCellView);
+    std::vector<Cropped> shadows;
     std::size_t lines = 0;
+    double width = 0;
     for (const SolutionCell& solution : solutions) {
-        viewWidth = std::max(viewWidth, std::round(kHeight * solution.view.width() / std::max(1, solution.view.height())));
+        shadows.emplace_back(solution.actors, target);
+        width = std::max(width, shadows.back().fitting(kMostShadow, view.y).x);
         lines = std::max(lines, solution.lines.size());
     }
-    const glm::dvec2 cell(viewWidth + kGap + shadow.x + kMargin, kHeight + 16 + static_cast<double>(lines) * kLine + kMargin);
+    const glm::dvec2 cell(view.x + kGap + width + kMargin, view.y + 16 + static_cast<double>(lines) * kLine + kMargin);
     const std::size_t columns = std::clamp<std::size_t>(static_cast<std::size_t>((kMostWidth - kMargin) / cell.x), 1,
                                                         std::max<std::size_t>(1, solutions.size()));
     const std::size_t rows = (solutions.size() + columns - 1) / columns;
@@ -267,13 +294,12 @@ Page solutionsFigure(std::span<const SolutionCell> solutions, const theatre::Bit
     for (std::size_t i = 0; i < solutions.size(); ++i) {
         const SolutionCell& solution = solutions[i];
         const glm::dvec2 origin = glm::dvec2(kMargin) + glm::dvec2(i % columns, i / columns) * cell;
-        const glm::dvec2 viewEnd = origin + glm::dvec2(viewWidth, kHeight), topLeft(viewEnd.x + kGap, origin.y);
-        page.picture(resized(solution.view, static_cast<int>(viewWidth), static_cast<int>(kHeight)), origin, viewEnd);
-        page.frame(origin, viewEnd, kFrame);
-        page.picture(shadowPicture(solution.actors, target, static_cast<int>(shadow.x), static_cast<int>(shadow.y)), topLeft,
-                     topLeft + shadow);
-        drawOutline(page, target, topLeft, shadow, 1.4);
-        glm::dvec2 at = origin + glm::dvec2(0, kHeight + 18);
+        const theatre::BitMask& cropped = shadows[i].target;
+        page.picture(solution.view, origin, origin + view);
+        page.frame(origin, origin + view, kFrame);
+        drawShadow(page, Covers(shadows[i].actors, cropped), cropped, origin + glm::dvec2(view.x + kGap, 0),
+                   shadows[i].fitting(kMostShadow, view.y), inkOf);
+        glm::dvec2 at = origin + glm::dvec2(0, view.y + 18);
         for (std::size_t line = 0; line < solution.lines.size(); ++line) {
             page.text(solution.lines[line], at, line == 0 ? kText + 2 : kText - 1, Anchor::Left);
             at.y += kLine;

@@ -20,20 +20,20 @@ struct ActorShadow {
     std::vector<std::string> notes;  // lines below him in actorsFigure()
 };
 
-// The shadow by who throws it: each actor's colour, darker and mixed where several do; hatched in red where the target is missed, in black
-// what sticks out of it. At most 63 actors.
-RgbaImage shadowPicture(std::span<const ActorShadow> actors, const theatre::BitMask& target, int width, int height);
-
-// The stage in 1280 x 640 pixels, each actor with his number.
+// The stage in 1280 pixels, each actor with his number.
+inline constexpr double kStageAspect = 2;
 Page stageFigure(const StageView& view, const Camera& camera);
 
-// That picture some 680 points high if the target has a third of its height around it, with the target's outline, a legend and these lines.
+// The shadow by who throws it: each actor's colour, darker and mixed where several do; hatched in red where the target is missed, in black
+// what sticks out of it. With the target's outline, a legend and these lines; as large as fits into 760 x 600 points, without the rows and
+// columns in which there is nothing. At most 63 actors.
 Page shadowFigure(std::span<const ActorShadow> actors, const theatre::BitMask& target, std::span<const std::string> lines);
 
 // Figure 9: each actor's shadow alone, the others' in grey.
 Page actorsFigure(std::span<const ActorShadow> actors, const theatre::BitMask& target);
 
-// Figure 8: solutions to choose from, each with a view of its stage (all in one size), its shadow and some lines, the first the largest.
+// Figure 8: solutions to choose from, each with a view of its stage (kCellView pixels), its shadow and some lines, the first the largest.
+inline constexpr glm::ivec2 kCellView{360, 240};
 struct SolutionCell {
     RgbaImage view;
     std::vector<ActorShadow> actors;

@@ -20,6 +20,8 @@ namespace fantascope::plot {
 namespace {
 
 constexpr double kFieldOfView = radians(32), kMargin = 0.05;
+// Where the cameras look: 50 degrees from the beam, 20 degrees down.
+const glm::dvec3 kFromAbove{-std::sin(radians(50)), -std::tan(radians(20)), -std::cos(radians(50))};
 constexpr double kLamp = 0.07;       // radius of the lamp, metres
 constexpr double kFloorReach = 9;    // from the stage's middle to where the floor has faded, metres
 constexpr float kGridLine = 0.008f;  // half of a line's width, metres
@@ -293,24 +295,38 @@ Surface haloOf(const glm::vec3& light, const glm::vec3& camera) {
             true};
 }
 
+// What a camera must see.
+std::vector<glm::dvec3> peopleAndScreen(const StageView& view) {
+    const Extent extent = extentOf(view.frame);
+    std::vector<glm::dvec3> points;
+    for (const double x : {extent.leftTop.x, extent.rightBottom.x})
+        for (const double y : {extent.leftTop.y, extent.rightBottom.y}) points.emplace_back(x, y, 0);
+    for (const auto* things : {&view.actors, &view.props})
+        for (const StageView::Actor& thing : *things)
+            points.insert(points.end(), thing.mesh.vertices.begin(), thing.mesh.vertices.end());
+    return points;
+}
+
+void addLamp(const StageView& view, std::vector<glm::dvec3>& points) {
+    points.push_back(view.stage.light);
+    points.emplace_back(view.stage.light.x, 0, view.stage.light.z + 4 * kLamp);
+}
+
 }  // namespace
 
 Camera StageView::overview(double aspect) const {
-    const Extent extent = extentOf(frame);
-    std::vector<glm::dvec3> points{
-        stage.light,        {stage.light.x, 0, stage.light.z + 4 * kLamp}, extent.leftTop,
-        extent.rightBottom, {extent.rightBottom.x, extent.leftTop.y, 0},   {extent.leftTop.x, extent.rightBottom.y, 0}};
-    for (const Actor& actor : actors) points.insert(points.end(), actor.mesh.vertices.begin(), actor.mesh.vertices.end());
-    for (const Actor& prop : props) points.insert(points.end(), prop.mesh.vertices.begin(), prop.mesh.vertices.end());
-    const double around = radians(50), down = radians(20);
-    return Camera::fitting(points, {-std::sin(around) * std::cos(down), -std::sin(down), -std::cos(around) * std::cos(down)},
-                           kFieldOfView, aspect, kMargin);
+    std::vector<glm::dvec3> points = peopleAndScreen(*this);
+    addLamp(*this, points);
+    return Camera::fitting(points, kFromAbove, kFieldOfView, aspect, kMargin);
+}
+
+Camera StageView::closeUp(double aspect) const {
+    return Camera::fitting(peopleAndScreen(*this), kFromAbove, kFieldOfView, aspect, kMargin);
 }
 
 Camera StageView::fromTheSide(double aspect) const {
-    const Extent extent = extentOf(frame);
-    std::vector<glm::dvec3> points{
-        stage.light, {stage.light.x, 0, stage.light.z + 4 * kLamp}, extent.leftTop, extent.rightBottom};
+    std::vector<glm::dvec3> points = peopleAndScreen(*this);
+    addLamp(*this, points);
     return Camera::fitting(points, {-1, -0.1, -0.12}, kFieldOfView, aspect, kMargin);
 }
 

@@ -27,9 +27,10 @@ struct StageView {
     std::vector<Actor> actors;
     std::vector<Actor> props{};  // platforms and whatever else stands there
 
-    // From behind the lamp, from the right and above, and from the right alone: cameras that see lamp, people and screen in a picture of
-    // this aspect.
+    // Cameras for a picture of this aspect: from behind the lamp, from the right and above; the same, near, with people and screen, but
+    // not the lamp; and from the right, with all.
     Camera overview(double aspect) const;
+    Camera closeUp(double aspect) const;
     Camera fromTheSide(double aspect) const;
 
     // Opaque. The floor has a line a metre and is darker where something stands close above it. Thread: reentrant.
