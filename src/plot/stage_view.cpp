@@ -68,8 +68,7 @@ TriangleMesh ball(const glm::vec3& centre, float radius) {
     return mesh;
 }
 
-// How much of the sky the things above hide from the floor, in a grid: each column of cells counts with the lowest thing in it, as a
-// small disc at that height.
+// How much of the sky the things above hide from the floor, in a grid: the sum of the form factors of their surfaces that face a place.
 class ContactShade {
 public:
     explicit ContactShade(const StageView& view) {
@@ -83,17 +82,13 @@ public:
         if (least.x > most.x) return;
         origin_ = least - kReach;
         const glm::vec2 cells = glm::ceil((most - least + 2 * kReach) / kCell);
-        lowest_ = GreyImage(static_cast<int>(cells.x), static_cast<int>(cells.y), kReach);
-        shade_ = GreyImage(lowest_.width(), lowest_.height());
+        shade_ = GreyImage(static_cast<int>(cells.x), static_cast<int>(cells.y));
         forEachMesh(view, [&](const TriangleMesh& mesh) {
-            for (const glm::uvec3 t : mesh.triangles) lower(mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z]);
+            for (const glm::uvec3 t : mesh.triangles) add(mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z]);
         });
-        for (int y = 0; y < lowest_.height(); ++y)
-            for (int x = 0; x < lowest_.width(); ++x)
-                if (lowest_.at(x, y) < kReach) spread({x, y}, lowest_.at(x, y));
     }
 
-    // 0..1
+    // 0, or more; 1 where nothing of the sky is left
     float at(const glm::vec3& place) const {
         const glm::vec2 p = (glm::vec2(place.x, place.z) - origin_) / kCell - 0.5f;
         const int x = static_cast<int>(std::floor(p.x)), y = static_cast<int>(std::floor(p.y));
@@ -104,7 +99,7 @@ public:
     }
 
 private:
-    static constexpr float kCell = 0.03f, kReach = 0.9f;  // metres
+    static constexpr float kCell = 0.05f, kReach = 0.6f;  // metres
 
     template <class Visit>
     static void forEachMesh(const StageView& view, Visit visit) {
@@ -112,35 +107,38 @@ private:
         for (const StageView::Actor& prop : view.props) visit(prop.mesh);
     }
 
-    // Points of a triangle no farther from each other than a cell.
-    void lower(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    // A triangle in pieces no larger than a cell.
+    void add(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
         const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
         const int steps = 1 + static_cast<int>(longest / kCell);
-        for (int i = 0; i <= steps; ++i)
-            for (int j = 0; i + j <= steps; ++j) {
-                const glm::vec3 p = a + float(i) / float(steps) * (b - a) + float(j) / float(steps) * (c - a);
-                const glm::vec2 cell = (glm::vec2(p.x, p.z) - origin_) / kCell;
-                float& lowest = lowest_.at(static_cast<int>(cell.x), static_cast<int>(cell.y));
-                lowest = std::min(lowest, std::max(p.y, 0.0f));
+        const glm::vec3 u = (b - a) / float(steps), v = (c - a) / float(steps), area = 0.5f * glm::cross(u, v);
+        for (int i = 0; i < steps; ++i)
+            for (int j = 0; i + j < steps; ++j) {
+                const glm::vec3 corner = a + float(i) * u + float(j) * v;
+                spread(corner + (u + v) / 3.0f, area);
+                if (i + j + 1 < steps) spread(corner + (u + v) * (2 / 3.0f), area);
             }
     }
 
-    // The form factor between two parallel small areas at a distance: cos^2 / (pi r^2).
-    void spread(const glm::ivec2& cell, float height) {
-        constexpr int kCells = static_cast<int>(kReach / kCell);
-        const float h2 = std::max(height * height, 0.25f * kCell * kCell);
-        const glm::ivec2 least = glm::max(cell - kCells, glm::ivec2(0)),
-                         most = glm::min(cell + kCells, glm::ivec2(shade_.width(), shade_.height()) - 1);
+    // Adds the form factor cos cos' dA / (pi r^2), fading out at kReach. `area`: along the normal.
+    void spread(const glm::vec3& place, const glm::vec3& area) {
+        const float height = std::max(place.y, 0.0f);
+        if (height >= kReach) return;
+        const glm::vec2 at = (glm::vec2(place.x, place.z) - origin_) / kCell - 0.5f;
+        const glm::ivec2 least = glm::max(glm::ivec2(at - kReach / kCell), glm::ivec2(0)),
+                         most = glm::min(glm::ivec2(at + kReach / kCell), glm::ivec2(shade_.width(), shade_.height()) - 1);
         for (int y = least.y; y <= most.y; ++y)
             for (int x = least.x; x <= most.x; ++x) {
-                const float dx = kCell * float(x - cell.x), dy = kCell * float(y - cell.y), r2 = h2 + dx * dx + dy * dy;
-                float& shade = shade_.at(x, y);
-                shade = std::min(1.0f, shade + kCell * kCell * h2 / (glm::pi<float>() * r2 * r2));
+                const glm::vec3 d(kCell * (at.x - float(x)), height, kCell * (at.y - float(y)));
+                const float r2 = std::max(glm::dot(d, d), 0.25f * kCell * kCell), fading = 1 - r2 / (kReach * kReach);
+                const float facing = -glm::dot(d, area);
+                if (facing <= 0 || fading <= 0) continue;
+                shade_.at(x, y) += height * facing / (glm::pi<float>() * r2 * r2) * fading;
             }
     }
 
     glm::vec2 origin_{0};
-    GreyImage lowest_, shade_;
+    GreyImage shade_;
 };
 
 struct Extent {
@@ -201,7 +199,7 @@ Surface floorOf(const StageView& view, const ContactShade& contact) {
     return {std::move(mesh), [=, &contact](const glm::vec3& place, const glm::vec3&) {
                 const float x = std::abs(place.x - std::round(place.x)), z = std::abs(place.z - std::round(place.z));
                 const float line = x < kGridLine || z < kGridLine ? 0.6f : 0.0f;
-                const glm::vec3 colour = glm::mix(kFloor, kGrid, line) * (1 - 0.9f * std::min(1.0f, 1.5f * contact.at(place)));
+                const glm::vec3 colour = glm::mix(kFloor, kGrid, line) * (1 - 0.9f * std::min(1.0f, contact.at(place)));
                 const float far = glm::smoothstep(0.45f * reach, reach, glm::distance(place, middle));
                 return glm::vec4(glm::mix(colour, kBackground, far), 1);
             }};
