@@ -29,9 +29,13 @@ std::vector<std::string> notesOf(const PoseSearch::Actor& actor) {
     notes.push_back(!actor.touches ? "does not touch the floor"
                     : margin >= 0  ? fmt::format("balanced with {:.1f} cm to spare", margin)
                                    : fmt::format("falls: {:.1f} cm off balance", -margin));
-    notes.push_back(
-        fmt::format("lowest point {:.1f} cm {} the floor", 100 * std::abs(actor.lowest), actor.lowest < 0 ? "below" : "above"));
-    notes.push_back(actor.deepest > 0 ? fmt::format("{:.1f} cm deep in something", 100 * actor.deepest) : "deep in nothing");
+    constexpr double kShown = 0.0005;  // metres; less is 0.0 cm
+    notes.push_back(std::abs(actor.lowest) < kShown
+                        ? "lowest point on the floor"
+                        : fmt::format("lowest point {:.1f} cm {} the floor", 100 * std::abs(actor.lowest),
+                                      actor.lowest < 0 ? "below" : "above"));
+    notes.push_back(actor.deepest < kShown ? "runs into nothing"
+                                           : fmt::format("{:.1f} cm deep in something", 100 * actor.deepest));
     if (!actor.withinLimits) notes.push_back("a joint is turned too far");
     return notes;
 }
@@ -52,6 +56,7 @@ CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const dou
         freedoms = freedoms.subspan(body.freedoms);
         picture.actors.push_back({black, fmt::format("{:.2f} m", body.stature), notesOf(quality.actors[i])});
         for (const theatre::PlacedCapsule& capsule : posed.capsules()) shadow.add(frame, capsule, picture.actors[i].mask);
+        if (picture.actors[i].mask.count() == 0) picture.actors[i].notes.push_back("no shadow in the picture");
         picture.view.shadow.add(picture.actors[i].mask);
         picture.view.actors.push_back({skinOf(posed), actorColour(i)});
         if (!canStand(quality.actors[i])) fallen += fmt::format("{} {}", fallen.empty() ? "" : ",", i + 1);

@@ -26,6 +26,8 @@ constexpr double kLamp = 0.07;       // radius of the lamp, metres
 constexpr double kFloorReach = 9;    // from the stage's middle to where the floor has faded, metres
 constexpr float kGridLine = 0.008f;  // half of a line's width, metres
 constexpr double kOutline = 0.006;   // half of the outline's width, of the screen's height
+constexpr double kBase = 0.2;        // half the side of what the lamp's stand is on, metres
+constexpr double kFoot = 0.35;       // how far the screen's feet reach before and behind it, metres
 constexpr double kBar = 0.03;        // of the screen's frame, metres
 
 // Linear light.
@@ -230,12 +232,12 @@ Surface screenOf(const StageView& view) {
 TriangleMesh standsOf(const StageView& view) {
     TriangleMesh mesh;
     const Extent extent = extentOf(view.frame);
-    const auto bar = static_cast<float>(kBar);
+    const auto bar = static_cast<float>(kBar), foot = static_cast<float>(kFoot);
     const float left = float(extent.leftTop.x), right = float(extent.rightBottom.x), top = float(extent.leftTop.y);
     addBox(mesh, {left - bar, 0, -bar}, {left, top + bar, bar});
     addBox(mesh, {right, 0, -bar}, {right + bar, top + bar, bar});
     addBox(mesh, {left, top, -bar}, {right, top + bar, bar});
-    for (const float x : {left - bar, right}) addBox(mesh, {x, 0, -0.35f}, {x + bar, bar, 0.35f});
+    for (const float x : {left - bar, right}) addBox(mesh, {x, 0, -foot}, {x + bar, bar, foot});
 
     const glm::vec3 light(view.stage.light);
     const float lamp = static_cast<float>(kLamp);
@@ -243,7 +245,8 @@ TriangleMesh standsOf(const StageView& view) {
            light + glm::vec3(1.5f * lamp, 1.5f * lamp, 3.2f * lamp));
     if (light.y > 3 * lamp) {
         addBox(mesh, {light.x - 0.015f, 0, light.z + 2 * lamp}, {light.x + 0.015f, light.y, light.z + 2 * lamp + 0.03f});
-        addBox(mesh, {light.x - 0.2f, 0, light.z + 2 * lamp - 0.2f}, {light.x + 0.2f, 0.02f, light.z + 2 * lamp + 0.2f});
+        const glm::vec3 below(light.x, 0, light.z + 2 * lamp);
+        addBox(mesh, below - glm::vec3(kBase, 0, kBase), below + glm::vec3(kBase, 0.02, kBase));
     }
     return mesh;
 }
@@ -274,7 +277,7 @@ void addBeam(const StageView& view, std::vector<Surface>& surfaces) {
         sides.triangles.push_back({first, first + 1, first + 2});
         addRay(edges, light, corners[i] + glm::vec3(0, 0.006f, 0.002f));
     }
-    surfaces.push_back(glowing(std::move(sides), kGlow, 0.07f));
+    surfaces.push_back(glowing(std::move(sides), kGlow, 0.045f));
     surfaces.push_back(glowing(std::move(edges), kGlow, 0.5f));
 }
 
@@ -299,6 +302,8 @@ std::vector<glm::dvec3> peopleAndScreen(const StageView& view) {
     std::vector<glm::dvec3> points;
     for (const double x : {extent.leftTop.x, extent.rightBottom.x})
         for (const double y : {extent.leftTop.y, extent.rightBottom.y}) points.emplace_back(x, y, 0);
+    for (const double x : {extent.leftTop.x - kBar, extent.rightBottom.x + kBar})
+        for (const double z : {-kFoot, kFoot}) points.emplace_back(x, 0, z);
     for (const auto* things : {&view.actors, &view.props})
         for (const StageView::Actor& thing : *things)
             points.insert(points.end(), thing.mesh.vertices.begin(), thing.mesh.vertices.end());
@@ -307,7 +312,8 @@ std::vector<glm::dvec3> peopleAndScreen(const StageView& view) {
 
 void addLamp(const StageView& view, std::vector<glm::dvec3>& points) {
     points.push_back(view.stage.light);
-    points.emplace_back(view.stage.light.x, 0, view.stage.light.z + 4 * kLamp);
+    for (const double x : {-kBase, kBase})
+        for (const double z : {-kBase, kBase}) points.emplace_back(view.stage.light.x + x, 0, view.stage.light.z + 2 * kLamp + z);
 }
 
 }  // namespace
