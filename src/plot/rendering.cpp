@@ -130,15 +130,27 @@ public:
         const auto& [a, b, c] = triangle.at;
         const double area = cross(b - a, c - a);
         if (area == 0) return;
-        const int from = std::max(0, static_cast<int>(std::ceil(std::min(triangle.top - first_, 1e6) - 0.5))),
-                  to = std::min(rows_, static_cast<int>(std::ceil(std::min(triangle.bottom - first_, 1e6) - 0.5)));
         const auto [least, most] = std::minmax({a.x, b.x, c.x});
-        const int left = std::max(0, static_cast<int>(std::ceil(std::min(least, 1e6) - 0.5))),
-                  right = std::min(width_, static_cast<int>(std::ceil(std::min(most, 1e6) - 0.5)));
-        for (int y = from; y < to; ++y)
-            for (int x = left; x < right; ++x) {
+        // The first sample whose middle is not before a place, of so many.
+        const auto sampleFrom = [](double place, int count) {
+            return static_cast<int>(std::ceil(std::clamp(place, 0.0, double(count)) - 0.5));
+        };
+        const int from = sampleFrom(triangle.top - first_, rows_), to = sampleFrom(triangle.bottom - first_, rows_);
+        const int left = sampleFrom(least, width_), right = sampleFrom(most, width_);
+        const std::array<glm::dvec2, 3> starts{b, c, a}, sides{c - b, a - c, b - a};
+        for (int y = from; y < to; ++y) {
+            // Where all three edges have the row on their inner side, and a sample more at each end.
+            double first = left, last = right;
+            for (std::size_t edge = 0; edge < 3; ++edge) {
+                const double at = cross(sides[edge], glm::dvec2(0.5, first_ + y + 0.5) - starts[edge]) / area,
+                             slope = -sides[edge].y / area;
+                if (slope > 0) first = std::max(first, std::floor(-at / slope));
+                if (slope < 0) last = std::min(last, std::ceil(-at / slope) + 1);
+            }
+            if (first >= last) continue;
+            for (int x = static_cast<int>(first); x < last; ++x) {
                 const glm::dvec2 p(x + 0.5, first_ + y + 0.5);
-                const double u = cross(c - b, p - b) / area, v = cross(a - c, p - c) / area, w = 1 - u - v;
+                const double u = cross(sides[0], p - b) / area, v = cross(sides[1], p - c) / area, w = 1 - u - v;
                 if (u < 0 || v < 0 || w < 0) continue;
                 const double nearness = u * triangle.nearness[0] + v * triangle.nearness[1] + w * triangle.nearness[2];
                 const std::size_t i =
@@ -155,6 +167,7 @@ public:
                 colour_[i] = glm::mix(colour_[i], glm::vec3(light), light.a);
                 if (!surface.translucent) nearness_[i] = nearness;
             }
+        }
     }
 
     Rgba8 pixel(int x, int y) const {
@@ -217,6 +230,7 @@ RgbaImage rendered(std::span<const Surface> surfaces, const Camera& camera, cons
             const TriangleMesh& mesh = surfaces[s].mesh;
             const auto normals = normalsOf(mesh);
             for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+                if (normals[i][0] == glm::vec3(0)) continue;  // it has no area
                 std::array<Corner, 3> triangle;
                 for (std::size_t c = 0; c < 3; ++c) {
                     const glm::vec3 place = mesh.vertices[mesh.triangles[i][static_cast<int>(c)]];
