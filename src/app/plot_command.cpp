@@ -3,26 +3,59 @@
 #include "app/report.h"
 
 #include "pattern/shape_pattern.h"
+#include "theatre/cast.h"
 
 #include "core/file.h"
+#include "plot/cast_figures.h"
+#include "plot/cast_picture.h"
 #include "plot/figures.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 namespace fantascope::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-enum class Figure { Difference, Search, Trajectories, Spectrum };
+constexpr int kMaskRows = 512;  // of a cast's target
+
+enum class Subject { Pattern, Report, Cast };
+enum class Figure { Difference, Trajectories, Spectrum, Search, Cast, Stage, Side, Shadow, Actors };
+
+struct Entry {
+    std::string_view name;
+    Figure figure;
+    Subject of;
+};
+// The first of a subject is drawn unasked.
+constexpr Entry kFigures[] = {{"difference", Figure::Difference, Subject::Pattern},
+                              {"trajectories", Figure::Trajectories, Subject::Pattern},
+                              {"spectrum", Figure::Spectrum, Subject::Pattern},
+                              {"search", Figure::Search, Subject::Report},
+                              {"cast", Figure::Cast, Subject::Cast},
+                              {"stage", Figure::Stage, Subject::Cast},
+                              {"side", Figure::Side, Subject::Cast},
+                              {"shadow", Figure::Shadow, Subject::Cast},
+                              {"actors", Figure::Actors, Subject::Cast}};
+
+Subject subjectOf(const fs::path& input) {
+    return input.extension() == ".json"                        ? Subject::Report
+           : input.filename().string().ends_with(".cast.yaml") ? Subject::Cast
+                                                               : Subject::Pattern;
+}
 
 struct Options {
     fs::path input, output;
     std::optional<Figure> figure;
+    std::size_t frame = 0;
 };
 
 std::string onlyPlot(const std::string& file) {
@@ -31,19 +64,22 @@ std::string onlyPlot(const std::string& file) {
 }
 
 void declare(CLI::App& command, Options& options) {
-    command.add_option("INPUT", options.input, "A pattern, *.pattern.yaml, or the report of its search, *.json")->required();
+    command
+        .add_option("INPUT", options.input, "A pattern, *.pattern.yaml, the report of its search, *.json, or a cast, *.cast.yaml")
+        ->required();
     command.add_option("-o,--output", options.output, "The picture to write, PNG or SVG")
         ->required()
         ->check(CLI::Validator(onlyPlot, "PNG|SVG"));
+    std::map<std::string, Figure> figures;
+    for (const Entry& entry : kFigures) figures.emplace(entry.name, entry.figure);
     command
         .add_option(
             "--figure", options.figure,
             "of a pattern: difference (from its guide, the default), trajectories or spectrum (of its movement); of a report: "
-            "search (z over the iterations)")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, Figure>{{"difference", Figure::Difference},
-                                                                          {"search", Figure::Search},
-                                                                          {"trajectories", Figure::Trajectories},
-                                                                          {"spectrum", Figure::Spectrum}}));
+            "search (z over the iterations); of a cast: stage (seen from behind the lamp), side (seen from there), shadow (who "
+            "throws what), actors (each one's shadow), or cast (stage, shadow and actors, the default)")
+        ->transform(CLI::CheckedTransformer(figures));
+    command.add_option("--frame", options.frame, "of a cast that moves, from 0")->capture_default_str();
 }
 
 Result<plot::SearchHistory> readHistory(const fs::path& file) {
@@ -63,20 +99,57 @@ Result<plot::SearchHistory> readHistory(const fs::path& file) {
                     file.string(), file.filename().string()));
 }
 
-Result<plot::Page> draw(const Options& options) {
-    const bool ofReport = options.input.extension() == ".json";
-    const Figure figure = options.figure.value_or(ofReport ? Figure::Search : Figure::Difference);
-    if (ofReport != (figure == Figure::Search))
-        return Error(fmt::format("{}: --figure {}", options.input.string(),
-                                 ofReport ? "needs a pattern, *.pattern.yaml; a report has the search alone"
-                                          : "search needs the report of a search, *.json"));
-    if (ofReport) return plot::searchFigure(TRY(readHistory(options.input)));
-    const pattern::ShapePattern pattern = TRY(pattern::readPattern(options.input));
+Result<plot::Page> drawPattern(const fs::path& file, Figure figure) {
+    const pattern::ShapePattern pattern = TRY(pattern::readPattern(file));
     if (figure == Figure::Difference) {
-        const GreyImage guide = TRY(readGrey(pattern.guide).in(options.input.string() + ": guide"));
+        const GreyImage guide = TRY(readGrey(pattern.guide).in(file.string() + ": guide"));
         return plot::differenceFigure(pattern, guide);
     }
     return figure == Figure::Trajectories ? plot::trajectoriesFigure(pattern) : plot::spectrumFigure(pattern);
+}
+
+Result<plot::CastPicture> picture(const fs::path& file, std::size_t frame) {
+    const theatre::Cast cast = TRY(theatre::readCast(file));
+    const std::size_t frames = cast.actors[0].poses.size();
+    if (frame >= frames) return Error(fmt::format("{}: --frame {} is beyond its last, {}", file.string(), frame, frames - 1));
+    const GreyImage silhouette = TRY(readGrey(cast.target).in(file.string() + ": target"));
+    theatre::PoseTarget target =
+        TRY(theatre::PoseTarget::from(silhouette, cast.stage, cast.height, kMaskRows).in(cast.target.string()));
+    theatre::PoseProblem problem{cast.stage, std::move(target), {}, {}};
+    std::vector<double> freedoms;
+    for (const theatre::Cast::Actor& actor : cast.actors) {
+        problem.actors.push_back(theatre::humanBody(actor.stature));
+        const std::vector<double> his = theatre::freedomsOf(problem.actors.back(), actor.poses[frame]);
+        freedoms.insert(freedoms.end(), his.begin(), his.end());
+    }
+    return plot::castPicture(problem, freedoms);
+}
+
+Result<plot::Page> drawCast(const fs::path& file, std::size_t frame, Figure figure) {
+    const plot::CastPicture cast = TRY(picture(file, frame));
+    std::vector<plot::Page> pages;
+    const auto has = [&](Figure part) { return figure == part || figure == Figure::Cast; };
+    if (has(Figure::Stage)) pages.push_back(plot::stageFigure(cast.view, cast.view.overview(plot::kStageAspect)));
+    if (figure == Figure::Side) pages.push_back(plot::stageFigure(cast.view, cast.view.fromTheSide(plot::kStageAspect)));
+    if (has(Figure::Shadow)) pages.push_back(plot::shadowFigure(cast.actors, cast.view.target, cast.lines));
+    if (has(Figure::Actors)) pages.push_back(plot::actorsFigure(cast.actors, cast.view.target));
+    return plot::stacked(pages);
+}
+
+Result<plot::Page> draw(const Options& options) {
+    const Subject subject = subjectOf(options.input);
+    const auto ofSubject = [&](const Entry& entry) { return entry.of == subject; };
+    const Figure figure = options.figure.value_or(std::find_if(std::begin(kFigures), std::end(kFigures), ofSubject)->figure);
+    const Entry& entry =
+        *std::find_if(std::begin(kFigures), std::end(kFigures), [&](const Entry& e) { return e.figure == figure; });
+    if (entry.of != subject)
+        return Error(fmt::format("{}: --figure {} needs {}", options.input.string(), entry.name,
+                                 entry.of == Subject::Pattern  ? "a pattern, *.pattern.yaml"
+                                 : entry.of == Subject::Report ? "the report of a search, *.json"
+                                                               : "a cast, *.cast.yaml"));
+    if (subject == Subject::Report) return plot::searchFigure(TRY(readHistory(options.input)));
+    if (subject == Subject::Cast) return drawCast(options.input, options.frame, figure);
+    return drawPattern(options.input, figure);
 }
 
 Result<void> run(const Options& options) {
@@ -87,7 +160,7 @@ Result<void> run(const Options& options) {
 }  // namespace
 
 void addPlotCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "plot", "Draw a pattern, its search or its movement as a figure", declare, run);
+    addCommand<Options>(program, action, "plot", "Draw a pattern, its search, its movement, or a cast as a figure", declare, run);
 }
 
 }  // namespace fantascope::app

@@ -73,6 +73,13 @@ void Page::disc(glm::dvec2 centre, double radius, glm::dvec3 colour) {
     cairo_fill(context);
 }
 
+void Page::box(glm::dvec2 topLeft, glm::dvec2 bottomRight, glm::dvec3 colour) {
+    cairo_t* const context = cairo_->context.get();
+    cairo_set_source_rgb(context, colour.r, colour.g, colour.b);
+    cairo_rectangle(context, topLeft.x, topLeft.y, bottomRight.x - topLeft.x, bottomRight.y - topLeft.y);
+    cairo_fill(context);
+}
+
 void Page::picture(const RgbaImage& picture, glm::dvec2 topLeft, glm::dvec2 bottomRight) {
     const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, picture.width(), picture.height()));
     cairo_surface_flush(surface.get());
@@ -101,6 +108,13 @@ void Page::cover(glm::dvec2 topLeft, glm::dvec2 bottomRight, double opacity) {
     cairo_t* const context = cairo_->context.get();
     cairo_set_source_rgba(context, 1, 1, 1, opacity);
     cairo_rectangle(context, topLeft.x, topLeft.y, bottomRight.x - topLeft.x, bottomRight.y - topLeft.y);
+    cairo_fill(context);
+}
+
+void Page::page(const Page& other, glm::dvec2 topLeft) {
+    cairo_t* const context = cairo_->context.get();
+    cairo_set_source_surface(context, other.cairo_->surface.get(), topLeft.x, topLeft.y);
+    cairo_rectangle(context, topLeft.x, topLeft.y, other.width_, other.height_);
     cairo_fill(context);
 }
 

@@ -39,8 +39,11 @@ public:
     void line(glm::dvec2 from, glm::dvec2 to, const Stroke& stroke);
     void frame(glm::dvec2 topLeft, glm::dvec2 bottomRight, const Stroke& stroke);
     void disc(glm::dvec2 centre, double radius, glm::dvec3 colour);
+    void box(glm::dvec2 topLeft, glm::dvec2 bottomRight, glm::dvec3 colour);
     void picture(const RgbaImage& picture, glm::dvec2 topLeft, glm::dvec2 bottomRight);
     void cover(glm::dvec2 topLeft, glm::dvec2 bottomRight, double opacity);  // with white
+    // All that is on another page.
+    void page(const Page& other, glm::dvec2 topLeft);
     // The text's middle line stands at at.y; `upwards` turns it by 90 degrees about `at`.
     void text(std::string_view text, glm::dvec2 at, double size, Anchor anchor, bool upwards = false);
     double textWidth(std::string_view text, double size) const;  // points

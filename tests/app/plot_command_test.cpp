@@ -1,3 +1,5 @@
+#include "theatre/cast.h"
+
 #include "core/file.h"
 #include "core/image.h"
 #include "program.h"
@@ -39,6 +41,35 @@ TEST_F(PlotCommand, draws_a_pattern_or_a_report_by_what_it_is) {
     EXPECT_NE(readFile(folder_ / "trajectories.png").value(), readFile(folder_ / "spectrum.png").value());
     EXPECT_GT(width("search.png"), 500);
     EXPECT_THAT(readFile(folder_ / "report.svg").value(), HasSubstr("<svg"));
+}
+
+// Two people in T-poses, the first as in the first frame, the second raised in the second one.
+theatre::Cast aCast(const std::filesystem::path& target) {
+    theatre::Cast cast{target, 1.8, {}, 10, 1, {}};
+    for (const double x : {-0.6, 0.6}) {
+        const theatre::Body body = theatre::humanBody(1.7);
+        const glm::dvec3 root(x, body.joints[0].offset.y, 1.5);
+        cast.actors.push_back({1.7, {}});
+        for (const double height : {0.0, x > 0 ? 0.3 : 0.0})
+            cast.actors.back().poses.push_back(
+                theatre::poseOf(body, body.restPose(root + glm::dvec3(0, height, 0), {1, 0, 0, 0})));
+    }
+    return cast;
+}
+
+TEST_F(PlotCommand, draws_a_cast) {
+    ASSERT_TRUE(theatre::writeCast(folder_ / "c.cast.yaml", aCast(folder_ / "guide.png")));
+    for (const char* figure : {"stage", "side", "shadow", "actors"})
+        EXPECT_EQ(run({"plot", "c.cast.yaml", "--figure", figure, "-o", std::string(figure) + ".png"}).status, 0) << figure;
+    EXPECT_EQ(run({"plot", "c.cast.yaml", "-o", "cast.png"}).status, 0);
+    const auto height = [&](const std::string& picture) { return readRgba(folder_ / picture).value().height(); };
+    EXPECT_EQ(height("cast.png"), height("stage.png") + height("shadow.png") + height("actors.png"));
+    EXPECT_NE(readFile(folder_ / "stage.png").value(), readFile(folder_ / "side.png").value());
+    EXPECT_EQ(run({"plot", "c.cast.yaml", "--frame", "1", "-o", "second.png"}).status, 0);
+    EXPECT_NE(readFile(folder_ / "second.png").value(), readFile(folder_ / "cast.png").value());
+    EXPECT_THAT(run({"plot", "c.cast.yaml", "--frame", "2", "-o", "x.png"}).errors, HasSubstr("--frame 2 is beyond its last, 1"));
+    EXPECT_THAT(run({"plot", "c.cast.yaml", "--figure", "search", "-o", "x.png"}).errors, HasSubstr("needs the report"));
+    EXPECT_THAT(run({"plot", "p.pattern.yaml", "--figure", "stage", "-o", "x.png"}).errors, HasSubstr("needs a cast"));
 }
 
 TEST_F(PlotCommand, says_what_it_cannot_draw) {

@@ -63,7 +63,7 @@ const std::vector<Row> kTable = {
     {"device", {"core"}, {}, {}},
     {"pattern", {"core"}, {"Eigen"}, {"FFTW"}},
     {"theatre", {"core"}, {"Eigen"}, {"FFTW"}},
-    {"plot", {"core", "pattern"}, {}, {"cairo"}},
+    {"plot", {"core", "pattern", "theatre"}, {}, {"cairo"}},
     {"vision", {"core"}, {"Eigen"}, {"OpenCV"}},
     {"show", {"core"}, {}, {}},
     {"render", {"core", "pattern", "theatre", "show/show_state.h", "device/display_sink.h"}, {}, {"libav"}},

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "theatre/pose_search.h"
+
+#include "plot/cast_figures.h"
+#include "plot/stage_view.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace fantascope::plot {
+
+// Poses of a problem as the figures of a cast take them.
+struct CastPicture {
+    StageView view;
+    std::vector<ActorShadow> actors;  // how each stands in his notes
+    std::vector<std::string> lines;   // how well the shadow fits, and whether everyone can stand so
+};
+
+// `freedoms`: of all actors, one after the other.
+CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const double> freedoms);
+
+}  // namespace fantascope::plot

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstddef>
+
+namespace fantascope::plot {
+
+// A colour for each actor, sRGB 0..1, in all pictures the same; from the ninth on they come again. After Okabe & Ito 2008 (told apart by the
+// colour-blind too); black, which is the shadow's and the outline's, gives way to a brown.
+inline glm::dvec3 actorColour(std::size_t actor) {
+    constexpr std::array<std::array<int, 3>, 8> kColours{{{230, 159, 0},
+                                                          {86, 180, 233},
+                                                          {0, 158, 115},
+                                                          {204, 121, 167},
+                                                          {0, 114, 178},
+                                                          {240, 228, 66},
+                                                          {213, 94, 0},
+                                                          {118, 84, 60}}};
+    const auto& [r, g, b] = kColours[actor % kColours.size()];
+    return glm::dvec3(r, g, b) / 255.0;
+}
+
+}  // namespace fantascope::plot

@@ -1,0 +1,355 @@
+#include "plot/stage_view.h"
+
+#include "theatre/distance_field.h"
+
+#include "core/check.h"
+#include "core/geometry.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+namespace fantascope::plot {
+namespace {
+
+constexpr double kFieldOfView = radians(32), kMargin = 0.05;
+// Where the cameras look: 50 degrees from the beam, 20 degrees down.
+const glm::dvec3 kFromAbove{-std::sin(radians(50)), -std::tan(radians(20)), -std::cos(radians(50))};
+constexpr double kLamp = 0.07;       // radius of the lamp, metres
+constexpr double kFloorReach = 9;    // from the stage's middle to where the floor has faded, metres
+constexpr float kGridLine = 0.008f;  // half of a line's width, metres
+constexpr double kOutline = 0.006;   // half of the outline's width, of the screen's height
+constexpr double kBase = 0.2;        // half the side of what the lamp's stand is on, metres
+constexpr double kFoot = 0.35;       // how far the screen's feet reach before and behind it, metres
+constexpr double kBar = 0.03;        // of the screen's frame, metres
+
+// Linear light.
+constexpr glm::vec3 kBackground{0.80f, 0.83f, 0.87f}, kFloor{0.50f, 0.50f, 0.49f}, kGrid{0.36f, 0.37f, 0.38f};
+constexpr glm::vec3 kCloth{0.97f, 0.93f, 0.83f}, kShadow{0.02f, 0.02f, 0.03f}, kRed{0.80f, 0.02f, 0.03f};
+constexpr glm::vec3 kMetal{0.06f, 0.06f, 0.07f}, kGlow{1.0f, 0.72f, 0.25f};
+
+glm::vec3 linear(const glm::dvec3& colour) {
+    return {linearFromSrgb(float(colour.r)), linearFromSrgb(float(colour.g)), linearFromSrgb(float(colour.b))};
+}
+
+// A parallelogram.
+void addFace(TriangleMesh& mesh, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v) {
+    const auto first = static_cast<unsigned>(mesh.vertices.size());
+    for (const glm::vec3& place : {corner, corner + u, corner + u + v, corner + v}) mesh.vertices.push_back(place);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+}
+
+void addBox(TriangleMesh& mesh, const glm::vec3& least, const glm::vec3& most) {
+    const glm::vec3 size = most - least, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
+    addFace(mesh, least, y, x), addFace(mesh, least + z, x, y);
+    addFace(mesh, least, z, y), addFace(mesh, least + x, y, z);
+    addFace(mesh, least, x, z), addFace(mesh, least + y, z, x);
+}
+
+TriangleMesh ball(const glm::vec3& centre, float radius) {
+    constexpr unsigned kAround = 24, kRings = 12;
+    TriangleMesh mesh;
+    for (unsigned ring = 0; ring <= kRings; ++ring)
+        for (unsigned i = 0; i < kAround; ++i) {
+            const float down = glm::pi<float>() * float(ring) / kRings, turn = 2 * glm::pi<float>() * float(i) / kAround;
+            mesh.vertices.push_back(
+                centre + radius * glm::vec3(std::sin(down) * std::cos(turn), std::cos(down), std::sin(down) * std::sin(turn)));
+            if (ring == kRings) continue;
+            const unsigned a = ring * kAround + i, b = ring * kAround + (i + 1) % kAround;
+            mesh.triangles.push_back({a, b, b + kAround});
+            mesh.triangles.push_back({a, b + kAround, a + kAround});
+        }
+    return mesh;
+}
+
+// How much of the sky the things above hide from the floor, in a grid: the sum of the form factors of their surfaces that face a place.
+class ContactShade {
+public:
+    explicit ContactShade(const StageView& view) {
+        glm::vec2 least(std::numeric_limits<float>::max()), most(-least);
+        forEachMesh(view, [&](const TriangleMesh& mesh) {
+            for (const glm::vec3& v : mesh.vertices) {
+                least = glm::min(least, glm::vec2(v.x, v.z));
+                most = glm::max(most, glm::vec2(v.x, v.z));
+            }
+        });
+        if (least.x > most.x) return;
+        origin_ = least - kReach;
+        const glm::vec2 cells = glm::ceil((most - least + 2 * kReach) / kCell);
+        shade_ = GreyImage(static_cast<int>(cells.x), static_cast<int>(cells.y));
+        forEachMesh(view, [&](const TriangleMesh& mesh) {
+            for (const glm::uvec3 t : mesh.triangles) add(mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z]);
+        });
+    }
+
+    // 0, or more; 1 where nothing of the sky is left
+    float at(const glm::vec3& place) const {
+        const glm::vec2 p = (glm::vec2(place.x, place.z) - origin_) / kCell - 0.5f;
+        const int x = static_cast<int>(std::floor(p.x)), y = static_cast<int>(std::floor(p.y));
+        if (x < 0 || y < 0 || x + 1 >= shade_.width() || y + 1 >= shade_.height()) return 0;
+        const glm::vec2 f = p - glm::vec2(x, y);
+        return glm::mix(glm::mix(shade_.at(x, y), shade_.at(x + 1, y), f.x),
+                        glm::mix(shade_.at(x, y + 1), shade_.at(x + 1, y + 1), f.x), f.y);
+    }
+
+private:
+    static constexpr float kCell = 0.05f, kReach = 0.6f;  // metres
+
+    template <class Visit>
+    static void forEachMesh(const StageView& view, Visit visit) {
+        for (const StageView::Actor& actor : view.actors) visit(actor.mesh);
+        for (const StageView::Actor& prop : view.props) visit(prop.mesh);
+    }
+
+    // A triangle in pieces no larger than a cell.
+    void add(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+        const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+        const int steps = 1 + static_cast<int>(longest / kCell);
+        const glm::vec3 u = (b - a) / float(steps), v = (c - a) / float(steps), area = 0.5f * glm::cross(u, v);
+        for (int i = 0; i < steps; ++i)
+            for (int j = 0; i + j < steps; ++j) {
+                const glm::vec3 corner = a + float(i) * u + float(j) * v;
+                spread(corner + (u + v) / 3.0f, area);
+                if (i + j + 1 < steps) spread(corner + (u + v) * (2 / 3.0f), area);
+            }
+    }
+
+    // Adds the form factor cos cos' dA / (pi r^2), fading out at kReach. `area`: along the normal.
+    void spread(const glm::vec3& place, const glm::vec3& area) {
+        const float height = std::max(place.y, 0.0f);
+        if (height >= kReach) return;
+        const glm::vec2 at = (glm::vec2(place.x, place.z) - origin_) / kCell - 0.5f;
+        const glm::ivec2 least = glm::max(glm::ivec2(at - kReach / kCell), glm::ivec2(0)),
+                         most = glm::min(glm::ivec2(at + kReach / kCell), glm::ivec2(shade_.width(), shade_.height()) - 1);
+        for (int y = least.y; y <= most.y; ++y)
+            for (int x = least.x; x <= most.x; ++x) {
+                const glm::vec3 d(kCell * (at.x - float(x)), height, kCell * (at.y - float(y)));
+                const float r2 = std::max(glm::dot(d, d), 0.25f * kCell * kCell), fading = 1 - r2 / (kReach * kReach);
+                const float facing = -glm::dot(d, area);
+                if (facing <= 0 || fading <= 0) continue;
+                shade_.at(x, y) += height * facing / (glm::pi<float>() * r2 * r2) * fading;
+            }
+    }
+
+    glm::vec2 origin_{0};
+    GreyImage shade_;
+};
+
+struct Extent {
+    glm::dvec3 leftTop, rightBottom;  // on the screen
+};
+
+Extent extentOf(const theatre::ScreenFrame& frame) {
+    const glm::dvec2 leftTop = frame.metresAt({0, 0}), rightBottom = frame.metresAt({frame.width(), frame.height()});
+    return {{leftTop, 0}, {rightBottom, 0}};
+}
+
+// The smallest rectangle of pixels around what is white; all if nothing is.
+Extent extentOfWhite(const theatre::ScreenFrame& frame, const theatre::BitMask& mask) {
+    if (mask.count() == 0) return extentOf(frame);
+    int left = mask.width(), right = 0, top = mask.height(), bottom = 0;
+    for (int y = 0; y < mask.height(); ++y)
+        for (int x = 0; x < mask.width(); ++x)
+            if (mask.at(x, y)) {
+                left = std::min(left, x), right = std::max(right, x + 1);
+                top = std::min(top, y), bottom = std::max(bottom, y + 1);
+            }
+    return {{frame.metresAt({left, top}), 0}, {frame.metresAt({right, bottom}), 0}};
+}
+
+// Between the values at pixel centres; beyond the edge as at the edge.
+float sampled(const GreyImage& image, const glm::vec2& pixel) {
+    const glm::vec2 p = pixel - 0.5f, low = glm::floor(p), f = p - low;
+    const auto at = [&](int x, int y) {
+        return image.at(std::clamp(x, 0, image.width() - 1), std::clamp(y, 0, image.height() - 1));
+    };
+    const int x = static_cast<int>(low.x), y = static_cast<int>(low.y);
+    return glm::mix(glm::mix(at(x, y), at(x + 1, y), f.x), glm::mix(at(x, y + 1), at(x + 1, y + 1), f.x), f.y);
+}
+
+// The vectors are towards the lights.
+glm::vec3 matt(const glm::vec3& colour, const glm::vec3& normal, const glm::vec3& toCamera) {
+    static const glm::vec3 key = glm::normalize(glm::vec3(-0.35f, 0.75f, 0.65f)),
+                           fill = glm::normalize(glm::vec3(0.9f, 0.25f, 0.2f));
+    const float sky = 0.5f + 0.5f * normal.y;
+    const glm::vec3 light = 0.95f * std::max(0.0f, glm::dot(normal, key)) * glm::vec3(1.0f, 0.97f, 0.9f) +
+                            0.18f * std::max(0.0f, glm::dot(normal, fill)) * glm::vec3(0.85f, 0.93f, 1.0f) +
+                            glm::mix(glm::vec3(0.10f, 0.095f, 0.09f), glm::vec3(0.27f, 0.28f, 0.30f), sky);
+    const float rim = std::max(0.0f, glm::dot(normal, toCamera));  // a little darker where the surface turns away
+    return colour * light * glm::mix(0.72f, 1.0f, glm::smoothstep(0.0f, 0.55f, rim));
+}
+
+Surface mattSurface(TriangleMesh mesh, const glm::vec3& colour, const glm::vec3& camera) {
+    return {std::move(mesh), [=](const glm::vec3& place, const glm::vec3& normal) {
+                return glm::vec4(matt(colour, normal, glm::normalize(camera - place)), 1);
+            }};
+}
+
+Surface floorOf(const StageView& view, const ContactShade& contact) {
+    const auto reach = static_cast<float>(kFloorReach);
+    const glm::vec3 middle(float(view.stage.light.x), 0, float(0.45 * view.stage.light.z));
+    TriangleMesh mesh;
+    addFace(mesh, middle + glm::vec3(-reach, 0, reach), {2 * reach, 0, 0}, {0, 0, -2 * reach});
+    return {std::move(mesh), [=, &contact](const glm::vec3& place, const glm::vec3&) {
+                const float x = std::abs(place.x - std::round(place.x)), z = std::abs(place.z - std::round(place.z));
+                const float line = x < kGridLine || z < kGridLine ? 0.6f : 0.0f;
+                const glm::vec3 colour = glm::mix(kFloor, kGrid, line) * (1 - 0.9f * std::min(1.0f, contact.at(place)));
+                const float far = glm::smoothstep(0.45f * reach, reach, glm::distance(place, middle));
+                return glm::vec4(glm::mix(colour, kBackground, far), 1);
+            }};
+}
+
+Surface screenOf(const StageView& view) {
+    const Extent extent = extentOf(view.frame);
+    TriangleMesh mesh;
+    addFace(mesh, glm::vec3(extent.leftTop.x, extent.rightBottom.y, 0), glm::vec3(extent.rightBottom.x - extent.leftTop.x, 0, 0),
+            glm::vec3(0, extent.leftTop.y - extent.rightBottom.y, 0));
+    const auto pixel = static_cast<float>(view.frame.pixel());
+    const float half = static_cast<float>(kOutline * (extent.leftTop.y - extent.rightBottom.y));
+    const glm::vec2 foot(view.stage.light.x, view.stage.light.y);
+    return {std::move(mesh),
+            [=, &frame = view.frame, shadow = theatre::signedDistance(view.shadow), target = theatre::signedDistance(view.target),
+             hasTarget = view.target.count() > 0](const glm::vec3& place, const glm::vec3&) {
+                const glm::vec2 at(frame.pixelAt(place.x, place.y));
+                const float falloff = glm::distance(foot, glm::vec2(place)) / 6;
+                glm::vec3 colour = kCloth / (1 + falloff * falloff);
+                colour = glm::mix(colour, kShadow, glm::smoothstep(-0.5f, 0.5f, sampled(shadow, at)));
+                const float off = std::abs(sampled(target, at)) * pixel;
+                if (hasTarget) colour = glm::mix(kRed, colour, glm::smoothstep(half - 0.5f * pixel, half + 0.5f * pixel, off));
+                return glm::vec4(colour, 1);
+            }};
+}
+
+// The screen's frame and its feet, and what the lamp stands on.
+TriangleMesh standsOf(const StageView& view) {
+    TriangleMesh mesh;
+    const Extent extent = extentOf(view.frame);
+    const auto bar = static_cast<float>(kBar), foot = static_cast<float>(kFoot);
+    const float left = float(extent.leftTop.x), right = float(extent.rightBottom.x), top = float(extent.leftTop.y);
+    addBox(mesh, {left - bar, 0, -bar}, {left, top + bar, bar});
+    addBox(mesh, {right, 0, -bar}, {right + bar, top + bar, bar});
+    addBox(mesh, {left, top, -bar}, {right, top + bar, bar});
+    for (const float x : {left - bar, right}) addBox(mesh, {x, 0, -foot}, {x + bar, bar, foot});
+
+    const glm::vec3 light(view.stage.light);
+    const float lamp = static_cast<float>(kLamp);
+    addBox(mesh, light + glm::vec3(-1.5f * lamp, -1.5f * lamp, 1.2f * lamp),
+           light + glm::vec3(1.5f * lamp, 1.5f * lamp, 3.2f * lamp));
+    if (light.y > 3 * lamp) {
+        addBox(mesh, {light.x - 0.015f, 0, light.z + 2 * lamp}, {light.x + 0.015f, light.y, light.z + 2 * lamp + 0.03f});
+        const glm::vec3 below(light.x, 0, light.z + 2 * lamp);
+        addBox(mesh, below - glm::vec3(kBase, 0, kBase), below + glm::vec3(kBase, 0.02, kBase));
+    }
+    return mesh;
+}
+
+Surface glowing(TriangleMesh mesh, const glm::vec3& colour, float opacity) {
+    return {std::move(mesh), [=](const glm::vec3&, const glm::vec3&) { return glm::vec4(colour, opacity); }, opacity < 1};
+}
+
+// A thin bar with three sides.
+void addRay(TriangleMesh& mesh, const glm::vec3& from, const glm::vec3& to) {
+    constexpr float kWidth = 0.012f;
+    const glm::vec3 along = glm::normalize(to - from), side = kWidth * glm::normalize(glm::cross(along, glm::vec3(0, 1, 0)));
+    const glm::vec3 up = glm::cross(side, along);
+    const std::array<glm::vec3, 3> around{0.5f * side - 0.3f * up, -0.5f * side - 0.3f * up, 0.6f * up};
+    for (std::size_t i = 0; i < 3; ++i) addFace(mesh, from + around[i], to - from, around[(i + 1) % 3] - around[i]);
+}
+
+// The pyramid from the lamp to the box around the target: its sides, barely seen, and its edges.
+void addBeam(const StageView& view, std::vector<Surface>& surfaces) {
+    const Extent box = extentOfWhite(view.frame, view.target);
+    const glm::vec3 light(view.stage.light);
+    const std::array<glm::vec3, 4> corners{glm::vec3(box.leftTop), glm::vec3(box.rightBottom.x, box.leftTop.y, 0),
+                                           glm::vec3(box.rightBottom), glm::vec3(box.leftTop.x, box.rightBottom.y, 0)};
+    TriangleMesh sides, edges;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto first = static_cast<unsigned>(sides.vertices.size());
+        for (const glm::vec3& place : {light, corners[i], corners[(i + 1) % 4]}) sides.vertices.push_back(place);
+        sides.triangles.push_back({first, first + 1, first + 2});
+        addRay(edges, light, corners[i] + glm::vec3(0, 0.006f, 0.002f));
+    }
+    surfaces.push_back(glowing(std::move(sides), kGlow, 0.045f));
+    surfaces.push_back(glowing(std::move(edges), kGlow, 0.5f));
+}
+
+// A disc that faces the camera, fading outwards.
+Surface haloOf(const glm::vec3& light, const glm::vec3& camera) {
+    constexpr float kRadius = 0.55f;
+    const glm::vec3 towards = glm::normalize(camera - light), side = glm::normalize(glm::cross(towards, glm::vec3(0, 1, 0)));
+    const glm::vec3 u = kRadius * side, v = kRadius * glm::cross(side, towards);
+    TriangleMesh mesh;
+    addFace(mesh, light - u - v, 2.0f * u, 2.0f * v);
+    return {std::move(mesh),
+            [=](const glm::vec3& place, const glm::vec3&) {
+                const float inside = std::max(0.0f, 1 - glm::distance(place, light) / kRadius);
+                return glm::vec4(kGlow, 0.75f * inside * inside * inside);
+            },
+            true};
+}
+
+// What a camera must see.
+std::vector<glm::dvec3> peopleAndScreen(const StageView& view) {
+    const Extent extent = extentOf(view.frame);
+    std::vector<glm::dvec3> points;
+    for (const double x : {extent.leftTop.x, extent.rightBottom.x})
+        for (const double y : {extent.leftTop.y, extent.rightBottom.y}) points.emplace_back(x, y, 0);
+    for (const double x : {extent.leftTop.x - kBar, extent.rightBottom.x + kBar})
+        for (const double z : {-kFoot, kFoot}) points.emplace_back(x, 0, z);
+    for (const auto* things : {&view.actors, &view.props})
+        for (const StageView::Actor& thing : *things)
+            points.insert(points.end(), thing.mesh.vertices.begin(), thing.mesh.vertices.end());
+    return points;
+}
+
+void addLamp(const StageView& view, std::vector<glm::dvec3>& points) {
+    points.push_back(view.stage.light);
+    for (const double x : {-kBase, kBase})
+        for (const double z : {-kBase, kBase}) points.emplace_back(view.stage.light.x + x, 0, view.stage.light.z + 2 * kLamp + z);
+}
+
+}  // namespace
+
+Camera StageView::overview(double aspect) const {
+    std::vector<glm::dvec3> points = peopleAndScreen(*this);
+    addLamp(*this, points);
+    return Camera::fitting(points, kFromAbove, kFieldOfView, aspect, kMargin);
+}
+
+Camera StageView::closeUp(double aspect) const {
+    return Camera::fitting(peopleAndScreen(*this), kFromAbove, kFieldOfView, aspect, kMargin);
+}
+
+Camera StageView::fromTheSide(double aspect) const {
+    std::vector<glm::dvec3> points = peopleAndScreen(*this);
+    addLamp(*this, points);
+    return Camera::fitting(points, {-1, -0.1, -0.12}, kFieldOfView, aspect, kMargin);
+}
+
+RgbaImage StageView::draw(const Camera& camera, int width, int height) const {
+    FANTASCOPE_CHECK(shadow.width() == frame.width() && shadow.height() == frame.height() && target.width() == frame.width() &&
+                         target.height() == frame.height(),
+                     "shadow and target are masks of the frame's size");
+    const glm::vec3 eye(camera.position), light(stage.light);
+    const ContactShade contact(*this);
+    std::vector<Surface> surfaces;
+    for (const Actor& actor : actors) surfaces.push_back(mattSurface(actor.mesh, linear(actor.colour), eye));
+    for (const Actor& prop : props) surfaces.push_back(mattSurface(prop.mesh, linear(prop.colour), eye));
+    surfaces.push_back(mattSurface(standsOf(*this), kMetal, eye));
+    surfaces.push_back(glowing(ball(light, static_cast<float>(kLamp)), {1, 0.95f, 0.8f}, 1));
+    surfaces.push_back(screenOf(*this));
+    surfaces.push_back(floorOf(*this, contact));
+    addBeam(*this, surfaces);
+    surfaces.push_back(haloOf(light, eye));
+    return rendered(surfaces, camera, kBackground, width, height);
+}
+
+}  // namespace fantascope::plot

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "theatre/bit_mask.h"
+#include "theatre/stage.h"
+
+#include "core/image.h"
+#include "core/mesh.h"
+#include "plot/rendering.h"
+
+#include <glm/vec3.hpp>
+
+#include <vector>
+
+namespace fantascope::plot {
+
+// What an outsider would see on the stage of a shadow theatre: the lamp and its beam to the target, the actors on the floor, and behind
+// them the screen with their shadow and the target's outline in red. Metres, the stage's frame.
+struct StageView {
+    struct Actor {
+        TriangleMesh mesh;
+        glm::dvec3 colour{0.5};  // sRGB, 0..1
+    };
+
+    theatre::Stage stage;
+    theatre::ScreenFrame frame;
+    theatre::BitMask shadow, target;  // both of the frame's size
+    std::vector<Actor> actors;
+    std::vector<Actor> props{};  // platforms and whatever else stands there
+
+    // Cameras for a picture of this aspect: from behind the lamp, from the right and above; the same, near, with people and screen, but
+    // not the lamp; and from the right, with all.
+    Camera overview(double aspect) const;
+    Camera closeUp(double aspect) const;
+    Camera fromTheSide(double aspect) const;
+
+    // Opaque. The floor has a line a metre and is darker where something stands close above it. Thread: reentrant.
+    RgbaImage draw(const Camera& camera, int width, int height) const;
+};
+
+}  // namespace fantascope::plot
