@@ -52,23 +52,28 @@ void feelJoints(const Body& body, const PosedBody& atRest, const dvec3& point, s
 // Each vertex follows the joint whose capsules are nearest, and its parent and children the less the farther they are; then shares are
 // evened out between neighbours on the skin.
 std::vector<std::vector<double>> sharesOf(const Body& body, const TriangleMesh& mesh, const std::vector<MeshEdge>& edges) {
-    // Shares fall to 1/e over this, of the stature; and how often they are evened out.
-    constexpr double kFalloff = 0.004;
-    constexpr int kRounds = 3;
+    // Shares fall to 1/e over the first, also beyond the second from the joint, where a turn moves the skin far: shares of the stature. And how
+    // often they are evened out.
+    constexpr double kFalloff = 0.003, kReach = 0.055;
+    constexpr int kRounds = 1;
     PosedBody atRest;
     atRest.pose(body, body.restPose(body.joints[0].offset, {1, 0, 0, 0}));
     std::vector<std::vector<double>> shares(mesh.vertices.size());
     std::vector<double> distances;
     for (std::size_t v = 0; v < shares.size(); ++v) {
-        feelJoints(body, atRest, mesh.vertices[v], distances);
+        const dvec3 point(mesh.vertices[v]);
+        feelJoints(body, atRest, point, distances);
         const auto nearest = static_cast<std::size_t>(std::min_element(distances.begin(), distances.end()) - distances.begin());
         shares[v].assign(distances.size(), 0);
         double sum = 0;
         for (std::size_t j = 0; j < distances.size(); ++j) {
-            if (j != nearest && body.joints[j].parent != nearest && (j == 0 || body.joints[nearest].parent != j)) {
-                if (!(j == 0 && nearest != 0 && body.joints[nearest].parent == 0)) continue;
-            }
-            shares[v][j] = std::exp((distances[nearest] - distances[j]) / (kFalloff * body.stature));
+            // The joint between the two is that of the child.
+            const bool isChild = j != nearest && body.joints[j].parent == nearest,
+                       isParent = j != nearest && body.joints[nearest].parent == j;
+            if (j != nearest && !isChild && !isParent) continue;
+            const double around = j == nearest ? 0 : glm::distance(point, atRest.place(isChild ? j : nearest));
+            shares[v][j] = std::exp((distances[nearest] - distances[j] - std::max(0.0, around - kReach * body.stature)) /
+                                    (kFalloff * body.stature));
             sum += shares[v][j];
         }
         for (double& share : shares[v]) share /= sum;
@@ -111,7 +116,7 @@ void keepLargest(const std::vector<double>& shares, std::array<std::uint16_t, Bo
 BodyMesh unitMesh() {
     const Body body = humanBody(1);
     BodyMesh mesh;
-    mesh.atRest = simplified(implicitSurface(humanForm, gridOfAPerson(), 1.7), kTriangles);
+    mesh.atRest = simplified(implicitSurface(HumanForm(body), gridOfAPerson(), 1.7), kTriangles);
     mesh.edges = edgesOf(mesh.atRest);
     FANTASCOPE_CHECK(!mesh.edges.empty(), "the human form is closed");
     const std::vector<std::vector<double>> shares = sharesOf(body, mesh.atRest, mesh.edges);

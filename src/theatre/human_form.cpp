@@ -52,22 +52,20 @@ private:
     }
 };
 
-// A cone with round ends (Quilez, "round cone").
+// A cone with round ends, neither in the other.
 struct Cone {
     dvec3 from{0};
     double fromRadius = 0;
     dvec3 to{0};
     double toRadius = 0;
 
+    // The nearest point of the axis seen along the slant.
     double operator()(const dvec3& p) const {
         const dvec3 axis = to - from, q = p - from;
-        const double ll = glm::dot(axis, axis), rr = fromRadius - toRadius, a2 = ll - rr * rr, y = glm::dot(q, axis), z = y - ll;
-        const dvec3 across = q * ll - axis * y;
-        const double x2 = glm::dot(across, across), y2 = y * y * ll, z2 = z * z * ll;
-        const double k = std::copysign(rr * rr * x2, rr);
-        if (std::copysign(a2 * z2, z) > k) return std::sqrt(x2 + z2) / ll - toRadius;
-        if (std::copysign(a2 * y2, y) < k) return std::sqrt(x2 + y2) / ll - fromRadius;
-        return (std::sqrt(x2 * a2 / ll) + y * rr) / ll - fromRadius;
+        const double length = glm::length(axis), slope = (fromRadius - toRadius) / length, along = glm::dot(q, axis) / length,
+                     across = std::sqrt(std::max(0.0, glm::dot(q, q) - along * along));
+        const double nearest = std::clamp(along + across * slope / std::sqrt(1 - slope * slope), 0.0, length);
+        return std::hypot(along - nearest, across) - std::lerp(fromRadius, toRadius, nearest / length);
     }
 };
 
@@ -92,45 +90,45 @@ constexpr int kAlongX = 0, kAlongY = 1, kAlongZ = 2;
 
 // along, wide centre, thin centre, wide, radius
 constexpr Section kTrunk[] = {
-    {0.530, 0, -0.006, 0.032, 0.060}, {0.562, 0, -0.008, 0.033, 0.062}, {0.600, 0, -0.004, 0.025, 0.059},
-    {0.640, 0, 0.000, 0.019, 0.0565}, {0.690, 0, 0.001, 0.023, 0.058},  {0.735, 0, 0.002, 0.029, 0.059},
-    {0.772, 0, 0.000, 0.031, 0.055},  {0.800, 0, -0.004, 0.026, 0.041},
+    {0.538, 0, -0.006, 0.033, 0.061}, {0.566, 0, -0.007, 0.031, 0.062}, {0.600, 0, -0.004, 0.024, 0.0595},
+    {0.640, 0, 0.000, 0.019, 0.0575}, {0.690, 0, 0.001, 0.022, 0.0590}, {0.735, 0, 0.001, 0.028, 0.0595},
+    {0.772, 0, -0.002, 0.031, 0.056}, {0.800, 0, -0.005, 0.026, 0.041},
 };
-constexpr Section kShoulder[] = {{0.000, -0.006, 0.800, 0.010, 0.036},
-                                 {0.040, -0.006, 0.803, 0.008, 0.036},
-                                 {0.080, -0.002, 0.808, 0.002, 0.035},
-                                 {0.108, 0, 0.812, 0, 0.034}};
+constexpr Section kShoulder[] = {{0.000, -0.004, 0.800, 0.008, 0.033},
+                                 {0.040, -0.004, 0.804, 0.007, 0.035},
+                                 {0.080, -0.001, 0.809, 0.002, 0.0355},
+                                 {0.108, 0, 0.812, 0, 0.0355}};
 constexpr Section kArm[] = {
-    {0.100, 0, 0.811, 0, 0.0335},          {0.135, 0.000, 0.811, 0, 0.0335}, {0.180, 0.001, 0.812, 0, 0.0305},
-    {0.240, 0.001, 0.812, 0, 0.0280},      {0.285, 0, 0.812, 0, 0.0247},     {0.305, 0.000, 0.812, 0.001, 0.0245},
-    {0.335, 0.001, 0.812, 0.0015, 0.0245}, {0.385, 0, 0.812, 0.002, 0.0200}, {0.440, 0, 0.812, 0.004, 0.0145}};
-constexpr Section kPalm[] = {{0.436, 0, 0.812, 0.004, 0.0145},
-                             {0.455, 0.001, 0.812, 0.0085, 0.0125},
-                             {0.475, 0.001, 0.812, 0.0120, 0.0108},
-                             {0.486, 0.001, 0.812, 0.0130, 0.0095}};
-constexpr Cone kFingers[] = {{{0.484, 0.812, 0.0165}, 0.0070, {0.527, 0.811, 0.0200}, 0.0052},
-                             {{0.486, 0.812, 0.0060}, 0.0072, {0.536, 0.811, 0.0070}, 0.0054},
-                             {{0.486, 0.812, -0.0045}, 0.0070, {0.531, 0.811, -0.0065}, 0.0052},
-                             {{0.482, 0.811, -0.0145}, 0.0064, {0.516, 0.810, -0.0195}, 0.0047}};
-constexpr Cone kThumb[] = {{{0.452, 0.808, 0.010}, 0.0105, {0.476, 0.807, 0.0300}, 0.0075},
-                           {{0.476, 0.807, 0.0300}, 0.0075, {0.500, 0.808, 0.0370}, 0.0058}};
+    {0.100, 0, 0.812, 0, 0.0355},          {0.135, 0.000, 0.812, 0, 0.0345}, {0.180, 0.000, 0.812, 0, 0.0315},
+    {0.240, 0.000, 0.812, 0, 0.0290},      {0.285, 0, 0.812, 0, 0.0255},     {0.305, 0.000, 0.812, 0.0005, 0.0250},
+    {0.335, 0.001, 0.812, 0.0010, 0.0245}, {0.385, 0, 0.812, 0.001, 0.0205}, {0.440, 0, 0.812, 0.002, 0.0160}};
+constexpr Section kPalm[] = {{0.436, 0, 0.812, 0.002, 0.0155},
+                             {0.455, 0.001, 0.812, 0.0065, 0.0135},
+                             {0.475, 0.001, 0.812, 0.0110, 0.0115},
+                             {0.486, 0.001, 0.812, 0.0125, 0.0100}};
+constexpr Cone kFingers[] = {{{0.484, 0.812, 0.0150}, 0.0072, {0.524, 0.811, 0.0160}, 0.0056},
+                             {{0.486, 0.812, 0.0050}, 0.0074, {0.533, 0.811, 0.0052}, 0.0058},
+                             {{0.486, 0.812, -0.0050}, 0.0072, {0.528, 0.811, -0.0058}, 0.0056},
+                             {{0.482, 0.811, -0.0145}, 0.0066, {0.513, 0.810, -0.0165}, 0.0050}};
+constexpr Cone kThumb[] = {{{0.452, 0.808, 0.009}, 0.0110, {0.474, 0.806, 0.0235}, 0.0080},
+                           {{0.474, 0.806, 0.0235}, 0.0080, {0.496, 0.806, 0.0290}, 0.0062}};
 
 constexpr Section kLeg[] = {
-    {0.505, 0.0500, -0.003, 0, 0.0480}, {0.460, 0.0510, 0.000, 0, 0.0475},  {0.400, 0.0520, 0.002, 0, 0.0430},
-    {0.340, 0.0520, 0.003, 0, 0.0375},  {0.290, 0.0520, 0.003, 0, 0.0328},  {0.268, 0.0520, 0.001, 0, 0.0318},
-    {0.225, 0.0520, -0.005, 0, 0.0325}, {0.170, 0.0520, -0.006, 0, 0.0287}, {0.110, 0.0520, -0.004, 0, 0.0228},
-    {0.065, 0.0520, -0.003, 0, 0.0198}, {0.040, 0.0520, -0.002, 0, 0.0195}};
-constexpr Section kFoot[] = {{-0.022, 0.052, 0.0180, 0.002, 0.0195},
-                             {0.010, 0.052, 0.0240, 0.002, 0.0250},
+    {0.528, 0.0500, -0.002, 0, 0.0495}, {0.460, 0.0515, 0.000, 0, 0.0470},  {0.400, 0.0520, 0.001, 0, 0.0425},
+    {0.340, 0.0520, 0.001, 0, 0.0380},  {0.290, 0.0520, 0.001, 0, 0.0343},  {0.268, 0.0520, 0.000, 0, 0.0330},
+    {0.225, 0.0520, -0.003, 0, 0.0325}, {0.170, 0.0520, -0.003, 0, 0.0292}, {0.110, 0.0520, -0.001, 0, 0.0247},
+    {0.065, 0.0520, 0.000, 0, 0.0215},  {0.040, 0.0520, 0.000, 0, 0.0210}};
+constexpr Section kFoot[] = {{-0.020, 0.052, 0.0185, 0.002, 0.0205},
+                             {0.010, 0.052, 0.0235, 0.002, 0.0245},
                              {0.045, 0.054, 0.0175, 0.008, 0.0190},
-                             {0.080, 0.057, 0.0115, 0.014, 0.0130},
-                             {0.102, 0.056, 0.0085, 0.014, 0.0100}};
+                             {0.080, 0.057, 0.0115, 0.013, 0.0130},
+                             {0.100, 0.057, 0.0090, 0.013, 0.0105}};
 
-constexpr Section kNeck[] = {{0.805, -0.010, 0, 0.002, 0.0360}, {0.850, -0.006, 0, 0, 0.0320}, {0.900, 0.000, 0, 0.002, 0.0315}};
-constexpr Section kHead[] = {{0.893, 0.014, 0, 0.016, 0.0270},
-                             {0.915, 0.008, 0, 0.014, 0.0360},
-                             {0.935, 0.004, 0, 0.011, 0.0415},
-                             {0.956, 0.002, 0, 0.009, 0.0430}};
+constexpr Section kNeck[] = {{0.805, -0.006, 0, 0.001, 0.0345}, {0.850, -0.003, 0, 0, 0.0320}, {0.900, 0.001, 0, 0.002, 0.0320}};
+constexpr Section kHead[] = {{0.893, 0.015, 0, 0.013, 0.0285},
+                             {0.915, 0.009, 0, 0.012, 0.0370},
+                             {0.935, 0.005, 0, 0.009, 0.0425},
+                             {0.954, 0.003, 0, 0.007, 0.0445}};
 // From the ends upwards.
 template <std::size_t N>
 constexpr std::array<Section, N> upwards(const Section (&sections)[N]) {
@@ -143,45 +141,58 @@ constexpr auto kLegUpwards = upwards(kLeg);
 double trunk(const dvec3& p) {
     double d = Limb{kAlongY, 0, kTrunk}(p);
     // Breast, shoulder blades, buttocks.
-    d = joined(d, Ellipsoid{{0.040, 0.752, 0.034}, {0.036, 0.026, 0.027}}(p), 0.012);
+    d = joined(d, Ellipsoid{{0.038, 0.752, 0.034}, {0.034, 0.026, 0.026}}(p), 0.012);
     d = joined(d, Ellipsoid{{0.044, 0.765, -0.038}, {0.030, 0.040, 0.022}}(p), 0.012);
-    d = joined(d, Ellipsoid{{0.036, 0.515, -0.034}, {0.040, 0.042, 0.036}}(p), 0.015);
+    d = joined(d, Ellipsoid{{0.036, 0.518, -0.034}, {0.040, 0.040, 0.036}}(p), 0.015);
     return joined(d, Limb{kAlongX, 2, kShoulder}(p), 0.030);
 }
 
-double arm(const dvec3& p) {
-    double hand = Limb{kAlongX, 2, kPalm}(p);
-    double fingers = std::numeric_limits<double>::infinity();
-    for (const Cone& finger : kFingers) fingers = std::min(fingers, finger(p));
-    hand = joined(hand, fingers, 0.004);
-    double thumb = joined(kThumb[0](p), kThumb[1](p), 0.003);
-    hand = joined(hand, thumb, 0.008);
-    return joined(Limb{kAlongX, 2, kArm}(p), hand, 0.010);
+double fingers(const dvec3& p) {
+    double d = joined(kThumb[0](p), kThumb[1](p), 0.003);
+    for (const Cone& finger : kFingers) d = std::min(d, finger(p));
+    return d;
 }
+
+double arm(const dvec3& p) { return joined(Limb{kAlongX, 2, kArm}(p), Limb{kAlongX, 2, kPalm}(p), 0.010); }
 
 double leg(const dvec3& p) {
     const double foot = Limb{kAlongZ, 0, kFoot}(p);
-    // The soles are flat.
-    return std::max(joined(Limb{kAlongY, 0, kLegUpwards}(p), foot, 0.014), -p.y);
+    return joined(Limb{kAlongY, 0, kLegUpwards}(p), foot, 0.014);
 }
 
 double head(const dvec3& p) {
-    double d = Limb{kAlongY, 2, kHead}(p);
-    d = joined(d, Cone{{0, 0.888, 0.040}, 0.014, {0, 0.888, 0.043}, 0.012}(p), 0.012);     // chin
-    d = joined(d, Ellipsoid{{0, 0.941, 0.048}, {0.030, 0.006, 0.009}}(p), 0.008);          // brow
-    d = without(d, Ellipsoid{{0.017, 0.930, 0.056}, {0.010, 0.006, 0.008}}(p), 0.006);     // eyes
-    d = joined(d, Cone{{0, 0.934, 0.052}, 0.0045, {0, 0.916, 0.0605}, 0.0065}(p), 0.006);  // nose
-    d = joined(d, Ellipsoid{{0, 0.900, 0.050}, {0.013, 0.005, 0.008}}(p), 0.006);          // mouth
-    d = joined(d, Ellipsoid{{0.0445, 0.922, -0.003}, {0.005, 0.015, 0.009}}(p), 0.004);    // ears
-    return joined(d, Limb{kAlongY, 2, kNeck}(p), 0.012);
+    const double skull = joined(Limb{kAlongY, 2, kHead}(p), Cone{{0, 0.886, 0.038}, 0.014, {0, 0.886, 0.042}, 0.012}(p), 0.014);
+    return joined(skull, Limb{kAlongY, 2, kNeck}(p), 0.012);
+}
+
+double withFace(double d, const dvec3& p) {
+    d = joined(d, Ellipsoid{{0, 0.942, 0.047}, {0.030, 0.006, 0.009}}(p), 0.010);          // brow
+    d = without(d, Ellipsoid{{0.016, 0.931, 0.057}, {0.011, 0.007, 0.009}}(p), 0.010);     // eyes
+    d = joined(d, Cone{{0, 0.934, 0.050}, 0.0040, {0, 0.916, 0.0580}, 0.0065}(p), 0.007);  // nose
+    d = joined(d, Ellipsoid{{0, 0.901, 0.049}, {0.013, 0.005, 0.007}}(p), 0.007);          // mouth
+    d = joined(d, Ellipsoid{{0.0425, 0.923, -0.003}, {0.005, 0.014, 0.009}}(p), 0.004);    // ears
+    return d;
 }
 
 }  // namespace
 
-double humanForm(const dvec3& place) {
+HumanForm::HumanForm(const Body& body) {
+    std::vector<dvec3> places;
+    for (const Body::Joint& joint : body.joints)
+        places.push_back(joint.offset + (places.empty() ? dvec3(0) : places[joint.parent]));
+    for (const Capsule& c : body.capsules)
+        capsules_.push_back({c.joint, (c.from + places[c.joint]) / body.stature, (c.to + places[c.joint]) / body.stature,
+                             c.fromRadius / body.stature, c.toRadius / body.stature});
+}
+
+double HumanForm::operator()(const dvec3& place) const {
     const dvec3 p(std::abs(place.x), place.y, place.z);
-    const double body = joined(joined(trunk(p), leg(p), 0.020), arm(p), 0.026);
-    return joined(body, head(p), 0.022);
+    const double person = joined(joined(joined(trunk(p), leg(p), 0.010), arm(p), 0.012), head(p), 0.016);
+    double capsules = std::numeric_limits<double>::infinity();
+    for (const Capsule& c : capsules_) capsules = std::min(capsules, Cone{c.from, c.fromRadius, c.to, c.toRadius}(p));
+    const double between = joined(std::lerp(person, capsules, 0.5), fingers(p), 0.005);
+    // The soles are flat.
+    return std::max(withFace(between, p), -p.y);
 }
 
 }  // namespace fantascope::theatre

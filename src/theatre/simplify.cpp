@@ -17,7 +17,7 @@ using glm::dvec3;
 
 // What a vertex loses by standing for others far along the surface, against what it does by leaving their planes: without it the straight parts
 // of limbs become long needles, which break where they bend.
-constexpr double kSpread = 0.02;
+constexpr double kSpread = 0.004;
 
 // The sum of squared distances from planes, weighted: x'Ax + 2 b'x + c.
 struct Quadric {
@@ -64,8 +64,9 @@ public:
             const double length = glm::length(normal);
             for (int i = 0; i < 3; ++i) {
                 around_[corners[i]].push_back(t);
-                if (length > 0)
-                    quadrics_[corners[i]].addPlane(normal / length, -glm::dot(normal / length, places_[corners[0]]), length);
+                if (length == 0) continue;
+                quadrics_[corners[i]].addPlane(normal / length, -glm::dot(normal / length, places_[corners[0]]), length);
+                quadrics_[corners[i]].addPoint(places_[corners[i]], kSpread * length);
             }
         }
     }
