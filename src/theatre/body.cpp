@@ -78,8 +78,8 @@ void addLeg(Builder& b, std::uint32_t pelvis, double side) {
     // Plantarflexion 50, dorsiflexion 20, inversion 35.
     const auto ankle = b.add(s + "ankle", knee, at(0.052, 0.039, 0), JointMotion::conic(-kY, about(kX, 15), radians(35)));
     const Ball ofHip{at(0.052, 0.530, 0), 0.0518}, ofKnee{at(0.052, 0.285, 0), 0.0350}, ofAnkle{at(0.052, 0.039, 0), 0.0219};
-    const Ball heel{at(0.0512, 0.0258, -0.0154), 0.0258}, bigToe{at(0.0429, 0.0117, 0.0998), 0.0117},
-        smallToe{at(0.0715, 0.0117, 0.0988), 0.0117};
+    const Ball heel{at(0.0512, 0.0258, -0.0154), 0.0258}, bigToe{at(0.0431, 0.0118, 0.0998), 0.0118},
+        smallToe{at(0.0715, 0.0118, 0.0988), 0.0118};
     b.capsule(hip, ofHip, ofKnee);
     b.capsule(knee, ofKnee, ofAnkle);
     b.capsule(ankle, heel, bigToe);
@@ -103,13 +103,13 @@ void addArm(Builder& b, std::uint32_t thorax, double side) {
     // Flexion 80, extension 70, to the sides 20 and 30; the forearm's rotation of 80 both ways is here too.
     const auto wrist = b.add(s + "wrist", elbow, at(0.440, 0.812, 0),
                              JointMotion::conicAxial(along, {1, 0, 0, 0}, radians(55), radians(-80), radians(80)));
-    const Ball ofShoulder{at(0.108, 0.812, 0), 0.0387}, ofElbow{at(0.294, 0.812, 0), 0.0253},
+    const Ball ofShoulder{at(0.108, 0.812, 0), 0.0380}, ofElbow{at(0.294, 0.812, 0), 0.0253},
         ofWrist{at(0.440, 0.812, 0), 0.0193};
-    b.capsule(clavicle, {at(0.0226, 0.7979, -0.0052), 0.0534}, ofShoulder);
+    b.capsule(clavicle, {at(0.0244, 0.7979, -0.0051), 0.0538}, ofShoulder);
     b.capsule(shoulder, ofShoulder, ofElbow);
     b.capsule(elbow, ofElbow, ofWrist);
-    b.capsule(wrist, ofWrist, {at(0.5418, 0.8107, -0.0057), 0.0080});  // fingers
-    b.capsule(wrist, ofWrist, {at(0.5185, 0.8078, 0.0286), 0.0094});   // thumb
+    b.capsule(wrist, ofWrist, {at(0.5300, 0.8110, 0.0000), 0.0105});  // fingers
+    b.capsule(wrist, ofWrist, {at(0.5185, 0.8078, 0.0286), 0.0094});  // thumb
     b.mass(shoulder, 0.0263, at(0.108 + 0.186 * 0.576, 0.812, 0));
     b.mass(elbow, 0.0150, at(0.294 + 0.146 * 0.457, 0.812, 0));
     b.mass(wrist, 0.0058, at(0.440 + 0.038, 0.812, 0));
@@ -143,13 +143,13 @@ Body humanBody(double stature) {
     // Two columns side by side are the trunk's width; the waist is one lying capsule.
     for (const double side : {1.0, -1.0}) {
         const auto at = [&](double x, double y, double z) { return dvec3(side * x, y, z); };
-        b.capsule(pelvis, {at(0.0342, 0.5230, -0.0076), 0.0656}, {at(0.0192, 0.6136, -0.0029), 0.0604});
-        b.capsule(thorax, {at(0.0187, 0.6806, 0.0021), 0.0601}, {at(0.0297, 0.7606, -0.0018), 0.0620});
+        b.capsule(pelvis, {at(0.0335, 0.5263, -0.0080), 0.0648}, {at(0.0191, 0.6146, -0.0027), 0.0604});
+        b.capsule(thorax, {at(0.0187, 0.6804, 0.0021), 0.0600}, {at(0.0296, 0.7601, -0.0018), 0.0620});
     }
     b.capsule(lumbar, {{-0.0190, 0.6498, 0.0004}, 0.0584}, {{0.0190, 0.6498, 0.0004}, 0.0584});
-    const Ball crown{{0, 0.9493, 0.0042}, 0.0506};
-    b.capsule(neck, {{0, 0.830, -0.004}, 0.0310}, crown);
-    b.capsule(neck, crown, {{0, 0.9026, 0.0262}, 0.0368});  // jaw
+    const Ball crown{{0, 0.9482, 0.0046}, 0.0508};
+    b.capsule(neck, {{0, 0.830, -0.004}, 0.0315}, crown);
+    b.capsule(neck, crown, {{0, 0.9020, 0.0270}, 0.0360});  // jaw
     b.mass(neck, 0.0681, {0, 0.922, 0.004});
     b.mass(thorax, 0.1571, {0, 0.790, 0});
     b.mass(lumbar, 0.1549, {0, 0.665, 0});

@@ -54,8 +54,8 @@ void feelJoints(const Body& body, const PosedBody& atRest, const dvec3& point, s
 std::vector<std::vector<double>> sharesOf(const Body& body, const TriangleMesh& mesh, const std::vector<MeshEdge>& edges) {
     // Shares fall to 1/e over the first, also beyond the second from the joint, where a turn moves the skin far: shares of the stature. And how
     // often they are evened out.
-    constexpr double kFalloff = 0.003, kReach = 0.055;
-    constexpr int kRounds = 1;
+    constexpr double kFalloff = 0.004, kReach = 0.055;
+    constexpr int kRounds = 0;
     PosedBody atRest;
     atRest.pose(body, body.restPose(body.joints[0].offset, {1, 0, 0, 0}));
     std::vector<std::vector<double>> shares(mesh.vertices.size());

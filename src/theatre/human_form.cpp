@@ -106,12 +106,12 @@ constexpr Section kPalm[] = {{0.436, 0, 0.812, 0.002, 0.0155},
                              {0.455, 0.001, 0.812, 0.0065, 0.0135},
                              {0.475, 0.001, 0.812, 0.0110, 0.0115},
                              {0.486, 0.001, 0.812, 0.0125, 0.0100}};
-constexpr Cone kFingers[] = {{{0.484, 0.812, 0.0150}, 0.0072, {0.524, 0.811, 0.0160}, 0.0056},
-                             {{0.486, 0.812, 0.0050}, 0.0074, {0.533, 0.811, 0.0052}, 0.0058},
-                             {{0.486, 0.812, -0.0050}, 0.0072, {0.528, 0.811, -0.0058}, 0.0056},
-                             {{0.482, 0.811, -0.0145}, 0.0066, {0.513, 0.810, -0.0165}, 0.0050}};
-constexpr Cone kThumb[] = {{{0.452, 0.808, 0.009}, 0.0110, {0.474, 0.806, 0.0235}, 0.0080},
-                           {{0.474, 0.806, 0.0235}, 0.0080, {0.496, 0.806, 0.0290}, 0.0062}};
+constexpr Cone kFingers[] = {{{0.484, 0.812, 0.0135}, 0.0070, {0.521, 0.811, 0.0130}, 0.0056},
+                             {{0.486, 0.812, 0.0045}, 0.0074, {0.532, 0.811, 0.0038}, 0.0058},
+                             {{0.486, 0.812, -0.0045}, 0.0070, {0.526, 0.811, -0.0052}, 0.0056},
+                             {{0.482, 0.811, -0.0125}, 0.0064, {0.511, 0.810, -0.0135}, 0.0050}};
+constexpr Cone kThumb[] = {{{0.452, 0.808, 0.009}, 0.0110, {0.474, 0.806, 0.0220}, 0.0080},
+                           {{0.474, 0.806, 0.0220}, 0.0080, {0.497, 0.806, 0.0275}, 0.0062}};
 
 constexpr Section kLeg[] = {
     {0.528, 0.0500, -0.002, 0, 0.0495}, {0.460, 0.0515, 0.000, 0, 0.0470},  {0.400, 0.0520, 0.001, 0, 0.0425},
@@ -190,7 +190,7 @@ double HumanForm::operator()(const dvec3& place) const {
     const double person = joined(joined(joined(trunk(p), leg(p), 0.010), arm(p), 0.012), head(p), 0.016);
     double capsules = std::numeric_limits<double>::infinity();
     for (const Capsule& c : capsules_) capsules = std::min(capsules, Cone{c.from, c.fromRadius, c.to, c.toRadius}(p));
-    const double between = joined(std::lerp(person, capsules, 0.5), fingers(p), 0.005);
+    const double between = joined(std::lerp(person, capsules, 0.6), fingers(p), 0.005);
     // The soles are flat.
     return std::max(withFace(between, p), -p.y);
 }
