@@ -24,8 +24,12 @@ constexpr double kTouch = 0.01;
 struct Contacts {
     std::vector<Contact> discs;
     bool touches = false;
+    double lowest = 0;  // the height of the lowest point, metres
 };
 void findContacts(std::span<const PlacedCapsule> capsules, Contacts& contacts);
+// The same of a skin: its vertices no higher than kTouch, as discs of no radius, and of those only the ones that make the polygon: margin and
+// area are those of all.
+void findContacts(std::span<const glm::vec3> vertices, Contacts& contacts);
 
 // Margin(SP_n, COM_n): the signed distance from the mass centre, seen from above, to the boundary of the support polygon, metres; positive
 // inside, negative outside. Of one contact, or two, the polygon is the disc, or the band around the line.

@@ -78,7 +78,7 @@ void addLeg(Builder& b, std::uint32_t pelvis, double side) {
     // Plantarflexion 50, dorsiflexion 20, inversion 35.
     const auto ankle = b.add(s + "ankle", knee, at(0.052, 0.039, 0), JointMotion::conic(-kY, about(kX, 15), radians(35)));
     const Ball ofHip{at(0.052, 0.530, 0), 0.0518}, ofKnee{at(0.052, 0.285, 0), 0.0350}, ofAnkle{at(0.052, 0.039, 0), 0.0219};
-    const Ball heel{at(0.0512, 0.0258, -0.0154), 0.0258}, bigToe{at(0.0431, 0.0118, 0.0998), 0.0118},
+    const Ball heel{at(0.0514, 0.0253, -0.0161), 0.0253}, bigToe{at(0.0431, 0.0118, 0.0998), 0.0118},
         smallToe{at(0.0715, 0.0118, 0.0988), 0.0118};
     b.capsule(hip, ofHip, ofKnee);
     b.capsule(knee, ofKnee, ofAnkle);
@@ -108,8 +108,8 @@ void addArm(Builder& b, std::uint32_t thorax, double side) {
     b.capsule(clavicle, {at(0.0244, 0.7979, -0.0051), 0.0538}, ofShoulder);
     b.capsule(shoulder, ofShoulder, ofElbow);
     b.capsule(elbow, ofElbow, ofWrist);
-    b.capsule(wrist, ofWrist, {at(0.5300, 0.8110, 0.0000), 0.0105});  // fingers
-    b.capsule(wrist, ofWrist, {at(0.5185, 0.8078, 0.0286), 0.0094});  // thumb
+    b.capsule(wrist, ofWrist, {at(0.5290, 0.8112, -0.0030), 0.0090});  // fingers
+    b.capsule(wrist, ofWrist, {at(0.5180, 0.8070, 0.0262), 0.0090});   // thumb
     b.mass(shoulder, 0.0263, at(0.108 + 0.186 * 0.576, 0.812, 0));
     b.mass(elbow, 0.0150, at(0.294 + 0.146 * 0.457, 0.812, 0));
     b.mass(wrist, 0.0058, at(0.440 + 0.038, 0.812, 0));

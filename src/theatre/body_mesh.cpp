@@ -33,10 +33,16 @@ GridPlanes gridOfAPerson() {
     GridPlanes planes{{{-0.56}, {-0.012}, {-0.092}}};
     auto& [x, y, z] = planes;
     addPlanes(x, -0.435, 0.004), addPlanes(x, 0, 0.0075), addPlanes(x, 0.435, 0.0075), addPlanes(x, 0.56, 0.004);
-    addPlanes(y, 0, 0.004), addPlanes(y, 0.03, 0.005), addPlanes(y, 0.79, 0.0085), addPlanes(y, 0.835, 0.0045),
+    addPlanes(y, 0, 0.004), addPlanes(y, 0.03, 0.005), addPlanes(y, 0.79, 0.0095), addPlanes(y, 0.835, 0.0045),
         addPlanes(y, 1.014, 0.005);
     addPlanes(z, -0.03, 0.0075), addPlanes(z, 0.045, 0.0045), addPlanes(z, 0.09, 0.0045), addPlanes(z, 0.132, 0.008);
     return planes;
+}
+
+// Of a place at rest: hands and face are small, and looked at.
+double importance(const glm::vec3& p) {
+    const bool isHand = std::abs(p.x) > 0.47f, isFace = p.y > 0.87f && p.z > 0.02f;
+    return isHand ? 10 : isFace ? 6 : 1;
 }
 
 // How far a point is from the capsules of each joint, at rest, metres; negative inside.
@@ -49,50 +55,30 @@ void feelJoints(const Body& body, const PosedBody& atRest, const dvec3& point, s
     }
 }
 
-// Each vertex follows the joint whose capsules are nearest, and its parent and children the less the farther they are; then shares are
-// evened out between neighbours on the skin.
-std::vector<std::vector<double>> sharesOf(const Body& body, const TriangleMesh& mesh, const std::vector<MeshEdge>& edges) {
-    // Shares fall to 1/e over the first, also beyond the second from the joint, where a turn moves the skin far: shares of the stature. And how
-    // often they are evened out.
-    constexpr double kFalloff = 0.004, kReach = 0.055;
-    constexpr int kRounds = 0;
-    PosedBody atRest;
-    atRest.pose(body, body.restPose(body.joints[0].offset, {1, 0, 0, 0}));
-    std::vector<std::vector<double>> shares(mesh.vertices.size());
+// Each joint's share of a point at rest. The joint whose capsules are nearest moves it, and that joint's parent and children the less the farther
+// theirs are. Elsewhere two limbs may lie beside each other, and share nothing.
+void shareOut(const Body& body, const PosedBody& atRest, const dvec3& point, std::vector<double>& shares) {
+    // Shares fall to 1/e over `falloff`, also beyond `reach` from the joint, where a turn moves the skin far. In shares of the stature; the spine
+    // bends over its length.
+    struct Bend {
+        double falloff, reach;
+    };
+    constexpr Bend kLimb{0.004, 0.055}, kSpine{0.012, 0.100};
     std::vector<double> distances;
-    for (std::size_t v = 0; v < shares.size(); ++v) {
-        const dvec3 point(mesh.vertices[v]);
-        feelJoints(body, atRest, point, distances);
-        const auto nearest = static_cast<std::size_t>(std::min_element(distances.begin(), distances.end()) - distances.begin());
-        shares[v].assign(distances.size(), 0);
-        double sum = 0;
-        for (std::size_t j = 0; j < distances.size(); ++j) {
-            // The joint between the two is that of the child.
-            const bool isChild = j != nearest && body.joints[j].parent == nearest,
-                       isParent = j != nearest && body.joints[nearest].parent == j;
-            if (j != nearest && !isChild && !isParent) continue;
-            const double around = j == nearest ? 0 : glm::distance(point, atRest.place(isChild ? j : nearest));
-            shares[v][j] = std::exp((distances[nearest] - distances[j] - std::max(0.0, around - kReach * body.stature)) /
-                                    (kFalloff * body.stature));
-            sum += shares[v][j];
-        }
-        for (double& share : shares[v]) share /= sum;
+    feelJoints(body, atRest, point, distances);
+    const auto nearest = static_cast<std::size_t>(std::min_element(distances.begin(), distances.end()) - distances.begin());
+    shares.assign(distances.size(), 0);
+    shares[nearest] = 1;
+    double sum = 1;
+    for (std::size_t j = 0; j < distances.size(); ++j) {
+        if (j == nearest || (body.joints[j].parent != nearest && body.joints[nearest].parent != j)) continue;
+        const std::size_t between = body.joints[j].parent == nearest ? j : nearest;  // the joint is that of the child
+        const Bend& bend = body.joints[between].motion.kind() == JointMotion::Kind::Spherical ? kSpine : kLimb;
+        const double beyond = std::max(0.0, glm::distance(point, atRest.place(between)) - bend.reach * body.stature);
+        shares[j] = std::exp((distances[nearest] - distances[j] - beyond) / (bend.falloff * body.stature));
+        sum += shares[j];
     }
-    std::vector<std::vector<double>> next;
-    std::vector<double> degrees;
-    for (int round = 0; round < kRounds; ++round) {
-        next = shares;
-        degrees.assign(shares.size(), 1);
-        for (const MeshEdge& edge : edges) {
-            for (std::size_t j = 0; j < next[edge.from].size(); ++j)
-                next[edge.from][j] += shares[edge.to][j], next[edge.to][j] += shares[edge.from][j];
-            ++degrees[edge.from], ++degrees[edge.to];
-        }
-        for (std::size_t v = 0; v < next.size(); ++v)
-            for (double& share : next[v]) share /= degrees[v];
-        shares.swap(next);
-    }
-    return shares;
+    for (double& share : shares) share /= sum;
 }
 
 // The largest few, to add up to 1.
@@ -116,13 +102,18 @@ void keepLargest(const std::vector<double>& shares, std::array<std::uint16_t, Bo
 BodyMesh unitMesh() {
     const Body body = humanBody(1);
     BodyMesh mesh;
-    mesh.atRest = simplified(implicitSurface(HumanForm(body), gridOfAPerson(), 1.7), kTriangles);
+    mesh.atRest = simplified(implicitSurface(HumanForm(body), gridOfAPerson(), 1.7), kTriangles, importance);
     mesh.edges = edgesOf(mesh.atRest);
     FANTASCOPE_CHECK(!mesh.edges.empty(), "the human form is closed");
-    const std::vector<std::vector<double>> shares = sharesOf(body, mesh.atRest, mesh.edges);
-    mesh.joints.resize(shares.size());
-    mesh.shares.resize(shares.size());
-    for (std::size_t v = 0; v < shares.size(); ++v) keepLargest(shares[v], mesh.joints[v], mesh.shares[v]);
+    PosedBody atRest;
+    atRest.pose(body, body.restPose(body.joints[0].offset, {1, 0, 0, 0}));
+    mesh.joints.resize(mesh.atRest.vertices.size());
+    mesh.shares.resize(mesh.atRest.vertices.size());
+    std::vector<double> shares;
+    for (std::size_t v = 0; v < mesh.shares.size(); ++v) {
+        shareOut(body, atRest, mesh.atRest.vertices[v], shares);
+        keepLargest(shares, mesh.joints[v], mesh.shares[v]);
+    }
     return mesh;
 }
 

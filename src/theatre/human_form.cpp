@@ -65,7 +65,8 @@ struct Cone {
         const double length = glm::length(axis), slope = (fromRadius - toRadius) / length, along = glm::dot(q, axis) / length,
                      across = std::sqrt(std::max(0.0, glm::dot(q, q) - along * along));
         const double nearest = std::clamp(along + across * slope / std::sqrt(1 - slope * slope), 0.0, length);
-        return std::hypot(along - nearest, across) - std::lerp(fromRadius, toRadius, nearest / length);
+        return std::sqrt((along - nearest) * (along - nearest) + across * across) -
+               std::lerp(fromRadius, toRadius, nearest / length);
     }
 };
 
@@ -104,12 +105,12 @@ constexpr Section kArm[] = {
     {0.335, 0.001, 0.812, 0.0010, 0.0245}, {0.385, 0, 0.812, 0.001, 0.0205}, {0.440, 0, 0.812, 0.002, 0.0160}};
 constexpr Section kPalm[] = {{0.436, 0, 0.812, 0.002, 0.0155},
                              {0.455, 0.001, 0.812, 0.0065, 0.0135},
-                             {0.475, 0.001, 0.812, 0.0110, 0.0115},
-                             {0.486, 0.001, 0.812, 0.0125, 0.0100}};
+                             {0.475, 0.001, 0.812, 0.0095, 0.0115},
+                             {0.486, 0.001, 0.812, 0.0105, 0.0100}};
 constexpr Cone kFingers[] = {{{0.484, 0.812, 0.0135}, 0.0070, {0.521, 0.811, 0.0130}, 0.0056},
                              {{0.486, 0.812, 0.0045}, 0.0074, {0.532, 0.811, 0.0038}, 0.0058},
                              {{0.486, 0.812, -0.0045}, 0.0070, {0.526, 0.811, -0.0052}, 0.0056},
-                             {{0.482, 0.811, -0.0125}, 0.0064, {0.511, 0.810, -0.0135}, 0.0050}};
+                             {{0.482, 0.811, -0.0115}, 0.0064, {0.511, 0.810, -0.0130}, 0.0050}};
 constexpr Cone kThumb[] = {{{0.452, 0.808, 0.009}, 0.0110, {0.474, 0.806, 0.0220}, 0.0080},
                            {{0.474, 0.806, 0.0220}, 0.0080, {0.497, 0.806, 0.0275}, 0.0062}};
 
@@ -119,7 +120,7 @@ constexpr Section kLeg[] = {
     {0.225, 0.0520, -0.003, 0, 0.0325}, {0.170, 0.0520, -0.003, 0, 0.0292}, {0.110, 0.0520, -0.001, 0, 0.0247},
     {0.065, 0.0520, 0.000, 0, 0.0215},  {0.040, 0.0520, 0.000, 0, 0.0210}};
 constexpr Section kFoot[] = {{-0.020, 0.052, 0.0185, 0.002, 0.0205},
-                             {0.010, 0.052, 0.0235, 0.002, 0.0245},
+                             {0.010, 0.0525, 0.0225, 0.002, 0.0230},
                              {0.045, 0.054, 0.0175, 0.008, 0.0190},
                              {0.080, 0.057, 0.0115, 0.013, 0.0130},
                              {0.100, 0.057, 0.0090, 0.013, 0.0105}};
@@ -147,17 +148,10 @@ double trunk(const dvec3& p) {
     return joined(d, Limb{kAlongX, 2, kShoulder}(p), 0.030);
 }
 
-double fingers(const dvec3& p) {
-    double d = joined(kThumb[0](p), kThumb[1](p), 0.003);
-    for (const Cone& finger : kFingers) d = std::min(d, finger(p));
-    return d;
-}
-
-double arm(const dvec3& p) { return joined(Limb{kAlongX, 2, kArm}(p), Limb{kAlongX, 2, kPalm}(p), 0.010); }
-
-double leg(const dvec3& p) {
-    const double foot = Limb{kAlongZ, 0, kFoot}(p);
-    return joined(Limb{kAlongY, 0, kLegUpwards}(p), foot, 0.014);
+double hand(const dvec3& p) {
+    double fingers = joined(kThumb[0](p), kThumb[1](p), 0.003);
+    for (const Cone& finger : kFingers) fingers = std::min(fingers, finger(p));
+    return joined(Limb{kAlongX, 2, kPalm}(p), fingers, 0.005);
 }
 
 double head(const dvec3& p) {
@@ -167,10 +161,10 @@ double head(const dvec3& p) {
 
 double withFace(double d, const dvec3& p) {
     d = joined(d, Ellipsoid{{0, 0.942, 0.047}, {0.030, 0.006, 0.009}}(p), 0.010);          // brow
-    d = without(d, Ellipsoid{{0.016, 0.931, 0.057}, {0.011, 0.007, 0.009}}(p), 0.010);     // eyes
-    d = joined(d, Cone{{0, 0.934, 0.050}, 0.0040, {0, 0.916, 0.0580}, 0.0065}(p), 0.007);  // nose
-    d = joined(d, Ellipsoid{{0, 0.901, 0.049}, {0.013, 0.005, 0.007}}(p), 0.007);          // mouth
-    d = joined(d, Ellipsoid{{0.0425, 0.923, -0.003}, {0.005, 0.014, 0.009}}(p), 0.004);    // ears
+    d = without(d, Ellipsoid{{0.016, 0.930, 0.057}, {0.011, 0.0075, 0.010}}(p), 0.008);    // eyes
+    d = joined(d, Cone{{0, 0.936, 0.052}, 0.0045, {0, 0.916, 0.0600}, 0.0070}(p), 0.006);  // nose
+    d = joined(d, Ellipsoid{{0, 0.900, 0.0515}, {0.014, 0.0055, 0.008}}(p), 0.007);        // mouth
+    d = joined(d, Ellipsoid{{0.0455, 0.923, -0.003}, {0.005, 0.014, 0.009}}(p), 0.004);    // ears
     return d;
 }
 
@@ -180,19 +174,25 @@ HumanForm::HumanForm(const Body& body) {
     std::vector<dvec3> places;
     for (const Body::Joint& joint : body.joints)
         places.push_back(joint.offset + (places.empty() ? dvec3(0) : places[joint.parent]));
-    for (const Capsule& c : body.capsules)
-        capsules_.push_back({c.joint, (c.from + places[c.joint]) / body.stature, (c.to + places[c.joint]) / body.stature,
-                             c.fromRadius / body.stature, c.toRadius / body.stature});
+    const auto inFrame = [&](std::uint32_t joint, const dvec3& local) { return (places[joint] + local) / body.stature; };
+    for (const Capsule& c : body.capsules) {
+        const std::string_view joint = body.joints[c.joint].name;
+        if (joint.ends_with("wrist") || joint.ends_with("ankle") || joint.starts_with("right")) continue;
+        capsules_.push_back(
+            {c.joint, inFrame(c.joint, c.from), inFrame(c.joint, c.to), c.fromRadius / body.stature, c.toRadius / body.stature});
+    }
 }
 
 double HumanForm::operator()(const dvec3& place) const {
     const dvec3 p(std::abs(place.x), place.y, place.z);
-    const double person = joined(joined(joined(trunk(p), leg(p), 0.010), arm(p), 0.012), head(p), 0.016);
+    double person = joined(trunk(p), Limb{kAlongY, 0, kLegUpwards}(p), 0.010);
+    person = joined(joined(person, Limb{kAlongX, 2, kArm}(p), 0.012), head(p), 0.016);
     double capsules = std::numeric_limits<double>::infinity();
     for (const Capsule& c : capsules_) capsules = std::min(capsules, Cone{c.from, c.fromRadius, c.to, c.toRadius}(p));
-    const double between = joined(std::lerp(person, capsules, 0.6), fingers(p), 0.005);
+    const double between = std::lerp(person, capsules, 0.6);
+    const double whole = joined(joined(between, hand(p), 0.010), Limb{kAlongZ, 0, kFoot}(p), 0.014);
     // The soles are flat.
-    return std::max(withFace(between, p), -p.y);
+    return std::max(withFace(whole, p), -p.y);
 }
 
 }  // namespace fantascope::theatre

@@ -53,7 +53,8 @@ struct Quadric {
 
 class Simplifier {
 public:
-    explicit Simplifier(const TriangleMesh& mesh) : triangles_(mesh.triangles), left_(mesh.triangles.size()) {
+    Simplifier(const TriangleMesh& mesh, const std::function<double(const glm::vec3&)>& importance)
+        : triangles_(mesh.triangles), left_(mesh.triangles.size()) {
         places_.assign(mesh.vertices.begin(), mesh.vertices.end());
         quadrics_.resize(places_.size());
         around_.resize(places_.size());
@@ -65,8 +66,9 @@ public:
             for (int i = 0; i < 3; ++i) {
                 around_[corners[i]].push_back(t);
                 if (length == 0) continue;
-                quadrics_[corners[i]].addPlane(normal / length, -glm::dot(normal / length, places_[corners[0]]), length);
-                quadrics_[corners[i]].addPoint(places_[corners[i]], kSpread * length);
+                const double weight = length * importance(mesh.vertices[corners[i]]);
+                quadrics_[corners[i]].addPlane(normal / length, -glm::dot(normal / length, places_[corners[0]]), weight);
+                quadrics_[corners[i]].addPoint(places_[corners[i]], kSpread * weight);
             }
         }
     }
@@ -125,9 +127,7 @@ private:
         return quadric += quadrics_[b];
     }
     dvec3 target(std::uint32_t a, std::uint32_t b) const { return joined(a, b).least(0.5 * (places_[a] + places_[b])); }
-    void offer(std::uint32_t a, std::uint32_t b) {
-        offers_.push({joined(a, b)(target(a, b)), a, b, changes_[a] + changes_[b]});
-    }
+    void offer(std::uint32_t a, std::uint32_t b) { offers_.push({joined(a, b)(target(a, b)), a, b, changes_[a] + changes_[b]}); }
 
     // A closed surface stays one if the two ends have no neighbours in common but the two of the edge's triangles.
     bool keepsTheSurface(std::uint32_t a, std::uint32_t b) {
@@ -197,8 +197,9 @@ private:
 
 }  // namespace
 
-TriangleMesh simplified(const TriangleMesh& mesh, std::size_t triangles) {
-    Simplifier simplifier(mesh);
+TriangleMesh simplified(const TriangleMesh& mesh, std::size_t triangles,
+                        const std::function<double(const glm::vec3&)>& importance) {
+    Simplifier simplifier(mesh, importance);
     simplifier.reduceTo(triangles);
     return simplifier.result();
 }
