@@ -42,6 +42,12 @@ double capRadius(double radius, double depth) {
     return std::sqrt(cap * (2 * radius - cap));
 }
 
+void finish(Contacts& contacts, double lowest, glm::dvec2 lowestPlace) {
+    contacts.lowest = lowest;
+    contacts.touches = !contacts.discs.empty();
+    if (!contacts.touches) contacts.discs.push_back({lowestPlace, 0});
+}
+
 }  // namespace
 
 void findContacts(std::span<const PlacedSphere> spheres, Contacts& contacts) {
@@ -53,8 +59,29 @@ void findContacts(std::span<const PlacedSphere> spheres, Contacts& contacts) {
         if (height < lowest) lowest = height, lowestPlace = {centre.x, centre.z};
         if (height <= kTouch) contacts.discs.push_back({{centre.x, centre.z}, capRadius(radius, kTouch - height)});
     }
-    contacts.touches = !contacts.discs.empty();
-    if (!contacts.touches) contacts.discs.push_back({lowestPlace, 0});
+    finish(contacts, lowest, lowestPlace);
+}
+
+void findContacts(std::span<const glm::vec3> vertices, Contacts& contacts) {
+    contacts.discs.clear();
+    const glm::vec3* lowest = &vertices.front();
+    // The vertex that reaches farthest in each direction; of those alike the first.
+    std::array<const glm::vec3*, kDirections> best{};
+    std::array<double, kDirections> far;
+    far.fill(std::numeric_limits<double>::lowest());
+    for (const glm::vec3& vertex : vertices) {
+        if (vertex.y < lowest->y) lowest = &vertex;
+        if (vertex.y > kTouch) continue;
+        const glm::dvec2 place(vertex.x, vertex.z);
+        for (std::size_t i = 0; i < kDirections; ++i)
+            if (const double reach = glm::dot(place, directions()[i]); reach > far[i]) far[i] = reach, best[i] = &vertex;
+    }
+    // Around the polygon equal ones follow each other.
+    for (std::size_t i = 0; i < kDirections; ++i)
+        if (best[i] != nullptr && best[i] != best[(i + 1) % kDirections]) contacts.discs.push_back({{best[i]->x, best[i]->z}, 0});
+    // One vertex that is farthest in all directions.
+    if (contacts.discs.empty() && best[0] != nullptr) contacts.discs.push_back({{best[0]->x, best[0]->z}, 0});
+    finish(contacts, lowest->y, {lowest->x, lowest->z});
 }
 
 void findBearings(std::span<const PlacedSphere> spheres, double bearing, Contacts& contacts) {

@@ -24,8 +24,12 @@ constexpr double kTouch = 0.01;
 struct Contacts {
     std::vector<Contact> discs;
     bool touches = false;
+    double lowest = 0;  // the height of the lowest point, metres
 };
 void findContacts(std::span<const PlacedSphere> spheres, Contacts& contacts);
+// The same of a skin: its vertices no higher than kTouch, as discs of no radius, and of those only the ones that make the polygon: margin and
+// area are those of all.
+void findContacts(std::span<const glm::vec3> vertices, Contacts& contacts);
 
 // The same for a search, without jumps, and as if the lowest point were on the floor: what is kTouch / 2 above it bears, and what is higher bears
 // the less the higher it is, up to `bearing` metres more; the less it bears the nearer its disc is to the lowest point, and the smaller.

@@ -15,6 +15,13 @@ namespace {
 
 using glm::dvec3;
 
+// Of a capsule's ends, in shares of the stature: its place in the T-pose, from the floor's middle. Capsules that meet share one; where they turn
+// against each other it lies on the joint, so that it is in one place for both. They were fitted to humanMesh().
+struct Ball {
+    dvec3 place{0};
+    double radius = 0;
+};
+
 // Builds a body in shares of the stature, from the middle to the left; what is on the left is mirrored to the right.
 class Builder {
 public:
@@ -37,10 +44,9 @@ public:
     std::uint32_t add(std::string name, std::uint32_t parent, dvec3 place, const JointMotion& motion) {
         return add(std::move(name), parent, place, motion, motion.size());
     }
-    // Places in the T-pose, from the floor's middle.
-    void capsule(std::uint32_t joint, dvec3 from, double fromRadius, dvec3 to, double toRadius) {
-        const std::uint32_t first = sphere(joint, from, fromRadius);
-        body_.capsules.push_back({joint, first, sphere(joint, to, toRadius)});
+    void capsule(std::uint32_t joint, const Ball& from, const Ball& to) {
+        const std::uint32_t first = sphere(joint, from.place, from.radius);
+        body_.capsules.push_back({joint, first, sphere(joint, to.place, to.radius)});
     }
     void mass(std::uint32_t joint, double share, dvec3 centre) {
         // Body mass index 22: the middle of what the World Health Organization calls normal.
@@ -90,11 +96,13 @@ void addLeg(Builder& b, std::uint32_t pelvis, double side) {
     const auto knee = b.add(s + "knee", hip, at(0.052, 0.285, 0), JointMotion::axial(kX, 0, radians(140)));
     // Plantarflexion 50, dorsiflexion 20, inversion 35.
     const auto ankle = b.add(s + "ankle", knee, at(0.052, 0.039, 0), JointMotion::conic(-kY, about(kX, 15), radians(35)));
-    b.capsule(hip, at(0.052, 0.515, 0), 0.048, at(0.052, 0.290, 0.002), 0.034);
-    b.capsule(knee, at(0.052, 0.285, 0.002), 0.034, at(0.052, 0.230, -0.004), 0.034);
-    b.capsule(knee, at(0.052, 0.230, -0.004), 0.034, at(0.052, 0.045, -0.004), 0.021);
-    b.capsule(ankle, at(0.052, 0.020, -0.020), 0.020, at(0.045, 0.013, 0.096), 0.013);
-    b.capsule(ankle, at(0.052, 0.020, -0.020), 0.020, at(0.072, 0.012, 0.078), 0.012);
+    const Ball ofHip{at(0.052, 0.530, 0), 0.0518}, ofKnee{at(0.052, 0.285, 0), 0.0350}, ofAnkle{at(0.052, 0.039, 0), 0.0219};
+    const Ball heel{at(0.0514, 0.0253, -0.0161), 0.0253}, bigToe{at(0.0431, 0.0118, 0.0998), 0.0118},
+        smallToe{at(0.0715, 0.0118, 0.0988), 0.0118};
+    b.capsule(hip, ofHip, ofKnee);
+    b.capsule(knee, ofKnee, ofAnkle);
+    b.capsule(ankle, heel, bigToe);
+    b.capsule(ankle, heel, smallToe);
     b.mass(hip, 0.1447, at(0.052, 0.530 - 0.245 * 0.385, 0));
     b.mass(knee, 0.0457, at(0.052, 0.285 - 0.246 * 0.443, 0));
     b.mass(ankle, 0.0133, at(0.052, 0.019, -0.041 + 0.152 * 0.42));
@@ -114,12 +122,13 @@ void addArm(Builder& b, std::uint32_t thorax, double side) {
     // Flexion 80, extension 70, to the sides 20 and 30; the forearm's rotation of 80 both ways is here too.
     const auto wrist = b.add(s + "wrist", elbow, at(0.440, 0.812, 0),
                              JointMotion::conicAxial(along, {1, 0, 0, 0}, radians(55), radians(-80), radians(80)));
-    b.capsule(clavicle, at(0.030, 0.796, 0), 0.036, at(0.100, 0.808, 0), 0.035);
-    b.capsule(shoulder, at(0.108, 0.808, 0), 0.033, at(0.290, 0.812, 0), 0.025);
-    b.capsule(elbow, at(0.294, 0.812, 0), 0.025, at(0.340, 0.812, 0), 0.025);
-    b.capsule(elbow, at(0.340, 0.812, 0), 0.025, at(0.436, 0.812, 0), 0.016);
-    b.capsule(wrist, at(0.446, 0.812, 0), 0.016, at(0.480, 0.812, 0), 0.021);
-    b.capsule(wrist, at(0.480, 0.812, 0), 0.021, at(0.539, 0.812, 0), 0.009);
+    const Ball ofShoulder{at(0.108, 0.812, 0), 0.0380}, ofElbow{at(0.294, 0.812, 0), 0.0253},
+        ofWrist{at(0.440, 0.812, 0), 0.0193};
+    b.capsule(clavicle, {at(0.0244, 0.7979, -0.0051), 0.0538}, ofShoulder);
+    b.capsule(shoulder, ofShoulder, ofElbow);
+    b.capsule(elbow, ofElbow, ofWrist);
+    b.capsule(wrist, ofWrist, {at(0.5290, 0.8112, -0.0030), 0.0090});  // fingers
+    b.capsule(wrist, ofWrist, {at(0.5180, 0.8070, 0.0262), 0.0090});   // thumb
     b.mass(shoulder, 0.0263, at(0.108 + 0.186 * 0.576, 0.812, 0));
     b.mass(elbow, 0.0150, at(0.294 + 0.146 * 0.457, 0.812, 0));
     b.mass(wrist, 0.0058, at(0.440 + 0.038, 0.812, 0));
@@ -150,12 +159,16 @@ Body humanBody(double stature) {
     const auto neck = b.add("neck", thorax, {0, 0.830, -0.004},
                             JointMotion::conicAxial(kY, {1, 0, 0, 0}, radians(45), radians(-60), radians(60)));
 
-    b.capsule(pelvis, {-0.045, 0.540, -0.004}, 0.052, {0.045, 0.540, -0.004}, 0.052);
-    b.capsule(pelvis, {-0.036, 0.585, 0}, 0.052, {0.036, 0.585, 0}, 0.052);
-    b.capsule(lumbar, {-0.024, 0.645, 0.002}, 0.054, {0.024, 0.645, 0.002}, 0.054);
-    for (const double side : {1.0, -1.0}) b.capsule(thorax, {side * 0.031, 0.705, 0.002}, 0.054, {side * 0.034, 0.785, 0}, 0.053);
-    b.capsule(neck, {0, 0.820, -0.006}, 0.034, {0, 0.890, 0.002}, 0.032);
-    b.capsule(neck, {0, 0.893, 0.014}, 0.036, {0, 0.947, 0.002}, 0.053);
+    // Two columns side by side are the trunk's width; the waist is one lying capsule.
+    for (const double side : {1.0, -1.0}) {
+        const auto at = [&](double x, double y, double z) { return dvec3(side * x, y, z); };
+        b.capsule(pelvis, {at(0.0335, 0.5263, -0.0080), 0.0648}, {at(0.0191, 0.6146, -0.0027), 0.0604});
+        b.capsule(thorax, {at(0.0187, 0.6804, 0.0021), 0.0600}, {at(0.0296, 0.7601, -0.0018), 0.0620});
+    }
+    b.capsule(lumbar, {{-0.0190, 0.6498, 0.0004}, 0.0584}, {{0.0190, 0.6498, 0.0004}, 0.0584});
+    const Ball crown{{0, 0.9482, 0.0046}, 0.0508};
+    b.capsule(neck, {{0, 0.830, -0.004}, 0.0315}, crown);
+    b.capsule(neck, crown, {{0, 0.9020, 0.0270}, 0.0360});  // jaw
     b.mass(neck, 0.0681, {0, 0.922, 0.004});
     b.mass(thorax, 0.1571, {0, 0.790, 0});
     b.mass(lumbar, 0.1549, {0, 0.665, 0});

@@ -1,5 +1,9 @@
 #include "theatre/balance.h"
 
+#include "theatre/body_mesh.h"
+
+#include "core/random.h"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -121,6 +125,65 @@ TEST(FindBearings, IsAsIfOnTheFloorAndWithoutJumps) {
     }
     // On both feet it is the band between them that holds, on one the disc.
     EXPECT_LT(last, -0.3);
+}
+
+TEST(FindContacts, KnowsHowLowTheLowestPointIs) {
+    Contacts contacts;
+    findContacts(std::vector{ball({1, 0.1, 2}, 0.1), ball({3, 0.07, 2}, 0.1)}, contacts);
+    EXPECT_NEAR(contacts.lowest, -0.03, 1e-12);
+    findContacts(std::vector<glm::vec3>{{1, 2, 3}, {4, 0.5f, 6}, {1, 1, 1}}, contacts);
+    EXPECT_EQ(contacts.lowest, 0.5);
+    EXPECT_FALSE(contacts.touches);
+    ASSERT_EQ(contacts.discs.size(), 1u);
+    EXPECT_EQ(contacts.discs[0].place, glm::dvec2(4, 6));
+}
+
+// Few points stand for all: margins and areas are those of all vertices that touch.
+TEST(FindContacts, OfASkinAreTheCornersOfWhatTouches) {
+    Rng rng(1);
+    for (const int count : {1, 2, 5, 300}) {
+        std::vector<glm::vec3> vertices;
+        Contacts all;
+        for (int i = 0; i < count; ++i) {
+            const glm::vec3 touching(rng.uniform(-1, 1), rng.uniform(-0.01, 0.0099), rng.uniform(-2, 2));
+            vertices.push_back(touching);
+            vertices.emplace_back(rng.uniform(-9, 9), rng.uniform(0.0101, 1), rng.uniform(-9, 9));
+            all.discs.push_back({{touching.x, touching.z}, 0});
+        }
+        Contacts contacts;
+        findContacts(vertices, contacts);
+        EXPECT_TRUE(contacts.touches);
+        EXPECT_LE(contacts.discs.size(), 48u);
+        EXPECT_LE(contacts.discs.size(), static_cast<std::size_t>(count));
+        for (int i = 0; i < 20; ++i) {
+            const dvec3 centre(rng.uniform(-2, 2), 1, rng.uniform(-3, 3));
+            EXPECT_DOUBLE_EQ(supportMargin(contacts, centre), supportMargin(all, centre));
+        }
+        EXPECT_DOUBLE_EQ(supportArea(contacts), supportArea(all));
+    }
+}
+
+TEST(FindContacts, APersonStandsOnItsSoles) {
+    const Body body = humanBody(1.75);
+    const BodyMesh mesh = humanMesh(body);
+    PosedBody posed;
+    std::vector<glm::vec3> skin;
+    Contacts contacts;
+    const auto stand = [&](double height) {
+        posed.pose(body, body.restPose(body.joints[0].offset + dvec3(0, height, 0), {1, 0, 0, 0}));
+        mesh.skin(body, posed, skin);
+        findContacts(skin, contacts);
+    };
+    stand(0);
+    EXPECT_TRUE(contacts.touches);
+    EXPECT_NEAR(contacts.lowest, 0, 0.002);
+    EXPECT_GT(supportMargin(contacts, posed.massCentre()), 0.02);
+    // Two feet as long as feet are, with what lies between.
+    EXPECT_GT(supportArea(contacts), 0.04);
+    EXPECT_LT(supportArea(contacts), 0.10);
+    stand(0.2);
+    EXPECT_FALSE(contacts.touches);
+    EXPECT_NEAR(contacts.lowest, 0.2, 0.002);
 }
 
 }  // namespace
