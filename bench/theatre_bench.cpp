@@ -1,6 +1,7 @@
-// What a generation of the search costs besides evaluating it. Yardsticks of the machine stand beside it.
+// What a generation of the search costs besides evaluating it, with yardsticks of the machine beside it; and what the skin of an actor costs.
 
 #include "theatre/cma_es.h"
+#include "theatre/mesh_shadow.h"
 
 #include <benchmark/benchmark.h>
 
@@ -58,6 +59,25 @@ void yardstickProduct(benchmark::State& state) {
     }
 }
 BENCHMARK(yardstickProduct)->Arg(45)->Arg(135)->Arg(270)->Unit(benchmark::kMicrosecond);
+
+// An actor of 1.75 m, 2 m before the screen, in the frame of a search: 256 rows.
+void skinAndShadow(benchmark::State& state) {
+    const Body body = humanBody(1.75);
+    const BodyMesh mesh = humanMesh(body);
+    const bool withShadow = state.range(0) != 0;
+    const ScreenFrame frame({{0, 0, 7}}, -1.5, 2.5, 2.5 / 256, 307, 256);
+    PosedBody posed;
+    posed.pose(body, body.restPose({0, 1, 2}, {1, 0, 0, 0}));
+    std::vector<glm::vec3> skin;
+    MeshShadow shadow;
+    BitMask mask(307, 256);
+    for (auto _ : state) {
+        mesh.skin(body, posed, skin);
+        if (withShadow) mask.clear(), shadow.add(frame, mesh, skin, mask);
+        benchmark::DoNotOptimize(skin.data());
+    }
+}
+BENCHMARK(skinAndShadow)->ArgName("shadow")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace fantascope::theatre

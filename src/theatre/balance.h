@@ -9,8 +9,8 @@
 
 namespace fantascope::theatre {
 
-// How a body stands: Won & Lee 2016, equation 6. The support polygon is the convex hull of the discs in which it touches the ground; the ground
-// seen from above, (x, z) in metres.
+// How a body stands: Won & Lee 2016, equation 6. The support polygon is the convex hull of the discs in which it touches the
+// ground; the ground seen from above, (x, z) in metres.
 struct Contact {
     glm::dvec2 place{0};
     double radius = 0;
@@ -19,8 +19,8 @@ struct Contact {
 // What is no higher than this above the ground touches it: flesh gives way.
 constexpr double kTouch = 0.01;
 
-// The discs where a body touches the floor: of a sphere of radius r whose lowest point is h above it, all that is below kTouch. A body that touches
-// nothing has the place of its lowest point, with no radius, and `touches` false.
+// The discs where a body touches the floor: of a sphere of radius r whose lowest point is h above it, all that is below kTouch. A
+// body that touches nothing has the place of its lowest point, with no radius, and `touches` false.
 struct Contacts {
     std::vector<Contact> discs;
     bool touches = false;

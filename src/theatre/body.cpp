@@ -15,8 +15,8 @@ namespace {
 
 using glm::dvec3;
 
-// Of a capsule's ends, in shares of the stature: its place in the T-pose, from the floor's middle. Capsules that meet share one; where they turn
-// against each other it lies on the joint, so that it is in one place for both. They were fitted to humanMesh().
+// Of a capsule's ends, in shares of the stature: its place in the T-pose, from the floor's middle. Capsules that meet share one;
+// where they turn against each other it lies on the joint, so that it is in one place for both. They were fitted to humanMesh().
 struct Ball {
     dvec3 place{0};
     double radius = 0;

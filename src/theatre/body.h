@@ -42,6 +42,8 @@ struct Body {
         glm::dvec3 massCentre{0};
     };
     static constexpr std::size_t kRootFreedoms = 6;
+    // A step of a search that is neither large nor small: metres for the root's place, radians for all else.
+    static constexpr double scaleOf(std::size_t freedom) { return freedom < 3 ? 0.3 : freedom < kRootFreedoms ? 0.5 : 0.35; }
 
     double stature = 0;
     std::vector<Joint> joints;

@@ -28,14 +28,14 @@ void addPlanes(std::vector<double>& planes, double to, double step) {
     for (int i = 1; i <= count; ++i) planes.push_back(from + (to - from) * i / count);
 }
 
-// Closer at the hands, at the head and at the soles.
+// Closer at the hands, the ears, the face and the soles.
 GridPlanes gridOfAPerson() {
     GridPlanes planes{{{-0.56}, {-0.012}, {-0.092}}};
     auto& [x, y, z] = planes;
-    addPlanes(x, -0.435, 0.004), addPlanes(x, 0, 0.0075), addPlanes(x, 0.435, 0.0075), addPlanes(x, 0.56, 0.004);
-    addPlanes(y, 0, 0.004), addPlanes(y, 0.03, 0.005), addPlanes(y, 0.79, 0.0095), addPlanes(y, 0.835, 0.0045),
-        addPlanes(y, 1.014, 0.005);
-    addPlanes(z, -0.03, 0.0075), addPlanes(z, 0.045, 0.0045), addPlanes(z, 0.09, 0.0045), addPlanes(z, 0.132, 0.008);
+    addPlanes(x, -0.435, 0.0045), addPlanes(x, -0.052, 0.0105), addPlanes(x, -0.036, 0.0045), addPlanes(x, 0, 0.0095);
+    addPlanes(x, 0.036, 0.0095), addPlanes(x, 0.052, 0.0045), addPlanes(x, 0.435, 0.0105), addPlanes(x, 0.56, 0.0045);
+    addPlanes(y, 0.03, 0.005), addPlanes(y, 0.79, 0.0125), addPlanes(y, 0.835, 0.005), addPlanes(y, 1.014, 0.006);
+    addPlanes(z, -0.022, 0.0085), addPlanes(z, 0.036, 0.0047), addPlanes(z, 0.08, 0.0065), addPlanes(z, 0.132, 0.009);
     return planes;
 }
 
@@ -55,11 +55,11 @@ void feelJoints(const Body& body, const PosedBody& atRest, const dvec3& point, s
     }
 }
 
-// Each joint's share of a point at rest. The joint whose capsules are nearest moves it, and that joint's parent and children the less the farther
-// theirs are. Elsewhere two limbs may lie beside each other, and share nothing.
+// Each joint's share of a point at rest. The joint whose capsules are nearest moves it, and that joint's parent and children the
+// less the farther theirs are. Elsewhere two limbs may lie beside each other, and share nothing.
 void shareOut(const Body& body, const PosedBody& atRest, const dvec3& point, std::vector<double>& shares) {
-    // Shares fall to 1/e over `falloff`, also beyond `reach` from the joint, where a turn moves the skin far. In shares of the stature; the spine
-    // bends over its length.
+    // Shares fall to 1/e over `falloff`, also beyond `reach` from the joint, where a turn moves the skin far. In shares of the
+    // stature; the spine bends over its length.
     struct Bend {
         double falloff, reach;
     };

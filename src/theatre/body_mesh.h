@@ -11,16 +11,17 @@
 
 namespace fantascope::theatre {
 
-// An edge of a closed mesh: from one vertex to the other anticlockwise around the triangle on its left, and the triangle on its right.
+// An edge of a closed mesh: from one vertex to the other anticlockwise around the triangle on its left, and the triangle on its
+// right.
 struct MeshEdge {
     std::uint32_t from = 0, to = 0, left = 0, right = 0;
 };
-// All edges of a mesh, in the order of their first triangle; none where the mesh is not closed: an edge without exactly one triangle on each
-// side.
+// All edges of a mesh, in the order of their first triangle; none where the mesh is not closed: an edge without exactly one
+// triangle on each side.
 std::vector<MeshEdge> edgesOf(const TriangleMesh& mesh);
 
-// The skin of a body: a closed mesh that follows the joints (Theta of Won & Lee 2016, section 3) by dual quaternion blending (Kavan et al.
-// 2008): linear blending would flatten a knee bent by 140 degrees to a third of its girth.
+// The skin of a body: a closed mesh that follows the joints (Theta of Won & Lee 2016, section 3) by dual quaternion blending
+// (Kavan et al. 2008): linear blending would flatten a knee bent by 140 degrees to a third of its girth.
 struct BodyMesh {
     static constexpr std::size_t kInfluences = 4;
 

@@ -10,8 +10,6 @@ namespace fantascope::theatre {
 
 FreedomSearch::FreedomSearch(const PoseProblem& problem) : problem_(problem) {}
 
-double FreedomSearch::scaleOf(std::size_t freedom) { return freedom < 3 ? 0.3 : freedom < Body::kRootFreedoms ? 0.5 : 0.35; }
-
 double FreedomSearch::run(SceneEnergy& energy, std::span<double> freedoms, std::span<const std::size_t> which,
                           const Settings& settings, Rng& rng, const std::function<bool(int)>& beforeGeneration) {
     FANTASCOPE_CHECK(!which.empty(), "a search has something to change");
@@ -31,7 +29,7 @@ double FreedomSearch::run(SceneEnergy& energy, std::span<double> freedoms, std::
     for (std::size_t actor = 0; actor < problem_.actors.size(); ++actor) {
         const std::size_t from = next, end = first + problem_.actors[actor].freedoms;
         for (; next < which.size() && which[next] < end; ++next) {
-            options.scales.push_back(scaleOf(which[next] - first));
+            options.scales.push_back(Body::scaleOf(which[next] - first));
             start.push_back(freedoms[which[next]]);
         }
         if (next > from) {

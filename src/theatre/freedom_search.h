@@ -17,7 +17,7 @@ namespace fantascope::theatre {
 class FreedomSearch {
 public:
     struct Settings {
-        double sigma = 0.5;  // in the freedoms' scales, scaleOf()
+        double sigma = 0.5;  // in Body::scaleOf()
         int population = 40, generations = 100;
     };
 
@@ -31,9 +31,6 @@ public:
                Rng& rng, const std::function<bool(int)>& beforeGeneration = {});
 
     std::int64_t evaluations() const { return evaluations_; }
-
-    // A step of one standard deviation at sigma 1: metres for the root's place, radians for all else. `freedom`: of one actor.
-    static double scaleOf(std::size_t freedom);
 
 private:
     const PoseProblem& problem_;

@@ -19,8 +19,8 @@ struct Section {
     double along = 0, wideCentre = 0, thinCentre = 0, wide = 0, radius = 0;
 };
 
-// What runs along an axis through cross-sections, smoothly, and ends round. `along`, `across`: which of x, y, z; the discs are stretched along
-// `across`.
+// What runs along an axis through cross-sections, smoothly, and ends round. `along`, `across`: which of x, y, z; the discs are
+// stretched along `across`.
 struct Limb {
     int along = 1, across = 0;
     std::span<const Section> sections;
@@ -80,7 +80,8 @@ struct Ellipsoid {
     }
 };
 
-// The union of two forms, filled out where their surfaces are nearer to each other than `round`; and what is left when one is cut out.
+// The union of two forms, filled out where their surfaces are nearer to each other than `round`; and what is left when one is cut
+// out.
 double joined(double a, double b, double round) {
     const double h = std::max(round - std::abs(a - b), 0.0) / round;
     return std::min(a, b) - 0.25 * round * h * h;

@@ -65,8 +65,8 @@ bool MeshShadow::add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<c
     return true;
 }
 
-// The rows whose centres lie between the ends, that at the upper end included, that at the lower not, so that an outline crosses a row as
-// often down as up.
+// The rows whose centres lie between the ends, that at the upper end included, that at the lower not, so that an outline crosses
+// a row as often down as up.
 void MeshShadow::cross(glm::vec2 a, glm::vec2 b, int turn, const BitMask& mask) {
     if (a.y > b.y) std::swap(a, b), turn = -turn;
     const auto width = static_cast<float>(mask.width()), height = static_cast<float>(mask.height());

@@ -6,14 +6,14 @@
 
 namespace fantascope::theatre {
 
-// The shadow of a closed mesh: the pixels whose centres lie in the shadow of any of its triangles. Seen from the light every ray enters a closed
-// mesh as often as it leaves it, so that a pixel's shadow is told by how often the outlines of what faces the light, the edges between a
-// triangle that does and one that does not, wind around it.
-// Thread: thread-bound; it keeps its memory from mesh to mesh.
+// The shadow of a closed mesh: the pixels whose centres lie in the shadow of any of its triangles. Seen from the light every ray
+// enters a closed mesh as often as it leaves it, so that a pixel's shadow is told by how often the outlines of what faces the
+// light, the edges between a triangle that does and one that does not, wind around it. Thread: thread-bound; it keeps its memory
+// from mesh to mesh.
 class MeshShadow {
 public:
-    // Adds the shadow to a mask of the frame's size. `vertices`: those of the mesh in a pose, metres, stage frame. A mesh that reaches the
-    // light's height above the screen, where it would throw no bounded shadow, adds nothing and gives false.
+    // Adds the shadow to a mask of the frame's size. `vertices`: those of the mesh in a pose, metres, stage frame. A mesh that
+    // reaches the light's height above the screen, where it would throw no bounded shadow, adds nothing and gives false.
     bool add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<const glm::vec3> vertices, BitMask& mask);
 
 private:

@@ -4,6 +4,12 @@
 #include <glm/geometric.hpp>
 
 namespace fantascope::theatre {
+namespace {
+
+double square(double x) { return x * x; }
+double scaleOf(Eigen::Index freedom) { return Body::scaleOf(static_cast<std::size_t>(freedom)); }
+
+}  // namespace
 
 PoseEquations::PoseEquations(const Body& body)
     : body_(body),
@@ -86,8 +92,9 @@ void PoseEquations::finish() {
 const Eigen::VectorXd& PoseEquations::step(double damping, std::span<const char> moves) {
     damped_ = hessian_;
     step_ = -gradient_;
-    damped_.diagonal() *= 1 + damping;
-    damped_.diagonal().array() += 1e-2 * damping + 1e-9;
+    double stiffness = 0;
+    for (Eigen::Index k = 0; k < step_.size(); ++k) stiffness += hessian_(k, k) * square(scaleOf(k)) / double(step_.size());
+    for (Eigen::Index k = 0; k < step_.size(); ++k) damped_(k, k) += damping * stiffness / square(scaleOf(k)) + 1e-9;
     for (std::size_t i = 0; i < moves.size(); ++i) {
         if (moves[i] != 0) continue;
         const auto k = static_cast<Eigen::Index>(i);

@@ -30,7 +30,8 @@ public:
 
     // Sums up what was added; the step is then to be asked for, with any damping.
     void finish();
-    // The step of Levenberg & Marquardt. `moves`: for each freedom whether it may change; empty: all may.
+    // The step of Levenberg, with the freedoms measured in Body::scaleOf(): damping each by its own diagonal, as Marquardt has it, would make those
+    // move most that hardly matter. `damping`: 1 is as stiff as the residuals are on average. `moves`: for each freedom whether it may change; empty: all may.
     const Eigen::VectorXd& step(double damping, std::span<const char> moves);
 
 private:

@@ -145,7 +145,7 @@ private:
             shop.search.run(shop.energy, freedoms, which, {0.8, 12, 8}, rng_);
         } else {
             const auto own = std::span(freedoms).subspan(first, body.freedoms);
-            for (std::size_t k = 0; k < own.size(); ++k) own[k] += 0.4 * FreedomSearch::scaleOf(k) * rng_.normal();
+            for (std::size_t k = 0; k < own.size(); ++k) own[k] += 0.4 * Body::scaleOf(k) * rng_.normal();
             body.limit(own);
         }
     }

@@ -15,8 +15,8 @@ namespace {
 
 using glm::dvec3;
 
-// What a vertex loses by standing for others far along the surface, against what it does by leaving their planes: without it the straight parts
-// of limbs become long needles, which break where they bend.
+// What a vertex loses by standing for others far along the surface, against what it does by leaving their planes: without it the
+// straight parts of limbs become long needles, which break where they bend.
 constexpr double kSpread = 0.004;
 
 // The sum of squared distances from planes, weighted: x'Ax + 2 b'x + c.
@@ -74,9 +74,11 @@ public:
     }
 
     void reduceTo(std::size_t triangles) {
-        for (std::uint32_t v = 0; v < places_.size(); ++v)
-            for (const std::uint32_t other : neighbours(v))
+        for (std::uint32_t v = 0; v < places_.size(); ++v) {
+            findNeighbours(v, nearA_);
+            for (const std::uint32_t other : nearA_)
                 if (v < other) offer(v, other);
+        }
         while (left_ > triangles && !offers_.empty()) {
             const Offer best = offers_.top();
             offers_.pop();
@@ -111,15 +113,13 @@ private:
     }
     static bool has(const glm::uvec3& t, std::uint32_t v) { return t.x == v || t.y == v || t.z == v; }
 
-    // Valid until the next call.
-    const std::vector<std::uint32_t>& neighbours(std::uint32_t v) {
-        near_.clear();
+    void findNeighbours(std::uint32_t v, std::vector<std::uint32_t>& near) const {
+        near.clear();
         for (const std::uint32_t t : around_[v])
             for (int i = 0; i < 3; ++i)
-                if (triangles_[t][i] != v) near_.push_back(triangles_[t][i]);
-        std::sort(near_.begin(), near_.end());
-        near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
-        return near_;
+                if (triangles_[t][i] != v) near.push_back(triangles_[t][i]);
+        std::sort(near.begin(), near.end());
+        near.erase(std::unique(near.begin(), near.end()), near.end());
     }
 
     Quadric joined(std::uint32_t a, std::uint32_t b) const {
@@ -131,11 +131,11 @@ private:
 
     // A closed surface stays one if the two ends have no neighbours in common but the two of the edge's triangles.
     bool keepsTheSurface(std::uint32_t a, std::uint32_t b) {
-        const std::vector<std::uint32_t> ofA = neighbours(a);
-        const std::vector<std::uint32_t>& ofB = neighbours(b);
+        findNeighbours(a, nearA_);
+        findNeighbours(b, nearB_);
         common_.clear();
-        std::set_intersection(ofA.begin(), ofA.end(), ofB.begin(), ofB.end(), std::back_inserter(common_));
-        return common_.size() == 2 && ofA.size() + ofB.size() > 7;
+        std::set_intersection(nearA_.begin(), nearA_.end(), nearB_.begin(), nearB_.end(), std::back_inserter(common_));
+        return common_.size() == 2 && nearA_.size() + nearB_.size() > 7;
     }
     // Twice the area against the sides: .58 of an equilateral triangle, 0 of a needle.
     static double quality(const dvec3& a, const dvec3& b, const dvec3& c) {
@@ -182,7 +182,8 @@ private:
         // Never to be equal again to what an offer has seen: both counts only grow, and the one that is gone is in no new offer.
         changes_[kept] += changes_[gone] + 1;
         changes_[gone] += changes_[kept] + 1;
-        for (const std::uint32_t other : std::vector(neighbours(kept))) offer(std::min(kept, other), std::max(kept, other));
+        findNeighbours(kept, nearA_);
+        for (const std::uint32_t other : nearA_) offer(std::min(kept, other), std::max(kept, other));
     }
 
     std::vector<dvec3> places_;
@@ -192,7 +193,7 @@ private:
     std::vector<std::vector<std::uint32_t>> around_;  // the triangles at each vertex
     std::vector<std::uint32_t> changes_;              // how often each vertex moved
     std::priority_queue<Offer> offers_;
-    std::vector<std::uint32_t> near_, common_;  // scratch
+    std::vector<std::uint32_t> nearA_, nearB_, common_;  // scratch
 };
 
 }  // namespace

@@ -6,9 +6,10 @@
 
 namespace fantascope::theatre {
 
-// Takes vertices from a closed mesh until it has no more than `triangles`, those first whose loss changes the form least: edges are collapsed
-// in the order of their quadric error (Garland & Heckbert 1997), none that would join what is not neighbours (Dey et al. 1999) or turn a
-// triangle over. `importance`: how much the form matters at a place. The mesh stays closed and of its genus; it may keep more triangles where nothing more can go.
+// Takes vertices from a closed mesh until it has no more than `triangles`, those first whose loss changes the form least: edges
+// are collapsed in the order of their quadric error (Garland & Heckbert 1997), none that would join what is not neighbours (Dey
+// et al. 1999) or turn a triangle over. `importance`: how much the form matters at a place. The mesh stays closed and of its
+// genus; it may keep more triangles where nothing more can go.
 TriangleMesh simplified(const TriangleMesh& mesh, std::size_t triangles,
                         const std::function<double(const glm::vec3&)>& importance);
 

@@ -198,8 +198,8 @@ TEST(BodyMesh, BentHalfWayItKeepsTheGirth) {
     EXPECT_LT(glm::distance(dvec3(skin[2]), dvec3(0.5, 1, 0)), 1e-6);
 }
 
-// A knee or an elbow that is bent as far as it goes neither loses nor gains a tenth of the whole body's volume, and its skin keeps some
-// distance from the joint.
+// A knee or an elbow that is bent as far as it goes neither loses nor gains a tenth of the whole body's volume, and its skin
+// keeps some distance from the joint.
 TEST(BodyMesh, LimbsDoNotCollapseWhereTheyBend) {
     for (const auto& [name, radius] : {std::pair("left knee", 0.035), std::pair("right elbow", 0.025)}) {
         std::vector<double> pose = theBody().restPose(theBody().joints[0].offset, kNoTurn);
