@@ -48,6 +48,35 @@ void finish(Contacts& contacts, double lowest, glm::dvec2 lowestPlace) {
     if (!contacts.touches) contacts.discs.push_back({lowestPlace, 0});
 }
 
+const glm::vec3& lowestOf(std::span<const glm::vec3> vertices) {
+    return *std::min_element(vertices.begin(), vertices.end(), [](const glm::vec3& a, const glm::vec3& b) { return a.y < b.y; });
+}
+
+// Of many points those that reach farthest in a direction; of those alike the first.
+class Corners {
+public:
+    Corners() { far_.fill(std::numeric_limits<double>::lowest()); }
+    void offer(glm::dvec2 place) {
+        for (std::size_t i = 0; i < kDirections; ++i)
+            if (const double reach = glm::dot(place, directions()[i]); reach > far_[i]) far_[i] = reach, places_[i] = place;
+    }
+    // As contacts of no radius; around the polygon equal ones follow each other.
+    void addTo(Contacts& contacts) const {
+        if (far_[0] == std::numeric_limits<double>::lowest()) return;
+        const std::size_t first = contacts.discs.size();
+        for (std::size_t i = 0; i < kDirections; ++i)
+            if (places_[i] != places_[(i + 1) % kDirections]) contacts.discs.push_back({places_[i], 0});
+        if (contacts.discs.size() == first) contacts.discs.push_back({places_[0], 0});
+    }
+
+private:
+    std::array<double, kDirections> far_;
+    std::array<glm::dvec2, kDirections> places_{};
+};
+
+// How much of its own place and size a point so high above the ground has: findBearings().
+double bearingShare(double height, double bearing) { return std::min(1.0, 1 - (height - kTouch / 2) / bearing); }
+
 }  // namespace
 
 void findContacts(std::span<const PlacedSphere> spheres, Contacts& contacts) {
@@ -64,24 +93,12 @@ void findContacts(std::span<const PlacedSphere> spheres, Contacts& contacts) {
 
 void findContacts(std::span<const glm::vec3> vertices, Contacts& contacts) {
     contacts.discs.clear();
-    const glm::vec3* lowest = &vertices.front();
-    // The vertex that reaches farthest in each direction; of those alike the first.
-    std::array<const glm::vec3*, kDirections> best{};
-    std::array<double, kDirections> far;
-    far.fill(std::numeric_limits<double>::lowest());
-    for (const glm::vec3& vertex : vertices) {
-        if (vertex.y < lowest->y) lowest = &vertex;
-        if (vertex.y > kTouch) continue;
-        const glm::dvec2 place(vertex.x, vertex.z);
-        for (std::size_t i = 0; i < kDirections; ++i)
-            if (const double reach = glm::dot(place, directions()[i]); reach > far[i]) far[i] = reach, best[i] = &vertex;
-    }
-    // Around the polygon equal ones follow each other.
-    for (std::size_t i = 0; i < kDirections; ++i)
-        if (best[i] != nullptr && best[i] != best[(i + 1) % kDirections]) contacts.discs.push_back({{best[i]->x, best[i]->z}, 0});
-    // One vertex that is farthest in all directions.
-    if (contacts.discs.empty() && best[0] != nullptr) contacts.discs.push_back({{best[0]->x, best[0]->z}, 0});
-    finish(contacts, lowest->y, {lowest->x, lowest->z});
+    const glm::vec3& lowest = lowestOf(vertices);
+    Corners corners;
+    for (const glm::vec3& vertex : vertices)
+        if (vertex.y <= kTouch) corners.offer({vertex.x, vertex.z});
+    corners.addTo(contacts);
+    finish(contacts, lowest.y, {lowest.x, lowest.z});
 }
 
 void findBearings(std::span<const PlacedSphere> spheres, double bearing, Contacts& contacts) {
@@ -90,14 +107,27 @@ void findBearings(std::span<const PlacedSphere> spheres, double bearing, Contact
     const auto lowest = std::min_element(spheres.begin(), spheres.end(),
                                          [&](const PlacedSphere& a, const PlacedSphere& b) { return heightOf(a) < heightOf(b); });
     const glm::dvec2 lowestPlace(lowest->centre.x, lowest->centre.z);
-    const double ground = heightOf(*lowest);
+    const double ground = contacts.lowest = heightOf(*lowest);
     contacts.touches = ground <= kTouch;
     for (const PlacedSphere& sphere : spheres) {
-        const double share = std::min(1.0, 1 - (heightOf(sphere) - ground - kTouch / 2) / bearing);
+        const double share = bearingShare(heightOf(sphere) - ground, bearing);
         if (share > 0)
             contacts.discs.push_back({glm::mix(lowestPlace, glm::dvec2(sphere.centre.x, sphere.centre.z), share),
                                       share * capRadius(sphere.radius, kTouch)});
     }
+}
+
+void findBearings(std::span<const glm::vec3> vertices, double bearing, Contacts& contacts) {
+    contacts.discs.clear();
+    const glm::vec3& lowest = lowestOf(vertices);
+    const glm::dvec2 lowestPlace(lowest.x, lowest.z);
+    contacts.lowest = lowest.y;
+    contacts.touches = lowest.y <= kTouch;
+    Corners corners;
+    for (const glm::vec3& vertex : vertices)
+        if (const double share = bearingShare(vertex.y - lowest.y, bearing); share > 0)
+            corners.offer(glm::mix(lowestPlace, glm::dvec2(vertex.x, vertex.z), share));
+    corners.addTo(contacts);
 }
 
 double supportMargin(const Contacts& contacts, const glm::dvec3& massCentre) {

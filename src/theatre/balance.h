@@ -34,6 +34,7 @@ void findContacts(std::span<const glm::vec3> vertices, Contacts& contacts);
 // The same for a search, without jumps, and as if the lowest point were on the floor: what is kTouch / 2 above it bears, and what is higher bears
 // the less the higher it is, up to `bearing` metres more; the less it bears the nearer its disc is to the lowest point, and the smaller.
 void findBearings(std::span<const PlacedSphere> spheres, double bearing, Contacts& contacts);
+void findBearings(std::span<const glm::vec3> vertices, double bearing, Contacts& contacts);
 
 // Margin(SP_n, COM_n): the signed distance from the mass centre, seen from above, to the boundary of the support polygon, metres; positive
 // inside, negative outside. Of one contact, or two, the polygon is the disc, or the band around the line.

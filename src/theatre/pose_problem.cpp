@@ -130,7 +130,7 @@ Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage
             fmt::format("it has {} parts that are farther from each other than {:.0f} % of its height; join them, or play each "
                         "as a target of its own",
                         apart.size(), 100 * kFarApart));
-    sampleContour(target, kContourPoints);
+    sampleContour(target, std::max<std::size_t>(1, kContourPoints * static_cast<std::size_t>(rows) / 256));
     return target;
 }
 

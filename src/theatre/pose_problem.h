@@ -1,6 +1,6 @@
 #pragma once
 
-#include "theatre/body.h"
+#include "theatre/body_mesh.h"
 #include "theatre/contour.h"
 #include "theatre/pose_weights.h"
 #include "theatre/stage.h"
@@ -8,11 +8,12 @@
 #include "core/image.h"
 #include "core/result.h"
 
+#include <memory>
 #include <vector>
 
 namespace fantascope::theatre {
 
-// Points sampled on the target's contour; the radius of the disc that normals and curvatures are read in, pixels of the target's 256 rows.
+// Points sampled on the contour of a target of 256 rows; the radius of the disc that normals and curvatures are read in, pixels of the target's 256 rows.
 constexpr std::size_t kContourPoints = 200;
 constexpr double kDiscRadius = 6;
 
@@ -44,6 +45,8 @@ struct PoseProblem {
     PoseTarget target;
     std::vector<Body> actors;
     PoseWeights weights;
+    // Of the actors; with them shadows and what touches the floor are the skins', without the capsules'.
+    std::vector<std::shared_ptr<const BodyMesh>> skins{};
 
     std::size_t freedoms() const {
         std::size_t sum = 0;

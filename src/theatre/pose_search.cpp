@@ -23,14 +23,15 @@ namespace {
 // The streams of random numbers of a trial (core/random.h).
 enum class Stream : std::uint64_t { Trial = 1, Moves = 2 };
 
-constexpr double kGlobalShare = 0.3;             // of the evaluations, in pixels of twice the side
+constexpr double kGlobalShare = 0.15;            // of the evaluations, in pixels of twice the side
 constexpr double kCoarseShare = 0.8;             // so far they are used; the rest sees every pixel
 constexpr double kWeak = 0.01, kLessWeak = 0.1;  // stiffness at the beginning and at the end of the global stage
 constexpr double kGlobalSigma = 0.5;
 constexpr std::array kStiffer = {0.01, 0.03, 0.1};  // while the outline is fitted
 constexpr double kHeld = 0.1,
                  kHeldBy = 0.87;  // at the beginning of the coarse local search, and the share of it by which it is 1
-constexpr int kFitSteps = 20, kRefitSteps = 12, kLastFitSteps = 60;
+constexpr std::array kMending = {2.0, 4.0, 8.0};  // at the end, while somebody cannot stand
+constexpr int kFitSteps = 20, kRefitSteps = 20, kLastFitSteps = 60;
 // How much energy a change may cost at the beginning of the local search, and the share of it at the end.
 constexpr double kHot = 6, kCool = 0.05;
 
@@ -40,8 +41,8 @@ public:
              const PoseSearch::AskStop& askStop)
         : options_(options),
           askStop_(askStop),
-          fine_(problem),
-          coarse_({problem.stage, problem.target.halved(problem.stage), problem.actors, problem.weights}),
+          fine_(in256Rows(problem)),
+          coarse_(halvedCapsules(fine_.problem)),
           rng_(streamSeed(seed, {static_cast<std::uint64_t>(Stream::Moves)})) {
         trial_.seed = seed;
         trial_.reason = PoseSearch::StopReason::Evaluations;
@@ -54,6 +55,13 @@ public:
         searchLocally(coarse_, kCoarseShare, kHeld);
         searchLocally(fine_, 1, 1);
         fine_.fit.run(fine_.energy, trial_.freedoms, kLastFitSteps);
+        for (const double stiffness : kMending) {
+            if (trial_.reason == PoseSearch::StopReason::Interrupted ||
+                PoseSearch::measure(fine_.problem, trial_.freedoms).isValid())
+                break;
+            fine_.setStiffness(stiffness);
+            fine_.fit.run(fine_.energy, trial_.freedoms, kFitSteps);
+        }
         trial_.evaluations = evaluations();
         return std::move(trial_);
     }
@@ -92,6 +100,16 @@ private:
                             shop.setStiffness(kWeak * std::pow(kLessWeak / kWeak, double(generation) / generations));
                             return goesOn(shop.energy.lastEnergy());
                         });
+    }
+
+    static PoseProblem in256Rows(PoseProblem problem) {
+        while (problem.target.pixelsOf256 < 1) problem.target = problem.target.halved(problem.stage);
+        return problem;
+    }
+    static PoseProblem halvedCapsules(PoseProblem problem) {
+        problem.target = problem.target.halved(problem.stage);
+        problem.skins.clear();
+        return problem;
     }
 
     // The outline first, then a little more of standing.
@@ -263,11 +281,15 @@ PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<co
         quality.contourMost = std::max(quality.contourMost, off);
     }
     Contacts contacts;
+    const bool isSkin = !problem.skins.empty();
     for (std::size_t i = 0; i < problem.actors.size(); ++i) {
         const Body& body = problem.actors[i];
         const PosedBody& posed = energy.posed(i);
-        findContacts(posed.spheres(), contacts);
-        Actor actor{supportMargin(contacts, posed.massCentre()), contacts.touches, posed.lowest(),
+        if (isSkin)
+            findContacts(energy.skin(i), contacts);
+        else
+            findContacts(posed.spheres(), contacts);
+        Actor actor{supportMargin(contacts, posed.massCentre()), contacts.touches, contacts.lowest,
                     std::max(deepestInItself(body, posed), deepestInStage(posed)),
                     isWithinLimits(body, freedoms.first(body.freedoms))};
         for (std::size_t j = 0; j < problem.actors.size(); ++j)

@@ -69,7 +69,8 @@ public:
 
     // One trial. The global stage, CMA-ES with a block of the covariance for each actor, plays with weak physics; then the outline is
     // fitted; then iterated local search: a limb, an actor or a random change is searched anew, fitted, and kept by the rule of simulated
-    // annealing, while physics stiffens until it holds people up.
+    // annealing, while physics stiffens until it holds people up. All that is in coarse pixels and with capsules; the last part of the
+    // local search has pixels of 256 rows, and the skins if the problem has them. Quality is measured in the problem's own pixels.
     static Trial run(const PoseProblem& problem, std::uint64_t seed, const Options& options, const AskStop& askStop = {});
 
     // Trials with seeds of their own (63 bits), derived from `seed`, on so many threads; in the order of their numbers.

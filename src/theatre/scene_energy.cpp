@@ -29,15 +29,20 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     Actor& actor = actors_[index];
     actor.body.pose(body, freedoms);
     actor.shadow.clear();
-    caster_.add(problem_.target.frame, actor.body, actor.shadow);
-
-    findBearings(actor.body.spheres(), problem_.weights.bearing, actor.contacts);
+    if (problem_.skins.empty()) {
+        capsuleShadow_.add(problem_.target.frame, actor.body, actor.shadow);
+        findBearings(actor.body.spheres(), problem_.weights.bearing, actor.contacts);
+    } else {
+        problem_.skins[index]->skin(body, actor.body, actor.skin);
+        meshShadow_.add(problem_.target.frame, *problem_.skins[index], actor.skin, actor.shadow);
+        findBearings(actor.skin, problem_.weights.bearing, actor.contacts);
+    }
     actor.margin = supportMargin(actor.contacts, actor.body.massCentre());
     const ScreenFrame& frame = problem_.target.frame;
     const glm::dvec2 middle = frame.metresAt(0.5 * glm::dvec2(frame.width(), frame.height()));
     actor.own = {};
     actor.own.visible = unseen(actor.body.point(body.head, body.eyes), actor.body.turn(body.head) * body.gaze, {middle, 0});
-    actor.own.floor = 1000 * std::max(0.0, actor.body.lowest());
+    actor.own.floor = 1000 * std::max(0.0, actor.contacts.lowest);
     actor.own.supportArea = 1e4 * std::max(0.0, kAmpleArea - supportArea(actor.contacts));
     actor.own.margin = 100 * std::max(0.0, kAmpleMargin - actor.margin);
     actor.own.people = depthInItself(body, actor.body);

@@ -2,6 +2,7 @@
 
 #include "theatre/balance.h"
 #include "theatre/capsule_shadow.h"
+#include "theatre/mesh_shadow.h"
 #include "theatre/pose_problem.h"
 
 #include <span>
@@ -28,8 +29,11 @@ public:
     const BitMask& shadow() const { return shadow_; }  // of all; after terms()
     const BitMask& shadow(std::size_t actor) const { return actors_[actor].shadow; }
     const PosedBody& posed(std::size_t actor) const { return actors_[actor].body; }
-    double margin(std::size_t actor) const { return actors_[actor].margin; }  // on findBearings(), metres
-    const BitMask& contour() const { return contour_.pixels(); }              // of the shadow of all; after terms()
+    // The skin's vertices, metres; none for a problem without skins.
+    std::span<const glm::vec3> skin(std::size_t actor) const { return actors_[actor].skin; }
+    double margin(std::size_t actor) const { return actors_[actor].margin; }           // on findBearings(), metres
+    double lowest(std::size_t actor) const { return actors_[actor].contacts.lowest; }  // height of the lowest point, metres
+    const BitMask& contour() const { return contour_.pixels(); }                       // of the shadow of all; after terms()
     // Of each of the target's contour points: the nearest point of the shadow's contour and the actor whose it is; after terms().
     std::span<const ContourPoint> nearest() const { return nearest_; }
     std::span<const int> owners() const { return owners_; }
@@ -37,6 +41,7 @@ public:
 private:
     struct Actor {
         PosedBody body;
+        std::vector<glm::vec3> skin;
         BitMask shadow;
         Contacts contacts;
         double margin = 0;
@@ -47,7 +52,8 @@ private:
     const PoseProblem& problem_;
     ContourDisc disc_;
     std::vector<Actor> actors_;
-    CapsuleShadow caster_;
+    CapsuleShadow capsuleShadow_;
+    MeshShadow meshShadow_;
     BitMask shadow_;
     Contour contour_;
     std::vector<ContourPoint> nearest_;

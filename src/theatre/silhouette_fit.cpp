@@ -196,20 +196,21 @@ void SilhouetteFit::addPhysics(SceneEnergy& energy, std::span<const double> free
             if (centre.y - radius < posed.lowest() + kTouch)
                 equations.addPoint(body.spheres[i].joint, centre, {0, 1000, 0}, 0, kHold * weights.w9);
         }
-        // The margin and the height above the floor, by small nudges.
-        const double lacking = 100 * (kAmpleMargin - energy.margin(a)), height = 1000 * posed.lowest();
+        // The margin and the height above the floor, by small nudges of the spheres: a skin moves as they do.
+        const double lacking = 100 * (kAmpleMargin - energy.margin(a)), height = 1000 * energy.lowest(a);
         if (lacking <= 0 && height <= 0) continue;
         std::vector<double> nudged(freedoms.begin() + static_cast<std::ptrdiff_t>(first_[a]),
                                    freedoms.begin() + static_cast<std::ptrdiff_t>(first_[a] + body.freedoms));
         const auto size = static_cast<Eigen::Index>(body.freedoms);
         Eigen::VectorXd margins(size), heights(size);
+        findBearings(posed.spheres(), problem_.weights.bearing, contacts_);
+        const double margin = supportMargin(contacts_, posed.massCentre());
         for (std::size_t k = 0; k < body.freedoms; ++k) {
             nudged[k] += kNudge;
             nudged_.pose(body, nudged);
             nudged[k] -= kNudge;
             findBearings(nudged_.spheres(), problem_.weights.bearing, contacts_);
-            margins[static_cast<Eigen::Index>(k)] =
-                -100 * (supportMargin(contacts_, nudged_.massCentre()) - energy.margin(a)) / kNudge;
+            margins[static_cast<Eigen::Index>(k)] = -100 * (supportMargin(contacts_, nudged_.massCentre()) - margin) / kNudge;
             heights[static_cast<Eigen::Index>(k)] = 1000 * (nudged_.lowest() - posed.lowest()) / kNudge;
         }
         if (lacking > 0) equations.addRow(margins, lacking, 0.5 * weights.w9 / std::max(kNearest, lacking));

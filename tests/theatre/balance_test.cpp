@@ -91,6 +91,21 @@ TEST(FindContacts, WhatTouchesNothingStandsOnItsLowestPoint) {
     EXPECT_NEAR(supportArea(contacts), 0, 1e-12);
 }
 
+// By hand: as of balls without size.
+TEST(FindBearings, OfASkinFadeAsThoseOfBalls) {
+    Contacts contacts, ofBalls;
+    const std::vector<glm::vec3> vertices{{0, 0.2f, 0}, {1, 0.205f, 0}, {0, 0.215f, 2}, {4, 0.2251f, 4}, {0, 1, 9}};
+    findBearings(vertices, 0.02, contacts);
+    EXPECT_FALSE(contacts.touches);
+    EXPECT_NEAR(contacts.lowest, 0.2, 1e-6);
+    ASSERT_EQ(contacts.discs.size(), 3u);
+    std::vector<PlacedSphere> balls;
+    for (const glm::vec3& vertex : vertices) balls.push_back(ball(vertex, 0));
+    findBearings(balls, 0.02, ofBalls);
+    EXPECT_NEAR(supportMargin(contacts, {0.2, 1, 0.2}), supportMargin(ofBalls, {0.2, 1, 0.2}), 1e-6);
+    EXPECT_NEAR(supportArea(contacts), 0.5, 1e-4);  // the corner at z = 2 is half way to the lowest point
+}
+
 // By hand: a ball of 10 cm on the floor, one 5 mm above it, one a half and one wholly faded.
 TEST(FindBearings, WhatIsHigherBearsLess) {
     Contacts contacts;

@@ -58,7 +58,7 @@ TEST(PoseTarget, StandsOnTheFloorBeforeTheLightAsHighAsAsked) {
     EXPECT_EQ(target->area, static_cast<double>(target->mask.count()));
     EXPECT_NEAR(target->area, (40 * 200 + 60 * 40) * 0.64 * 0.64, 128);
     EXPECT_EQ(target->pixelsOf256, 2);
-    ASSERT_EQ(target->contour.size(), kContourPoints);
+    ASSERT_EQ(target->contour.size(), kContourPoints / 2);
     for (const ContourPoint& point : target->contour) EXPECT_TRUE(target->mask.at(point.pixel.x, point.pixel.y));
 }
 

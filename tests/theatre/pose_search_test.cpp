@@ -55,6 +55,27 @@ TEST(PoseSearch, finds_a_shape_that_people_can_hold) {
     EXPECT_GE(trial.evaluations, 8000);
 }
 
+// The easy wrong version finds a shape for the capsules and hands out people of flesh.
+TEST(PoseSearch, what_it_ends_with_is_measured_and_found_on_the_skins) {
+    PoseProblem problem = hill(2, 1.5, 256);
+    const auto ofCapsules = PoseSearch::run(problem, 1, evaluations(6000));
+    for (const Body& body : problem.actors) problem.skins.push_back(std::make_shared<const BodyMesh>(humanMesh(body)));
+    const auto trial = PoseSearch::run(problem, 1, evaluations(6000));
+    EXPECT_TRUE(trial.quality.isValid());
+    EXPECT_GT(trial.quality.iou, PoseSearch::measure(problem, ofCapsules.freedoms).iou);
+    std::vector<glm::vec3> skin;
+    PosedBody posed;
+    std::span<const double> freedoms(trial.freedoms);
+    for (std::size_t i = 0; i < problem.actors.size(); ++i) {
+        posed.pose(problem.actors[i], freedoms.first(problem.actors[i].freedoms));
+        freedoms = freedoms.subspan(problem.actors[i].freedoms);
+        problem.skins[i]->skin(problem.actors[i], posed, skin);
+        float lowest = skin.front().y;
+        for (const glm::vec3& vertex : skin) lowest = std::min(lowest, vertex.y);
+        EXPECT_EQ(trial.quality.actors[i].lowest, double(lowest));
+    }
+}
+
 TEST(PoseSearch, the_same_seed_gives_the_same_poses_on_any_number_of_threads) {
     const PoseProblem problem = hill(2);
     const auto one = PoseSearch::runTrials(problem, 5, 3, evaluations(1000), 1);
