@@ -42,37 +42,55 @@ double capRadius(double radius, double depth) {
     return std::sqrt(cap * (2 * radius - cap));
 }
 
-void finish(Contacts& contacts, double lowest, glm::dvec2 lowestPlace) {
-    contacts.lowest = lowest;
-    contacts.touches = !contacts.discs.empty();
-    if (!contacts.touches) contacts.discs.push_back({lowestPlace, 0});
-}
-
-const glm::vec3& lowestOf(std::span<const glm::vec3> vertices) {
-    return *std::min_element(vertices.begin(), vertices.end(), [](const glm::vec3& a, const glm::vec3& b) { return a.y < b.y; });
-}
+double heightOf(const PlacedSphere& sphere) { return sphere.centre.y - sphere.radius; }
+double heightOf(const glm::vec3& vertex) { return vertex.y; }
+glm::dvec2 groundPlace(const PlacedSphere& sphere) { return {sphere.centre.x, sphere.centre.z}; }
+glm::dvec2 groundPlace(const glm::vec3& vertex) { return {vertex.x, vertex.z}; }
 
 // Of many points those that reach farthest in a direction; of those alike the first.
 class Corners {
 public:
     Corners() { far_.fill(std::numeric_limits<double>::lowest()); }
-    void offer(glm::dvec2 place) {
+    void offer(const Contact& contact) {
         for (std::size_t i = 0; i < kDirections; ++i)
-            if (const double reach = glm::dot(place, directions()[i]); reach > far_[i]) far_[i] = reach, places_[i] = place;
+            if (const double reach = glm::dot(contact.place, directions()[i]); reach > far_[i])
+                far_[i] = reach, contacts_[i] = contact;
     }
-    // As contacts of no radius; around the polygon equal ones follow each other.
+    // Around the polygon equal ones follow each other.
     void addTo(Contacts& contacts) const {
         if (far_[0] == std::numeric_limits<double>::lowest()) return;
         const std::size_t first = contacts.discs.size();
         for (std::size_t i = 0; i < kDirections; ++i)
-            if (places_[i] != places_[(i + 1) % kDirections]) contacts.discs.push_back({places_[i], 0});
-        if (contacts.discs.size() == first) contacts.discs.push_back({places_[0], 0});
+            if (contacts_[i].place != contacts_[(i + 1) % kDirections].place) contacts.discs.push_back(contacts_[i]);
+        if (contacts.discs.size() == first) contacts.discs.push_back(contacts_[0]);
     }
 
 private:
     std::array<double, kDirections> far_;
-    std::array<glm::dvec2, kDirections> places_{};
+    std::array<Contact, kDirections> contacts_{};
 };
+
+template <class Point>
+glm::dvec2 begin(std::span<const Point> points, Contacts& contacts) {
+    contacts.discs.clear();
+    const auto lowest =
+        std::min_element(points.begin(), points.end(), [](const Point& a, const Point& b) { return heightOf(a) < heightOf(b); });
+    contacts.lowest = heightOf(*lowest);
+    contacts.lowestSource = static_cast<std::uint32_t>(lowest - points.begin());
+    contacts.touches = contacts.lowest <= kTouch;
+    return groundPlace(*lowest);
+}
+
+// Where the edges of a skin go through a height.
+void cut(std::span<const glm::vec3> vertices, std::span<const MeshEdge> edges, double height, Corners& corners) {
+    for (const MeshEdge& edge : edges) {
+        const float from = vertices[edge.from].y, to = vertices[edge.to].y;
+        if ((from <= height) == (to <= height)) continue;
+        const glm::dvec3 a(vertices[edge.from]), b(vertices[edge.to]);
+        const glm::dvec3 point = glm::mix(a, b, (height - a.y) / (b.y - a.y));
+        corners.offer({{point.x, point.z}, 0, from < to ? edge.from : edge.to, 1, point, b - a});
+    }
+}
 
 // How much of its own place and size a point so high above the ground has: findBearings().
 double bearingShare(double height, double bearing) { return std::min(1.0, 1 - (height - kTouch / 2) / bearing); }
@@ -80,63 +98,56 @@ double bearingShare(double height, double bearing) { return std::min(1.0, 1 - (h
 }  // namespace
 
 void findContacts(std::span<const PlacedSphere> spheres, Contacts& contacts) {
-    contacts.discs.clear();
-    double lowest = std::numeric_limits<double>::infinity();
-    glm::dvec2 lowestPlace(0);
-    for (const auto& [centre, radius] : spheres) {
-        const double height = centre.y - radius;
-        if (height < lowest) lowest = height, lowestPlace = {centre.x, centre.z};
-        if (height <= kTouch) contacts.discs.push_back({{centre.x, centre.z}, capRadius(radius, kTouch - height)});
-    }
-    finish(contacts, lowest, lowestPlace);
+    const glm::dvec2 lowestPlace = begin(spheres, contacts);
+    for (std::uint32_t i = 0; i < spheres.size(); ++i)
+        if (const double height = heightOf(spheres[i]); height <= kTouch)
+            contacts.discs.push_back(
+                {groundPlace(spheres[i]), capRadius(spheres[i].radius, kTouch - height), i, 1, spheres[i].centre});
+    if (!contacts.touches) contacts.discs.push_back({lowestPlace});
 }
 
-void findContacts(std::span<const glm::vec3> vertices, Contacts& contacts) {
-    contacts.discs.clear();
-    const glm::vec3& lowest = lowestOf(vertices);
+void findContacts(std::span<const glm::vec3> vertices, std::span<const MeshEdge> edges, Contacts& contacts) {
+    const glm::dvec2 lowestPlace = begin(vertices, contacts);
     Corners corners;
-    for (const glm::vec3& vertex : vertices)
-        if (vertex.y <= kTouch) corners.offer({vertex.x, vertex.z});
+    for (std::uint32_t i = 0; i < vertices.size(); ++i)
+        if (vertices[i].y <= kTouch) corners.offer({groundPlace(vertices[i]), 0, i, 1, vertices[i]});
+    cut(vertices, edges, kTouch, corners);
     corners.addTo(contacts);
-    finish(contacts, lowest.y, {lowest.x, lowest.z});
+    if (!contacts.touches) contacts.discs.push_back({lowestPlace});
 }
 
 void findBearings(std::span<const PlacedSphere> spheres, double bearing, Contacts& contacts) {
-    contacts.discs.clear();
-    const auto heightOf = [](const PlacedSphere& sphere) { return sphere.centre.y - sphere.radius; };
-    const auto lowest = std::min_element(spheres.begin(), spheres.end(),
-                                         [&](const PlacedSphere& a, const PlacedSphere& b) { return heightOf(a) < heightOf(b); });
-    const glm::dvec2 lowestPlace(lowest->centre.x, lowest->centre.z);
-    const double ground = contacts.lowest = heightOf(*lowest);
-    contacts.touches = ground <= kTouch;
-    for (const PlacedSphere& sphere : spheres) {
-        const double share = bearingShare(heightOf(sphere) - ground, bearing);
-        if (share > 0)
-            contacts.discs.push_back({glm::mix(lowestPlace, glm::dvec2(sphere.centre.x, sphere.centre.z), share),
-                                      share * capRadius(sphere.radius, kTouch)});
-    }
+    const glm::dvec2 lowestPlace = begin(spheres, contacts);
+    for (std::uint32_t i = 0; i < spheres.size(); ++i)
+        if (const double share = bearingShare(heightOf(spheres[i]) - contacts.lowest, bearing); share > 0)
+            contacts.discs.push_back({glm::mix(lowestPlace, groundPlace(spheres[i]), share),
+                                      share * capRadius(spheres[i].radius, kTouch), i, share, spheres[i].centre});
 }
 
-void findBearings(std::span<const glm::vec3> vertices, double bearing, Contacts& contacts) {
-    contacts.discs.clear();
-    const glm::vec3& lowest = lowestOf(vertices);
-    const glm::dvec2 lowestPlace(lowest.x, lowest.z);
-    contacts.lowest = lowest.y;
-    contacts.touches = lowest.y <= kTouch;
+void findBearings(std::span<const glm::vec3> vertices, std::span<const MeshEdge> edges, double bearing, Contacts& contacts) {
+    const glm::dvec2 lowestPlace = begin(vertices, contacts);
     Corners corners;
-    for (const glm::vec3& vertex : vertices)
-        if (const double share = bearingShare(vertex.y - lowest.y, bearing); share > 0)
-            corners.offer(glm::mix(lowestPlace, glm::dvec2(vertex.x, vertex.z), share));
+    for (std::uint32_t i = 0; i < vertices.size(); ++i)
+        if (const double share = bearingShare(vertices[i].y - contacts.lowest, bearing); share > 0)
+            corners.offer({glm::mix(lowestPlace, groundPlace(vertices[i]), share), 0, i, share, vertices[i]});
+    cut(vertices, edges, contacts.lowest + kTouch / 2, corners);
     corners.addTo(contacts);
 }
 
 double supportMargin(const Contacts& contacts, const glm::dvec3& massCentre) {
+    return supportTangent(contacts, massCentre).margin;
+}
+
+SupportTangent supportTangent(const Contacts& contacts, const glm::dvec3& massCentre) {
     const glm::dvec2 centre(massCentre.x, massCentre.z);
-    double margin = std::numeric_limits<double>::max();
+    SupportTangent nearest{std::numeric_limits<double>::max(), {}, nullptr};
     // The least of the distances to the hull's tangents; outside it is minus the distance to the hull.
-    for (const glm::dvec2& direction : directions())
-        margin = std::min(margin, farthest(contacts, direction).second - glm::dot(centre, direction));
-    return margin;
+    for (const glm::dvec2& direction : directions()) {
+        const auto [contact, far] = farthest(contacts, direction);
+        if (const double margin = far - glm::dot(centre, direction); margin < nearest.margin)
+            nearest = {margin, direction, contact};
+    }
+    return nearest;
 }
 
 double supportArea(const Contacts& contacts) {

@@ -54,7 +54,8 @@ void PoseEquations::addPoint(std::size_t joint, const glm::dvec3& point, const g
     pulls_[joint] += weight * residual * asked;
 }
 
-void PoseEquations::addTo(Eigen::VectorXd& row, std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction) const {
+void PoseEquations::addMotion(Eigen::VectorXd& row, std::size_t joint, const glm::dvec3& point,
+                              const glm::dvec3& direction) const {
     const Spatial asked = spatial(point, direction);
     for (std::size_t k = 0; k < screws_.size(); ++k)
         if ((above_[joint] >> jointOf_[k] & 1) != 0) row[static_cast<Eigen::Index>(k)] += screws_[k].dot(asked);
@@ -63,8 +64,8 @@ void PoseEquations::addTo(Eigen::VectorXd& row, std::size_t joint, const glm::dv
 void PoseEquations::addPoints(std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction, std::size_t otherJoint,
                               const glm::dvec3& otherPoint, const glm::dvec3& otherDirection, double residual, double weight) {
     row_.setZero();
-    addTo(row_, joint, point, direction);
-    addTo(row_, otherJoint, otherPoint, otherDirection);
+    addMotion(row_, joint, point, direction);
+    addMotion(row_, otherJoint, otherPoint, otherDirection);
     addRow(row_, residual, weight);
 }
 

@@ -25,8 +25,9 @@ public:
     // One that depends on two points of the body.
     void addPoints(std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction, std::size_t otherJoint,
                    const glm::dvec3& otherPoint, const glm::dvec3& otherDirection, double residual, double weight);
-    // One whose derivative by each freedom is known.
+    // One whose derivative by each freedom is `row`; addMotion() adds to it what one of the points above would.
     void addRow(const Eigen::VectorXd& row, double residual, double weight);
+    void addMotion(Eigen::VectorXd& row, std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction) const;
 
     // Sums up what was added; the step is then to be asked for, with any damping.
     void finish();
@@ -39,7 +40,6 @@ private:
     using Spatials = Eigen::Matrix<double, 6, 6>;
 
     Spatial spatial(const glm::dvec3& point, const glm::dvec3& direction) const;
-    void addTo(Eigen::VectorXd& row, std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction) const;
 
     const Body& body_;
     std::vector<std::size_t> jointOf_;  // of each freedom

@@ -286,7 +286,7 @@ PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<co
         const Body& body = problem.actors[i];
         const PosedBody& posed = energy.posed(i);
         if (isSkin)
-            findContacts(energy.skin(i), contacts);
+            findContacts(energy.skin(i), problem.skins[i]->edges, contacts);
         else
             findContacts(posed.spheres(), contacts);
         Actor actor{supportMargin(contacts, posed.massCentre()), contacts.touches, contacts.lowest,

@@ -35,7 +35,7 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     } else {
         problem_.skins[index]->skin(body, actor.body, actor.skin);
         meshShadow_.add(problem_.target.frame, *problem_.skins[index], actor.skin, actor.shadow);
-        findBearings(actor.skin, problem_.weights.bearing, actor.contacts);
+        findBearings(actor.skin, problem_.skins[index]->edges, problem_.weights.bearing, actor.contacts);
     }
     actor.margin = supportMargin(actor.contacts, actor.body.massCentre());
     const ScreenFrame& frame = problem_.target.frame;

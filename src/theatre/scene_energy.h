@@ -31,9 +31,10 @@ public:
     const PosedBody& posed(std::size_t actor) const { return actors_[actor].body; }
     // The skin's vertices, metres; none for a problem without skins.
     std::span<const glm::vec3> skin(std::size_t actor) const { return actors_[actor].skin; }
-    double margin(std::size_t actor) const { return actors_[actor].margin; }           // on findBearings(), metres
-    double lowest(std::size_t actor) const { return actors_[actor].contacts.lowest; }  // height of the lowest point, metres
-    const BitMask& contour() const { return contour_.pixels(); }                       // of the shadow of all; after terms()
+    // What bears, for the energy: findBearings() of the skin's vertices or else of the spheres.
+    const Contacts& bearings(std::size_t actor) const { return actors_[actor].contacts; }
+    double margin(std::size_t actor) const { return actors_[actor].margin; }  // on them, metres
+    const BitMask& contour() const { return contour_.pixels(); }              // of the shadow of all; after terms()
     // Of each of the target's contour points: the nearest point of the shadow's contour and the actor whose it is; after terms().
     std::span<const ContourPoint> nearest() const { return nearest_; }
     std::span<const int> owners() const { return owners_; }

@@ -23,7 +23,6 @@ constexpr double kIntoHole = 6;
 constexpr double kNearest = 0.7;
 constexpr double kHold = 0.002;  // how much a bearing point resists, in w9 a squared millimetre
 constexpr double kFirstDamping = 0.1, kMostDamping = 1e5;
-constexpr double kNudge = 1e-6;  // for the derivative of the margin
 
 }  // namespace
 
@@ -76,7 +75,7 @@ void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> freed
     for (std::size_t a = 0; a < equations_.size(); ++a)
         equations_[a].begin(energy.posed(a), freedoms.subspan(first_[a], problem_.actors[a].freedoms));
     addContour(energy);
-    addPhysics(energy, freedoms);
+    addPhysics(energy);
     for (PoseEquations& equations : equations_) equations.finish();
 }
 
@@ -154,8 +153,8 @@ void SilhouetteFit::addContour(SceneEnergy& energy) {
             }
 }
 
-// Equation 6: what is too deep, too high, or out of balance.
-void SilhouetteFit::addPhysics(SceneEnergy& energy, std::span<const double> freedoms) {
+// Equation 6: what is too deep.
+void SilhouetteFit::addPhysics(SceneEnergy& energy) {
     PoseWeights weights = problem_.weights;
     for (double* weight : {&weights.w7, &weights.w9, &weights.w10, &weights.w11}) *weight *= weights.stiffness;
     for (std::size_t a = 0; a < equations_.size(); ++a) {
@@ -196,26 +195,44 @@ void SilhouetteFit::addPhysics(SceneEnergy& energy, std::span<const double> free
             if (centre.y - radius < posed.lowest() + kTouch)
                 equations.addPoint(body.spheres[i].joint, centre, {0, 1000, 0}, 0, kHold * weights.w9);
         }
-        // The margin and the height above the floor, by small nudges of the spheres: a skin moves as they do.
-        const double lacking = 100 * (kAmpleMargin - energy.margin(a)), height = 1000 * energy.lowest(a);
-        if (lacking <= 0 && height <= 0) continue;
-        std::vector<double> nudged(freedoms.begin() + static_cast<std::ptrdiff_t>(first_[a]),
-                                   freedoms.begin() + static_cast<std::ptrdiff_t>(first_[a] + body.freedoms));
-        const auto size = static_cast<Eigen::Index>(body.freedoms);
-        Eigen::VectorXd margins(size), heights(size);
-        findBearings(posed.spheres(), problem_.weights.bearing, contacts_);
-        const double margin = supportMargin(contacts_, posed.massCentre());
-        for (std::size_t k = 0; k < body.freedoms; ++k) {
-            nudged[k] += kNudge;
-            nudged_.pose(body, nudged);
-            nudged[k] -= kNudge;
-            findBearings(nudged_.spheres(), problem_.weights.bearing, contacts_);
-            margins[static_cast<Eigen::Index>(k)] = -100 * (supportMargin(contacts_, nudged_.massCentre()) - margin) / kNudge;
-            heights[static_cast<Eigen::Index>(k)] = 1000 * (nudged_.lowest() - posed.lowest()) / kNudge;
-        }
-        if (lacking > 0) equations.addRow(margins, lacking, 0.5 * weights.w9 / std::max(kNearest, lacking));
-        if (height > 0) equations.addRow(heights, height, 0.5 * weights.w7 / std::max(kNearest, height));
+        addBalance(energy, a, weights);
     }
+}
+
+// The height above the floor, and the margin by what decides it: how the contact on the nearest tangent moves against the mass centre.
+void SilhouetteFit::addBalance(const SceneEnergy& energy, std::size_t index, const PoseWeights& weights) {
+    PoseEquations& equations = equations_[index];
+    const Body& body = problem_.actors[index];
+    const PosedBody& posed = energy.posed(index);
+    const Contacts& contacts = energy.bearings(index);
+    // A vertex of the skin goes with the joint that has most of it.
+    const auto jointOf = [&](std::uint32_t source) {
+        return problem_.skins.empty() ? body.spheres[source].joint : problem_.skins[index]->joints[source][0];
+    };
+    const std::size_t lowestJoint = jointOf(contacts.lowestSource);
+    const glm::dvec3 lowest = problem_.skins.empty() ? posed.spheres()[contacts.lowestSource].centre
+                                                     : glm::dvec3(energy.skin(index)[contacts.lowestSource]);
+    if (const double height = 1000 * contacts.lowest; height > 0)
+        equations.addPoint(lowestJoint, lowest, {0, 1000, 0}, height, 0.5 * weights.w7 / std::max(kNearest, height));
+
+    const double lacking = 100 * (kAmpleMargin - energy.margin(index));
+    if (lacking <= 0) return;
+    const SupportTangent tangent = supportTangent(contacts, posed.massCentre());
+    const glm::dvec3 outward(tangent.outward.x, 0, tangent.outward.y), up(0, 1, 0);
+    const Contact& contact = *tangent.contact;
+    // Raised against the lowest point a contact moves inwards: a fading one to the lowest point, the cut of an edge along it.
+    double inwards = 0;
+    if (contact.share < 1)
+        inwards = (glm::dot(outward, contact.point - lowest) + contact.radius / contact.share) / problem_.weights.bearing;
+    else if (contact.along.y != 0)
+        inwards = glm::dot(outward, contact.along) / contact.along.y;
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(body.freedoms));
+    equations.addMotion(row, jointOf(contact.source), contact.point, -100.0 * (contact.share * outward - inwards * up));
+    equations.addMotion(row, lowestJoint, lowest, -100.0 * ((1 - contact.share) * outward + inwards * up));
+    const double mass = body.mass();
+    for (std::size_t i = 0; i < body.joints.size(); ++i)
+        equations.addMotion(row, i, posed.point(i, body.joints[i].massCentre), 100 * body.joints[i].mass / mass * outward);
+    equations.addRow(row, lacking, 0.5 * weights.w9 / std::max(kNearest, lacking));
 }
 
 }  // namespace fantascope::theatre

@@ -29,7 +29,8 @@ public:
 private:
     void linearise(SceneEnergy& energy, std::span<const double> freedoms);
     void addContour(SceneEnergy& energy);
-    void addPhysics(SceneEnergy& energy, std::span<const double> freedoms);
+    void addPhysics(SceneEnergy& energy);
+    void addBalance(const SceneEnergy& energy, std::size_t actor, const PoseWeights& weights);
 
     const PoseProblem& problem_;
     GreyImage distance_;  // of the target, signedDistance()
@@ -37,8 +38,6 @@ private:
     std::vector<PoseEquations> equations_;  // of each actor: a residual moves with his joints alone
     std::vector<std::size_t> first_;        // freedom of each actor
     std::vector<double> trial_;
-    PosedBody nudged_;
-    Contacts contacts_;
     std::int64_t evaluations_ = 0;
 };
 

@@ -95,7 +95,7 @@ TEST(FindContacts, WhatTouchesNothingStandsOnItsLowestPoint) {
 TEST(FindBearings, OfASkinFadeAsThoseOfBalls) {
     Contacts contacts, ofBalls;
     const std::vector<glm::vec3> vertices{{0, 0.2f, 0}, {1, 0.205f, 0}, {0, 0.215f, 2}, {4, 0.2251f, 4}, {0, 1, 9}};
-    findBearings(vertices, 0.02, contacts);
+    findBearings(vertices, {}, 0.02, contacts);
     EXPECT_FALSE(contacts.touches);
     EXPECT_NEAR(contacts.lowest, 0.2, 1e-6);
     ASSERT_EQ(contacts.discs.size(), 3u);
@@ -146,7 +146,7 @@ TEST(FindContacts, KnowsHowLowTheLowestPointIs) {
     Contacts contacts;
     findContacts(std::vector{ball({1, 0.1, 2}, 0.1), ball({3, 0.07, 2}, 0.1)}, contacts);
     EXPECT_NEAR(contacts.lowest, -0.03, 1e-12);
-    findContacts(std::vector<glm::vec3>{{1, 2, 3}, {4, 0.5f, 6}, {1, 1, 1}}, contacts);
+    findContacts(std::vector<glm::vec3>{{1, 2, 3}, {4, 0.5f, 6}, {1, 1, 1}}, {}, contacts);
     EXPECT_EQ(contacts.lowest, 0.5);
     EXPECT_FALSE(contacts.touches);
     ASSERT_EQ(contacts.discs.size(), 1u);
@@ -166,7 +166,7 @@ TEST(FindContacts, OfASkinAreTheCornersOfWhatTouches) {
             all.discs.push_back({{touching.x, touching.z}, 0});
         }
         Contacts contacts;
-        findContacts(vertices, contacts);
+        findContacts(vertices, {}, contacts);
         EXPECT_TRUE(contacts.touches);
         EXPECT_LE(contacts.discs.size(), 48u);
         EXPECT_LE(contacts.discs.size(), static_cast<std::size_t>(count));
@@ -178,6 +178,16 @@ TEST(FindContacts, OfASkinAreTheCornersOfWhatTouches) {
     }
 }
 
+// An edge from the floor up to 4 cm touches with its lowest quarter.
+TEST(FindContacts, CutsTheEdgesOfASkin) {
+    Contacts contacts;
+    const std::vector<glm::vec3> vertices{{0, 0, 0}, {0, 0, 1}, {4, 0.04f, 0}};
+    const std::vector<MeshEdge> edges{{0, 2, 0, 1}};
+    findContacts(vertices, edges, contacts);
+    EXPECT_NEAR(supportArea(contacts), 0.5, 1e-5);
+    EXPECT_NEAR(supportMargin(contacts, {1.5, 1, 0}), -0.5, 2e-3);
+}
+
 TEST(FindContacts, APersonStandsOnItsSoles) {
     const Body body = humanBody(1.75);
     const BodyMesh mesh = humanMesh(body);
@@ -187,7 +197,7 @@ TEST(FindContacts, APersonStandsOnItsSoles) {
     const auto stand = [&](double height) {
         posed.pose(body, body.restPose(body.joints[0].offset + dvec3(0, height, 0), {1, 0, 0, 0}));
         mesh.skin(body, posed, skin);
-        findContacts(skin, contacts);
+        findContacts(skin, mesh.edges, contacts);
     };
     stand(0);
     EXPECT_TRUE(contacts.touches);

@@ -58,11 +58,12 @@ TEST(PoseSearch, finds_a_shape_that_people_can_hold) {
 // The easy wrong version finds a shape for the capsules and hands out people of flesh.
 TEST(PoseSearch, what_it_ends_with_is_measured_and_found_on_the_skins) {
     PoseProblem problem = hill(2, 1.5, 256);
-    const auto ofCapsules = PoseSearch::run(problem, 1, evaluations(6000));
+    const auto ofCapsules = PoseSearch::run(problem, 1, evaluations(12000));
     for (const Body& body : problem.actors) problem.skins.push_back(std::make_shared<const BodyMesh>(humanMesh(body)));
-    const auto trial = PoseSearch::run(problem, 1, evaluations(6000));
+    const auto trial = PoseSearch::run(problem, 1, evaluations(12000));
     EXPECT_TRUE(trial.quality.isValid());
-    EXPECT_GT(trial.quality.iou, PoseSearch::measure(problem, ofCapsules.freedoms).iou);
+    EXPECT_GT(trial.quality.iou, 0.93);
+    EXPECT_LT(trial.quality.energy, PoseSearch::measure(problem, ofCapsules.freedoms).energy);
     std::vector<glm::vec3> skin;
     PosedBody posed;
     std::span<const double> freedoms(trial.freedoms);
