@@ -72,7 +72,9 @@ public:
     // annealing, while physics stiffens until it holds people up.
     static Trial run(const PoseProblem& problem, std::uint64_t seed, const Options& options, const AskStop& askStop = {});
 
-    // Trials with seeds of their own (63 bits), derived from `seed`, on so many threads; in the order of their numbers.
+    // The seed (63 bits) of a trial, from 0, of a search's.
+    static std::uint64_t trialSeed(std::uint64_t seed, std::uint64_t number);
+    // Trials with these seeds on so many threads; in the order of their numbers.
     static std::vector<Trial> runTrials(const PoseProblem& problem, std::uint64_t seed, int trials, const Options& options,
                                         int threads, const AskStop& askStop = {});
 
