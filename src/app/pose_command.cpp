@@ -297,15 +297,15 @@ Report reportOf(const Found& found, std::span<const TriangleMesh> skins) {
 
 std::string brief(const Found& found) {
     const PoseTrials::Trial& best = found.best();
-    const std::size_t finished = found.trials.finished;
-    std::string text =
-        fmt::format("{}: IoU {:.3f}, {} actor{}, {} m high, the best of {}", found.options.output.string(), best.quality.iou,
-                    found.problem.actors.size(), found.problem.actors.size() == 1 ? "" : "s", found.height,
-                    finished == 1  ? "1 trial"
-                    : finished > 0 ? fmt::format("{} trials", finished)
-                                   : "no trial that was finished");
+    const std::size_t finished = found.trials.finished, actors = found.problem.actors.size();
+    std::string text = fmt::format("{}: IoU {:.3f}, {} actor{}, {} m high", found.options.output.string(), best.quality.iou,
+                                   actors, actors == 1 ? "" : "s", found.height);
+    if (finished > 0)
+        text += fmt::format(", the best of {} trial{}", finished, finished == 1 ? "" : "s");
+    else
+        text += "; no trial was finished: take more --seconds, or fewer --evaluations";
     if (!best.quality.isValid())
-        text += "; nobody could hold these poses: more --trials or --seconds, more --evaluations or other --actors may help";
+        text += fmt::format("; nobody can hold these poses{}", finished > 0 ? ": more --trials or other --actors may help" : "");
     return text;
 }
 
@@ -317,7 +317,7 @@ Result<void> run(const Options& options) {
     const std::string file = options.target.string();
     const auto targetOf = [&](double height) { return PoseTarget::from(silhouette, stage, height, kSearchRows).in(file); };
     const double area = TRY(targetOf(1)).area / (kSearchRows * kSearchRows);
-    const Troupe troupe = TRY(Troupe::of(area, options.actors, options.height, options.statures).in(file));
+    const Troupe troupe = TRY(Troupe::of(area, options.actors, options.height, options.statures));
     PoseProblem problem{stage, TRY(targetOf(troupe.height)), {}, {}};
     for (const double stature : troupe.statures) problem.actors.push_back(theatre::humanBody(stature));
     PoseTrials::Options search{{}, options.seed, options.trials, options.seconds, options.threads};

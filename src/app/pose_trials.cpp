@@ -46,7 +46,7 @@ public:
         const std::lock_guard lock(mutex_);
         evaluations_[number] = now.evaluations;
         const auto tell = [&](const char* how) { progress_.update(share(), told(number, now.energy) + how); };
-        tell("");
+        if (now.evaluations > 0) tell("");  // there is an energy
         if (!isInterrupted_) isInterrupted_ = !attendance_.goesOn([&] { tell("  paused, space goes on"); });
         // The time cuts none short that came before one that is finished.
         return isInterrupted_ || (isTimeUp() && number >= afterFinished_);

@@ -69,7 +69,7 @@ Result<Troupe> Troupe::of(double area, std::optional<int> actors, std::optional<
         std::string advice = heightsThatFit(area, weight);
         if (const std::string others = actorsThatFit(squareMetres, ofOne); !others.empty() && statures.size() == 1)
             advice += (advice.empty() ? "" : ", or ") + others;
-        return Error(fmt::format("its silhouette has {:.2f} square metres at a height of {} m, too {} for {}: {}", squareMetres,
+        return Error(fmt::format("the silhouette has {:.2f} square metres at a height of {} m, too {} for {}: {}", squareMetres,
                                  *height, each < kLeastShare ? "small" : "large", people(*actors),
                                  advice.empty() ? "give --height and --actors" : "take " + advice));
     }
