@@ -24,14 +24,14 @@ PoseProblem hill() {
     return {stage, theatre::PoseTarget::from(picture, stage, 1, 64).value(), {theatre::humanBody(1.7)}, {}};
 }
 
-// A millisecond later each time that it is read; presses Ctrl-C when it is read so often.
+// A hundredth of a second later each time that it is read; presses Ctrl-C when it is read so often.
 class CountingClock final : public Clock {
 public:
     explicit CountingClock(int ctrlC = -1) : ctrlC_(ctrlC) {}
     Time now() const override {
         const int count = ++count_;
         if (count == ctrlC_) std::raise(SIGINT);
-        return std::chrono::milliseconds(count);
+        return std::chrono::milliseconds(10 * count);
     }
     void sleepUntil(Time) override {}
 
@@ -77,10 +77,10 @@ TEST(PoseTrials, are_the_same_on_any_number_of_threads) {
 
 // Example failure: a trial that the time cut short, or one that came after it, is the best, and --trials does not find it again.
 TEST(PoseTrials, that_ended_by_time_are_repeated_by_their_number) {
-    // As long as five trials take, and a little.
+    // As long as five trials take, and a little: of those on three threads two at least are finished.
     CountingClock clock;
     std::ostringstream progress;
-    PoseTrials::run(hill(), options(1, 5), clock, progress, false);
+    PoseTrials::run(hill(), options(1, 5, 1e6), clock, progress, false);
     const double limit = 1.05 * seconds(clock.now());
     for (const int threads : {1, 3}) {
         const PoseTrials timed = run(options(threads, {}, limit));
@@ -112,7 +112,7 @@ TEST(PoseTrials, that_a_person_ends_keep_what_is_finished) {
     CountingClock clock;
     std::ostringstream progress;
     const PoseTrials three = PoseTrials::run(hill(), options(1, 3), clock, progress, false);
-    const int reads = static_cast<int>(std::lround(1000 * seconds(clock.now())));
+    const int reads = static_cast<int>(std::lround(100 * seconds(clock.now())));
     const PoseTrials late = run(options(1, {}), reads + 20);
     EXPECT_EQ(late.reason, PoseTrials::StopReason::Interrupted);
     EXPECT_EQ(late.finished, 3u);
@@ -123,10 +123,10 @@ TEST(PoseTrials, tell_how_far_they_are) {
     CountingClock clock;
     std::ostringstream progress;
     auto many = options(1, 3);
-    many.search.evaluations = 40'000;
+    many.search.evaluations = 8000;
     PoseTrials::run(hill(), many, clock, progress, false);
     EXPECT_THAT(progress.str(), testing::HasSubstr("trial 1  none finished  energy "));
-    EXPECT_THAT(progress.str(), testing::HasSubstr("trial 3  best IoU 0."));
+    EXPECT_THAT(progress.str(), testing::HasSubstr("  best IoU 0."));
     EXPECT_THAT(progress.str(), testing::HasSubstr(" % "));
 }
 
