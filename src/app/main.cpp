@@ -3,6 +3,7 @@
 #include "app/export_command.h"
 #include "app/pattern_command.h"
 #include "app/plot_command.h"
+#include "app/pose_command.h"
 #include "app/preview_command.h"
 #include "app/rehearse_command.h"
 #include "app/template_command.h"
@@ -13,8 +14,8 @@ namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-constexpr AddCommand kCommands[] = {addPatternCommand,  addRehearseCommand, addRunCommand,  addExportCommand,
-                                    addTemplateCommand, addPreviewCommand,  addPlotCommand, addCheckCommand};
+constexpr AddCommand kCommands[] = {addPatternCommand,  addPoseCommand,    addRehearseCommand, addRunCommand,  addExportCommand,
+                                    addTemplateCommand, addPreviewCommand, addPlotCommand,     addCheckCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

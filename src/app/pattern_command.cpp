@@ -1,6 +1,7 @@
 #include "app/pattern_command.h"
 
 #include "app/attendance.h"
+#include "app/output.h"
 #include "app/progress.h"
 #include "app/report.h"
 #include "drivers/display/picture_window.h"
@@ -17,7 +18,6 @@
 #include "core/parallel.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -54,18 +54,11 @@ struct Options {
     bool watch = false;
 };
 
-// Keeps a slip of the finger from writing a pattern over a picture.
-std::string onlyYaml(const std::string& file) {
-    return fs::path(file).extension() == ".yaml"
-               ? ""
-               : fmt::format("'{}' is not P.pattern.yaml: a pattern's name ends in .yaml", file);
-}
-
 void declare(CLI::App& command, Options& options) {
     command.add_option("GUIDE", options.guide, "The grey drawing: PNG, JPEG or TIFF")->required();
     command.add_option("-o,--output", options.output, "The pattern to write, P.pattern.yaml")
         ->required()
-        ->check(CLI::Validator(onlyYaml, "YAML"));
+        ->check(onlyYaml("P.pattern.yaml"));
     command
         .add_option(
             "--shapes", options.shapes,
@@ -110,37 +103,6 @@ void declare(CLI::App& command, Options& options) {
     command.add_option("--report", options.report, "Also write figures, as JSON");
     command.add_flag("--watch", options.watch, "Show the pattern in a window while it is searched for");
     command.footer("While it searches, the space bar pauses and goes on; escape, q and Ctrl-C end it with the best so far.");
-}
-
-// Whether `file` could be written, as far as can be told before the search; its folder need not be there yet.
-Result<void> checkWritable(const fs::path& file) {
-    fs::path folder = fs::absolute(file).parent_path();
-    std::error_code ignored;
-    while (!fs::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
-    if (fs::is_directory(folder, ignored) && ::access(folder.c_str(), W_OK) == 0) return {};
-    return Error(fmt::format("{}: cannot be written: {} is not a folder that may be written to", file.string(), folder.string()));
-}
-
-// A file that the pattern refers to: where it is, and its name beside the pattern.
-struct Material {
-    fs::path source;
-    std::string name;  // relative to the pattern's folder
-    bool copied;       // it has to be put there
-};
-
-// What lies in the pattern's folder or below stays where it is; anything else becomes STEM.`suffix` there.
-Material materialFor(const fs::path& output, const fs::path& source, const std::string& suffix) {
-    const fs::path relative =
-        fs::weakly_canonical(source).lexically_relative(fs::weakly_canonical(fs::absolute(output).parent_path()));
-    if (!relative.empty() && *relative.begin() != "..") return {source, relative.generic_string(), false};
-    const std::string stem = output.stem().stem().string();  // "P" of P.pattern.yaml
-    return {source, fmt::format("{}.{}", stem, suffix), true};
-}
-
-Result<void> copyTo(const fs::path& folder, const Material& material) {
-    if (!material.copied) return {};
-    const std::string content = TRY(readFile(material.source));
-    return writeFile(folder / material.name, content);
 }
 
 // The drawing of the shadows that shapes are to fill: what `guide` leaves dark, in the 8 bits of the file that it becomes.

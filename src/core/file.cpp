@@ -5,25 +5,33 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
+#include <limits>
 
 namespace fantascope {
 
 namespace fs = std::filesystem;
 
-Result<std::string> readFile(const fs::path& path) {
+Result<std::string> readFile(const fs::path& path) { return readStart(path, std::numeric_limits<std::size_t>::max()); }
+
+Result<std::string> readStart(const fs::path& path, std::size_t bytes) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) return Error(fmt::format("{}: is a folder, a file is needed", path.string()));
     std::ifstream stream(path, std::ios::binary);
     if (!stream) return Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-    std::ostringstream bytes;
-    bytes << stream.rdbuf();
+    std::string content;
+    std::array<char, 65536> part;
+    while (content.size() < bytes) {
+        stream.read(part.data(), static_cast<std::streamsize>(std::min(part.size(), bytes - content.size())));
+        content.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+        if (!stream) break;
+    }
     if (stream.bad()) return Error(fmt::format("{}: reading failed: {}", path.string(), std::strerror(errno)));
-    return std::move(bytes).str();
+    return content;
 }
 
 Result<void> writeFile(const fs::path& path, std::string_view bytes) {

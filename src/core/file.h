@@ -2,6 +2,7 @@
 
 #include "core/result.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -10,6 +11,8 @@ namespace fantascope {
 
 // The whole file. Error: names the file and why it cannot be read (missing, a folder, no permission).
 Result<std::string> readFile(const std::filesystem::path& path);
+// Its first `bytes`, or all of it if it has no more.
+Result<std::string> readStart(const std::filesystem::path& path, std::size_t bytes);
 
 // Writes aside in the same folder, syncs and renames, so that whoever reads `path` sees the old bytes or all of the new ones, and a
 // failure leaves nothing behind. Makes missing folders. Error: names the file and the reason.

@@ -27,20 +27,27 @@ cv::Mat view(const Rgba16Image& image) {
     return {image.height(), image.width(), CV_16UC4, const_cast<Rgba16*>(image.pixels().data())};
 }
 
-// Where a JPEG's own data begin: after the segments of its head, each of them 0xff, a marker and a length that counts itself. A
-// thumbnail in one of them is a whole JPEG, with an end of its own.
-std::size_t jpegDataStart(std::string_view bytes) {
-    const auto byte = [&](std::size_t index) { return static_cast<std::size_t>(static_cast<unsigned char>(bytes[index])); };
-    constexpr std::size_t kMarker = 0xff, kStartOfScan = 0xda;
+std::size_t byteAt(std::string_view bytes, std::size_t index) { return static_cast<unsigned char>(bytes[index]); }
+// Big-endian, as in PNG and JPEG.
+std::size_t wordAt(std::string_view bytes, std::size_t index) { return 256 * byteAt(bytes, index) + byteAt(bytes, index + 1); }
+
+// The segments of a JPEG's head begin with 0xff, a marker and a length that counts itself.
+constexpr std::size_t kMarker = 0xff, kStartOfScan = 0xda;
+
+// Goes through these segments until `isLast(marker)`: where that one begins, or what follows the last of them. A thumbnail in one of them
+// is a whole JPEG, with an end of its own.
+template <class IsLast>
+std::size_t jpegSegment(std::string_view bytes, IsLast isLast) {
     std::size_t at = 2;  // after the start of the image
-    while (at + 4 <= bytes.size() && byte(at) == kMarker && byte(at + 1) != kStartOfScan)
-        at += 2 + 256 * byte(at + 2) + byte(at + 3);
+    while (at + 4 <= bytes.size() && byteAt(bytes, at) == kMarker && !isLast(byteAt(bytes, at + 1)))
+        at += 2 + wordAt(bytes, at + 2);
     return at;
 }
 
 // JPEG decoders fill what is missing with grey and call it a warning; a picture that ends early must be refused.
 bool endsEarly(std::string_view bytes) {
-    if (bytes.starts_with("\xff\xd8")) return bytes.find("\xff\xd9", jpegDataStart(bytes)) == std::string_view::npos;
+    const auto isStartOfScan = [](std::size_t marker) { return marker == kStartOfScan; };
+    if (bytes.starts_with("\xff\xd8")) return bytes.find("\xff\xd9", jpegSegment(bytes, isStartOfScan)) == std::string_view::npos;
     if (bytes.starts_with("\x89PNG")) return bytes.find("IEND") == std::string_view::npos;
     return false;
 }
@@ -62,15 +69,15 @@ Result<cv::Mat> decode(const fs::path& path) {
     if (picture.empty()) return refused("not a picture that can be read, or a damaged one");
     if (std::max(picture.cols, picture.rows) > kLargestSide) return refused(fmt::format("larger than {} pixels", kLargestSide));
     if (picture.channels() == 2 || picture.channels() > 4) return refused(fmt::format("has {} channels", picture.channels()));
-    const int depth = picture.depth();
-    if (depth == CV_8U)
-        picture.convertTo(picture, CV_32F, 1.0 / 255);
-    else if (depth == CV_16U)
-        picture.convertTo(picture, CV_32F, 1.0 / 65535);
-    else
-        picture.convertTo(picture, CV_32F);
     if (!cv::checkRange(picture)) return refused("holds a value that is not a number");
     return picture;
+}
+
+// A row's channels, one after the other; whole numbers as shares of their type's largest. A row at a time, so that a picture is in memory
+// once and not three times.
+void rowOf(const cv::Mat& picture, int y, cv::Mat& row) {
+    const int depth = picture.depth();
+    picture.row(y).convertTo(row, CV_32F, depth == CV_8U ? 1.0 / 255 : depth == CV_16U ? 1.0 / 65535 : 1.0);
 }
 
 std::uint8_t toByte(float value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f)); }
@@ -111,8 +118,10 @@ Result<GreyImage> readGrey(const fs::path& path) {
     const cv::Mat picture = TRY(decode(path));
     GreyImage image(picture.cols, picture.rows);
     const int channels = picture.channels();
+    cv::Mat row;
     for (int y = 0; y < picture.rows; ++y) {
-        const float* pixel = picture.ptr<float>(y);
+        rowOf(picture, y, row);
+        const float* pixel = row.ptr<float>();
         for (int x = 0; x < picture.cols; ++x, pixel += channels) {
             float value = channels == 1 ? pixel[0] : 0.114f * pixel[0] + 0.587f * pixel[1] + 0.299f * pixel[2];
             if (channels == 4) value *= pixel[3];
@@ -126,14 +135,41 @@ Result<RgbaImage> readRgba(const fs::path& path) {
     const cv::Mat picture = TRY(decode(path));
     RgbaImage image(picture.cols, picture.rows);
     const int channels = picture.channels();
+    cv::Mat row;
     for (int y = 0; y < picture.rows; ++y) {
-        const float* pixel = picture.ptr<float>(y);
+        rowOf(picture, y, row);
+        const float* pixel = row.ptr<float>();
         for (int x = 0; x < picture.cols; ++x, pixel += channels) {
             const auto channel = [&](int index) { return toByte(pixel[channels == 1 ? 0 : index]); };
             image.at(x, y) = {channel(2), channel(1), channel(0), channels == 4 ? toByte(pixel[3]) : std::uint8_t{255}};
         }
     }
     return image;
+}
+
+Result<glm::ivec2> pictureSize(const fs::path& path) {
+    constexpr std::size_t kHead = 1 << 20;  // bytes; what a camera writes before the size is less
+    const auto head = readStart(path, kHead);
+    if (!head) return head.error();
+    const std::string_view bytes = *head;
+    const auto sizeAt = [&](std::size_t width, std::size_t height) {
+        return glm::ivec2(wordAt(bytes, width), wordAt(bytes, height));
+    };
+    if (bytes.starts_with("\x89PNG") && bytes.size() >= 24) {
+        // 32 bits each; more than 16 are more than anybody reads.
+        const bool isHuge = wordAt(bytes, 16) != 0 || wordAt(bytes, 20) != 0;
+        return isHuge ? glm::ivec2(0xffff) : sizeAt(18, 22);
+    }
+    if (bytes.starts_with("\xff\xd8")) {
+        // A frame's head: 0xc0 .. 0xcf but for three of them.
+        const auto isFrame = [](std::size_t marker) {
+            return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+        };
+        const std::size_t at = jpegSegment(bytes, isFrame);
+        if (at + 9 <= bytes.size() && byteAt(bytes, at) == kMarker && isFrame(byteAt(bytes, at + 1)))
+            return sizeAt(at + 7, at + 5);
+    }
+    return Error(fmt::format("{}: not a PNG or JPEG picture; save it again as a PNG", path.string()));
 }
 
 Result<void> writePng(const fs::path& path, const GreyImage& image) {

@@ -3,6 +3,8 @@
 #include "core/check.h"
 #include "core/result.h"
 
+#include <glm/vec2.hpp>
+
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -65,6 +67,9 @@ float srgbFromLinear(float linear);
 // channel is laid over black. Error: names the file: missing, truncated, not a picture, or larger than 16384 in a dimension.
 Result<GreyImage> readGrey(const std::filesystem::path& path);
 Result<RgbaImage> readRgba(const std::filesystem::path& path);
+// Width and height of a PNG or a JPEG, from its head alone: a picture that is too large need not be decoded to be refused. Error: names the
+// file: missing, or neither of them.
+Result<glm::ivec2> pictureSize(const std::filesystem::path& path);
 
 // PNG, 8 bits a channel where the picture has no more, written aside and renamed. Alpha is straight (not premultiplied). The same picture
 // gives the same bytes.

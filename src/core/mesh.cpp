@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -76,6 +77,14 @@ Result<TriangleMesh> readMesh(const std::filesystem::path& path) {
     if (mesh.triangles.empty())
         return refused("has no triangles; export the surface itself, not only points, lines or an empty node");
     return mesh;
+}
+
+Result<void> writeObj(const std::filesystem::path& path, const TriangleMesh& mesh) {
+    std::string text;
+    const auto out = std::back_inserter(text);
+    for (const glm::vec3& v : mesh.vertices) fmt::format_to(out, "v {} {} {}\n", v.x, v.y, v.z);
+    for (const glm::uvec3& t : mesh.triangles) fmt::format_to(out, "f {} {} {}\n", t.x + 1, t.y + 1, t.z + 1);
+    return writeFile(path, text);
 }
 
 }  // namespace fantascope

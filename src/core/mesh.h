@@ -21,4 +21,7 @@ struct TriangleMesh {
 // no area dropped. Error: names the file: missing, not a mesh, no triangle left, or a coordinate that is not finite.
 Result<TriangleMesh> readMesh(const std::filesystem::path& path);
 
+// A Wavefront OBJ; coordinates come back to the last bit. Error: names the file and why it cannot be written.
+Result<void> writeObj(const std::filesystem::path& path, const TriangleMesh& mesh);
+
 }  // namespace fantascope

@@ -1,21 +1,19 @@
 #include "plot/cast_picture.h"
 
-#include "theatre/capsule_shadow.h"
+#include "theatre/body_mesh.h"
+#include "theatre/mesh_shadow.h"
 
-#include "plot/capsule_mesh.h"
 #include "plot/palette.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 
 namespace fantascope::plot {
 namespace {
 
 using theatre::BitMask, theatre::PoseSearch;
-
-// The skin, until bodies have one.
-TriangleMesh skinOf(const theatre::PosedBody& posed) { return capsuleMesh(posed.capsules()); }
 
 bool canStand(const PoseSearch::Actor& actor) {
     PoseSearch::Quality alone;
@@ -48,17 +46,22 @@ CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const dou
     const BitMask black(frame.width(), frame.height());
     CastPicture picture{{problem.stage, frame, black, problem.target.mask, {}}, {}, {}};
     std::string fallen;
-    theatre::CapsuleShadow shadow;
+    std::map<double, theatre::BodyMesh> skins;  // by stature
+    theatre::MeshShadow shadow;
     theatre::PosedBody posed;
+    std::vector<glm::vec3> vertices;
     for (std::size_t i = 0; i < problem.actors.size(); ++i) {
         const theatre::Body& body = problem.actors[i];
         posed.pose(body, freedoms.first(body.freedoms));
         freedoms = freedoms.subspan(body.freedoms);
         picture.actors.push_back({black, fmt::format("{:.2f} m", body.stature), notesOf(quality.actors[i])});
-        for (const theatre::PlacedCapsule& capsule : posed.capsules()) shadow.add(frame, capsule, picture.actors[i].mask);
+        auto skin = skins.find(body.stature);
+        if (skin == skins.end()) skin = skins.emplace(body.stature, humanMesh(body)).first;
+        skin->second.skin(body, posed, vertices);
+        shadow.add(frame, skin->second, vertices, picture.actors[i].mask);
         if (picture.actors[i].mask.count() == 0) picture.actors[i].notes.push_back("no shadow in the picture");
         picture.view.shadow.add(picture.actors[i].mask);
-        picture.view.actors.push_back({skinOf(posed), actorColour(i)});
+        picture.view.actors.push_back({{vertices, skin->second.atRest.triangles}, actorColour(i)});
         if (!canStand(quality.actors[i])) fallen += fmt::format("{} {}", fallen.empty() ? "" : ",", i + 1);
     }
     picture.lines = {fmt::format("IoU {:.3f}", quality.iou), fmt::format("contour off by {:.1f} px of 256,", quality.contourMean),

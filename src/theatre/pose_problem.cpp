@@ -72,10 +72,14 @@ void sampleContour(PoseTarget& target, std::size_t points) {
 
 }  // namespace
 
+Result<void> PoseTarget::checkSize(int width, int height) {
+    if (std::max(width, height) <= kMostSide) return {};
+    return Error(fmt::format("it is {} x {} pixels; no side may have more than {}: scale it down, some 500 are enough", width,
+                             height, kMostSide));
+}
+
 Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage, double height, int rows) {
-    if (std::max(picture.width(), picture.height()) > kMostSide)
-        return Error(fmt::format("it is {} x {} pixels; no side may have more than {}: scale it down, some 500 are enough",
-                                 picture.width(), picture.height(), kMostSide));
+    TRY(checkSize(picture.width(), picture.height()));
     BitMask whole(picture.width(), picture.height());
     for (int y = 0; y < picture.height(); ++y)
         for (int x = 0; x < picture.width(); ++x)
@@ -103,12 +107,14 @@ Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage
     const int margin = static_cast<int>(std::lround(kMargin * rows)),
               columns = static_cast<int>(std::ceil((right - left) / step));
     const int width = columns + 2 * margin, above = rows + margin;
-    const double middle = 0.5 * (left + right);
-    PoseTarget target{ScreenFrame(stage, stage.light.x - 0.5 * width * pixel, above * pixel, pixel, width, above),
-                      BitMask(width, above),
-                      0,
-                      {},
-                      256.0 / rows};
+    const double middle = 0.5 * (left + right), given = pixel / step;  // a pixel of the picture, metres
+    PoseTarget target{
+        ScreenFrame(stage, stage.light.x - 0.5 * width * pixel, above * pixel, pixel, width, above),
+        BitMask(width, above),
+        0,
+        {},
+        256.0 / rows,
+        ScreenFrame(stage, stage.light.x - middle * given, bottom * given, given, picture.width(), picture.height())};
     for (int y = 0; y < above; ++y)
         for (int x = 0; x < width; ++x) {
             // 3 x 3 samples a pixel, or the picture's own pixels where they are fewer.
@@ -142,7 +148,8 @@ PoseTarget PoseTarget::halved(const Stage& stage) const {
                       BitMask(width, height),
                       0,
                       {},
-                      2 * pixelsOf256};
+                      2 * pixelsOf256,
+                      given};
     // From the floor up; a pixel is white if half of it is.
     const int cut = 2 * height - mask.height();
     for (int y = 0; y < height; ++y)

@@ -27,14 +27,18 @@ struct PoseTarget {
     // The same in pixels of twice the side, with half as many points: for a search's first look.
     PoseTarget halved(const Stage& stage) const;
 
-    static constexpr int kFewest = 64, kWidest = 8, kMostSide = 4096;
+    // Whether from() takes a picture of this size.
+    static Result<void> checkSize(int width, int height);
+
+    static constexpr int kFewest = 64, kWidest = 8, kMostSide = 2048;
     static constexpr double kFarApart = 0.125;
 
     ScreenFrame frame;
     BitMask mask;
     double area = 0;  // pixels
     std::vector<ContourPoint> contour;
-    double pixelsOf256 = 1;  // of the target's height, a pixel of the mask is so many of 256
+    double pixelsOf256 = 1;                     // of the target's height, a pixel of the mask is so many of 256
+    ScreenFrame given{Stage{}, 0, 0, 1, 0, 0};  // the whole picture as it was given, on the screen; empty if there was none
 
     // The energy's sums over points are those of kContourPoints, however many there are.
     double perPoint() const { return double(kContourPoints) / static_cast<double>(contour.size()); }

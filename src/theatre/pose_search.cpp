@@ -254,13 +254,16 @@ PoseSearch::Trial PoseSearch::run(const PoseProblem& problem, std::uint64_t seed
     return trial;
 }
 
+std::uint64_t PoseSearch::trialSeed(std::uint64_t seed, std::uint64_t number) {
+    return streamSeed(seed, {static_cast<std::uint64_t>(Stream::Trial), number}) >> 1;
+}
+
 std::vector<PoseSearch::Trial> PoseSearch::runTrials(const PoseProblem& problem, std::uint64_t seed, int trials,
                                                      const Options& options, int threads, const AskStop& askStop) {
     std::vector<Trial> found(static_cast<std::size_t>(trials));
     parallelFor(trials, threads, [&](int i) {
-        const auto number = static_cast<std::uint64_t>(i);
-        found[static_cast<std::size_t>(i)] =
-            run(problem, streamSeed(seed, {static_cast<std::uint64_t>(Stream::Trial), number}) >> 1, options, askStop);
+        const auto number = static_cast<std::size_t>(i);
+        found[number] = run(problem, trialSeed(seed, number), options, askStop);
     });
     return found;
 }

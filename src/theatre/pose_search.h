@@ -73,7 +73,9 @@ public:
     // local search has pixels of 256 rows, and the skins if the problem has them. Quality is measured in the problem's own pixels.
     static Trial run(const PoseProblem& problem, std::uint64_t seed, const Options& options, const AskStop& askStop = {});
 
-    // Trials with seeds of their own (63 bits), derived from `seed`, on so many threads; in the order of their numbers.
+    // The seed (63 bits) of a trial, from 0, of a search's.
+    static std::uint64_t trialSeed(std::uint64_t seed, std::uint64_t number);
+    // Trials with these seeds on so many threads; in the order of their numbers.
     static std::vector<Trial> runTrials(const PoseProblem& problem, std::uint64_t seed, int trials, const Options& options,
                                         int threads, const AskStop& askStop = {});
 

@@ -21,6 +21,16 @@ TEST(File, bytes_come_back_as_they_were_written) {
     EXPECT_EQ(*readFile(folder / "a"), "");
 }
 
+TEST(File, its_start_is_read_alone) {
+    const ScratchFolder folder;
+    const std::string body(200'000, 'x');
+    const auto file = folder.file("a", body + "end");
+    EXPECT_EQ(*readStart(file, 3), "xxx");
+    EXPECT_EQ(*readStart(file, 200'001), body + "e");
+    EXPECT_EQ(*readStart(file, 1'000'000), body + "end");
+    EXPECT_EQ(*readFile(file), body + "end");
+}
+
 TEST(File, writing_makes_missing_folders_and_leaves_only_the_file) {
     const ScratchFolder folder;
     ASSERT_TRUE(writeFile(folder / "new/deep/a", "x"));

@@ -156,6 +156,25 @@ TEST_F(ImageTest, what_is_no_picture_is_refused_with_advice) {
 }
 
 // A picture of floating-point values may hold anything.
+// Example failure: the size of a thumbnail, or of what stands in another segment of the head.
+TEST_F(ImageTest, a_pictures_size_stands_in_its_head) {
+    const auto size = [&](const std::string& bytes) { return pictureSize(folder_.file("picture", bytes)); };
+    const cv::Mat picture = gradient(300, 20);
+    for (const char* ending : {".png", ".jpg"}) {
+        const std::string bytes = encoded(ending, picture);
+        EXPECT_EQ(size(bytes).value(), glm::ivec2(300, 20)) << ending;
+        EXPECT_EQ(size(bytes.substr(0, 400)).value(), glm::ivec2(300, 20)) << ending << ": from its head alone";
+        EXPECT_FALSE(size(bytes.substr(0, 10)));
+    }
+    // A segment that holds another JPEG.
+    const std::string jpeg = encoded(".jpg", picture), thumbnail = encoded(".jpg", gradient(16, 8));
+    const std::size_t length = thumbnail.size() + 2;
+    const std::string segment = std::string("\xff\xe1") + char(length / 256) + char(length % 256) + thumbnail;
+    EXPECT_EQ(size(jpeg.substr(0, 2) + segment + jpeg.substr(2)).value(), glm::ivec2(300, 20));
+    EXPECT_THAT(size("no picture").error().message(), HasSubstr("picture: not a PNG or JPEG picture"));
+    EXPECT_THAT(pictureSize(folder_ / "absent").error().message(), HasSubstr("absent: cannot be read"));
+}
+
 TEST_F(ImageTest, values_that_are_no_numbers_are_refused) {
     cv::Mat picture(2, 2, CV_32FC1, cv::Scalar(0.5));
     EXPECT_THAT(grey(encoded(".tiff", picture)).pixels(), Each(0.5f));

@@ -216,6 +216,16 @@ TEST_F(MeshTest, a_giant_is_a_mesh) {
     EXPECT_EQ(mesh("giant.obj", "v 0 0 0\nv 1e30 1e30 0\nv -1e30 2e30 1e30\nf 1 2 3\n").triangles.size(), 1u);
 }
 
+TEST_F(MeshTest, a_written_mesh_reads_back_as_it_was) {
+    const TriangleMesh mesh{{{0.1f, -1e-7f, 1 / 3.0f}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1e6f}}, {{0, 1, 2}, {0, 2, 3}}};
+    const ScratchFolder folder;
+    ASSERT_TRUE(writeObj(folder / "a.obj", mesh));
+    const TriangleMesh read = readMesh(folder / "a.obj").value();
+    EXPECT_EQ(read.vertices, mesh.vertices);
+    EXPECT_EQ(read.triangles, mesh.triangles);
+    EXPECT_FALSE(writeObj(folder / "a.obj" / "b.obj", mesh));
+}
+
 TEST_F(MeshTest, a_file_without_triangles_is_refused_with_advice) {
     EXPECT_THAT(refusal("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\np 1 2 3\n"),
                 AllOf(HasSubstr("points.obj"), HasSubstr("no triangles")));

@@ -1,0 +1,375 @@
+// The program as a person runs it: its exit statuses, its messages, and what it leaves behind.
+
+#include "theatre/body_mesh.h"
+#include "theatre/cast.h"
+#include "theatre/mesh_shadow.h"
+
+#include "core/file.h"
+#include "core/image.h"
+#include "core/mesh.h"
+#include "program.h"
+#include "scratch_folder.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace fantascope {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+using Arguments = std::vector<std::string>;
+
+template <class IsWhite>
+GreyImage pictureOf(int width, int height, IsWhite isWhite) {
+    GreyImage picture(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) picture.at(x, y) = isWhite(x, y) ? 1.0f : 0.0f;
+    return picture;
+}
+bool isIn(int x, int y, int left, int top, int width, int height) {
+    return x >= left && x < left + width && y >= top && y < top + height;
+}
+
+// A folder with a silhouette, a hill that stands left of the picture's middle and above its lower edge, and what the program leaves in out/.
+class PoseCommand : public testing::Test {
+protected:
+    PoseCommand() {
+        EXPECT_TRUE(writePng(folder_ / "hill.png", pictureOf(240, 140, [](int x, int y) {
+                                 return y < 120 && std::hypot((x + 0.5 - 90) / 80, (y + 0.5 - 120) / 100) < 1;
+                             })));
+        fs::create_directory(folder_ / "out");
+    }
+
+    Outcome run(const Arguments& arguments) const { return runProgram(arguments, folder_ / "."); }
+    // `pose hill.png -o out/c.cast.yaml` with short trials, and more.
+    Outcome find(const Arguments& more) const {
+        Arguments arguments = {"pose", "hill.png", "-o", "out/c.cast.yaml"};
+        if (std::find(more.begin(), more.end(), "--evaluations") == more.end())
+            arguments.insert(arguments.end(), {"--evaluations", "1000"});
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    }
+    std::string text(const std::string& file) const { return readFile(folder_ / file).value(); }
+    nlohmann::json json(const std::string& file) const { return nlohmann::json::parse(text(file)); }
+    std::vector<std::string> written(const std::string& folder = "out") const {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(folder_ / folder)) names.push_back(entry.path().filename());
+        std::sort(names.begin(), names.end());
+        return names;
+    }
+
+    const ScratchFolder folder_;
+};
+
+TEST_F(PoseCommand, writes_a_cast_with_its_target_beside_it) {
+    const Outcome done = find({"--trials", "2", "--actors", "2", "--height", "1.5", "--stature", "1.6,1.8", "--seed", "7"});
+    ASSERT_EQ(done.status, 0) << done.errors;
+    EXPECT_THAT(done.out, AllOf(StartsWith("out/c.cast.yaml: IoU 0."), HasSubstr("2 actors, 1.5 m high, the best of 2 trials")));
+    EXPECT_THAT(written(), ElementsAre("c.cast.yaml", "c.target.png"));
+    fs::rename(folder_ / "out", folder_ / "moved");  // as a folder it can go anywhere
+    const auto cast = theatre::readCast(folder_ / "moved/c.cast.yaml");
+    ASSERT_TRUE(cast) << cast.error().message();
+    EXPECT_EQ(readFile(cast->target).value(), text("hill.png"));
+    EXPECT_EQ(cast->height, 1.5);
+    EXPECT_EQ(cast->seed, 7u);
+    EXPECT_EQ(cast->framesPerSecond, 0);
+    ASSERT_EQ(cast->actors.size(), 2u);
+    EXPECT_EQ(cast->actors[0].stature, 1.6);
+    EXPECT_EQ(cast->actors[1].stature, 1.8);
+}
+
+TEST_F(PoseCommand, refers_to_a_target_beside_or_below_it) {
+    ASSERT_EQ(run({"pose", "hill.png", "-o", "c.cast.yaml", "--trials", "1", "--evaluations", "1000"}).status, 0);
+    EXPECT_THAT(text("c.cast.yaml"), HasSubstr("target: hill.png"));
+    EXPECT_FALSE(fs::exists(folder_ / "c.target.png"));
+}
+
+TEST_F(PoseCommand, gives_the_same_file_for_a_seed_on_any_number_of_threads) {
+    std::vector<std::string> found;
+    for (const Arguments& more : {Arguments{"--threads", "1"}, {"--threads", "3"}, {"--threads", "1", "--seed", "2"}}) {
+        Arguments arguments = {"--trials", "3", "--actors", "1"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        ASSERT_EQ(find(arguments).status, 0);
+        found.push_back(text("out/c.cast.yaml"));
+    }
+    EXPECT_EQ(found[0], found[1]);
+    EXPECT_NE(found[0], found[2]);
+}
+
+TEST_F(PoseCommand, reports_what_it_found_and_each_trial) {
+    ASSERT_EQ(find({"--trials", "3", "--actors", "2", "--report", "out/r.json"}).status, 0);
+    const nlohmann::json report = json("out/r.json");
+    for (const char* key : {"iou", "contour_mean_px", "contour_max_px", "seconds", "seconds_per_trial", "height"})
+        EXPECT_GT(report[key].get<double>(), 0) << key;
+    double sum = 0;
+    for (const char* term : {"contour", "coverage", "coherence", "visible", "physics", "hint"})
+        sum += report["energy"][term].get<double>();
+    EXPECT_NEAR(report["energy"]["total"].get<double>(), sum, 1e-9 * sum);
+    EXPECT_EQ(report["stop_reason"], "trials");
+    EXPECT_EQ(report["seed"], 1);
+    EXPECT_EQ(report["finished_trials"], 3);
+
+    ASSERT_EQ(report["trials"].size(), 3u);
+    std::int64_t evaluations = 0;
+    int satisfactory = 0;
+    double best = 0;
+    bool anyValid = false;
+    for (const nlohmann::json& trial : report["trials"]) anyValid |= trial["valid"].get<bool>();
+    for (const nlohmann::json& trial : report["trials"]) {
+        EXPECT_TRUE(trial["finished"].get<bool>());
+        EXPECT_TRUE(trial["seed"].is_number_unsigned());
+        EXPECT_GE(trial["evaluations"].get<int>(), 1000);
+        evaluations += trial["evaluations"].get<int>();
+        const bool valid = trial["valid"].get<bool>();
+        const double iou = trial["iou"].get<double>();
+        if (valid || !anyValid) best = std::max(best, iou);
+        satisfactory += valid && iou >= 0.95;
+    }
+    EXPECT_EQ(report["evaluations"], evaluations);
+    EXPECT_EQ(report["iou"], best);
+    EXPECT_EQ(report["trials"][report["best_trial"].get<std::size_t>() - 1]["iou"], best);
+    EXPECT_DOUBLE_EQ(report["satisfactory_share"].get<double>(), satisfactory / 3.0);
+    if (satisfactory == 0) {
+        EXPECT_TRUE(report["expected_trials"].is_null());
+    } else {
+        EXPECT_DOUBLE_EQ(report["expected_trials"].get<double>(), 3.0 / satisfactory);
+    }
+
+    ASSERT_EQ(report["actors"].size(), 2u);
+    for (const nlohmann::json& actor : report["actors"]) {
+        for (const char* key : {"margin", "lowest_point", "deepest_penetration", "stature"})
+            EXPECT_TRUE(actor[key].is_number()) << key;
+        for (const nlohmann::json& point : actor["contacts"]) EXPECT_EQ(point.size(), 2u);
+        EXPECT_TRUE(actor["within_limits"].is_boolean());
+    }
+}
+
+// The shadow of a closed surface in a picture on the screen, by every triangle and every pixel: no code of the program's.
+struct OtherShadow {
+    explicit OtherShadow(const nlohmann::json& stage) {
+        const auto vector = [](const nlohmann::json& v) { return glm::dvec3(v[0], v[1], v[2]); };
+        light = vector(stage["light"]);
+        origin = vector(stage["screen"]["origin"]), u = vector(stage["screen"]["u"]), v = vector(stage["screen"]["v"]);
+        width = stage["target_px"][0], height = stage["target_px"][1];
+        dark.assign(static_cast<std::size_t>(width * height), 0);
+    }
+    glm::dvec2 pixelOf(const glm::dvec3& point) const {
+        const glm::dvec3 normal = glm::cross(u, v), ray = point - light;
+        const glm::dvec3 hit = light + ray * (glm::dot(origin - light, normal) / glm::dot(ray, normal)) - origin;
+        return {width * glm::dot(hit, u) / glm::dot(u, u), height * glm::dot(hit, v) / glm::dot(v, v)};
+    }
+    void add(const TriangleMesh& mesh) {
+        for (const glm::uvec3& t : mesh.triangles) {
+            const glm::dvec2 a = pixelOf(mesh.vertices[t.x]), b = pixelOf(mesh.vertices[t.y]), c = pixelOf(mesh.vertices[t.z]);
+            const auto side = [](glm::dvec2 from, glm::dvec2 to, glm::dvec2 at) {
+                return (to.x - from.x) * (at.y - from.y) - (to.y - from.y) * (at.x - from.x);
+            };
+            const int left = std::max(0, static_cast<int>(std::min({a.x, b.x, c.x}) - 1));
+            const int right = std::min(width, static_cast<int>(std::max({a.x, b.x, c.x}) + 1));
+            const int top = std::max(0, static_cast<int>(std::min({a.y, b.y, c.y}) - 1));
+            const int bottom = std::min(height, static_cast<int>(std::max({a.y, b.y, c.y}) + 1));
+            for (int y = top; y < bottom; ++y)
+                for (int x = left; x < right; ++x) {
+                    const glm::dvec2 at(x + 0.5, y + 0.5);
+                    const double ab = side(a, b, at), bc = side(b, c, at), ca = side(c, a, at);
+                    if ((ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0))
+                        dark[static_cast<std::size_t>(y * width + x)] = 1;
+                }
+        }
+    }
+
+    glm::dvec3 light, origin, u, v;
+    int width, height;
+    std::vector<char> dark;
+};
+
+// Anybody can cast the shadow again from the meshes. Example failures: the screen hangs where the masks do, with their margin, and not where the
+// given picture does; row 0 is at the floor.
+TEST_F(PoseCommand, leaves_meshes_that_throw_the_shadow_that_it_reports) {
+    ASSERT_EQ(
+        find({"--trials", "2", "--actors", "2", "--evaluations", "4000", "--meshes", "out/m", "--report", "out/r.json"}).status,
+        0);
+    EXPECT_THAT(written("out/m"), ElementsAre("actor-1.obj", "actor-2.obj", "stage.json"));
+    OtherShadow shadow(json("out/m/stage.json"));
+    EXPECT_EQ(shadow.width, 240);
+    EXPECT_EQ(shadow.height, 140);
+    for (const char* file : {"out/m/actor-1.obj", "out/m/actor-2.obj"}) {
+        const auto mesh = readMesh(folder_ / file);
+        ASSERT_TRUE(mesh) << mesh.error().message();
+        EXPECT_GT(mesh->triangles.size(), 2000u);
+        shadow.add(*mesh);
+    }
+
+    // Against the target as it was drawn.
+    const GreyImage target = readGrey(folder_ / "hill.png").value();
+    double both = 0, either = 0, darkPixels = 0;
+    for (std::size_t i = 0; i < shadow.dark.size(); ++i) {
+        const bool white = target.pixels()[i] > 0.5f, dark = shadow.dark[i] != 0;
+        both += white && dark, either += white || dark, darkPixels += dark;
+    }
+    EXPECT_NEAR(both / either, json("out/r.json")["iou"].get<double>(), 0.05);
+
+    // Against the skins of the cast.
+    const theatre::Cast cast = theatre::readCast(folder_ / "out/c.cast.yaml").value();
+    const theatre::PoseTarget laid = theatre::PoseTarget::from(target, cast.stage, cast.height, 256).value();
+    theatre::BitMask mask(240, 140);
+    theatre::MeshShadow skinShadow;
+    for (const theatre::Cast::Actor& actor : cast.actors) {
+        const theatre::Body body = theatre::humanBody(actor.stature);
+        const theatre::BodyMesh mesh = theatre::humanMesh(body);
+        theatre::PosedBody posed;
+        posed.pose(body, theatre::freedomsOf(body, actor.poses[0]));
+        std::vector<glm::vec3> vertices;
+        mesh.skin(body, posed, vertices);
+        ASSERT_TRUE(skinShadow.add(laid.given, mesh, vertices, mask));
+    }
+    int different = 0;
+    for (int y = 0; y < 140; ++y)
+        for (int x = 0; x < 240; ++x) different += mask.at(x, y) != (shadow.dark[static_cast<std::size_t>(y * 240 + x)] != 0);
+    EXPECT_LE(different, 0.002 * darkPixels);
+}
+
+TEST_F(PoseCommand, draws_pictures_and_solutions_to_choose_from) {
+    ASSERT_EQ(find({"--trials", "3", "--actors", "1", "--image", "out/image.png", "--view", "out/view.svg", "--each",
+                    "out/each.png", "--solutions", "out/choice"})
+                  .status,
+              0);
+    EXPECT_THAT(written(), ElementsAre("c.cast.yaml", "c.target.png", "choice", "each.png", "image.png", "view.svg"));
+    EXPECT_GT(readRgba(folder_ / "out/image.png").value().width(), 500);
+    EXPECT_GT(readRgba(folder_ / "out/each.png").value().height(), 300);
+    EXPECT_THAT(text("out/view.svg"), HasSubstr("<svg"));
+    const auto names = written("out/choice");
+    EXPECT_THAT(names, testing::IsSupersetOf({"solution-1.cast.yaml", "solutions.png", "solutions.target.png"}));
+    EXPECT_LE(names.size(), 5u);
+    for (const std::string& name : names) {
+        if (name.ends_with(".yaml")) {
+            EXPECT_TRUE(theatre::readCast(folder_ / "out/choice" / name)) << name;
+        }
+    }
+    // The first is the best.
+    const auto best = theatre::readCast(folder_ / "out/c.cast.yaml").value(),
+               first = theatre::readCast(folder_ / "out/choice/solution-1.cast.yaml").value();
+    EXPECT_EQ(first.actors[0].poses[0].root, best.actors[0].poses[0].root);
+    EXPECT_EQ(first.actors[0].poses[0].turns, best.actors[0].poses[0].turns);
+}
+
+TEST_F(PoseCommand, chooses_actors_for_a_height_and_a_height_for_actors) {
+    const auto found = [&](const Arguments& more) {
+        Arguments arguments = {"--trials", "1"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        EXPECT_EQ(find(arguments).status, 0);
+        return theatre::readCast(folder_ / "out/c.cast.yaml").value();
+    };
+    // The hill has 1.26 squares of its height: 3.6 square metres at 1.7 m.
+    EXPECT_EQ(found({}).actors.size(), 6u);
+    EXPECT_EQ(found({}).height, 1.7);
+    EXPECT_EQ(found({"--actors", "auto", "--height", "1"}).actors.size(), 2u);
+    EXPECT_NEAR(found({"--actors", "2"}).height, 0.98, 0.021);
+}
+
+// The world refuses: one message, status 1, and nothing is written.
+TEST_F(PoseCommand, bad_input_is_refused_with_one_message_and_leaves_nothing) {
+    const auto refusal = [&](const std::string& target, const Arguments& more = {}) {
+        Arguments arguments = {"pose", target, "--trials", "1"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        if (std::find(more.begin(), more.end(), "-o") == more.end()) arguments.insert(arguments.end(), {"-o", "out/c.cast.yaml"});
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 1) << outcome.errors;
+        EXPECT_THAT(outcome.errors, StartsWith("fantascope: error: "));
+        EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
+        EXPECT_THAT(written(), IsEmpty());
+        return outcome.errors;
+    };
+    const auto refusalOf = [&](const GreyImage& picture) {
+        EXPECT_TRUE(writePng(folder_ / "t.png", picture));
+        return refusal("t.png");
+    };
+    EXPECT_THAT(refusal("nowhere.png"), HasSubstr("nowhere.png: cannot be read"));
+    EXPECT_THAT(refusal("."), HasSubstr("is a folder"));
+    folder_.file("words.png", "This is no picture.");
+    EXPECT_THAT(refusal("words.png"), HasSubstr("words.png: not a PNG or JPEG picture"));
+    const std::string png = text("hill.png");
+    folder_.file("half.png", png.substr(0, png.size() / 2));
+    EXPECT_THAT(refusal("half.png"), HasSubstr("half.png: the picture is truncated"));
+    EXPECT_THAT(refusalOf(GreyImage(50, 50)), HasSubstr("t.png: nothing in it is white"));
+    EXPECT_THAT(refusalOf(GreyImage(50, 50, 1.0f)), HasSubstr("t.png: all of it is white"));
+    EXPECT_THAT(refusalOf(pictureOf(50, 50, [](int x, int y) { return isIn(x, y, 20, 30, 3, 1); })), HasSubstr("3 pixels"));
+    EXPECT_THAT(
+        refusalOf(pictureOf(400, 100, [](int x, int y) { return isIn(x, y, 10, 10, 50, 80) || isIn(x, y, 300, 10, 50, 80); })),
+        HasSubstr("2 parts"));
+    RgbaImage red(50, 50, {0, 0, 0});
+    for (int y = 10; y < 40; ++y)
+        for (int x = 10; x < 40; ++x) red.at(x, y) = {255, 60, 40};
+    ASSERT_TRUE(writePng(folder_ / "red.png", red));
+    EXPECT_THAT(refusal("red.png"), HasSubstr("red.png: is a picture in colours; draw it white on black"));
+    // Ten thousand pixels a side, and not one of them decoded: there are none.
+    folder_.file("huge.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x27\x10\0\0\x27\x10\x08\0\0\0\0", 29));
+    EXPECT_THAT(refusal("huge.png"), HasSubstr("huge.png: it is 10000 x 10000 pixels; no side may have more than 2048"));
+
+    EXPECT_THAT(refusal("hill.png", {"--actors", "0"}), HasSubstr("--actors 0: 1 .. 49 can play"));
+    EXPECT_THAT(refusal("hill.png", {"--actors", "50"}), HasSubstr("--actors 50: 1 .. 49 can play"));
+    EXPECT_THAT(refusal("hill.png", {"--height", "20"}), HasSubstr("--height 20: "));
+    EXPECT_THAT(refusal("hill.png", {"--height", "5", "--actors", "2"}), HasSubstr("too large for 2 actors: take --height"));
+    EXPECT_THAT(refusal("hill.png", {"--height", "0.5", "--actors", "30"}), HasSubstr("too small for 30 actors: take --height"));
+    EXPECT_THAT(refusal("hill.png", {"--actors", "3", "--stature", "1.5,1.6"}), HasSubstr("2 are given for 3 actors"));
+    EXPECT_THAT(refusal("hill.png", {"--evaluations", "10"}), HasSubstr("evaluations: 10 are too few"));
+    // Before the search, not after it.
+    EXPECT_THAT(refusal("hill.png", {"-o", "hill.png/c.yaml"}), HasSubstr("hill.png is not a folder"));
+    for (const char* option : {"--image", "--view", "--each"})
+        EXPECT_THAT(refusal("hill.png", {option, "hill.png/x.png"}), HasSubstr("hill.png is not a folder")) << option;
+    for (const char* option : {"--report", "--meshes", "--solutions"})
+        EXPECT_THAT(refusal("hill.png", {option, "hill.png/x"}), HasSubstr("hill.png is not a folder")) << option;
+    EXPECT_THAT(refusal("hill.png", {"--image", "hill.png"}), HasSubstr("is the target, and would be overwritten"));
+}
+
+// What is nearly grey is no colour.
+TEST_F(PoseCommand, takes_grey_pictures) {
+    RgbaImage soft(60, 60, {40, 40, 40});
+    for (int y = 10; y < 60; ++y)
+        for (int x = 10; x < 50; ++x) soft.at(x, y) = {200, 210, 190};
+    ASSERT_TRUE(writePng(folder_ / "soft.png", soft));
+    EXPECT_EQ(
+        run({"pose", "soft.png", "-o", "out/c.cast.yaml", "--trials", "1", "--evaluations", "1000", "--actors", "1"}).status, 0);
+}
+
+TEST_F(PoseCommand, wrong_usage_has_a_status_of_its_own_and_points_to_the_help) {
+    const std::vector<Arguments> wrong = {{"--actors", "many"}, {"--seconds", "-1"}, {"--trials", "0"}, {"--threads", "0"},
+                                          {"--stature", "3"},   {"--seed", "-1"},    {"--nonsense"},    {"--image", "out/i.jpg"}};
+    for (const Arguments& arguments : wrong) {
+        const Outcome outcome = find(arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments[0];
+        EXPECT_THAT(outcome.errors, StartsWith("fantascope: error: "));
+        EXPECT_THAT(outcome.errors, HasSubstr("See 'fantascope pose --help'."));
+    }
+    EXPECT_EQ(run({"pose"}).status, 2);
+    EXPECT_EQ(run({"pose", "hill.png", "-o", "hill.png"}).status, 2);
+    EXPECT_EQ(run({"pose", "--help"}).status, 0);
+}
+
+// The signal is sent once the first line of progress says that the search runs: its first trial would take years.
+TEST_F(PoseCommand, ctrl_c_keeps_the_unfinished_one_if_there_is_no_other) {
+    EXPECT_EQ(interruptProgram({"pose", "hill.png", "-o", "out/c.cast.yaml", "--evaluations", "1000000000000", "--actors", "1",
+                                "--seconds", "100000", "--report", "out/r.json"},
+                               folder_ / ".", 1),
+              0);
+    const nlohmann::json report = json("out/r.json");
+    EXPECT_EQ(report["stop_reason"], "interrupted");
+    EXPECT_EQ(report["finished_trials"], 0);
+    EXPECT_FALSE(report["trials"][0]["finished"].get<bool>());
+    EXPECT_TRUE(theatre::readCast(folder_ / "out/c.cast.yaml"));
+}
+
+}  // namespace
+}  // namespace fantascope
