@@ -108,7 +108,9 @@ Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage
                       BitMask(width, above),
                       0,
                       {},
-                      256.0 / rows};
+                      256.0 / rows,
+                      {stage.light.x - middle * pixel / step, bottom * pixel / step},
+                      glm::dvec2(picture.width(), picture.height()) * (pixel / step)};
     for (int y = 0; y < above; ++y)
         for (int x = 0; x < width; ++x) {
             // 3 x 3 samples a pixel, or the picture's own pixels where they are fewer.
@@ -142,7 +144,9 @@ PoseTarget PoseTarget::halved(const Stage& stage) const {
                       BitMask(width, height),
                       0,
                       {},
-                      2 * pixelsOf256};
+                      2 * pixelsOf256,
+                      pictureLeftTop,
+                      pictureSize};
     // From the floor up; a pixel is white if half of it is.
     const int cut = 2 * height - mask.height();
     for (int y = 0; y < height; ++y)

@@ -2,6 +2,7 @@
 
 #include "theatre/body.h"
 #include "theatre/contour.h"
+#include "theatre/pose_hints.h"
 #include "theatre/pose_weights.h"
 #include "theatre/stage.h"
 
@@ -34,6 +35,8 @@ struct PoseTarget {
     double area = 0;  // pixels
     std::vector<ContourPoint> contour;
     double pixelsOf256 = 1;  // of the target's height, a pixel of the mask is so many of 256
+    // The whole picture on the screen, metres: its corner, and how wide and high it is.
+    glm::dvec2 pictureLeftTop{0}, pictureSize{0};
 
     // The energy's sums over points are those of kContourPoints, however many there are.
     double perPoint() const { return double(kContourPoints) / static_cast<double>(contour.size()); }
@@ -44,6 +47,7 @@ struct PoseProblem {
     PoseTarget target;
     std::vector<Body> actors;
     PoseWeights weights;
+    std::vector<PoseHint> hints{};
 
     std::size_t freedoms() const {
         std::size_t sum = 0;

@@ -41,7 +41,7 @@ public:
         : options_(options),
           askStop_(askStop),
           fine_(problem),
-          coarse_({problem.stage, problem.target.halved(problem.stage), problem.actors, problem.weights}),
+          coarse_({problem.stage, problem.target.halved(problem.stage), problem.actors, problem.weights, problem.hints}),
           rng_(streamSeed(seed, {static_cast<std::uint64_t>(Stream::Moves)})) {
         trial_.seed = seed;
         trial_.reason = PoseSearch::StopReason::Evaluations;

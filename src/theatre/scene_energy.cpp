@@ -42,6 +42,7 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     actor.own.margin = 100 * std::max(0.0, kAmpleMargin - actor.margin);
     actor.own.people = depthInItself(body, actor.body);
     actor.own.surroundings = depthInStage(actor.body);
+    matchHints(problem_.hints, frame, body, actor.body, actor.matches);
 }
 
 const EnergyTerms& SceneEnergy::terms() {
@@ -60,8 +61,17 @@ const EnergyTerms& SceneEnergy::terms() {
     }
     terms_.coverage = static_cast<double>(differing(shadow_, problem_.target.mask)) / problem_.target.area;
     compareContours();
+    const double square256 = problem_.target.pixelsOf256 * problem_.target.pixelsOf256;
+    for (std::size_t i = 0; i < problem_.hints.size(); ++i) terms_.hint += square256 * hintOwner(i).match.square;
     terms_.coherence = ownerChanges(owners_);
     return terms_;
+}
+
+SceneEnergy::HintOwner SceneEnergy::hintOwner(std::size_t hint) const {
+    HintOwner nearest{0, actors_[0].matches[hint]};
+    for (std::size_t i = 1; i < actors_.size(); ++i)
+        if (actors_[i].matches[hint].square < nearest.match.square) nearest = {i, actors_[i].matches[hint]};
+    return nearest;
 }
 
 // Equation 2, from the target's contour to the nearest points of the shadow's. Whose (equation 4): the actor whose shadow holds that point; of

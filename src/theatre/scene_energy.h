@@ -34,13 +34,21 @@ public:
     std::span<const ContourPoint> nearest() const { return nearest_; }
     std::span<const int> owners() const { return owners_; }
 
+    // Of each hint: the actor whose candidate is nearest, and which that is.
+    struct HintOwner {
+        std::size_t actor = 0;
+        HintMatch match;
+    };
+    HintOwner hintOwner(std::size_t hint) const;
+
 private:
     struct Actor {
         PosedBody body;
         BitMask shadow;
         Contacts contacts;
         double margin = 0;
-        EnergyTerms own;  // what depends on this actor alone
+        EnergyTerms own;                 // what depends on this actor alone
+        std::vector<HintMatch> matches;  // of each hint
     };
     void compareContours();
 

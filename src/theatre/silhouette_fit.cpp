@@ -76,6 +76,7 @@ void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> freed
     for (std::size_t a = 0; a < equations_.size(); ++a)
         equations_[a].begin(energy.posed(a), freedoms.subspan(first_[a], problem_.actors[a].freedoms));
     addContour(energy);
+    addHints(energy);
     addPhysics(energy, freedoms);
     for (PoseEquations& equations : equations_) equations.finish();
 }
@@ -152,6 +153,22 @@ void SilhouetteFit::addContour(SceneEnergy& energy) {
                 if (std::abs(inside) > 0.5)
                     add(pixel, point.normal, -inside, 0.5 * charge / std::max(kNearest, std::abs(inside)));
             }
+}
+
+// Equation 7: the nearest part goes to its hint, to the right and down alike.
+void SilhouetteFit::addHints(const SceneEnergy& energy) {
+    const ScreenFrame& frame = problem_.target.frame;
+    const double weight = problem_.weights.w12 * problem_.target.pixelsOf256 * problem_.target.pixelsOf256;
+    for (std::size_t i = 0; i < problem_.hints.size(); ++i) {
+        const auto [actor, match] = energy.hintOwner(i);
+        const Body::Point& part = problem_.actors[actor].parts[static_cast<std::size_t>(match.part)];
+        const glm::dvec3 point = energy.posed(actor).point(part), d = frame.fromLight(point);
+        if (d.z <= 0) continue;  // no shadow to move
+        // The derivative of foot + focus (x, y) / z.
+        const double scale = frame.focus() / d.z;
+        equations_[actor].addPoint(part.joint, point, scale * glm::dvec3(1, 0, d.x / d.z), match.away.x, weight);
+        equations_[actor].addPoint(part.joint, point, scale * glm::dvec3(0, -1, d.y / d.z), match.away.y, weight);
+    }
 }
 
 // Equation 6: what is too deep, too high, or out of balance.

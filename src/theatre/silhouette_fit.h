@@ -29,6 +29,7 @@ public:
 private:
     void linearise(SceneEnergy& energy, std::span<const double> freedoms);
     void addContour(SceneEnergy& energy);
+    void addHints(const SceneEnergy& energy);
     void addPhysics(SceneEnergy& energy, std::span<const double> freedoms);
 
     const PoseProblem& problem_;
