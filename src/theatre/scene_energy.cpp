@@ -13,6 +13,11 @@ SceneEnergy::SceneEnergy(const PoseProblem& problem)
     const BitMask& mask = problem.target.mask;
     shadow_ = BitMask(mask.width(), mask.height());
     for (Actor& actor : actors_) actor.shadow = shadow_;
+    placeStanding(problem.stage, standing_);
+    if (!standing_.empty() || !problem.stage.platforms.empty()) standingShadow_ = shadow_;
+    for (const Stage::Platform& platform : problem.stage.platforms) addShadow(problem.target.frame, platform, standingShadow_);
+    for (const PlacedProp& prop : standing_) addShadow(problem.target.frame, prop, standingShadow_);
+    cutToLit(problem.stage, problem.target.frame, standingShadow_);
     nearest_.resize(problem.target.contour.size());
     owners_.resize(nearest_.size());
 }
@@ -29,25 +34,43 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     Actor& actor = actors_[index];
     actor.body.pose(body, freedoms);
     actor.shadow.clear();
+    const Stage& stage = problem_.stage;
     caster_.add(problem_.target.frame, actor.body, actor.shadow);
+    cutToLit(stage, problem_.target.frame, actor.shadow);
 
-    findBearings(actor.body.spheres(), problem_.weights.bearing, actor.contacts);
+    const auto spheres = overFloor(stage, actor.body.spheres(), actor.aboveGround);
+    actor.lowest = lowestOf(spheres);
+    findBearings(spheres, problem_.weights.bearing, actor.contacts);
     actor.margin = supportMargin(actor.contacts, actor.body.massCentre());
     const ScreenFrame& frame = problem_.target.frame;
     const glm::dvec2 middle = frame.metresAt(0.5 * glm::dvec2(frame.width(), frame.height()));
     actor.own = {};
     actor.own.visible = unseen(actor.body.point(body.head, body.eyes), actor.body.turn(body.head) * body.gaze, {middle, 0});
-    actor.own.floor = 1000 * std::max(0.0, actor.body.lowest());
+    actor.own.floor = 1000 * std::max(0.0, actor.lowest);
     actor.own.supportArea = 1e4 * std::max(0.0, kAmpleArea - supportArea(actor.contacts));
     actor.own.margin = 100 * std::max(0.0, kAmpleMargin - actor.margin);
     actor.own.people = depthInItself(body, actor.body);
-    actor.own.surroundings = depthInStage(actor.body);
+    actor.outside = farthestOutside(stage, actor.contacts);
+    poseProps(index);
+    findIntrusions(stage, standing_, body, actor.body, actor.held, actor.intrusions);
+    actor.own.surroundings = depthInStage(actor.body) + squaredDepths(actor.intrusions) + 1e6 * actor.outside * actor.outside;
     matchHints(problem_.hints, frame, body, actor.body, actor.matches);
+}
+
+void SceneEnergy::poseProps(std::size_t index) {
+    Actor& actor = actors_[index];
+    placeHeld(problem_.stage, index, problem_.actors[index], actor.body, actor.held);
+    if (actor.held.empty()) return;
+    if (actor.heldShadow.width() == 0) actor.heldShadow = BitMask(shadow_.width(), shadow_.height());
+    actor.heldShadow.clear();
+    for (const PlacedProp& prop : actor.held) addShadow(problem_.target.frame, prop, actor.heldShadow);
+    cutToLit(problem_.stage, problem_.target.frame, actor.heldShadow);
 }
 
 const EnergyTerms& SceneEnergy::terms() {
     terms_ = {};
     shadow_.clear();
+    if (standingShadow_.width() > 0) shadow_.add(standingShadow_);
     for (std::size_t i = 0; i < actors_.size(); ++i) {
         const Actor& actor = actors_[i];
         shadow_.add(actor.shadow);
@@ -58,6 +81,13 @@ const EnergyTerms& SceneEnergy::terms() {
         terms_.people += actor.own.people;
         terms_.surroundings += actor.own.surroundings;
         for (std::size_t j = i + 1; j < actors_.size(); ++j) terms_.people += depthInOther(actor.body, actors_[j].body);
+        if (actor.held.empty()) continue;
+        shadow_.add(actor.heldShadow);
+        for (std::size_t j = 0; j < actors_.size(); ++j) {
+            if (j == i) continue;
+            findIntrusions(problem_.actors[j], actors_[j].body, actor.held, inOthersProps_);
+            terms_.surroundings += squaredDepths(inOthersProps_);
+        }
     }
     terms_.coverage = static_cast<double>(differing(shadow_, problem_.target.mask)) / problem_.target.area;
     compareContours();
@@ -75,7 +105,7 @@ SceneEnergy::HintOwner SceneEnergy::hintOwner(std::size_t hint) const {
 }
 
 // Equation 2, from the target's contour to the nearest points of the shadow's. Whose (equation 4): the actor whose shadow holds that point; of
-// several the one whose the last point was, else the first.
+// several the one whose the last point was, else the first; nobody if it is a prop's.
 void SceneEnergy::compareContours() {
     contour_.find(shadow_);
     const PoseTarget& target = problem_.target;
@@ -96,10 +126,11 @@ void SceneEnergy::compareContours() {
             terms_.contourPoint += each * scale * glm::dot(away, away);
             terms_.contourNormal += each * glm::dot(turned, turned);
             terms_.contourCurvature += each * bent * bent;
-            if (!actors_[static_cast<std::size_t>(owner)].shadow.at(pixel->x, pixel->y))
-                owner = static_cast<int>(std::find_if(actors_.begin(), actors_.end(),
-                                                      [&](const Actor& actor) { return actor.shadow.at(pixel->x, pixel->y); }) -
-                                         actors_.begin());
+            if (owner == kNobody || !actors_[static_cast<std::size_t>(owner)].shadow.at(pixel->x, pixel->y)) {
+                const auto found = std::find_if(actors_.begin(), actors_.end(),
+                                                [&](const Actor& actor) { return actor.shadow.at(pixel->x, pixel->y); });
+                owner = found == actors_.end() ? kNobody : static_cast<int>(found - actors_.begin());
+            }
             nearest_[i] = got;
         }
         owners_[i] = owner;

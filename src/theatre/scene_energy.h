@@ -3,6 +3,7 @@
 #include "theatre/balance.h"
 #include "theatre/capsule_shadow.h"
 #include "theatre/pose_problem.h"
+#include "theatre/surroundings.h"
 
 #include <span>
 #include <vector>
@@ -30,7 +31,7 @@ public:
     const PosedBody& posed(std::size_t actor) const { return actors_[actor].body; }
     double margin(std::size_t actor) const { return actors_[actor].margin; }  // on findBearings(), metres
     const BitMask& contour() const { return contour_.pixels(); }              // of the shadow of all; after terms()
-    // Of each of the target's contour points: the nearest point of the shadow's contour and the actor whose it is; after terms().
+    // Of each of the target's contour points: the nearest point of the shadow's contour and the actor whose it is, or kNobody; after terms().
     std::span<const ContourPoint> nearest() const { return nearest_; }
     std::span<const int> owners() const { return owners_; }
 
@@ -40,6 +41,15 @@ public:
         HintMatch match;
     };
     HintOwner hintOwner(std::size_t hint) const;
+    // An actor's spheres as if what is under them were the floor, and the height of their lowest point, metres.
+    std::span<const PlacedSphere> aboveGround(std::size_t actor) const {
+        return problem_.stage.platforms.empty() ? actors_[actor].body.spheres() : actors_[actor].aboveGround;
+    }
+    double lowest(std::size_t actor) const { return actors_[actor].lowest; }
+    double outside(std::size_t actor) const { return actors_[actor].outside; }  // how far he stands outside where he may, metres
+    // Where an actor is in platforms and props, and what he holds in anything.
+    std::span<const Intrusion> intrusions(std::size_t actor) const { return actors_[actor].intrusions; }
+    std::span<const PlacedProp> held(std::size_t actor) const { return actors_[actor].held; }
 
 private:
     struct Actor {
@@ -49,13 +59,22 @@ private:
         double margin = 0;
         EnergyTerms own;                 // what depends on this actor alone
         std::vector<HintMatch> matches;  // of each hint
+        double lowest = 0, outside = 0;
+        std::vector<PlacedSphere> aboveGround;
+        std::vector<PlacedProp> held;
+        BitMask heldShadow;
+        std::vector<Intrusion> intrusions;
     };
+    void poseProps(std::size_t index);
     void compareContours();
 
     const PoseProblem& problem_;
     ContourDisc disc_;
     std::vector<Actor> actors_;
     CapsuleShadow caster_;
+    std::vector<PlacedProp> standing_;
+    BitMask standingShadow_;
+    std::vector<Intrusion> inOthersProps_;
     BitMask shadow_;
     Contour contour_;
     std::vector<ContourPoint> nearest_;

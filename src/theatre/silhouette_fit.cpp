@@ -171,6 +171,28 @@ void SilhouetteFit::addHints(const SceneEnergy& energy) {
     }
 }
 
+// Equation 6, E_k: an actor, or what he holds, leaves what it is in. What another holds is asked for its half in the other's turn.
+void SilhouetteFit::addIntrusions(const SceneEnergy& energy, std::size_t actor, double weight) {
+    PoseEquations& equations = equations_[actor];
+    for (const Intrusion& intrusion : energy.intrusions(actor)) {
+        const glm::dvec3 deeper = -1000.0 * intrusion.outward;
+        if (intrusion.otherJoint)
+            equations.addPoints(intrusion.joint, intrusion.point, deeper, *intrusion.otherJoint, intrusion.point, -deeper,
+                                1000 * intrusion.depth, weight);
+        else
+            equations.addPoint(intrusion.joint, intrusion.point, deeper, 1000 * intrusion.depth, weight);
+    }
+    for (std::size_t other = 0; other < equations_.size(); ++other) {
+        if (other == actor) continue;
+        findIntrusions(problem_.actors[actor], energy.posed(actor), energy.held(other), intrusions_);
+        for (const Intrusion& in : intrusions_)
+            equations.addPoint(in.joint, in.point, -1000.0 * in.outward, 500 * in.depth, weight);
+        findIntrusions(problem_.actors[other], energy.posed(other), energy.held(actor), intrusions_);
+        for (const Intrusion& in : intrusions_)
+            equations.addPoint(*in.otherJoint, in.point, 1000.0 * in.outward, 500 * in.depth, weight);
+    }
+}
+
 // Equation 6: what is too deep, too high, or out of balance.
 void SilhouetteFit::addPhysics(SceneEnergy& energy, std::span<const double> freedoms) {
     PoseWeights weights = problem_.weights;
@@ -207,29 +229,35 @@ void SilhouetteFit::addPhysics(SceneEnergy& energy, std::span<const double> free
                     equations.addPoint(body.spheres[i].joint, centre, direction, 1000 * depth, weights.w11);
                 }
         }
+        addIntrusions(energy, a, weights.w11);
         // What bears is not let go of lightly: the margin would be another one then.
-        for (std::size_t i = 0; i < posed.spheres().size(); ++i) {
+        const auto above = energy.aboveGround(a);
+        for (std::size_t i = 0; i < above.size(); ++i) {
             const auto& [centre, radius] = posed.spheres()[i];
-            if (centre.y - radius < posed.lowest() + kTouch)
+            if (above[i].centre.y - radius < energy.lowest(a) + kTouch)
                 equations.addPoint(body.spheres[i].joint, centre, {0, 1000, 0}, 0, kHold * weights.w9);
         }
-        // The margin and the height above the floor, by small nudges.
-        const double lacking = 100 * (kAmpleMargin - energy.margin(a)), height = 1000 * posed.lowest();
-        if (lacking <= 0 && height <= 0) continue;
+        // The margin, the height above the ground and where he stands, by small nudges.
+        const double lacking = 100 * (kAmpleMargin - energy.margin(a)), height = 1000 * energy.lowest(a),
+                     outside = 1000 * energy.outside(a);
+        if (lacking <= 0 && height <= 0 && outside <= 0) continue;
         std::vector<double> nudged(freedoms.begin() + static_cast<std::ptrdiff_t>(first_[a]),
                                    freedoms.begin() + static_cast<std::ptrdiff_t>(first_[a] + body.freedoms));
         const auto size = static_cast<Eigen::Index>(body.freedoms);
-        Eigen::VectorXd margins(size), heights(size);
+        Eigen::VectorXd margins(size), heights(size), ways(size);
         for (std::size_t k = 0; k < body.freedoms; ++k) {
             nudged[k] += kNudge;
             nudged_.pose(body, nudged);
             nudged[k] -= kNudge;
-            findBearings(nudged_.spheres(), problem_.weights.bearing, contacts_);
+            const auto spheres = overFloor(problem_.stage, nudged_.spheres(), aboveGround_);
+            findBearings(spheres, problem_.weights.bearing, contacts_);
             margins[static_cast<Eigen::Index>(k)] =
                 -100 * (supportMargin(contacts_, nudged_.massCentre()) - energy.margin(a)) / kNudge;
-            heights[static_cast<Eigen::Index>(k)] = 1000 * (nudged_.lowest() - posed.lowest()) / kNudge;
+            heights[static_cast<Eigen::Index>(k)] = 1000 * (lowestOf(spheres) - energy.lowest(a)) / kNudge;
+            ways[static_cast<Eigen::Index>(k)] = (1000 * farthestOutside(problem_.stage, contacts_) - outside) / kNudge;
         }
         if (lacking > 0) equations.addRow(margins, lacking, 0.5 * weights.w9 / std::max(kNearest, lacking));
+        if (outside > 0) equations.addRow(ways, outside, weights.w11);
         if (height > 0) equations.addRow(heights, height, 0.5 * weights.w7 / std::max(kNearest, height));
     }
 }

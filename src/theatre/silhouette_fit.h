@@ -30,6 +30,7 @@ private:
     void linearise(SceneEnergy& energy, std::span<const double> freedoms);
     void addContour(SceneEnergy& energy);
     void addHints(const SceneEnergy& energy);
+    void addIntrusions(const SceneEnergy& energy, std::size_t actor, double weight);
     void addPhysics(SceneEnergy& energy, std::span<const double> freedoms);
 
     const PoseProblem& problem_;
@@ -40,6 +41,8 @@ private:
     std::vector<double> trial_;
     PosedBody nudged_;
     Contacts contacts_;
+    std::vector<PlacedSphere> aboveGround_;
+    std::vector<Intrusion> intrusions_;
     std::int64_t evaluations_ = 0;
 };
 
