@@ -121,8 +121,7 @@ Result<std::size_t> ConfigNode::choice(const std::vector<std::string>& names) co
     const auto found = std::find(names.begin(), names.end(), word);
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
     const std::string nearest = nearestName(word, names);
-    return error(fmt::format("one of {} is needed, here is {}{}",
-                             names.empty() ? "nothing (none is declared)" : fmt::format("{}", fmt::join(names, ", ")),
+    return error(fmt::format("one of {} is needed, here is {}{}", names.empty() ? "nothing (none is declared)" : listed(names),
                              impl_->seen(), nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest)));
 }
 
@@ -256,8 +255,8 @@ Result<void> ConfigFields::finish() {
             const auto place = lineAndColumn(entry.first.Mark());
             if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
                 const std::string nearest = nearestName(key, known_);
-                const std::string advice = nearest.empty() ? fmt::format("known here: {}", fmt::join(known_, ", "))
-                                                           : fmt::format("did you mean '{}'?", nearest);
+                const std::string advice =
+                    nearest.empty() ? "known here: " + listed(known_) : fmt::format("did you mean '{}'?", nearest);
                 fail(place, at.error(fmt::format("unknown key ({})", advice)));
             } else if (!seen.insert(key).second) {
                 fail(place, at.error("this key is given twice"));
@@ -296,6 +295,8 @@ std::string nearestName(std::string_view word, const std::vector<std::string>& k
     }
     return nearest;
 }
+
+std::string listed(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
 
 std::string shortest(double value) {
     char buffer[32];

@@ -129,6 +129,9 @@ private:
 // The name among `known` that a person most likely meant by `word`, or "" if none is near (Levenshtein distance <= a third of the length).
 std::string nearestName(std::string_view word, const std::vector<std::string>& known);
 
+// "a, b, c", for messages.
+std::string listed(const std::vector<std::string>& names);
+
 // For writing YAML: the shortest decimal that reads back as the same double, the same for any locale.
 std::string shortest(double value);
 // Degrees for ConfigFields::angle: of those doubles that it reads as nearest to `radians` the shortest decimal. An angle that was once

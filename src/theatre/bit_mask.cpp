@@ -57,6 +57,16 @@ void BitMask::add(const BitMask& other) {
     spread(other.rowsFrom_, other.rowsTo_);
 }
 
+void BitMask::keep(int left, int top, int right, int bottom) {
+    left = std::max(left, 0), right = std::min(right, width_);
+    std::vector<std::uint64_t> kept(static_cast<std::size_t>(stride_), 0);
+    if (left < right) setBits(kept.data(), left, right - 1);
+    for (int y = std::max(0, rowsFrom_); y < rowsTo_; ++y) {
+        const bool isIn = y >= top && y < bottom;
+        for (std::size_t i = 0; i < kept.size(); ++i) words_[index(y) + i] &= isIn ? kept[i] : 0;
+    }
+}
+
 std::int64_t BitMask::count() const {
     std::int64_t count = 0;
     for (const std::uint64_t word : words_) count += std::popcount(word);

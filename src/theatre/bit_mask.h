@@ -44,6 +44,8 @@ public:
     // The same in rows below each other, in pixels with fractions: white where a pixel's centre lies between.
     void fill(int y, std::span<const float> from, std::span<const float> to);
     void add(const BitMask& other);
+    // Blackens all but the columns from `left` to before `right` of the rows from `top` to before `bottom`.
+    void keep(int left, int top, int right, int bottom);
     void noteRow(int y) { spread(y, y + 1); }  // words of this row were set through row()
     std::int64_t count() const;
     friend std::int64_t differing(const BitMask& a, const BitMask& b);

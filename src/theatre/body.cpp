@@ -53,6 +53,10 @@ public:
         body_.joints[joint].mass = share * 22 * stature_ * stature_;
         body_.joints[joint].massCentre = stature_ * (centre - places_[joint]);
     }
+    // On a ball's skin, in a direction.
+    void part(BodyPart part, std::uint32_t joint, Ball ball, dvec3 direction) {
+        body_.parts[static_cast<std::size_t>(part)] = {joint, local(joint, ball.place + ball.radius * glm::normalize(direction))};
+    }
     dvec3 local(std::uint32_t joint, dvec3 place) const { return stature_ * (place - places_[joint]); }
     Body& body() { return body_; }
 
@@ -103,6 +107,11 @@ void addLeg(Builder& b, std::uint32_t pelvis, double side) {
     b.capsule(knee, ofKnee, ofAnkle);
     b.capsule(ankle, heel, bigToe);
     b.capsule(ankle, heel, smallToe);
+    const bool isLeft = side > 0;
+    b.part(isLeft ? BodyPart::LeftHip : BodyPart::RightHip, pelvis, ofHip, side * kX);
+    // The corner of a knee or elbow that is bent by a right angle: halfway between the two limbs.
+    b.part(isLeft ? BodyPart::LeftKnee : BodyPart::RightKnee, hip, ofKnee, kZ - kY);
+    b.part(isLeft ? BodyPart::LeftFoot : BodyPart::RightFoot, ankle, bigToe, kZ);
     b.mass(hip, 0.1447, at(0.052, 0.530 - 0.245 * 0.385, 0));
     b.mass(knee, 0.0457, at(0.052, 0.285 - 0.246 * 0.443, 0));
     b.mass(ankle, 0.0133, at(0.052, 0.019, -0.041 + 0.152 * 0.42));
@@ -127,8 +136,13 @@ void addArm(Builder& b, std::uint32_t thorax, double side) {
     b.capsule(clavicle, {at(0.0244, 0.7979, -0.0051), 0.0538}, ofShoulder);
     b.capsule(shoulder, ofShoulder, ofElbow);
     b.capsule(elbow, ofElbow, ofWrist);
-    b.capsule(wrist, ofWrist, {at(0.5290, 0.8112, -0.0030), 0.0090});  // fingers
-    b.capsule(wrist, ofWrist, {at(0.5180, 0.8070, 0.0262), 0.0090});   // thumb
+    const Ball fingers{at(0.5290, 0.8112, -0.0030), 0.0090};
+    b.capsule(wrist, ofWrist, fingers);
+    b.capsule(wrist, ofWrist, {at(0.5180, 0.8070, 0.0262), 0.0090});  // thumb
+    const bool isLeft = side > 0;
+    b.part(isLeft ? BodyPart::LeftShoulder : BodyPart::RightShoulder, clavicle, ofShoulder, along + kY);
+    b.part(isLeft ? BodyPart::LeftElbow : BodyPart::RightElbow, shoulder, ofElbow, along - kZ);
+    b.part(isLeft ? BodyPart::LeftHand : BodyPart::RightHand, wrist, fingers, along);
     b.mass(shoulder, 0.0263, at(0.108 + 0.186 * 0.576, 0.812, 0));
     b.mass(elbow, 0.0150, at(0.294 + 0.146 * 0.457, 0.812, 0));
     b.mass(wrist, 0.0058, at(0.440 + 0.038, 0.812, 0));
@@ -169,6 +183,10 @@ Body humanBody(double stature) {
     const Ball crown{{0, 0.9482, 0.0046}, 0.0508};
     b.capsule(neck, {{0, 0.830, -0.004}, 0.0315}, crown);
     b.capsule(neck, crown, {{0, 0.9020, 0.0270}, 0.0360});  // jaw
+    b.part(BodyPart::Head, neck, crown, kY);
+    b.part(BodyPart::Neck, neck, {{0, 0.855, -0.002}, 0.033}, -kZ);
+    b.part(BodyPart::Chest, thorax, {{0, 0.745, -0.001}, 0.0616}, kZ);
+    b.part(BodyPart::Pelvis, pelvis, {{0, 0.545, -0.007}, 0.064}, -kZ);
     b.mass(neck, 0.0681, {0, 0.922, 0.004});
     b.mass(thorax, 0.1571, {0, 0.790, 0});
     b.mass(lumbar, 0.1549, {0, 0.665, 0});

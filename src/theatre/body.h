@@ -1,5 +1,6 @@
 #pragma once
 
+#include "theatre/body_part.h"
 #include "theatre/joint.h"
 
 #include <glm/vec3.hpp>
@@ -54,6 +55,13 @@ struct Body {
     std::size_t freedoms = kRootFreedoms;
     glm::dvec3 eyes{0}, gaze{0, 0, 1};  // in the head's frame
     std::uint32_t head = 0;
+    // Where each BodyPart is: a point of the skin, fixed to a joint, in its frame. Of limbs it is the outermost tip: fingers, toes, the elbow's and
+    // the knee's corner as they bend, the shoulder's and the hip's side; the crown; the nape; the breastbone; the seat.
+    struct Point {
+        std::uint32_t joint = 0;
+        glm::dvec3 local{0};
+    };
+    std::array<Point, kBodyParts> parts{};
 
     double mass() const;
     // Error: none has this name.

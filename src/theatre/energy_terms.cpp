@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace fantascope::theatre {
 namespace {
@@ -81,8 +82,12 @@ double deepestInStage(const PosedBody& posed) {
 }
 
 int ownerChanges(std::span<const int> owners) {
+    const auto isSomebody = [](int owner) { return owner != kNobody; };
+    const auto last = std::find_if(owners.rbegin(), owners.rend(), isSomebody);
+    if (last == owners.rend()) return 0;
     int changes = 0;
-    for (std::size_t i = 0; i < owners.size(); ++i) changes += owners[i] != owners[(i + 1) % owners.size()];
+    for (int before = *last; const int owner : owners)
+        if (isSomebody(owner)) changes += owner != std::exchange(before, owner);
     return changes;
 }
 

@@ -33,7 +33,8 @@ double deepestInItself(const Body& body, const PosedBody& posed);
 double deepestInOther(const PosedBody& a, const PosedBody& b);
 double deepestInStage(const PosedBody& posed);
 
-// (4) How often the owner changes from one point of the contour to the next, around.
+// (4) How often the owner changes from one point of the contour to the next, around; what is nobody's, but a platform's or a prop's, is passed over.
+constexpr int kNobody = -1;
 int ownerChanges(std::span<const int> owners);
 
 }  // namespace fantascope::theatre

@@ -108,6 +108,16 @@ Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage
               columns = static_cast<int>(std::ceil((right - left) / step));
     const int width = columns + 2 * margin, above = rows + margin;
     const double middle = 0.5 * (left + right), given = pixel / step;  // a pixel of the picture, metres
+    if (stage.lit) {
+        const double half = 0.5 * (right - left) / step * pixel, x = stage.light.x;
+        const glm::dvec2 from = stage.lit->from, to = stage.lit->to;
+        if (x - half < from.x || x + half > to.x || from.y > 0 || height > to.y)
+            return Error(
+                fmt::format("its silhouette is to be x {:.2f} .. {:.2f} m and y 0 .. {:.2f} m on the screen, and the projector "
+                            "lights x {:.2f} .. {:.2f} m "
+                            "and y {:.2f} .. {:.2f} m only; make it less high, or the projector's picture larger",
+                            x - half, x + half, height, from.x, to.x, from.y, to.y));
+    }
     PoseTarget target{
         ScreenFrame(stage, stage.light.x - 0.5 * width * pixel, above * pixel, pixel, width, above),
         BitMask(width, above),

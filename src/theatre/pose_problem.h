@@ -2,6 +2,7 @@
 
 #include "theatre/body_mesh.h"
 #include "theatre/contour.h"
+#include "theatre/pose_hints.h"
 #include "theatre/pose_weights.h"
 #include "theatre/stage.h"
 
@@ -22,7 +23,8 @@ struct PoseTarget {
     // The picture's silhouette (what is lighter than a half) becomes `height` metres high on the screen, its lowest row on the floor, its middle
     // before the light, and `rows` pixels high in masks. Beyond it the masks have a margin of a third, for shadows that stick out. Error: nothing
     // white, nothing black, an island of fewer than kFewest pixels of the picture, two farther from each other than kFarApart of the height, a
-    // silhouette wider than kWidest times its height, or a picture with a side of more than kMostSide pixels.
+    // silhouette wider than kWidest times its height, a picture with a side of more than kMostSide pixels, or one
+    // that a projector's light does not hold.
     static Result<PoseTarget> from(const GreyImage& picture, const Stage& stage, double height, int rows);
     // The same in pixels of twice the side, with half as many points: for a search's first look.
     PoseTarget halved(const Stage& stage) const;
@@ -51,6 +53,7 @@ struct PoseProblem {
     PoseWeights weights;
     // Of the actors; with them shadows and what touches the floor are the skins', without the capsules'.
     std::vector<std::shared_ptr<const BodyMesh>> skins{};
+    std::vector<PoseHint> hints{};
 
     std::size_t freedoms() const {
         std::size_t sum = 0;

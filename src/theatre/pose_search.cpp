@@ -9,6 +9,7 @@
 #include "core/random.h"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -224,7 +225,8 @@ Result<void> PoseSearch::Options::check() const {
 
 bool PoseSearch::Quality::isValid() const {
     return std::all_of(actors.begin(), actors.end(), [](const Actor& actor) {
-        return actor.touches && actor.margin >= kStandMargin && actor.deepest <= kMostDepth && actor.withinLimits;
+        return actor.touches && actor.margin >= kStandMargin && actor.deepest <= kMostDepth && actor.outside <= kMostDepth &&
+               actor.withinLimits;
     });
 }
 
@@ -239,8 +241,10 @@ std::vector<double> PoseSearch::start(const PoseProblem& problem) {
         const Body& body = problem.actors[i];
         // Behind each other by the golden section: whoever stands next has his arms before or behind.
         const double share = std::fmod(0.618034 * static_cast<double>(i), 1.0);
-        const glm::dvec3 place(middle + apart * (static_cast<double>(i) - 0.5 * (count - 1)), body.joints[0].offset.y,
-                               1 + 1.6 * share);
+        glm::dvec2 floor(middle + apart * (static_cast<double>(i) - 0.5 * (count - 1)), 1 + 1.6 * share);
+        if (const auto& area = problem.stage.standing) floor = glm::clamp(floor, area->from, area->to);
+        const double ground = problem.stage.groundUnder({floor.x, std::numeric_limits<double>::infinity(), floor.y});
+        const glm::dvec3 place(floor.x, ground + body.joints[0].offset.y, floor.y);
         const std::vector<double> pose = body.restPose(place, glm::dquat(0, 0, 1, 0));
         freedoms.insert(freedoms.end(), pose.begin(), pose.end());
     }
@@ -285,18 +289,23 @@ PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<co
     }
     Contacts contacts;
     const bool isSkin = !problem.skins.empty();
+    std::vector<Intrusion> intrusions;
     for (std::size_t i = 0; i < problem.actors.size(); ++i) {
         const Body& body = problem.actors[i];
         const PosedBody& posed = energy.posed(i);
         if (isSkin)
-            findContacts(energy.skin(i), problem.skins[i]->edges, contacts);
+            findContacts(energy.skinAboveGround(i), problem.skins[i]->edges, contacts);
         else
-            findContacts(posed.spheres(), contacts);
+            findContacts(energy.aboveGround(i), contacts);
         Actor actor{supportMargin(contacts, posed.massCentre()), contacts.touches, contacts.lowest,
-                    std::max(deepestInItself(body, posed), deepestInStage(posed)),
+                    std::max({deepestInItself(body, posed), deepestInStage(posed), deepest(energy.intrusions(i))}),
                     isWithinLimits(body, freedoms.first(body.freedoms))};
         for (std::size_t j = 0; j < problem.actors.size(); ++j)
-            if (j != i) actor.deepest = std::max(actor.deepest, deepestInOther(posed, energy.posed(j)));
+            if (j != i) {
+                findIntrusions(body, posed, energy.held(j), intrusions);
+                actor.deepest = std::max({actor.deepest, deepestInOther(posed, energy.posed(j)), deepest(intrusions)});
+            }
+        actor.outside = farthestOutside(problem.stage, contacts);
         quality.actors.push_back(actor);
         freedoms = freedoms.subspan(body.freedoms);
     }

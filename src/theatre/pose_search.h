@@ -30,10 +30,11 @@ public:
     // How good poses are, for people and reports.
     struct Actor {
         double margin = 0;          // of balance, metres
-        bool touches = false;       // the floor
-        double lowest = 0;          // height of the lowest point, metres
-        double deepest = 0;         // in the own body, another's, the floor or the screen, metres
+        bool touches = false;       // the floor, or a platform
+        double lowest = 0;          // height of the lowest point above what is under it, metres
+        double deepest = 0;         // in the own body, another's, the floor, the screen, a platform or a prop, metres
         bool withinLimits = false;  // all joint angle measures between their bounds
+        double outside = 0;         // how far what bears is outside where people may stand, metres
     };
     struct Quality {
         double energy = 0;
@@ -42,7 +43,8 @@ public:
         double contourMean = 0, contourMost = 0;  // |p - p'|, pixels of a target 256 high
         std::vector<Actor> actors;
 
-        // Everyone stands with kStandMargin to spare, within the joints' limits, nobody deeper than kMostDepth in anything.
+        // Everyone stands with kStandMargin to spare, within the joints' limits, nobody deeper than kMostDepth in anything, or farther than that from
+        // where he may stand.
         bool isValid() const;
     };
     static constexpr double kStandMargin = 0.01, kMostDepth = 0.02;  // metres

@@ -29,8 +29,9 @@ struct EnergyTerms {
     double supportArea = 0;       // (6) sum of what the areas lack of kAmpleArea, square centimetres: a larger one is better
     double margin = 0;            // (6) sum of what the margins lack of kAmpleMargin, centimetres
     double people = 0;            // (6) sum of squared depths in themselves and in others, square millimetres
-    double surroundings = 0;      // (6) the same in floor, screen and props
-    double hint = 0;              // (7) sum of squared distances, pixels as in contourPoint; 0: no problem has hints yet
+    double surroundings =
+        0;            // (6) the same in floor, screen, platforms and props, and of how far people stand outside where they may
+    double hint = 0;  // (7) sum of squared distances, pixels as in contourPoint
 
     double contour(const PoseWeights& w) const { return w.w1 * contourPoint + w.w2 * contourNormal + w.w3 * contourCurvature; }
     double physics(const PoseWeights& w) const {

@@ -51,6 +51,7 @@ public:
     glm::dvec3 massCentre() const { return massCentre_; }
     // A point of a joint's frame.
     glm::dvec3 point(std::size_t joint, const glm::dvec3& local) const { return places_[joint] + turns_[joint] * local; }
+    glm::dvec3 point(const Body::Point& at) const { return point(at.joint, at.local); }
     // The height of the lowest point of the capsules.
     double lowest() const { return least_.y; }
     // Whether a capsule's ball reaches into the box around the body.

@@ -13,6 +13,11 @@ SceneEnergy::SceneEnergy(const PoseProblem& problem)
     const BitMask& mask = problem.target.mask;
     shadow_ = BitMask(mask.width(), mask.height());
     for (Actor& actor : actors_) actor.shadow = shadow_;
+    placeStanding(problem.stage, standing_);
+    if (!standing_.empty() || !problem.stage.platforms.empty()) standingShadow_ = shadow_;
+    for (const Stage::Platform& platform : problem.stage.platforms) addShadow(problem.target.frame, platform, standingShadow_);
+    for (const PlacedProp& prop : standing_) addShadow(problem.target.frame, prop, standingShadow_);
+    cutToLit(problem.stage, problem.target.frame, standingShadow_);
     nearest_.resize(problem.target.contour.size());
     owners_.resize(nearest_.size());
 }
@@ -29,14 +34,19 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     Actor& actor = actors_[index];
     actor.body.pose(body, freedoms);
     actor.shadow.clear();
+    const Stage& stage = problem_.stage;
+    const auto spheres = overFloor(stage, actor.body.spheres(), actor.aboveGround);
     if (problem_.skins.empty()) {
         capsuleShadow_.add(problem_.target.frame, actor.body, actor.shadow);
-        findBearings(actor.body.spheres(), problem_.weights.bearing, actor.contacts);
+        findBearings(spheres, problem_.weights.bearing, actor.contacts);
     } else {
-        problem_.skins[index]->skin(body, actor.body, actor.skin);
-        meshShadow_.add(problem_.target.frame, *problem_.skins[index], actor.skin, actor.shadow);
-        findBearings(actor.skin, problem_.skins[index]->edges, problem_.weights.bearing, actor.contacts);
+        const BodyMesh& mesh = *problem_.skins[index];
+        mesh.skin(body, actor.body, actor.skin);
+        meshShadow_.add(problem_.target.frame, mesh, actor.skin, actor.shadow);
+        const auto vertices = overFloor(stage, actor.skin, actor.skinAboveGround);
+        findBearings(vertices, mesh.edges, problem_.weights.bearing, actor.contacts);
     }
+    cutToLit(stage, problem_.target.frame, actor.shadow);
     actor.margin = supportMargin(actor.contacts, actor.body.massCentre());
     const ScreenFrame& frame = problem_.target.frame;
     const glm::dvec2 middle = frame.metresAt(0.5 * glm::dvec2(frame.width(), frame.height()));
@@ -46,12 +56,27 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     actor.own.supportArea = 1e4 * std::max(0.0, kAmpleArea - supportArea(actor.contacts));
     actor.own.margin = 100 * std::max(0.0, kAmpleMargin - actor.margin);
     actor.own.people = depthInItself(body, actor.body);
-    actor.own.surroundings = depthInStage(actor.body);
+    actor.outside = farthestOutside(stage, actor.contacts);
+    poseProps(index);
+    findIntrusions(stage, standing_, body, actor.body, actor.held, actor.intrusions);
+    actor.own.surroundings = depthInStage(actor.body) + squaredDepths(actor.intrusions) + 1e6 * actor.outside * actor.outside;
+    matchHints(problem_.hints, frame, body, actor.body, actor.matches);
+}
+
+void SceneEnergy::poseProps(std::size_t index) {
+    Actor& actor = actors_[index];
+    placeHeld(problem_.stage, index, problem_.actors[index], actor.body, actor.held);
+    if (actor.held.empty()) return;
+    if (actor.heldShadow.width() == 0) actor.heldShadow = BitMask(shadow_.width(), shadow_.height());
+    actor.heldShadow.clear();
+    for (const PlacedProp& prop : actor.held) addShadow(problem_.target.frame, prop, actor.heldShadow);
+    cutToLit(problem_.stage, problem_.target.frame, actor.heldShadow);
 }
 
 const EnergyTerms& SceneEnergy::terms() {
     terms_ = {};
     shadow_.clear();
+    if (standingShadow_.width() > 0) shadow_.add(standingShadow_);
     for (std::size_t i = 0; i < actors_.size(); ++i) {
         const Actor& actor = actors_[i];
         shadow_.add(actor.shadow);
@@ -62,15 +87,31 @@ const EnergyTerms& SceneEnergy::terms() {
         terms_.people += actor.own.people;
         terms_.surroundings += actor.own.surroundings;
         for (std::size_t j = i + 1; j < actors_.size(); ++j) terms_.people += depthInOther(actor.body, actors_[j].body);
+        if (actor.held.empty()) continue;
+        shadow_.add(actor.heldShadow);
+        for (std::size_t j = 0; j < actors_.size(); ++j) {
+            if (j == i) continue;
+            findIntrusions(problem_.actors[j], actors_[j].body, actor.held, inOthersProps_);
+            terms_.surroundings += squaredDepths(inOthersProps_);
+        }
     }
     terms_.coverage = static_cast<double>(differing(shadow_, problem_.target.mask)) / problem_.target.area;
     compareContours();
+    const double square256 = problem_.target.pixelsOf256 * problem_.target.pixelsOf256;
+    for (std::size_t i = 0; i < problem_.hints.size(); ++i) terms_.hint += square256 * hintOwner(i).match.square;
     terms_.coherence = ownerChanges(owners_);
     return terms_;
 }
 
+SceneEnergy::HintOwner SceneEnergy::hintOwner(std::size_t hint) const {
+    HintOwner nearest{0, actors_[0].matches[hint]};
+    for (std::size_t i = 1; i < actors_.size(); ++i)
+        if (actors_[i].matches[hint].square < nearest.match.square) nearest = {i, actors_[i].matches[hint]};
+    return nearest;
+}
+
 // Equation 2, from the target's contour to the nearest points of the shadow's. Whose (equation 4): the actor whose shadow holds that point; of
-// several the one whose the last point was, else the first.
+// several the one whose the last point was, else the first; nobody if it is a prop's.
 void SceneEnergy::compareContours() {
     contour_.find(shadow_);
     const PoseTarget& target = problem_.target;
@@ -91,10 +132,11 @@ void SceneEnergy::compareContours() {
             terms_.contourPoint += each * scale * glm::dot(away, away);
             terms_.contourNormal += each * glm::dot(turned, turned);
             terms_.contourCurvature += each * bent * bent;
-            if (!actors_[static_cast<std::size_t>(owner)].shadow.at(pixel->x, pixel->y))
-                owner = static_cast<int>(std::find_if(actors_.begin(), actors_.end(),
-                                                      [&](const Actor& actor) { return actor.shadow.at(pixel->x, pixel->y); }) -
-                                         actors_.begin());
+            if (owner == kNobody || !actors_[static_cast<std::size_t>(owner)].shadow.at(pixel->x, pixel->y)) {
+                const auto found = std::find_if(actors_.begin(), actors_.end(),
+                                                [&](const Actor& actor) { return actor.shadow.at(pixel->x, pixel->y); });
+                owner = found == actors_.end() ? kNobody : static_cast<int>(found - actors_.begin());
+            }
             nearest_[i] = got;
         }
         owners_[i] = owner;

@@ -4,6 +4,7 @@
 #include "theatre/capsule_shadow.h"
 #include "theatre/mesh_shadow.h"
 #include "theatre/pose_problem.h"
+#include "theatre/surroundings.h"
 
 #include <span>
 #include <vector>
@@ -35,9 +36,27 @@ public:
     const Contacts& bearings(std::size_t actor) const { return actors_[actor].contacts; }
     double margin(std::size_t actor) const { return actors_[actor].margin; }  // on them, metres
     const BitMask& contour() const { return contour_.pixels(); }              // of the shadow of all; after terms()
-    // Of each of the target's contour points: the nearest point of the shadow's contour and the actor whose it is; after terms().
+    // Of each of the target's contour points: the nearest point of the shadow's contour and the actor whose it is, or kNobody; after terms().
     std::span<const ContourPoint> nearest() const { return nearest_; }
     std::span<const int> owners() const { return owners_; }
+
+    // Of each hint: the actor whose candidate is nearest, and which that is.
+    struct HintOwner {
+        std::size_t actor = 0;
+        HintMatch match;
+    };
+    HintOwner hintOwner(std::size_t hint) const;
+    // An actor's spheres, or the vertices of his skin, as if what is under them were the floor.
+    std::span<const PlacedSphere> aboveGround(std::size_t actor) const {
+        return problem_.stage.platforms.empty() ? actors_[actor].body.spheres() : actors_[actor].aboveGround;
+    }
+    std::span<const glm::vec3> skinAboveGround(std::size_t actor) const {
+        return problem_.stage.platforms.empty() ? skin(actor) : actors_[actor].skinAboveGround;
+    }
+    double outside(std::size_t actor) const { return actors_[actor].outside; }  // how far he stands outside where he may, metres
+    // Where an actor is in platforms and props, and what he holds in anything.
+    std::span<const Intrusion> intrusions(std::size_t actor) const { return actors_[actor].intrusions; }
+    std::span<const PlacedProp> held(std::size_t actor) const { return actors_[actor].held; }
 
 private:
     struct Actor {
@@ -46,8 +65,16 @@ private:
         BitMask shadow;
         Contacts contacts;
         double margin = 0;
-        EnergyTerms own;  // what depends on this actor alone
+        EnergyTerms own;                 // what depends on this actor alone
+        std::vector<HintMatch> matches;  // of each hint
+        double outside = 0;
+        std::vector<PlacedSphere> aboveGround;
+        std::vector<glm::vec3> skinAboveGround;
+        std::vector<PlacedProp> held;
+        BitMask heldShadow;
+        std::vector<Intrusion> intrusions;
     };
+    void poseProps(std::size_t index);
     void compareContours();
 
     const PoseProblem& problem_;
@@ -55,6 +82,9 @@ private:
     std::vector<Actor> actors_;
     CapsuleShadow capsuleShadow_;
     MeshShadow meshShadow_;
+    std::vector<PlacedProp> standing_;
+    BitMask standingShadow_;
+    std::vector<Intrusion> inOthersProps_;
     BitMask shadow_;
     Contour contour_;
     std::vector<ContourPoint> nearest_;

@@ -75,6 +75,7 @@ void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> freed
     for (std::size_t a = 0; a < equations_.size(); ++a)
         equations_[a].begin(energy.posed(a), freedoms.subspan(first_[a], problem_.actors[a].freedoms));
     addContour(energy);
+    addHints(energy);
     addPhysics(energy);
     for (PoseEquations& equations : equations_) equations.finish();
 }
@@ -153,6 +154,44 @@ void SilhouetteFit::addContour(SceneEnergy& energy) {
             }
 }
 
+// Equation 7: the nearest part goes to its hint, to the right and down alike.
+void SilhouetteFit::addHints(const SceneEnergy& energy) {
+    const ScreenFrame& frame = problem_.target.frame;
+    const double weight = problem_.weights.w12 * problem_.target.pixelsOf256 * problem_.target.pixelsOf256;
+    for (std::size_t i = 0; i < problem_.hints.size(); ++i) {
+        const auto [actor, match] = energy.hintOwner(i);
+        const Body::Point& part = problem_.actors[actor].parts[static_cast<std::size_t>(match.part)];
+        const glm::dvec3 point = energy.posed(actor).point(part), d = frame.fromLight(point);
+        if (d.z <= 0) continue;  // no shadow to move
+        // The derivative of foot + focus (x, y) / z.
+        const double scale = frame.focus() / d.z;
+        equations_[actor].addPoint(part.joint, point, scale * glm::dvec3(1, 0, d.x / d.z), match.away.x, weight);
+        equations_[actor].addPoint(part.joint, point, scale * glm::dvec3(0, -1, d.y / d.z), match.away.y, weight);
+    }
+}
+
+// Equation 6, E_k: an actor, or what he holds, leaves what it is in. What another holds is asked for its half in the other's turn.
+void SilhouetteFit::addIntrusions(const SceneEnergy& energy, std::size_t actor, double weight) {
+    PoseEquations& equations = equations_[actor];
+    for (const Intrusion& intrusion : energy.intrusions(actor)) {
+        const glm::dvec3 deeper = -1000.0 * intrusion.outward;
+        if (intrusion.otherJoint)
+            equations.addPoints(intrusion.joint, intrusion.point, deeper, *intrusion.otherJoint, intrusion.point, -deeper,
+                                1000 * intrusion.depth, weight);
+        else
+            equations.addPoint(intrusion.joint, intrusion.point, deeper, 1000 * intrusion.depth, weight);
+    }
+    for (std::size_t other = 0; other < equations_.size(); ++other) {
+        if (other == actor) continue;
+        findIntrusions(problem_.actors[actor], energy.posed(actor), energy.held(other), intrusions_);
+        for (const Intrusion& in : intrusions_)
+            equations.addPoint(in.joint, in.point, -1000.0 * in.outward, 500 * in.depth, weight);
+        findIntrusions(problem_.actors[other], energy.posed(other), energy.held(actor), intrusions_);
+        for (const Intrusion& in : intrusions_)
+            equations.addPoint(*in.otherJoint, in.point, 1000.0 * in.outward, 500 * in.depth, weight);
+    }
+}
+
 // Equation 6: what is too deep.
 void SilhouetteFit::addPhysics(SceneEnergy& energy) {
     PoseWeights weights = problem_.weights;
@@ -189,10 +228,13 @@ void SilhouetteFit::addPhysics(SceneEnergy& energy) {
                     equations.addPoint(body.spheres[i].joint, centre, direction, 1000 * depth, weights.w11);
                 }
         }
+        addIntrusions(energy, a, weights.w11);
         // What bears is not let go of lightly: the margin would be another one then.
-        for (std::size_t i = 0; i < posed.spheres().size(); ++i) {
+        const auto above = energy.aboveGround(a);
+        const double lowest = energy.bearings(a).lowest;
+        for (std::size_t i = 0; i < above.size(); ++i) {
             const auto& [centre, radius] = posed.spheres()[i];
-            if (centre.y - radius < posed.lowest() + kTouch)
+            if (above[i].centre.y - radius < lowest + kTouch)
                 equations.addPoint(body.spheres[i].joint, centre, {0, 1000, 0}, 0, kHold * weights.w9);
         }
         addBalance(energy, a, weights);
@@ -209,9 +251,23 @@ void SilhouetteFit::addBalance(const SceneEnergy& energy, std::size_t index, con
     const auto jointOf = [&](std::uint32_t source) {
         return problem_.skins.empty() ? body.spheres[source].joint : problem_.skins[index]->joints[source][0];
     };
+    // Contacts are as if on the floor: on a platform they are higher.
+    const auto groundUnder = [&](std::uint32_t source) {
+        return problem_.skins.empty() ? posed.spheres()[source].centre.y - energy.aboveGround(index)[source].centre.y
+                                      : double(energy.skin(index)[source].y - energy.skinAboveGround(index)[source].y);
+    };
     const std::size_t lowestJoint = jointOf(contacts.lowestSource);
     const glm::dvec3 lowest = problem_.skins.empty() ? posed.spheres()[contacts.lowestSource].centre
                                                      : glm::dvec3(energy.skin(index)[contacts.lowestSource]);
+    for (const Contact& contact : contacts.discs) {
+        if (!problem_.stage.standing) break;
+        const double outside = problem_.stage.standing->outside(contact.place);
+        if (outside <= 0 || outside < energy.outside(index)) continue;
+        const glm::dvec2 away =
+            (contact.place - glm::clamp(contact.place, problem_.stage.standing->from, problem_.stage.standing->to)) / outside;
+        equations.addPoint(jointOf(contact.source), contact.point, 1000.0 * glm::dvec3(away.x, 0, away.y), 1000 * outside,
+                           weights.w11);
+    }
     if (const double height = 1000 * contacts.lowest; height > 0)
         equations.addPoint(lowestJoint, lowest, {0, 1000, 0}, height, 0.5 * weights.w7 / std::max(kNearest, height));
 
@@ -227,7 +283,8 @@ void SilhouetteFit::addBalance(const SceneEnergy& energy, std::size_t index, con
     else if (contact.along.y != 0)
         inwards = glm::dot(outward, contact.along) / contact.along.y;
     Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(body.freedoms));
-    equations.addMotion(row, jointOf(contact.source), contact.point, -100.0 * (contact.share * outward - inwards * up));
+    equations.addMotion(row, jointOf(contact.source), contact.point + groundUnder(contact.source) * up,
+                        -100.0 * (contact.share * outward - inwards * up));
     equations.addMotion(row, lowestJoint, lowest, -100.0 * ((1 - contact.share) * outward + inwards * up));
     const double mass = body.mass();
     for (std::size_t i = 0; i < body.joints.size(); ++i)

@@ -29,6 +29,8 @@ public:
 private:
     void linearise(SceneEnergy& energy, std::span<const double> freedoms);
     void addContour(SceneEnergy& energy);
+    void addHints(const SceneEnergy& energy);
+    void addIntrusions(const SceneEnergy& energy, std::size_t actor, double weight);
     void addPhysics(SceneEnergy& energy);
     void addBalance(const SceneEnergy& energy, std::size_t actor, const PoseWeights& weights);
 
@@ -38,6 +40,7 @@ private:
     std::vector<PoseEquations> equations_;  // of each actor: a residual moves with his joints alone
     std::vector<std::size_t> first_;        // freedom of each actor
     std::vector<double> trial_;
+    std::vector<Intrusion> intrusions_;
     std::int64_t evaluations_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "theatre/prop.h"
+
 #include "core/geometry.h"
 #include "core/image.h"
 #include "core/result.h"
@@ -7,12 +9,44 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <limits>
+#include <optional>
+#include <vector>
+
 namespace fantascope::theatre {
 
 // Where the theatre plays: metres, +y up, the floor at y = 0, the screen upright at z = 0, the light before it at +z; +x is to the right as
 // seen from the light, and so in the picture.
 struct Stage {
+    // A box that people may stand on, turned about its upright axis (radians, right-handed).
+    struct Platform {
+        std::string name;
+        glm::dvec3 centre{0}, size{1};
+        double turn = 0;
+
+        double top() const { return centre.y + 0.5 * size.y; }
+        bool isUnder(double x, double z) const;  // seen from above
+        // The signed distance to it, negative inside, and the unit direction in which it grows. One that stands on the floor goes on below it.
+        double distance(const glm::dvec3& point, glm::dvec3& outward) const;
+    };
+    // An area of the floor, or of the screen; a side without a limit is infinite.
+    struct Area {
+        static constexpr double kFar = std::numeric_limits<double>::infinity();
+        glm::dvec2 from{-kFar}, to{kFar};
+        // How far a point is outside, 0 within.
+        double outside(glm::dvec2 point) const;
+    };
+
     glm::dvec3 light{0, 0, 7};
+    std::optional<Area> lit{};  // (x, y) of the screen that a projector lights, the light being its lens; none: a lamp lights all
+    std::optional<Area> standing{};  // (x, z) of the floor where people may stand; none: anywhere
+    std::vector<Platform> platforms{};
+    std::vector<Prop> props{};
+
+    // The height of the floor, or of the highest platform whose top is not above a point, under it.
+    double groundUnder(const glm::dvec3& point) const;
+    // Error: a prop is held by an actor that is not among so many.
+    Result<void> checkHolders(std::size_t actors) const;
 };
 
 // A picture laid on the screen: target, shadow and masks share its pixels. Pixel (column, row), row 0 at the top, is centred at

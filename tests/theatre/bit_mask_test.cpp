@@ -1,6 +1,7 @@
 #include "theatre/bit_mask.h"
 
 #include "core/random.h"
+#include "masks.h"
 
 #include <gmock/gmock.h>
 
@@ -134,6 +135,19 @@ TEST(ConvexFiller, DrawsNothingForWhatIsOutsideOrHasNoArea) {
     BitMask mask(130, 80);
     ConvexFiller().fill(std::vector<glm::vec2>{{5, 10.2f}, {60, 10.2f}, {30, 10.2f}}, mask);
     EXPECT_EQ(mask.count(), 0);
+}
+
+TEST(BitMask, KeepsARectangle) {
+    Rng rng(8);
+    for (int trial = 0; trial < 40; ++trial) {
+        BitMask mask = randomMask(rng, 150, 20, 0.5);
+        const BitMask before = mask;
+        const int left = static_cast<int>(rng.below(170)) - 10, right = static_cast<int>(rng.below(170)) - 10,
+                  top = static_cast<int>(rng.below(24)) - 2, bottom = static_cast<int>(rng.below(24)) - 2;
+        mask.keep(left, top, right, bottom);
+        EXPECT_EQ(mask, drawn(150, 20,
+                              [&](int x, int y) { return before.at(x, y) && x >= left && x < right && y >= top && y < bottom; }));
+    }
 }
 
 }  // namespace

@@ -99,6 +99,10 @@ TEST(OwnerChanges, CountAround) {
     EXPECT_EQ(ownerChanges(std::vector{0, 1, 1, 0}), 2);
     EXPECT_EQ(ownerChanges(std::vector{0, 1, 2}), 3);
     EXPECT_EQ(ownerChanges(std::vector{0, 1, 0, 1}), 4);
+    // A prop's piece is nobody's burden: it neither ends one's own nor begins another.
+    EXPECT_EQ(ownerChanges(std::vector{kNobody, kNobody}), 0);
+    EXPECT_EQ(ownerChanges(std::vector{0, kNobody, 0, kNobody}), 0);
+    EXPECT_EQ(ownerChanges(std::vector{kNobody, 0, kNobody, 1}), 2);
 }
 
 TEST(EnergyTerms, TotalIsWeightedByTheTables) {

@@ -70,6 +70,23 @@ TEST(PoseTarget, StandsOnTheFloorBeforeTheLightAsHighAsAsked) {
     for (const ContourPoint& point : target->contour) EXPECT_TRUE(target->mask.at(point.pixel.x, point.pixel.y));
 }
 
+// A box 1 m wide and 2 m high: x 0 .. 1, since the light is at .5.
+TEST(PoseTarget, LiesInWhatAProjectorLights) {
+    const GreyImage picture = pictureOf(300, 300, [](int x, int y) { return isIn(x, y, 100, 50, 100, 200); });
+    Stage stage = kStage;
+    const auto message = [&](Stage::Area lit) {
+        stage.lit = lit;
+        const auto target = PoseTarget::from(picture, stage, 2, 128);
+        return target ? "none" : target.error().message();
+    };
+    EXPECT_EQ(message({{-0.01, 0}, {1.01, 2.01}}), "none");
+    EXPECT_THAT(message({{0.1, 0}, {1.01, 2.01}}),
+                AllOf(HasSubstr("x 0.00 .. 1.00 m and y 0 .. 2.00 m"), HasSubstr("lights x 0.10 .. 1.01 m")));
+    EXPECT_THAT(message({{-1, 0}, {0.9, 2.01}}), HasSubstr("lights"));
+    EXPECT_THAT(message({{-1, 0.1}, {2, 2.01}}), HasSubstr("lights"));
+    EXPECT_THAT(message({{-1, 0}, {2, 1.9}}), HasSubstr("make it less high"));
+}
+
 TEST(PoseTarget, HasTheSameContourFromALargerPicture) {
     const auto disc = [](int size) {
         return pictureOf(size, size, [&](int x, int y) { return std::hypot(x - size / 2, y - size / 2) < 0.4 * size; });

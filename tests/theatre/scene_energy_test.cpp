@@ -4,8 +4,10 @@
 
 #include "a_scene.h"
 
+#include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fantascope::theatre {
@@ -156,6 +158,157 @@ TEST(SceneEnergy, ContourIsInPixelsOfATargetOf256) {
     EXPECT_GE(energy.terms().contourPoint, 0.1 * kContourPoints * 9 * scale);
     EXPECT_NEAR(energy.terms().coverage, static_cast<double>(differing(shifted, shadow)) / static_cast<double>(shadow.count()),
                 1e-12);
+}
+
+TEST(SceneEnergy, OnAPlatformPeopleStandAsOnTheFloor) {
+    PoseProblem problem = aScene({1.7});
+    std::vector<double> pose = aRow(problem, {0}, 2);
+    makeTarget(problem, pose);
+    const double margin = [&] {
+        SceneEnergy energy(problem);
+        energy.pose(pose);
+        return energy.margin(0);
+    }();
+    problem.stage.platforms = {{"block", {0, 0.2, 2}, {1, 0.4, 1}, 0}};
+    SceneEnergy energy(problem);
+    pose[1] += 0.4;
+    energy.pose(pose);
+    EXPECT_NEAR(energy.terms().floor, 0, 1e-6);
+    EXPECT_NEAR(energy.terms().surroundings, 0, 1e-6);
+    EXPECT_NEAR(energy.margin(0), margin, 1e-9);
+    // 5 cm above the top; then 40 cm above the floor, beside it.
+    pose[1] += 0.05;
+    energy.pose(pose);
+    EXPECT_NEAR(energy.terms().floor, 50, 1e-6);
+    pose[0] += 2, pose[1] -= 0.05;
+    energy.pose(pose);
+    EXPECT_NEAR(energy.terms().floor, 400, 1e-6);
+    // On the floor, in the block.
+    pose[0] -= 2, pose[1] -= 0.4;
+    energy.pose(pose);
+    EXPECT_GT(energy.terms().surroundings, 1e4);
+}
+
+// By hand: the light at z = 7, a wall 40 x 180 x 20 cm that stands with its middle at x = 1, z = 2. Its left edge is thrown by the back, 1.9 m
+// from the screen, its right one and its top by the front: .8 * 7 / 5.1, 1.2 * 7 / 4.9 and .1 + 1.7 * 7 / 4.9. The hand of one behind it is in its shadow.
+TEST(SceneEnergy, PropsThrowAShadowThatIsNobodys) {
+    PoseProblem problem = aScene({1.7});
+    const std::vector<double> pose = aRow(problem, {-0.15}, 2.6);
+    problem.stage.props = {aBox({0.4, 1.8, 0.2}, {1, 0.9, 2})};
+    makeTarget(problem, pose);
+    SceneEnergy energy(problem);
+    energy.pose(pose);
+    EXPECT_EQ(energy.terms().coverage, 0) << "the prop's shadow is there before the actor's";
+    const ScreenFrame& frame = problem.target.frame;
+    const auto isDark = [&](double x, double y) {
+        const glm::dvec2 pixel = frame.pixelAt(x, y);
+        return energy.shadow().at(static_cast<int>(std::floor(pixel.x)), static_cast<int>(std::floor(pixel.y)));
+    };
+    const double left = 0.8 * 7 / 5.1, right = 1.2 * 7 / 4.9, top = 0.1 + 1.7 * 7 / 4.9, e = 0.6 * frame.pixel();
+    EXPECT_TRUE(isDark(left + e, 1));
+    EXPECT_FALSE(isDark(left - e, 1));
+    EXPECT_TRUE(isDark(right - e, 1));
+    EXPECT_FALSE(isDark(right + e, 1));
+    EXPECT_TRUE(isDark(1.4, top - e));
+    EXPECT_FALSE(isDark(1.4, top + e));
+    EXPECT_GT(std::count(energy.owners().begin(), energy.owners().end(), kNobody), 20);
+    EXPECT_GT(std::count(energy.owners().begin(), energy.owners().end(), 0), 20);
+    EXPECT_EQ(energy.terms().coherence, 0) << "all that is somebody's is one's";
+    EXPECT_NEAR(energy.terms().surroundings, 0, 1e-6);
+}
+
+// A turned platform's is that of the same box as a prop.
+TEST(SceneEnergy, PlatformsThrowAShadowToo) {
+    PoseProblem problem = aScene({1.7});
+    const std::vector<double> pose = aRow(problem, {-0.9}, 3);
+    makeTarget(problem, pose);
+    const auto shadow = [&](const Stage& stage) {
+        problem.stage = stage;
+        SceneEnergy energy(problem);
+        energy.pose(pose);
+        energy.terms();
+        return energy.shadow();
+    };
+    Stage withPlatform = problem.stage, withProp = problem.stage;
+    withPlatform.platforms = {{"block", {1, 0.5, 2}, {1, 1, 0.2}, radians(40)}};
+    withProp.props = {aBox({1, 1, 0.2}, {1, 0.5, 2})};
+    withProp.props[0].turn = rotationOf({0, radians(40), 0});
+    const BitMask bare = shadow(problem.stage), platform = shadow(withPlatform), prop = shadow(withProp);
+    EXPECT_LE(differing(platform, prop), 4);
+    EXPECT_GT(differing(platform, bare), 1000);
+}
+
+// A box in the left hand of one who looks at the screen goes with it.
+TEST(SceneEnergy, WhatIsHeldMovesWithTheHand) {
+    PoseProblem problem = aScene({2.0, 2.0});
+    std::vector<double> poses = aRow(problem, {-0.9, 1.9}, 2);
+    makeTarget(problem, poses);
+    Prop box = aBox({0.2, 0.2, 0.2}, {0.3, 0.1, 0});
+    box.holder = Prop::Holder{0, BodyPart::LeftHand};
+    problem.stage.props = {box};
+    SceneEnergy energy(problem);
+    energy.pose(poses);
+    ASSERT_EQ(energy.held(0).size(), 1u);
+    EXPECT_TRUE(energy.held(1).empty());
+    // The hand is at 1.076 m on his left, which is -x now, 1.6224 up and .006 behind.
+    EXPECT_LT(glm::distance(energy.held(0)[0].place, {-0.9 - 1.376, 1.7224, 2.006}), 1e-6);
+    const BitMask before = energy.shadow();
+    EXPECT_GT(energy.terms().coverage, 0) << "the target is without the box";
+    // Turned about: on the other side. The mask does not show what was.
+    poses[4] = 0;
+    energy.pose(0, std::span(poses).first(problem.actors[0].freedoms));
+    energy.terms();
+    EXPECT_LT(glm::distance(energy.held(0)[0].place, {-0.9 + 1.376, 1.7224, 1.994}), 1e-6);
+    SceneEnergy fresh(problem);
+    fresh.pose(poses);
+    fresh.terms();
+    EXPECT_EQ(energy.shadow(), fresh.shadow());
+    EXPECT_EQ(energy.terms().surroundings, fresh.terms().surroundings);
+    EXPECT_FALSE(energy.shadow() == before);
+    // Where the other's arm is it is in the way.
+    EXPECT_NEAR(energy.terms().surroundings, 0, 1e-6);
+    poses[0] += 0.7, poses[1] -= 0.1;
+    energy.pose(poses);
+    std::vector<Intrusion> intrusions;
+    findIntrusions(problem.actors[1], energy.posed(1), energy.held(0), intrusions);
+    ASSERT_FALSE(intrusions.empty());
+    EXPECT_GE(energy.terms().surroundings, squaredDepths(intrusions));
+}
+
+TEST(SceneEnergy, ThereIsNoShadowWhereAProjectorDoesNotLight) {
+    PoseProblem problem = aScene({1.7});
+    const std::vector<double> pose = aRow(problem, {0}, 2);
+    makeTarget(problem, pose);
+    const BitMask whole = problem.target.mask;
+    problem.stage.lit = Stage::Area{{-0.4, 0.2}, {3, 1.5}};
+    SceneEnergy energy(problem);
+    energy.pose(pose);
+    energy.terms();
+    int kept = 0;
+    for (int y = 0; y < whole.height(); ++y)
+        for (int x = 0; x < whole.width(); ++x) {
+            const glm::dvec2 at = problem.target.frame.metresAt({x + 0.5, y + 0.5});
+            const bool isLit = at.x > -0.4 && at.y > 0.2 && at.y < 1.5;
+            ASSERT_EQ(energy.shadow().at(x, y), whole.at(x, y) && isLit) << x << ", " << y;
+            kept += energy.shadow().at(x, y);
+        }
+    EXPECT_GT(kept, 500);
+}
+
+// One with his feet at z = 2, his toes at 2 - .0998 * 1.7: that far outside, in millimetres squared.
+TEST(SceneEnergy, WhoStandsWhereNobodyMayIsCharged) {
+    PoseProblem problem = aScene({1.7});
+    const std::vector<double> pose = aRow(problem, {0}, 2);
+    makeTarget(problem, pose);
+    problem.stage.standing = Stage::Area{{-1, 2.2}, {1, 4}};
+    SceneEnergy energy(problem);
+    energy.pose(pose);
+    const double outside = 2.2 - (2 - 0.0998 * 1.7);
+    EXPECT_NEAR(energy.outside(0), outside, 0.002);
+    EXPECT_NEAR(energy.terms().surroundings, 1e6 * energy.outside(0) * energy.outside(0), 1e-6);
+    problem.stage.standing = Stage::Area{{-1, 1}, {1, 4}};
+    energy.pose(pose);
+    EXPECT_NEAR(energy.terms().surroundings, 0, 1e-6);
 }
 
 }  // namespace

@@ -149,5 +149,66 @@ TEST(SilhouetteFit, MendsWhatPhysicsForbids) {
     EXPECT_LT(share(&PoseWeights::w9, moved, scene.problem), 0.7) << "balance";
 }
 
+// The same of what stands on a stage, and of what others hold.
+TEST(SilhouetteFit, LeavesWhatStandsOnTheStage) {
+    const auto share = [](std::vector<double> poses, const PoseProblem& given, double PoseWeights::*weight = &PoseWeights::w11) {
+        PoseProblem problem = given;
+        problem.weights = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+        problem.weights.*weight = 1;
+        SceneEnergy energy(problem);
+        energy.pose(poses);
+        const double before = energy.energy();
+        EXPECT_GT(before, 100);
+        return SilhouetteFit(problem).run(energy, poses, 40) / before;
+    };
+    Scene scene;
+    const auto poses = scene.wanted;
+    const Stage bare = scene.problem.stage;
+    const auto with = [&](auto change) {
+        scene.problem.stage = bare;
+        change(scene.problem.stage);
+        return scene.problem;
+    };
+    // Its right side is 5 cm in the middle of the first one's left leg.
+    EXPECT_LT(share(poses, with([](Stage& stage) {
+                        stage.platforms = {{"block", {-0.45, 0.15, 2}, {0.4, 0.3, 0.6}, 0}};
+                    })),
+              0.01)
+        << "platform";
+    EXPECT_LT(share(poses, with([](Stage& stage) { stage.props = {aBox({0.4, 0.3, 0.6}, {-0.45, 0.15, 2})}; })), 0.01) << "prop";
+    EXPECT_LT(share(poses, with([](Stage& stage) { stage.standing = Stage::Area{{-5, 0}, {5, 1.8}}; })), 0.01) << "area";
+    // In the second's hand is a box whose bottom is 1 cm below the tips of the first one's fingers; either may go.
+    scene.problem.stage = bare;
+    SceneEnergy energy(scene.problem);
+    energy.pose(poses);
+    const auto partOf = [&](std::size_t actor, BodyPart part) {
+        return scene.problem.actors[actor].parts[static_cast<std::size_t>(part)];
+    };
+    const Body::Point hand = partOf(1, BodyPart::LeftHand);
+    const glm::dvec3 tips = energy.posed(0).point(partOf(0, BodyPart::RightHand));
+    Prop box = aBox({0.2, 0.2, 0.2}, {});
+    box.holder = Prop::Holder{1, BodyPart::LeftHand};
+    box.turn = glm::conjugate(energy.posed(1).turn(hand.joint));
+    box.place = box.turn * (tips + glm::dvec3(0, 0.09, 0) - energy.posed(1).point(hand));
+    EXPECT_LT(share(poses, with([&](Stage& stage) { stage.props = {box}; })), 0.05) << "held by another";
+    // A staff from the first's hand down through the floor.
+    EXPECT_LT(share(poses, with([](Stage& stage) {
+                        Prop staff = aBox({0.03, 3, 0.03}, {0, 0, 0});
+                        staff.holder = Prop::Holder{0, BodyPart::LeftHand};
+                        stage.props = {staff};
+                    })),
+              0.05)
+        << "held into the floor";
+    // 10 cm above a platform.
+    std::vector<double> high = aRow(scene.problem, {-0.75, 0.75}, 2);
+    for (const std::size_t first : {std::size_t{0}, scene.problem.actors[0].freedoms}) high[first + 1] += 0.5;
+    EXPECT_LT(share(high, with([](Stage& stage) {
+                        stage.platforms = {{"block", {0, 0.2, 2}, {4, 0.4, 2}, 0}};
+                    }),
+                    &PoseWeights::w7),
+              0.1)
+        << "height above a platform";
+}
+
 }  // namespace
 }  // namespace fantascope::theatre

@@ -1,0 +1,216 @@
+#include "theatre/stage_file.h"
+
+#include "core/config.h"
+#include "core/mesh.h"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace fantascope::theatre {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kVersion = 1;
+constexpr double kFarthest = 100, kLeastSize = 0.01, kMostSize = 30, kMostOffset = 3;  // metres
+constexpr double kNearestLight = 0.5, kRounding = 1e-3;                                // metres
+constexpr std::size_t kMostThings = 50, kMostTriangles = 100'000;
+
+Result<glm::dvec3> readLight(const ConfigNode& node) {
+    const glm::dvec3 light = TRY(node.vector3(-kFarthest, kFarthest, "m"));
+    if (light.z <= 0)
+        return node.error(
+            fmt::format("the light is {} m behind the screen, which is at z = 0; people stand between the two: give it a z > 0",
+                        shortest(-light.z)));
+    if (light.z < kNearestLight)
+        return node.error(fmt::format("the light is {} m before the screen, and nobody fits between; move it to {} m or farther",
+                                      shortest(light.z), shortest(kNearestLight)));
+    if (light.y < 0)
+        return node.error(
+            fmt::format("the light is {} m below the floor, which is at y = 0; give it a y of 0 or more", shortest(-light.y)));
+    return light;
+}
+
+// [from, to].
+Result<glm::dvec2> readRange(const ConfigNode& node, double least) {
+    const glm::dvec2 range = TRY(node.vector2(least, kFarthest, "m"));
+    if (range.x >= range.y)
+        return node.error(
+            fmt::format("from {} to {} is nothing; the smaller number comes first", shortest(range.x), shortest(range.y)));
+    return range;
+}
+
+Result<std::pair<glm::dvec3, Stage::Area>> readProjector(const ConfigNode& node) {
+    glm::dvec3 lens(0);
+    glm::dvec2 across(0), up(0);
+    ConfigFields fields(node);
+    fields.read("lens", lens, readLight);
+    fields.read("picture", across, [&](const ConfigNode& at) -> Result<glm::dvec2> {
+        glm::dvec2 x(0);
+        ConfigFields own(at);
+        own.read("x", x, [](const ConfigNode& range) { return readRange(range, -kFarthest); });
+        own.read("y", up, [](const ConfigNode& range) { return readRange(range, -kFarthest); });
+        TRY(own.finish());
+        return x;
+    });
+    TRY(fields.finish());
+    return std::pair(lens, Stage::Area{{across.x, up.x}, {across.y, up.y}});
+}
+
+Result<Stage::Area> readStanding(const ConfigNode& node, double lightZ) {
+    glm::dvec2 x(-Stage::Area::kFar, Stage::Area::kFar), z(0, Stage::Area::kFar);
+    ConfigFields fields(node);
+    fields.optional().read("x", x, [](const ConfigNode& at) { return readRange(at, -kFarthest); });
+    fields.optional().read("z", z, [&](const ConfigNode& at) -> Result<glm::dvec2> {
+        const glm::dvec2 range = TRY(readRange(at, 0));
+        if (range.y >= lightZ)
+            return at.error(
+                fmt::format("people may stand as far as z = {} m, and the light is at {} m: who is behind it throws no shadow; "
+                            "end before it",
+                            shortest(range.y), shortest(lightZ)));
+        return range;
+    });
+    TRY(fields.finish());
+    return Stage::Area{{x.x, z.x}, {x.y, z.y}};
+}
+
+// The name of a platform or a prop, each with its own.
+Result<std::string> readName(const ConfigNode& node, std::vector<std::string>& names) {
+    const std::string name = TRY(node.text());
+    if (std::find(names.begin(), names.end(), name) != names.end())
+        return node.error(fmt::format("two things are called '{}'; give each a name of its own", name));
+    names.push_back(name);
+    return name;
+}
+
+Result<Stage::Platform> readPlatform(const ConfigNode& node, const glm::dvec3& light, std::vector<std::string>& names) {
+    Stage::Platform platform;
+    ConfigFields fields(node);
+    fields.read("name", platform.name, [&](const ConfigNode& at) { return readName(at, names); });
+    fields.vector3("centre", platform.centre, -kFarthest, kFarthest, "m");
+    fields.vector3("size", platform.size, kLeastSize, kMostSize, "m");
+    fields.optional().angle("turned", platform.turn, -360, 360);
+    TRY(fields.finish());
+    if (const double bottom = platform.centre.y - 0.5 * platform.size.y; bottom < -kRounding)
+        return node.error(fmt::format(
+            "platform '{}' reaches {:.3f} m below the floor; the y of a centre is half the height if it stands on it: {}",
+            platform.name, -bottom, shortest(0.5 * platform.size.y)));
+    const double c = std::abs(std::cos(platform.turn)), s = std::abs(std::sin(platform.turn));
+    if (const double back = platform.centre.z - 0.5 * (s * platform.size.x + c * platform.size.z); back < -kRounding)
+        return node.error(
+            fmt::format("platform '{}' reaches {:.3f} m through the screen, which is at z = 0; move its centre by as much",
+                        platform.name, -back));
+    if (glm::dvec3 outward; platform.distance(light, outward) < 0)
+        return node.error(fmt::format("the light is inside platform '{}'; move one of them", platform.name));
+    return platform;
+}
+
+Result<Prop::Holder> readHolder(const ConfigNode& node) {
+    Prop::Holder holder;
+    std::size_t number = 0;
+    ConfigFields fields(node);
+    fields.integer("actor", number, 1, 50);
+    fields.read("part", holder.part,
+                [](const ConfigNode& at) -> Result<BodyPart> { return static_cast<BodyPart>(TRY(at.choice(partNames()))); });
+    TRY(fields.finish());
+    holder.actor = number - 1;
+    return holder;
+}
+
+Result<std::shared_ptr<const Prop::Shape>> readShape(const ConfigNode& node, double scale) {
+    auto read = readMesh(TRY(node.path()));
+    if (!read) return node.error(read.error().message());
+    TriangleMesh mesh = std::move(read).value();
+    if (mesh.triangles.size() > kMostTriangles)
+        return node.error(fmt::format("it has {} triangles, and {} are the most; simplify it, a shadow needs few",
+                                      mesh.triangles.size(), kMostTriangles));
+    glm::vec3 least(std::numeric_limits<float>::infinity()), most = -least;
+    for (glm::vec3& vertex : mesh.vertices) {
+        vertex *= static_cast<float>(scale);
+        least = glm::min(least, vertex), most = glm::max(most, vertex);
+    }
+    const glm::dvec3 size = glm::dvec3(most) - glm::dvec3(least);
+    const double longest = std::max({size.x, size.y, size.z});
+    if (longest < kLeastSize || longest > kMostSize)
+        return node.error(
+            fmt::format("it is {:.3g} m long, {} .. {} m are allowed; scale is the metres that a unit of the mesh's file "
+                        "has: 0.01 for centimetres, 0.001 for millimetres",
+                        longest, shortest(kLeastSize), shortest(kMostSize)));
+    return std::shared_ptr<const Prop::Shape>(std::make_shared<const Prop::Shape>(std::move(mesh)));
+}
+
+Result<Prop> readProp(const ConfigNode& node, double lightZ, std::vector<std::string>& names) {
+    Prop prop;
+    double scale = 1;
+    glm::dvec3 turned(0);
+    ConfigFields fields(node);
+    fields.read("name", prop.name, [&](const ConfigNode& at) { return readName(at, names); });
+    fields.optional().number("scale", scale, 1e-6, 1e6);
+    fields.read("mesh", prop.shape, [&](const ConfigNode& at) { return readShape(at, scale); });
+    fields.optional().read("held_by", prop.holder, [](const ConfigNode& at) -> Result<std::optional<Prop::Holder>> {
+        return std::optional(TRY(readHolder(at)));
+    });
+    const double far = prop.holder ? kMostOffset : kFarthest;
+    fields.optional().vector3("at", prop.place, -far, far, "m");
+    fields.optional().vector3("turned", turned, -360, 360, "degrees");
+    TRY(fields.finish());
+    prop.turn = glm::quat_cast(rotationXyz({radians(turned.x), radians(turned.y), radians(turned.z)}));
+    if (prop.holder) return prop;
+    glm::dvec3 least(Stage::Area::kFar), most = -least;
+    for (const glm::vec3& vertex : prop.shape->mesh.vertices) {
+        const glm::dvec3 point = prop.place + prop.turn * glm::dvec3(vertex);
+        least = glm::min(least, point), most = glm::max(most, point);
+    }
+    if (least.y < -kRounding)
+        return node.error(
+            fmt::format("prop '{}' reaches {:.3f} m below the floor; raise its 'at' by as much", prop.name, -least.y));
+    if (least.z < -kRounding)
+        return node.error(fmt::format(
+            "prop '{}' reaches {:.3f} m through the screen, which is at z = 0; move its 'at' by as much", prop.name, -least.z));
+    if (most.z >= lightZ)
+        return node.error(fmt::format(
+            "prop '{}' reaches to z = {:.3f} m, and the light is at {} m: what is not before it throws no shadow; move "
+            "it towards the screen",
+            prop.name, most.z, shortest(lightZ)));
+    return prop;
+}
+
+}  // namespace
+
+Result<Stage> readStage(const fs::path& file) {
+    const ConfigNode root = TRY(ConfigNode::load(file));
+    Stage stage;
+    bool hasLamp = false, hasProjector = false;
+    std::vector<std::string> names;
+    ConfigFields fields(root);
+    fields.header("stage", kVersion);
+    fields.optional().read("light", stage.light, [&](const ConfigNode& node) {
+        hasLamp = true;
+        return readLight(node);
+    });
+    fields.optional().read("projector", stage.lit, [&](const ConfigNode& node) -> Result<std::optional<Stage::Area>> {
+        if (hasLamp) return node.error("there is a 'light' too, and a stage has one; take either away");
+        hasProjector = true;
+        const auto [lens, picture] = TRY(readProjector(node));
+        stage.light = lens;
+        return std::optional(picture);
+    });
+    fields.optional().read("standing", stage.standing, [&](const ConfigNode& node) -> Result<std::optional<Stage::Area>> {
+        return std::optional(TRY(readStanding(node, stage.light.z)));
+    });
+    fields.optional().list(
+        "platforms", stage.platforms, [&](const ConfigNode& node) { return readPlatform(node, stage.light, names); }, 0,
+        kMostThings);
+    fields.optional().list(
+        "props", stage.props, [&](const ConfigNode& node) { return readProp(node, stage.light.z, names); }, 0, kMostThings);
+    TRY(fields.finish());
+    if (!hasLamp && !hasProjector)
+        return root.error("no light; say 'light: [x, y, z]' for a lamp, or 'projector:' with its 'lens' and 'picture'");
+    return stage;
+}
+
+}  // namespace fantascope::theatre
