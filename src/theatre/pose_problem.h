@@ -51,6 +51,8 @@ struct PoseProblem {
     PoseWeights weights;
     // Of the actors; with them shadows and what touches the floor are the skins', without the capsules'.
     std::vector<std::shared_ptr<const BodyMesh>> skins{};
+    // Gives them their skins; actors of one stature share one.
+    void dress();
 
     std::size_t freedoms() const {
         std::size_t sum = 0;
