@@ -11,7 +11,7 @@
 namespace fantascope::app {
 
 // The person who waits for long work: the space bar pauses it and goes on; escape, q and Ctrl-C end it with the best so far. Keys come from
-// the terminal, and from whatever else is listened to. Thread: thread-bound.
+// the terminal, and from whatever else is listened to. Thread: one at a time.
 class Attendance {
 public:
     using Listen = std::function<std::optional<char>()>;  // the next key, never waits

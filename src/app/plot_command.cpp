@@ -122,6 +122,7 @@ Result<plot::CastPicture> picture(const fs::path& file, std::size_t frame) {
         const std::vector<double> his = theatre::freedomsOf(problem.actors.back(), actor.poses[frame]);
         freedoms.insert(freedoms.end(), his.begin(), his.end());
     }
+    problem.dress();
     return plot::castPicture(problem, freedoms);
 }
 

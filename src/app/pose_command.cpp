@@ -34,7 +34,7 @@ using theatre::PoseProblem, theatre::PoseSearch, theatre::PoseTarget, theatre::T
 constexpr double kDefaultSeconds = 20;
 constexpr int kFewActors = 3;  // up to so many a trial is shorter
 constexpr std::int64_t kEvaluationsOfFew = 40'000, kEvaluationsOfMany = 80'000;
-constexpr int kSearchRows = 256, kPictureRows = 512;  // of the target
+constexpr int kRows = 512;  // of the target
 constexpr std::size_t kMostSolutions = 8;
 constexpr double kNearlyAsGood = 0.02;  // of intersection over union: what somebody may still prefer for another reason
 
@@ -134,7 +134,6 @@ Result<void> checkOutputs(const Options& options) {
 // Everything that a run leaves behind is made of this.
 struct Found {
     const Options& options;
-    const GreyImage& silhouette;
     const PoseProblem& problem;
     double height;  // of the silhouette, metres
     PoseTrials trials;
@@ -165,17 +164,10 @@ Material targetFor(const Options& options, const fs::path& output) {
     return materialFor(output, options.target, "target" + options.target.extension().string());
 }
 
-// The same problem with the resolution of pictures.
-Result<PoseProblem> problemOfPictures(const Found& found) {
-    PoseProblem problem = found.problem;
-    problem.target = TRY(PoseTarget::from(found.silhouette, problem.stage, found.height, kPictureRows));
-    return problem;
-}
-
-Result<void> drawPictures(const Found& found, const PoseProblem& problem) {
+Result<void> drawPictures(const Found& found) {
     const Options& options = found.options;
     if (!options.image && !options.view && !options.each) return {};
-    const plot::CastPicture picture = plot::castPicture(problem, found.best().freedoms);
+    const plot::CastPicture picture = plot::castPicture(found.problem, found.best().freedoms);
     if (options.image) TRY(plot::shadowFigure(picture.actors, picture.view.target, picture.lines).write(*options.image));
     if (options.view) TRY(plot::stageFigure(picture.view, picture.view.overview(plot::kStageAspect)).write(*options.view));
     if (options.each) TRY(plot::actorsFigure(picture.actors, picture.view.target).write(*options.each));
@@ -206,7 +198,8 @@ std::vector<const PoseTrials::Trial*> acceptedOf(const Found& found) {
     return accepted;
 }
 
-Result<void> writeSolutions(const Found& found, const PoseProblem& problem) {
+Result<void> writeSolutions(const Found& found) {
+    const PoseProblem& problem = found.problem;
     const fs::path& folder = *found.options.solutions;
     const std::vector<const PoseTrials::Trial*> accepted = acceptedOf(found);
     std::vector<std::vector<theatre::PlacedActor>> places;
@@ -240,7 +233,7 @@ Report actorsOf(const PoseProblem& problem, const PoseTrials::Trial& best, std::
     theatre::Contacts contacts;
     for (std::size_t i = 0; i < skins.size(); ++i) {
         const PoseSearch::Actor& quality = best.quality.actors[i];
-        theatre::findContacts(skins[i].vertices, contacts);
+        theatre::findContacts(skins[i].vertices, problem.skins[i]->edges, contacts);
         Report points = Report::array();
         if (contacts.touches)
             for (const theatre::Contact& contact : contacts.discs) points.push_back({contact.place.x, contact.place.y});
@@ -315,11 +308,12 @@ Result<void> run(const Options& options) {
     const GreyImage silhouette = TRY(readSilhouette(options.target));
     const theatre::Stage stage;
     const std::string file = options.target.string();
-    const auto targetOf = [&](double height) { return PoseTarget::from(silhouette, stage, height, kSearchRows).in(file); };
-    const double area = TRY(targetOf(1)).area / (kSearchRows * kSearchRows);
+    const auto targetOf = [&](double height) { return PoseTarget::from(silhouette, stage, height, kRows).in(file); };
+    const double area = TRY(targetOf(1)).area / (kRows * kRows);
     const Troupe troupe = TRY(Troupe::of(area, options.actors, options.height, options.statures));
     PoseProblem problem{stage, TRY(targetOf(troupe.height)), {}, {}};
     for (const double stature : troupe.statures) problem.actors.push_back(theatre::humanBody(stature));
+    problem.dress();
     PoseTrials::Options search{{}, options.seed, options.trials, options.seconds, options.threads};
     search.search.evaluations =
         options.evaluations.value_or(troupe.statures.size() <= std::size_t{kFewActors} ? kEvaluationsOfFew : kEvaluationsOfMany);
@@ -327,18 +321,13 @@ Result<void> run(const Options& options) {
     TRY(search.search.check());
 
     SteadyClock clock;
-    Found found{options,
-                silhouette,
-                problem,
-                troupe.height,
-                PoseTrials::run(problem, search, clock, std::cerr, standardErrorIsTerminal()),
-                {}};
+    Found found{
+        options, problem, troupe.height, PoseTrials::run(problem, search, clock, std::cerr, standardErrorIsTerminal()), {}};
     found.bestFirst = found.trials.bestFirst();
 
     TRY(writeCastWithTarget(found, found.best().freedoms, options.output, targetFor(options, options.output)));
-    const PoseProblem pictures = TRY(problemOfPictures(found));
-    TRY(drawPictures(found, pictures));
-    if (options.solutions) TRY(writeSolutions(found, pictures));
+    TRY(drawPictures(found));
+    if (options.solutions) TRY(writeSolutions(found));
     if (options.meshes || options.report) {
         const std::vector<TriangleMesh> skins = skinsOf(problem, found.best().freedoms);
         if (options.meshes) TRY(writeStageMeshes(*options.meshes, problem.target, stage, skins));

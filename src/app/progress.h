@@ -10,7 +10,7 @@
 namespace fantascope::app {
 
 // How far a long run has come, for the person who waits: on a terminal one line that is drawn over and over, with a bar, the
-// current value and the time left; elsewhere a plain line every two seconds. Thread: thread-bound.
+// current value and the time left; elsewhere a plain line every two seconds. Thread: one at a time.
 class Progress {
 public:
     // `out` and `clock` outlive it.

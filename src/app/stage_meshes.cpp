@@ -4,21 +4,17 @@
 
 #include <fmt/format.h>
 
-#include <map>
-
 namespace fantascope::app {
 
 std::vector<TriangleMesh> skinsOf(const theatre::PoseProblem& problem, std::span<const double> freedoms) {
-    std::map<double, theatre::BodyMesh> meshes;  // by stature
     std::vector<TriangleMesh> skins;
     theatre::PosedBody posed;
-    for (const theatre::Body& body : problem.actors) {
-        auto mesh = meshes.find(body.stature);
-        if (mesh == meshes.end()) mesh = meshes.emplace(body.stature, theatre::humanMesh(body)).first;
+    for (std::size_t i = 0; i < problem.actors.size(); ++i) {
+        const theatre::Body& body = problem.actors[i];
         posed.pose(body, freedoms.first(body.freedoms));
         freedoms = freedoms.subspan(body.freedoms);
-        skins.push_back({{}, mesh->second.atRest.triangles});
-        mesh->second.skin(body, posed, skins.back().vertices);
+        skins.push_back({{}, problem.skins[i]->atRest.triangles});
+        problem.skins[i]->skin(body, posed, skins.back().vertices);
     }
     return skins;
 }

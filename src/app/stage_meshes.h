@@ -1,6 +1,5 @@
 #pragma once
 
-#include "theatre/body_mesh.h"
 #include "theatre/pose_problem.h"
 
 #include "core/mesh.h"
@@ -12,7 +11,7 @@
 
 namespace fantascope::app {
 
-// The skins of a problem's actors in poses (all freedoms, one actor after the other): metres, stage frame.
+// The skins of the actors of a problem that has them, in poses (all freedoms, one actor after the other): metres, stage frame.
 std::vector<TriangleMesh> skinsOf(const theatre::PoseProblem& problem, std::span<const double> freedoms);
 
 // What anybody needs to cast the shadow again: a Wavefront OBJ for each actor, actor-1.obj and so on, and stage.json with the light, where the

@@ -1,14 +1,13 @@
 #include "plot/cast_picture.h"
 
-#include "theatre/body_mesh.h"
 #include "theatre/mesh_shadow.h"
 
+#include "core/check.h"
 #include "plot/palette.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <map>
 
 namespace fantascope::plot {
 namespace {
@@ -41,12 +40,12 @@ std::vector<std::string> notesOf(const PoseSearch::Actor& actor) {
 }  // namespace
 
 CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const double> freedoms) {
+    FANTASCOPE_CHECK(problem.skins.size() == problem.actors.size(), "pictures of a cast show skins");
     const PoseSearch::Quality quality = PoseSearch::measure(problem, freedoms);
     const theatre::ScreenFrame& frame = problem.target.frame;
     const BitMask black(frame.width(), frame.height());
     CastPicture picture{{problem.stage, frame, black, problem.target.mask, {}}, {}, {}};
     std::string fallen;
-    std::map<double, theatre::BodyMesh> skins;  // by stature
     theatre::MeshShadow shadow;
     theatre::PosedBody posed;
     std::vector<glm::vec3> vertices;
@@ -55,13 +54,12 @@ CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const dou
         posed.pose(body, freedoms.first(body.freedoms));
         freedoms = freedoms.subspan(body.freedoms);
         picture.actors.push_back({black, fmt::format("{:.2f} m", body.stature), notesOf(quality.actors[i])});
-        auto skin = skins.find(body.stature);
-        if (skin == skins.end()) skin = skins.emplace(body.stature, humanMesh(body)).first;
-        skin->second.skin(body, posed, vertices);
-        shadow.add(frame, skin->second, vertices, picture.actors[i].mask);
+        const theatre::BodyMesh& skin = *problem.skins[i];
+        skin.skin(body, posed, vertices);
+        shadow.add(frame, skin, vertices, picture.actors[i].mask);
         if (picture.actors[i].mask.count() == 0) picture.actors[i].notes.push_back("no shadow in the picture");
         picture.view.shadow.add(picture.actors[i].mask);
-        picture.view.actors.push_back({{vertices, skin->second.atRest.triangles}, actorColour(i)});
+        picture.view.actors.push_back({{vertices, skin.atRest.triangles}, actorColour(i)});
         if (!canStand(quality.actors[i])) fallen += fmt::format("{} {}", fallen.empty() ? "" : ",", i + 1);
     }
     picture.lines = {fmt::format("IoU {:.3f}", quality.iou), fmt::format("contour off by {:.1f} px of 256,", quality.contourMean),

@@ -11,7 +11,7 @@
 
 namespace fantascope::plot {
 
-// Poses of a problem as the figures of a cast take them.
+// Poses of a problem with skins as the figures of a cast take them.
 struct CastPicture {
     StageView view;
     std::vector<ActorShadow> actors;  // how each stands in his notes

@@ -172,4 +172,14 @@ PoseTarget PoseTarget::halved(const Stage& stage) const {
     return target;
 }
 
+void PoseProblem::dress() {
+    skins.clear();
+    for (const Body& actor : actors) {
+        const auto first =
+            std::find_if(actors.begin(), actors.end(), [&](const Body& other) { return other.stature == actor.stature; });
+        const auto index = static_cast<std::size_t>(first - actors.begin());
+        skins.push_back(index < skins.size() ? skins[index] : std::make_shared<const BodyMesh>(humanMesh(actor)));
+    }
+}
+
 }  // namespace fantascope::theatre

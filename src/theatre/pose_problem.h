@@ -53,6 +53,8 @@ struct PoseProblem {
     PoseWeights weights;
     // Of the actors; with them shadows and what touches the floor are the skins', without the capsules'.
     std::vector<std::shared_ptr<const BodyMesh>> skins{};
+    // Gives them their skins; actors of one stature share one.
+    void dress();
     std::vector<PoseHint> hints{};
 
     std::size_t freedoms() const {

@@ -188,6 +188,7 @@ TEST(CastPicture, shows_who_throws_what_and_says_who_cannot_stand) {
         for (int x = 10; x < 70; ++x) silhouette.at(x, y) = 1;
     theatre::PoseProblem problem{stage, theatre::PoseTarget::from(silhouette, stage, 1.8, 128).value(), {}, {}};
     problem.actors = {theatre::humanBody(1.75), theatre::humanBody(1.5)};
+    problem.dress();
     std::vector<double> freedoms;
     for (std::size_t i = 0; i < 2; ++i) {
         const theatre::Body& body = problem.actors[i];
