@@ -1,5 +1,6 @@
 #include "app/pose_command.h"
 
+#include "app/data_folder.h"
 #include "app/output.h"
 #include "app/pose_trials.h"
 #include "app/progress.h"
@@ -9,8 +10,11 @@
 
 #include "theatre/balance.h"
 #include "theatre/cast.h"
+#include "theatre/pose_hints.h"
 #include "theatre/solution_choice.h"
+#include "theatre/stage_file.h"
 #include "theatre/troupe.h"
+#include "theatre/weights_file.h"
 
 #include "core/parallel.h"
 #include "plot/cast_figures.h"
@@ -48,6 +52,8 @@ struct Options {
     std::optional<std::int64_t> evaluations;
     std::uint64_t seed = 1;
     int threads = hardwareThreads();
+    std::optional<fs::path> hints, stage;
+    std::optional<std::string> weights;  // a preset's name, or a file
     std::optional<fs::path> image, view, each, solutions, meshes, report;
 };
 
@@ -83,15 +89,24 @@ void declare(CLI::App& command, Options& options) {
         ->allow_extra_args(false)
         ->check(CLI::Range(0.9, 2.1))
         ->capture_default_str();
+    command.add_option("--hints", options.hints,
+                       "Which body parts may come to which points of the target, *.hints.yaml (docs/hints-format.md)");
+    command.add_option("--weights", options.weights,
+                       "Of the energy's terms: a preset of assets/silhouettes/weights.yaml, such as rabbit, or a file "
+                       "(docs/weights-format.md)");
+    command.add_option("--stage", options.stage,
+                       "Light or projector, platforms and props, *.stage.yaml (docs/stage-format.md); default: a lamp on the "
+                       "floor, 7 m before the screen");
     command.add_option("--trials", options.trials, "Searches to take the best of (default: as many as fit into the time)")
         ->check(CLI::Range(1, 1'000'000));
     command
         .add_option("--seconds", options.seconds,
                     fmt::format("End after so long (default {} s, unless --trials is given)", kDefaultSeconds))
         ->check(CLI::Range(0.0, 1e6));
-    command.add_option("--evaluations", options.evaluations,
-                       fmt::format("Of the energy, in a trial (default {}, and {} for more than {} actors)", kEvaluationsOfFew,
-                                   kEvaluationsOfMany, kFewActors));
+    command.add_option(
+        "--evaluations", options.evaluations,
+        fmt::format("Of the energy, in a trial (default {}, and {} for more than {} actors; fewer where the time is short)",
+                    kEvaluationsOfFew, kEvaluationsOfMany, kFewActors));
     command.add_option("--seed", options.seed, "Another seed, other poses; the same seed and trials, the same poses")
         ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
         ->capture_default_str();
@@ -136,6 +151,7 @@ struct Found {
     const Options& options;
     const PoseProblem& problem;
     double height;  // of the silhouette, metres
+    std::int64_t evaluationsPerTrial;
     PoseTrials trials;
     std::vector<std::size_t> bestFirst;
 
@@ -282,6 +298,7 @@ Report reportOf(const Found& found, std::span<const TriangleMesh> skins) {
     report["expected_trials"] = count / static_cast<double>(satisfactory);
     report["seconds_per_trial"] = spent / count;
     report["evaluations"] = evaluations;
+    report["evaluations_per_trial"] = found.evaluationsPerTrial;
     report["seconds"] = found.trials.seconds;
     report["stop_reason"] = name(found.trials.reason);
     report["seed"] = found.options.seed;
@@ -302,27 +319,59 @@ std::string brief(const Found& found) {
     return text;
 }
 
+Result<theatre::PoseWeights> weightsOf(const Options& options) {
+    if (!options.weights) return theatre::PoseWeights{};
+    if (fs::path(*options.weights).extension() == ".yaml") return theatre::readWeights(*options.weights);
+    return theatre::readWeights(dataFolder() / "assets/silhouettes/weights.yaml", *options.weights);
+}
+
+// As many evaluations of a trial as a thread finishes within the time, but no more than a trial needs. What is found so stands in the report, and
+// --evaluations repeats it.
+std::int64_t evaluationsWithin(double seconds, std::int64_t enough, const PoseProblem& problem, std::uint64_t seed,
+                               const Clock& clock) {
+    constexpr std::int64_t kProbe = 1000;
+    constexpr double kSpare = 0.75;  // threads get in each other's way, and a trial's end has its own cost
+    const Time start = clock.now();
+    const PoseSearch::Trial probe = PoseSearch::run(problem, seed, {.evaluations = kProbe});
+    const double took = fantascope::seconds(clock.now() - start);
+    const double fit = kSpare * (seconds - took) * static_cast<double>(probe.evaluations) / std::max(took, 1e-3);
+    return std::clamp(static_cast<std::int64_t>(fit), kProbe, enough);
+}
+
 Result<void> run(const Options& options) {
     // Whatever can be refused is refused before the search begins.
     TRY(checkOutputs(options));
     const GreyImage silhouette = TRY(readSilhouette(options.target));
-    const theatre::Stage stage;
+    theatre::Stage stage;
+    if (options.stage) stage = TRY(theatre::readStage(*options.stage));
+    const theatre::PoseWeights weights = TRY(weightsOf(options));
     const std::string file = options.target.string();
-    const auto targetOf = [&](double height) { return PoseTarget::from(silhouette, stage, height, kRows).in(file); };
-    const double area = TRY(targetOf(1)).area / (kRows * kRows);
+    // Wherever the light is.
+    const double area = TRY(PoseTarget::from(silhouette, {}, 1, kRows).in(file)).area / (kRows * kRows);
     const Troupe troupe = TRY(Troupe::of(area, options.actors, options.height, options.statures));
-    PoseProblem problem{stage, TRY(targetOf(troupe.height)), {}, {}};
+    TRY(stage.checkHolders(troupe.statures.size()));
+    PoseProblem problem{stage, TRY(PoseTarget::from(silhouette, stage, troupe.height, kRows).in(file)), {}, weights};
+    if (options.hints) problem.hints = TRY(theatre::readHints(*options.hints, problem.target));
     for (const double stature : troupe.statures) problem.actors.push_back(theatre::humanBody(stature));
     problem.dress();
     PoseTrials::Options search{{}, options.seed, options.trials, options.seconds, options.threads};
-    search.search.evaluations =
-        options.evaluations.value_or(troupe.statures.size() <= std::size_t{kFewActors} ? kEvaluationsOfFew : kEvaluationsOfMany);
     if (!options.trials && !options.seconds) search.seconds = kDefaultSeconds;
+    const std::int64_t enough = troupe.statures.size() <= std::size_t{kFewActors} ? kEvaluationsOfFew : kEvaluationsOfMany;
+    search.search.evaluations = options.evaluations.value_or(enough);
     TRY(search.search.check());
 
     SteadyClock clock;
-    Found found{
-        options, problem, troupe.height, PoseTrials::run(problem, search, clock, std::cerr, standardErrorIsTerminal()), {}};
+    if (search.seconds && !options.evaluations) {
+        const Time start = clock.now();
+        search.search.evaluations = evaluationsWithin(*search.seconds, enough, problem, options.seed, clock);
+        search.seconds = *search.seconds - seconds(clock.now() - start);
+    }
+    Found found{options,
+                problem,
+                troupe.height,
+                search.search.evaluations,
+                PoseTrials::run(problem, search, clock, std::cerr, standardErrorIsTerminal()),
+                {}};
     found.bestFirst = found.trials.bestFirst();
 
     TRY(writeCastWithTarget(found, found.best().freedoms, options.output, targetFor(options, options.output)));
