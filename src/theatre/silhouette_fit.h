@@ -10,10 +10,10 @@
 
 namespace fantascope::theatre {
 
-// Moves actors' limbs so that the outline of their shadow goes where the target's is: Levenberg's damped steps (1944) on how far each point of the shadow's contour is from the target's along its normal, with the analytic
-// derivative of the shadow by the joints. The residuals are reweighted at each step so that their squares add up to what equations 2, 3 and
-// 6 charge; a step is kept only if the energy itself falls. From poses that are far from the target it finds nothing: it finishes what a
-// global search has begun.
+// Moves actors' limbs so that the outline of their shadow goes where the target's is: Levenberg's damped steps (1944) on how far each point
+// of the shadow's contour is from the target's along its normal, with the analytic derivative of the shadow by the joints. The residuals
+// are reweighted at each step so that their squares add up to what equations 2, 3, 6 and 7 charge; a step is kept only if the energy itself
+// falls. From poses that are far from the target it finds nothing: it finishes what a global search has begun.
 // Thread: thread-bound.
 class SilhouetteFit {
 public:
