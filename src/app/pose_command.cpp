@@ -26,7 +26,9 @@
 #include <filesystem>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace fantascope::app {
@@ -52,6 +54,7 @@ struct Options {
     std::optional<std::int64_t> evaluations;
     std::uint64_t seed = 1;
     int threads = hardwareThreads();
+    PoseSearch::Options search;
     std::optional<fs::path> hints, stage;
     std::optional<std::string> weights;  // a preset's name, or a file
     std::optional<fs::path> image, view, each, solutions, meshes, report;
@@ -107,6 +110,20 @@ void declare(CLI::App& command, Options& options) {
         "--evaluations", options.evaluations,
         fmt::format("Of the energy, in a trial (default {}, and {} for more than {} actors; fewer where the time is short)",
                     kEvaluationsOfFew, kEvaluationsOfMany, kFewActors));
+    command
+        .add_option("--method", options.search.method,
+                    "refined, or paper: CMA-ES as Won & Lee 2016 have it, with their refinement")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, PoseSearch::Method>{{"refined", PoseSearch::Method::Refined},
+                                                                                      {"paper", PoseSearch::Method::Paper}}))
+        ->default_str("refined")
+        ->type_name("refined|paper");
+    command
+        .add_option("--residual", options.search.residual,
+                    "The paper's method: the energy that needs no refinement unless artefacts are seen")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    command.add_flag("--full-covariance", options.search.fullCovariance,
+                     "The paper's method: one covariance for all actors' freedoms, as in the paper; slower");
     command.add_option("--seed", options.seed, "Another seed, other poses; the same seed and trials, the same poses")
         ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
         ->capture_default_str();
@@ -327,18 +344,21 @@ Result<theatre::PoseWeights> weightsOf(const Options& options) {
 
 // As many evaluations of a trial as a thread finishes within the time, but no more than a trial needs. What is found so stands in the report, and
 // --evaluations repeats it.
-std::int64_t evaluationsWithin(double seconds, std::int64_t enough, const PoseProblem& problem, std::uint64_t seed,
+std::int64_t evaluationsWithin(double seconds, PoseSearch::Options options, const PoseProblem& problem, std::uint64_t seed,
                                const Clock& clock) {
     constexpr std::int64_t kProbe = 1000;
     constexpr double kSpare = 0.75;  // threads get in each other's way, and a trial's end has its own cost
     const Time start = clock.now();
-    const PoseSearch::Trial probe = PoseSearch::run(problem, seed, {.evaluations = kProbe});
+    const std::int64_t enough = std::exchange(options.evaluations, kProbe);
+    const PoseSearch::Trial probe = PoseSearch::run(problem, seed, options);
     const double took = fantascope::seconds(clock.now() - start);
     const double fit = kSpare * (seconds - took) * static_cast<double>(probe.evaluations) / std::max(took, 1e-3);
     return std::clamp(static_cast<std::int64_t>(fit), kProbe, enough);
 }
 
 Result<void> run(const Options& options) {
+    SteadyClock clock;
+    const Time start = clock.now();
     // Whatever can be refused is refused before the search begins.
     TRY(checkOutputs(options));
     const GreyImage silhouette = TRY(readSilhouette(options.target));
@@ -354,17 +374,17 @@ Result<void> run(const Options& options) {
     if (options.hints) problem.hints = TRY(theatre::readHints(*options.hints, problem.target));
     for (const double stature : troupe.statures) problem.actors.push_back(theatre::humanBody(stature));
     problem.dress();
-    PoseTrials::Options search{{}, options.seed, options.trials, options.seconds, options.threads};
+    PoseTrials::Options search{options.search, options.seed, options.trials, options.seconds, options.threads};
     if (!options.trials && !options.seconds) search.seconds = kDefaultSeconds;
-    const std::int64_t enough = troupe.statures.size() <= std::size_t{kFewActors} ? kEvaluationsOfFew : kEvaluationsOfMany;
-    search.search.evaluations = options.evaluations.value_or(enough);
+    const bool areFew = troupe.statures.size() <= std::size_t{kFewActors};
+    search.search.evaluations = options.evaluations.value_or(areFew ? kEvaluationsOfFew : kEvaluationsOfMany);
     TRY(search.search.check());
-
-    SteadyClock clock;
-    if (search.seconds && !options.evaluations) {
-        const Time start = clock.now();
-        search.search.evaluations = evaluationsWithin(*search.seconds, enough, problem, options.seed, clock);
-        search.seconds = *search.seconds - seconds(clock.now() - start);
+    if (search.seconds) {
+        // All that came before counts.
+        const auto left = [&] { return std::max(0.0, *search.seconds - seconds(clock.now() - start)); };
+        if (!options.evaluations)
+            search.search.evaluations = evaluationsWithin(left(), search.search, problem, options.seed, clock);
+        search.seconds = left();
     }
     Found found{options,
                 problem,

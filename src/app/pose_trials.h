@@ -25,7 +25,7 @@ struct PoseTrials {
     struct Trial : theatre::PoseSearch::Trial {
         std::size_t number = 0;  // from 0
         double seconds = 0;
-        bool isFinished() const { return reason == theatre::PoseSearch::StopReason::Evaluations; }
+        bool isFinished() const { return reason != theatre::PoseSearch::StopReason::Interrupted; }
         // Nothing is missing for an audience: everyone can hold the pose, and the shadow is the target's.
         bool isSatisfactory() const { return quality.isValid() && quality.iou >= kSatisfactory; }
     };

@@ -14,12 +14,6 @@ namespace {
 
 using theatre::BitMask, theatre::PoseSearch;
 
-bool canStand(const PoseSearch::Actor& actor) {
-    PoseSearch::Quality alone;
-    alone.actors = {actor};
-    return alone.isValid();
-}
-
 std::vector<std::string> notesOf(const PoseSearch::Actor& actor) {
     std::vector<std::string> notes;
     const double margin = 100 * actor.margin;
@@ -60,7 +54,7 @@ CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const dou
         if (picture.actors[i].mask.count() == 0) picture.actors[i].notes.push_back("no shadow in the picture");
         picture.view.shadow.add(picture.actors[i].mask);
         picture.view.actors.push_back({{vertices, skin.atRest.triangles}, actorColour(i)});
-        if (!canStand(quality.actors[i])) fallen += fmt::format("{} {}", fallen.empty() ? "" : ",", i + 1);
+        if (!quality.actors[i].isValid()) fallen += fmt::format("{} {}", fallen.empty() ? "" : ",", i + 1);
     }
     picture.lines = {fmt::format("IoU {:.3f}", quality.iou), fmt::format("contour off by {:.1f} px of 256,", quality.contourMean),
                      fmt::format("{:.0f} px at most", quality.contourMost),

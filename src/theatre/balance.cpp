@@ -134,20 +134,44 @@ void findBearings(std::span<const glm::vec3> vertices, std::span<const MeshEdge>
     corners.addTo(contacts);
 }
 
+namespace {
+
+SupportTangent tangentTowards(const Contacts& contacts, const glm::dvec3& massCentre, std::size_t direction) {
+    const glm::dvec2 outward = directions()[direction];
+    const auto [contact, far] = farthest(contacts, outward);
+    return {far - glm::dot(glm::dvec2(massCentre.x, massCentre.z), outward), outward, contact};
+}
+
+}  // namespace
+
 double supportMargin(const Contacts& contacts, const glm::dvec3& massCentre) {
     return supportTangent(contacts, massCentre).margin;
 }
 
+// The least of the distances to the hull's tangents; outside it is minus the distance to the hull.
 SupportTangent supportTangent(const Contacts& contacts, const glm::dvec3& massCentre) {
-    const glm::dvec2 centre(massCentre.x, massCentre.z);
-    SupportTangent nearest{std::numeric_limits<double>::max(), {}, nullptr};
-    // The least of the distances to the hull's tangents; outside it is minus the distance to the hull.
-    for (const glm::dvec2& direction : directions()) {
-        const auto [contact, far] = farthest(contacts, direction);
-        if (const double margin = far - glm::dot(centre, direction); margin < nearest.margin)
-            nearest = {margin, direction, contact};
-    }
+    SupportTangent nearest = tangentTowards(contacts, massCentre, 0);
+    for (std::size_t i = 1; i < kDirections; ++i)
+        if (const SupportTangent tangent = tangentTowards(contacts, massCentre, i); tangent.margin < nearest.margin)
+            nearest = tangent;
     return nearest;
+}
+
+void findSupportTangents(const Contacts& contacts, const glm::dvec3& massCentre, double beyond,
+                         std::vector<SupportTangent>& tangents) {
+    std::array<SupportTangent, kDirections> all;
+    double least = std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < kDirections; ++i) {
+        all[i] = tangentTowards(contacts, massCentre, i);
+        least = std::min(least, all[i].margin);
+    }
+    tangents.clear();
+    for (std::size_t i = 0; i < kDirections; ++i) {
+        const double before = all[(i + kDirections - 1) % kDirections].margin, after = all[(i + 1) % kDirections].margin;
+        if (all[i].margin <= least + beyond && all[i].margin < before && all[i].margin <= after) tangents.push_back(all[i]);
+    }
+    // A disc around its middle is as wide everywhere.
+    if (tangents.empty()) tangents.push_back(supportTangent(contacts, massCentre));
 }
 
 double supportArea(const Contacts& contacts) {

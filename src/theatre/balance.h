@@ -53,6 +53,10 @@ struct SupportTangent {
     const Contact* contact = nullptr;
 };
 SupportTangent supportTangent(const Contacts& contacts, const glm::dvec3& massCentre);
+// That one, and those others beyond which the boundary is farther, whose margin is no more than `beyond` greater: in the middle of a narrow support
+// the nearest alone says nothing of what would help.
+void findSupportTangents(const Contacts& contacts, const glm::dvec3& massCentre, double beyond,
+                         std::vector<SupportTangent>& tangents);
 
 // Area(SP_n), square metres.
 double supportArea(const Contacts& contacts);

@@ -79,6 +79,29 @@ std::int64_t differing(const BitMask& a, const BitMask& b) {
     return count;
 }
 
+BitMask difference(const BitMask& a, const BitMask& b) {
+    BitMask result(a.width(), a.height());
+    for (int y = 0; y < a.height(); ++y) {
+        for (std::size_t i = 0; i < a.row(y).size(); ++i) result.row(y)[i] = a.row(y)[i] ^ b.row(y)[i];
+        result.noteRow(y);
+    }
+    return result;
+}
+
+bool meet(const BitMask& a, const BitMask& b) {
+    for (int y = std::max({0, a.rowsFrom(), b.rowsFrom()}); y < std::min(a.rowsTo(), b.rowsTo()); ++y)
+        for (std::size_t i = 0; i < a.row(y).size(); ++i)
+            if ((a.row(y)[i] & b.row(y)[i]) != 0) return true;
+    return false;
+}
+
+bool isWithin(const BitMask& inner, const BitMask& outer) {
+    for (int y = std::max(0, inner.rowsFrom()); y < inner.rowsTo(); ++y)
+        for (std::size_t i = 0; i < inner.row(y).size(); ++i)
+            if ((inner.row(y)[i] & ~outer.row(y)[i]) != 0) return false;
+    return true;
+}
+
 bool operator==(const BitMask& a, const BitMask& b) {
     return a.width_ == b.width_ && a.height_ == b.height_ && a.words_ == b.words_;
 }

@@ -60,8 +60,11 @@ private:
     std::vector<std::uint64_t> words_;
 };
 
-// The pixels in which two masks of one size differ.
+// Of masks of one size: how many pixels differ, and which; whether some are white in both; whether all that are white in one are in the other.
 std::int64_t differing(const BitMask& a, const BitMask& b);
+BitMask difference(const BitMask& a, const BitMask& b);
+bool meet(const BitMask& a, const BitMask& b);
+bool isWithin(const BitMask& inner, const BitMask& outer);
 
 // Fills a convex polygon; points in pixels, clockwise as seen.
 class ConvexFiller {

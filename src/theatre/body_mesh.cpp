@@ -13,13 +13,14 @@
 #include <cmath>
 #include <limits>
 #include <unordered_map>
+#include <utility>
 
 namespace fantascope::theatre {
 namespace {
 
 using glm::dvec3;
 
-constexpr std::size_t kTriangles = 5000;
+constexpr std::size_t kTriangles = 5000, kFewTriangles = 1500;
 
 // From one place to the next in steps of about a size.
 void addPlanes(std::vector<double>& planes, double to, double step) {
@@ -99,10 +100,10 @@ void keepLargest(const std::vector<double>& shares, std::array<std::uint16_t, Bo
     }
 }
 
-BodyMesh unitMesh() {
-    const Body body = humanBody(1);
+// For humanBody(1).
+BodyMesh bound(const Body& body, TriangleMesh form) {
     BodyMesh mesh;
-    mesh.atRest = simplified(implicitSurface(HumanForm(body), gridOfAPerson(), 1.7), kTriangles, importance);
+    mesh.atRest = std::move(form);
     mesh.edges = edgesOf(mesh.atRest);
     FANTASCOPE_CHECK(!mesh.edges.empty(), "the human form is closed");
     PosedBody atRest;
@@ -116,6 +117,17 @@ BodyMesh unitMesh() {
     }
     return mesh;
 }
+
+// Of the simpler one nothing is looked at but its outline.
+struct UnitMeshes {
+    BodyMesh whole, simpler;
+    UnitMeshes() {
+        const Body body = humanBody(1);
+        const TriangleMesh form = simplified(implicitSurface(HumanForm(body), gridOfAPerson(), 1.7), kTriangles, importance);
+        whole = bound(body, form);
+        simpler = bound(body, simplified(form, kFewTriangles, [](const glm::vec3&) { return 1.0; }));
+    }
+};
 
 // A rigid motion from the rest pose: the rotation's w, x, y, z, then the dual part's.
 using DualQuaternion = std::array<float, 8>;
@@ -208,9 +220,13 @@ void BodyMesh::skin(const Body& body, const PosedBody& posed, std::vector<glm::v
 }
 
 BodyMesh humanMesh(const Body& body) {
-    static const BodyMesh unit = unitMesh();
-    BodyMesh mesh = unit;
-    for (glm::vec3& vertex : mesh.atRest.vertices) vertex *= static_cast<float>(body.stature);
+    static const UnitMeshes unit;
+    const auto scaled = [&](BodyMesh mesh) {
+        for (glm::vec3& vertex : mesh.atRest.vertices) vertex *= static_cast<float>(body.stature);
+        return mesh;
+    };
+    BodyMesh mesh = scaled(unit.whole);
+    mesh.simpler = std::make_shared<const BodyMesh>(scaled(unit.simpler));
     return mesh;
 }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -29,12 +30,14 @@ struct BodyMesh {
     std::vector<MeshEdge> edges;                                 // edgesOf(atRest)
     std::vector<std::array<std::uint16_t, kInfluences>> joints;  // of each vertex; those with no share are 0
     std::vector<std::array<float, kInfluences>> shares;          // of each, adding up to 1, the largest first
+    // The same with fewer triangles, for a search that looks at it many thousand times; none: this one.
+    std::shared_ptr<const BodyMesh> simpler{};
 
     // Where the vertices are in a pose of the body, metres, stage frame.
     void skin(const Body& body, const PosedBody& posed, std::vector<glm::vec3>& vertices) const;
 };
 
-// The skin of humanBody(): some 5,000 triangles, watertight, made for the stature.
+// The skin of humanBody(): some 5,000 triangles, and 1,500 in the simpler one; watertight, made for the stature.
 BodyMesh humanMesh(const Body& body);
 
 }  // namespace fantascope::theatre

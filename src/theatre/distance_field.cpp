@@ -77,4 +77,12 @@ GreyImage signedDistance(const BitMask& mask) {
     return distance;
 }
 
+BitMask deeperThan(const GreyImage& distance, double depth) {
+    BitMask mask(distance.width(), distance.height());
+    for (int y = 0; y < mask.height(); ++y)
+        for (int x = 0; x < mask.width(); ++x)
+            if (distance.at(x, y) > depth) mask.fill(y, x, x + 1);
+    return mask;
+}
+
 }  // namespace fantascope::theatre

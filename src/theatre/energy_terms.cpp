@@ -45,6 +45,10 @@ double unseen(const glm::dvec3& eyes, const glm::dvec3& gaze, const glm::dvec3& 
     return near * near + (away > 0 ? kUnseen * (1 + away) : 0);
 }
 
+double lackOfMargin(double margin) {
+    return 100 * (std::max(0.0, kAmpleMargin - margin) + (kUnsure - 1) * std::max(0.0, kSureMargin - margin));
+}
+
 double depthInItself(const Body& body, const PosedBody& posed) {
     double sum = 0;
     forPairs(body, posed, [&](double depth) { sum += squaredMillimetres(depth); });

@@ -13,6 +13,10 @@ namespace fantascope::theatre {
 // What a support polygon and a margin of balance are wanted to have; more is worth nothing.
 constexpr double kAmpleArea = 0.1;     // square metres
 constexpr double kAmpleMargin = 0.03;  // metres
+// What a margin is to have at least: less counts kUnsure times more.
+constexpr double kSureMargin = 0.011, kUnsure = 2;
+// (6) Of Margin: what it lacks, centimetres.
+double lackOfMargin(double margin);
 // Half the angle of the cone that approximates what one sees: the field of both eyes.
 constexpr double kSight = 1.0472;
 

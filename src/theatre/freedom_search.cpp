@@ -21,8 +21,9 @@ double FreedomSearch::run(SceneEnergy& energy, std::span<double> freedoms, std::
     CmaEs::Options options;
     options.populationSize = settings.population;
     options.sigma = settings.sigma;
-    // It is ended by its generations: what is searched changes on the way.
-    options.tolFun = options.tolHistFun = options.tolX = 0;
+    // A search that is ended by its generations may change on the way what is searched.
+    options.tolFun = options.tolHistFun = settings.converged;
+    options.tolX = 0;
     options.stagnation = false;
     std::vector<double> start;
     std::size_t first = 0, next = 0;
@@ -34,7 +35,7 @@ double FreedomSearch::run(SceneEnergy& energy, std::span<double> freedoms, std::
         }
         if (next > from) {
             parts.push_back({actor, first, from, next});
-            options.blocks.push_back(static_cast<int>(next - from));
+            if (!settings.fullCovariance) options.blocks.push_back(static_cast<int>(next - from));
         }
         first = end;
     }

@@ -11,14 +11,16 @@
 
 namespace fantascope::theatre {
 
-// CMA-ES over some of the freedoms of a scene while the others are held: of one limb, of one actor, or all of them. Each actor's are a block of the
-// covariance matrix.
+// CMA-ES over some of the freedoms of a scene while the others are held: of one limb, of one actor, or all of them. Each actor's are a block of
+// the covariance matrix, unless it is to be full.
 // Thread: thread-bound.
 class FreedomSearch {
 public:
     struct Settings {
         double sigma = 0.5;  // in Body::scaleOf()
         int population = 40, generations = 100;
+        double converged = 0;         // ends when the energies of the last generations differ by no more; 0: never
+        bool fullCovariance = false;  // between actors too
     };
 
     // `problem` must live on.

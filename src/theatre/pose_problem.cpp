@@ -136,11 +136,7 @@ Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage
             if (white > 4) target.mask.fill(y, x, x + 1);
         }
     // Islands are near if they hang together once each has grown by half of how far apart they may be.
-    const GreyImage grown = signedDistance(target.mask);
-    BitMask joined(width, above);
-    for (int y = 0; y < above; ++y)
-        for (int x = 0; x < width; ++x)
-            if (grown.at(x, y) > -0.5 * kFarApart * rows) joined.fill(y, x, x + 1);
+    const BitMask joined = deeperThan(signedDistance(target.mask), -0.5 * kFarApart * rows);
     if (const std::vector<Island> apart = findIslands(joined); apart.size() > 1)
         return Error(
             fmt::format("it has {} parts that are farther from each other than {:.0f} % of its height; join them, or play each "
@@ -180,6 +176,23 @@ void PoseProblem::dress() {
         const auto index = static_cast<std::size_t>(first - actors.begin());
         skins.push_back(index < skins.size() ? skins[index] : std::make_shared<const BodyMesh>(humanMesh(actor)));
     }
+}
+
+PoseProblem in256Rows(PoseProblem problem) {
+    while (problem.target.pixelsOf256 < 1) problem.target = problem.target.halved(problem.stage);
+    return problem;
+}
+
+PoseProblem simpler(PoseProblem problem) {
+    for (auto& skin : problem.skins)
+        if (skin->simpler) skin = skin->simpler;
+    return problem;
+}
+
+PoseProblem forFirstLook(PoseProblem problem) {
+    problem.target = problem.target.halved(problem.stage);
+    problem.skins.clear();
+    return problem;
 }
 
 }  // namespace fantascope::theatre

@@ -64,4 +64,9 @@ struct PoseProblem {
     }
 };
 
+// The same problem in no more than 256 rows; the same with simpler skins; and in half as many rows, without skins.
+PoseProblem in256Rows(PoseProblem problem);
+PoseProblem simpler(PoseProblem problem);
+PoseProblem forFirstLook(PoseProblem problem);
+
 }  // namespace fantascope::theatre

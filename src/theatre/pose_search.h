@@ -17,24 +17,43 @@ namespace fantascope::theatre {
 // Thread: reentrant.
 class PoseSearch {
 public:
+    enum class Method {
+        Refined,  // refined_method.h
+        Paper     // paper_method.h
+    };
     struct Options {
+        Method method = Method::Refined;
         std::int64_t evaluations = 40'000;  // of a trial; 1000 or more
-        int population = 40;                // lambda of the CMA-ES
+        int population = 40;                // lambda of the CMA-ES, 4 .. 1000
+
+        // Of the paper's method.
+        double residual = 150;        // the energy that needs no refinement unless artefacts are seen, >= 0
+        bool fullCovariance = false;  // between actors too: the paper's CMA-ES to the letter, and slower
 
         // Error: names the option that is out of range.
         Result<void> check() const;
     };
 
-    enum class StopReason { NotRun, Evaluations, Interrupted };
+    enum class StopReason {
+        NotRun,
+        Evaluations,
+        Satisfied,  // the paper's method: little residual energy and no visible artefacts
+        Interrupted
+    };
 
     // How good poses are, for people and reports.
     struct Actor {
-        double margin = 0;          // of balance, metres
-        bool touches = false;       // the floor, or a platform
-        double lowest = 0;          // height of the lowest point above what is under it, metres
-        double deepest = 0;         // in the own body, another's, the floor, the screen, a platform or a prop, metres
-        bool withinLimits = false;  // all joint angle measures between their bounds
-        double outside = 0;         // how far what bears is outside where people may stand, metres
+        double margin = 0;                   // of balance, metres
+        bool touches = false;                // the floor, or a platform
+        double lowest = 0;                   // height of the lowest point above what is under it, metres
+        double deepest = 0;                  // in the own body, another's, the floor, the screen, a platform or a prop, metres
+        bool withinLimits = false;           // all joint angle measures between their bounds
+        double outside = 0;                  // how far what bears is outside where people may stand, metres
+        std::vector<glm::dvec2> contacts{};  // (x, z) of all that touches the floor or a platform, metres
+
+        // He stands with kStandMargin to spare, within the joints' limits, no deeper than kMostDepth in anything, nor farther than that from where
+        // he may stand.
+        bool isValid() const;
     };
     struct Quality {
         double energy = 0;
@@ -43,9 +62,7 @@ public:
         double contourMean = 0, contourMost = 0;  // |p - p'|, pixels of a target 256 high
         std::vector<Actor> actors;
 
-        // Everyone stands with kStandMargin to spare, within the joints' limits, nobody deeper than kMostDepth in anything, or farther than that from
-        // where he may stand.
-        bool isValid() const;
+        bool isValid() const;  // everyone is
     };
     static constexpr double kStandMargin = 0.01, kMostDepth = 0.02;  // metres
 
@@ -69,21 +86,16 @@ public:
     // The actors' T-poses in a row before the screen, looking at it.
     static std::vector<double> start(const PoseProblem& problem);
 
-    // One trial. The global stage, CMA-ES with a block of the covariance for each actor, plays with weak physics; then the outline is
-    // fitted; then iterated local search: a limb, an actor or a random change is searched anew, fitted, and kept by the rule of simulated
-    // annealing, while physics stiffens until it holds people up. All that is in coarse pixels and with capsules; the last part of the
-    // local search has pixels of 256 rows, and the skins if the problem has them. Quality is measured in the problem's own pixels.
+    // One trial by the options' method. Quality is measured in the problem's own pixels.
     static Trial run(const PoseProblem& problem, std::uint64_t seed, const Options& options, const AskStop& askStop = {});
 
     // The seed (63 bits) of a trial, from 0, of a search's.
     static std::uint64_t trialSeed(std::uint64_t seed, std::uint64_t number);
-    // Trials with these seeds on so many threads; in the order of their numbers.
-    static std::vector<Trial> runTrials(const PoseProblem& problem, std::uint64_t seed, int trials, const Options& options,
-                                        int threads, const AskStop& askStop = {});
 
     static Quality measure(const PoseProblem& problem, std::span<const double> freedoms);
 };
 
+std::string_view name(PoseSearch::Method method);
 std::string_view name(PoseSearch::StopReason reason);
 
 }  // namespace fantascope::theatre

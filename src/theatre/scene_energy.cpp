@@ -54,7 +54,7 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     actor.own.visible = unseen(actor.body.point(body.head, body.eyes), actor.body.turn(body.head) * body.gaze, {middle, 0});
     actor.own.floor = 1000 * std::max(0.0, actor.contacts.lowest);
     actor.own.supportArea = 1e4 * std::max(0.0, kAmpleArea - supportArea(actor.contacts));
-    actor.own.margin = 100 * std::max(0.0, kAmpleMargin - actor.margin);
+    actor.own.margin = lackOfMargin(actor.margin);
     actor.own.people = depthInItself(body, actor.body);
     actor.outside = farthestOutside(stage, actor.contacts);
     poseProps(index);
@@ -101,6 +101,14 @@ const EnergyTerms& SceneEnergy::terms() {
     for (std::size_t i = 0; i < problem_.hints.size(); ++i) terms_.hint += square256 * hintOwner(i).match.square;
     terms_.coherence = ownerChanges(owners_);
     return terms_;
+}
+
+BitMask SceneEnergy::propShadow() const {
+    BitMask shadow(shadow_.width(), shadow_.height());
+    if (standingShadow_.width() > 0) shadow.add(standingShadow_);
+    for (const Actor& actor : actors_)
+        if (!actor.held.empty()) shadow.add(actor.heldShadow);
+    return shadow;
 }
 
 SceneEnergy::HintOwner SceneEnergy::hintOwner(std::size_t hint) const {

@@ -29,6 +29,7 @@ public:
 
     const BitMask& shadow() const { return shadow_; }  // of all; after terms()
     const BitMask& shadow(std::size_t actor) const { return actors_[actor].shadow; }
+    BitMask propShadow() const;  // of platforms and props, in the poses last given
     const PosedBody& posed(std::size_t actor) const { return actors_[actor].body; }
     // The skin's vertices, metres; none for a problem without skins.
     std::span<const glm::vec3> skin(std::size_t actor) const { return actors_[actor].skin; }

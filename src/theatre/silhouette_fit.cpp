@@ -3,6 +3,9 @@
 #include "theatre/distance_field.h"
 #include "theatre/energy_terms.h"
 
+#include "core/check.h"
+
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -21,8 +24,72 @@ constexpr double kIntoHole = 6;
 // Residuals nearer to nothing than this are weighted as if they were this: pixels, centimetres; millimetres
 // of height.
 constexpr double kNearest = 0.7;
+constexpr double kNarrow = 0.01;  // metres; sides whose margins differ by less are all asked for more
 constexpr double kHold = 0.002;  // how much a bearing point resists, in w9 a squared millimetre
 constexpr double kFirstDamping = 0.1, kMostDamping = 1e5;
+
+// The outlines of the shadows of a body's capsules: each as round as its ends and as straight between, which is near enough.
+class Outlines {
+public:
+    static constexpr double kNear = 3;  // pixels
+
+    Outlines(const ScreenFrame& frame, const PosedBody& posed)
+        : rows_(bands(frame.height()), 0), columns_(bands(frame.width()), 0) {
+        FANTASCOPE_CHECK(posed.capsules().size() <= 64, "a set of capsules is a word");
+        for (const PlacedCapsule& capsule : posed.capsules()) {
+            const glm::dvec2 from = frame.shadow(capsule.from), to = frame.shadow(capsule.to), along = to - from;
+            const double fromRadius = frame.focus() * capsule.fromRadius / frame.fromLight(capsule.from).z;
+            const double toRadius = frame.focus() * capsule.toRadius / frame.fromLight(capsule.to).z;
+            const std::uint64_t bit = std::uint64_t{1} << outlines_.size();
+            const glm::dvec2 reach(std::max(fromRadius, toRadius) + kNear);
+            note(columns_, glm::min(from, to).x - reach.x, glm::max(from, to).x + reach.x, bit);
+            note(rows_, glm::min(from, to).y - reach.y, glm::max(from, to).y + reach.y, bit);
+            outlines_.push_back({from, along, fromRadius, toRadius - fromRadius, 1 / std::max(1e-9, glm::dot(along, along))});
+        }
+    }
+
+    struct Nearest {
+        bool isFound = false;
+        std::size_t capsule = 0;
+        double share = 0;         // of the way along it
+        double distance = kNear;  // from its outline, pixels; negative inside
+    };
+    // Whether one of them is nearer to a pixel of the frame than what is known.
+    bool findNearer(glm::dvec2 pixel, Nearest& nearest) const {
+        bool isNearer = false;
+        for (std::uint64_t near = rows_[band(pixel.y)] & columns_[band(pixel.x)]; near != 0; near &= near - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(near));
+            const Outline& outline = outlines_[i];
+            const glm::dvec2 away = pixel - outline.from;
+            const double t = std::clamp(glm::dot(away, outline.along) * outline.perSquare, 0.0, 1.0);
+            const glm::dvec2 aside = away - t * outline.along;
+            const double radius = outline.radius + t * outline.growth, reach = nearest.distance + radius;
+            if (reach <= 0 || glm::dot(aside, aside) >= reach * reach) continue;
+            nearest = {true, i, t, glm::length(aside) - radius};
+            isNearer = true;
+        }
+        return isNearer;
+    }
+
+private:
+    struct Outline {
+        glm::dvec2 from, along;
+        double radius, growth, perSquare;
+    };
+    // Which capsules come near to each band of rows, and of columns.
+    static constexpr int kBand = 8;  // pixels
+    static std::size_t bands(int pixels) { return static_cast<std::size_t>(pixels / kBand + 1); }
+    static std::size_t band(double at) { return static_cast<std::size_t>(at / kBand); }
+    static void note(std::vector<std::uint64_t>& bands, double from, double to, std::uint64_t bit) {
+        const double last = double(bands.size()) - 1;
+        if (to < 0 || from / kBand > last + 1) return;
+        const auto end = static_cast<std::size_t>(std::clamp(to / kBand, 0.0, last));
+        for (auto i = static_cast<std::size_t>(std::clamp(from / kBand, 0.0, last)); i <= end; ++i) bands[i] |= bit;
+    }
+
+    std::vector<Outline> outlines_;
+    std::vector<std::uint64_t> rows_, columns_;
+};
 
 }  // namespace
 
@@ -84,57 +151,35 @@ void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> freed
 void SilhouetteFit::addContour(SceneEnergy& energy) {
     const PoseTarget& target = problem_.target;
     const ScreenFrame& frame = target.frame;
-    struct Outline {
-        glm::dvec2 from, along;
-        double fromRadius, toRadius, square;
-    };
-    std::vector<std::vector<Outline>> outlines(equations_.size());
-    for (std::size_t a = 0; a < outlines.size(); ++a)
-        for (const PlacedCapsule& capsule : energy.posed(a).capsules()) {
-            const glm::dvec3 d = frame.fromLight(capsule.from), e = frame.fromLight(capsule.to);
-            const glm::dvec2 from = frame.shadow(capsule.from), to = frame.shadow(capsule.to);
-            outlines[a].push_back({from, to - from, frame.focus() * capsule.fromRadius / d.z,
-                                   frame.focus() * capsule.toRadius / e.z, glm::dot(to - from, to - from)});
-        }
+    std::vector<Outlines> outlines;
+    for (std::size_t a = 0; a < equations_.size(); ++a) outlines.emplace_back(frame, energy.posed(a));
     const PoseWeights& weights = problem_.weights;
     const double squarePixel = target.pixelsOf256 * target.pixelsOf256 * target.perPoint();
     // `residual`: how far beyond its place the outline is along the outward normal, pixels.
     const auto add = [&](glm::dvec2 pixel, glm::dvec2 normal, double residual, double weight) {
-        std::size_t owner = 0, index = 0;
-        double least = 3, share = 0;
-        bool isFound = false;
+        std::size_t owner = 0;
+        Outlines::Nearest nearest;
         const glm::ivec2 whole(pixel);
-        for (std::size_t a = 0; a < outlines.size(); ++a) {
-            if (!energy.shadow(a).at(whole.x, whole.y)) continue;
-            for (std::size_t c = 0; c < outlines[a].size(); ++c) {
-                const Outline& outline = outlines[a][c];
-                const glm::dvec2 away = pixel - outline.from;
-                const double t = outline.square > 0 ? std::clamp(glm::dot(away, outline.along) / outline.square, 0.0, 1.0) : 0;
-                const glm::dvec2 aside = away - t * outline.along;
-                const double reach = least + std::lerp(outline.fromRadius, outline.toRadius, t);
-                if (reach <= 0 || glm::dot(aside, aside) >= reach * reach) continue;
-                least = glm::length(aside) - (reach - least);
-                isFound = true, owner = a, index = c, share = t;
-            }
-        }
-        if (!isFound) return;
+        for (std::size_t a = 0; a < outlines.size(); ++a)
+            if (energy.shadow(a).at(whole.x, whole.y) && outlines[a].findNearer(pixel, nearest)) owner = a;
+        if (!nearest.isFound) return;
         const PosedBody& body = energy.posed(owner);
-        const PlacedCapsule& capsule = body.capsule(index);
-        const double radius = std::lerp(capsule.fromRadius, capsule.toRadius, share);
-        const glm::dvec3 point = glm::mix(capsule.from, capsule.to, share) + radius * glm::dvec3(normal.x, -normal.y, 0);
+        const PlacedCapsule& capsule = body.capsule(nearest.capsule);
+        const double radius = std::lerp(capsule.fromRadius, capsule.toRadius, nearest.share);
+        const glm::dvec3 point = glm::mix(capsule.from, capsule.to, nearest.share) + radius * glm::dvec3(normal.x, -normal.y, 0);
         // The derivative of foot + focus (x, y) / z along the normal, by metres of the stage: x right, y up, z to the light.
         const glm::dvec3 d = frame.fromLight(point);
         const double scale = frame.focus() / d.z, forward = (normal.x * d.x + normal.y * d.y) / d.z;
-        equations_[owner].addPoint(problem_.actors[owner].capsules[index].joint, point,
+        equations_[owner].addPoint(problem_.actors[owner].capsules[nearest.capsule].joint, point,
                                    scale * glm::dvec3(normal.x, -normal.y, forward), residual, weight);
     };
 
     // Equation 2: the contour's points pull the nearest point of the shadow's contour.
-    const auto nearest = energy.nearest();
-    for (std::size_t i = 0; i < nearest.size(); ++i) {
-        const glm::dvec2 away = target.contour[i].pixel - nearest[i].pixel;
-        const double along = std::clamp(glm::dot(away, nearest[i].normal), -kFarthest, kFarthest);
-        if (nearest[i].normal != glm::dvec2(0)) add(nearest[i].pixel, nearest[i].normal, -along, weights.w1 * squarePixel);
+    const auto pulled = energy.nearest();
+    for (std::size_t i = 0; i < pulled.size(); ++i) {
+        const glm::dvec2 away = target.contour[i].pixel - pulled[i].pixel;
+        const double along = std::clamp(glm::dot(away, pulled[i].normal), -kFarthest, kFarthest);
+        if (pulled[i].normal != glm::dvec2(0)) add(pulled[i].pixel, pulled[i].normal, -along, weights.w1 * squarePixel);
     }
     // Equation 3: so many pixels of the shadow's contour stand for all of them, each for as much area as it is off.
     const BitMask& contour = energy.contour();
@@ -216,9 +261,11 @@ void SilhouetteFit::addPhysics(SceneEnergy& energy) {
             addPair(posed.capsule(i), posed.capsule(j), body.capsules[i].joint, body.capsules[j].joint);
         for (std::size_t b = 0; b < equations_.size(); ++b)
             if (b != a)
-                for (std::size_t i = 0; i < posed.capsules().size(); ++i)
+                for (std::size_t i = 0; i < posed.capsules().size(); ++i) {
+                    if (!energy.posed(b).isNear(posed.capsule(i))) continue;
                     for (const PlacedCapsule& other : energy.posed(b).capsules())
                         addPair(posed.capsule(i), other, body.capsules[i].joint, std::nullopt);
+                }
         for (std::size_t i = 0; i < posed.spheres().size(); ++i) {
             const auto& [centre, radius] = posed.spheres()[i];
             for (const int axis : {1, 2})
@@ -271,25 +318,29 @@ void SilhouetteFit::addBalance(const SceneEnergy& energy, std::size_t index, con
     if (const double height = 1000 * contacts.lowest; height > 0)
         equations.addPoint(lowestJoint, lowest, {0, 1000, 0}, height, 0.5 * weights.w7 / std::max(kNearest, height));
 
-    const double lacking = 100 * (kAmpleMargin - energy.margin(index));
-    if (lacking <= 0) return;
-    const SupportTangent tangent = supportTangent(contacts, posed.massCentre());
-    const glm::dvec3 outward(tangent.outward.x, 0, tangent.outward.y), up(0, 1, 0);
-    const Contact& contact = *tangent.contact;
-    // Raised against the lowest point a contact moves inwards: a fading one to the lowest point, the cut of an edge along it.
-    double inwards = 0;
-    if (contact.share < 1)
-        inwards = (glm::dot(outward, contact.point - lowest) + contact.radius / contact.share) / problem_.weights.bearing;
-    else if (contact.along.y != 0)
-        inwards = glm::dot(outward, contact.along) / contact.along.y;
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(body.freedoms));
-    equations.addMotion(row, jointOf(contact.source), contact.point + groundUnder(contact.source) * up,
-                        -100.0 * (contact.share * outward - inwards * up));
-    equations.addMotion(row, lowestJoint, lowest, -100.0 * ((1 - contact.share) * outward + inwards * up));
-    const double mass = body.mass();
-    for (std::size_t i = 0; i < body.joints.size(); ++i)
-        equations.addMotion(row, i, posed.point(i, body.joints[i].massCentre), 100 * body.joints[i].mass / mass * outward);
-    equations.addRow(row, lacking, 0.5 * weights.w9 / std::max(kNearest, lacking));
+    findSupportTangents(contacts, posed.massCentre(), kNarrow, tangents_);
+    for (const SupportTangent& tangent : tangents_) {
+        const double lacking = lackOfMargin(tangent.margin);
+        if (lacking <= 0) continue;
+        const double centimetre = tangent.margin < kSureMargin ? 100 * kUnsure : 100;  // what a metre counts
+        const glm::dvec3 outward(tangent.outward.x, 0, tangent.outward.y), up(0, 1, 0);
+        const Contact& contact = *tangent.contact;
+        // Raised against the lowest point a contact moves inwards: a fading one to the lowest point, the cut of an edge along it.
+        double inwards = 0;
+        if (contact.share < 1)
+            inwards =
+                (glm::dot(outward, contact.point - lowest) + contact.radius / contact.share) / problem_.weights.bearing;
+        else if (contact.along.y != 0)
+            inwards = glm::dot(outward, contact.along) / contact.along.y;
+        Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(body.freedoms));
+        equations.addMotion(row, jointOf(contact.source), contact.point + groundUnder(contact.source) * up,
+                            -centimetre * (contact.share * outward - inwards * up));
+        equations.addMotion(row, lowestJoint, lowest, -centimetre * ((1 - contact.share) * outward + inwards * up));
+        const double mass = body.mass();
+        for (std::size_t i = 0; i < body.joints.size(); ++i)
+            equations.addMotion(row, i, posed.point(i, body.joints[i].massCentre), centimetre * body.joints[i].mass / mass * outward);
+        equations.addRow(row, lacking, 0.5 * weights.w9 / std::max(kNearest, lacking));
+    }
 }
 
 }  // namespace fantascope::theatre

@@ -41,6 +41,7 @@ private:
     std::vector<std::size_t> first_;        // freedom of each actor
     std::vector<double> trial_;
     std::vector<Intrusion> intrusions_;
+    std::vector<SupportTangent> tangents_;
     std::int64_t evaluations_ = 0;
 };
 
