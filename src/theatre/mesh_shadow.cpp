@@ -5,6 +5,12 @@
 #include <utility>
 
 namespace fantascope::theatre {
+namespace {
+
+constexpr std::size_t kDigits = 8;  // of a word
+constexpr std::uint64_t kOnes = 0x0101010101010101u, kTops = 0x8080808080808080u;
+
+}  // namespace
 
 bool MeshShadow::add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<const glm::vec3> vertices, BitMask& mask) {
     // Nearer to the light's height than this a shadow is as good as unbounded, metres.
@@ -31,38 +37,48 @@ bool MeshShadow::add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<c
         // Rows go down: anticlockwise is negative.
         faces_[t] = (x_[c.y] - ax) * (y_[c.z] - ay) - (x_[c.z] - ax) * (y_[c.y] - ay) < 0;
     }
-    crossings_.clear();
-    for (const MeshEdge& edge : mesh.edges) {
-        if (faces_[edge.left] == faces_[edge.right]) continue;
+    findOutline(mesh);
+    stride_ = static_cast<std::size_t>(mask.width()) / kDigits + 1;
+    turns_.resize(stride_ * static_cast<std::size_t>(mask.height()), 0);
+    for (const std::uint32_t e : outline_) {
+        const MeshEdge& edge = mesh.edges[e];
         cross({x_[edge.from], y_[edge.from]}, {x_[edge.to], y_[edge.to]}, faces_[edge.left] != 0 ? 1 : -1, mask);
     }
 
-    // By rows, then within each from the left.
-    rows_.assign(static_cast<std::size_t>(mask.height()), 0);
-    for (const Crossing& crossing : crossings_) ++rows_[static_cast<std::size_t>(crossing.row)];
-    std::uint32_t before = 0;
-    for (std::uint32_t& row : rows_) before += std::exchange(row, before);
-    sorted_.resize(crossings_.size());
-    for (const Crossing& crossing : crossings_) {
-        std::uint32_t& end = rows_[static_cast<std::size_t>(crossing.row)];
-        sorted_[end++] = crossing;
-    }
-    std::size_t first = 0;
-    for (int row = 0; row < mask.height(); ++row) {
-        const std::size_t end = rows_[static_cast<std::size_t>(row)];
-        std::sort(sorted_.begin() + static_cast<std::ptrdiff_t>(first), sorted_.begin() + static_cast<std::ptrdiff_t>(end),
-                  [](const Crossing& a, const Crossing& b) { return a.column < b.column; });
-        int winding = 0, from = 0;
-        for (; first < end; ++first) {
-            const int wound = winding;
-            winding += sorted_[first].turn;
-            if (wound == 0)
-                from = sorted_[first].column;
-            else if (winding == 0)
-                mask.fill(row, from, sorted_[first].column);
+    const auto [left, right] = std::minmax_element(x_.begin(), x_.end());
+    const auto [top, bottom] = std::minmax_element(y_.begin(), y_.end());
+    const auto within = [](float at, int size) { return static_cast<int>(std::clamp(at, 0.0f, static_cast<float>(size))); };
+    const auto firstWord = static_cast<std::size_t>(within(*left - 1, mask.width())) / kDigits;
+    const auto lastWord = static_cast<std::size_t>(within(*right + 1, mask.width())) / kDigits;
+    const int lastRow = std::min(within(*bottom + 1, mask.height()), mask.height() - 1);
+    for (int y = within(*top - 1, mask.height()); y <= lastRow; ++y) {
+        std::uint64_t* const turns = &turns_[stride_ * static_cast<std::size_t>(y)];
+        std::uint64_t* const row = mask.row(y).data();
+        std::uint64_t winding = 0;  // around the pixel before
+        for (std::size_t i = firstWord; i <= lastWord; ++i) {
+            if ((turns[i] | winding) == 0) continue;
+            // The sums of digits so far are the digits of a product, and none of them is negative: so often the light enters the mesh.
+            const std::uint64_t windings = (std::exchange(turns[i], 0) + winding) * kOnes;
+            winding = windings >> 56;
+            // The highest bit of each digit that is not 0, then those bits side by side.
+            const std::uint64_t some = (((windings & ~kTops) + ~kTops) | windings) & kTops;
+            if (i < static_cast<std::size_t>(mask.stride()) * kDigits)
+                row[i / kDigits] |= ((some >> 7) * 0x0102040810204080u >> 56) << (8 * (i % kDigits));
         }
+        mask.noteRow(y);
     }
     return true;
+}
+
+// Without a branch: which edges they are nobody can foretell.
+void MeshShadow::findOutline(const BodyMesh& mesh) {
+    outline_.resize(mesh.edges.size());
+    std::size_t count = 0;
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+        outline_[count] = static_cast<std::uint32_t>(e);
+        count += faces_[mesh.edges[e].left] ^ faces_[mesh.edges[e].right];
+    }
+    outline_.resize(count);
 }
 
 // The rows whose centres lie between the ends, that at the upper end included, that at the lower not, so that an outline crosses
@@ -74,9 +90,11 @@ void MeshShadow::cross(glm::vec2 a, glm::vec2 b, int turn, const BitMask& mask) 
     const int to = static_cast<int>(std::ceil(std::clamp(b.y - 0.5f, 0.0f, height)));
     if (from >= to) return;
     const float slope = (b.x - a.x) / (b.y - a.y);
-    for (int row = from; row < to; ++row) {
+    std::uint64_t* turns = &turns_[stride_ * static_cast<std::size_t>(from)];
+    for (int row = from; row < to; ++row, turns += stride_) {
         const float x = a.x + (static_cast<float>(row) + 0.5f - a.y) * slope;
-        crossings_.push_back({row, static_cast<std::int32_t>(std::ceil(std::clamp(x - 0.5f, 0.0f, width))), turn});
+        const auto column = static_cast<std::size_t>(std::ceil(std::clamp(x - 0.5f, 0.0f, width)));
+        turns[column / kDigits] += static_cast<std::uint64_t>(std::int64_t{turn}) << (8 * (column % kDigits));
     }
 }
 

@@ -17,16 +17,16 @@ public:
     bool add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<const glm::vec3> vertices, BitMask& mask);
 
 private:
+    void findOutline(const BodyMesh& mesh);
     void cross(glm::vec2 a, glm::vec2 b, int turn, const BitMask& mask);
 
-    // Where an outline crosses the centres of a row: left of which pixel, and which way.
-    struct Crossing {
-        std::int32_t row = 0, column = 0, turn = 0;
-    };
-    std::vector<float> x_, y_;         // the vertices' shadows, pixels
-    std::vector<std::uint8_t> faces_;  // of each triangle, whether it faces the light
-    std::vector<Crossing> crossings_, sorted_;
-    std::vector<std::uint32_t> rows_;  // where each row's crossings end
+    std::vector<float> x_, y_;            // the vertices' shadows, pixels
+    std::vector<std::uint8_t> faces_;     // of each triangle, whether it faces the light
+    std::vector<std::uint32_t> outline_;  // edges between a triangle that does and one that does not
+    // How much more often the outlines wind around a pixel than around its left neighbour: eight pixels of a row in a word, as digits to the base of
+    // 256 that may be negative. All 0 from mesh to mesh.
+    std::vector<std::uint64_t> turns_;
+    std::size_t stride_ = 0;  // words a row
 };
 
 }  // namespace fantascope::theatre

@@ -11,10 +11,11 @@
 namespace fantascope::theatre {
 namespace {
 
-constexpr double kGlobalShare = 0.75;  // of the evaluations, for all freedoms at once
+constexpr double kGlobalShare = 0.85;  // of the evaluations, for all freedoms at once
 constexpr double kSigma = 0.5, kRefinedSigma = 0.3;
 constexpr int kRefinedGenerations = 100;
-constexpr double kConverged = 0.1;  // energies that differ by less than nobody sees
+constexpr double kPapersStiffness = 0.1;  // of physics, as in Table 1; then what holds people up
+constexpr double kConverged = 0.1;        // energies that differ by less than nobody sees
 
 class TrialRun {
 public:
@@ -27,7 +28,8 @@ public:
 
     PoseSearch::Trial run() {
         trial_.reason = PoseSearch::StopReason::Evaluations;
-        const PoseProblem coarse = forFirstLook(fine_);
+        PoseProblem coarse = forFirstLook(fine_);
+        coarse.weights.stiffen(kPapersStiffness);
         searchAll(coarse);
         refine(fine_);
         return std::move(trial_);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 namespace fantascope::theatre {
 
 // Of the terms, by the paper's names (Won & Lee 2016, Table 1; the paper gives no units, ours are those of EnergyTerms). The defaults are the
@@ -14,7 +16,14 @@ struct PoseWeights {
     double w12 = 0.25;                         // hints
     // A factor on all of physics: the paper's balance is near 0.1 in our units, a pose that a person can hold needs 1.
     double stiffness = 1;
-    double bearing = 0.005;  // how gradually what is higher bears less: findBearings(), metres
+    double bearing = kBearing;  // how gradually what is higher bears less: findBearings(), metres
+    static constexpr double kBearing = 0.005;
+
+    // What is not stiff is not sharp either: a foot far above the ground bears a little.
+    void stiffen(double to) {
+        stiffness = to;
+        bearing = kBearing / std::sqrt(to);
+    }
 };
 
 // The terms of equations 1 to 7 without their weights; what is unstated in the paper is chosen so that its weights balance them.

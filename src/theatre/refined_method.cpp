@@ -59,12 +59,6 @@ private:
     struct Workshop {
         explicit Workshop(PoseProblem given) : problem(std::move(given)), energy(problem), search(problem), fit(problem) {}
         std::int64_t evaluations() const { return search.evaluations() + fit.evaluations(); }
-        // What is not stiff is not sharp either: a foot far above the ground bears a little.
-        void setStiffness(double stiffness) {
-            problem.weights.stiffness = stiffness;
-            problem.weights.bearing = PoseWeights().bearing / std::sqrt(stiffness);
-        }
-
         PoseProblem problem;
         SceneEnergy energy;
         FreedomSearch search;
@@ -85,7 +79,7 @@ private:
             std::max(1, static_cast<int>(kGlobalShare * static_cast<double>(options_.evaluations) / options_.population));
         shop.search.run(shop.energy, trial_.freedoms, all, {kGlobalSigma, options_.population, generations}, rng_,
                         [&](int generation) {
-                            shop.setStiffness(kWeak * std::pow(kLessWeak / kWeak, double(generation) / generations));
+                            shop.problem.weights.stiffen(kWeak * std::pow(kLessWeak / kWeak, double(generation) / generations));
                             return goesOn(shop.energy.lastEnergy());
                         });
     }
@@ -96,7 +90,7 @@ private:
             if (trial_.reason == PoseSearch::StopReason::Interrupted ||
                 PoseSearch::measure(shop.problem, trial_.freedoms).isValid())
                 break;
-            shop.setStiffness(stiffness);
+            shop.problem.weights.stiffen(stiffness);
             shop.fit.run(shop.energy, trial_.freedoms, kFitSteps);
         }
     }
@@ -104,7 +98,7 @@ private:
     // The outline first, then a little more of standing.
     void stiffen(Workshop& shop) {
         for (const double stiffness : kStiffer) {
-            shop.setStiffness(stiffness);
+            shop.problem.weights.stiffen(stiffness);
             shop.fit.run(shop.energy, trial_.freedoms, kFitSteps);
         }
     }
@@ -116,7 +110,7 @@ private:
         double best = std::numeric_limits<double>::infinity();
         while (evaluations() < last) {
             const double done = double(evaluations() - first) / double(last - first);
-            shop.setStiffness(std::pow(stiffness, std::max(0.0, 1 - done / kHeldBy)));
+            shop.problem.weights.stiffen(std::pow(stiffness, std::max(0.0, 1 - done / kHeldBy)));
             shop.energy.pose(here);
             double current = shop.energy.energy();
             if (!goesOn(current)) break;
@@ -131,7 +125,7 @@ private:
             if (stiffness < 1 || current < best) best = current, trial_.freedoms = here;
             trial_.history.push_back(best);
         }
-        shop.setStiffness(1);
+        shop.problem.weights.stiffen(1);
     }
 
     // One actor anew, one of his limbs, or a step in the dark.
