@@ -8,7 +8,6 @@
 #include "app/silhouette_file.h"
 #include "app/stage_meshes.h"
 
-#include "theatre/balance.h"
 #include "theatre/cast.h"
 #include "theatre/pose_hints.h"
 #include "theatre/solution_choice.h"
@@ -16,11 +15,13 @@
 #include "theatre/troupe.h"
 #include "theatre/weights_file.h"
 
+#include "core/file.h"
 #include "core/parallel.h"
 #include "plot/cast_figures.h"
 #include "plot/cast_picture.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -40,7 +41,8 @@ using theatre::PoseProblem, theatre::PoseSearch, theatre::PoseTarget, theatre::T
 constexpr double kDefaultSeconds = 20;
 constexpr int kFewActors = 3;  // up to so many a trial is shorter
 constexpr std::int64_t kEvaluationsOfFew = 40'000, kEvaluationsOfMany = 80'000;
-constexpr int kRows = 512;  // of the target
+constexpr int kRows = 512;    // of the target
+constexpr int kMostMore = 2;  // actors that come in where those asked for by the silhouette's size do not satisfy
 constexpr std::size_t kMostSolutions = 8;
 constexpr double kNearlyAsGood = 0.02;  // of intersection over union: what somebody may still prefer for another reason
 
@@ -80,7 +82,8 @@ void declare(CLI::App& command, Options& options) {
                     throw CLI::ValidationError("--actors", fmt::format("'{}' is neither a number nor 'auto'", given));
                 options.actors = count;
             },
-            fmt::format("How many, 1 .. {}; auto: by the silhouette's area, 1 .. {}", Troupe::kMostActors, Troupe::kMostUnasked))
+            fmt::format("How many, 1 .. {}; auto: by the silhouette's area, 1 .. {}, and up to {} more if they are not enough",
+                        Troupe::kMostActors, Troupe::kMostUnasked, kMostMore))
         ->default_str("auto")
         ->type_name("N|auto");
     command.add_option("--height", options.height,
@@ -163,11 +166,9 @@ Result<void> checkOutputs(const Options& options) {
     return {};
 }
 
-// Everything that a run leaves behind is made of this.
-struct Found {
-    const Options& options;
-    const PoseProblem& problem;
-    double height;  // of the silhouette, metres
+// The trials of so many actors, and what they were given.
+struct Round {
+    PoseProblem problem;
     std::int64_t evaluationsPerTrial;
     PoseTrials trials;
     std::vector<std::size_t> bestFirst;
@@ -175,32 +176,61 @@ struct Found {
     const PoseTrials::Trial& best() const { return trials.trials[bestFirst[0]]; }
 };
 
+// Everything that a run leaves behind is made of this.
+struct Found {
+    const Options& options;
+    const std::optional<theatre::Stage>& stage;  // of options.stage
+    double height;                               // of the silhouette, metres
+    std::vector<Round> rounds{};                 // the best last
+
+    const Round& round() const { return rounds.back(); }
+    const PoseProblem& problem() const { return round().problem; }
+    const PoseTrials& trials() const { return round().trials; }
+    const PoseTrials::Trial& best() const { return round().best(); }
+};
+
 // The picture lies beside the file, or will.
 theatre::Cast castOf(const Found& found, std::span<const double> freedoms, const fs::path& target) {
-    theatre::Cast cast{target, found.height, found.problem.stage, 0, found.options.seed, {}};
-    for (const theatre::Body& body : found.problem.actors) {
+    theatre::Cast cast{target, found.height, found.problem().stage, {}, 0, found.options.seed, {}};
+    for (const theatre::Body& body : found.problem().actors) {
         cast.actors.push_back({body.stature, {theatre::poseOf(body, freedoms.first(body.freedoms))}});
         freedoms = freedoms.subspan(body.freedoms);
     }
     return cast;
 }
 
-// The target first, so that the cast never names what is not there.
-Result<void> writeCastWithTarget(const Found& found, std::span<const double> freedoms, const fs::path& file,
-                                 const Material& target) {
-    const fs::path folder = fs::absolute(file).parent_path();
-    TRY(copyTo(folder, target));
-    return theatre::writeCast(file, castOf(found, freedoms, folder / target.name));
-}
-
 Material targetFor(const Options& options, const fs::path& output) {
     return materialFor(output, options.target, "target" + options.target.extension().string());
+}
+
+// Where the stage file of a cast is, or will be: one that does not lie in its folder goes with its meshes into a folder of its own.
+Result<std::optional<fs::path>> placeStage(const Found& found, const fs::path& output) {
+    if (!found.options.stage) return std::optional<fs::path>();
+    const fs::path source = fs::absolute(*found.options.stage), folder = fs::absolute(output).parent_path();
+    const Material stage = materialFor(output, source, "stage");
+    if (!stage.copied) return std::optional(folder / stage.name);
+    const fs::path own = folder / stage.name;
+    std::vector<fs::path> files{source};
+    for (const theatre::Prop& prop : found.stage->props) files.push_back(fs::absolute(prop.file));
+    for (const fs::path& file : files) TRY(copyTo(own, {file, TRY(relativeTo(source, file)), true}));
+    return std::optional(own / source.filename());
+}
+
+// What it names first, so that the cast never names what is not there.
+Result<void> writeCastWithMaterial(const Found& found, std::span<const double> freedoms, const fs::path& file,
+                                   const fs::path& output) {
+    const fs::path folder = fs::absolute(file).parent_path();
+    const Material target = targetFor(found.options, output);
+    TRY(copyTo(folder, target));
+    theatre::Cast cast = castOf(found, freedoms, folder / target.name);
+    cast.stageFile = TRY(placeStage(found, output));
+    return theatre::writeCast(file, cast);
 }
 
 Result<void> drawPictures(const Found& found) {
     const Options& options = found.options;
     if (!options.image && !options.view && !options.each) return {};
-    const plot::CastPicture picture = plot::castPicture(found.problem, found.best().freedoms);
+    const plot::CastPicture picture = plot::castPicture(found.problem(), found.best().freedoms);
     if (options.image) TRY(plot::shadowFigure(picture.actors, picture.view.target, picture.lines).write(*options.image));
     if (options.view) TRY(plot::stageFigure(picture.view, picture.view.overview(plot::kStageAspect)).write(*options.view));
     if (options.each) TRY(plot::actorsFigure(picture.actors, picture.view.target).write(*options.each));
@@ -222,8 +252,8 @@ std::vector<theatre::PlacedActor> placed(const PoseProblem& problem, std::span<c
 // What somebody may choose from: the best, and all that are held and nearly as good, or good enough for anybody.
 std::vector<const PoseTrials::Trial*> acceptedOf(const Found& found) {
     std::vector<const PoseTrials::Trial*> accepted;
-    for (const std::size_t i : found.bestFirst) {
-        const PoseTrials::Trial& trial = found.trials.trials[i];
+    for (const std::size_t i : found.round().bestFirst) {
+        const PoseTrials::Trial& trial = found.trials().trials[i];
         const bool isGood =
             trial.isSatisfactory() || (trial.quality.isValid() && trial.quality.iou >= found.best().quality.iou - kNearlyAsGood);
         if (accepted.empty() || isGood) accepted.push_back(&trial);
@@ -232,7 +262,7 @@ std::vector<const PoseTrials::Trial*> acceptedOf(const Found& found) {
 }
 
 Result<void> writeSolutions(const Found& found) {
-    const PoseProblem& problem = found.problem;
+    const PoseProblem& problem = found.problem();
     const fs::path& folder = *found.options.solutions;
     const std::vector<const PoseTrials::Trial*> accepted = acceptedOf(found);
     std::vector<std::vector<theatre::PlacedActor>> places;
@@ -241,7 +271,7 @@ Result<void> writeSolutions(const Found& found) {
     for (const std::size_t choice : theatre::mostDifferent(places, kMostSolutions)) {
         const PoseTrials::Trial& trial = *accepted[choice];
         const std::string file = fmt::format("solution-{}.cast.yaml", cells.size() + 1);
-        TRY(writeCastWithTarget(found, trial.freedoms, folder / file, targetFor(found.options, folder / "solutions.png")));
+        TRY(writeCastWithMaterial(found, trial.freedoms, folder / file, folder / "solutions.png"));
         plot::CastPicture picture = plot::castPicture(problem, trial.freedoms);
         const plot::Camera camera = picture.view.closeUp(double(plot::kCellView.x) / plot::kCellView.y);
         std::vector<std::string> lines{file};
@@ -261,15 +291,12 @@ Report energyOf(const PoseProblem& problem, const PoseSearch::Quality& quality) 
             {"total", quality.energy}};
 }
 
-Report actorsOf(const PoseProblem& problem, const PoseTrials::Trial& best, std::span<const TriangleMesh> skins) {
+Report actorsOf(const PoseProblem& problem, const PoseTrials::Trial& best) {
     Report actors = Report::array();
-    theatre::Contacts contacts;
-    for (std::size_t i = 0; i < skins.size(); ++i) {
+    for (std::size_t i = 0; i < problem.actors.size(); ++i) {
         const PoseSearch::Actor& quality = best.quality.actors[i];
-        theatre::findContacts(skins[i].vertices, problem.skins[i]->edges, contacts);
         Report points = Report::array();
-        if (contacts.touches)
-            for (const theatre::Contact& contact : contacts.discs) points.push_back({contact.place.x, contact.place.y});
+        for (const glm::dvec2& contact : quality.contacts) points.push_back({contact.x, contact.y});
         actors.push_back({{"stature", problem.actors[i].stature},
                           {"margin", quality.margin},
                           {"lowest_point", quality.lowest},
@@ -280,21 +307,41 @@ Report actorsOf(const PoseProblem& problem, const PoseTrials::Trial& best, std::
     return actors;
 }
 
-Report reportOf(const Found& found, std::span<const TriangleMesh> skins) {
+// Of this process so far, megabytes.
+double peakMemory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+// Of each number of actors that was tried, in turn.
+Report roundsOf(const Found& found) {
+    Report rounds = Report::array();
+    for (const Round& round : found.rounds)
+        rounds.push_back({{"actors", round.problem.actors.size()},
+                          {"trials", round.trials.trials.size()},
+                          {"iou", round.best().quality.iou},
+                          {"valid", round.best().quality.isValid()}});
+    return rounds;
+}
+
+Report reportOf(const Found& found) {
     const PoseTrials::Trial& best = found.best();
     Report report;
     report["iou"] = best.quality.iou;
     report["valid"] = best.quality.isValid();
     report["contour_mean_px"] = best.quality.contourMean;
     report["contour_max_px"] = best.quality.contourMost;
-    report["energy"] = energyOf(found.problem, best.quality);
+    report["energy"] = energyOf(found.problem(), best.quality);
+    report["method"] = name(found.options.search.method);
     report["height"] = found.height;
-    report["actors"] = actorsOf(found.problem, best, skins);
+    report["rounds"] = roundsOf(found);
+    report["actors"] = actorsOf(found.problem(), best);
     std::int64_t evaluations = 0;
     double spent = 0;
     std::size_t satisfactory = 0;
     Report& trials = report["trials"] = Report::array();
-    for (const PoseTrials::Trial& trial : found.trials.trials) {
+    for (const PoseTrials::Trial& trial : found.trials().trials) {
         trials.push_back({{"number", trial.number + 1},
                           {"seed", trial.seed},
                           {"iou", trial.quality.iou},
@@ -307,24 +354,25 @@ Report reportOf(const Found& found, std::span<const TriangleMesh> skins) {
         spent += trial.seconds;
         satisfactory += trial.isSatisfactory() ? 1 : 0;
     }
-    const auto count = static_cast<double>(found.trials.trials.size());
+    const auto count = static_cast<double>(found.trials().trials.size());
     report["best_trial"] = best.number + 1;
-    report["finished_trials"] = found.trials.finished;
+    report["finished_trials"] = found.trials().finished;
     report["satisfactory_share"] = static_cast<double>(satisfactory) / count;
     // Without a satisfactory one nobody knows: infinite, which is written as null.
     report["expected_trials"] = count / static_cast<double>(satisfactory);
     report["seconds_per_trial"] = spent / count;
     report["evaluations"] = evaluations;
-    report["evaluations_per_trial"] = found.evaluationsPerTrial;
-    report["seconds"] = found.trials.seconds;
-    report["stop_reason"] = name(found.trials.reason);
+    report["evaluations_per_trial"] = found.round().evaluationsPerTrial;
+    report["seconds"] = found.trials().seconds;
+    report["peak_memory_mb"] = peakMemory();
+    report["stop_reason"] = name(found.trials().reason);
     report["seed"] = found.options.seed;
     return report;
 }
 
 std::string brief(const Found& found) {
     const PoseTrials::Trial& best = found.best();
-    const std::size_t finished = found.trials.finished, actors = found.problem.actors.size();
+    const std::size_t finished = found.trials().finished, actors = found.problem().actors.size();
     std::string text = fmt::format("{}: IoU {:.3f}, {} actor{}, {} m high", found.options.output.string(), best.quality.iou,
                                    actors, actors == 1 ? "" : "s", found.height);
     if (finished > 0)
@@ -346,14 +394,81 @@ Result<theatre::PoseWeights> weightsOf(const Options& options) {
 // --evaluations repeats it.
 std::int64_t evaluationsWithin(double seconds, PoseSearch::Options options, const PoseProblem& problem, std::uint64_t seed,
                                const Clock& clock) {
-    constexpr std::int64_t kProbe = 1000;
-    constexpr double kSpare = 0.75;  // threads get in each other's way, and a trial's end has its own cost
-    const Time start = clock.now();
+    constexpr std::int64_t kProbe = 1500;
+    constexpr double kSpare = 0.8;  // threads get in each other's way
     const std::int64_t enough = std::exchange(options.evaluations, kProbe);
-    const PoseSearch::Trial probe = PoseSearch::run(problem, seed, options);
-    const double took = fantascope::seconds(clock.now() - start);
-    const double fit = kSpare * (seconds - took) * static_cast<double>(probe.evaluations) / std::max(took, 1e-3);
-    return std::clamp(static_cast<std::int64_t>(fit), kProbe, enough);
+    // What an evaluation takes is felt between the first time that the probe asks and the last; a trial's beginning and end take theirs once.
+    struct Look {
+        std::int64_t evaluations = 0;
+        Time at{};
+    };
+    std::optional<Look> first;
+    Look last;
+    const Time start = clock.now();
+    PoseSearch::run(problem, seed, options, [&](const PoseSearch::Progress& now) {
+        last = {now.evaluations, clock.now()};
+        if (!first) first = last;
+        return false;
+    });
+    const double took = fantascope::seconds(clock.now() - start), searching = fantascope::seconds(last.at - first->at);
+    const double each = searching / static_cast<double>(std::max<std::int64_t>(1, last.evaluations - first->evaluations));
+    const double fit = kSpare * (seconds - took - (took - searching)) / std::max(each, 1e-6);
+    return static_cast<std::int64_t>(std::clamp(fit, 1000.0, static_cast<double>(enough)));
+}
+
+// Searches with these actors until `seconds` after the start, if there is such an end.
+Result<Round> searchWith(const Options& options, PoseProblem problem, std::optional<double> seconds, Time start, Clock& clock) {
+    problem.dress();
+    PoseTrials::Options trials{options.search, options.seed, options.trials, seconds, options.threads};
+    const bool areFew = problem.actors.size() <= std::size_t{kFewActors};
+    trials.search.evaluations = options.evaluations.value_or(areFew ? kEvaluationsOfFew : kEvaluationsOfMany);
+    TRY(trials.search.check());
+    if (seconds) {
+        // All that came before counts.
+        const auto left = [&] { return std::max(0.0, *seconds - fantascope::seconds(clock.now() - start)); };
+        if (!options.evaluations)
+            trials.search.evaluations = evaluationsWithin(left(), trials.search, problem, options.seed, clock);
+        trials.seconds = left();
+    }
+    Round round{std::move(problem), trials.search.evaluations, {}, {}};
+    round.trials = PoseTrials::run(round.problem, trials, clock, std::cerr, standardErrorIsTerminal());
+    round.bestFirst = round.trials.bestFirst();
+    return round;
+}
+
+// Won & Lee 2016, section 4: the last resort is one more actor, and all begins anew. Half of the time that is left is for each number of actors,
+// all of it for the last.
+Result<void> search(Found& found, const GreyImage& silhouette, double area, const Troupe& first, Time start, Clock& clock) {
+    const Options& options = found.options;
+    std::optional<double> seconds = options.seconds;
+    if (!options.trials && !seconds) seconds = kDefaultSeconds;
+    theatre::Stage stage = found.stage.value_or(theatre::Stage{});
+    const PoseTarget target = TRY(PoseTarget::from(silhouette, stage, first.height, kRows).in(options.target.string()));
+    const theatre::PoseWeights weights = TRY(weightsOf(options));
+    const int most = options.actors ? 0 : kMostMore;
+    for (int more = 0; more <= most; ++more) {
+        Result<Troupe> troupe = first;
+        if (more > 0) troupe = Troupe::of(area, static_cast<int>(first.statures.size()) + more, first.height, options.statures);
+        if (!troupe) break;  // they would have too little of it
+        TRY(stage.checkHolders(troupe->statures.size()));
+        PoseProblem problem{stage, target, {}, weights};
+        if (options.hints) problem.hints = TRY(theatre::readHints(*options.hints, problem.target));
+        for (const double stature : troupe->statures) problem.actors.push_back(theatre::humanBody(stature));
+        std::optional<double> until = seconds;
+        if (until && more < most) *until -= 0.5 * (*seconds - fantascope::seconds(clock.now() - start));
+        found.rounds.push_back(TRY(searchWith(options, std::move(problem), until, start, clock)));
+        const Round& round = found.round();
+        if (round.best().isSatisfactory() || round.trials.reason == PoseTrials::StopReason::Interrupted) break;
+        if (more < most)
+            fmt::print(stderr, "pose: {} not enough (IoU {:.3f}{}); going on with one more\n",
+                       troupe->statures.size() == 1 ? "1 actor is" : fmt::format("{} actors are", troupe->statures.size()),
+                       round.best().quality.iou, round.best().quality.isValid() ? "" : ", cannot be held");
+    }
+    const auto best = std::max_element(found.rounds.begin(), found.rounds.end(), [](const Round& a, const Round& b) {
+        return isBetter(b.best().quality, a.best().quality);
+    });
+    std::rotate(best, best + 1, found.rounds.end());
+    return {};
 }
 
 Result<void> run(const Options& options) {
@@ -362,46 +477,19 @@ Result<void> run(const Options& options) {
     // Whatever can be refused is refused before the search begins.
     TRY(checkOutputs(options));
     const GreyImage silhouette = TRY(readSilhouette(options.target));
-    theatre::Stage stage;
+    std::optional<theatre::Stage> stage;
     if (options.stage) stage = TRY(theatre::readStage(*options.stage));
-    const theatre::PoseWeights weights = TRY(weightsOf(options));
-    const std::string file = options.target.string();
     // Wherever the light is.
-    const double area = TRY(PoseTarget::from(silhouette, {}, 1, kRows).in(file)).area / (kRows * kRows);
+    const double area = TRY(PoseTarget::from(silhouette, {}, 1, kRows).in(options.target.string())).area / (kRows * kRows);
     const Troupe troupe = TRY(Troupe::of(area, options.actors, options.height, options.statures));
-    TRY(stage.checkHolders(troupe.statures.size()));
-    PoseProblem problem{stage, TRY(PoseTarget::from(silhouette, stage, troupe.height, kRows).in(file)), {}, weights};
-    if (options.hints) problem.hints = TRY(theatre::readHints(*options.hints, problem.target));
-    for (const double stature : troupe.statures) problem.actors.push_back(theatre::humanBody(stature));
-    problem.dress();
-    PoseTrials::Options search{options.search, options.seed, options.trials, options.seconds, options.threads};
-    if (!options.trials && !options.seconds) search.seconds = kDefaultSeconds;
-    const bool areFew = troupe.statures.size() <= std::size_t{kFewActors};
-    search.search.evaluations = options.evaluations.value_or(areFew ? kEvaluationsOfFew : kEvaluationsOfMany);
-    TRY(search.search.check());
-    if (search.seconds) {
-        // All that came before counts.
-        const auto left = [&] { return std::max(0.0, *search.seconds - seconds(clock.now() - start)); };
-        if (!options.evaluations)
-            search.search.evaluations = evaluationsWithin(left(), search.search, problem, options.seed, clock);
-        search.seconds = left();
-    }
-    Found found{options,
-                problem,
-                troupe.height,
-                search.search.evaluations,
-                PoseTrials::run(problem, search, clock, std::cerr, standardErrorIsTerminal()),
-                {}};
-    found.bestFirst = found.trials.bestFirst();
+    Found found{options, stage, troupe.height};
+    TRY(search(found, silhouette, area, troupe, start, clock));
 
-    TRY(writeCastWithTarget(found, found.best().freedoms, options.output, targetFor(options, options.output)));
+    TRY(writeCastWithMaterial(found, found.best().freedoms, options.output, options.output));
     TRY(drawPictures(found));
     if (options.solutions) TRY(writeSolutions(found));
-    if (options.meshes || options.report) {
-        const std::vector<TriangleMesh> skins = skinsOf(problem, found.best().freedoms);
-        if (options.meshes) TRY(writeStageMeshes(*options.meshes, problem.target, stage, skins));
-        if (options.report) TRY(writeReport(*options.report, reportOf(found, skins)));
-    }
+    if (options.meshes) TRY(writeStageMeshes(*options.meshes, found.problem(), found.best().freedoms));
+    if (options.report) TRY(writeReport(*options.report, reportOf(found)));
     fmt::print("{}\n", brief(found));
     return {};
 }

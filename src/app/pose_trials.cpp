@@ -17,10 +17,6 @@ namespace {
 
 using theatre::PoseProblem, theatre::PoseSearch;
 
-bool isBetter(const PoseSearch::Quality& a, const PoseSearch::Quality& b) {
-    return std::pair(a.isValid(), a.iou) > std::pair(b.isValid(), b.iou);
-}
-
 // What all threads share. Each asks whether its trial goes on, one at a time: so a pause holds up all of them.
 class Course {
 public:
@@ -120,6 +116,10 @@ private:
 };
 
 }  // namespace
+
+bool isBetter(const PoseSearch::Quality& a, const PoseSearch::Quality& b) {
+    return std::pair(a.isValid(), a.iou) > std::pair(b.isValid(), b.iou);
+}
 
 std::string_view name(PoseTrials::StopReason reason) {
     switch (reason) {

@@ -46,6 +46,9 @@ struct PoseTrials {
                           bool terminal);
 };
 
+// Valid before invalid, then by intersection over union.
+bool isBetter(const theatre::PoseSearch::Quality& a, const theatre::PoseSearch::Quality& b);
+
 std::string_view name(PoseTrials::StopReason reason);
 
 }  // namespace fantascope::app

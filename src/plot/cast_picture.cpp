@@ -1,6 +1,6 @@
 #include "plot/cast_picture.h"
 
-#include "theatre/mesh_shadow.h"
+#include "theatre/scene_energy.h"
 
 #include "core/check.h"
 #include "plot/palette.h"
@@ -12,7 +12,7 @@
 namespace fantascope::plot {
 namespace {
 
-using theatre::BitMask, theatre::PoseSearch;
+using theatre::PoseSearch;
 
 std::vector<std::string> notesOf(const PoseSearch::Actor& actor) {
     std::vector<std::string> notes;
@@ -36,26 +36,23 @@ std::vector<std::string> notesOf(const PoseSearch::Actor& actor) {
 CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const double> freedoms) {
     FANTASCOPE_CHECK(problem.skins.size() == problem.actors.size(), "pictures of a cast show skins");
     const PoseSearch::Quality quality = PoseSearch::measure(problem, freedoms);
-    const theatre::ScreenFrame& frame = problem.target.frame;
-    const BitMask black(frame.width(), frame.height());
-    CastPicture picture{{problem.stage, frame, black, problem.target.mask, {}}, {}, {}};
+    theatre::SceneEnergy scene(problem);
+    scene.pose(freedoms);
+    scene.terms();
+    CastPicture picture{{problem.stage, problem.target.frame, scene.shadow(), problem.target.mask, {}}, {}, {}};
     std::string fallen;
-    theatre::MeshShadow shadow;
-    theatre::PosedBody posed;
-    std::vector<glm::vec3> vertices;
     for (std::size_t i = 0; i < problem.actors.size(); ++i) {
-        const theatre::Body& body = problem.actors[i];
-        posed.pose(body, freedoms.first(body.freedoms));
-        freedoms = freedoms.subspan(body.freedoms);
-        picture.actors.push_back({black, fmt::format("{:.2f} m", body.stature), notesOf(quality.actors[i])});
-        const theatre::BodyMesh& skin = *problem.skins[i];
-        skin.skin(body, posed, vertices);
-        shadow.add(frame, skin, vertices, picture.actors[i].mask);
-        if (picture.actors[i].mask.count() == 0) picture.actors[i].notes.push_back("no shadow in the picture");
-        picture.view.shadow.add(picture.actors[i].mask);
-        picture.view.actors.push_back({{vertices, skin.atRest.triangles}, actorColour(i)});
-        if (!quality.actors[i].isValid()) fallen += fmt::format("{} {}", fallen.empty() ? "" : ",", i + 1);
+        const PoseSearch::Actor& actor = quality.actors[i];
+        picture.actors.push_back({scene.shadow(i), fmt::format("{:.2f} m", problem.actors[i].stature), notesOf(actor)});
+        if (scene.shadow(i).count() == 0) picture.actors[i].notes.push_back("no shadow in the picture");
+        const std::span<const glm::vec3> skin = scene.skin(i);
+        picture.view.actors.push_back({{{skin.begin(), skin.end()}, problem.skins[i]->atRest.triangles}, actorColour(i)});
+        if (!actor.isValid()) fallen += fmt::format("{} {}", fallen.empty() ? "" : ",", i + 1);
     }
+    const auto things = scene.things();
+    const glm::dvec3 colour = actorColour(problem.actors.size());
+    for (const auto& thing : things) picture.view.props.push_back({thing.mesh, colour});
+    if (!things.empty()) picture.actors.push_back({scene.propShadow(), things.size() == 1 ? things[0].name : "props", {}});
     picture.lines = {fmt::format("IoU {:.3f}", quality.iou), fmt::format("contour off by {:.1f} px of 256,", quality.contourMean),
                      fmt::format("{:.0f} px at most", quality.contourMost),
                      fallen.empty() ? "everyone can stand so" : "cannot stand so:" + fallen};

@@ -14,8 +14,9 @@ namespace fantascope::plot {
 // Poses of a problem with skins as the figures of a cast take them.
 struct CastPicture {
     StageView view;
-    std::vector<ActorShadow> actors;  // how each stands in his notes
-    std::vector<std::string> lines;   // how well the shadow fits, and whether everyone can stand so
+    std::vector<ActorShadow>
+        actors;                      // how each stands in his notes; after them, if there are any, all platforms and props as one
+    std::vector<std::string> lines;  // how well the shadow fits, and whether everyone can stand so
 };
 
 // `freedoms`: of all actors, one after the other.

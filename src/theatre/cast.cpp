@@ -1,5 +1,7 @@
 #include "theatre/cast.h"
 
+#include "theatre/stage_file.h"
+
 #include "core/config.h"
 #include "core/file.h"
 
@@ -75,18 +77,31 @@ Result<Cast> castOf(const ConfigNode& root) {
     fields.header("cast", kVersion);
     fields.path("target", cast.target);
     fields.number("height", cast.height, 0.1, 20, "m");
-    fields.vector3("light", cast.stage.light, -kFarthest, kFarthest, "m");
+    bool hasLight = false;
+    fields.optional().read("light", cast.stage.light, [&](const ConfigNode& node) {
+        hasLight = true;
+        return node.vector3(-kFarthest, kFarthest, "m");
+    });
+    fields.optional().read("stage", cast.stageFile, [&](const ConfigNode& node) -> Result<std::optional<fs::path>> {
+        if (hasLight) return node.error("there is a 'light' too, and the stage has its own; take either away");
+        const fs::path file = TRY(node.path());
+        cast.stage = TRY(readStage(file));
+        return std::optional(file);
+    });
     fields.optional().number("frames_per_second", cast.framesPerSecond, 0, 1000);
     fields.integer("seed", cast.seed, 0, std::numeric_limits<std::int64_t>::max());
     ConfigNode actors;
     fields.read("actors", actors, [](const ConfigNode& at) -> Result<ConfigNode> { return at; });
     TRY(fields.finish());
+    if (!hasLight && !cast.stageFile)
+        return root.error("no light; say 'light: [x, y, z]' for a lamp, or 'stage:' with the name of a stage file");
     for (const ConfigNode& node : TRY(actors.items(1, kMostActors))) {
         cast.actors.push_back(TRY(readActor(node)));
         if (cast.actors.back().poses.size() != cast.actors.front().poses.size())
             return node.error(fmt::format("{} poses, and the first actor has {}; each has one a frame",
                                           cast.actors.back().poses.size(), cast.actors.front().poses.size()));
     }
+    if (auto held = cast.stage.checkHolders(cast.actors.size()); !held) return root.error(held.error().message());
     return cast;
 }
 
@@ -113,13 +128,15 @@ std::vector<double> freedomsOf(const Body& body, const ActorPose& pose) {
 Result<Cast> readCast(const fs::path& file) { return castOf(TRY(ConfigNode::load(file))); }
 
 Result<void> writeCast(const fs::path& file, const Cast& cast) {
-    const glm::dvec3 light = cast.stage.light;
-    std::string text =
-        fmt::format("fantascope: cast\nversion: {}\ntarget: {}\nheight: {}\nlight: [{}, {}, {}]\n", kVersion,
-                    fantascope::quoted(TRY(relativeTo(file, cast.target))), cast.height, light.x, light.y, light.z);
+    std::string text = fmt::format("fantascope: cast\nversion: {}\ntarget: {}\nheight: {}\n", kVersion,
+                                   fantascope::quoted(TRY(relativeTo(file, cast.target))), cast.height);
     const auto add = [&]<class... Values>(fmt::format_string<Values...> format, Values&&... values) {
         fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
     };
+    if (cast.stageFile)
+        add("stage: {}\n", fantascope::quoted(TRY(relativeTo(file, *cast.stageFile))));
+    else
+        add("light: [{}, {}, {}]\n", cast.stage.light.x, cast.stage.light.y, cast.stage.light.z);
     if (cast.framesPerSecond > 0) add("frames_per_second: {}\n", cast.framesPerSecond);
     add("seed: {}\nactors:\n", cast.seed);
     for (const Cast::Actor& actor : cast.actors) {

@@ -5,6 +5,7 @@
 #include "core/result.h"
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,12 +31,14 @@ struct Cast {
     std::filesystem::path target;  // the silhouette's picture; as the program that reads the file can open it
     double height = 0;             // of the silhouette on the screen, metres
     Stage stage;
+    std::optional<std::filesystem::path>
+        stageFile;               // of the stage, in the file's folder or below it; none: there is a lamp and nothing else
     double framesPerSecond = 0;  // 0: a still, with one frame
     std::uint64_t seed = 0;
     std::vector<Actor> actors;
 };
 
-// *.cast.yaml, docs/cast-format.md. A quaternion that is not of length 1, or outside a joint's limits by more than a thousandth of a degree, is
+// *.cast.yaml, docs/cast-format.md; a stage's file is read with it, and must be there when a cast that names it is written. A quaternion that is not of length 1, or outside a joint's limits by more than a thousandth of a degree, is
 // refused with its place. Written aside and renamed; the target must lie in the file's folder or below it.
 Result<Cast> readCast(const std::filesystem::path& file);
 Result<void> writeCast(const std::filesystem::path& file, const Cast& cast);

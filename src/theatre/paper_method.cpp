@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kGlobalShare = 0.85;  // of the evaluations, for all freedoms at once
 constexpr double kSigma = 0.5, kRefinedSigma = 0.3;
-constexpr int kRefinedGenerations = 100;
+constexpr int kRefinedGenerations = 25;
 constexpr double kPapersStiffness = 0.1;  // of physics, as in Table 1; then what holds people up
 constexpr double kConverged = 0.1;        // energies that differ by less than nobody sees
 

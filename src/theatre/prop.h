@@ -5,6 +5,7 @@
 
 #include <glm/gtc/quaternion.hpp>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,6 +27,7 @@ struct Prop {
     };
 
     std::string name;
+    std::filesystem::path file{};  // that its mesh was read from
     std::shared_ptr<const Shape> shape;
     std::optional<Holder> holder;  // none: it stands
     // Of the prop's frame: of one that stands in the stage's. Of one that is held, from the part's point, in the axes of the T-pose: +x the

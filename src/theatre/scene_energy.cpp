@@ -15,8 +15,9 @@ SceneEnergy::SceneEnergy(const PoseProblem& problem)
     for (Actor& actor : actors_) actor.shadow = shadow_;
     placeStanding(problem.stage, standing_);
     if (!standing_.empty() || !problem.stage.platforms.empty()) standingShadow_ = shadow_;
-    for (const Stage::Platform& platform : problem.stage.platforms) addShadow(problem.target.frame, platform, standingShadow_);
-    for (const PlacedProp& prop : standing_) addShadow(problem.target.frame, prop, standingShadow_);
+    for (const Stage::Platform& platform : problem.stage.platforms)
+        addShadow(problem.target.frame, meshOf(platform), standingShadow_);
+    for (const PlacedProp& prop : standing_) addShadow(problem.target.frame, meshOf(prop), standingShadow_);
     cutToLit(problem.stage, problem.target.frame, standingShadow_);
     nearest_.resize(problem.target.contour.size());
     owners_.resize(nearest_.size());
@@ -69,7 +70,7 @@ void SceneEnergy::poseProps(std::size_t index) {
     if (actor.held.empty()) return;
     if (actor.heldShadow.width() == 0) actor.heldShadow = BitMask(shadow_.width(), shadow_.height());
     actor.heldShadow.clear();
-    for (const PlacedProp& prop : actor.held) addShadow(problem_.target.frame, prop, actor.heldShadow);
+    for (const PlacedProp& prop : actor.held) addShadow(problem_.target.frame, meshOf(prop), actor.heldShadow);
     cutToLit(problem_.stage, problem_.target.frame, actor.heldShadow);
 }
 
@@ -109,6 +110,15 @@ BitMask SceneEnergy::propShadow() const {
     for (const Actor& actor : actors_)
         if (!actor.held.empty()) shadow.add(actor.heldShadow);
     return shadow;
+}
+
+std::vector<SceneEnergy::Thing> SceneEnergy::things() const {
+    std::vector<Thing> things;
+    for (const Stage::Platform& platform : problem_.stage.platforms) things.push_back({platform.name, meshOf(platform)});
+    for (const PlacedProp& prop : standing_) things.push_back({prop.prop->name, meshOf(prop)});
+    for (const Actor& actor : actors_)
+        for (const PlacedProp& prop : actor.held) things.push_back({prop.prop->name, meshOf(prop)});
+    return things;
 }
 
 SceneEnergy::HintOwner SceneEnergy::hintOwner(std::size_t hint) const {

@@ -7,6 +7,7 @@
 #include "theatre/surroundings.h"
 
 #include <span>
+#include <string>
 #include <vector>
 
 namespace fantascope::theatre {
@@ -30,6 +31,12 @@ public:
     const BitMask& shadow() const { return shadow_; }  // of all; after terms()
     const BitMask& shadow(std::size_t actor) const { return actors_[actor].shadow; }
     BitMask propShadow() const;  // of platforms and props, in the poses last given
+    // Platforms and props in those poses, metres, stage frame.
+    struct Thing {
+        std::string name;
+        TriangleMesh mesh;
+    };
+    std::vector<Thing> things() const;
     const PosedBody& posed(std::size_t actor) const { return actors_[actor].body; }
     // The skin's vertices, metres; none for a problem without skins.
     std::span<const glm::vec3> skin(std::size_t actor) const { return actors_[actor].skin; }

@@ -83,6 +83,9 @@ Result<std::string> readName(const ConfigNode& node, std::vector<std::string>& n
     const std::string name = TRY(node.text());
     if (std::find(names.begin(), names.end(), name) != names.end())
         return node.error(fmt::format("two things are called '{}'; give each a name of its own", name));
+    if (name.find('/') != std::string::npos)
+        return node.error(
+            fmt::format("'{}': a mesh's file may be called so (prop-NAME.obj), and '/' is between folders; leave it out", name));
     names.push_back(name);
     return name;
 }
@@ -150,7 +153,10 @@ Result<Prop> readProp(const ConfigNode& node, double lightZ, std::vector<std::st
     ConfigFields fields(node);
     fields.read("name", prop.name, [&](const ConfigNode& at) { return readName(at, names); });
     fields.optional().number("scale", scale, 1e-6, 1e6);
-    fields.read("mesh", prop.shape, [&](const ConfigNode& at) { return readShape(at, scale); });
+    fields.read("mesh", prop.shape, [&](const ConfigNode& at) -> Result<std::shared_ptr<const Prop::Shape>> {
+        prop.file = TRY(at.path());
+        return readShape(at, scale);
+    });
     fields.optional().read("held_by", prop.holder, [](const ConfigNode& at) -> Result<std::optional<Prop::Holder>> {
         return std::optional(TRY(readHolder(at)));
     });

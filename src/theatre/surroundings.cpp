@@ -57,18 +57,17 @@ void addDeepestCorner(const PlacedProp& held, Distance distance, std::vector<Int
 // The shadows of flat, convex faces between given places.
 class FaceShadow {
 public:
-    FaceShadow(const ScreenFrame& frame, std::span<const dvec3> places) : shadows_(places.size()), throws_(places.size()) {
+    FaceShadow(const ScreenFrame& frame, std::span<const glm::vec3> places) : shadows_(places.size()), throws_(places.size()) {
         for (std::size_t i = 0; i < places.size(); ++i) {
             throws_[i] = frame.fromLight(places[i]).z > 1e-3;
             if (throws_[i] != 0) shadows_[i] = glm::vec2(frame.shadow(places[i]));
         }
     }
-    template <std::size_t count>
-    void add(const std::array<unsigned, count>& face, BitMask& mask) {
-        std::array<glm::vec2, count> corners;
-        for (std::size_t i = 0; i < count; ++i) {
+    void add(const glm::uvec3& face, BitMask& mask) {
+        std::array<glm::vec2, 3> corners;
+        for (glm::length_t i = 0; i < 3; ++i) {
             if (throws_[face[i]] == 0) return;
-            corners[i] = shadows_[face[i]];
+            corners[static_cast<std::size_t>(i)] = shadows_[face[i]];
         }
         // Clockwise as seen, y down.
         const glm::vec2 one = corners[1] - corners[0], other = corners[2] - corners[0];
@@ -179,25 +178,27 @@ double deepest(std::span<const Intrusion> intrusions) {
     return most;
 }
 
-void addShadow(const ScreenFrame& frame, const PlacedProp& prop, BitMask& mask) {
-    const TriangleMesh& mesh = prop.prop->shape->mesh;
-    std::vector<dvec3> places;
-    for (const glm::vec3& vertex : mesh.vertices) places.push_back(prop.point(vertex));
-    FaceShadow shadow(frame, places);
-    for (const glm::uvec3& triangle : mesh.triangles) shadow.add(std::array{triangle.x, triangle.y, triangle.z}, mask);
-}
-
-void addShadow(const ScreenFrame& frame, const Stage::Platform& platform, BitMask& mask) {
+TriangleMesh meshOf(const Stage::Platform& platform) {
     const glm::dquat turn = glm::angleAxis(platform.turn, dvec3(0, 1, 0));
-    std::vector<dvec3> places;
+    TriangleMesh mesh;
     for (unsigned i = 0; i < 8; ++i) {
         const dvec3 side((i & 1U) != 0 ? 0.5 : -0.5, (i & 2U) != 0 ? 0.5 : -0.5, (i & 4U) != 0 ? 0.5 : -0.5);
-        places.push_back(platform.centre + turn * (side * platform.size));
+        mesh.vertices.emplace_back(platform.centre + turn * (side * platform.size));
     }
-    FaceShadow shadow(frame, places);
-    for (const auto& face :
-         {std::array{0U, 1U, 3U, 2U}, {4U, 5U, 7U, 6U}, {0U, 1U, 5U, 4U}, {2U, 3U, 7U, 6U}, {0U, 2U, 6U, 4U}, {1U, 3U, 7U, 5U}})
-        shadow.add(face, mask);
+    for (const glm::uvec4& q : {glm::uvec4(0, 2, 3, 1), {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
+        mesh.triangles.insert(mesh.triangles.end(), {{q.x, q.y, q.z}, {q.x, q.z, q.w}});
+    return mesh;
+}
+
+TriangleMesh meshOf(const PlacedProp& prop) {
+    TriangleMesh mesh = prop.prop->shape->mesh;
+    for (glm::vec3& vertex : mesh.vertices) vertex = prop.point(vertex);
+    return mesh;
+}
+
+void addShadow(const ScreenFrame& frame, const TriangleMesh& mesh, BitMask& mask) {
+    FaceShadow shadow(frame, mesh.vertices);
+    for (const glm::uvec3& triangle : mesh.triangles) shadow.add(triangle, mask);
 }
 
 void cutToLit(const Stage& stage, const ScreenFrame& frame, BitMask& mask) {

@@ -56,9 +56,11 @@ void findIntrusions(const Body& body, const PosedBody& posed, std::span<const Pl
 double squaredDepths(std::span<const Intrusion> intrusions);
 double deepest(std::span<const Intrusion> intrusions);
 
-// Adds the shadow of a prop or of a platform to a mask of the frame's size: of each of its faces that is nearer to the screen than the light.
-void addShadow(const ScreenFrame& frame, const PlacedProp& prop, BitMask& mask);
-void addShadow(const ScreenFrame& frame, const Stage::Platform& platform, BitMask& mask);
+// What they look like.
+TriangleMesh meshOf(const Stage::Platform& platform);
+TriangleMesh meshOf(const PlacedProp& prop);
+// Adds the shadow of such a mesh to a mask of the frame's size: of each of its faces that is nearer to the screen than the light.
+void addShadow(const ScreenFrame& frame, const TriangleMesh& mesh, BitMask& mask);
 // Blackens what a projector does not light: there is no shadow in the dark.
 void cutToLit(const Stage& stage, const ScreenFrame& frame, BitMask& mask);
 

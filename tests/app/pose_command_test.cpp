@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/image.h"
 #include "core/mesh.h"
+#include "pictures.h"
 #include "program.h"
 #include "scratch_folder.h"
 
@@ -30,17 +31,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 using Arguments = std::vector<std::string>;
-
-template <class IsWhite>
-GreyImage pictureOf(int width, int height, IsWhite isWhite) {
-    GreyImage picture(width, height);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) picture.at(x, y) = isWhite(x, y) ? 1.0f : 0.0f;
-    return picture;
-}
-bool isIn(int x, int y, int left, int top, int width, int height) {
-    return x >= left && x < left + width && y >= top && y < top + height;
-}
 
 // A folder with a silhouette, a hill that stands left of the picture's middle and above its lower edge, and what the program leaves in out/.
 class PoseCommand : public testing::Test {
@@ -267,16 +257,95 @@ TEST_F(PoseCommand, draws_pictures_and_solutions_to_choose_from) {
 
 TEST_F(PoseCommand, chooses_actors_for_a_height_and_a_height_for_actors) {
     const auto found = [&](const Arguments& more) {
-        Arguments arguments = {"--trials", "1"};
+        Arguments arguments = {"--trials", "1", "--report", "out/r.json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         EXPECT_EQ(find(arguments).status, 0);
-        return theatre::readCast(folder_ / "out/c.cast.yaml").value();
+        const nlohmann::json report = json("out/r.json");
+        std::size_t fewest = 100;
+        for (const nlohmann::json& round : report["rounds"]) fewest = std::min(fewest, round["actors"].get<std::size_t>());
+        return std::pair(fewest, report["height"].get<double>());
     };
     // The hill has 1.26 squares of its height: 3.6 square metres at 1.7 m.
-    EXPECT_EQ(found({}).actors.size(), 6u);
-    EXPECT_EQ(found({}).height, 1.7);
-    EXPECT_EQ(found({"--actors", "auto", "--height", "1"}).actors.size(), 2u);
-    EXPECT_NEAR(found({"--actors", "2"}).height, 0.98, 0.021);
+    EXPECT_EQ(found({}), std::pair(std::size_t{6}, 1.7));
+    EXPECT_EQ(found({"--actors", "auto", "--height", "1"}).first, 2u);
+    EXPECT_NEAR(found({"--actors", "2"}).second, 0.98, 0.021);
+}
+
+// Won & Lee 2016, section 4: the last resort is one more actor. Nobody has so many arms as a comb has teeth.
+TEST_F(PoseCommand, adds_actors_where_so_many_are_not_enough) {
+    EXPECT_TRUE(writePng(folder_ / "hill.png", pictureOf(240, 140, [](int x, int y) {
+                             return isIn(x, y, 20, 20, 200, 100) && (y > 100 || x % 20 < 10);
+                         })));
+    const Arguments wanted = {"--trials", "2", "--height", "1", "--report", "out/r.json"};
+    const Outcome done = find(wanted);
+    ASSERT_EQ(done.status, 0) << done.errors;
+    EXPECT_THAT(done.errors, AllOf(HasSubstr("2 actors are not enough"), HasSubstr("3 actors are not enough")));
+    const nlohmann::json rounds = json("out/r.json")["rounds"];
+    ASSERT_EQ(rounds.size(), 3u);
+    std::vector<int> actors;
+    double best = 0;
+    const bool anyValid =
+        std::any_of(rounds.begin(), rounds.end(), [](const auto& round) { return round["valid"].template get<bool>(); });
+    for (const nlohmann::json& round : rounds) {
+        actors.push_back(round["actors"].get<int>());
+        EXPECT_EQ(round["trials"], 2);
+        if (round["valid"].get<bool>() == anyValid) best = std::max(best, round["iou"].get<double>());
+    }
+    EXPECT_EQ(json("out/r.json")["iou"].get<double>(), best);
+    EXPECT_EQ(theatre::readCast(folder_ / "out/c.cast.yaml")->actors.size(), static_cast<std::size_t>(actors.back()));
+    std::sort(actors.begin(), actors.end());
+    EXPECT_THAT(actors, ElementsAre(2, 3, 4));
+
+    Arguments told = wanted;
+    told.insert(told.end(), {"--actors", "2"});
+    EXPECT_THAT(find(told).errors, testing::Not(HasSubstr("not enough")));
+    EXPECT_EQ(json("out/r.json")["rounds"].size(), 1u);
+}
+
+TEST_F(PoseCommand, the_papers_method_is_another) {
+    const auto cast = [&](const Arguments& more) {
+        Arguments arguments = {"--trials", "1", "--actors", "2", "--report", "out/r.json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        EXPECT_EQ(find(arguments).status, 0);
+        return text("out/c.cast.yaml");
+    };
+    const std::string refined = cast({});
+    EXPECT_EQ(json("out/r.json")["method"], "refined");
+    const std::string paper = cast({"--method", "paper"});
+    EXPECT_EQ(json("out/r.json")["method"], "paper");
+    EXPECT_NE(paper, refined);
+    EXPECT_EQ(cast({"--method", "paper"}), paper);
+    EXPECT_NE(cast({"--method", "paper", "--full-covariance"}), paper);
+}
+
+// The easy wrong version leaves a cast whose people lean on nothing, or one that opens on this machine alone.
+TEST_F(PoseCommand, a_stage_goes_with_the_cast_and_its_meshes) {
+    ASSERT_TRUE(
+        writeFile(folder_ / "halls/box.obj", "v 0 0 0\nv 0.3 0 0\nv 0 0.3 0\nv 0 0 0.3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"));
+    ASSERT_TRUE(writeFile(folder_ / "halls/hall.stage.yaml",
+                          "fantascope: stage\nversion: 1\nlight: [0, 0.1, 7]\n"
+                          "platforms:\n  - {name: step, centre: [1.5, 0.1, 2], size: [0.5, 0.2, 0.5]}\n"
+                          "props:\n  - {name: box, mesh: box.obj, at: [-0.5, 0, 2]}\n"));
+    const Outcome done = find({"--trials", "1", "--actors", "1", "--stage", "halls/hall.stage.yaml", "--meshes", "out/m",
+                               "--image", "out/i.png", "--view", "out/v.png"});
+    ASSERT_EQ(done.status, 0) << done.errors;
+    EXPECT_THAT(written("out/m"), ElementsAre("actor-1.obj", "prop-box.obj", "prop-step.obj", "stage.json"));
+    const auto box = readMesh(folder_ / "out/m/prop-box.obj"), step = readMesh(folder_ / "out/m/prop-step.obj");
+    ASSERT_TRUE(box && step);
+    float left = 9, top = 0;
+    for (const glm::vec3& vertex : box->vertices) left = std::min(left, vertex.x);
+    for (const glm::vec3& vertex : step->vertices) top = std::max(top, vertex.y);
+    EXPECT_FLOAT_EQ(left, -0.5f);
+    EXPECT_FLOAT_EQ(top, 0.2f);
+
+    fs::remove_all(folder_ / "halls");
+    fs::rename(folder_ / "out", folder_ / "moved");
+    const auto cast = theatre::readCast(folder_ / "moved/c.cast.yaml");
+    ASSERT_TRUE(cast) << cast.error().message();
+    ASSERT_EQ(cast->stage.props.size(), 1u);
+    EXPECT_EQ(cast->stage.platforms.size(), 1u);
+    const Outcome drawn = run({"plot", "moved/c.cast.yaml", "-o", "moved/all.png"});
+    EXPECT_EQ(drawn.status, 0) << drawn.errors;
 }
 
 // The world refuses: one message, status 1, and nothing is written.

@@ -61,7 +61,7 @@ inline Prop aBox(const glm::dvec3& size, const glm::dvec3& place) {
                                    (i & 4U) != 0 ? size.z / 2 : -size.z / 2);
     for (const glm::uvec4 q : {glm::uvec4(0, 2, 3, 1), {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
         mesh.triangles.insert(mesh.triangles.end(), {{q.x, q.y, q.z}, {q.x, q.z, q.w}});
-    return {"box", std::make_shared<const Prop::Shape>(std::move(mesh)), std::nullopt, place, {1, 0, 0, 0}};
+    return {"box", {}, std::make_shared<const Prop::Shape>(std::move(mesh)), std::nullopt, place, {1, 0, 0, 0}};
 }
 
 // The shadow of poses becomes the target.

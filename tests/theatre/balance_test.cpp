@@ -59,6 +59,30 @@ TEST(SupportMargin, OfTwoContactsIsOfTheBandAround) {
 
 PlacedSphere ball(dvec3 place, double radius) { return {place, radius}; }
 
+// On a narrow band the mass centre is as near to one side as to the other: to move from the nearest alone helps nothing.
+TEST(FindSupportTangents, AreOfAllSidesThatAreNearlyAsNear) {
+    Contacts band;
+    band.discs = {{{-0.1, 0}, 0.01}, {{0.1, 0}, 0.01}};
+    std::vector<SupportTangent> tangents;
+    findSupportTangents(band, {0.02, 1, 0}, 0.005, tangents);
+    ASSERT_EQ(tangents.size(), 2u);
+    for (const SupportTangent& tangent : tangents) {
+        EXPECT_NEAR(tangent.margin, 0.01, 1e-12);
+        EXPECT_NEAR(std::abs(tangent.outward.y), 1, 1e-12);
+    }
+    EXPECT_NEAR(tangents[0].outward.y + tangents[1].outward.y, 0, 1e-12);
+    findSupportTangents(band, {0, 1, 0.003}, 0.005, tangents);
+    ASSERT_EQ(tangents.size(), 1u) << "the other is 6 mm farther";
+    EXPECT_NEAR(tangents[0].outward.y, 1, 1e-12);
+    EXPECT_EQ(tangents[0].margin, supportMargin(band, {0, 1, 0.003}));
+    // In the middle of one disc every direction is alike.
+    Contacts disc;
+    disc.discs = {{{0.5, 0.5}, 0.02}};
+    findSupportTangents(disc, {0.5, 1, 0.5}, 0.005, tangents);
+    EXPECT_GE(tangents.size(), 1u);
+    EXPECT_NEAR(tangents[0].margin, 0.02, 1e-12);
+}
+
 TEST(FindContacts, CutsBallsAtTheTouchingHeight) {
     Contacts contacts;
     // Resting, sunk by 1 cm, lifted by 5 mm, and far above.

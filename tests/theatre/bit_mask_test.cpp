@@ -150,5 +150,25 @@ TEST(BitMask, KeepsARectangle) {
     }
 }
 
+TEST(BitMask, IsComparedPixelByPixel) {
+    Rng rng(8);
+    for (int trial = 0; trial < 20; ++trial) {
+        const BitMask a = randomMask(rng, 70 + trial, 9, 0.3), b = randomMask(rng, 70 + trial, 9, 0.3);
+        const BitMask different = difference(a, b);
+        BitMask both(a.width(), a.height()), either = a;
+        either.add(b);
+        for (int y = 0; y < a.height(); ++y)
+            for (int x = 0; x < a.width(); ++x) {
+                EXPECT_EQ(different.at(x, y), a.at(x, y) != b.at(x, y));
+                if (a.at(x, y) && b.at(x, y)) both.fill(y, x, x + 1);
+            }
+        EXPECT_EQ(different.count(), differing(a, b));
+        EXPECT_EQ(meet(a, b), both.count() > 0);
+        EXPECT_FALSE(meet(different, both));
+        EXPECT_TRUE(isWithin(a, either) && isWithin(both, a) && isWithin(both, b) && isWithin(BitMask(a.width(), 9), both));
+        EXPECT_EQ(isWithin(a, b), both == a);
+    }
+}
+
 }  // namespace
 }  // namespace fantascope::theatre

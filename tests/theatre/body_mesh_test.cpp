@@ -3,6 +3,7 @@
 #include "theatre/capsule_shadow.h"
 #include "theatre/mesh_shadow.h"
 
+#include "a_person.h"
 #include "random_turns.h"
 
 #include <gmock/gmock.h>
@@ -53,15 +54,6 @@ double outsideOf(const PosedBody& posed, const dvec3& point) {
     for (const PlacedCapsule& capsule : posed.capsules())
         outside = std::min(outside, -penetration(capsule, {point, point, 0, 0, 0}));
     return outside;
-}
-
-const Body& theBody() {
-    static const Body body = humanBody(1.75);
-    return body;
-}
-const BodyMesh& theMesh() {
-    static const BodyMesh mesh = humanMesh(theBody());
-    return mesh;
 }
 
 TEST(HumanMesh, IsClosedAndInOnePieceWithoutHoles) {
@@ -252,6 +244,43 @@ TEST(HumanBody, CapsulesStandForTheSkin) {
         for (const vec3& v : skin) EXPECT_LT(outsideOf(posed, v), 0.025);
     }
     EXPECT_GT(sum / kPoses, 0.965);
+}
+
+// Whoever searches with the simpler skin finds poses for the whole one.
+TEST(HumanMesh, TheSimplerOneThrowsTheSameShadow) {
+    ASSERT_TRUE(theMesh().simpler);
+    const BodyMesh& simpler = *theMesh().simpler;
+    EXPECT_LE(simpler.atRest.triangles.size(), 1500u);
+    EXPECT_EQ(2 * simpler.edges.size(), 3 * simpler.atRest.triangles.size()) << "closed";
+    EXPECT_FALSE(simpler.simpler);
+    const Stage stage;
+    const ScreenFrame frame(stage, -1.7, 2.6, 0.01, 340, 270);
+    Rng rng(4);
+    MeshShadow shadow;
+    double mean = 0, worst = 1;
+    constexpr int kPoses = 40;
+    for (int i = 0; i < kPoses; ++i) {
+        std::vector<double> pose = theBody().restPose({0, 1, 2}, randomTurn(rng));
+        for (std::size_t k = Body::kRootFreedoms; k < pose.size(); ++k) pose[k] = rng.uniform(-1, 1);
+        theBody().limit(pose);
+        PosedBody posed;
+        posed.pose(theBody(), pose);
+        std::vector<glm::vec3> skin;
+        BitMask whole(frame.width(), frame.height()), simple = whole;
+        theMesh().skin(theBody(), posed, skin);
+        shadow.add(frame, theMesh(), skin, whole);
+        simpler.skin(theBody(), posed, skin);
+        shadow.add(frame, simpler, skin, simple);
+        const double different = static_cast<double>(differing(whole, simple));
+        const double both = 0.5 * (static_cast<double>(whole.count() + simple.count()) - different);
+        const double iou = both / (both + different);
+        mean += iou / kPoses;
+        worst = std::min(worst, iou);
+    }
+    RecordProperty("mean", std::to_string(mean));
+    RecordProperty("worst", std::to_string(worst));
+    EXPECT_GT(mean, 0.98);
+    EXPECT_GT(worst, 0.97);
 }
 
 TEST(EdgesOf, AreTheTwoSidesOfEachEdgeOfAClosedMesh) {

@@ -70,6 +70,32 @@ TEST_F(CastFile, comes_back_as_it_was) {
     }
 }
 
+// The easy wrong version keeps the light, and whoever opens the file sees people on air.
+TEST_F(CastFile, brings_its_stage) {
+    ASSERT_TRUE(
+        writeFile(folder_ / "own/hall.stage.yaml",
+                  "fantascope: stage\nversion: 1\nlight: [0.5, 0.2, 6]\nplatforms:\n  - {name: step, centre: [0, 0.2, 2], "
+                  "size: [1, 0.4, 1]}\n"));
+    Cast written = cast();
+    written.stageFile = folder_ / "own/hall.stage.yaml";
+    ASSERT_TRUE(writeCast(folder_ / "a.cast.yaml", written));
+    const auto read = readCast(folder_ / "a.cast.yaml");
+    ASSERT_TRUE(read) << read.error().message();
+    EXPECT_EQ(read->stage.light, glm::dvec3(0.5, 0.2, 6));
+    ASSERT_EQ(read->stage.platforms.size(), 1u);
+    EXPECT_EQ(read->stage.platforms[0].name, "step");
+    EXPECT_EQ(read->stageFile, written.stageFile);
+    written.stageFile = folder_ / "gone.stage.yaml";
+    const auto gone = writeCast(folder_ / "a.cast.yaml", written);
+    ASSERT_FALSE(gone);
+    EXPECT_THAT(gone.error().message(), HasSubstr("gone.stage.yaml"));
+    EXPECT_TRUE(readCast(folder_ / "a.cast.yaml")) << "the good one is still there";
+    EXPECT_THAT(refusal("light: [0.25, 0.1, 6.5]\n", ""), HasSubstr("no light"));
+    EXPECT_THAT(refusal("light: [0.25, 0.1, 6.5]\n", "light: [0, 0, 6]\nstage: own/hall.stage.yaml\n"),
+                HasSubstr("a 'light' too"));
+    EXPECT_THAT(refusal("light: [0.25, 0.1, 6.5]\n", "stage: own/hall.stage.yaml\n"), "read");
+}
+
 // What a search works with comes back from what the file keeps.
 TEST_F(CastFile, poses_and_freedoms_are_two_ways_to_say_the_same) {
     const Body body = humanBody(1.7);

@@ -30,5 +30,15 @@ TEST(SignedDistance, IsNoughtBetweenBlackAndWhite) {
     EXPECT_THAT(distance.pixels(), testing::ElementsAre(-2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f));
 }
 
+TEST(DeeperThan, ShrinksAndGrows) {
+    const BitMask block = drawn(60, 50, [](int x, int y) { return x >= 20 && x < 40 && y >= 15 && y < 35; });
+    const GreyImage distance = signedDistance(block);
+    EXPECT_EQ(deeperThan(distance, 0), block);
+    EXPECT_EQ(deeperThan(distance, 3), drawn(60, 50, [](int x, int y) { return x >= 23 && x < 37 && y >= 18 && y < 32; }));
+    const BitMask grown = deeperThan(distance, -3);
+    EXPECT_TRUE(grown.at(17, 25) && grown.at(30, 12));
+    EXPECT_FALSE(grown.at(16, 25) || grown.at(17, 12)) << "round at the corners";
+}
+
 }  // namespace
 }  // namespace fantascope::theatre

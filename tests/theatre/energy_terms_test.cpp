@@ -64,6 +64,15 @@ struct Balls {
     }
 };
 
+// Centimetres to 3; those to 1.1 count twice.
+TEST(LackOfMargin, IsSteeperWhereNobodyStandsSurely) {
+    EXPECT_EQ(lackOfMargin(0.05), 0);
+    EXPECT_NEAR(lackOfMargin(0.02), 1, 1e-12);
+    EXPECT_NEAR(lackOfMargin(0.011), 1.9, 1e-12);
+    EXPECT_NEAR(lackOfMargin(0.001), 2.9 + 1, 1e-12);
+    EXPECT_NEAR(lackOfMargin(-0.1), 13 + 11.1, 1e-12);
+}
+
 TEST(Depth, InItselfCountsThePairsToKeepApart) {
     // 1: inside both. The first and the third are 17 cm apart with radii of 10: 30 mm deep.
     const Balls deep({{0, 1, 1}, {0.08, 1, 1}, {0.17, 1, 1}});

@@ -1,5 +1,6 @@
 #include "theatre/mesh_shadow.h"
 
+#include "a_person.h"
 #include "random_turns.h"
 
 #include <gmock/gmock.h>
@@ -16,14 +17,6 @@ using glm::vec3;
 
 const Stage kStage{{0.2, 0.1, 7}};
 
-const Body& theBody() {
-    static const Body body = humanBody(1.75);
-    return body;
-}
-const BodyMesh& theMesh() {
-    static const BodyMesh mesh = humanMesh(theBody());
-    return mesh;
-}
 std::vector<vec3> randomSkin(Rng& rng, dvec3 place) {
     std::vector<double> pose = theBody().restPose(place, randomTurn(rng));
     for (std::size_t k = Body::kRootFreedoms; k < pose.size(); ++k) pose[k] = rng.uniform(-2, 2);

@@ -1,5 +1,7 @@
 #include "theatre/pose_problem.h"
 
+#include "pictures.h"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -13,16 +15,6 @@ using testing::HasSubstr;
 
 const Stage kStage{{0.5, 0.1, 7}};
 
-template <class IsWhite>
-GreyImage pictureOf(int width, int height, IsWhite isWhite) {
-    GreyImage picture(width, height);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) picture.at(x, y) = isWhite(x, y) ? 1.0f : 0.0f;
-    return picture;
-}
-bool isIn(int x, int y, int left, int top, int width, int height) {
-    return x >= left && x < left + width && y >= top && y < top + height;
-}
 std::string messageOf(const GreyImage& picture) {
     const auto target = PoseTarget::from(picture, kStage, 2, 128);
     return target ? "none" : target.error().message();

@@ -89,7 +89,7 @@ TEST(Stage, ground_is_the_highest_top_that_is_not_above) {
 TEST(Stage, holders_must_be_among_the_actors) {
     Stage stage;
     EXPECT_TRUE(stage.checkHolders(0));
-    stage.props.push_back({"hat", nullptr, Prop::Holder{1, BodyPart::Head}, {}, {1, 0, 0, 0}});
+    stage.props.push_back({"hat", {}, nullptr, Prop::Holder{1, BodyPart::Head}, {}, {1, 0, 0, 0}});
     EXPECT_TRUE(stage.checkHolders(2));
     ASSERT_FALSE(stage.checkHolders(1));
     EXPECT_EQ(stage.checkHolders(1).error().message(),
