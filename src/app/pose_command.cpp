@@ -216,6 +216,18 @@ Result<std::optional<fs::path>> placeStage(const Found& found, const fs::path& o
     return std::optional(own / source.filename());
 }
 
+// Whether placeStage() can. It is asked before the search, so that nothing found is lost.
+Result<void> checkStage(const Options& options, const theatre::Stage& stage) {
+    if (!materialFor(options.output, fs::absolute(*options.stage), "stage").copied) return {};
+    for (const theatre::Prop& prop : stage.props)
+        if (endingOf(prop.file) == ".gltf")
+            return Error(
+                fmt::format("{}: prop '{}' is a .gltf, which refers to other files that would not be found beside the cast; "
+                            "export it as .glb, or write the cast into the stage file's folder",
+                            options.stage->string(), prop.name));
+    return {};
+}
+
 // What it names first, so that the cast never names what is not there.
 Result<void> writeCastWithMaterial(const Found& found, std::span<const double> freedoms, const fs::path& file,
                                    const fs::path& output) {
@@ -478,7 +490,10 @@ Result<void> run(const Options& options) {
     TRY(checkOutputs(options));
     const GreyImage silhouette = TRY(readSilhouette(options.target));
     std::optional<theatre::Stage> stage;
-    if (options.stage) stage = TRY(theatre::readStage(*options.stage));
+    if (options.stage) {
+        stage = TRY(theatre::readStage(*options.stage));
+        TRY(checkStage(options, *stage));
+    }
     // Wherever the light is.
     const double area = TRY(PoseTarget::from(silhouette, {}, 1, kRows).in(options.target.string())).area / (kRows * kRows);
     const Troupe troupe = TRY(Troupe::of(area, options.actors, options.height, options.statures));

@@ -179,8 +179,6 @@ glm::dvec2 drawKey(Page& page, glm::dvec2 topLeft, Cover cover, std::string_view
     return topLeft + glm::dvec2(0, kHeight + 10);
 }
 
-std::string titleOf(std::size_t actor, const ActorShadow& shadow) { return fmt::format("actor {}, {}", actor + 1, shadow.name); }
-
 }  // namespace
 
 Page stageFigure(const StageView& view, const Camera& camera) {
@@ -208,8 +206,7 @@ Page shadowFigure(std::span<const ActorShadow> actors, const theatre::BitMask& t
     {
         const Page ruler(1, 1);
         for (const std::string& text : {several, missed, out, edge}) column = std::max(column, 38 + ruler.textWidth(text, kText));
-        for (std::size_t i = 0; i < actors.size(); ++i)
-            column = std::max(column, 38 + ruler.textWidth(titleOf(i, actors[i]), kText));
+        for (std::size_t i = 0; i < actors.size(); ++i) column = std::max(column, 38 + ruler.textWidth(actors[i].name, kText));
         for (const std::string& line : lines) column = std::max(column, ruler.textWidth(line, kText));
     }
     const double rows = static_cast<double>(actors.size() + 4) * 26 + 20 + static_cast<double>(lines.size()) * kLine;
@@ -221,7 +218,7 @@ Page shadowFigure(std::span<const ActorShadow> actors, const theatre::BitMask& t
     glm::dvec2 at = origin + glm::dvec2(size.x + kMargin, 0);
     Cover all = 0;
     for (std::size_t i = 0; i < actors.size(); ++i) {
-        at = drawKey(page, at, Cover{1} << i | kTarget, titleOf(i, actors[i]));
+        at = drawKey(page, at, Cover{1} << i | kTarget, actors[i].name);
         if (i < 2) all |= Cover{1} << i;
     }
     if (actors.size() > 1) at = drawKey(page, at, all | kTarget, several);
@@ -247,7 +244,7 @@ Page actorsFigure(std::span<const ActorShadow> actors, const theatre::BitMask& t
     {
         const Page ruler(1, 1);
         for (std::size_t i = 0; i < actors.size(); ++i) {
-            width = std::max(width, 34 + ruler.textWidth(titleOf(i, actors[i]), kText));
+            width = std::max(width, 34 + ruler.textWidth(actors[i].name, kText));
             for (const std::string& note : actors[i].notes) width = std::max(width, ruler.textWidth(note, kText));
             lines = std::max(lines, actors[i].notes.size());
         }
@@ -261,7 +258,7 @@ Page actorsFigure(std::span<const ActorShadow> actors, const theatre::BitMask& t
     for (std::size_t i = 0; i < actors.size(); ++i) {
         const glm::dvec2 origin = glm::dvec2(kMargin) + glm::dvec2(i % columns, i / columns) * cell;
         drawBadge(page, i, origin + 12.0);
-        page.text(titleOf(i, actors[i]), origin + glm::dvec2(34, 12), kText, Anchor::Left);
+        page.text(actors[i].name, origin + glm::dvec2(34, 12), kText, Anchor::Left);
         const glm::dvec2 topLeft = origin + glm::dvec2(0, 34);
         drawShadow(page, covers, cropped.target, topLeft, size,
                    [&](Cover cover, const glm::dvec2& at) { return inkOfOne(cover, i, at); });

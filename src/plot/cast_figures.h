@@ -16,7 +16,7 @@ namespace fantascope::plot {
 // What one actor throws on the screen; his colour is actorColour() of his place in the list.
 struct ActorShadow {
     theatre::BitMask mask;
-    std::string name;                // "1.75 m"
+    std::string name;                // "actor 1, 1.75 m"
     std::vector<std::string> notes;  // lines below him in actorsFigure()
 };
 

@@ -43,7 +43,8 @@ CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const dou
     std::string fallen;
     for (std::size_t i = 0; i < problem.actors.size(); ++i) {
         const PoseSearch::Actor& actor = quality.actors[i];
-        picture.actors.push_back({scene.shadow(i), fmt::format("{:.2f} m", problem.actors[i].stature), notesOf(actor)});
+        picture.actors.push_back(
+            {scene.shadow(i), fmt::format("actor {}, {:.2f} m", i + 1, problem.actors[i].stature), notesOf(actor)});
         if (scene.shadow(i).count() == 0) picture.actors[i].notes.push_back("no shadow in the picture");
         const std::span<const glm::vec3> skin = scene.skin(i);
         picture.view.actors.push_back({{{skin.begin(), skin.end()}, problem.skins[i]->atRest.triangles}, actorColour(i)});

@@ -122,9 +122,10 @@ PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<co
             findContacts(energy.skinAboveGround(i), problem.skins[i]->edges, contacts);
         else
             findContacts(energy.aboveGround(i), contacts);
-        Actor actor{supportMargin(contacts, posed.massCentre()), contacts.touches, contacts.lowest,
-                    std::max({deepestInItself(body, posed), deepestInStage(posed), deepest(energy.intrusions(i))}),
-                    isWithinLimits(body, freedoms.first(body.freedoms))};
+        Actor actor{
+            supportMargin(contacts, posed.massCentre()), contacts.touches, contacts.lowest,
+            std::max({deepestInItself(body, posed), deepestInStage(posed), deepest(energy.intrusions(i)), -contacts.lowest}),
+            isWithinLimits(body, freedoms.first(body.freedoms))};
         for (std::size_t j = 0; j < problem.actors.size(); ++j)
             if (j != i) {
                 findIntrusions(body, posed, energy.held(j), intrusions);

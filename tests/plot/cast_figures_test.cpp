@@ -204,7 +204,7 @@ TEST(CastPicture, shows_who_throws_what_and_says_who_cannot_stand) {
     const glm::dvec2 chest = problem.target.frame.shadow({-0.5, 1.2, 1.5});
     EXPECT_TRUE(picture.actors[0].mask.at(static_cast<int>(chest.x), static_cast<int>(chest.y)));
     EXPECT_FALSE(picture.actors[1].mask.at(static_cast<int>(chest.x), static_cast<int>(chest.y)));
-    EXPECT_EQ(picture.actors[1].name, "1.50 m");
+    EXPECT_EQ(picture.actors[1].name, "actor 2, 1.50 m");
     EXPECT_THAT(picture.actors[1].notes, Contains("does not touch the floor"));
     EXPECT_THAT(picture.lines, Contains(HasSubstr("cannot stand so:")));
     EXPECT_THAT(picture.lines, Contains(HasSubstr(" 2")));
