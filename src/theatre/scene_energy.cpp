@@ -33,12 +33,6 @@ void SceneEnergy::pose(std::span<const double> freedoms) {
 void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     const Body& body = problem_.actors[index];
     Actor& actor = actors_[index];
-    if (std::equal(freedoms.begin(), freedoms.end(), actor.freedoms.begin(), actor.freedoms.end()) &&
-        actor.bearing == problem_.weights.bearing)
-        return;
-    actor.freedoms.assign(freedoms.begin(), freedoms.end());
-    actor.bearing = problem_.weights.bearing;
-    hasTerms_ = false;
     actor.body.pose(body, freedoms);
     actor.shadow.clear();
     const Stage& stage = problem_.stage;
@@ -81,8 +75,6 @@ void SceneEnergy::poseProps(std::size_t index) {
 }
 
 const EnergyTerms& SceneEnergy::terms() {
-    if (hasTerms_) return terms_;
-    hasTerms_ = true;
     terms_ = {};
     shadow_.clear();
     if (standingShadow_.width() > 0) shadow_.add(standingShadow_);

@@ -20,7 +20,7 @@ public:
     // `problem` must live on.
     explicit SceneEnergy(const PoseProblem& problem);
 
-    // Poses one actor, or all: freedoms of all actors, one after the other. Who is posed so already costs nothing.
+    // Poses one actor, or all: freedoms of all actors, one after the other.
     void pose(std::size_t actor, std::span<const double> freedoms);
     void pose(std::span<const double> freedoms);
     // Of the poses last given.
@@ -68,8 +68,6 @@ public:
 
 private:
     struct Actor {
-        std::vector<double> freedoms;  // that he is posed by, none before; and the weight that what bears him was found with
-        double bearing = 0;
         PosedBody body;
         std::vector<glm::vec3> skin;
         BitMask shadow;
@@ -100,7 +98,6 @@ private:
     std::vector<ContourPoint> nearest_;
     std::vector<int> owners_;
     EnergyTerms terms_;
-    bool hasTerms_ = false;  // of the poses last given
 };
 
 }  // namespace fantascope::theatre

@@ -110,7 +110,7 @@ double SilhouetteFit::run(SceneEnergy& energy, std::span<double> freedoms, int s
     double best = energy.energy();
     ++evaluations_;
     double damping = kFirstDamping;
-    bool isLinear = false;
+    bool isLinear = false, isPosed = true;  // `energy` is posed by `freedoms`
     for (int i = 0; i < steps && damping < kMostDamping; ++i) {
         if (!isLinear) linearise(energy, freedoms), isLinear = true;
         trial_.assign(freedoms.begin(), freedoms.end());
@@ -127,18 +127,20 @@ double SilhouetteFit::run(SceneEnergy& energy, std::span<double> freedoms, int s
             std::copy(trial_.begin(), trial_.end(), freedoms.begin());
             damping = std::max(1e-4, damping / 3);
             isLinear = false;
+            isPosed = true;
         } else {
             damping *= 4;
+            isPosed = false;
         }
     }
-    energy.pose(freedoms);
-    energy.terms();
+    if (!isPosed) {
+        energy.pose(freedoms);
+        energy.terms();
+    }
     return best;
 }
 
 void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> freedoms) {
-    energy.pose(freedoms);
-    energy.terms();
     for (std::size_t a = 0; a < equations_.size(); ++a)
         equations_[a].begin(energy.posed(a), freedoms.subspan(first_[a], problem_.actors[a].freedoms));
     addContour(energy);

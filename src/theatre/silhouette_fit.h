@@ -27,6 +27,7 @@ public:
     std::int64_t evaluations() const { return evaluations_; }  // of the energy, so far
 
 private:
+    // Of `energy` posed by `freedoms`, its terms asked for.
     void linearise(SceneEnergy& energy, std::span<const double> freedoms);
     void addContour(SceneEnergy& energy);
     void addHints(const SceneEnergy& energy);

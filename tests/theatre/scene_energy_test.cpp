@@ -51,23 +51,6 @@ TEST(SceneEnergy, OfTheTargetsOwnPosesIsNothingInContourAndCoverage) {
     EXPECT_EQ(terms.margin, 0);
 }
 
-// The easy wrong version looks at the poses alone to know whether anything changed.
-TEST(SceneEnergy, TheSamePosesAreFoundAnewWhenWhatBearsHasChanged) {
-    PoseProblem problem = aScene({1.7});
-    Rng rng(2);
-    const std::vector<double> poses = nudged(problem, aRow(problem, {0}, 2), rng, 0.2);
-    makeTarget(problem, poses);
-    SceneEnergy kept(problem);
-    kept.pose(poses);
-    const double before = kept.terms().margin;
-    problem.weights.stiffen(0.01);
-    kept.pose(poses);
-    SceneEnergy fresh(problem);
-    fresh.pose(poses);
-    expectSame(kept.terms(), fresh.terms());
-    EXPECT_NE(kept.terms().margin, before);
-}
-
 TEST(SceneEnergy, OneWhoMovesAloneGivesWhatPosingAllGives) {
     PoseProblem problem = aScene({1.7, 1.4, 1.8});
     const std::vector<double> start = aRow(problem, {-0.8, 0.1, 0.9}, 2);
