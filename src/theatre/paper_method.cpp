@@ -2,11 +2,14 @@
 
 #include "theatre/artefacts.h"
 #include "theatre/freedom_search.h"
+#include "theatre/scene_energy.h"
 #include "theatre/streams.h"
 
 #include "core/random.h"
 
+#include <algorithm>
 #include <numeric>
+#include <vector>
 
 namespace fantascope::theatre {
 namespace {
@@ -72,7 +75,7 @@ private:
             std::vector<double> next = trial_.freedoms;
             const double found = search(problem, energy, next, which, kRefinedSigma,
                                         std::min<std::int64_t>(left, kRefinedGenerations * options_.population));
-            const bool isBetter = found < best;
+            const bool isBetter = trial_.reason == PoseSearch::StopReason::Evaluations && found < best;
             if (isBetter) best = found, trial_.freedoms = std::move(next);
             trial_.history.push_back(best);
             energy.pose(trial_.freedoms);

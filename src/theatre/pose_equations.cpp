@@ -42,7 +42,7 @@ void PoseEquations::begin(const PosedBody& posed, std::span<const double> freedo
     gradient_.setZero();
 }
 
-PoseEquations::Spatial PoseEquations::spatial(const glm::dvec3& point, const glm::dvec3& direction) const {
+PoseEquations::Spatial PoseEquations::spatial(const glm::dvec3& point, const glm::dvec3& direction) {
     const glm::dvec3 moment = glm::cross(point, direction);
     return (Spatial() << direction.x, direction.y, direction.z, moment.x, moment.y, moment.z).finished();
 }

@@ -39,7 +39,7 @@ private:
     using Spatial = Eigen::Matrix<double, 6, 1>;
     using Spatials = Eigen::Matrix<double, 6, 6>;
 
-    Spatial spatial(const glm::dvec3& point, const glm::dvec3& direction) const;
+    static Spatial spatial(const glm::dvec3& point, const glm::dvec3& direction);
 
     const Body& body_;
     std::vector<std::size_t> jointOf_;  // of each freedom

@@ -37,9 +37,14 @@ public:
         : rows_(bands(frame.height()), 0), columns_(bands(frame.width()), 0) {
         FANTASCOPE_CHECK(posed.capsules().size() <= 64, "a set of capsules is a word");
         for (const PlacedCapsule& capsule : posed.capsules()) {
+            const double fromDepth = frame.fromLight(capsule.from).z, toDepth = frame.fromLight(capsule.to).z;
+            if (fromDepth <= capsule.fromRadius || toDepth <= capsule.toRadius) {  // at the light: without a shadow
+                outlines_.push_back({});
+                continue;
+            }
             const glm::dvec2 from = frame.shadow(capsule.from), to = frame.shadow(capsule.to), along = to - from;
-            const double fromRadius = frame.focus() * capsule.fromRadius / frame.fromLight(capsule.from).z;
-            const double toRadius = frame.focus() * capsule.toRadius / frame.fromLight(capsule.to).z;
+            const double fromRadius = frame.focus() * capsule.fromRadius / fromDepth;
+            const double toRadius = frame.focus() * capsule.toRadius / toDepth;
             const std::uint64_t bit = std::uint64_t{1} << outlines_.size();
             const glm::dvec2 reach(std::max(fromRadius, toRadius) + kNear);
             note(columns_, glm::min(from, to).x - reach.x, glm::max(from, to).x + reach.x, bit);
@@ -73,8 +78,8 @@ public:
 
 private:
     struct Outline {
-        glm::dvec2 from, along;
-        double radius, growth, perSquare;
+        glm::dvec2 from{0}, along{0};
+        double radius = 0, growth = 0, perSquare = 0;
     };
     // Which capsules come near to each band of rows, and of columns.
     static constexpr int kBand = 8;  // pixels

@@ -4,7 +4,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace fantascope::theatre {
 namespace {
@@ -57,6 +59,26 @@ TEST(SilhouetteFit, ItsDirectionIsDownhill) {
         lower += SilhouetteFit(scene.problem).run(energy, poses, 3) < before;
     }
     EXPECT_GE(lower, 9);
+}
+
+// A limb that reaches beyond the light has no outline, and a negative radius if it is divided by its depth all the same.
+TEST(SilhouetteFit, BearsWhoReachesBeyondTheLight) {
+    PoseProblem problem = aScene({1.7, 1.7});
+    std::vector<double> poses = aRow(problem, {-1, 1}, 2);
+    makeTarget(problem, poses);
+    const Body& body = problem.actors[0];
+    for (const double turn : {0.5, -0.5}) {  // an arm to the light, the other to the screen
+        const std::vector<double> reaching =
+            body.restPose({0, body.joints[0].offset.y, 6.6}, rotationOf({0, turn * std::numbers::pi, 0}));
+        std::copy(reaching.begin(), reaching.end(), poses.begin());
+        SceneEnergy energy(problem);
+        energy.pose(poses);
+        const double before = energy.energy();
+        const auto depthOf = [&](const char* joint) { return energy.posed(0).place(body.joint(joint)).z; };
+        ASSERT_GT(std::max(depthOf("left wrist"), depthOf("right wrist")), problem.stage.light.z);
+        EXPECT_LE(SilhouetteFit(problem).run(energy, poses, 10), before);
+        for (const double freedom : poses) EXPECT_TRUE(std::isfinite(freedom));
+    }
 }
 
 TEST(SilhouetteFit, NeverRaisesTheEnergyAndStaysWithinTheLimits) {
