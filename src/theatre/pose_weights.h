@@ -36,7 +36,7 @@ struct EnergyTerms {
     double visible = 0;           // (5) sum of squared metres; graded where the paper has infinity
     double floor = 0;             // (6) sum of heights above the floor, millimetres
     double supportArea = 0;       // (6) sum of what the areas lack of kAmpleArea, square centimetres: a larger one is better
-    double margin = 0;            // (6) sum of what the margins lack of kAmpleMargin, centimetres
+    double margin = 0;            // (6) sum of lackOfMargin(), centimetres
     double people = 0;            // (6) sum of squared depths in themselves and in others, square millimetres
     double surroundings =
         0;            // (6) the same in floor, screen, platforms and props, and of how far people stand outside where they may
