@@ -428,19 +428,23 @@ std::int64_t evaluationsWithin(double seconds, PoseSearch::Options options, cons
     return static_cast<std::int64_t>(std::clamp(fit, 1000.0, static_cast<double>(enough)));
 }
 
-// Searches with these actors until `seconds` after the start, if there is such an end.
-Result<Round> searchWith(const Options& options, PoseProblem problem, std::optional<double> seconds, Time start, Clock& clock) {
+// Searches with these actors until `seconds` after the start, if there is such an end; with `isLast` false only half of what is left of them, unless
+// something satisfies.
+Result<Round> searchWith(const Options& options, PoseProblem problem, std::optional<double> seconds, bool isLast, Time start,
+                         Clock& clock) {
     problem.dress();
-    PoseTrials::Options trials{options.search, options.seed, options.trials, seconds, options.threads};
+    PoseTrials::Options trials{options.search, options.seed, options.trials, seconds, {}, options.threads};
     const bool areFew = problem.actors.size() <= std::size_t{kFewActors};
     trials.search.evaluations = options.evaluations.value_or(areFew ? kEvaluationsOfFew : kEvaluationsOfMany);
     TRY(trials.search.check());
     if (seconds) {
         // All that came before counts.
         const auto left = [&] { return std::max(0.0, *seconds - fantascope::seconds(clock.now() - start)); };
+        const double share = isLast ? 1 : 0.5;
         if (!options.evaluations)
-            trials.search.evaluations = evaluationsWithin(left(), trials.search, problem, options.seed, clock);
+            trials.search.evaluations = evaluationsWithin(share * left(), trials.search, problem, options.seed, clock);
         trials.seconds = left();
+        if (!isLast) trials.patience = share * left();
     }
     Round round{std::move(problem), trials.search.evaluations, {}, {}};
     round.trials = PoseTrials::run(round.problem, trials, clock, std::cerr, standardErrorIsTerminal());
@@ -448,8 +452,7 @@ Result<Round> searchWith(const Options& options, PoseProblem problem, std::optio
     return round;
 }
 
-// Won & Lee 2016, section 4: the last resort is one more actor, and all begins anew. Half of the time that is left is for each number of actors,
-// all of it for the last.
+// Won & Lee 2016, section 4: the last resort is one more actor, and all begins anew.
 Result<void> search(Found& found, const GreyImage& silhouette, double area, const Troupe& first, Time start, Clock& clock) {
     const Options& options = found.options;
     std::optional<double> seconds = options.seconds;
@@ -457,18 +460,17 @@ Result<void> search(Found& found, const GreyImage& silhouette, double area, cons
     theatre::Stage stage = found.stage.value_or(theatre::Stage{});
     const PoseTarget target = TRY(PoseTarget::from(silhouette, stage, first.height, kRows).in(options.target.string()));
     const theatre::PoseWeights weights = TRY(weightsOf(options));
+    std::vector<theatre::PoseHint> hints;
+    if (options.hints) hints = TRY(theatre::readHints(*options.hints, target));
     const int most = options.actors ? 0 : kMostMore;
     for (int more = 0; more <= most; ++more) {
         Result<Troupe> troupe = first;
         if (more > 0) troupe = Troupe::of(area, static_cast<int>(first.statures.size()) + more, first.height, options.statures);
         if (!troupe) break;  // they would have too little of it
         TRY(stage.checkHolders(troupe->statures.size()));
-        PoseProblem problem{stage, target, {}, weights};
-        if (options.hints) problem.hints = TRY(theatre::readHints(*options.hints, problem.target));
+        PoseProblem problem{stage, target, {}, weights, {}, hints};
         for (const double stature : troupe->statures) problem.actors.push_back(theatre::humanBody(stature));
-        std::optional<double> until = seconds;
-        if (until && more < most) *until -= 0.5 * (*seconds - fantascope::seconds(clock.now() - start));
-        found.rounds.push_back(TRY(searchWith(options, std::move(problem), until, start, clock)));
+        found.rounds.push_back(TRY(searchWith(options, std::move(problem), seconds, more == most, start, clock)));
         const Round& round = found.round();
         if (round.best().isSatisfactory() || round.trials.reason == PoseTrials::StopReason::Interrupted) break;
         if (more < most)

@@ -54,6 +54,7 @@ public:
         trial.history = {};
         evaluations_[trial.number] = trial.evaluations;
         if (trial.isFinished()) {
+            isSatisfied_ |= trial.isSatisfactory();
             afterFinished_ = std::max(afterFinished_, trial.number + 1);
             if (!best_ || isBetter(trial.quality, *best_)) best_ = trial.quality;
         }
@@ -82,7 +83,11 @@ public:
 
 private:
     Time worked() const { return clock_.now() - start_ - attendance_.paused(); }
-    bool isTimeUp() const { return options_.seconds && fantascope::seconds(worked()) >= *options_.seconds; }
+    bool isTimeUp() const {
+        const double now = fantascope::seconds(worked());
+        return (options_.seconds && now >= *options_.seconds) ||
+               (options_.patience && now >= *options_.patience && !isSatisfied_);
+    }
 
     // Of the whole run; none where it has no end.
     std::optional<double> share() const {
@@ -112,6 +117,7 @@ private:
     std::vector<std::int64_t> evaluations_;  // of each so far
     std::size_t afterFinished_ = 0;          // the number after the last that is finished
     std::optional<PoseSearch::Quality> best_;
+    bool isSatisfied_ = false;
     std::vector<PoseTrials::Trial> trials_;  // that are over
 };
 

@@ -18,8 +18,9 @@ struct PoseTrials {
     struct Options {
         theatre::PoseSearch::Options search;
         std::uint64_t seed = 1;
-        std::optional<int> trials;      // as many as fit into the time without
-        std::optional<double> seconds;  // without either it goes on until a person ends it
+        std::optional<int> trials;         // as many as fit into the time without
+        std::optional<double> seconds;     // without either it goes on until a person ends it
+        std::optional<double> patience{};  // seconds after which it ends if no trial is satisfactory
         int threads = 1;
     };
     struct Trial : theatre::PoseSearch::Trial {

@@ -23,12 +23,6 @@ std::vector<BitMask> partShadows(const PoseProblem& problem, const SceneEnergy& 
     return shadows;
 }
 
-std::size_t firstFreedom(const PoseProblem& problem, std::size_t actor) {
-    std::size_t first = 0;
-    for (std::size_t i = 0; i < actor; ++i) first += problem.actors[i].freedoms;
-    return first;
-}
-
 }  // namespace
 
 BitMask visibleArtefacts(const PoseTarget& target, const BitMask& shadow) {
@@ -60,7 +54,7 @@ std::vector<Freedoms> occludedChains(const PoseProblem& problem, const SceneEner
         const Body& body = problem.actors[a];
         std::vector<char> isEnd(body.joints.size(), 1);
         for (std::size_t i = 1; i < body.joints.size(); ++i) isEnd[body.joints[i].parent] = 0;
-        const std::size_t first = firstFreedom(problem, a);
+        const std::size_t first = problem.firstFreedom(a);
         for (std::size_t end = 1; end < body.joints.size(); ++end) {
             if (isEnd[end] == 0) continue;
             Freedoms chain;
@@ -91,7 +85,7 @@ Freedoms freedomsBeside(const PoseProblem& problem, const SceneEnergy& energy, c
     std::set<std::size_t> chosen;
     for (std::size_t a = 0; a < problem.actors.size(); ++a) {
         const Body& body = problem.actors[a];
-        const std::size_t first = firstFreedom(problem, a);
+        const std::size_t first = problem.firstFreedom(a);
         const auto choose = [&](std::size_t joint) {
             const std::size_t count = joint == 0 ? Body::kRootFreedoms : body.joints[joint].motion.size();
             for (std::size_t k = 0; k < count; ++k) chosen.insert(first + body.joints[joint].first + k);

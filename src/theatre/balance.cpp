@@ -36,6 +36,12 @@ std::pair<const Contact*, double> farthest(const Contacts& contacts, glm::dvec2 
     return {best, far};
 }
 
+SupportTangent tangentTowards(const Contacts& contacts, const glm::dvec3& massCentre, std::size_t direction) {
+    const glm::dvec2 outward = directions()[direction];
+    const auto [contact, far] = farthest(contacts, outward);
+    return {far - glm::dot(glm::dvec2(massCentre.x, massCentre.z), outward), outward, contact};
+}
+
 // Of the cap of a sphere that lies so deep below a plane; of one that is pressed into the ground no more than its great circle.
 double capRadius(double radius, double depth) {
     const double cap = std::min(depth, radius);
@@ -133,16 +139,6 @@ void findBearings(std::span<const glm::vec3> vertices, std::span<const MeshEdge>
     cut(vertices, edges, contacts.lowest + kTouch / 2, corners);
     corners.addTo(contacts);
 }
-
-namespace {
-
-SupportTangent tangentTowards(const Contacts& contacts, const glm::dvec3& massCentre, std::size_t direction) {
-    const glm::dvec2 outward = directions()[direction];
-    const auto [contact, far] = farthest(contacts, outward);
-    return {far - glm::dot(glm::dvec2(massCentre.x, massCentre.z), outward), outward, contact};
-}
-
-}  // namespace
 
 double supportMargin(const Contacts& contacts, const glm::dvec3& massCentre) {
     return supportTangent(contacts, massCentre).margin;

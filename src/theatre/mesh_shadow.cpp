@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::size_t kDigits = 8;  // of a word
 constexpr std::uint64_t kOnes = 0x0101010101010101u, kTops = 0x8080808080808080u;
+// What windings are counted from: rounding may turn a sliver over, and its digits are not to borrow from their neighbours.
+constexpr std::uint64_t kNone = 64;
 
 }  // namespace
 
@@ -54,14 +56,14 @@ bool MeshShadow::add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<c
     for (int y = within(*top - 1, mask.height()); y <= lastRow; ++y) {
         std::uint64_t* const turns = &turns_[stride_ * static_cast<std::size_t>(y)];
         std::uint64_t* const row = mask.row(y).data();
-        std::uint64_t winding = 0;  // around the pixel before
+        std::uint64_t winding = kNone;  // around the pixel before
         for (std::size_t i = firstWord; i <= lastWord; ++i) {
-            if ((turns[i] | winding) == 0) continue;
-            // The sums of digits so far are the digits of a product, and none of them is negative: so often the light enters the mesh.
+            if (turns[i] == 0 && winding == kNone) continue;
+            // The sums of digits so far are the digits of a product.
             const std::uint64_t windings = (std::exchange(turns[i], 0) + winding) * kOnes;
             winding = windings >> 56;
-            // The highest bit of each digit that is not 0, then those bits side by side.
-            const std::uint64_t some = (((windings & ~kTops) + ~kTops) | windings) & kTops;
+            // The highest bit of each digit that is not kNone, then those bits side by side.
+            const std::uint64_t away = windings ^ (kNone * kOnes), some = (((away & ~kTops) + ~kTops) | away) & kTops;
             if (i < static_cast<std::size_t>(mask.stride()) * kDigits)
                 row[i / kDigits] |= ((some >> 7) * 0x0102040810204080u >> 56) << (8 * (i % kDigits));
         }

@@ -57,10 +57,12 @@ struct PoseProblem {
     void dress();
     std::vector<PoseHint> hints{};
 
-    std::size_t freedoms() const {
-        std::size_t sum = 0;
-        for (const Body& actor : actors) sum += actor.freedoms;
-        return sum;
+    std::size_t freedoms() const { return firstFreedom(actors.size()); }
+    // Of an actor's, among those of all.
+    std::size_t firstFreedom(std::size_t actor) const {
+        std::size_t first = 0;
+        for (std::size_t i = 0; i < actor; ++i) first += actors[i].freedoms;
+        return first;
     }
 };
 

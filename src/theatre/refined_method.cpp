@@ -133,8 +133,7 @@ private:
         const auto& actors = shop.problem.actors;
         const std::size_t actor = rng_.below(static_cast<std::uint32_t>(actors.size()));
         const Body& body = actors[actor];
-        std::size_t first = 0;
-        for (std::size_t i = 0; i < actor; ++i) first += actors[i].freedoms;
+        const std::size_t first = shop.problem.firstFreedom(actor);
         std::vector<std::size_t> which;
         const double kind = rng_.uniform();
         if (kind < 0.4) {

@@ -75,6 +75,16 @@ TEST(PoseTrials, are_the_same_on_any_number_of_threads) {
     EXPECT_NE(one.trials[0].freedoms, one.trials[1].freedoms);
 }
 
+// The easy wrong version gives up on what satisfies, or waits to the end for what does not.
+TEST(PoseTrials, end_early_only_where_nothing_satisfies) {
+    PoseTrials::Options impatient = options(1, std::nullopt, 1e6);
+    impatient.patience = 0.01;
+    const PoseTrials ended = run(impatient);
+    EXPECT_EQ(ended.reason, PoseTrials::StopReason::Time);
+    EXPECT_LT(ended.seconds, 1e3);
+    for (const auto& trial : ended.trials) EXPECT_FALSE(trial.isSatisfactory());
+}
+
 // Example failure: a trial that the time cut short, or one that came after it, is the best, and --trials does not find it again.
 TEST(PoseTrials, that_ended_by_time_are_repeated_by_their_number) {
     // As long as five trials take, and a little: of those on three threads two at least are finished.
