@@ -84,6 +84,21 @@ void FrameLoop::begin(Time start) {
     for (Output& output : outputs_) output.shown = start;  // every refresh after it is one to be met
 }
 
+void FrameLoop::countLate(std::size_t output, std::int64_t refreshes) {
+    reports_[output].lateFrames += refreshes;
+    framesLate_ += refreshes;
+}
+
+void FrameLoop::finish(Time end) {
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        // A refresh right at the end belongs to the show, and a display tells its moments to a part of a period only.
+        constexpr double kTolerance = 0.1;
+        if (const std::optional<Time> shown = std::exchange(outputs_[i].shown, std::nullopt); shown && *shown < end)
+            countLate(
+                i, static_cast<std::int64_t>(std::floor(seconds(end - *shown) * outputs_[i].display.refreshRate() + kTolerance)));
+    }
+}
+
 Time FrameLoop::nextDue() { return refreshFrom(Time{}); }
 
 Result<void> FrameLoop::step() {
@@ -113,9 +128,8 @@ Result<void> FrameLoop::step() {
         const std::int64_t late =
             before ? std::max<std::int64_t>(0, std::llround(seconds(shown->at - *before) * rate) - 1) : std::int64_t{0};
         ++reports_[i].frames;
-        reports_[i].lateFrames += late;
         ++framesShown_;
-        framesLate_ += late;
+        countLate(i, late);
     };
     if (leads != nullptr)
         show(static_cast<std::size_t>(leads - outputs_.data()), [](DisplaySink& display) { return display.present(); });

@@ -45,6 +45,8 @@ public:
     Time nextDue();
     // One frame on every output; returns when another can be made. Error: a renderer cannot be made for a display.
     Result<void> step();
+    // The show is over: refreshes up to `end` that no frame was made for count as late. After the last frame.
+    void finish(Time end);
 
     // Counters for the progress line. Thread-safe.
     std::int64_t framesShown() const { return framesShown_; }
@@ -65,6 +67,7 @@ private:
     Result<void> makeRenderer(Output& output);
     Result<void> draw(Output& output, std::size_t index, Time showTime, OutputReport& report);
     Output* leader();
+    void countLate(std::size_t output, std::int64_t refreshes);
 
     std::vector<render::PictureSource> sources_;
     std::filesystem::path assets_;

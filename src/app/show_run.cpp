@@ -118,6 +118,7 @@ public:
         while (!stopped() && frames_.nextDue() <= end) TRY(frames_.step());
         if (!stopped()) clock_.sleepUntil(end);  // the last frame is seen
         length_ = clock_.now() - start_;
+        frames_.finish(stopped() ? clock_.now() : end);
         return {};
     }
 

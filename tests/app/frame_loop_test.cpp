@@ -120,6 +120,24 @@ TEST_F(FrameLoopPart, refreshes_that_no_frame_was_for_count_too) {
     EXPECT_EQ(loop_->outputs()[1].lateFrames, 4);
 }
 
+// Example failure: a run whose last frames took too long reports fewer refreshes than it lasted, and nobody missed any.
+TEST_F(FrameLoopPart, refreshes_before_the_end_that_no_frame_was_for_count_too) {
+    step(5);
+    run_.clock.advance(fromSeconds(3.5 / 30));
+    loop_->finish(run_.clock.now());
+    EXPECT_EQ(loop_->outputs()[0].lateFrames, 2) << "of three one was covered by the frame in hand";
+    EXPECT_EQ(loop_->outputs()[1].lateFrames, 2);
+    loop_->finish(run_.clock.now());
+    EXPECT_EQ(loop_->framesLate(), 4) << "counted once";
+}
+
+TEST_F(FrameLoopPart, a_frame_in_hand_covers_the_end) {
+    step(5);
+    run_.clock.advance(fromSeconds(1.0 / 30));
+    loop_->finish(run_.clock.now());
+    EXPECT_EQ(loop_->framesLate(), 0);
+}
+
 // Example failure: a display that takes the lead shows a second frame for the refresh that another one has its frame for.
 TEST_F(FrameLoopPart, the_lead_changes_hands_without_a_frame_too_many_or_too_few) {
     std::vector<std::int64_t> left, right;
