@@ -106,6 +106,33 @@ bool operator==(const BitMask& a, const BitMask& b) {
     return a.width_ == b.width_ && a.height_ == b.height_ && a.words_ == b.words_;
 }
 
+void Changes::find(const BitMask& a, const BitMask& b) {
+    constexpr int kBlocks = BitMask::kBits / kSide;  // of a word
+    across_ = a.stride() * kBlocks, down_ = (a.height() + kSide - 1) / kSide;
+    blocks_.assign(static_cast<std::size_t>(across_ * down_), 0);
+    isAny_ = false;
+    const int from = std::max(0, std::min(a.rowsFrom(), b.rowsFrom())), to = std::max(a.rowsTo(), b.rowsTo());
+    for (int row = from / kSide; row * kSide < to; ++row) {
+        words_.assign(static_cast<std::size_t>(a.stride()), 0);
+        for (int y = row * kSide; y < std::min(to, (row + 1) * kSide); ++y)
+            for (std::size_t i = 0; i < words_.size(); ++i) words_[i] |= a.row(y)[i] ^ b.row(y)[i];
+        for (int column = 0; column < across_; ++column) {
+            const bool differs = (words_[static_cast<std::size_t>(column / kBlocks)] >> (column % kBlocks * kSide) & 0xff) != 0;
+            blocks_[static_cast<std::size_t>(row * across_ + column)] = differs;
+            isAny_ |= differs;
+        }
+    }
+}
+
+bool Changes::mayReach(glm::ivec2 pixel, int within) const {
+    const auto block = [](int at, int blocks) { return std::clamp(at / kSide, 0, blocks - 1); };
+    const int left = block(pixel.x - within, across_), right = block(pixel.x + within, across_);
+    for (int row = block(pixel.y - within, down_); row <= block(pixel.y + within, down_); ++row)
+        for (int column = left; column <= right; ++column)
+            if (blocks_[static_cast<std::size_t>(row * across_ + column)] != 0) return true;
+    return false;
+}
+
 void ConvexFiller::fill(std::span<const glm::vec2> polygon, BitMask& mask) {
     float top = std::numeric_limits<float>::max(), bottom = -top;
     for (const glm::vec2& point : polygon) top = std::min(top, point.y), bottom = std::max(bottom, point.y);

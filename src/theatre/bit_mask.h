@@ -66,6 +66,22 @@ BitMask difference(const BitMask& a, const BitMask& b);
 bool meet(const BitMask& a, const BitMask& b);
 bool isWithin(const BitMask& inner, const BitMask& outer);
 
+// Where two masks of one size differ, to within a block of pixels.
+class Changes {
+public:
+    void find(const BitMask& a, const BitMask& b);
+    bool isAny() const { return isAny_; }
+    // Whether a pixel that differs may be so near in x and in y; true may be wrong, false is not.
+    bool mayReach(glm::ivec2 pixel, int within) const;
+
+private:
+    static constexpr int kSide = 8;  // of a block, pixels
+    int across_ = 0, down_ = 0;      // blocks
+    bool isAny_ = false;
+    std::vector<char> blocks_;
+    std::vector<std::uint64_t> words_;  // scratch, kept for its memory
+};
+
 // Fills a convex polygon; points in pixels, clockwise as seen.
 class ConvexFiller {
 public:

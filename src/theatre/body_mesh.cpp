@@ -50,7 +50,7 @@ double importance(const glm::vec3& p) {
 void feelJoints(const Body& body, const PosedBody& atRest, const dvec3& point, std::vector<double>& distances) {
     distances.assign(body.joints.size(), std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < body.capsules.size(); ++i) {
-        const CapsuleTouch touch = touching(atRest.capsule(i), {point, point, 0, 0, 0});
+        const CapsuleTouch touch = touching(atRest.capsule(i), {{point, 0}, {point, 0}});
         double& distance = distances[body.capsules[i].joint];
         distance = std::min(distance, -touch.depth);
     }

@@ -24,6 +24,7 @@ class ContourDisc {
 public:
     explicit ContourDisc(double radius);
     ContourPoint at(const BitMask& mask, glm::ivec2 pixel) const;
+    int radius() const { return radius_; }  // no pixel farther away in x or in y counts
 
 private:
     int radius_, full_ = 0;

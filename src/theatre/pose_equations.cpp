@@ -104,7 +104,11 @@ const Eigen::VectorXd& PoseEquations::step(double damping, std::span<const char>
         damped_(k, k) = 1;
         step_[k] = 0;
     }
-    damped_.selfadjointView<Eigen::Lower>().ldlt().solveInPlace(step_);
+    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factors(damped_);  // in place
+    if (factors.info() == Eigen::Success)
+        factors.solveInPlace(step_);
+    else
+        step_.setZero();  // rounding has the better of it: more damping is asked for
     return step_;
 }
 

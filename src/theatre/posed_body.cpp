@@ -57,11 +57,8 @@ void PosedBody::pose(const Body& body, std::span<const double> freedoms) {
         least_ = glm::min(least_, placed.centre - placed.radius);
         most_ = glm::max(most_, placed.centre + placed.radius);
     }
-    for (std::size_t i = 0; i < capsules_.size(); ++i) {
-        const PlacedSphere &from = spheres_[body.capsules[i].from], &to = spheres_[body.capsules[i].to];
-        const double reach = 0.5 * glm::distance(from.centre, to.centre) + std::max(from.radius, to.radius);
-        capsules_[i] = {from.centre, to.centre, from.radius, to.radius, reach};
-    }
+    for (std::size_t i = 0; i < capsules_.size(); ++i)
+        capsules_[i] = {spheres_[body.capsules[i].from], spheres_[body.capsules[i].to]};
 }
 
 void PosedBody::axes(const Body& body, std::span<const double> freedoms, std::span<glm::dvec3> axes) const {

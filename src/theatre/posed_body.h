@@ -2,7 +2,10 @@
 
 #include "theatre/body.h"
 
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+
+#include <algorithm>
 
 namespace fantascope::theatre {
 
@@ -16,14 +19,22 @@ struct PlacedSphere {
 struct PlacedCapsule {
     glm::dvec3 from{0}, to{0};
     double fromRadius = 0, toRadius = 0;
+    glm::dvec3 middle{0};
     double reach = 0;  // of a ball around its middle that holds it
 
-    glm::dvec3 middle() const { return 0.5 * (from + to); }
+    PlacedCapsule() = default;
+    PlacedCapsule(const PlacedSphere& one, const PlacedSphere& other)
+        : from(one.centre),
+          to(other.centre),
+          fromRadius(one.radius),
+          toRadius(other.radius),
+          middle(0.5 * (from + to)),
+          reach(0.5 * glm::distance(from, to) + std::max(fromRadius, toRadius)) {}
 };
 
 // Whether the balls around two capsules meet; most pairs' do not.
 inline bool areNear(const PlacedCapsule& a, const PlacedCapsule& b) {
-    const glm::dvec3 between = a.middle() - b.middle();
+    const glm::dvec3 between = a.middle - b.middle;
     const double reach = a.reach + b.reach;
     return between.x * between.x + between.y * between.y + between.z * between.z < reach * reach;
 }
@@ -56,9 +67,8 @@ public:
     double lowest() const { return least_.y; }
     // Whether a capsule's ball reaches into the box around the body.
     bool isNear(const PlacedCapsule& capsule) const {
-        const glm::dvec3 middle = capsule.middle();
         for (int i = 0; i < 3; ++i)
-            if (middle[i] + capsule.reach < least_[i] || middle[i] - capsule.reach > most_[i]) return false;
+            if (capsule.middle[i] + capsule.reach < least_[i] || capsule.middle[i] - capsule.reach > most_[i]) return false;
         return true;
     }
 

@@ -5,13 +5,14 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fantascope::theatre {
 
 SceneEnergy::SceneEnergy(const PoseProblem& problem)
     : problem_(problem), disc_(std::max(1.0, kDiscRadius / problem.target.pixelsOf256)), actors_(problem.actors.size()) {
     const BitMask& mask = problem.target.mask;
-    shadow_ = BitMask(mask.width(), mask.height());
+    shadow_ = shadowBefore_ = BitMask(mask.width(), mask.height());
     for (Actor& actor : actors_) actor.shadow = shadow_;
     placeStanding(problem.stage, standing_);
     if (!standing_.empty() || !problem.stage.platforms.empty()) standingShadow_ = shadow_;
@@ -21,6 +22,7 @@ SceneEnergy::SceneEnergy(const PoseProblem& problem)
     cutToLit(problem.stage, problem.target.frame, standingShadow_);
     nearest_.resize(problem.target.contour.size());
     owners_.resize(nearest_.size());
+    depthsInOthers_.resize(actors_.size() * actors_.size());
 }
 
 void SceneEnergy::pose(std::span<const double> freedoms) {
@@ -34,6 +36,7 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     const Body& body = problem_.actors[index];
     Actor& actor = actors_[index];
     actor.body.pose(body, freedoms);
+    actor.hasMoved = true;
     actor.shadow.clear();
     const Stage& stage = problem_.stage;
     const auto spheres = overFloor(stage, actor.body.spheres(), actor.aboveGround);
@@ -76,6 +79,8 @@ void SceneEnergy::poseProps(std::size_t index) {
 
 const EnergyTerms& SceneEnergy::terms() {
     terms_ = {};
+    findDepthsInOthers();
+    std::swap(shadow_, shadowBefore_);
     shadow_.clear();
     if (standingShadow_.width() > 0) shadow_.add(standingShadow_);
     for (std::size_t i = 0; i < actors_.size(); ++i) {
@@ -87,7 +92,7 @@ const EnergyTerms& SceneEnergy::terms() {
         terms_.margin += actor.own.margin;
         terms_.people += actor.own.people;
         terms_.surroundings += actor.own.surroundings;
-        for (std::size_t j = i + 1; j < actors_.size(); ++j) terms_.people += depthInOther(actor.body, actors_[j].body);
+        for (std::size_t j = i + 1; j < actors_.size(); ++j) terms_.people += depthsInOthers_[i * actors_.size() + j];
         if (actor.held.empty()) continue;
         shadow_.add(actor.heldShadow);
         for (std::size_t j = 0; j < actors_.size(); ++j) {
@@ -102,6 +107,14 @@ const EnergyTerms& SceneEnergy::terms() {
     for (std::size_t i = 0; i < problem_.hints.size(); ++i) terms_.hint += square256 * hintOwner(i).match.square;
     terms_.coherence = ownerChanges(owners_);
     return terms_;
+}
+
+void SceneEnergy::findDepthsInOthers() {
+    for (std::size_t i = 0; i < actors_.size(); ++i)
+        for (std::size_t j = i + 1; j < actors_.size(); ++j)
+            if (actors_[i].hasMoved || actors_[j].hasMoved)
+                depthsInOthers_[i * actors_.size() + j] = depthInOther(actors_[i].body, actors_[j].body);
+    for (Actor& actor : actors_) actor.hasMoved = false;
 }
 
 BitMask SceneEnergy::propShadow() const {
@@ -128,23 +141,38 @@ SceneEnergy::HintOwner SceneEnergy::hintOwner(std::size_t hint) const {
     return nearest;
 }
 
+// Whether a target's point has the nearest point that it had: no contour pixel as near has come or gone, which takes a change of the pixel
+// or of a neighbour, and nothing by which the nearest is measured has changed.
+bool SceneEnergy::isAsBefore(std::size_t point) const {
+    if (!hasNearest_) return false;
+    if (!changes_.isAny()) return true;
+    const glm::ivec2 wanted = problem_.target.contour[point].pixel, got = nearest_[point].pixel;
+    const int away = static_cast<int>(std::ceil(glm::distance(glm::dvec2(wanted), glm::dvec2(got))));
+    return !changes_.mayReach(wanted, away + 1) && !changes_.mayReach(got, disc_.radius());
+}
+
 // Equation 2, from the target's contour to the nearest points of the shadow's. Whose (equation 4): the actor whose shadow holds that point; of
 // several the one whose the last point was, else the first; nobody if it is a prop's.
 void SceneEnergy::compareContours() {
-    contour_.find(shadow_);
     const PoseTarget& target = problem_.target;
     const double scale = target.pixelsOf256 * target.pixelsOf256, each = target.perPoint();
+    changes_.find(shadow_, shadowBefore_);
+    if (changes_.isAny() || !hasNearest_) contour_.find(shadow_);
     int owner = 0;
     std::optional<glm::ivec2> pixel;
     for (std::size_t i = 0; i < target.contour.size(); ++i) {
         const ContourPoint& wanted = target.contour[i];
-        pixel = contour_.nearest(wanted.pixel, pixel);
-        if (!pixel) {
+        if (isAsBefore(i)) {
+            pixel = nearest_[i].pixel;
+        } else if ((pixel = contour_.nearest(wanted.pixel, pixel))) {
+            nearest_[i] = disc_.at(shadow_, *pixel);
+        } else {
             // No shadow at all: as far as the picture is wide.
             terms_.contourPoint += each * scale * target.mask.width() * target.mask.width();
             nearest_[i] = {};
-        } else {
-            const ContourPoint got = disc_.at(shadow_, *pixel);
+        }
+        if (pixel) {
+            const ContourPoint& got = nearest_[i];
             const glm::dvec2 away = wanted.pixel - got.pixel, turned = wanted.normal - got.normal;
             const double bent = wanted.curvature - got.curvature;
             terms_.contourPoint += each * scale * glm::dot(away, away);
@@ -155,10 +183,10 @@ void SceneEnergy::compareContours() {
                                                 [&](const Actor& actor) { return actor.shadow.at(pixel->x, pixel->y); });
                 owner = found == actors_.end() ? kNobody : static_cast<int>(found - actors_.begin());
             }
-            nearest_[i] = got;
         }
         owners_[i] = owner;
     }
+    hasNearest_ = pixel.has_value();
 }
 
 }  // namespace fantascope::theatre

@@ -12,8 +12,8 @@
 
 namespace fantascope::theatre {
 
-// The energy of the actors' poses (Won & Lee 2016, equation 1). What an actor alone decides (pose, shadow, balance, sight) is kept until he
-// moves, so that one who moves costs no more than one.
+// The energy of the actors' poses (Won & Lee 2016, equation 1). What an actor alone decides (pose, shadow, balance, sight), and what two do,
+// is kept until one of them moves, and what the contour is like where the shadow is as it was; so one who moves costs no more than one.
 // Thread: thread-bound.
 class SceneEnergy {
 public:
@@ -71,6 +71,7 @@ private:
         PosedBody body;
         std::vector<glm::vec3> skin;
         BitMask shadow;
+        bool hasMoved = true;  // since terms() were last asked for
         Contacts contacts;
         double margin = 0;
         EnergyTerms own;                 // what depends on this actor alone
@@ -83,7 +84,9 @@ private:
         std::vector<Intrusion> intrusions;
     };
     void poseProps(std::size_t index);
+    void findDepthsInOthers();
     void compareContours();
+    bool isAsBefore(std::size_t point) const;
 
     const PoseProblem& problem_;
     ContourDisc disc_;
@@ -93,8 +96,11 @@ private:
     std::vector<PlacedProp> standing_;
     BitMask standingShadow_;
     std::vector<Intrusion> inOthersProps_;
-    BitMask shadow_;
+    std::vector<double> depthsInOthers_;  // of each actor in each that comes after him
+    BitMask shadow_, shadowBefore_;       // shadowBefore_: what nearest_ was found in
+    Changes changes_;                     // between the two
     Contour contour_;
+    bool hasNearest_ = false;
     std::vector<ContourPoint> nearest_;
     std::vector<int> owners_;
     EnergyTerms terms_;

@@ -25,7 +25,7 @@ constexpr double kIntoHole = 6;
 // of height.
 constexpr double kNearest = 0.7;
 constexpr double kNarrow = 0.01;  // metres; sides whose margins differ by less are all asked for more
-constexpr double kHold = 0.002;  // how much a bearing point resists, in w9 a squared millimetre
+constexpr double kHold = 0.002;   // how much a bearing point resists, in w9 a squared millimetre
 constexpr double kFirstDamping = 0.1, kMostDamping = 1e5;
 
 // The outlines of the shadows of a body's capsules: each as round as its ends and as straight between, which is near enough.
@@ -198,10 +198,10 @@ void SilhouetteFit::addContour(SceneEnergy& energy) {
             for (std::uint64_t bits = contour.row(y)[word]; bits != 0; bits &= bits - 1) {
                 if (index++ % stride != 0) continue;
                 const glm::ivec2 pixel(static_cast<int>(word) * BitMask::kBits + std::countr_zero(bits), y);
-                const ContourPoint point = disc_.at(energy.shadow(), pixel);
-                if (point.normal == glm::dvec2(0)) continue;
                 const double inside = std::clamp(double(distance_.at(pixel.x, pixel.y)), -kFarthest, kIntoHole);
-                if (std::abs(inside) > 0.5)
+                if (std::abs(inside) <= 0.5) continue;
+                const ContourPoint point = disc_.at(energy.shadow(), pixel);
+                if (point.normal != glm::dvec2(0))
                     add(pixel, point.normal, -inside, 0.5 * charge / std::max(kNearest, std::abs(inside)));
             }
 }
@@ -335,8 +335,7 @@ void SilhouetteFit::addBalance(const SceneEnergy& energy, std::size_t index, con
         // Raised against the lowest point a contact moves inwards: a fading one to the lowest point, the cut of an edge along it.
         double inwards = 0;
         if (contact.share < 1)
-            inwards =
-                (glm::dot(outward, contact.point - lowest) + contact.radius / contact.share) / problem_.weights.bearing;
+            inwards = (glm::dot(outward, contact.point - lowest) + contact.radius / contact.share) / problem_.weights.bearing;
         else if (contact.along.y != 0)
             inwards = glm::dot(outward, contact.along) / contact.along.y;
         Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(body.freedoms));
@@ -345,7 +344,8 @@ void SilhouetteFit::addBalance(const SceneEnergy& energy, std::size_t index, con
         equations.addMotion(row, lowestJoint, lowest, -centimetre * ((1 - contact.share) * outward + inwards * up));
         const double mass = body.mass();
         for (std::size_t i = 0; i < body.joints.size(); ++i)
-            equations.addMotion(row, i, posed.point(i, body.joints[i].massCentre), centimetre * body.joints[i].mass / mass * outward);
+            equations.addMotion(row, i, posed.point(i, body.joints[i].massCentre),
+                                centimetre * body.joints[i].mass / mass * outward);
         equations.addRow(row, lacking, 0.5 * weights.w9 / std::max(kNearest, lacking));
     }
 }

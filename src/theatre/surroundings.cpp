@@ -21,7 +21,7 @@ template <class Distance>
 void addDeepest(std::uint32_t joint, const PlacedCapsule& capsule, std::optional<std::uint32_t> otherJoint, Distance distance,
                 std::vector<Intrusion>& intrusions) {
     dvec3 outward;
-    if (distance(capsule.middle(), outward) >= capsule.reach) return;
+    if (distance(capsule.middle, outward) >= capsule.reach) return;
     const double apart = std::max(1e-3, std::min(capsule.fromRadius, capsule.toRadius));
     const int steps = std::clamp(static_cast<int>(std::ceil(glm::distance(capsule.from, capsule.to) / apart)), 1, kMostSpheres);
     Intrusion most{joint, {}, {}, 0, otherJoint};

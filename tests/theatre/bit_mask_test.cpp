@@ -170,5 +170,31 @@ TEST(BitMask, IsComparedPixelByPixel) {
     }
 }
 
+// Example failure: a change beyond a word's or a block's edge goes unseen.
+TEST(Changes, AreSeenWhereverTheyAre) {
+    Rng rng(9);
+    Changes changes;
+    const BitMask before = randomMask(rng, 150, 37, 0.5);
+    changes.find(before, before);
+    EXPECT_FALSE(changes.isAny());
+    EXPECT_FALSE(changes.mayReach({75, 18}, 100));
+    int unseen = 0, wrong = 0;
+    for (int trial = 0; trial < 500; ++trial) {
+        BitMask after = before;
+        const glm::ivec2 changed(rng.below(150), rng.below(37)), asked(rng.below(150), rng.below(37));
+        after.row(changed.y)[static_cast<std::size_t>(changed.x / BitMask::kBits)] ^= std::uint64_t{1}
+                                                                                      << (changed.x % BitMask::kBits);
+        changes.find(before, after);
+        ASSERT_TRUE(changes.isAny());
+        const int far = std::max(std::abs(changed.x - asked.x), std::abs(changed.y - asked.y));
+        ASSERT_TRUE(changes.mayReach(asked, far));
+        for (int within = 0; within < far; ++within) (changes.mayReach(asked, within) ? wrong : unseen) += 1;
+        if (far >= 8) {
+            EXPECT_FALSE(changes.mayReach(asked, far - 8)) << "coarser than a block";
+        }
+    }
+    EXPECT_GT(unseen, 5 * wrong);
+}
+
 }  // namespace
 }  // namespace fantascope::theatre

@@ -52,7 +52,7 @@ std::vector<double> randomPose(const Body& body, Rng& rng) {
 double outsideOf(const PosedBody& posed, const dvec3& point) {
     double outside = 1e9;
     for (const PlacedCapsule& capsule : posed.capsules())
-        outside = std::min(outside, -penetration(capsule, {point, point, 0, 0, 0}));
+        outside = std::min(outside, -penetration(capsule, {{point, 0}, {point, 0}}));
     return outside;
 }
 

@@ -17,9 +17,7 @@ using glm::dvec3;
 const Stage kStage{{0, 0, 7}};
 ScreenFrame frameOf() { return ScreenFrame(kStage, -3, 4, 0.01, 600, 400); }
 
-PlacedCapsule capsule(dvec3 from, double fromRadius, dvec3 to, double toRadius) {
-    return {from, to, fromRadius, toRadius, 0.5 * glm::distance(from, to) + std::max(fromRadius, toRadius)};
-}
+PlacedCapsule capsule(dvec3 from, double fromRadius, dvec3 to, double toRadius) { return {{from, fromRadius}, {to, toRadius}}; }
 BitMask shadowOf(const PlacedCapsule& capsule) {
     BitMask mask(600, 400);
     EXPECT_TRUE(CapsuleShadow().add(frameOf(), capsule, mask));

@@ -130,7 +130,7 @@ TEST(BodyParts, are_points_of_the_skin) {
         double out = 1;
         for (const PlacedCapsule& capsule : posed.capsules()) {
             const glm::dvec3 point = posed.point(body.parts[part]);
-            out = std::min(out, -penetration(capsule, {point, point, 0, 0, 0}));
+            out = std::min(out, -penetration(capsule, {{point, 0}, {point, 0}}));
         }
         EXPECT_NEAR(out, 0, 0.02) << partNames()[part];
     }

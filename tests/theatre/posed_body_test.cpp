@@ -90,9 +90,7 @@ TEST(PosedBody, MassCentreOfATPoseIsWherePeopleHaveIt) {
     EXPECT_NEAR(posed.massCentre().z, 0, 0.02 * 1.8);
 }
 
-PlacedCapsule capsule(dvec3 from, dvec3 to, double fromRadius, double toRadius) {
-    return {from, to, fromRadius, toRadius, 0.5 * glm::distance(from, to) + std::max(fromRadius, toRadius)};
-}
+PlacedCapsule capsule(dvec3 from, dvec3 to, double fromRadius, double toRadius) { return {{from, fromRadius}, {to, toRadius}}; }
 void expectTouch(const PlacedCapsule& a, const PlacedCapsule& b, double depth, dvec3 onFirst, dvec3 onSecond) {
     for (const bool isSwapped : {false, true}) {
         const CapsuleTouch touch = isSwapped ? touching(b, a) : touching(a, b);

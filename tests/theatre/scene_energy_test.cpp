@@ -26,10 +26,13 @@ void expectSame(const EnergyTerms& a, const EnergyTerms& b) {
     EXPECT_EQ(a.people, b.people);
     EXPECT_EQ(a.surroundings, b.surroundings);
 }
-std::span<const double> ofActor(const PoseProblem& problem, std::span<const double> freedoms, std::size_t actor) {
-    std::size_t first = 0;
-    for (std::size_t i = 0; i < actor; ++i) first += problem.actors[i].freedoms;
-    return freedoms.subspan(first, problem.actors[actor].freedoms);
+void expectSameContour(const SceneEnergy& a, const SceneEnergy& b) {
+    for (std::size_t i = 0; i < a.nearest().size(); ++i) {
+        EXPECT_EQ(a.nearest()[i].pixel, b.nearest()[i].pixel) << i;
+        EXPECT_EQ(a.nearest()[i].normal, b.nearest()[i].normal) << i;
+        EXPECT_EQ(a.nearest()[i].curvature, b.nearest()[i].curvature) << i;
+        EXPECT_EQ(a.owners()[i], b.owners()[i]) << i;
+    }
 }
 
 TEST(SceneEnergy, OfTheTargetsOwnPosesIsNothingInContourAndCoverage) {
@@ -59,17 +62,24 @@ TEST(SceneEnergy, OneWhoMovesAloneGivesWhatPosingAllGives) {
     kept.pose(start);
     Rng rng(1);
     std::vector<double> poses = start;
-    for (int i = 0; i < 12; ++i) {
-        const std::size_t actor = rng.below(3);
-        std::vector<double> moved = nudged(problem, poses, rng, 0.4);
-        const auto own = ofActor(problem, moved, actor);
-        std::copy(own.begin(), own.end(), poses.begin() + (ofActor(problem, poses, actor).data() - poses.data()));
+    for (int i = 0; i < 60; ++i) {
+        const std::size_t actor = rng.below(3), first = problem.firstFreedom(actor), count = problem.actors[actor].freedoms;
+        // All of somebody, or one joint's freedom, which leaves most of the contour as it was.
+        const std::vector<double> moved = nudged(problem, poses, rng, 0.4);
+        if (i % 3 == 0)
+            std::copy_n(moved.begin() + static_cast<std::ptrdiff_t>(first), count,
+                        poses.begin() + static_cast<std::ptrdiff_t>(first));
+        else if (const std::size_t one = first + 6 + rng.below(static_cast<std::uint32_t>(count - 6)); true)
+            poses[one] = moved[one];
+        const auto own = std::span(poses).subspan(first, count);
+        problem.actors[actor].limit(own);
         kept.pose(actor, own);
         SceneEnergy fresh(problem);
         fresh.pose(poses);
         expectSame(kept.terms(), fresh.terms());
         EXPECT_EQ(kept.shadow(), fresh.shadow());
         EXPECT_EQ(kept.energy(), fresh.energy());
+        expectSameContour(kept, fresh);
     }
 }
 
@@ -137,6 +147,14 @@ TEST(SceneEnergy, WithoutAShadowAllIsMissed) {
     EXPECT_NEAR(terms.contourPoint, kContourPoints * width * width, 1e-3);
     EXPECT_TRUE(std::isfinite(energy.energy()));
     EXPECT_EQ(energy.shadow().count(), 0);
+    // What was not there is looked for anew.
+    pose[0] = 0;
+    energy.pose(pose);
+    energy.terms();
+    SceneEnergy fresh(problem);
+    fresh.pose(pose);
+    expectSame(energy.terms(), fresh.terms());
+    expectSameContour(energy, fresh);
 }
 
 // A shadow a pixel to the side: every point of a contour is no farther than a pixel, those on upright edges a whole one.
