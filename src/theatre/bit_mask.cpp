@@ -107,29 +107,29 @@ bool operator==(const BitMask& a, const BitMask& b) {
 }
 
 void Changes::find(const BitMask& a, const BitMask& b) {
-    constexpr int kBlocks = BitMask::kBits / kSide;  // of a word
-    across_ = a.stride() * kBlocks, down_ = (a.height() + kSide - 1) / kSide;
-    blocks_.assign(static_cast<std::size_t>(across_ * down_), 0);
-    isAny_ = false;
-    const int from = std::max(0, std::min(a.rowsFrom(), b.rowsFrom())), to = std::max(a.rowsTo(), b.rowsTo());
-    for (int row = from / kSide; row * kSide < to; ++row) {
-        words_.assign(static_cast<std::size_t>(a.stride()), 0);
-        for (int y = row * kSide; y < std::min(to, (row + 1) * kSide); ++y)
-            for (std::size_t i = 0; i < words_.size(); ++i) words_[i] |= a.row(y)[i] ^ b.row(y)[i];
-        for (int column = 0; column < across_; ++column) {
-            const bool differs = (words_[static_cast<std::size_t>(column / kBlocks)] >> (column % kBlocks * kSide) & 0xff) != 0;
-            blocks_[static_cast<std::size_t>(row * across_ + column)] = differs;
-            isAny_ |= differs;
+    stride_ = static_cast<std::size_t>(a.stride()), bands_ = (a.height() + kBand - 1) / kBand;
+    columns_.assign(stride_ * static_cast<std::size_t>(bands_), 0);
+    std::uint64_t any = 0;
+    for (int y = std::max(0, std::min(a.rowsFrom(), b.rowsFrom())); y < std::max(a.rowsTo(), b.rowsTo()); ++y) {
+        const auto one = a.row(y), other = b.row(y);
+        std::uint64_t* const columns = &columns_[stride_ * static_cast<std::size_t>(y / kBand)];
+        for (std::size_t i = 0; i < stride_; ++i) {
+            const std::uint64_t differing = one[i] ^ other[i];
+            columns[i] |= differing;
+            any |= differing;
         }
     }
+    isAny_ = any != 0;
 }
 
 bool Changes::mayReach(glm::ivec2 pixel, int within) const {
-    const auto block = [](int at, int blocks) { return std::clamp(at / kSide, 0, blocks - 1); };
-    const int left = block(pixel.x - within, across_), right = block(pixel.x + within, across_);
-    for (int row = block(pixel.y - within, down_); row <= block(pixel.y + within, down_); ++row)
-        for (int column = left; column <= right; ++column)
-            if (blocks_[static_cast<std::size_t>(row * across_ + column)] != 0) return true;
+    const int width = 2 * within + 1;
+    if (width > BitMask::kBits) return isAny_;
+    const int last = std::min((pixel.y + within) / kBand, bands_ - 1);
+    for (int band = std::max(0, pixel.y - within) / kBand; band <= last; ++band) {
+        const auto columns = std::span(columns_).subspan(stride_ * static_cast<std::size_t>(band), stride_);
+        if (window(columns, pixel.x - within, width) != 0) return true;
+    }
     return false;
 }
 

@@ -66,7 +66,19 @@ BitMask difference(const BitMask& a, const BitMask& b);
 bool meet(const BitMask& a, const BitMask& b);
 bool isWithin(const BitMask& inner, const BitMask& outer);
 
-// Where two masks of one size differ, to within a block of pixels.
+// `count` bits of a mask's row, 1..64, from column x on; x may lie outside.
+inline std::uint64_t window(std::span<const std::uint64_t> row, int x, int count) {
+    const std::uint64_t mask = ~std::uint64_t{0} >> (BitMask::kBits - count);
+    if (x < 0) return x + count <= 0 ? 0 : (row[0] << -x) & mask;
+    const auto word = static_cast<std::size_t>(x / BitMask::kBits);
+    const int shift = x % BitMask::kBits;
+    if (word >= row.size()) return 0;
+    std::uint64_t bits = row[word] >> shift;
+    if (shift != 0 && word + 1 < row.size()) bits |= row[word + 1] << (BitMask::kBits - shift);
+    return bits & mask;
+}
+
+// Where two masks of one size differ: the columns, of a band of rows each.
 class Changes {
 public:
     void find(const BitMask& a, const BitMask& b);
@@ -75,11 +87,11 @@ public:
     bool mayReach(glm::ivec2 pixel, int within) const;
 
 private:
-    static constexpr int kSide = 8;  // of a block, pixels
-    int across_ = 0, down_ = 0;      // blocks
+    static constexpr int kBand = 8;  // rows
+    std::size_t stride_ = 0;         // words a band
+    int bands_ = 0;
     bool isAny_ = false;
-    std::vector<char> blocks_;
-    std::vector<std::uint64_t> words_;  // scratch, kept for its memory
+    std::vector<std::uint64_t> columns_;
 };
 
 // Fills a convex polygon; points in pixels, clockwise as seen.

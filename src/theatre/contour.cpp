@@ -14,18 +14,6 @@
 namespace fantascope::theatre {
 namespace {
 
-// `count` bits of a row, 1..64, from column x on; x may lie outside.
-std::uint64_t window(std::span<const std::uint64_t> row, int x, int count) {
-    const std::uint64_t mask = ~std::uint64_t{0} >> (BitMask::kBits - count);
-    if (x < 0) return x + count <= 0 ? 0 : (row[0] << -x) & mask;
-    const auto word = static_cast<std::size_t>(x / BitMask::kBits);
-    const int shift = x % BitMask::kBits;
-    if (word >= row.size()) return 0;
-    std::uint64_t bits = row[word] >> shift;
-    if (shift != 0 && word + 1 < row.size()) bits |= row[word + 1] << (BitMask::kBits - shift);
-    return bits & mask;
-}
-
 // Of the bits of half a row: how many are set, and the sum of their places.
 constexpr int kHalf = 16;
 struct Bits {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace fantascope::theatre {
@@ -22,12 +23,15 @@ bool MeshShadow::add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<c
     const glm::vec3 light(-frame.fromLight({0, 0, 0}).x, frame.fromLight({0, 0, 0}).y, frame.fromLight({0, 0, 0}).z);
     const glm::vec2 foot = frame.foot();
     const auto focus = static_cast<float>(frame.focus());
-    float nearest = light.z;
+    constexpr float kFar = std::numeric_limits<float>::max();
+    float nearest = light.z, left = kFar, right = -kFar, top = kFar, bottom = -kFar;
     for (std::size_t i = 0; i < count; ++i) {
         const float z = light.z - vertices[i].z, scale = focus / z;
         nearest = std::min(nearest, z);
         x_[i] = foot.x + scale * (vertices[i].x - light.x);
         y_[i] = foot.y + scale * (light.y - vertices[i].y);
+        left = std::min(left, x_[i]), right = std::max(right, x_[i]);
+        top = std::min(top, y_[i]), bottom = std::max(bottom, y_[i]);
     }
     if (nearest < kNearest) return false;
 
@@ -47,13 +51,11 @@ bool MeshShadow::add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<c
         cross({x_[edge.from], y_[edge.from]}, {x_[edge.to], y_[edge.to]}, faces_[edge.left] != 0 ? 1 : -1, mask);
     }
 
-    const auto [left, right] = std::minmax_element(x_.begin(), x_.end());
-    const auto [top, bottom] = std::minmax_element(y_.begin(), y_.end());
     const auto within = [](float at, int size) { return static_cast<int>(std::clamp(at, 0.0f, static_cast<float>(size))); };
-    const auto firstWord = static_cast<std::size_t>(within(*left - 1, mask.width())) / kDigits;
-    const auto lastWord = static_cast<std::size_t>(within(*right + 1, mask.width())) / kDigits;
-    const int lastRow = std::min(within(*bottom + 1, mask.height()), mask.height() - 1);
-    for (int y = within(*top - 1, mask.height()); y <= lastRow; ++y) {
+    const auto firstWord = static_cast<std::size_t>(within(left - 1, mask.width())) / kDigits;
+    const auto lastWord = static_cast<std::size_t>(within(right + 1, mask.width())) / kDigits;
+    const int lastRow = std::min(within(bottom + 1, mask.height()), mask.height() - 1);
+    for (int y = within(top - 1, mask.height()); y <= lastRow; ++y) {
         std::uint64_t* const turns = &turns_[stride_ * static_cast<std::size_t>(y)];
         std::uint64_t* const row = mask.row(y).data();
         std::uint64_t winding = kNone;  // around the pixel before
