@@ -407,7 +407,7 @@ Result<theatre::PoseWeights> weightsOf(const Options& options) {
 std::int64_t evaluationsWithin(double seconds, PoseSearch::Options options, const PoseProblem& problem, std::uint64_t seed,
                                const Clock& clock) {
     constexpr std::int64_t kProbe = 1500;
-    constexpr double kSpare = 0.8;  // threads get in each other's way
+    constexpr double kSpare = 0.74;  // threads get in each other's way
     const std::int64_t enough = std::exchange(options.evaluations, kProbe);
     // What an evaluation takes is felt between the first time that the probe asks and the last; a trial's beginning and end take theirs once.
     struct Look {

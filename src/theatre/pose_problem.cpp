@@ -135,13 +135,15 @@ Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage
                                       static_cast<int>(std::floor(bottom - (above - y - (j + 0.5) / 3) * step)));
             if (white > 4) target.mask.fill(y, x, x + 1);
         }
-    // Islands are near if they hang together once each has grown by half of how far apart they may be.
-    const BitMask joined = deeperThan(signedDistance(target.mask), -0.5 * kFarApart * rows);
-    if (const std::vector<Island> apart = findIslands(joined); apart.size() > 1)
-        return Error(
-            fmt::format("it has {} parts that are farther from each other than {:.0f} % of its height; join them, or play each "
-                        "as a target of its own",
-                        apart.size(), 100 * kFarApart));
+    if (findIslands(target.mask).size() > 1) {
+        // Islands are near if they hang together once each has grown by half of how far apart they may be.
+        const BitMask joined = deeperThan(signedDistance(target.mask), -0.5 * kFarApart * rows);
+        if (const std::size_t apart = findIslands(joined).size(); apart > 1)
+            return Error(fmt::format(
+                "it has {} parts that are farther from each other than {:.0f} % of its height; join them, or play each "
+                "as a target of its own",
+                apart, 100 * kFarApart));
+    }
     sampleContour(target, std::max<std::size_t>(1, kContourPoints * static_cast<std::size_t>(rows) / 256));
     return target;
 }

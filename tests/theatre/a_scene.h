@@ -4,8 +4,6 @@
 
 #include "core/random.h"
 
-#include <glm/vec4.hpp>
-
 #include <numbers>
 #include <vector>
 
@@ -55,13 +53,9 @@ inline std::vector<double> nudged(const PoseProblem& problem, std::vector<double
 
 // A prop whose shape is a box around its frame's origin.
 inline Prop aBox(const glm::dvec3& size, const glm::dvec3& place) {
-    TriangleMesh mesh;
-    for (unsigned i = 0; i < 8; ++i)
-        mesh.vertices.emplace_back((i & 1U) != 0 ? size.x / 2 : -size.x / 2, (i & 2U) != 0 ? size.y / 2 : -size.y / 2,
-                                   (i & 4U) != 0 ? size.z / 2 : -size.z / 2);
-    for (const glm::uvec4 q : {glm::uvec4(0, 2, 3, 1), {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
-        mesh.triangles.insert(mesh.triangles.end(), {{q.x, q.y, q.z}, {q.x, q.z, q.w}});
-    return {"box", {}, std::make_shared<const Prop::Shape>(std::move(mesh)), std::nullopt, place, {1, 0, 0, 0}};
+    Stage::Platform box;
+    box.size = size;
+    return {"box", {}, std::make_shared<const Prop::Shape>(meshOf(box)), std::nullopt, place, {1, 0, 0, 0}};
 }
 
 // The shadow of poses becomes the target.
