@@ -66,11 +66,9 @@ TEST(SceneEnergy, OneWhoMovesAloneGivesWhatPosingAllGives) {
         const std::size_t actor = rng.below(3), first = problem.firstFreedom(actor), count = problem.actors[actor].freedoms;
         // All of somebody, or one joint's freedom, which leaves most of the contour as it was.
         const std::vector<double> moved = nudged(problem, poses, rng, 0.4);
-        if (i % 3 == 0)
-            std::copy_n(moved.begin() + static_cast<std::ptrdiff_t>(first), count,
-                        poses.begin() + static_cast<std::ptrdiff_t>(first));
-        else if (const std::size_t one = first + 6 + rng.below(static_cast<std::uint32_t>(count - 6)); true)
-            poses[one] = moved[one];
+        const std::size_t one = first + Body::kRootFreedoms + rng.below(static_cast<std::uint32_t>(count - Body::kRootFreedoms));
+        const std::size_t from = i % 3 == 0 ? first : one, to = i % 3 == 0 ? first + count : one + 1;
+        for (std::size_t k = from; k < to; ++k) poses[k] = moved[k];
         const auto own = std::span(poses).subspan(first, count);
         problem.actors[actor].limit(own);
         kept.pose(actor, own);
