@@ -28,7 +28,7 @@ const Words kProgram = {"src/", "drivers/"}, kAllCode = {"src/", "drivers/", "te
 
 const std::vector<Ban> kBans = {
     {{"#version ", "gl_Position", "gl_Frag", "sampler2D"}, kAllCode, {}, "shaders live in assets/, never inside C++"},
-    {{"/home/", "/work/"}, {}, {}, "no path of one machine"},
+    {{"/home/", FANTASCOPE_SOURCE_DIR "/"}, {}, {}, "no path of one machine"},
     {{"_distribution<", "std::shuffle", "std::sample", "random_device", "default_random_engine", "rand()"},
      kAllCode,
      {},
