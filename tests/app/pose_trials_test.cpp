@@ -75,7 +75,7 @@ TEST(PoseTrials, are_the_same_on_any_number_of_threads) {
     EXPECT_NE(one.trials[0].freedoms, one.trials[1].freedoms);
 }
 
-// The easy wrong version gives up on what satisfies, or waits to the end for what does not.
+// The easy wrong version waits to the end for what does not satisfy.
 TEST(PoseTrials, end_early_only_where_nothing_satisfies) {
     PoseTrials::Options impatient = options(1, std::nullopt, 1e6);
     impatient.patience = 0.01;
