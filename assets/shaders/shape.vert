@@ -7,7 +7,7 @@ layout(location = 2) in mat4 clipFromShape;  // this and the rest: of the instan
 layout(location = 6) in vec3 towardsLight;   // in the shape's frame
 layout(location = 7) in vec3 colour;         // linear light
 
-layout(location = 0) uniform vec3 inside[4];  // the canvas's edges: dot with clip (x, y, w) is positive on the canvas
+layout(location = 0) uniform vec3 inside[4];  // the edges of what is shown: dot with clip (x, y, w) is positive inside, before a mesh bends it
 
 out float gl_ClipDistance[4];
 flat out vec3 facetRoot;  // of the triangle's last corner: what the layer picture holds, the square root of linear light
@@ -18,6 +18,9 @@ const float darkest = 0.75;
 void main() {
     gl_Position = clipFromShape * vec4(position, 1.0);
     for (int edge = 0; edge < 4; ++edge) gl_ClipDistance[edge] = dot(inside[edge], gl_Position.xyw);
+#ifdef BENT
+    gl_Position = bent(gl_Position);
+#endif
 
     // Open meshes show both sides: the side that is seen counts as the outside. Depth falls towards the viewer.
     vec3 away = vec3(clipFromShape[0].z, clipFromShape[1].z, clipFromShape[2].z);

@@ -7,9 +7,10 @@
 namespace fantascope::render {
 
 Result<CanvasLight> CanvasLight::create(double aspect, glm::vec3 colour, const CanvasPlace& place, DrawingTools& tools) {
-    const double rows = std::ceil(canvasRows(aspect, place));
+    const double rows = std::ceil(place.warp.canvasRows(aspect));
     auto canvas = TRY(gpu::LightCanvas::create(glm::ivec2(std::ceil(aspect * rows), rows)));
-    auto painter = TRY(gpu::CanvasPainter::create(TRY(clipFromUnitCanvas(aspect, place)), 1, 0, tools.programs));
+    auto painter = TRY(gpu::CanvasPainter::create(1, 0, tools.bend, tools.programs));
+    painter.follow(place);
     return CanvasLight(colour, std::move(canvas), std::move(painter));
 }
 

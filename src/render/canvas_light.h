@@ -12,6 +12,7 @@ public:
     // `aspect`: the canvas's; `colour`: of as much light as 1 in that picture, linear. Errors as makeDrawnSource().
     static Result<CanvasLight> create(double aspect, glm::vec3 colour, const CanvasPlace& place, DrawingTools& tools);
 
+    void follow(const CanvasPlace& place) { painter_.follow(place); }
     // add() draws the light. `picture` is begun by this.
     template <class Add>
     void paint(gpu::LayerPicture& picture, Add add) {

@@ -18,10 +18,11 @@ public:
     DrawnCaustics(Water water, CanvasLight light, gpu::CausticsPainter rays)
         : water_(std::move(water)), light_(std::move(light)), rays_(std::move(rays)) {}
 
-    void paint(Time time, const Wind&, gpu::LayerPicture& picture) override {
-        water_.at(time, waves_);
+    void paint(const Moment& moment, gpu::LayerPicture& picture) override {
+        water_.at(moment.show, waves_);
         light_.paint(picture, [&] { rays_.paint(waves_); });
     }
+    void follow(const CanvasPlace& place) override { light_.follow(place); }
 
 private:
     Water water_;

@@ -27,20 +27,21 @@ public:
         const glm::ivec2 painted = grid.block * (grid.size + 2 * convolution.margin());
         auto picture = TRY(gpu::LayerPicture::create(painted, tools.samples));
         // OpenGL has its row 0 at the bottom: the canvas is painted upside down, so that the picture's row 0 is its top.
-        CanvasPlace place{painted, rectangleCorners(grid.block * aspect / grid.pitch, grid.block / grid.pitch)};
-        for (glm::dvec2& corner : place.corners) {
+        WarpShape upsideDown{.corners = rectangleCorners(grid.block * aspect / grid.pitch, grid.block / grid.pitch)};
+        for (glm::dvec2& corner : upsideDown.corners) {
             corner += glm::dvec2(grid.block * (convolution.margin() + 1));
             corner.y = painted.y - corner.y;
         }
-        PlacedSource placed = TRY(PlacedSource::create(layer.leaves, place));
+        const CanvasPlace place{painted, Warp::of(upsideDown).value()};
         const glm::dvec2 scale = glm::dvec2(aspect, 1) / grid.pitch / glm::dvec2(grid.size), offset = 1.0 / glm::dvec2(grid.size);
         const gpu::CanvasPainter::Picture blurred{convolution.texture(), glm::vec4(scale, offset)};
-        return BlurredLayer(DrawnInstances(std::move(placed)), std::move(picture), std::move(convolution), blurred, layer.holes);
+        return BlurredLayer(DrawnInstances(layer.leaves, place), std::move(picture), std::move(convolution), blurred,
+                            layer.holes);
     }
 
-    void draw(Time time, const Wind& wind, DrawingTools& tools) {
+    void draw(const Moment& moment, DrawingTools& tools) {
         picture_.begin();
-        instances_.paint(time, wind, DrawnInstances::Bounds::Picture, tools.painter);
+        instances_.paint(moment, tools);
         convolution_.run(picture_, holes_ ? glm::vec2(0, 1) : glm::vec2(1, -1));
     }
     const gpu::CanvasPainter::Picture& blurred() const { return blurred_; }
@@ -75,12 +76,17 @@ public:
         for (const BlurredLayer& layer : blurred_) pictures_.push_back(layer.blurred());
     }
 
-    void paint(Time time, const Wind& wind, gpu::LayerPicture& picture) override {
-        for (BlurredLayer& layer : blurred_) layer.draw(time, wind, tools_);
+    void paint(const Moment& moment, gpu::LayerPicture& picture) override {
+        for (BlurredLayer& layer : blurred_) layer.draw(moment, tools_);
         if (sharpPicture_) sharpPicture_->begin();
-        for (DrawnInstances& layer : sharp_) layer.paint(time, wind, DrawnInstances::Bounds::Canvas, tools_.painter);
+        for (DrawnInstances& layer : sharp_) layer.paint(moment, tools_);
         picture.begin();
         painter_.paint(pictures_, sharpPicture_ ? &*sharpPicture_ : nullptr, dark_, bright_);
+    }
+
+    void follow(const CanvasPlace& place) override {
+        for (DrawnInstances& layer : sharp_) layer.follow(place);
+        painter_.follow(place);
     }
 
 private:
@@ -98,19 +104,19 @@ private:
 Result<std::unique_ptr<DrawnSource>> makeDrawnFoliage(const FoliageSource& source, const CanvasPlace& place,
                                                       DrawingTools& tools) {
     FANTASCOPE_CHECK(!source.layers.empty(), "foliage has a layer of leaves");
-    const double aspect = source.layers[0].leaves.pattern->aspect(), rows = canvasRows(aspect, place);
+    const double aspect = source.layers[0].leaves.pattern->aspect(), rows = place.warp.canvasRows(aspect);
     std::vector<BlurredLayer> blurred;
     std::vector<DrawnInstances> sharp;
     for (const ShadowLayer& layer : source.layers) {
         if (layer.holes || layer.filter.width * rows >= kLeastBlur)
             blurred.push_back(TRY(BlurredLayer::create(layer, rows, tools)));
         else
-            sharp.emplace_back(TRY(PlacedSource::create(layer.leaves, place)));
+            sharp.emplace_back(layer.leaves, place, tools.bend);
     }
     std::optional<gpu::LayerPicture> sharpPicture;
     if (!sharp.empty()) sharpPicture = TRY(gpu::LayerPicture::create(place.size, tools.samples));
-    auto painter = TRY(gpu::CanvasPainter::create(TRY(clipFromUnitCanvas(aspect, place)), blurred.size(),
-                                                  sharp.empty() ? 0 : tools.samples, tools.programs));
+    auto painter = TRY(gpu::CanvasPainter::create(blurred.size(), sharp.empty() ? 0 : tools.samples, tools.bend, tools.programs));
+    painter.follow(place);
     return std::unique_ptr<DrawnSource>(
         new DrawnFoliage(source, std::move(blurred), std::move(sharp), std::move(sharpPicture), std::move(painter), tools));
 }

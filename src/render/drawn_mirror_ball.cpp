@@ -27,10 +27,11 @@ public:
     DrawnMirrorBall(double turn, CanvasLight light, gpu::SpotPainter spots)
         : turn_(turn), light_(std::move(light)), spots_(std::move(spots)) {}
 
-    void paint(Time time, const Wind&, gpu::LayerPicture& picture) override {
-        const auto angle = static_cast<float>(2 * std::numbers::pi * std::fmod(seconds(time) / turn_, 1));
+    void paint(const Moment& moment, gpu::LayerPicture& picture) override {
+        const auto angle = static_cast<float>(2 * std::numbers::pi * std::fmod(seconds(moment.show) / turn_, 1));
         light_.paint(picture, [&] { spots_.paint(angle); });
     }
+    void follow(const CanvasPlace& place) override { light_.follow(place); }
 
 private:
     double turn_;  // seconds

@@ -7,6 +7,7 @@
 #include "render/gpu/shape_painter.h"
 #include "render/picture_source.h"
 #include "render/placed_source.h"
+#include "render/stopwatch.h"
 
 #include "core/clock.h"
 #include "core/result.h"
@@ -20,31 +21,47 @@ namespace fantascope::render {
 struct DrawingTools {
     gpu::ShapePainter painter;
     gpu::ProgramCache programs;
-    int samples;  // a pixel, of every layer picture
+    gpu::Bend bend;      // of the output's warp
+    gpu::Bend straight;  // for what no warp bends
+    int samples;         // a pixel, of every layer picture
+    Stopwatch uploads;   // of what goes to the GPU anew in a frame: instances, pictures
+};
+
+// What a layer is drawn for.
+struct Moment {
+    Time show{};     // show time
+    Time ofLayer{};  // since the source came onto the output
+    Wind wind{};
 };
 
 // One picture source as it is drawn on one output. Thread: the context's.
 class DrawnSource {
 public:
     virtual ~DrawnSource() = default;
-    // Paints all of the source as it stands at show time `time`, in the wind of then, at full opacity. `picture` is begun by this. No allocation.
-    virtual void paint(Time time, const Wind& wind, gpu::LayerPicture& picture) = 0;
+    // Paints all of the source as it stands at that moment, at full opacity. `picture` is begun by this. No allocation.
+    virtual void paint(const Moment& moment, gpu::LayerPicture& picture) = 0;
+    // The output shows its canvas elsewhere from now on; the tools' bend follows by itself.
+    virtual void follow(const CanvasPlace& place) = 0;
 };
 
-// `tools` outlives it. Error: corners that are not those of a picture; a shader that does not compile; more pixels than this OpenGL has.
+// `tools` outlives it. Error: a shader that does not compile; more pixels than this OpenGL has.
 Result<std::unique_ptr<DrawnSource>> makeDrawnSource(const PictureSource& source, const CanvasPlace& place, DrawingTools& tools);
 
 // A pattern's instances in one picture; what every source that shows a pattern draws it with.
 class DrawnInstances {
 public:
-    explicit DrawnInstances(PlacedSource placed);
+    // Straight onto an output: cut at the edges of the canvas's shown part, bent by the tools' mesh.
+    DrawnInstances(const PatternSource& source, const CanvasPlace& place, const gpu::Bend& bend);
+    // Into a picture of the canvas, cut by nothing but the picture.
+    DrawnInstances(const PatternSource& source, const CanvasPlace& place);
 
-    enum class Bounds { Canvas, Picture };  // what cuts shapes that reach over it
+    void follow(const CanvasPlace& place);
     // Paints into the picture that has begun.
-    void paint(Time time, const Wind& wind, Bounds bounds, gpu::ShapePainter& painter);
+    void paint(const Moment& moment, DrawingTools& tools);
 
 private:
     PlacedSource placed_;
+    const gpu::Bend* bend_;  // null: into a picture of the canvas
     gpu::InstancedMeshes meshes_;
 };
 

@@ -1,52 +1,77 @@
 #include "render/output_renderer.h"
 
+#include "render/drawn_picture.h"
+
 #include "core/check.h"
 
-#include <array>
 #include <utility>
 
 namespace fantascope::render {
-
 Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& options, std::span<const PictureSource> sources) {
+    const CanvasPlace place{options.projection.size, options.projection.warp};
     auto painter = TRY(gpu::ShapePainter::create(options.shaders));
-    std::vector<gpu::LayerPicture> pictures;
-    for (std::size_t i = 0; i < gpu::LightSum::kTogether; ++i)
-        pictures.push_back(TRY(gpu::LayerPicture::create(options.size, options.samples)));
-    auto sum = TRY(gpu::LightSum::create(pictures[0].samples(), options.shaders));
-    DrawingTools tools{std::move(painter), gpu::ProgramCache(options.shaders), pictures[0].samples()};
-    std::unique_ptr<OutputRenderer> renderer(new OutputRenderer(std::move(tools), std::move(pictures), std::move(sum)));
-    for (const PictureSource& source : sources) {
-        auto drawn = TRY(makeDrawnSource(source, {options.size, options.corners}, renderer->tools_));
-        renderer->sources_.push_back({.drawn = std::move(drawn)});
-    }
+    DrawingTools tools{std::move(painter),      gpu::ProgramCache(options.shaders), gpu::Bend(), gpu::Bend(), options.samples,
+                       Stopwatch(options.clock)};
+    tools.bend.follow(place);
+    std::unique_ptr<OutputRenderer> renderer(new OutputRenderer(std::move(tools)));
+    renderer->composer_ = TRY(gpu::Composer::create(place.size, options.samples, renderer->tools_.programs));
+    renderer->tools_.samples = renderer->composer_->samples();
+    renderer->size_ = place.size;
+    renderer->overlay_ = TRY(gpu::Overlay::create(place.size, renderer->tools_.programs));
+    TRY(renderer->composer_->follow(options.projection.light, options.blend));
+    for (const PictureSource& source : sources)
+        renderer->sources_.push_back(TRY(makeDrawnSource(source, place, renderer->tools_)));
     return renderer;
 }
 
-void OutputRenderer::draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer) {
-    // Light adds: a source that stands in several layers is drawn once with the sum of their opacities.
-    for (Source& source : sources_) source.opacity = 0;
-    for (const show::LayerState& layer : state.layers) {
-        FANTASCOPE_CHECK(layer.source < sources_.size(), "a layer shows a source that the renderer was not given");
-        sources_[layer.source].opacity += layer.opacity;
-    }
+Result<void> OutputRenderer::follow(const Projection& projection, const std::shared_ptr<const BlendMap>& blend) {
+    const CanvasPlace place{projection.size, projection.warp};
+    tools_.bend.follow(place);
+    for (const auto& source : sources_) source->follow(place);
+    return composer_->follow(projection.light, blend);
+}
 
-    std::array<gpu::LightSum::Layer, gpu::LightSum::kTogether> painted;
-    std::size_t count = 0;
-    gpu::Light light = gpu::Light::Alone;
-    const auto shine = [&] {
-        sum_.shine(framebuffer, std::span(painted).first(count), light);
-        count = 0;
-        light = gpu::Light::Added;
-    };
-    for (Source& source : sources_) {
-        if (source.opacity <= 0) continue;
-        gpu::LayerPicture& picture = pictures_[count];
-        source.drawn->paint(time, wind, picture);
-        painted[count++] = {&picture, source.opacity};
-        if (count == painted.size()) shine();
+Result<void> OutputRenderer::setUp(const RgbaImage* overlay, const RgbaImage* card) {
+    overlay_->show(overlay);
+    card_.reset();
+    if (card != nullptr) card_ = TRY(makeDrawnCard(ImageSource{std::make_shared<const RgbaImage>(*card)}, size_, tools_));
+    return {};
+}
+
+void OutputRenderer::warmUp(unsigned framebuffer) {
+    composer_->begin();
+    for (const auto& source : sources_) source->paint(Moment{}, composer_->nextPicture());
+    composer_->warmUp(framebuffer);
+}
+
+void OutputRenderer::draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer) {
+    tools_.uploads.reset();
+    composer_->begin();
+    if (card_) {
+        card_->paint(Moment{}, composer_->nextPicture());
+        composer_->lay(1, show::Blend::Add);
+        composer_->finish(framebuffer);
+        overlay_->paint(framebuffer);
+        return;
     }
-    if (count > 0) shine();
-    if (light == gpu::Light::Alone) gpu::darken(framebuffer);
+    const auto lay = [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const show::LayerState& layer = state.layers[i];
+            FANTASCOPE_CHECK(layer.source < sources_.size(), "a layer shows a source that the renderer was not given");
+            if (layer.opacity <= 0) continue;
+            sources_[layer.source]->paint({time, time - layer.begun, wind}, composer_->nextPicture());
+            composer_->lay(layer.opacity, layer.blend);
+        }
+    };
+    lay(0, state.pictures.empty() ? state.layers.size() : state.pictures[0].first);
+    composer_->endPicture(1);
+    for (const show::ComposedPicture& picture : state.pictures) {
+        if (picture.share <= 0) continue;
+        lay(picture.first, picture.last);
+        composer_->endPicture(picture.share);
+    }
+    composer_->finish(framebuffer);
+    overlay_->paint(framebuffer);
 }
 
 }  // namespace fantascope::render

@@ -1,19 +1,23 @@
 #pragma once
 
+#include "render/blend_map.h"
 #include "render/drawn_source.h"
-#include "render/gpu/layer_picture.h"
+#include "render/gpu/composer.h"
+#include "render/gpu/overlay.h"
 #include "render/picture_source.h"
 #include "show/show_state.h"
 
 #include "core/clock.h"
+#include "core/image.h"
+#include "core/projection.h"
 #include "core/result.h"
 #include "core/wind.h"
 
 #include <glm/vec2.hpp>
 
-#include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,39 +26,48 @@ namespace fantascope::render {
 // Draws one output's picture. What reaches the projector is the canvas, bent by the output's warp, and black around it: shapes
 // that sway over the canvas's edge are cut there.
 //
-// Layers add as light, so their order does not matter. Within a layer the shapes are opaque to each other, the later instance of
-// the pattern on top, and a fading layer fades as one picture. Shapes are drawn straight through the warp, without a picture of
-// the canvas in between, and their edges smoothed by several samples a pixel that are averaged as light.
+// Layers blend in linear light. Within a layer the shapes are opaque to each other, the later instance of the pattern on top, and a fading
+// layer fades as one picture. Shapes are drawn straight through the warp, without a picture of the canvas in between, and their edges
+// smoothed by several samples a pixel that are averaged as light.
 //
 // Thread: the render thread, with the context of the output's display current in every call: create(), draw() and the destructor.
 class OutputRenderer {
 public:
     struct Options {
-        glm::ivec2 size{0};                 // pixels of the display
-        std::array<glm::dvec2, 4> corners;  // where the canvas's corners go, in pixels, from the canvas's top left clockwise
-        int samples = 4;                    // a pixel; llvmpipe and every GPU have 4
-        std::filesystem::path shaders;      // the folder of the shader files
+        Projection projection;                    // of the display's pixels
+        std::shared_ptr<const BlendMap> blend{};  // what it gives to each pixel beside its neighbours; null: all of its light
+        int samples = 4;                          // a pixel; llvmpipe and every GPU have 4
+        std::filesystem::path shaders;            // the folder of the shader files
+        const Clock* clock = nullptr;             // by which uploads are timed; null: they are not
     };
-    // Error: corners that are not those of a picture; a shader that does not compile (its file and the compiler's log); more
+    // Error: a shader that does not compile (its file and the compiler's log); more
     // pixels or samples than this OpenGL has.
     static Result<std::unique_ptr<OutputRenderer>> create(const Options& options, std::span<const PictureSource> sources);
 
+    // The projector is set otherwise from now on, its size aside. A mesh that comes where there was none bends the corners of triangles that
+    // were made for a straight canvas: make another renderer to have it exact. Error: a shader does not compile.
+    Result<void> follow(const Projection& projection, const std::shared_ptr<const BlendMap>& blend);
+    // What a technician is shown. `card`: in place of the show, opaque stored sRGB values that pass the projector's colours and the blend but no
+    // warp; null: the show. `overlay`: in the projector's own pixels over all of that, stored values, colours multiplied by alpha; null:
+    // none. Both are copied. Error: a shader does not compile; more pixels than this OpenGL has.
+    Result<void> setUp(const RgbaImage* overlay, const RgbaImage* card);
+    // Draws every source once and every way in which layers may come together, so that nothing is compiled while people watch.
+    void warmUp(unsigned framebuffer);
     // Draws what the show shows on this output at show time `time`, in the wind of then, into `framebuffer`, the display's. Layers
     // name sources by their index in create()'s. No allocation once every source has been shown.
     void draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer);
+    // How much of the draw() before was spent on bringing instances and pictures to the GPU.
+    Time uploading() const { return tools_.uploads.sum(); }
 
 private:
-    struct Source {
-        std::unique_ptr<DrawnSource> drawn;
-        float opacity = 0;  // in the frame that is being drawn
-    };
-    OutputRenderer(DrawingTools tools, std::vector<gpu::LayerPicture> pictures, gpu::LightSum sum)
-        : tools_(std::move(tools)), pictures_(std::move(pictures)), sum_(std::move(sum)) {}
+    explicit OutputRenderer(DrawingTools tools) : tools_(std::move(tools)) {}
 
     DrawingTools tools_;
-    std::vector<gpu::LayerPicture> pictures_;  // LightSum::kTogether of them
-    gpu::LightSum sum_;
-    std::vector<Source> sources_;
+    std::optional<gpu::Composer> composer_;
+    std::vector<std::unique_ptr<DrawnSource>> sources_;
+    glm::ivec2 size_{0};
+    std::optional<gpu::Overlay> overlay_;
+    std::unique_ptr<DrawnSource> card_;  // null: the show
 };
 
 }  // namespace fantascope::render

@@ -2,7 +2,10 @@
 
 #include "pattern/pattern_motion.h"
 #include "pattern/shape_pattern.h"
+#include "render/picture_feed.h"
+#include "render/video_stream.h"
 
+#include "core/clock.h"
 #include "core/image.h"
 
 #include <glm/vec2.hpp>
@@ -71,7 +74,27 @@ struct MirrorBallSource {
     double turn = 1;        // seconds for one turn; below 0 the other way round
 };
 
+// A picture that stands still. Its corners, as those of a video and a camera's picture, lie on the canvas's.
+struct ImageSource {
+    std::shared_ptr<const RgbaImage> picture;  // stored sRGB values, straight alpha
+};
+
+// A video; its stream is shared by the outputs that show it. Once it is over, its last frame stays.
+struct VideoSource {
+    std::shared_ptr<VideoStream> stream;
+    bool loop = true;
+    double speed = 1;  // positive
+};
+// The moment of the video that is seen at a layer's time `time`.
+Time positionAt(const VideoSource& source, Time time);
+
+// What a camera sees; nothing before its first picture.
+struct CameraSource {
+    std::shared_ptr<PictureFeed> feed;
+};
+
 // What a layer can show, in the order of Show::sources.
-using PictureSource = std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource>;
+using PictureSource = std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource, ImageSource,
+                                   VideoSource, CameraSource>;
 
 }  // namespace fantascope::render

@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 namespace fantascope::render {
 namespace {
@@ -17,42 +20,50 @@ namespace {
 // front.
 const glm::dvec3 kTowardsLight = glm::normalize(glm::dvec3(-0.4, -0.6, 0.7));
 
-// A solid is a pattern of one square; it is larger than the canvas, whose edges cut it.
-PatternSource asPattern(const SolidSource& solid) {
-    pattern::ShapePattern square;
-    square.width = square.height = 1;
-    const float half = std::sqrt(0.5f);
-    square.shapes.push_back({"square",
-                             {{{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}},  //
-                              {{0, 1, 2}, {0, 2, 3}}}});
-    pattern::ShapeInstance instance;
-    instance.centre = {0.5, 0.5};
-    instance.size = 1;
-    instance.colour = solid.colour;
-    square.instances.push_back(instance);
-    return {std::make_shared<const pattern::ShapePattern>(std::move(square)), nullptr};
+// The same surface with no edge longer than `longest`: long edges get a point in their middle, on both sides alike, until none is long.
+TriangleMesh cutUp(TriangleMesh mesh, double longest) {
+    for (bool cut = true; cut;) {
+        cut = false;
+        std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+        // The middle of an edge that is too long.
+        const auto middle = [&](std::uint32_t a, std::uint32_t b) -> std::optional<std::uint32_t> {
+            if (static_cast<double>(glm::distance(mesh.vertices[a], mesh.vertices[b])) <= longest) return std::nullopt;
+            const auto [place, isNew] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.vertices.size()));
+            if (isNew) mesh.vertices.push_back((mesh.vertices[a] + mesh.vertices[b]) / 2.0f);
+            return place->second;
+        };
+        std::vector<glm::uvec3> triangles;
+        for (glm::uvec3 t : mesh.triangles) {
+            std::array<std::optional<std::uint32_t>, 3> cuts = {middle(t.x, t.y), middle(t.y, t.z), middle(t.z, t.x)};
+            const auto count = std::count_if(cuts.begin(), cuts.end(), [](const auto& place) { return place.has_value(); });
+            cut |= count > 0;
+            // Turned round so that the edges that are cut come first: xy, then yz, then zx.
+            while (count > 0 && !(cuts[0] && (count == 1 || cuts[1]))) {
+                t = {t.y, t.z, t.x};
+                std::rotate(cuts.begin(), cuts.begin() + 1, cuts.end());
+            }
+            if (count == 0)
+                triangles.push_back(t);
+            else if (count == 1)
+                triangles.insert(triangles.end(), {{t.x, *cuts[0], t.z}, {*cuts[0], t.y, t.z}});
+            else if (count == 2)
+                triangles.insert(triangles.end(), {{*cuts[0], t.y, *cuts[1]}, {t.x, *cuts[0], *cuts[1]}, {t.x, *cuts[1], t.z}});
+            else
+                triangles.insert(triangles.end(), {{t.x, *cuts[0], *cuts[2]},
+                                                   {*cuts[0], t.y, *cuts[1]},
+                                                   {*cuts[2], *cuts[1], t.z},
+                                                   {*cuts[0], *cuts[1], *cuts[2]}});
+        }
+        mesh.triangles = std::move(triangles);
+    }
+    return mesh;
 }
 
 }  // namespace
 
-Result<PlacedSource> PlacedSource::create(const PatternSource& source, const CanvasPlace& place) {
+PlacedSource::PlacedSource(const PatternSource& source, const CanvasPlace& place) : source_(source) {
     FANTASCOPE_CHECK(source.pattern != nullptr, "a pattern source has a pattern");
-    return PlacedSource(source, TRY(render::clipFromCanvas(source.pattern->aspect(), place)));
-}
-
-Result<PlacedSource> PlacedSource::create(const SolidSource& source, const CanvasPlace& place) {
-    return create(asPattern(source), place);
-}
-
-PlacedSource::PlacedSource(PatternSource source, const glm::dmat3& clipFromCanvas)
-    : source_(std::move(source)), clipFromCanvas_(clipFromCanvas) {
-    // A line e of the canvas, dot(e, (x, y, 1)) = 0, is the line inverse(H)^T e of its image.
-    const glm::dmat3 clipFromEdge = glm::transpose(glm::inverse(clipFromCanvas));
-    const double aspect = source_.pattern->aspect();
-    const std::array<glm::dvec3, 4> edges = {{{1, 0, 0}, {-1, 0, aspect}, {0, 1, 0}, {0, -1, 1}}};
-    std::transform(edges.begin(), edges.end(), canvasEdges_.begin(),
-                   [&](glm::dvec3 edge) { return glm::vec3(clipFromEdge * edge); });
-
+    follow(place);
     const auto& instances = source_.pattern->instances;
     for (const pattern::ShapeInstance& instance : instances)
         poses_.push_back({instance.centre, instance.size, instance.rotation});
@@ -62,10 +73,25 @@ PlacedSource::PlacedSource(PatternSource source, const glm::dmat3& clipFromCanva
                      [&](std::size_t a, std::size_t b) { return instances[a].shape < instances[b].shape; });
 }
 
-std::vector<gpu::InstancedMeshes::Mesh> PlacedSource::meshes() const {
+void PlacedSource::follow(const CanvasPlace& place) {
+    clipFromCanvas_ = clipFromCanvas(source_.pattern->aspect(), place);
+    // A line e of the picture's square, dot(e, (x, y, 1)) = 0, is the line inverse(H)^T e of its image.
+    const glm::dmat3 clipFromEdge = glm::transpose(glm::inverse(clipFromPicture(place)));
+    const std::array<glm::dvec3, 4> edges = {{{1, 0, 0}, {-1, 0, 1}, {0, 1, 0}, {0, -1, 1}}};
+    std::transform(edges.begin(), edges.end(), canvasEdges_.begin(),
+                   [&](glm::dvec3 edge) { return glm::vec3(clipFromEdge * edge); });
+}
+
+std::vector<gpu::InstancedMeshes::Mesh> PlacedSource::meshes(double longestEdge) const {
+    const pattern::ShapePattern& pattern = *source_.pattern;
+    std::vector<double> largest(pattern.shapes.size(), 0);
+    for (const pattern::ShapeInstance& instance : pattern.instances)
+        largest[instance.shape] = std::max(largest[instance.shape], instance.size);
     std::vector<gpu::InstancedMeshes::Mesh> meshes;
-    for (const pattern::ElementalShape& shape : source_.pattern->shapes) meshes.push_back({facetMesh(shape.mesh), 0});
-    for (const pattern::ShapeInstance& instance : source_.pattern->instances) ++meshes[instance.shape].instances;
+    for (std::size_t shape = 0; shape < pattern.shapes.size(); ++shape) {
+        meshes.push_back({facetMesh(cutUp(pattern.shapes[shape].mesh, longestEdge / largest[shape])), 0});
+    }
+    for (const pattern::ShapeInstance& instance : pattern.instances) ++meshes[instance.shape].instances;
     return meshes;
 }
 

@@ -4,28 +4,25 @@
 #include <fmt/format.h>
 #include <glm/gtc/type_ptr.hpp>
 
+#include <string>
+
 namespace fantascope::render::gpu {
 namespace {
 
-// Of assets/shaders/canvas.vert and canvas.frag.
-constexpr GLint kClipFromCanvas = 0, kDark = 1, kBright = 2, kPlace = 3;
+// Of assets/shaders/canvas.frag.
+constexpr GLint kDark = 1, kBright = 2, kPlace = 3;
 constexpr GLuint kSharp = 0, kPictures = 1;
 
 }  // namespace
 
-Result<CanvasPainter> CanvasPainter::create(const glm::mat3& clipFromCanvas, std::size_t pictures, int sharpSamples,
-                                            ProgramCache& programs) {
+Result<CanvasPainter> CanvasPainter::create(std::size_t pictures, int sharpSamples, const Bend& bend, ProgramCache& programs) {
     const std::string sharp = sharpSamples > 0 ? fmt::format("#define SHARP\n#define SAMPLES {}\n", sharpSamples) : "";
-    const unsigned program =
-        TRY(programs.drawing("canvas.vert", "canvas.frag", fmt::format("#define LAYERS {}\n{}", pictures, sharp)));
-    return CanvasPainter(program, clipFromCanvas);
+    return CanvasPainter(
+        TRY(CanvasSurface::create("canvas.frag", fmt::format("#define LAYERS {}\n{}", pictures, sharp), bend, programs)));
 }
 
 void CanvasPainter::paint(std::span<const Picture> pictures, const LayerPicture* sharp, glm::vec3 dark, glm::vec3 bright) {
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glUseProgram(program_);
-    glUniformMatrix3fv(kClipFromCanvas, 1, GL_FALSE, glm::value_ptr(clipFromCanvas_));
+    surface_.use();
     glUniform3fv(kDark, 1, glm::value_ptr(dark));
     glUniform3fv(kBright, 1, glm::value_ptr(bright));
     for (std::size_t i = 0; i < pictures.size(); ++i) {
@@ -33,8 +30,7 @@ void CanvasPainter::paint(std::span<const Picture> pictures, const LayerPicture*
         glBindTextureUnit(kPictures + static_cast<GLuint>(i), pictures[i].texture);
     }
     if (sharp != nullptr) glBindTextureUnit(kSharp, sharp->texture());
-    glBindVertexArray(noVertices_.name());
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    surface_.draw();
 }
 
 }  // namespace fantascope::render::gpu

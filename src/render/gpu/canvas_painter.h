@@ -1,17 +1,16 @@
 #pragma once
 
-#include "render/gpu/handles.h"
+#include "render/gpu/canvas_surface.h"
 #include "render/gpu/layer_picture.h"
-#include "render/gpu/program_cache.h"
 
 #include "core/result.h"
 
-#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include <cstddef>
 #include <span>
+#include <utility>
 
 namespace fantascope::render::gpu {
 
@@ -24,21 +23,20 @@ public:
         glm::vec4 place{1, 1, 0, 0};  // of the canvas in it, 0 .. 1: scale, then offset
     };
 
-    // `clipFromCanvas`: of a canvas that is 0 .. 1 in both directions. `pictures`: how many paint() is given. `sharpSamples`: of the
-    // sharp picture that paint() is given; 0: none. `programs` outlives it. Error: a shader does not compile.
-    static Result<CanvasPainter> create(const glm::mat3& clipFromCanvas, std::size_t pictures, int sharpSamples,
-                                        ProgramCache& programs);
+    // `pictures`: how many paint() is given. `sharpSamples`: of the sharp picture that paint() is given; 0: none. `bend`: the mesh of the
+    // place that it follows. `programs` and `bend` outlive it. Error: a shader does not compile.
+    static Result<CanvasPainter> create(std::size_t pictures, int sharpSamples, const Bend& bend, ProgramCache& programs);
 
+    // As CanvasSurface::follow().
+    void follow(const CanvasPlace& place) { surface_.follow(place); }
     // Paints into the picture that has begun: from `dark` to `bright`, in linear light, by the product of all pictures and of what
     // `sharp`, of the output's size, leaves uncovered.
     void paint(std::span<const Picture> pictures, const LayerPicture* sharp, glm::vec3 dark, glm::vec3 bright);
 
 private:
-    CanvasPainter(unsigned program, const glm::mat3& clipFromCanvas) : program_(program), clipFromCanvas_(clipFromCanvas) {}
+    explicit CanvasPainter(CanvasSurface surface) : surface_(std::move(surface)) {}
 
-    unsigned program_;
-    glm::mat3 clipFromCanvas_;
-    VertexArray noVertices_;
+    CanvasSurface surface_;
 };
 
 }  // namespace fantascope::render::gpu

@@ -24,6 +24,10 @@ unsigned TextureKind::create() {
     return created([](GLsizei count, GLuint* names) { glCreateTextures(GL_TEXTURE_2D, count, names); });
 }
 void TextureKind::destroy(unsigned name) { glDeleteTextures(1, &name); }
+unsigned Texture3Kind::create() {
+    return created([](GLsizei count, GLuint* names) { glCreateTextures(GL_TEXTURE_3D, count, names); });
+}
+void Texture3Kind::destroy(unsigned name) { glDeleteTextures(1, &name); }
 unsigned MultisampleTextureKind::create() {
     return created([](GLsizei count, GLuint* names) { glCreateTextures(GL_TEXTURE_2D_MULTISAMPLE, count, names); });
 }
@@ -36,6 +40,13 @@ void ProgramKind::destroy(unsigned name) { glDeleteProgram(name); }
 void Fence::set() {
     clear();
     sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+}
+
+bool Fence::passed() {
+    if (sync_ == nullptr) return true;
+    if (glClientWaitSync(static_cast<GLsync>(sync_), GL_SYNC_FLUSH_COMMANDS_BIT, 0) == GL_TIMEOUT_EXPIRED) return false;
+    clear();
+    return true;
 }
 
 void Fence::wait() {

@@ -40,6 +40,10 @@ struct TextureKind {  // two-dimensional
     static unsigned create();
     static void destroy(unsigned name);
 };
+struct Texture3Kind {  // three-dimensional
+    static unsigned create();
+    static void destroy(unsigned name);
+};
 struct MultisampleTextureKind {
     static unsigned create();
     static void destroy(unsigned name);
@@ -57,6 +61,7 @@ using Buffer = Handle<BufferKind>;
 using VertexArray = Handle<VertexArrayKind>;
 using Renderbuffer = Handle<RenderbufferKind>;
 using Texture = Handle<TextureKind>;
+using Texture3 = Handle<Texture3Kind>;
 using MultisampleTexture = Handle<MultisampleTextureKind>;
 using Framebuffer = Handle<FramebufferKind>;
 using Program = Handle<ProgramKind>;
@@ -73,6 +78,8 @@ public:
     }
     // After all commands so far.
     void set();
+    // Whether that point is passed, and sees to it that it will be; never waits. An empty fence is passed.
+    bool passed();
     // Returns once that point is passed and empties the fence; at once if it is empty.
     void wait();
 

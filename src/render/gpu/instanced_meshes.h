@@ -30,6 +30,7 @@ public:
     // `mirrored`: clipFromShape turns the shapes inside out, as a picture for rear projection does.
     InstancedMeshes(std::span<const Mesh> meshes, bool mirrored);
 
+    void setMirrored(bool mirrored) { mirrored_ = mirrored; }
     // The instances of the next draw(), those of the first mesh first; to be written whole. May wait for the drawing of three
     // frames ago.
     std::span<Instance> place();

@@ -1,9 +1,5 @@
 #include "render/gpu/layer_picture.h"
 
-#include "render/gpu/shader_program.h"
-
-#include "core/check.h"
-
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
@@ -12,12 +8,7 @@
 namespace fantascope::render::gpu {
 namespace {
 
-constexpr GLfloat kBlack[] = {0, 0, 0, 1};
 constexpr GLfloat kUncovered[] = {0, 0, 0, 0};
-
-// Of assets/shaders/resolve.frag: the first layer's; the others' follow.
-constexpr GLint kOpacity = 0;
-constexpr GLuint kRoots = 0;
 
 }  // namespace
 
@@ -49,35 +40,5 @@ void LayerPicture::begin() {
     glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, 0, kUncovered);
     glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &farthest);
 }
-
-Result<LightSum> LightSum::create(int samples, const std::filesystem::path& shaders) {
-    LightSum sum;
-    for (std::size_t i = 0; i < kTogether; ++i)
-        sum.programs_[i] = TRY(loadProgram(shaders / "resolve.vert", shaders / "resolve.frag",
-                                           fmt::format("#define LAYERS {}\n#define SAMPLES {}\n", i + 1, samples)));
-    return sum;
-}
-
-void LightSum::shine(unsigned framebuffer, std::span<const Layer> layers, Light light) {
-    FANTASCOPE_CHECK(!layers.empty() && layers.size() <= kTogether, "one pass takes one layer to kTogether");
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-    glEnable(GL_FRAMEBUFFER_SRGB);
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    if (light == Light::Added) {
-        glEnable(GL_BLEND);
-        glBlendFunc(GL_ONE, GL_ONE);
-    }
-    glUseProgram(programs_[layers.size() - 1].name());
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        glUniform1f(kOpacity + static_cast<GLint>(i), layers[i].opacity);
-        glBindTextureUnit(kRoots + static_cast<GLuint>(i), layers[i].picture->texture());
-    }
-    glBindVertexArray(noVertices_.name());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glDisable(GL_BLEND);
-}
-
-void darken(unsigned framebuffer) { glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, kBlack); }
 
 }  // namespace fantascope::render::gpu

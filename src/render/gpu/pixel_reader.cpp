@@ -26,9 +26,8 @@ void PixelReader::start(unsigned framebuffer) {
     copied_.set();
 }
 
-void PixelReader::finish(RgbaImage& image) {
+void PixelReader::copyTo(RgbaImage& image) const {
     FANTASCOPE_CHECK(image.width() == size_.x && image.height() == size_.y, "the image has the framebuffer's size");
-    copied_.wait();
     const std::span all(mapped_, image.pixels().size());
     const auto width = static_cast<std::size_t>(size_.x);
     for (int y = 0; y < size_.y; ++y)

@@ -6,19 +6,22 @@
 
 #include <glm/vec2.hpp>
 
-#include <cstddef>
-
 namespace fantascope::render::gpu {
 
-// Copies a framebuffer's pixels to memory without stopping the drawing: start() only queues the copy. Thread: the context's.
+// Copies a framebuffer's pixels to memory without stopping the drawing: start() only queues the copy. The memory is the program's too for as
+// long as the reader lives, so that whoever wants the pixels takes them without the context. Thread: the context's, but for copyTo().
 class PixelReader {
 public:
     explicit PixelReader(glm::ivec2 size);
 
-    // Queues a copy of `framebuffer`'s stored values as they are after all drawing so far.
+    // Queues a copy of `framebuffer`'s stored values as they are after all drawing so far. It takes the place of the one before.
     void start(unsigned framebuffer);
-    // Waits for the copy that start() queued and puts it into `image` of the same size, row 0 at the top. Again and again, if wanted.
-    void finish(RgbaImage& image);
+    // Whether the copy that start() queued is done; never waits.
+    bool finished() { return copied_.passed(); }
+    // Waits until it is.
+    void wait() { copied_.wait(); }
+    // Puts a finished copy into `image` of the same size, row 0 at the top. Thread: any, until the next start().
+    void copyTo(RgbaImage& image) const;
 
 private:
     glm::ivec2 size_;

@@ -15,6 +15,7 @@ class ProgramCache {
 public:
     explicit ProgramCache(std::filesystem::path shaders) : shaders_(std::move(shaders)) {}
 
+    const std::filesystem::path& folder() const { return shaders_; }
     // The names of programs that live as long as the cache. Error: as loadProgram().
     Result<unsigned> compute(const std::string& shader, const std::string& definitions);
     Result<unsigned> drawing(const std::string& vertexShader, const std::string& fragmentShader,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/gpu/bend.h"
 #include "render/gpu/handles.h"
 #include "render/gpu/instanced_meshes.h"
 
@@ -19,12 +20,12 @@ public:
     static Result<ShapePainter> create(const std::filesystem::path& shaders);
 
     // Paints into the picture that has begun. `inside`: four half planes that bound what is lit; a point with clip coordinates
-    // (x, y, z, w) is in when dot(inside[i], (x, y, w)) >= 0 for each.
-    void paint(InstancedMeshes& meshes, const std::array<glm::vec3, 4>& inside);
+    // (x, y, z, w) is in when dot(inside[i], (x, y, w)) >= 0 for each. `bend`: the mesh on top of the keystone, or null.
+    void paint(InstancedMeshes& meshes, const std::array<glm::vec3, 4>& inside, const Bend* bend);
 
 private:
-    explicit ShapePainter(Program program) : program_(std::move(program)) {}
-    Program program_;
+    ShapePainter(Program straight, Program bent) : straight_(std::move(straight)), bent_(std::move(bent)) {}
+    Program straight_, bent_;
 };
 
 }  // namespace fantascope::render::gpu

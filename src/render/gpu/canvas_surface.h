@@ -1,0 +1,41 @@
+#pragma once
+
+#include "render/canvas_warp.h"
+#include "render/gpu/bend.h"
+#include "render/gpu/handles.h"
+#include "render/gpu/program_cache.h"
+
+#include "core/result.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
+
+#include <string>
+
+namespace fantascope::render::gpu {
+
+// The shown part of a canvas as something to draw on, through the output's warp: one rectangle, or many small ones where a mesh bends it. A
+// fragment shader is given `onCanvas`, 0 .. 1 in both directions. Thread: the context's.
+class CanvasSurface {
+public:
+    // `bend`: the mesh of the places that it follows. `programs` and `bend` outlive it. Error: the fragment shader does not compile.
+    static Result<CanvasSurface> create(const std::string& fragmentShader, const std::string& definitions, const Bend& bend,
+                                        ProgramCache& programs);
+
+    // Where the output shows the canvas. Before the first drawing, and again whenever that changes.
+    void follow(const CanvasPlace& place);
+    // Makes the fragment shader's program current, for its uniforms to be set; then draw() draws.
+    void use();
+    void draw();
+
+private:
+    CanvasSurface(unsigned straight, unsigned bent, const Bend& bend) : straight_(straight), bent_(bent), bend_(&bend) {}
+
+    unsigned straight_, bent_;
+    const Bend* bend_;
+    glm::mat3 clipFromCanvas_{1};
+    glm::vec4 part_{0, 0, 1, 1};  // of the canvas: left, top, width, height
+    VertexArray noVertices_;
+};
+
+}  // namespace fantascope::render::gpu
