@@ -13,7 +13,8 @@ namespace fantascope {
 struct ContactChange {
     std::size_t contact = 0;
     bool closed = false;
-    Time at{};  // when it was noticed, on the clock that open() was handed
+    Time at{};              // when it was noticed, on the clock that open() was handed
+    bool witnessed = true;  // false: nobody saw it move; at the first look after the start or a loss it was found so
 };
 
 // A bank of contacts. Thread: bound to the input thread.

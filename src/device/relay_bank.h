@@ -11,6 +11,11 @@ namespace fantascope {
 
 // A bank of relays, such as the coils of a Modbus module; true is energised. Thread: bound to the relay thread of this bank (a
 // bus may be slow: a call may take up to the driver's declared time-out, never more).
+//
+// Relays that are found other than the last write() left them (the module was without power for a moment, somebody switched them by
+// hand) are a loss too, though the bank goes on Running: it is counted once, the driver writes nothing by itself, and who wants them
+// otherwise writes again. What was undone before the driver looked may go unnoticed, and before the first write() after a loss
+// there is nothing to compare with.
 class RelayBank : public Device {
 public:
     // How many relays, known from the site file and constant.
