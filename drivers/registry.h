@@ -1,5 +1,6 @@
 #pragma once
 
+#include "drivers/common/found_device.h"
 #include "drivers/surroundings.h"
 
 #include "device/camera_source.h"
@@ -25,11 +26,24 @@ Result<std::unique_ptr<DisplaySink>> openDisplay(const ConfigNode& options, cons
                                                  const Surroundings& around);
 Result<std::unique_ptr<DmxPort>> openDmxPort(const ConfigNode& options, int universe, const Surroundings& around);
 Result<std::unique_ptr<DmxSource>> openDmxSource(const ConfigNode& options, int universe, const Surroundings& around);
-// `safeStates`: one for each relay, true is energised; their number is the bank's size.
-Result<std::unique_ptr<RelayBank>> openRelayBank(const ConfigNode& options, const std::vector<bool>& safeStates,
+// `name`: the bank's, which no other device of the site has. `safeStates`: one for each relay, true is energised; their number is the
+// bank's size.
+Result<std::unique_ptr<RelayBank>> openRelayBank(const ConfigNode& options, const std::string& name,
+                                                 const std::vector<bool>& safeStates, const Surroundings& around);
+Result<std::unique_ptr<InputBank>> openInputBank(const ConfigNode& options, const std::string& name, std::size_t size,
                                                  const Surroundings& around);
-Result<std::unique_ptr<InputBank>> openInputBank(const ConfigNode& options, std::size_t size, const Surroundings& around);
 Result<std::unique_ptr<CueController>> openCueController(const ConfigNode& options, const Surroundings& around);
 Result<std::unique_ptr<CameraSource>> openCamera(const ConfigNode& options, const Surroundings& around);
+
+// How the displays of a site are, without a window of theirs: Running is one that could show its picture now. Thread: any.
+struct DisplayQuestion {
+    ConfigNode options;
+    DisplayRequest request;
+};
+Result<std::vector<DeviceStatus>> lookForDisplays(const std::vector<DisplayQuestion>& questions);
+
+// Every device that this machine has, or that answers on its network, whether or not a driver has it open; by family. The families are
+// looked through at the same time; a network takes three seconds. Devices in use are not disturbed.
+std::vector<FoundDevice> findDevices();
 
 }  // namespace fantascope::drivers

@@ -7,6 +7,15 @@ Result<std::unique_ptr<CueController>> SimulatedCueController::open(const Config
     return std::unique_ptr<CueController>(new SimulatedCueController(std::move(plug)));
 }
 
+SimulatedCueController::~SimulatedCueController() {
+    for (const int button : told_) plug_.world().setLight(button, {});
+}
+
+void SimulatedCueController::light(int button, const ButtonLight& light) {
+    told_.insert(button);
+    plug_.world().setLight(button, light);
+}
+
 std::optional<ButtonEvent> SimulatedCueController::poll() {
     if (plug_.lostAgain()) lost_.merge(down_);
     if (!lost_.empty()) return ButtonEvent{lost_.extract(lost_.begin()).value(), false, plug_.world().clock().now()};

@@ -15,15 +15,18 @@ namespace fantascope::drivers {
 class SimulatedCueController final : public CueController {
 public:
     static Result<std::unique_ptr<CueController>> open(const ConfigNode& options, const Surroundings& around);
+    ~SimulatedCueController() override;
 
     DeviceStatus status() const override { return plug_.status(); }
     std::optional<ButtonEvent> poll() override;
+    void light(int button, const ButtonLight& light) override;
 
 private:
     explicit SimulatedCueController(site::Plug plug) : plug_(std::move(plug)) {}
     site::Plug plug_;
     std::set<int> down_;  // buttons whose press was given
     std::set<int> lost_;  // of those, the ones whose release a loss has swallowed
+    std::set<int> told_;  // buttons with a light
 };
 
 }  // namespace fantascope::drivers

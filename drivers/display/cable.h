@@ -20,10 +20,11 @@ public:
         if (around.world != nullptr) plug_.emplace(*around.world, name_, LossAction::Dark);
     }
 
+    bool in() const { return !plug_ || plug_->in(); }
     // Error: it is pulled.
     Result<void> check() const {
-        if (plug_ && !plug_->in()) return plug_->absent();
-        return {};
+        if (in()) return {};
+        return plug_->absent();
     }
     // The status of a display of `driver` that fails by its cable alone.
     DeviceStatus status(const std::string& driver) const {

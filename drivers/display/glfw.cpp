@@ -8,6 +8,8 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -16,59 +18,83 @@ namespace fantascope::drivers {
 namespace {
 
 constexpr const char* kDriver = "glfw";
+constexpr const char* kClosed = "its window was closed; start Fantascope again to show it";
 constexpr Time kRetry = std::chrono::seconds(1);
-// A swap that takes more than this part of a period waited for a refresh; one that takes less only copied.
+// Where swaps wait, one that takes more than this part of a period waited for a refresh; one that takes less had room in a queue.
 constexpr double kWaitOfSwap = 0.25;
 
-// A monitor, and the mode in which it shows a picture pixel by pixel.
-struct Screen {
-    GLFWmonitor* monitor;
-    GLFWvidmode mode;
-};
+// OpenGL's name of what the current context's window shows next.
+constexpr GLuint kWindow = 0;
 
-// Of the monitor's modes of the asked size the one nearest to the asked rate. Error: no such monitor (lists those there are), or
-// it has no mode of that size.
-Result<Screen> screenNamed(const std::string& name, const DisplayRequest& request) {
-    int count = 0;
-    GLFWmonitor** const monitors = glfwGetMonitors(&count);
-    std::vector<std::string> names;
-    for (int i = 0; i < count; ++i) {
-        names.emplace_back(glfwGetMonitorName(monitors[i]));
-        if (names.back() != name) continue;
+// Whether the current context's window takes linear light and stores it as sRGB in 8 bits, like a framebuffer of our own.
+bool windowStoresSrgb() {
+    const auto of = [](GLenum what) {
+        GLint value = 0;
+        glGetNamedFramebufferAttachmentParameteriv(kWindow, GL_BACK_LEFT, what, &value);
+        return value;
+    };
+    return of(GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING) == GL_SRGB && of(GL_FRAMEBUFFER_ATTACHMENT_GREEN_SIZE) == 8;
+}
 
-        int modeCount = 0;
-        const GLFWvidmode* const modes = glfwGetVideoModes(monitors[i], &modeCount);
-        const GLFWvidmode* best = nullptr;
-        const auto misses = [&](const GLFWvidmode& mode) { return std::abs(mode.refreshRate - request.refreshRate); };
-        for (const GLFWvidmode* mode = modes; mode != modes + modeCount; ++mode)
-            if (glm::ivec2(mode->width, mode->height) == request.size && (best == nullptr || misses(*mode) < misses(*best)))
-                best = mode;
-        if (best != nullptr) return Screen{monitors[i], *best};
-        return Error(fmt::format("monitor '{}' has no mode of {} x {} pixels; give the output a size that it has", name,
-                                 request.size.x, request.size.y));
+// A corner on the X screen, whole pixels.
+Result<glm::ivec2> cornerFrom(const ConfigNode& node) {
+    constexpr int kLargest = 32767;  // of the X protocol
+    const std::vector<ConfigNode> items = TRY(node.items(2, 2));
+    const auto x = TRY(items[0].integer(0, kLargest)), y = TRY(items[1].integer(0, kLargest));
+    return glm::ivec2(x, y);
+}
+
+// Letters by what the keyboard's layout writes, so that 'y' is where a German finds it.
+std::optional<Key> keyOf(int key, int scanCode, int modifiers) {
+    Key result;
+    result.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
+    result.control = (modifiers & GLFW_MOD_CONTROL) != 0;
+    constexpr std::pair<int, Key::Name> kNamed[] = {{GLFW_KEY_LEFT, Key::Name::Left},    {GLFW_KEY_RIGHT, Key::Name::Right},
+                                                    {GLFW_KEY_UP, Key::Name::Up},        {GLFW_KEY_DOWN, Key::Name::Down},
+                                                    {GLFW_KEY_TAB, Key::Name::Tab},      {GLFW_KEY_ENTER, Key::Name::Enter},
+                                                    {GLFW_KEY_ESCAPE, Key::Name::Escape}};
+    for (const auto& [code, name] : kNamed)
+        if (code == key) {
+            result.name = name;
+            return result;
+        }
+    if (key == GLFW_KEY_SPACE) {
+        result.letter = ' ';
+        return result;
     }
-    return Error(
-        fmt::format("there is no monitor '{}' (there is: {}); connect it and switch it on", name, fmt::join(names, ", ")));
+    const char* const written = glfwGetKeyName(key, scanCode);
+    if (written == nullptr || written[0] < '!' || written[0] > '~' || written[1] != '\0') return std::nullopt;
+    result.letter = static_cast<char>(std::tolower(written[0]));
+    return result;
 }
 
 }  // namespace
 
-Result<std::unique_ptr<DisplaySink>> GlfwDisplay::open(const ConfigNode& options, const DisplayRequest& request,
-                                                       const Surroundings& around) {
-    std::string driver, monitor;
+Result<std::optional<MonitorClaim>> GlfwDisplay::claimOf(const ConfigNode& options, const DisplayRequest& request) {
+    std::string driver;
+    std::optional<MonitorChoice> monitor;
+    std::optional<glm::ivec2> position;
     ConfigFields fields(options);
     fields.text("driver", driver);
-    fields.optional().text("monitor", monitor);
+    fields.optional().read("monitor", monitor, MonitorChoice::fromConfig);
+    fields.optional().read("position", position, cornerFrom);
     TRY(fields.finish());
+    if (position && !monitor) return options.error("position is a monitor's; name the monitor");
+    if (!monitor) return std::optional<MonitorClaim>();
+    return std::optional(MonitorClaim{request.name, *monitor, request.size, request.refreshRate, position});
+}
 
-    std::unique_ptr<GlfwDisplay> sink(new GlfwDisplay(request, around, std::move(monitor)));
-    (void)sink->beThere();  // a missing device is no error: its status tells of it
+Result<std::unique_ptr<DisplaySink>> GlfwDisplay::open(const ConfigNode& options, const DisplayRequest& request,
+                                                       const Surroundings& around) {
+    std::optional<MonitorClaim> wanted = TRY(claimOf(options, request));
+    std::unique_ptr<GlfwDisplay> sink(new GlfwDisplay(request, around, std::move(wanted)));
+    (void)sink->poll();  // a missing device is no error: its status tells of it
     return std::unique_ptr<DisplaySink>(std::move(sink));
 }
 
-GlfwDisplay::GlfwDisplay(const DisplayRequest& request, const Surroundings& around, std::string monitor)
+GlfwDisplay::GlfwDisplay(const DisplayRequest& request, const Surroundings& around, std::optional<MonitorClaim> wanted)
     : request_(request),
-      monitor_(std::move(monitor)),
+      wanted_(std::move(wanted)),
       clock_(around.clock),
       cable_(request, around),
       refreshes_(request.refreshRate),
@@ -93,14 +119,21 @@ std::int64_t GlfwDisplay::nextRefresh() const { return refreshes_.running(clock_
 
 Result<void> GlfwDisplay::appear() {
     if (!glfw_) glfw_ = TRY(GlfwLibrary::shared());
-    glfwPollEvents();  // monitors come and go by events
-    Screen screen{nullptr, {}};
-    if (!monitor_.empty()) screen = TRY(screenNamed(monitor_, request_));
-    if (window_ != nullptr) {
-        glfwSetWindowMonitor(window_, screen.monitor, 0, 0, request_.size.x, request_.size.y, screen.mode.refreshRate);
+    if (window_ == nullptr) TRY(makeWindow());  // also without its monitor, so that less is to be done when that comes
+    if (!wanted_) {
+        tryWhetherSwapsWait();
         return {};
     }
+    if (monitor_) {
+        monitor_->tryAgain();
+    } else {
+        monitor_ = TRY(MonitorWatch::shared())->claim(*wanted_);
+        seat_ = monitor_->seat();
+    }
+    return moveToMonitor();
+}
 
+Result<void> GlfwDisplay::makeWindow() {
     glfwDefaultWindowHints();
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
@@ -108,35 +141,79 @@ Result<void> GlfwDisplay::appear() {
     // As in the headless display: contexts of one kind can take turns on a thread.
     glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
     glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
-    glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);  // an output stays up while somebody works at another window
-    if (screen.mode.refreshRate > 0) glfwWindowHint(GLFW_REFRESH_RATE, screen.mode.refreshRate);
-    window_ = glfwCreateWindow(request_.size.x, request_.size.y, request_.name.c_str(), screen.monitor, nullptr);
+    // Frames are drawn straight into the window, which spares a copy of each; they need nothing but colours there.
+    glfwWindowHint(GLFW_SRGB_CAPABLE, GLFW_TRUE);
+    glfwWindowHint(GLFW_DEPTH_BITS, 0);
+    glfwWindowHint(GLFW_STENCIL_BITS, 0);
+    if (wanted_) glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+    window_ = glfwCreateWindow(request_.size.x, request_.size.y, request_.name.c_str(), nullptr, nullptr);
     if (window_ == nullptr)
         return Error(
             fmt::format("no window with OpenGL 4.5: {}; update the graphics driver (in software: Debian's package "
                         "libgl1-mesa-dri)",
                         whyGlfwFailed()));
-    if (screen.monitor != nullptr) glfwSetInputMode(window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
-    // GLFW knows whole numbers of Hz: what was asked is nearer to the truth than its rounding (59.94 and 60).
-    if (screen.mode.refreshRate > 0 && std::abs(screen.mode.refreshRate - request_.refreshRate) >= 1)
-        refreshes_ = RefreshTrain(screen.mode.refreshRate);
+    if (wanted_)
+        takeFromWindowManager(window_);
+    else
+        glfw_->placeWindow(window_);
 
     glfwMakeContextCurrent(window_);
-    const auto framebuffer = makeSrgbFramebuffer(request_.size);
-    if (!framebuffer) {
-        glfwDestroyWindow(std::exchange(window_, nullptr));
-        return framebuffer.error();
+    if (!windowStoresSrgb()) {
+        const auto framebuffer = makeSrgbFramebuffer(request_.size);
+        if (!framebuffer) {
+            glfwDestroyWindow(std::exchange(window_, nullptr));
+            return framebuffer.error();
+        }
+        framebuffer_ = *framebuffer;
     }
-    framebuffer_ = *framebuffer;
+    listen();
     return {};
 }
 
-std::string GlfwDisplay::lossOfWindow() const {
-    if (glfwWindowShouldClose(window_)) return "its window was closed; start Fantascope again to show it";
-    // GLFW takes a window off a monitor that vanishes.
-    if (!monitor_.empty() && glfwGetWindowMonitor(window_) == nullptr)
-        return fmt::format("monitor '{}' vanished; connect it and switch it on", monitor_);
-    return "";
+void GlfwDisplay::listen() {
+    glfwSetWindowUserPointer(window_, this);
+    static constexpr auto of = [](GLFWwindow* window) { return static_cast<GlfwDisplay*>(glfwGetWindowUserPointer(window)); };
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scanCode, int action, int modifiers) {
+        if (const auto known = keyOf(key, scanCode, modifiers))
+            of(window)->events_.push(
+                {action == GLFW_RELEASE ? ScreenEvent::Kind::KeyUp : ScreenEvent::Kind::KeyDown, *known, of(window)->pointer_});
+    });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
+        of(window)->pointer_ = {x, y};
+        of(window)->events_.push({ScreenEvent::Kind::PointerMoved, {}, {x, y}});
+    });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
+        if (button != GLFW_MOUSE_BUTTON_LEFT) return;
+        of(window)->events_.push(
+            {action == GLFW_PRESS ? ScreenEvent::Kind::ButtonDown : ScreenEvent::Kind::ButtonUp, {}, of(window)->pointer_});
+    });
+}
+
+Result<void> GlfwDisplay::moveToMonitor() {
+    if (!seat_.absence.empty()) return Error(seat_.absence);
+    showAt(window_, seat_.area.corner.x, seat_.area.corner.y);
+    if (seat_.hertz > 0 && seat_.hertz != refreshes_.hertz()) refreshes_.runAt(seat_.hertz, clock_.now());
+    tryWhetherSwapsWait();
+    return {};
+}
+
+void GlfwDisplay::tryWhetherSwapsWait() {
+    if (glfw_->swapsWait) return;
+    constexpr int kSwaps = 4;
+    glfwMakeContextCurrent(window_);
+    const auto timeOf = [&](int refreshes) {
+        Time took{};
+        for (int number = 0; number <= kSwaps; ++number) {
+            const GLfloat black[] = {0, 0, 0, 1};
+            glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+            glClearBufferfv(GL_COLOR, 0, black);
+            const Time one = swap(refreshes).took;
+            if (number > 0) took += one;  // the first waits for what was before
+        }
+        return took;
+    };
+    const Time atOnce = timeOf(0), waiting = timeOf(1);
+    glfw_->swapsWait = seconds(waiting - atOnce) * refreshes_.hertz() > 0.5 * kSwaps;
 }
 
 void GlfwDisplay::setAbsence(const std::string& why) {
@@ -145,27 +222,27 @@ void GlfwDisplay::setAbsence(const std::string& why) {
     absence_ = why;
 }
 
-Result<void> GlfwDisplay::beThere() {
+bool GlfwDisplay::poll() {
     const Time now = clock_.now();
-    const bool closed = window_ != nullptr && glfwWindowShouldClose(window_);
-    if (absence_.empty()) {
-        setAbsence(lossOfWindow());
-        if (!absence_.empty()) {
-            glfwHideWindow(window_);
-            retryAt_ = now + kRetry;
-        }
-    } else if (!closed && now >= retryAt_) {
+    if (window_ != nullptr && glfwWindowShouldClose(window_)) {
+        if (absence_ != kClosed) glfwHideWindow(window_);
+        setAbsence(kClosed);
+    } else if (monitor_ && seat_ != monitor_->seat()) {
+        seat_ = monitor_->seat();
+        const auto moved = moveToMonitor();
+        if (!moved) glfwHideWindow(window_);
+        setAbsence(moved ? "" : moved.error().message());
+        retryAt_ = now + kRetry;
+    } else if (!absence_.empty() && now >= retryAt_) {
         retryAt_ = now + kRetry;
         const auto appeared = appear();
         setAbsence(appeared ? "" : appeared.error().message());
     }
-    if (!absence_.empty()) return Error(fmt::format("{} is absent: {}", request_.name, absence_));
-    return {};
+    return absence_.empty() && cable_.in();
 }
 
 Result<void> GlfwDisplay::makeCurrent() {
-    TRY(cable_.check());
-    TRY(beThere());
+    if (window_ == nullptr) return Error(fmt::format("{} has no OpenGL context yet: {}", request_.name, absence_));
     glfwGetError(nullptr);  // forgets older ones
     glfwMakeContextCurrent(window_);
     const char* why = nullptr;
@@ -174,44 +251,60 @@ Result<void> GlfwDisplay::makeCurrent() {
     return {};
 }
 
-Result<void> GlfwDisplay::fillBackBuffer() {
+Result<void> GlfwDisplay::beThere() {
+    TRY(cable_.check());
+    if (!poll()) return Error(fmt::format("{} is absent: {}", request_.name, absence_));
+    return makeCurrent();
+}
+
+Result<void> GlfwDisplay::finish() {
     TRY(makeCurrent());
-    // With conversion off the stored values arrive as they are, whatever the window says of its own colours.
-    const bool converting = glIsEnabled(GL_FRAMEBUFFER_SRGB);
-    glDisable(GL_FRAMEBUFFER_SRGB);
-    const auto [width, height] = std::pair(request_.size.x, request_.size.y);
-    glBlitNamedFramebuffer(framebuffer_, 0, 0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    if (converting) glEnable(GL_FRAMEBUFFER_SRGB);
+    if (framebuffer_ != kWindow) {
+        // With conversion off the stored values arrive as they are.
+        const bool converting = glIsEnabled(GL_FRAMEBUFFER_SRGB);
+        glDisable(GL_FRAMEBUFFER_SRGB);
+        const auto [width, height] = std::pair(request_.size.x, request_.size.y);
+        glBlitNamedFramebuffer(framebuffer_, kWindow, 0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        if (converting) glEnable(GL_FRAMEBUFFER_SRGB);
+    }
     glFinish();  // now only the swap itself can wait
     return {};
 }
 
-void GlfwDisplay::swap(int refreshes) {
+GlfwDisplay::Swap GlfwDisplay::swap(int refreshes) {
+    const Time before = clock_.now();
     if (std::exchange(swapInterval_, refreshes) != refreshes) glfwSwapInterval(refreshes);
     glfwSwapBuffers(window_);
     glFinish();
+    const Time after = clock_.now();
+    glfwPollEvents();
+    return {after, after - before};
 }
 
 Result<Shown> GlfwDisplay::present() {
-    TRY(fillBackBuffer());
-    const Time before = clock_.now();
+    TRY(beThere());
     std::int64_t refresh = nextRefresh();
-    swap(1);
-    const Time after = clock_.now();
-    glfwPollEvents();
-    if (seconds(after - before) * refreshes_.hertz() > kWaitOfSwap) refresh = refreshes_.seen(after);
-    const Shown shown{refresh, refreshTime(refresh)};
+    if (!*glfw_->swapsWait) {
+        clock_.sleepUntil(refreshTime(refresh));  // the followers' clock too, so that all swap at one time
+        const Swap swapped = swap(0);
+        return Shown{refresh, refreshTime(refresh), swapped.done, swapped.took};
+    }
+    Swap swapped = swap(1);
+    if (seconds(swapped.took) * refreshes_.hertz() > kWaitOfSwap) {
+        refresh = refreshes_.seen(swapped.done);
+        swapped.took = std::max(Time{}, swapped.took - tickTime(1, refreshes_.hertz()));
+    }
+    const Shown shown{refresh, refreshTime(refresh), swapped.done, swapped.took};
     clock_.sleepUntil(shown.at);
     return shown;
 }
 
 Result<Shown> GlfwDisplay::presentWith(Time leading) {
-    TRY(fillBackBuffer());
+    TRY(beThere());
     clock_.sleepUntil(leading);
     const std::int64_t refresh = refreshes_.running(clock_.now());
-    swap(0);
-    glfwPollEvents();
-    return Shown{refresh, refreshTime(refresh)};
+    const Swap swapped = swap(0);
+    return Shown{refresh, refreshTime(refresh), swapped.done, swapped.took};
 }
 
 }  // namespace fantascope::drivers

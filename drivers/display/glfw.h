@@ -2,33 +2,40 @@
 
 #include "drivers/display/cable.h"
 #include "drivers/display/glfw_library.h"
+#include "drivers/display/monitor_watch.h"
 #include "drivers/display/refresh_train.h"
 #include "drivers/surroundings.h"
 
 #include "device/display_sink.h"
 
+#include "core/bounded_queue.h"
 #include "core/config.h"
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 struct GLFWwindow;
 
 namespace fantascope::drivers {
 
-// A window on the desktop, or a whole monitor or projector of the X server.
+// A window on the desktop, or a whole monitor or projector of the X server, known by its identity and switched on by MonitorWatch.
 //
-// It is Absent without an X server, without its monitor, and after somebody closed its window. The first two are tried again once
-// a second, at makeCurrent(); a closed window stays closed until the program's next start, because somebody wanted it closed.
+// It is Absent without an X server, without its monitor, and after somebody closed its window. It is back as soon as its monitor is; the
+// X server, and what was refused, is tried again once a second, at poll(). A closed window stays closed until the program's next
+// start, because somebody wanted it closed.
 // The context and what is in it outlive the loss of a monitor. When the X server itself ends, Xlib ends the program.
-// Refreshes: those of the monitor where swapping waits for them; elsewhere (as in Xvfb) those of the clock.
+// Refreshes: those of the monitor where swapping waits for them, which is tried with some black frames when the first window appears;
+// elsewhere (as in Xvfb) those of the clock, and the swap waits for it.
 // Thread: the render thread must be the main thread, to which GLFW belongs. All GLFW displays of a program share it.
 class GlfwDisplay final : public DisplaySink {
 public:
-    // Keys: monitor. Error: a wrong key.
+    // Keys: monitor, position. Error: a wrong key.
     static Result<std::unique_ptr<DisplaySink>> open(const ConfigNode& options, const DisplayRequest& request,
                                                      const Surroundings& around);
+    // Which monitor open() would claim; nothing: it would be a window of the desktop. Error: a wrong key.
+    static Result<std::optional<MonitorClaim>> claimOf(const ConfigNode& options, const DisplayRequest& request);
     ~GlfwDisplay() override;
 
     DeviceStatus status() const override;
@@ -36,37 +43,50 @@ public:
     double refreshRate() const override { return refreshes_.hertz(); }
     std::int64_t nextRefresh() const override;
     Time refreshTime(std::int64_t number) const override { return refreshes_.timeOf(number); }
+    bool poll() override;
     Result<void> makeCurrent() override;
-    // 0 before it is Running for the first time.
+    // The window itself (0) where that can hold stored sRGB values, else a picture that finish() copies there.
     unsigned framebuffer() const override { return framebuffer_; }
+    Result<void> finish() override;
     Result<Shown> present() override;
     Result<Shown> presentWith(Time leading) override;
+    std::optional<ScreenEvent> pollEvent() override { return events_.pop(); }
 
 private:
-    GlfwDisplay(const DisplayRequest& request, const Surroundings& around, std::string monitor);
+    GlfwDisplay(const DisplayRequest& request, const Surroundings& around, std::optional<MonitorClaim> wanted);
 
     // Makes it Running, the first time or again. Error: what is missing and what to do about it.
     Result<void> appear();
-    // Why the window that was there shows nothing now; empty if it shows.
-    std::string lossOfWindow() const;
-    // Sees that it is Running, and brings it back when that is due. Error: it is Absent.
-    Result<void> beThere();
+    Result<void> makeWindow();
+    void listen();
+    // Brings the window to where its monitor is now. Error: it is nowhere.
+    Result<void> moveToMonitor();
     void setAbsence(const std::string& why);
-    // Brings what was drawn into the window's back buffer, finished. Error: it is Absent.
-    Result<void> fillBackBuffer();
+    // Makes its context current for a swap. Error: it is Absent.
+    Result<void> beThere();
+    struct Swap {
+        Time done{};
+        Time took{};
+    };
     // Swaps after so many refreshes: 1 waits for the next where the driver can, 0 swaps at once.
-    void swap(int refreshes);
+    Swap swap(int refreshes);
+    // Finds out whether swaps wait, if nobody did. A driver may say so and not do it, and a slow swap alone proves nothing.
+    void tryWhetherSwapsWait();
 
     const DisplayRequest request_;
-    const std::string monitor_;  // its name; empty: a window of the desktop
+    const std::optional<MonitorClaim> wanted_;  // nothing: a window of the desktop
     Clock& clock_;
     Cable cable_;
     RefreshTrain refreshes_;
     std::shared_ptr<GlfwLibrary> glfw_;
+    std::unique_ptr<MonitorWatch::Claim> monitor_;
+    Placement::Seat seat_;  // of the monitor as it was seen last
     GLFWwindow* window_ = nullptr;
-    unsigned framebuffer_ = 0;
-    int swapInterval_ = -1;  // not set yet
+    unsigned framebuffer_ = 0;  // 0: the window
+    int swapInterval_ = -1;     // not set yet
     Time retryAt_{};
+    glm::dvec2 pointer_{0.0};
+    BoundedQueue<ScreenEvent, 256> events_;  // what does not fit is lost: nobody has asked for a long time
 
     mutable std::mutex mutex_;                       // status() reads what the render thread writes:
     std::string absence_ = "it was not opened yet";  // empty: Running

@@ -110,7 +110,6 @@ std::int64_t HeadlessDisplay::nextRefresh() const { return std::max(refreshes_.r
 Time HeadlessDisplay::refreshTime(std::int64_t number) const { return refreshes_.timeOf(number); }
 
 Result<void> HeadlessDisplay::makeCurrent() {
-    TRY(cable_.check());
     // Asking EGL for the context that is current already would make it flush.
     if (eglGetCurrentContext() == context_) return {};
     if (!eglMakeCurrent(egl_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
@@ -118,23 +117,34 @@ Result<void> HeadlessDisplay::makeCurrent() {
     return {};
 }
 
-Result<Shown> HeadlessDisplay::present() {
+Result<void> HeadlessDisplay::finish() {
     TRY(makeCurrent());
     glFinish();
-    shown_ = nextRefresh();
+    return {};
+}
+
+Shown HeadlessDisplay::heldUntil(std::int64_t refresh) {
+    shown_ = refresh;
+    return {.refresh = refresh, .at = refreshTime(refresh), .swapped = refreshTime(refresh)};
+}
+
+Result<Shown> HeadlessDisplay::present() {
+    TRY(cable_.check());
+    TRY(makeCurrent());
+    const Shown shown = heldUntil(nextRefresh());
     // There is room for another once the frame before is off.
-    clock_.sleepUntil(refreshTime(shown_ - 1));
-    return Shown{shown_, refreshTime(shown_)};
+    clock_.sleepUntil(refreshTime(shown.refresh - 1));
+    return shown;
 }
 
 Result<Shown> HeadlessDisplay::presentWith(Time leading) {
+    TRY(cable_.check());
     TRY(makeCurrent());
-    const bool toCome = leading > clock_.now();
-    glFinish();
-    const std::int64_t running = refreshes_.running(clock_.now());
+    const Time now = clock_.now();
+    const std::int64_t running = refreshes_.running(now);
+    if (leading <= now) return heldUntil(running);
     const Time halfPeriod = tickTime(1, 2 * request_.refreshRate);
-    shown_ = toCome ? std::max(refreshes_.running(leading + halfPeriod), running + 1) : running;
-    return Shown{shown_, refreshTime(shown_)};
+    return heldUntil(std::max(refreshes_.running(leading + halfPeriod), running + 1));
 }
 
 }  // namespace fantascope::drivers

@@ -15,8 +15,7 @@ namespace fantascope::drivers {
 // A display without a window system: real OpenGL on EGL alone, Mesa's software renderer or a GPU. Its refreshes are those of a
 // clock: number k takes place at tickTime(k, rate). It can be unplugged where a simulated site has its plug.
 //
-// A frame is finished before the clock is looked at, so that it counts as shown only once it is complete. One finished frame is
-// held until its refresh comes, as a graphics card's swap chain does.
+// One finished frame is held until its refresh comes, as a graphics card's swap chain does.
 // The context and what is in it outlive a loss.
 class HeadlessDisplay final : public DisplaySink {
 public:
@@ -30,12 +29,15 @@ public:
     double refreshRate() const override { return request_.refreshRate; }
     std::int64_t nextRefresh() const override;
     Time refreshTime(std::int64_t number) const override;
+    bool poll() override { return cable_.in(); }
     Result<void> makeCurrent() override;
     unsigned framebuffer() const override { return framebuffer_; }
+    Result<void> finish() override;
     Result<Shown> present() override;
     Result<Shown> presentWith(Time leading) override;
 
 private:
+    Shown heldUntil(std::int64_t refresh);
     HeadlessDisplay(const DisplayRequest& request, const Surroundings& around, void* egl, void* context);
 
     DisplayRequest request_;

@@ -25,6 +25,12 @@ public:
         at_ = time;
         return number_;
     }
+    // From `time` on they come at another rate; the running one keeps its number.
+    void runAt(double hertz, Time time) {
+        number_ = running(time);
+        at_ = time;
+        hertz_ = hertz;
+    }
 
 private:
     double hertz_;

@@ -2,42 +2,46 @@
 
 #include "core/check.h"
 
+#include <utility>
+
 namespace fantascope::drivers {
 
-Result<std::unique_ptr<RelayBank>> SimulatedRelayBank::open(const ConfigNode& options, const std::vector<bool>& safeStates,
-                                                            const Surroundings& around) {
-    auto plug = TRY(site::Plug::open(options, around, "relay bank", LossAction::SafeState));
-    plug.world().installRelays(safeStates);
+Result<std::unique_ptr<RelayBank>> SimulatedRelayBank::open(const ConfigNode& options, const std::string& name,
+                                                            const std::vector<bool>& safeStates, const Surroundings& around) {
+    auto plug = TRY(site::Plug::open(options, around, name, LossAction::SafeState));
+    plug.world().installRelays(name, safeStates);
     return std::unique_ptr<RelayBank>(new SimulatedRelayBank(std::move(plug), safeStates));
 }
 
-SimulatedRelayBank::~SimulatedRelayBank() { plug_.world().setRelays(safeStates_); }
+SimulatedRelayBank::~SimulatedRelayBank() { plug_.world().setRelays(plug_.device(), safeStates_); }
 
 Result<void> SimulatedRelayBank::write(const std::vector<bool>& states) {
     FANTASCOPE_CHECK(states.size() == size(), "one state for each relay");
-    if (!plug_.world().setRelays(states)) return plug_.absent();
+    if (!plug_.world().setRelays(plug_.device(), states)) return plug_.absent();
     return {};
 }
 
 Result<std::vector<bool>> SimulatedRelayBank::read() {
     if (!plug_.in()) return plug_.absent();
-    return plug_.world().relays();
+    return plug_.world().relays(plug_.device());
 }
 
-Result<std::unique_ptr<InputBank>> SimulatedInputBank::open(const ConfigNode& options, std::size_t size,
+Result<std::unique_ptr<InputBank>> SimulatedInputBank::open(const ConfigNode& options, const std::string& name, std::size_t size,
                                                             const Surroundings& around) {
-    auto plug = TRY(site::Plug::open(options, around, "contacts", LossAction::Hold));
+    auto plug = TRY(site::Plug::open(options, around, name, LossAction::Hold));
     return std::unique_ptr<InputBank>(new SimulatedInputBank(std::move(plug), size));
 }
 
 std::optional<ContactChange> SimulatedInputBank::poll() {
     // All contacts are looked at together, so that a restless one does not hide the others.
+    if (plug_.lostAgain()) looking_ = false;
     if (waiting_.empty() && plug_.in()) {
+        const bool witnessed = std::exchange(looking_, true);
         for (std::size_t contact = 0; contact < size(); ++contact) {
-            const bool closed = plug_.world().contact(contact);
+            const bool closed = plug_.world().contact(plug_.device(), contact);
             if (closed == reported_[contact]) continue;
             reported_[contact] = closed;
-            waiting_.push_back({contact, closed, plug_.world().clock().now()});
+            waiting_.push_back({contact, closed, plug_.world().clock().now(), witnessed});
         }
     }
     if (waiting_.empty()) return std::nullopt;

@@ -9,14 +9,17 @@
 #include "core/config.h"
 
 #include <deque>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace fantascope::drivers {
 
-// The simulated site's relays; its watchdog knows at once that its line is dead. Plug: "relay bank".
+// A bank of the simulated site's relays; its watchdog knows at once that its line is dead. Plug: the bank's name.
 class SimulatedRelayBank final : public RelayBank {
 public:
-    static Result<std::unique_ptr<RelayBank>> open(const ConfigNode& options, const std::vector<bool>& safeStates,
-                                                   const Surroundings& around);
+    static Result<std::unique_ptr<RelayBank>> open(const ConfigNode& options, const std::string& name,
+                                                   const std::vector<bool>& safeStates, const Surroundings& around);
     ~SimulatedRelayBank() override;
 
     DeviceStatus status() const override { return plug_.status(); }
@@ -31,10 +34,11 @@ private:
     std::vector<bool> safeStates_;
 };
 
-// The simulated site's contacts. Plug: "contacts".
+// A bank of the simulated site's contacts. Plug: the bank's name.
 class SimulatedInputBank final : public InputBank {
 public:
-    static Result<std::unique_ptr<InputBank>> open(const ConfigNode& options, std::size_t size, const Surroundings& around);
+    static Result<std::unique_ptr<InputBank>> open(const ConfigNode& options, const std::string& name, std::size_t size,
+                                                   const Surroundings& around);
 
     DeviceStatus status() const override { return plug_.status(); }
     std::size_t size() const override { return reported_.size(); }
@@ -44,6 +48,7 @@ private:
     SimulatedInputBank(site::Plug plug, std::size_t size) : plug_(std::move(plug)), reported_(size, false) {}
     site::Plug plug_;
     std::vector<bool> reported_;         // as of the last change that was noticed
+    bool looking_ = false;               // since the start or the last loss
     std::deque<ContactChange> waiting_;  // noticed and not taken yet
 };
 

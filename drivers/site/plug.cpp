@@ -12,7 +12,7 @@ constexpr const char* kAdvice = "unplugged in the simulated site; plug it in aga
 }  // namespace
 
 Plug::Plug(World& world, std::string device, LossAction onLoss)
-    : world_(world), device_(std::move(device)), onLoss_(onLoss), before_(world.unpluggings(device_)), noticed_(before_) {}
+    : world_(world), device_(std::move(device)), onLoss_(onLoss), before_(world.losses(device_)), noticed_(before_) {}
 
 Result<Plug> Plug::open(const ConfigNode& options, const drivers::Surroundings& around, std::string device, LossAction onLoss) {
     std::string driver;
@@ -32,12 +32,12 @@ DeviceStatus Plug::status() const {
     status.state = in() ? DeviceState::Running : DeviceState::Absent;
     status.onLoss = onLoss_;
     if (status.state != DeviceState::Running) status.detail = kAdvice;
-    status.losses = world_.unpluggings(device_) - before_;
+    status.losses = world_.losses(device_) - before_;
     return status;
 }
 
 Error Plug::absent() const { return Error(fmt::format("{} is absent: {}", device_, kAdvice)); }
 
-bool Plug::lostAgain() { return std::exchange(noticed_, world_.unpluggings(device_)) != noticed_; }
+bool Plug::lostAgain() { return std::exchange(noticed_, world_.losses(device_)) != noticed_; }
 
 }  // namespace fantascope::site

@@ -25,6 +25,7 @@ public:
                              LossAction onLoss);
 
     World& world() const { return world_; }
+    const std::string& device() const { return device_; }
     bool in() const { return world_.plugged(device_); }
     DeviceStatus status() const;
     // The error of a call while the device is not Running.
@@ -36,8 +37,8 @@ private:
     World& world_;
     std::string device_;
     LossAction onLoss_;
-    int before_;   // unpluggings before this device was opened
-    int noticed_;  // unpluggings that lostAgain() told of
+    int before_;   // losses before this device was opened
+    int noticed_;  // losses that lostAgain() told of
 };
 
 }  // namespace fantascope::site

@@ -44,6 +44,13 @@ struct Change {
     bool begins = false;
 };
 
+// A contact's closing or its end.
+struct Move {
+    Time at{};
+    std::size_t contact = 0;
+    bool closes = false;
+};
+
 std::string tell(const Fault& fault, bool begins) {
     switch (fault.kind) {
         case Fault::Kind::Unplug:
@@ -86,10 +93,22 @@ struct SimulatedSite::Impl {
             if (fault.until) changes.push_back({*fault.until, &fault, false});
         }
         std::stable_sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) { return a.at < b.at; });
+        for (const Closing& closing : simulation.closings) {
+            moves.push_back({closing.at, closing.contact, true});
+            if (closing.until) moves.push_back({*closing.until, closing.contact, false});
+        }
+        std::stable_sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.at < b.at; });
     }
 
-    // All faults up to a time since the beginning.
+    // Everything up to a time since the beginning.
     void happen(Time until) {
+        for (; nextMove < moves.size() && moves[nextMove].at <= until; ++nextMove) {
+            const Move& move = moves[nextMove];
+            int& closings = closed[move.contact];
+            closings += move.closes ? 1 : -1;
+            const NominalSite::Contact& contact = nominal.contacts[move.contact];
+            world.setContact(contact.bank, contact.input, closings > 0);
+        }
         for (; nextChange < changes.size() && changes[nextChange].at <= until; ++nextChange) {
             const Change& change = changes[nextChange];
             if (change.begins)
@@ -148,10 +167,10 @@ struct SimulatedSite::Impl {
             const NominalSite::Fixture& fixture = nominal.fixtures[lamp.feed];
             levels.push_back(levelOf(fixture, world.slots(fixture.universe)));
         }
-        const std::vector<bool> relays = world.relays();
         for (const FedLamp& lamp : simulation.streetLamps) {
-            const std::size_t coil = nominal.relays[lamp.feed].coil;
-            levels.emplace_back(coil < relays.size() && relays[coil] ? 1 : 0);
+            const NominalSite::Relay& relay = nominal.relays[lamp.feed];
+            const std::vector<bool> bank = world.relays(relay.bank);
+            levels.emplace_back(relay.coil < bank.size() && bank[relay.coil] ? 1 : 0);
         }
         for (std::size_t i = 0; i < nominal.outputs.size(); ++i) {
             const std::string& output = nominal.outputs[i].name;
@@ -184,6 +203,9 @@ struct SimulatedSite::Impl {
     std::vector<Change> changes;  // in the order of time; point into simulation.faults
     std::size_t nextChange = 0;
     std::vector<const Fault*> active;
+    std::vector<Move> moves;  // in the order of time
+    std::size_t nextMove = 0;
+    std::map<std::size_t, int> closed;                               // how many close a contact now
     std::map<std::string, std::shared_ptr<const RgbaImage>> frozen;  // what a frozen device keeps
 
     std::optional<CameraView> view;
@@ -226,6 +248,7 @@ Time SimulatedSite::nextEvent() const {
     const Impl& site = *impl_;
     Time next = Time::max();
     if (site.nextChange < site.changes.size()) next = site.beginning + site.changes[site.nextChange].at;
+    if (site.nextMove < site.moves.size()) next = std::min(next, site.beginning + site.moves[site.nextMove].at);
     if (site.view) next = std::min(next, site.beginning + tickTime(site.lastFrame + 1, site.simulation.camera.frameRate));
     return next;
 }

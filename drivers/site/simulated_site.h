@@ -30,11 +30,18 @@ struct NominalSite {
     };
     struct Relay {
         std::string name;
+        std::string bank;
         std::size_t coil = 0;
+    };
+    struct Contact {
+        std::string name;
+        std::string bank;
+        std::size_t input = 0;
     };
     std::vector<Output> outputs;
     std::vector<Fixture> fixtures;
     std::vector<Relay> relays;
+    std::vector<Contact> contacts;
     std::optional<vision::CameraModel> camera;
     std::vector<std::string> devices;  // all that can be unplugged, by their names in World
 };
@@ -68,8 +75,8 @@ public:
 
     // Sets the beginning from which faults and camera frames count. Before the first advanceTo(), once.
     void begin(Time at);
-    // Makes the faults happen that are due, and lets the camera expose the newest frame that is due; if several are, the older
-    // ones are dropped as a real camera's would be. Some milliseconds for a frame, nothing otherwise.
+    // Makes the faults happen and the contacts move that are due, and lets the camera expose the newest frame that is due; if several are,
+    // the older ones are dropped as a real camera's would be. Some milliseconds for a frame, nothing otherwise.
     void advanceTo(Time now);
     // When advanceTo() has something to do next.
     Time nextEvent() const;

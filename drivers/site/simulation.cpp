@@ -167,6 +167,34 @@ Result<std::vector<FedLamp>> readLamps(const ConfigNode& node, const std::vector
     return lamps;
 }
 
+// When something begins and ends: `until` after `at`. Ask for check() once the fields are finished.
+struct Span {
+    Time& at;
+    std::optional<Time>& until;
+
+    void declare(ConfigFields& fields) const {
+        fields.time("at", at, 0, kLongest);
+        fields.optional().read("until", until, [](const ConfigNode& value) -> Result<Time> {
+            return fromSeconds(TRY(value.number(0, kLongest, "s")));
+        });
+    }
+    Result<void> check(const ConfigNode& node) const {
+        if (until && *until <= at) return node.error("'until' must be later than 'at'");
+        return {};
+    }
+};
+
+Result<Closing> readClosing(const ConfigNode& node, const std::vector<std::string>& contacts) {
+    Closing closing;
+    const Span span{closing.at, closing.until};
+    ConfigFields fields(node);
+    fields.read("contact", closing.contact, [&](const ConfigNode& value) { return value.choice(contacts); });
+    span.declare(fields);
+    TRY(fields.finish());
+    TRY(span.check(node));
+    return closing;
+}
+
 Result<Fault> readFault(const ConfigNode& node, const NominalSite& nominal) {
     Fault fault;
     // Which keys a fault may have follows from its kind, so that comes first wherever it stands.
@@ -178,13 +206,11 @@ Result<Fault> readFault(const ConfigNode& node, const NominalSite& nominal) {
         }
     if (!kindKnown) return node.error("'kind' is missing; one of unplug, freeze, bump, fog is needed");
 
+    const Span span{fault.at, fault.until};
     ConfigFields fields(node);
     std::string kind;
     fields.text("kind", kind);
-    fields.time("at", fault.at, 0, kLongest);
-    fields.optional().read("until", fault.until, [](const ConfigNode& value) -> Result<Time> {
-        return fromSeconds(TRY(value.number(0, kLongest, "s")));
-    });
+    span.declare(fields);
     const auto readDevice = [&](std::string_view key, const std::vector<std::string>& names) {
         fields.read(key, fault.device,
                     [&](const ConfigNode& value) -> Result<std::string> { return names[TRY(value.choice(names))]; });
@@ -212,7 +238,7 @@ Result<Fault> readFault(const ConfigNode& node, const NominalSite& nominal) {
             break;
     }
     TRY(fields.finish());
-    if (fault.until && *fault.until <= fault.at) return node.error("'until' must be later than 'at'");
+    TRY(span.check(node));
     return fault;
 }
 
@@ -237,6 +263,8 @@ Result<Simulation> readSimulation(const ConfigNode& node, const NominalSite& nom
     fields.optional().read("street_lamps", simulation.streetLamps,
                            [&](const ConfigNode& value) { return readLamps(value, namesOf(nominal.relays), "relay"); });
     fields.optional().read("camera", simulation.camera, readCamera);
+    fields.optional().list("contacts", simulation.closings,
+                           [&](const ConfigNode& value) { return readClosing(value, namesOf(nominal.contacts)); });
     fields.optional().list("faults", simulation.faults, [&](const ConfigNode& value) { return readFault(value, nominal); });
     TRY(fields.finish());
     for (const NominalSite::Output& output : nominal.outputs)

@@ -51,6 +51,13 @@ struct Fault {
     double densityAt(Time time) const;
 };
 
+// A contact of the nominal site is closed for a while, as by somebody who passes a gate.
+struct Closing {
+    std::size_t contact = 0;
+    Time at{};
+    std::optional<Time> until;  // absent: for good
+};
+
 struct Simulation {
     glm::dvec3 ambient{0.2, 0.25, 0.4};  // lux
     glm::dvec3 sky{0.01, 0.015, 0.03};   // cd/m2
@@ -59,6 +66,7 @@ struct Simulation {
     std::vector<FedLamp> lamps;                  // fed by fixtures
     std::vector<FedLamp> streetLamps;            // fed by relays
     SimulatedCamera camera;
+    std::vector<Closing> closings;
     std::vector<Fault> faults;
 };
 

@@ -9,7 +9,7 @@
 namespace fantascope::site {
 namespace {
 
-const std::string kRelayBank = "relay bank", kCueController = "cue controller", kCamera = "camera";
+const std::string kCueController = "cue controller", kCamera = "camera";
 std::string universeName(int universe) { return fmt::format("universe {}", universe); }
 std::string deskName(int universe) { return fmt::format("desk {}", universe); }
 
@@ -21,9 +21,10 @@ void World::setPlugged(const std::string& device, bool plugged) {
     if (plug.in == plugged) return;
     plug.in = plugged;
     if (plugged) return;
-    ++plug.pulls;
+    ++plug.losses;
     // What the far end does by itself when its line goes dead.
-    if (device == kRelayBank) relays_ = safeStates_;
+    if (const auto bank = relays_.find(device); bank != relays_.end())
+        bank->second = {bank->second.safe, bank->second.safe, false};
     if (device == kCueController) presses_.clear();
     if (device == kCamera) camera_.clear();
     frames_.erase(device);
@@ -35,10 +36,10 @@ bool World::plugged(const std::string& device) const {
     return isIn(device);
 }
 
-int World::unpluggings(const std::string& device) const {
+int World::losses(const std::string& device) const {
     const std::lock_guard lock(mutex_);
     const auto found = plugs_.find(device);
-    return found == plugs_.end() ? 0 : found->second.pulls;
+    return found == plugs_.end() ? 0 : found->second.losses;
 }
 
 bool World::isIn(const std::string& device) const {
@@ -59,35 +60,49 @@ std::array<std::uint8_t, kDmxSlots> World::slots(int universe) const {
     return found == slots_.end() ? std::array<std::uint8_t, kDmxSlots>{} : found->second;
 }
 
-void World::installRelays(const std::vector<bool>& safeStates) {
+void World::installRelays(const std::string& bank, const std::vector<bool>& safeStates) {
     const std::lock_guard lock(mutex_);
-    relays_ = safeStates_ = safeStates;
+    relays_[bank] = {safeStates, safeStates, false};
 }
 
-bool World::setRelays(const std::vector<bool>& states) {
+bool World::setRelays(const std::string& bank, const std::vector<bool>& states) {
     const std::lock_guard lock(mutex_);
-    FANTASCOPE_CHECK(states.size() == safeStates_.size(), "one state for each installed relay");
-    if (!isIn(kRelayBank)) return false;
-    relays_ = states;
+    Relays& relays = relays_[bank];
+    FANTASCOPE_CHECK(states.size() == relays.safe.size(), "one state for each installed relay");
+    if (!isIn(bank)) return false;
+    relays.states = states;
+    relays.asWritten = true;
     return true;
 }
 
-std::vector<bool> World::relays() const {
+void World::switchRelaysByHand(const std::string& bank, const std::vector<bool>& states) {
     const std::lock_guard lock(mutex_);
-    return relays_;
+    Relays& relays = relays_[bank];
+    FANTASCOPE_CHECK(states.size() == relays.safe.size(), "one state for each installed relay");
+    if (relays.asWritten && states != relays.states) {
+        ++plugs_[bank].losses;
+        relays.asWritten = false;
+    }
+    relays.states = states;
 }
 
-void World::setContact(std::size_t contact, bool closed) {
+std::vector<bool> World::relays(const std::string& bank) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = relays_.find(bank);
+    return found == relays_.end() ? std::vector<bool>() : found->second.states;
+}
+
+void World::setContact(const std::string& bank, std::size_t contact, bool closed) {
     const std::lock_guard lock(mutex_);
     if (closed)
-        closed_.insert(contact);
+        closed_.insert({bank, contact});
     else
-        closed_.erase(contact);
+        closed_.erase({bank, contact});
 }
 
-bool World::contact(std::size_t contact) const {
+bool World::contact(const std::string& bank, std::size_t contact) const {
     const std::lock_guard lock(mutex_);
-    return closed_.contains(contact);
+    return closed_.contains({bank, contact});
 }
 
 void World::sendFromDesk(int universe, DmxInput frame) {
@@ -125,6 +140,17 @@ std::optional<ButtonEvent> World::takePress() {
     const ButtonEvent oldest = presses_.front();
     presses_.pop_front();
     return oldest;
+}
+
+void World::setLight(int button, const ButtonLight& light) {
+    const std::lock_guard lock(mutex_);
+    if (button >= 1) lights_[button] = light;
+}
+
+ButtonLight World::light(int button) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = lights_.find(button);
+    return found == lights_.end() || !isIn(kCueController) ? ButtonLight{} : found->second;
 }
 
 void World::setFrame(const std::string& output, std::shared_ptr<const RgbaImage> frame) {

@@ -30,27 +30,30 @@ public:
 
     const Clock& clock() const { return clock_; }
 
-    // Pulls a device's plug, or puts it back. Devices go by their name in the site file: an output's name, "universe N", "relay
-    // bank", "cue controller", "camera", "contacts", "desk N". All are plugged in at first.
+    // Pulls a device's plug, or puts it back. Devices go by their name in the site file: an output's or a bank's name, "universe N",
+    // "desk N", "cue controller", "camera". All are plugged in at first.
     void setPlugged(const std::string& device, bool plugged);
     bool plugged(const std::string& device) const;
-    // How many times the device's plug was pulled so far: tells a driver of a loss that was over before it looked.
-    int unpluggings(const std::string& device) const;
+    // How many times the device was lost so far, by its plug or by a hand at its relays: tells a driver of a loss that was over before
+    // it looked.
+    int losses(const std::string& device) const;
 
     // Lamps: what each universe's line carried last; all zero before the first frame. They hold it while the line is silent.
     // False: the line is unplugged and the lamps see nothing of it.
     bool setSlots(int universe, std::span<const std::uint8_t, kDmxSlots> slots);
     std::array<std::uint8_t, kDmxSlots> slots(int universe) const;
 
-    // Relays of the one simulated bank. installRelays() wires it: they take their safe states now, and whenever the plug is
-    // pulled.
-    void installRelays(const std::vector<bool>& safeStates);
-    bool setRelays(const std::vector<bool>& states);  // false: unplugged, nothing changes; states.size() is the installed number
-    std::vector<bool> relays() const;                 // empty before installRelays()
+    // Relays of a bank. installRelays() wires it: they take their safe states now, and whenever the plug is pulled. states.size() is
+    // the installed number.
+    void installRelays(const std::string& bank, const std::vector<bool>& safeStates);
+    bool setRelays(const std::string& bank, const std::vector<bool>& states);  // false: unplugged, nothing changes
+    // Somebody at the module switches them. Where they were as written that is a loss.
+    void switchRelaysByHand(const std::string& bank, const std::vector<bool>& states);
+    std::vector<bool> relays(const std::string& bank) const;  // empty before installRelays()
 
-    // Contacts of the simulated input bank; all open at first. They open and close whether or not anybody is connected to them.
-    void setContact(std::size_t contact, bool closed);
-    bool contact(std::size_t contact) const;
+    // Contacts of an input bank; all open at first. They open and close whether or not anybody is connected to them.
+    void setContact(const std::string& bank, std::size_t contact, bool closed);
+    bool contact(const std::string& bank, std::size_t contact) const;
 
     // Somebody else's desk on a universe: frames wait until the driver takes them, oldest first. `arrived` is set to the clock's
     // now. Of each sender the newest waits at least; older ones are dropped beyond kDeskDepth.
@@ -61,6 +64,9 @@ public:
     // The hand on the cue controller: events wait until the driver takes them. `at` is set to the clock's now.
     void press(int button, bool pressed);
     std::optional<ButtonEvent> takePress();
+    // The lamps of its buttons, from 1 on: what they are driven with, and what they show of it, which is nothing while the plug is out.
+    void setLight(int button, const ButtonLight& light);
+    ButtonLight light(int button) const;
 
     // Projectors: the frame each one throws on the wall now; null before the first, and after its plug was pulled until the next.
     void setFrame(const std::string& output, std::shared_ptr<const RgbaImage> frame);
@@ -73,7 +79,11 @@ public:
 private:
     struct Plug {
         bool in = true;
-        int pulls = 0;
+        int losses = 0;
+    };
+    struct Relays {
+        std::vector<bool> states, safe;
+        bool asWritten = false;  // not since a loss
     };
     bool isIn(const std::string& device) const;  // with mutex_ held
 
@@ -81,10 +91,11 @@ private:
     mutable std::mutex mutex_;
     std::map<std::string, Plug> plugs_;
     std::map<int, std::array<std::uint8_t, kDmxSlots>> slots_;
-    std::vector<bool> relays_, safeStates_;
-    std::set<std::size_t> closed_;
+    std::map<std::string, Relays> relays_;
+    std::set<std::pair<std::string, std::size_t>> closed_;
     std::map<int, std::deque<DmxInput>> desk_;
     std::deque<ButtonEvent> presses_;
+    std::map<int, ButtonLight> lights_;
     std::map<std::string, std::shared_ptr<const RgbaImage>> frames_;
     std::deque<std::pair<Time, std::shared_ptr<const CameraFrame>>> camera_;
 };

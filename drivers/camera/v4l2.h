@@ -1,0 +1,75 @@
+#pragma once
+
+#include "drivers/camera/camera_search.h"
+#include "drivers/camera/frame_pool.h"
+#include "drivers/common/service.h"
+#include "drivers/surroundings.h"
+
+#include "device/camera_source.h"
+
+#include "core/config.h"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace fantascope::drivers {
+
+// A camera behind the kernel's V4L2, as USB cameras are: README.md has its keys. Frames are decoded on the driver's own thread.
+class V4l2Camera final : public CameraSource {
+public:
+    static Result<std::unique_ptr<CameraSource>> open(const ConfigNode& options, const Surroundings& around);
+
+    DeviceStatus status() const override { return service_.status(); }
+    std::shared_ptr<const CameraFrame> newest() override;
+
+    // Frames since open(). Thread: any.
+    struct Tally {
+        std::uint64_t good = 0;
+        std::uint64_t damaged = 0;  // flagged by the kernel's driver, too short, or no JPEG that can be decoded; never shown
+        std::uint64_t missed = 0;   // that the camera counted and that came too late or never
+    };
+    Tally tally() const;
+
+private:
+    struct Options {
+        CameraIdentity identity;
+        glm::ivec2 size{640, 480};
+        double rate = 30;                   // Hz
+        std::optional<FrameCoding> coding;  // that is preferred
+        std::optional<bool> fullRange;      // whatever the camera says
+        std::map<VideoNode::Control, std::optional<std::int64_t>> controls;
+    };
+    struct Life;
+
+    V4l2Camera(Options options, const Surroundings& around);
+    Outage attend(Service& service);
+    std::optional<Outage> negotiate(Life& life) const;
+    std::string adjust(VideoNode& node) const;
+    void introduce(const Life& life, const std::string& shortcomings);
+    Outage stream(Service& service, Life& life);
+    int take(Life& life);
+    bool show(Service& service, Life& life);
+    void countDamaged();
+    void countMissed(std::uint64_t frames);
+    void forget();
+
+    const Options options_;
+    Clock& clock_;
+    FramePool pool_;
+    std::string said_;            // of the camera, last
+    bool silent_ = false;         // its last life ended without a good frame: it runs once it gives one
+    std::uint64_t sequence_ = 0;  // of the last frame
+    Time exposed_ = Time::min();
+
+    mutable std::mutex mutex_;
+    std::shared_ptr<const CameraFrame> newest_;
+    Tally tally_;
+
+    Service service_;
+};
+
+}  // namespace fantascope::drivers

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "drivers/common/found_device.h"
+#include "drivers/common/service.h"
+#include "drivers/common/usb_identity.h"
+#include "drivers/cue_controller/button_events.h"
+#include "drivers/cue_controller/button_lights.h"
+#include "drivers/surroundings.h"
+
+#include "device/cue_controller.h"
+
+#include "core/config.h"
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace fantascope::drivers {
+
+struct HidProfile;
+class UsbBus;
+
+// Any USB controller that is a HID device: presenters, pedals, jog wheels, key pads, gamepads. All of its HID interfaces are held, so that
+// its keys reach nobody else.
+class UsbHidController final : public CueController {
+public:
+    // What the site file says; README.md has the keys.
+    struct Options {
+        std::string vendor, product, serial, path;  // empty: any
+        const HidProfile* profile = nullptr;        // null: the one of its vendor and product, if there is one
+        Time debounce = std::chrono::milliseconds(5);
+        bool asksState = true;
+        double brightness = 0.5;  // of its lamps, 0..1
+
+        bool fits(const UsbIdentity& usb) const;
+        std::string wanted() const;  // "046d:c52d, serial 1"
+    };
+
+    static Result<std::unique_ptr<CueController>> open(const ConfigNode& options, const Surroundings& around);
+    ~UsbHidController() override;
+
+    DeviceStatus status() const override { return service_.status(); }
+    std::optional<ButtonEvent> poll() override { return events_.poll(); }
+    void light(int button, const ButtonLight& light) override;
+
+private:
+    UsbHidController(Options options, Clock& clock);
+    Outage attend(Service& service);
+
+    const Options options_;
+    Clock& clock_;
+    ButtonEvents events_;
+    ButtonLights lights_;
+    std::atomic<bool> leaving_ = false;
+    std::unique_ptr<UsbBus> usb_;
+    Service service_;
+};
+
+// All HID devices of this machine. Nothing is opened.
+std::vector<FoundDevice> findControllers();
+
+}  // namespace fantascope::drivers

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "drivers/common/service.h"
+#include "drivers/dmx/enttec_widget.h"
+#include "drivers/dmx/widget_search.h"
+#include "drivers/surroundings.h"
+
+#include "device/dmx_port.h"
+#include "device/dmx_source.h"
+
+#include "core/config.h"
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace fantascope::drivers {
+
+// An Enttec DMX USB Pro, or what speaks as it does, through all its lives. Thread: bound to its device's own.
+class EnttecPro {
+public:
+    struct Options {
+        WidgetChoice which;
+        std::optional<int> breakTime, markAfterBreak;  // in WidgetParameters' units; as the widget has it where not given
+        std::optional<int> rate;                       // frames a second; the same
+    };
+    // What to do with a widget that was found and has the parameters that it should; until the service ends, or something goes wrong.
+    using Work = std::function<Result<void>(EnttecWidget&, const WidgetParameters&, const std::string& number)>;
+
+    EnttecPro(const std::string& name, Options options, Clock& clock);
+    Outage attend(Service& service, const Work& work);
+
+private:
+    struct Met {
+        WidgetParameters parameters;
+        std::string number;
+    };
+    Result<Met> meet(EnttecWidget& widget);
+
+    const Options options_;
+    Clock& clock_;
+    SerialStream line_;
+};
+
+// A universe going out by a DMX USB Pro.
+class EnttecProPort final : public DmxPort {
+public:
+    static Result<std::unique_ptr<DmxPort>> open(const ConfigNode& options, int universe, const Surroundings& around);
+
+    DeviceStatus status() const override { return service_.status(); }
+    Result<void> send(std::span<const std::uint8_t, kDmxSlots> slots) override;
+
+private:
+    EnttecProPort(const std::string& name, EnttecPro::Options options, Clock& clock);
+    Result<void> repeat(Service& service, EnttecWidget& widget, double rate);
+
+    Clock& clock_;
+    std::mutex mutex_;
+    std::optional<DmxPacket> newest_;
+    EnttecPro widget_;
+    Service service_;
+};
+
+// A universe coming in by a DMX USB Pro. The sender is the widget's own serial number.
+class EnttecProSource final : public DmxSource {
+public:
+    static Result<std::unique_ptr<DmxSource>> open(const ConfigNode& options, int universe, const Surroundings& around);
+
+    DeviceStatus status() const override { return service_.status(); }
+    std::optional<DmxInput> receive() override;
+
+private:
+    EnttecProSource(const std::string& name, EnttecPro::Options options, Clock& clock);
+    Result<void> listen(Service& service, EnttecWidget& widget, const std::string& number);
+
+    Clock& clock_;
+    std::mutex mutex_;
+    std::deque<DmxInput> arrived_;
+    EnttecPro widget_;
+    Service service_;
+};
+
+}  // namespace fantascope::drivers

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "drivers/modbus/bus.h"
+#include "drivers/modbus/values.h"
+#include "drivers/surroundings.h"
+
+#include "device/input_bank.h"
+
+#include "core/config.h"
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace fantascope::drivers {
+
+// Contacts that are the discrete inputs, coils or registers of a Modbus unit.
+class ModbusInputBank final : public InputBank {
+public:
+    static Result<std::unique_ptr<InputBank>> openTcp(const ConfigNode& options, const std::string& name, std::size_t size,
+                                                      const Surroundings& around);
+    static Result<std::unique_ptr<InputBank>> openRtu(const ConfigNode& options, const std::string& name, std::size_t size,
+                                                      const Surroundings& around);
+
+    DeviceStatus status() const override { return unit_.status(); }
+    std::size_t size() const override { return contacts_.size(); }
+    std::optional<ContactChange> poll() override;
+
+private:
+    struct Options {
+        ModbusLineOptions line;
+        ModbusPlace place{1, ModbusTable::DiscreteInputs, 0};
+        std::vector<ContactOptions> contacts;
+        double rate = 50;  // Hz
+    };
+    static Result<std::unique_ptr<InputBank>> open(const char* driver, ModbusLineOptions line, double rate,
+                                                   const ConfigNode& node, const std::string& name, std::size_t size,
+                                                   const Surroundings& around);
+    ModbusInputBank(std::string name, const char* driver, Options options, std::shared_ptr<ModbusBus> bus);
+    ModbusUnit::Turned turn(ModbusLine& line);  // on the bus's thread
+
+    const Options options_;
+    const Clock& clock_;
+    std::vector<Contact> contacts_;  // of the bus's thread; how many never changes
+    std::mutex mutex_;
+    std::deque<ContactChange> waiting_;  // noticed and not taken yet
+    ModbusUnit unit_;
+};
+
+}  // namespace fantascope::drivers
