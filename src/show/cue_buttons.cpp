@@ -6,22 +6,18 @@ namespace fantascope::show {
 
 namespace {
 
-Input::Kind kindOf(Button button) {
-    switch (button) {
-        case Button::Go:
-            return Input::Kind::Go;
-        case Button::Back:
-            return Input::Kind::Back;
-        case Button::Blackout:
-            break;
-    }
-    return Input::Kind::Blackout;
+std::optional<Input::Kind> kindOf(Button button) {
+    if (button == Button::Go) return Input::Kind::Go;
+    if (button == Button::Back) return Input::Kind::Back;
+    if (button == Button::Blackout) return Input::Kind::Blackout;
+    return std::nullopt;
 }
 
 }  // namespace
 
 CueButtons::CueButtons(const std::vector<std::pair<int, Button>>& buttons) {
-    for (const auto& [number, button] : buttons) keys_.push_back({number, button});
+    for (const auto& [number, button] : buttons)
+        if (const auto kind = kindOf(button)) keys_.push_back({number, *kind});
 }
 
 std::optional<Input> CueButtons::inputFor(int button, bool pressed, Time at) {
@@ -29,7 +25,7 @@ std::optional<Input> CueButtons::inputFor(int button, bool pressed, Time at) {
     if (key == keys_.end()) return std::nullopt;
     const bool wasDown = std::exchange(key->down, pressed);
     if (!pressed || wasDown) return std::nullopt;
-    return Input{.at = at, .kind = kindOf(key->button)};
+    return Input{.at = at, .kind = key->kind};
 }
 
 }  // namespace fantascope::show

@@ -18,14 +18,14 @@ public:
     // `buttons`: as in Site::buttons.
     explicit CueButtons(const std::vector<std::pair<int, Button>>& buttons);
 
-    // `button` went down or up at show time `at`. Gives the input that this asks for; none for a release, and for a button
-    // without a meaning.
+    // `button` went down or up at show time `at`. Gives the input that this asks for; none for a release, and for a button that
+    // steps no cues.
     std::optional<Input> inputFor(int button, bool pressed, Time at);
 
 private:
     struct Key {
         int number = 0;
-        Button button = Button::Go;
+        Input::Kind kind = Input::Kind::Go;
         bool down = false;
     };
     std::vector<Key> keys_;

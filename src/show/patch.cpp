@@ -21,17 +21,18 @@ void slotsOf(const Site& site, const Look& look, int universe, std::span<std::ui
     }
 }
 
-std::vector<bool> coilsOf(const Site& site, const Look& look) {
+std::vector<bool> coilsOf(const Site& site, const Look& look, std::size_t bank) {
     FANTASCOPE_CHECK(look.relays.size() == site.relays.size(), "the look is for this site");
-    std::vector<bool> states(site.coilCount(), false);
+    std::vector<bool> states(site.coilCount(bank), false);
     for (std::size_t i = 0; i < site.relays.size(); ++i)
-        states[static_cast<std::size_t>(site.relays[i].coil)] = look.relays[i] != 0;
+        if (site.relays[i].bank == bank) states[static_cast<std::size_t>(site.relays[i].coil)] = look.relays[i] != 0;
     return states;
 }
 
-std::vector<bool> safeCoils(const Site& site) {
-    std::vector<bool> states(site.coilCount(), false);
-    for (const Relay& relay : site.relays) states[static_cast<std::size_t>(relay.coil)] = relay.safe;
+std::vector<bool> safeCoils(const Site& site, std::size_t bank) {
+    std::vector<bool> states(site.coilCount(bank), false);
+    for (const Relay& relay : site.relays)
+        if (relay.bank == bank) states[static_cast<std::size_t>(relay.coil)] = relay.safe;
     return states;
 }
 

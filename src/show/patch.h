@@ -4,6 +4,7 @@
 #include "show/show_state.h"
 #include "show/site.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,10 +15,10 @@ namespace fantascope::show {
 // to the nearest; whatever curve the dimmer has is its own. Slots without a fixture are 0.
 void slotsOf(const Site& site, const Look& look, int universe, std::span<std::uint8_t, 512> out);
 
-// The states of the relay bank's coils, site.coilCount() of them, from coil 0; true is on. Coils without a relay are off.
-std::vector<bool> coilsOf(const Site& site, const Look& look);
+// The states of a relay bank's coils, site.coilCount(bank) of them, from coil 0; true is on. Coils without a relay are off.
+std::vector<bool> coilsOf(const Site& site, const Look& look, std::size_t bank);
 
 // The safe states of the same coils.
-std::vector<bool> safeCoils(const Site& site);
+std::vector<bool> safeCoils(const Site& site, std::size_t bank);
 
 }  // namespace fantascope::show

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace fantascope::show {
@@ -25,38 +26,82 @@ float progress(Time start, Time length, Time time) {
     return static_cast<float>(seconds(time - start) / seconds(length));
 }
 
-const LayerState* layerOf(std::uint32_t source, const std::vector<LayerState>& layers) {
+using Layers = std::span<const LayerState>;
+
+const LayerState* layerOf(std::uint32_t source, Layers layers) {
     const auto found =
         std::find_if(layers.begin(), layers.end(), [&](const LayerState& layer) { return layer.source == source; });
     return found == layers.end() ? nullptr : &*found;
 }
 
-// Each source of either list once; layers without light are left out. `out` is neither of them.
-void mixLayers(const std::vector<LayerState>& from, const std::vector<LayerState>& to, float share,
-               std::vector<LayerState>& out) {
-    out.clear();
-    const auto add = [&](std::uint32_t source) {
-        const LayerState *before = layerOf(source, from), *after = layerOf(source, to);
-        const float opacity = std::lerp(before ? before->opacity : 0, after ? after->opacity : 0, share);
-        if (opacity > 0) out.push_back({source, opacity});
-    };
-    for (const LayerState& layer : from) add(layer.source);
-    for (const LayerState& layer : to)
-        if (!layerOf(layer.source, from)) add(layer.source);
+// The layers that add as light one by one.
+Layers addedLayers(const OutputState& output) {
+    return Layers(output.layers).first(output.pictures.empty() ? output.layers.size() : output.pictures[0].first);
+}
+Layers layersOf(const ComposedPicture& picture, const OutputState& output) {
+    return Layers(output.layers).subspan(picture.first, picture.last - picture.first);
 }
 
-// The look on the way from one to another: `share` 0 is `from`, 1 is `to`; the relays are already those of `to`.
-void mix(const Look& from, const Look& to, float share, Look& out) {
+// Whether two pictures are composed alike, whenever their layers began.
+bool sameComposition(Layers a, Layers b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const LayerState& one, const LayerState& other) {
+        return one.source == other.source && one.opacity == other.opacity && one.blend == other.blend;
+    });
+}
+
+// The picture on the way from one to another that began at `entered`: the light of the one goes as that of the other comes. A source goes on
+// where both have it. `out` is neither of them.
+void mixOutputs(const OutputState& from, const OutputState& to, float share, Time entered, OutputState& out) {
+    out.layers.clear();
+    out.pictures.clear();
+    const auto begunOf = [&](std::uint32_t source) {
+        const LayerState* const before = layerOf(source, from.layers);
+        return before != nullptr ? before->begun : entered;
+    };
+    const Layers before = addedLayers(from), after = addedLayers(to);
+    const auto add = [&](const LayerState& layer) {
+        const LayerState *first = layerOf(layer.source, before), *second = layerOf(layer.source, after);
+        const float opacity = std::lerp(first ? first->opacity : 0, second ? second->opacity : 0, share);
+        if (opacity > 0) out.layers.push_back({layer.source, opacity, Blend::Add, begunOf(layer.source)});
+    };
+    for (const LayerState& layer : before) add(layer);
+    for (const LayerState& layer : after)
+        if (!layerOf(layer.source, before)) add(layer);
+
+    const auto compose = [&](const ComposedPicture& picture, const OutputState& of, float weight) {
+        const Layers layers = layersOf(picture, of);
+        for (ComposedPicture& there : out.pictures)
+            if (sameComposition(layersOf(there, out), layers)) {
+                there.share += picture.share * weight;
+                return;
+            }
+        if (picture.share * weight <= 0) return;
+        const auto first = static_cast<std::uint32_t>(out.layers.size());
+        for (const LayerState& layer : layers)
+            out.layers.push_back({layer.source, layer.opacity, layer.blend, begunOf(layer.source)});
+        out.pictures.push_back({first, static_cast<std::uint32_t>(out.layers.size()), picture.share * weight});
+    };
+    for (const ComposedPicture& picture : from.pictures) compose(picture, from, 1 - share);
+    for (const ComposedPicture& picture : to.pictures) compose(picture, to, share);
+}
+
+// The look on the way from one to another that was entered at `entered`: `share` 0 is `from`, 1 is `to`; the relays are already those of `to`.
+void mix(const Look& from, const Look& to, float share, Time entered, Look& out) {
     for (std::size_t i = 0; i < to.outputs.size(); ++i)
-        mixLayers(from.outputs[i].layers, to.outputs[i].layers, share, out.outputs[i].layers);
+        mixOutputs(from.outputs[i], to.outputs[i], share, entered, out.outputs[i]);
     for (std::size_t i = 0; i < to.levels.size(); ++i) out.levels[i] = std::lerp(from.levels[i], to.levels[i], share);
     out.relays = to.relays;
 }
 
 void dim(Look& look, float light) {
     for (OutputState& output : look.outputs) {
-        for (LayerState& layer : output.layers) layer.opacity *= light;
-        std::erase_if(output.layers, [](const LayerState& layer) { return layer.opacity == 0; });
+        if (light == 0) {
+            output.layers.clear();
+            output.pictures.clear();
+        }
+        const std::size_t added = addedLayers(output).size();
+        for (std::size_t i = 0; i < added; ++i) output.layers[i].opacity *= light;
+        for (ComposedPicture& picture : output.pictures) picture.share *= light;
     }
     for (float& level : look.levels) level *= light;
 }
@@ -86,8 +131,11 @@ Playback::Playback(CueList list) : list_(std::move(list)), gusts_(list_.seed) {
         FANTASCOPE_CHECK(look.outputs.size() == list_.dark.outputs.size() && look.levels.size() == list_.dark.levels.size() &&
                              look.relays.size() == list_.dark.relays.size(),
                          "all looks of a cue list are for one site");
-        for (const OutputState& output : look.outputs)
-            for (const LayerState& layer : output.layers) mostLayers_ = std::max<std::size_t>(mostLayers_, layer.source + 1);
+        for (const OutputState& output : look.outputs) {
+            for (const LayerState& layer : output.layers) sources_ = std::max<std::size_t>(sources_, layer.source + 1);
+            composed_.layers += output.pictures.empty() ? 0 : output.layers.size();
+            composed_.pictures += output.pictures.size();
+        }
     };
     for (CueList::Cue& cue : list_.cues) {
         examine(cue.look);
@@ -115,9 +163,13 @@ Outcome Playback::apply(Input input) {
             if (input.cue < 0 || input.cue > last) return Outcome::NoSuchCue;
             enter(input.cue, at);
             break;
-        case Input::Kind::Blackout: {
+        case Input::Kind::Blackout:
+        case Input::Kind::Dark:
+        case Input::Kind::Light: {
             const Shutter* shutter = lastBy(at, shutters_);
-            shutters_.push_back({at, !(shutter && shutter->dark), lightAt(at)});
+            const bool isDark = shutter && shutter->dark;
+            const bool dark = input.kind == Input::Kind::Blackout ? !isDark : input.kind == Input::Kind::Dark;
+            if (dark != isDark) shutters_.push_back({at, dark, lightAt(at)});
             break;
         }
     }
@@ -141,6 +193,11 @@ void Playback::enter(int cue, Time at) {
         at += *follow;
         ++cue;
     }
+}
+
+bool Playback::fadesAt(Time time) const {
+    const Entry* entry = lastBy(time, entries_);
+    return entry && time - entry->at < list_.cues[static_cast<std::size_t>(entry->cue)].fade;
 }
 
 void Playback::stateAt(Time time, ShowState& out) const {
@@ -170,13 +227,16 @@ const std::vector<WindCourse>& Playback::windsAt(Time time) const {
 // What is seen, blackout aside.
 void Playback::lookAt(Time time, Look& out) const {
     out.outputs.resize(list_.dark.outputs.size());
-    for (OutputState& output : out.outputs) output.layers.reserve(mostLayers_);
+    for (OutputState& output : out.outputs) {
+        output.layers.reserve(sources_ + composed_.layers);
+        output.pictures.reserve(composed_.pictures);
+    }
     out.levels.resize(list_.dark.levels.size());
 
     const Entry* entry = lastBy(time, entries_);
-    if (!entry) return mix(list_.dark, list_.dark, 1, out);
+    if (!entry) return mix(list_.dark, list_.dark, 1, Time{}, out);
     const CueList::Cue& cue = list_.cues[static_cast<std::size_t>(entry->cue)];
-    mix(entry->from, cue.look, progress(entry->at, cue.fade, time), out);
+    mix(entry->from, cue.look, progress(entry->at, cue.fade, time), entry->at, out);
 }
 
 // The factor of pictures and levels that blackout leaves: it moves at a constant rate, so that a change of mind on the way has no

@@ -15,10 +15,12 @@ namespace fantascope::show {
 // Something that the operator, or whoever acts for the operator, asked for.
 struct Input {
     enum class Kind {
-        Go,       // enter the next cue
-        Back,     // enter the cue before
-        Jump,     // enter cue `cue`, also the one that is running
-        Blackout  // hold pictures and lamps dark, or give them back
+        Go,        // enter the next cue
+        Back,      // enter the cue before
+        Jump,      // enter cue `cue`, also the one that is running
+        Blackout,  // hold pictures and lamps dark, or give them back
+        Dark,      // hold them dark, whether they are or not
+        Light      // give them back, whether they are dark or not
     };
     Time at{};  // show time
     Kind kind = Kind::Go;
@@ -35,14 +37,15 @@ std::string_view nameOf(Outcome outcome);
 //
 // - A cue that is entered fades, in its `fade`, from what is seen at that moment (the middle of another fade, perhaps) to its
 // look:
-//   opacities, matched by source, and levels move linearly, both being linear light. Relays take their new state at once.
+//   the light of pictures and levels moves linearly, layers that only add their light being matched by source. Relays take their new
+//   state at once.
 // - The wind of each output goes to what the cue asks for, in its fade and without a jump (WindCourse), whether there is light or not.
 // - A cue with `follow` is left for the next one by itself, that time after it was entered in whatever way, unless an input
 // enters
 //   another one first.
 // - GO is ignored until `goInterval` after a cue was entered, by hand or by itself, so that a trembling or late press skips
 // nothing.
-// - Blackout dims pictures and levels to nothing in `blackoutFade`, over whatever is running; a second one gives them back. The
+// - Blackout dims pictures and levels to nothing in `blackoutFade`, over whatever is running; a second one, or Light, gives them back. The
 // cues
 //   go on underneath. Relays do not heed it: a dark picture is no reason for dark streets.
 //
@@ -54,6 +57,9 @@ public:
     // Takes one input, or says why not. Inputs take effect in the order in which they are given: one whose time is before that of
     // its forerunner takes effect at its forerunner's time. It changes what is seen from then on and nothing before.
     Outcome apply(Input input);
+
+    // Whether the cue of that time is still on its way from what was seen before it.
+    bool fadesAt(Time time) const;
 
     // What is seen at `time`, which may be any. Binary searches and one mix; it allocates only when it sees `out` the first time.
     void stateAt(Time time, ShowState& out) const;
@@ -82,11 +88,14 @@ private:
     CueList list_;
     Gusts gusts_;
     std::vector<WindCourse> usualWinds_;  // before the first cue
-    std::size_t mostLayers_ = 0;          // that one output can have: one of each source
-    std::vector<Entry> entries_;          // by time, those in the future last
-    std::vector<Shutter> shutters_;       // by time
-    std::vector<Time> taken_;             // when each input took effect
-    Time newest_ = Time::min();           // of all inputs, ignored ones included
+    std::size_t sources_ = 0;             // that looks show: as many layers add as light on one output at most
+    struct {
+        std::size_t layers = 0, pictures = 0;
+    } composed_;                     // of all looks and outputs, more than one output can show in a chain of fades
+    std::vector<Entry> entries_;     // by time, those in the future last
+    std::vector<Shutter> shutters_;  // by time
+    std::vector<Time> taken_;        // when each input took effect
+    Time newest_ = Time::min();      // of all inputs, ignored ones included
 };
 
 }  // namespace fantascope::show

@@ -57,6 +57,7 @@ Result<OutputState> readLayers(const ConfigNode& node, const std::vector<std::st
             return static_cast<std::uint32_t>(TRY(value.choice(sources)));
         });
         fields.optional().number("opacity", opacity, 0, 1);
+        fields.optional().choice("blend", layer.blend, {"add", "over", "multiply", "screen"});
         TRY(fields.finish());
         layer.opacity = static_cast<float>(opacity);
         const auto same = [&](const LayerState& other) { return other.source == layer.source; };
@@ -65,6 +66,10 @@ Result<OutputState> readLayers(const ConfigNode& node, const std::vector<std::st
                 fmt::format("'{}' is on this output already; one layer of a source is enough", sources[layer.source]));
         output.layers.push_back(layer);
     }
+    // Light that is only added needs no order, so that a fade can take each source for itself.
+    const auto adds = [](const LayerState& layer) { return layer.blend == Blend::Add; };
+    if (!std::all_of(output.layers.begin(), output.layers.end(), adds))
+        output.pictures.push_back({0, static_cast<std::uint32_t>(output.layers.size()), 1.0f});
     return output;
 }
 
@@ -167,6 +172,19 @@ Result<std::size_t> indexOf(const Named<Wish>& wanted, const std::vector<std::st
     return *index;
 }
 
+// The outputs that a look means by a name: one, or all that throw parts of one canvas.
+Result<std::vector<std::size_t>> outputsOf(const Named<NamedLook::OutputWish>& wanted, const Site& site) {
+    std::vector<std::string> names = namesOf(site.outputs);
+    if (const auto one = std::find(names.begin(), names.end(), wanted.name); one != names.end())
+        return std::vector{static_cast<std::size_t>(one - names.begin())};
+    std::vector<std::size_t> all = site.outputsOn(wanted.name);
+    if (!all.empty()) return all;
+    const std::size_t outputs = names.size();
+    for (const Output& output : site.outputs)
+        if (std::find(names.begin(), names.end(), output.canvas) == names.end()) names.push_back(output.canvas);
+    return indexOf(wanted, names, names.size() > outputs ? "output or canvas" : "output", site).error();
+}
+
 // What is seen of a look that names nothing.
 Look darkLook(const Site& site) {
     Look look;
@@ -178,8 +196,11 @@ Look darkLook(const Site& site) {
 
 Result<Look> bindLook(const NamedLook& named, const Site& site) {
     Look look = darkLook(site);
-    for (const auto& output : named.outputs)
-        look.outputs[TRY(indexOf(output, namesOf(site.outputs), "output", site))] = output.wish.layers;
+    // An output's own layers go before those of its canvas.
+    for (const bool own : {false, true})
+        for (const auto& output : named.outputs)
+            for (const std::size_t index : TRY(outputsOf(output, site)))
+                if ((site.outputs[index].name == output.name) == own) look.outputs[index] = output.wish.layers;
     for (const auto& relay : named.relays) look.relays[TRY(indexOf(relay, namesOf(site.relays), "relay", site))] = relay.wish;
     for (const auto& fixture : named.fixtures) {
         const std::size_t index = TRY(indexOf(fixture, namesOf(site.fixtures), "fixture", site));
@@ -199,9 +220,11 @@ Result<Look> bindLook(const NamedLook& named, const Site& site) {
 // Its outputs are those of `site`.
 std::vector<WindWish> bindWinds(const NamedLook& named, const Site& site) {
     std::vector<WindWish> winds(site.outputs.size(), named.wind);
-    for (const auto& output : named.outputs)
-        for (std::size_t i = 0; i < winds.size(); ++i)
-            if (output.wish.wind && site.outputs[i].name == output.name) winds[i] = *output.wish.wind;
+    for (const bool own : {false, true})
+        for (const auto& output : named.outputs)
+            for (std::size_t i = 0; i < winds.size(); ++i)
+                if (output.wish.wind && (own ? site.outputs[i].name : site.outputs[i].canvas) == output.name)
+                    winds[i] = *output.wish.wind;
     return winds;
 }
 

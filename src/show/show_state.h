@@ -9,16 +9,35 @@
 
 namespace fantascope::show {
 
+// How a layer lies on those below it, all in linear light.
+enum class Blend {
+    Add,       // as another projector's light would
+    Over,      // covers them where it is drawn
+    Multiply,  // lets through as much of their light as its own says, as a slide does
+    Screen     // as Add, but light on light comes to no more than white
+};
+
 // One picture source on one output.
 struct LayerState {
     std::uint32_t source = 0;  // index into Show::sources
     float opacity = 0;         // 0..1, in linear light
+    Blend blend = Blend::Add;
+    Time begun{};  // show time at which the source came onto the output: where a video begins
     friend bool operator==(const LayerState&, const LayerState&) = default;
 };
 
-// One output's picture: its layers, each added as light, and each source at most once. An empty list is black.
+// Layers [first, last) that are composed from black, the first at the bottom.
+struct ComposedPicture {
+    std::uint32_t first = 0, last = 0;
+    float share = 1;  // of its light
+    friend bool operator==(const ComposedPicture&, const ComposedPicture&) = default;
+};
+
+// One output's picture: the light of its layers and pictures, added up; nothing is black. Layers before those of the first picture add as
+// light one by one, each source once.
 struct OutputState {
     std::vector<LayerState> layers;
+    std::vector<ComposedPicture> pictures{};  // in the order of their layers
     friend bool operator==(const OutputState&, const OutputState&) = default;
 };
 

@@ -1,10 +1,13 @@
 #include "show/site.h"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 
 namespace fantascope::show {
@@ -20,6 +23,7 @@ constexpr double kFarthest = 1000;         // metres
 constexpr int kLastUniverse = 63999;       // ANSI E1.31
 constexpr int kLastSlot = 512;             // ANSI E1.11
 constexpr int kLastCoil = 1967;            // one Modbus request writes 1968 coils at most (Modbus 1.1b3, section 6.11)
+constexpr int kLastInput = 1999;           // one Modbus request reads 2000 inputs at most (section 6.2)
 constexpr int kLastButton = 255;           // more than any hand-held device has
 
 // A reader of values that may stand only once among all that share `taken`.
@@ -59,12 +63,73 @@ Result<glm::ivec2> readSize(const ConfigNode& node) {
     return glm::ivec2(TRY(sides[0].integer(1, kMostPixels)), TRY(sides[1].integer(1, kMostPixels)));
 }
 
+Result<glm::dvec2> readPixel(const ConfigNode& node) { return node.vector2(-kFarthestCorner, kFarthestCorner, "px"); }
+
 Result<std::array<glm::dvec2, 4>> readCorners(const ConfigNode& node) {
     std::array<glm::dvec2, 4> corners;
     const auto items = TRY(node.items(corners.size(), corners.size()));
-    for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = TRY(items[i].vector2(-kFarthestCorner, kFarthestCorner, "px"));
+    for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = TRY(readPixel(items[i]));
     if (const auto why = whyNotConvex(corners)) return node.error(*why);
     return corners;
+}
+
+Result<CanvasPart> readPart(const ConfigNode& node) {
+    const auto sides = TRY(node.items(4, 4));
+    CanvasPart part{{TRY(sides[0].number(0, 1)), TRY(sides[1].number(0, 1))},
+                    {TRY(sides[2].number(0, 1)), TRY(sides[3].number(0, 1))}};
+    if (part.low.x >= part.high.x || part.low.y >= part.high.y)
+        return node.error("left comes before right and top before bottom: [left, top, right, bottom]");
+    return part;
+}
+
+Result<WarpMesh> readMesh(const ConfigNode& node) {
+    WarpMesh mesh;
+    ConfigFields fields(node);
+    fields.read("points", mesh.points, [](const ConfigNode& value) -> Result<glm::ivec2> {
+        const auto sides = TRY(value.items(2, 2));
+        return glm::ivec2(TRY(sides[0].integer(2, WarpMesh::kMostPoints)), TRY(sides[1].integer(2, WarpMesh::kMostPoints)));
+    });
+    fields.optional().choice("between", mesh.between, {"smooth", "straight"});
+    fields.list("offsets", mesh.offsets, readPixel);
+    TRY(fields.finish());
+    return mesh;
+}
+
+Result<Mask> readMask(const ConfigNode& node) {
+    Mask mask;
+    ConfigFields fields(node);
+    fields.optional().list("polygon", mask.polygon, readPixel, 3, Mask::kMostPoints);
+    fields.optional().choice("hides", mask.hidesOutside, {"inside", "outside"});
+    fields.optional().number("feather", mask.feather, 0, Mask::kWidestFeather, "px");
+    fields.optional().read("image", mask.image, [&](const ConfigNode& image) -> Result<std::shared_ptr<const GreyImage>> {
+        mask.imageFile = TRY(image.text());
+        return std::make_shared<const GreyImage>(TRY(readGrey(TRY(image.path())).in(image.place())));
+    });
+    TRY(fields.finish());
+    if (mask.polygon.empty() == (mask.image == nullptr)) return node.error("a mask is either a 'polygon' or an 'image'");
+    return mask;
+}
+
+Result<std::optional<double>> readGamma(const ConfigNode& node) {
+    if (const auto word = node.text(); word && *word == "srgb") return std::optional<double>();
+    const auto gamma = node.number(1, 4);
+    if (!gamma) return Error(gamma.error().message() + "; or 'srgb'");
+    return std::optional(*gamma);
+}
+
+Result<ProjectorLight> readLight(const ConfigNode& node) {
+    ProjectorLight light;
+    ConfigFields fields(node);
+    fields.optional().read("gamma", light.gamma, readGamma);
+    fields.optional().number("black_level", light.blackLevel, 0, kBrightestBlack);
+    fields.optional().vector3("white", light.white, 0, 1);
+    fields.optional().number("brightness", light.brightness, 0, 1);
+    fields.optional().read("lut", light.cube, [](const ConfigNode& value) -> Result<std::shared_ptr<const ColourCube>> {
+        return std::make_shared<const ColourCube>(TRY(ColourCube::read(TRY(value.path())).in(value.place())));
+    });
+    fields.optional().boolean("dither", light.dither);
+    TRY(fields.finish());
+    return light;
 }
 
 // The keys that say where a projector or a camera stands and looks. Ask for pose() after the fields are finished.
@@ -109,21 +174,49 @@ Result<Surface> readSurface(const ConfigNode& node) {
 
 Result<Output> readOutput(const ConfigNode& node, std::set<std::string>& names) {
     Output output;
+    Projection& projection = output.projection;
+    WarpShape warp;
     std::optional<std::array<glm::dvec2, 4>> corners;
     ConfigFields fields(node);
     fields.read("name", output.name, onceNamed(names, "output"));
     fields.read("display", output.display, readDevice);
-    fields.read("size", output.size, readSize);
+    fields.read("size", projection.size, readSize);
     fields.number("refresh_rate", output.refreshRate, 1, 240, "Hz");
+    fields.optional().read("canvas", output.canvas, readName);
+    fields.optional().read("part", warp.part, readPart);
+    fields.optional().choice("flip", warp.orientation.flip, {"none", "horizontal", "vertical"});
+    fields.optional().read("turn", warp.orientation.quarterTurns, [](const ConfigNode& value) -> Result<int> {
+        return static_cast<int>(TRY(value.choice({"0", "90", "180", "270"})));
+    });
     fields.optional().read("corners", corners, readCorners);
+    fields.optional().read("mesh", warp.mesh, readMesh);
+    fields.optional().list("masks", projection.masks, readMask, 1, Mask::kMost);
+    fields.optional().read("light", projection.light, readLight);
     fields.optional().read("projector", output.projector, readProjector);
     fields.optional().read("surface", output.surface, readSurface);
     TRY(fields.finish());
-    output.corners = corners.value_or(rectangleCorners(output.size.x, output.size.y));
+    warp.corners = corners.value_or(rectangleCorners(output.size().x, output.size().y));
+    const auto made = Warp::of(warp);
+    if (!made) return node.error(made.error().message());
+    projection.warp = *made;
+    if (!projection.warp.reaches(output.size()))
+        return node.error(fmt::format("nothing of the picture would be seen: its corners lie outside of the {} x {} pixels",
+                                      output.size().x, output.size().y));
     if (output.projector && output.surface &&
         glm::dot(output.surface->normal, output.projector->pose.position - output.surface->point) <= 0)
         return node.error("the projector stands behind its surface; turn the surface's normal towards the projector");
     return output;
+}
+
+Result<Desk> readDesk(const ConfigNode& node) {
+    Desk desk;
+    ConfigFields fields(node);
+    fields.read("device", desk.device, readDevice);
+    fields.optional().choice("merge", desk.merge.rule, {"htp", "ltp"});
+    fields.optional().integer("own_priority", desk.merge.ownPriority, 0, 200);  // ANSI E1.31
+    fields.optional().time("settling", desk.merge.settling, 0, 60);
+    TRY(fields.finish());
+    return desk;
 }
 
 Result<Universe> readUniverse(const ConfigNode& node, std::set<int>& numbers) {
@@ -131,6 +224,7 @@ Result<Universe> readUniverse(const ConfigNode& node, std::set<int>& numbers) {
     ConfigFields fields(node);
     fields.read("number", universe.number, onceNumbered(numbers, "universe", 1, kLastUniverse));
     fields.read("port", universe.port, readDevice);
+    fields.optional().read("desk", universe.desk, readDesk);
     TRY(fields.finish());
     return universe;
 }
@@ -165,19 +259,87 @@ Result<Fixture> readFixture(const ConfigNode& node, std::set<std::string>& names
     return fixture;
 }
 
-Result<Relay> readRelay(const ConfigNode& node, std::set<std::string>& names, std::set<int>& coils) {
+// The banks of one kind, and which places in each are taken.
+class Banks {
+public:
+    // The keys of the file's lists of them, and of what is in them.
+    Banks(std::string_view key, std::string_view membersKey) : key_(key), membersKey_(membersKey) {}
+
+    Result<Bank> read(const ConfigNode& node, std::set<std::string>& deviceNames) {
+        Bank bank;
+        ConfigFields fields(node);
+        fields.read("name", bank.name, onceNamed(deviceNames, "device"));
+        fields.read("device", bank.device, readDevice);
+        TRY(fields.finish());
+        nodes_.push_back(node);
+        names_.push_back(bank.name);
+        return bank;
+    }
+    // Declares the keys that say where a relay or contact is. Who has one bank need not call it by its name.
+    void declarePlace(ConfigFields& fields, std::size_t& bank, std::string_view placeKey, int& place, std::string_view owner,
+                      int last) {
+        std::optional<std::size_t> known;
+        if (names_.size() == 1) known = 0;
+        if (names_.size() <= 1) fields.optional();
+        fields.read("bank", known, [this](const ConfigNode& node) -> Result<std::optional<std::size_t>> {
+            return std::optional(TRY(node.choice(names_)));
+        });
+        fields.read(placeKey, place, [&](const ConfigNode& node) -> Result<int> {
+            if (names_.empty()) return node.error(fmt::format("there is no bank; add it under '{}'", key_));
+            if (!known) return 0;  // whether the place is free nobody can say
+            bank = *known;
+            return onceNumbered(taken_[bank], owner, 0, last)(node);
+        });
+    }
+    // Once all relays or contacts are read.
+    Result<void> check() const {
+        for (std::size_t bank = 0; bank < nodes_.size(); ++bank)
+            if (!taken_.contains(bank))
+                return nodes_[bank].error(
+                    fmt::format("nothing is in the bank '{}'; say what under '{}', or take it away", names_[bank], membersKey_));
+        return {};
+    }
+
+private:
+    const std::string_view key_, membersKey_;
+    std::vector<ConfigNode> nodes_;
+    std::vector<std::string> names_;
+    std::map<std::size_t, std::set<int>> taken_;  // places in each
+};
+
+Result<Relay> readRelay(const ConfigNode& node, std::set<std::string>& names, Banks& banks) {
     Relay relay;
     ConfigFields fields(node);
     fields.read("name", relay.name, onceNamed(names, "relay"));
-    fields.read("coil", relay.coil, onceNumbered(coils, "relay", 0, kLastCoil));
+    banks.declarePlace(fields, relay.bank, "coil", relay.coil, "relay of its bank", kLastCoil);
     fields.choice("safe", relay.safe, {"off", "on"});
     TRY(fields.finish());
     return relay;
 }
 
+Result<Contact> readContact(const ConfigNode& node, std::set<std::string>& names, Banks& banks) {
+    const auto readAction = [](const ConfigNode& value) -> Result<std::optional<ContactAction>> {
+        return std::optional(static_cast<ContactAction>(TRY(value.choice({"go", "back", "blackout", "dark", "light"}))));
+    };
+    Contact contact;
+    ConfigFields fields(node);
+    fields.read("name", contact.name, onceNamed(names, "contact"));
+    banks.declarePlace(fields, contact.bank, "input", contact.input, "contact of its bank", kLastInput);
+    fields.optional().read("closes", contact.closes, readAction);
+    fields.optional().read("opens", contact.opens, readAction);
+    TRY(fields.finish());
+    if (!contact.closes && !contact.opens)
+        return node.error(fmt::format("'{}' asks for nothing; say what it does when it 'closes' or 'opens'", contact.name));
+    return contact;
+}
+
 Result<std::vector<std::pair<int, Button>>> readButtons(const ConfigNode& node) {
     constexpr std::pair<std::string_view, Button> kKeys[] = {
-        {"go", Button::Go}, {"back", Button::Back}, {"blackout", Button::Blackout}};
+        {"go", Button::Go},         {"back", Button::Back},  {"blackout", Button::Blackout},
+        {"edit", Button::Edit},     {"left", Button::Left},  {"right", Button::Right},
+        {"up", Button::Up},         {"down", Button::Down},  {"next", Button::Next},
+        {"output", Button::Output}, {"tool", Button::Tool},  {"picture", Button::Picture},
+        {"undo", Button::Undo},     {"write", Button::Write}};
     std::vector<std::pair<int, Button>> buttons;
     std::set<int> numbers;
     ConfigFields fields(node);
@@ -193,8 +355,25 @@ Result<std::vector<std::pair<int, Button>>> readButtons(const ConfigNode& node) 
 
 }  // namespace
 
-Homography Output::projectorFromCanvas(double canvasAspect) const {
-    return Homography::fromCorners(rectangleCorners(canvasAspect, 1), corners).value();
+Site Site::scaled(glm::dvec2 factor) const {
+    Site result = *this;
+    for (Output& output : result.outputs) {
+        Projection& projection = output.projection;
+        projection.size = glm::max(glm::ivec2(glm::round(glm::dvec2(projection.size) * factor)), 1);
+        projection.warp = Warp::of(projection.warp.shape().scaled(factor)).value();
+        for (Mask& mask : projection.masks) {
+            for (glm::dvec2& point : mask.polygon) point *= factor;
+            mask.feather *= std::sqrt(factor.x * factor.y);
+        }
+    }
+    return result;
+}
+
+std::vector<std::size_t> Site::outputsOn(std::string_view canvas) const {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < outputs.size(); ++i)
+        if (outputs[i].canvas == canvas) found.push_back(i);
+    return found;
 }
 
 std::size_t Site::firstLevel(std::size_t fixture) const {
@@ -205,22 +384,46 @@ std::size_t Site::firstLevel(std::size_t fixture) const {
 
 std::size_t Site::channelCount() const { return firstLevel(fixtures.size()); }
 
-std::size_t Site::coilCount() const {
+std::size_t Site::coilCount(std::size_t bank) const {
     std::size_t count = 0;
-    for (const Relay& relay : relays) count = std::max(count, static_cast<std::size_t>(relay.coil) + 1);
+    for (const Relay& relay : relays)
+        if (relay.bank == bank) count = std::max(count, static_cast<std::size_t>(relay.coil) + 1);
+    return count;
+}
+
+std::size_t Site::inputCount(std::size_t bank) const {
+    std::size_t count = 0;
+    for (const Contact& contact : contacts)
+        if (contact.bank == bank) count = std::max(count, static_cast<std::size_t>(contact.input) + 1);
     return count;
 }
 
 Result<Site> readSite(const std::filesystem::path& file) {
     const ConfigNode root = TRY(ConfigNode::load(file));
+    // As long as there was one bank of each kind.
+    for (const auto& [key, value] : TRY(root.entries()))
+        for (const auto& [old, members] : {std::pair("relay_bank", "relays"), std::pair("contact_bank", "contacts")})
+            if (key == old)
+                return value.error(
+                    fmt::format("there may be several now; write '{0}s: [{{name: NAME, device: ...}}]', and '{1}' "
+                                "beside it instead of in it",
+                                old, members));
     Site site;
     site.file = file;
     ConfigFields fields(root);
     fields.header("site", kNewestVersion);
 
     std::set<std::string> outputNames;
+    std::vector<std::pair<std::string, ConfigNode>> canvasNodes;
     fields.list(
-        "outputs", site.outputs, [&](const ConfigNode& node) { return readOutput(node, outputNames); }, 1);
+        "outputs", site.outputs,
+        [&](const ConfigNode& node) -> Result<Output> {
+            Output output = TRY(readOutput(node, outputNames));
+            canvasNodes.emplace_back(output.canvas, node);
+            if (output.canvas.empty()) output.canvas = output.name;
+            return output;
+        },
+        1);
 
     std::set<int> universeNumbers;
     fields.optional().list("universes", site.universes,
@@ -230,17 +433,21 @@ Result<Site> readSite(const std::filesystem::path& file) {
     fields.optional().list("fixtures", site.fixtures,
                            [&](const ConfigNode& node) { return readFixture(node, fixtureNames, universeNumbers, slotOwners); });
 
-    fields.optional().read("relay_bank", site.relayBank, [&](const ConfigNode& node) -> Result<DeviceConfig> {
-        DeviceConfig device;
-        std::set<std::string> names;
-        std::set<int> coils;
-        ConfigFields bank(node);
-        bank.read("device", device, readDevice);
-        bank.list(
-            "relays", site.relays, [&](const ConfigNode& relay) { return readRelay(relay, names, coils); }, 1);
-        TRY(bank.finish());
-        return device;
-    });
+    // What any other device is called, in its status and in a fault script.
+    std::set<std::string> deviceNames(outputNames);
+    deviceNames.insert({"cue controller", "camera"});
+    for (const int number : universeNumbers)
+        deviceNames.insert({fmt::format("universe {}", number), fmt::format("desk {}", number)});
+    Banks relayBanks("relay_banks", "relays"), contactBanks("contact_banks", "contacts");
+    std::set<std::string> relayNames, contactNames;
+    fields.optional().list("relay_banks", site.relayBanks,
+                           [&](const ConfigNode& node) { return relayBanks.read(node, deviceNames); });
+    fields.optional().list("relays", site.relays,
+                           [&](const ConfigNode& node) { return readRelay(node, relayNames, relayBanks); });
+    fields.optional().list("contact_banks", site.contactBanks,
+                           [&](const ConfigNode& node) { return contactBanks.read(node, deviceNames); });
+    fields.optional().list("contacts", site.contacts,
+                           [&](const ConfigNode& node) { return readContact(node, contactNames, contactBanks); });
 
     fields.optional().read("cue_controller", site.cueController, [&](const ConfigNode& node) -> Result<DeviceConfig> {
         DeviceConfig device;
@@ -270,6 +477,12 @@ Result<Site> readSite(const std::filesystem::path& file) {
 
     fields.optional().read("simulation", site.simulation, [](const ConfigNode& node) -> Result<ConfigNode> { return node; });
     TRY(fields.finish());
+    TRY(relayBanks.check());
+    TRY(contactBanks.check());
+    // A look calls outputs and canvases alike.
+    for (const auto& [canvas, node] : canvasNodes)
+        if (outputNames.contains(canvas))
+            return node.error(fmt::format("'{}' is the name of an output; give the canvas another", canvas));
     return site;
 }
 

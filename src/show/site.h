@@ -1,21 +1,26 @@
 #pragma once
 
+#include "show/dmx_merge.h"
+
 #include "core/config.h"
 #include "core/geometry.h"
+#include "core/projection.h"
 #include "core/result.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace fantascope::show {
+
+constexpr double kBrightestBlack = 0.1;  // of a projector: 10 : 1, in bright surroundings
 
 // A device as the site file declares it: the registry's name of its driver and the driver's own keys, which the driver reads.
 struct DeviceConfig {
@@ -46,19 +51,25 @@ struct NominalCamera {
 struct Output {
     std::string name;
     DeviceConfig display;
-    glm::ivec2 size{1920, 1080};        // pixels of the projector
-    double refreshRate = 60;            // Hz
-    std::array<glm::dvec2, 4> corners;  // where the canvas's corners go, in projector pixels, clockwise from its top left
+    double refreshRate = 60;  // Hz
+    std::string canvas;       // the outputs of one name throw parts of one picture; its own name where no other does
+    Projection projection;
     std::optional<NominalProjector> projector;
     std::optional<Surface> surface;
 
-    // The canvas [0, canvasAspect] x [0, 1] onto `corners`, which must make a convex quadrilateral, as those of readSite do.
-    Homography projectorFromCanvas(double canvasAspect) const;
+    glm::ivec2 size() const { return projection.size; }  // pixels of the projector
+};
+
+// Somebody else's desk, which may take a universe over.
+struct Desk {
+    DeviceConfig device;
+    DmxMerge::Settings merge;
 };
 
 struct Universe {
     int number = 1;  // 1 .. 63999
     DeviceConfig port;
+    std::optional<Desk> desk;
 };
 
 // A DMX lamp: consecutive slots, one level each.
@@ -69,13 +80,31 @@ struct Fixture {
     std::vector<std::string> channels;  // "intensity", "red", ...
 };
 
-struct Relay {
-    std::string name;
-    int coil = 0;      // its place in the bank, from 0
-    bool safe = true;  // the state to fall back to; street lamps: on
+// A module with relays, or one with contacts.
+struct Bank {
+    std::string name;  // no other device has it
+    DeviceConfig device;
 };
 
-enum class Button { Go, Back, Blackout };
+struct Relay {
+    std::string name;
+    std::size_t bank = 0;  // of Site::relayBanks
+    int coil = 0;          // its place in the bank, from 0; each once
+    bool safe = true;      // the state to fall back to; street lamps: on
+};
+
+// From Edit on they set the outputs up (SiteEditor).
+enum class Button { Go, Back, Blackout, Edit, Left, Right, Up, Down, Next, Output, Tool, Picture, Undo, Write };
+
+// What a contact that moves asks for: a door may be a GO, an emergency button the dark.
+enum class ContactAction { Go, Back, Blackout, Dark, Light };
+
+struct Contact {
+    std::string name;
+    std::size_t bank = 0;                        // of Site::contactBanks
+    int input = 0;                               // its place in the bank, from 0; each once
+    std::optional<ContactAction> closes, opens;  // at least one
+};
 
 // The place as the technician wrote it down: the nominal site. Read at start, constant afterwards. See docs/site-format.md.
 struct Site {
@@ -83,22 +112,29 @@ struct Site {
     std::vector<Output> outputs;
     std::vector<Universe> universes;
     std::vector<Fixture> fixtures;
-    std::optional<DeviceConfig> relayBank;
+    std::vector<Bank> relayBanks;  // each with at least one relay
     std::vector<Relay> relays;
     std::optional<DeviceConfig> cueController;
-    std::vector<std::pair<int, Button>> buttons;  // controller button -> what it does
+    std::vector<std::pair<int, Button>> buttons;  // controller button -> what it does; each number once
+    std::vector<Bank> contactBanks;               // each with at least one contact
+    std::vector<Contact> contacts;
     std::optional<DeviceConfig> camera;
     std::optional<NominalCamera> nominalCamera;  // there whenever `camera` is
     std::optional<ConfigNode> simulation;        // the simulated site's own section
 
+    // The same with projectors that have `factor` times as many pixels across and down.
+    Site scaled(glm::dvec2 factor) const;
+    // The indices of the outputs that throw parts of one canvas, in the site's order.
+    std::vector<std::size_t> outputsOn(std::string_view canvas) const;
     std::size_t firstLevel(std::size_t fixture) const;  // where a fixture's channels begin in Look::levels
     std::size_t channelCount() const;                   // of all fixtures: the size of Look::levels
-    std::size_t coilCount() const;                      // the highest coil + 1: the size of the relay bank
+    std::size_t coilCount(std::size_t bank) const;      // a relay bank's highest coil + 1: its size
+    std::size_t inputCount(std::size_t bank) const;     // a contact bank's highest input + 1: its size
 };
 
-// Strict. Besides types, ranges and unknown keys it refuses two things of one name, coil or button; fixtures on top of each
-// other, beyond slot 512 or on no universe; folded corners; a surface turned from its projector. Error: file, line, column, key,
-// advice.
+// Strict. Besides types, ranges and unknown keys it refuses two things of one name, coil or button; fixtures on top of each other, beyond
+// slot 512 or on no universe; a bank without a relay or contact, and those of no bank; a contact that asks for nothing; folded corners; a
+// surface turned from its projector. Error: file, line, column, key, advice.
 Result<Site> readSite(const std::filesystem::path& file);
 
 }  // namespace fantascope::show

@@ -25,6 +25,7 @@ constexpr double kShortestWave = 1.0 / 20;   // canvas heights
 constexpr double kSteepestWave = 0.1;        // height to length
 constexpr double kSmallestFacet = 1.0 / 50;  // of the ball's radius
 constexpr double kLongestTurn = 3600;
+constexpr double kSlowest = 0.01, kFastest = 10;  // videos
 
 Result<fs::path> readFile(const ConfigNode& node, std::string_view advice) {
     const fs::path file = TRY(node.path());
@@ -121,10 +122,32 @@ Result<MirrorBallSource> readMirrorBall(const ConfigNode& node) {
     return mirrors;
 }
 
+Result<fs::path> readVideoFile(const ConfigNode& node) { return readFile(node, "it is a video (MP4, MOV, MKV, WebM)"); }
+
+// A file, or a map with it.
+Result<VideoSource> readVideo(const ConfigNode& node) {
+    VideoSource video;
+    if (!node.isMap()) {
+        video.file = TRY(readVideoFile(node));
+        return video;
+    }
+    ConfigFields fields(node);
+    fields.read("file", video.file, readVideoFile);
+    fields.optional().boolean("loop", video.loop);
+    fields.optional().number("speed", video.speed, kSlowest, kFastest);
+    TRY(fields.finish());
+    return video;
+}
+
+Result<CameraSource> readCamera(const ConfigNode& node) {
+    TRY(ConfigFields(node).finish());
+    return CameraSource{};
+}
+
 }  // namespace
 
 Result<Source> readSource(const std::string& name, const ConfigNode& node) {
-    Source source{name, {}};
+    Source source{name, {}, node};
     int kinds = 0;
     ConfigFields fields(node);
     const auto kind = [&](std::string_view key, auto read) {
@@ -139,14 +162,23 @@ Result<Source> readSource(const std::string& name, const ConfigNode& node) {
     kind("foliage", readFoliage);
     kind("caustics", readCaustics);
     kind("mirror_ball", readMirrorBall);
+    kind("image", [](const ConfigNode& file) -> Result<ImageSource> {
+        return ImageSource{TRY(readFile(file, "it is a picture (PNG, JPEG or TIFF)"))};
+    });
+    kind("video", readVideo);
+    kind("camera", readCamera);
     TRY(fields.finish());
     if (kinds != 1)
-        return node.error("exactly one kind of source is needed: 'pattern', 'solid', 'foliage', 'caustics' or 'mirror_ball'");
+        return node.error(
+            "exactly one kind of source is needed: 'pattern', 'solid', 'foliage', 'caustics', 'mirror_ball', 'image', 'video' or "
+            "'camera'");
     return source;
 }
 
-std::vector<fs::path> patternsOf(const Source& source) {
+std::vector<fs::path> filesOf(const Source& source) {
     if (const auto* pattern = std::get_if<PatternSource>(&source.picture)) return {pattern->file};
+    if (const auto* image = std::get_if<ImageSource>(&source.picture)) return {image->file};
+    if (const auto* video = std::get_if<VideoSource>(&source.picture)) return {video->file};
     std::vector<fs::path> files;
     if (const auto* foliage = std::get_if<FoliageSource>(&source.picture))
         for (const FoliageSource::Layer& layer : foliage->layers) files.push_back(layer.pattern);

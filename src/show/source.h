@@ -55,15 +55,30 @@ struct MirrorBallSource {
     double radius = 0.25, facet = 0.017, lampRadius = 0.03, turn = 60;
 };
 
+struct ImageSource {
+    std::filesystem::path file;
+};
+// The numbers are those of render::VideoSource.
+struct VideoSource {
+    std::filesystem::path file;
+    bool loop = true;
+    double speed = 1;
+};
+// What the site's camera sees.
+struct CameraSource {};
+
 struct Source {
     std::string name;
-    std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource> picture;
+    std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource, ImageSource, VideoSource,
+                 CameraSource>
+        picture;
+    ConfigNode at;  // for whoever has to refuse what is in its files
 };
 
 // One entry of a show's `sources`. Strict; the files that it names must exist. Error: place, key, advice.
 Result<Source> readSource(const std::string& name, const ConfigNode& node);
 
-// All pattern files that a source names.
-std::vector<std::filesystem::path> patternsOf(const Source& source);
+// All files that a source names and that can be checked by themselves: patterns, images, videos.
+std::vector<std::filesystem::path> filesOf(const Source& source);
 
 }  // namespace fantascope::show

@@ -1,0 +1,28 @@
+#include "show/contact_inputs.h"
+
+#include <algorithm>
+
+namespace fantascope::show {
+
+std::optional<Input> inputFor(const Site& site, std::size_t bank, std::size_t contact, bool closed, bool witnessed, Time at) {
+    const auto declared = std::find_if(site.contacts.begin(), site.contacts.end(), [&](const Contact& candidate) {
+        return candidate.bank == bank && static_cast<std::size_t>(candidate.input) == contact;
+    });
+    if (declared == site.contacts.end()) return std::nullopt;
+    const auto action = closed ? declared->closes : declared->opens;
+    if (!action) return std::nullopt;
+    // In the order of ContactAction.
+    constexpr struct {
+        Input::Kind kind;
+        bool isState;
+    } kAsked[] = {{Input::Kind::Go, false},
+                  {Input::Kind::Back, false},
+                  {Input::Kind::Blackout, false},
+                  {Input::Kind::Dark, true},
+                  {Input::Kind::Light, true}};
+    const auto& asked = kAsked[static_cast<std::size_t>(*action)];
+    if (!witnessed && !asked.isState) return std::nullopt;
+    return Input{.at = at, .kind = asked.kind};
+}
+
+}  // namespace fantascope::show
