@@ -3,6 +3,7 @@
 #include "pattern/elemental_shape.h"
 #include "pattern/pattern_settings.h"
 #include "pattern/shape_pattern.h"
+#include "render/video_stream.h"
 #include "show/show.h"
 #include "show/site.h"
 
@@ -42,10 +43,13 @@ Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>&
                     {}};
     if (site) {
         TRY(show.bind(*site));
+        for (const show::Source& source : show.sources)
+            if (std::holds_alternative<show::CameraSource>(source.picture) && !site->camera)
+                return source.at.error(fmt::format("{} has no camera", site->file.string()));
         finding.summary += fmt::format(", plays on {}", site->file.string());
     }
     for (const show::Source& source : show.sources)
-        for (const fs::path& pattern : show::patternsOf(source)) finding.names.push_back(pattern);
+        for (const fs::path& file : show::filesOf(source)) finding.names.push_back(file);
     return finding;
 }
 
@@ -73,6 +77,20 @@ Result<Finding> checkPatternSettings(const fs::path& path, const std::optional<s
 Result<Finding> checkGuide(const fs::path& path) {
     const GreyImage guide = TRY(readGrey(path));
     return Finding{fmt::format("guide, {} x {} px", guide.width(), guide.height()), {}};
+}
+
+Result<Finding> checkVideo(const fs::path& path) {
+    const auto stream = TRY(render::VideoStream::open(path, render::VideoStream::Pace::Exact));
+    const render::VideoContent& video = stream->content();
+    return Finding{fmt::format("video, {} x {} px, {}, {:.2f} s, {}", video.size.x, video.size.y,
+                               counted(video.frames.size(), "frame"), seconds(video.length), video.codec),
+                   {}};
+}
+
+bool isVideoFile(const fs::path& path) {
+    static const std::set<std::string> kEndings = {".mp4",  ".m4v", ".mov",  ".mkv", ".webm", ".avi", ".mpg",
+                                                   ".mpeg", ".ts",  ".m2ts", ".mxf", ".ogv",  ".wmv"};
+    return kEndings.contains(endingOf(path));
 }
 
 // A picture may be a shape as well as a guide; it is taken for a guide.
@@ -106,13 +124,14 @@ Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>&
     if (fs::is_directory(path, ignored))
         return fs::exists(path / "site.yaml", ignored) ? checkSite(path / "site.yaml", site) : checkShow(path, site);
     if (path.extension() == ".yaml") return checkYaml(path, site);
+    if (isVideoFile(path)) return checkVideo(path);
     return isShapeFile(path) ? checkShape(path) : checkGuide(path);
 }
 
 void declareOptions(CLI::App& command, CheckOptions& options) {
     command
         .add_option("path", options.paths,
-                    "Show and site folders, show, site and pattern files, guide images, shapes (SVG, meshes)")
+                    "Show and site folders, show, site and pattern files, guides and images, videos, shapes (SVG, meshes)")
         ->required()
         ->type_name("PATH");
     command

@@ -7,7 +7,6 @@
 
 #include "core/config.h"
 #include "core/file.h"
-#include "core/geometry.h"
 
 #include <fmt/format.h>
 
@@ -33,19 +32,37 @@ std::vector<const render::PatternSource*> patternsIn(const render::PictureSource
     return patterns;
 }
 
-// How long the slowest of all movements takes to come round; 0 where nothing moves.
-double loopOf(const std::vector<render::PictureSource>& sources) {
+// How long a picture takes to come round; 0 where nothing moves, or goes on for ever.
+double loopOf(const render::PictureSource& source) {
+    if (const auto* video = std::get_if<render::VideoSource>(&source))
+        return seconds(video->stream->content().length) / video->speed;
     double longest = 0;
-    for (const render::PictureSource& source : sources)
-        for (const render::PatternSource* pattern : patternsIn(source))
-            longest = std::max(longest, seconds(pattern->motion->period()));
+    for (const render::PatternSource* pattern : patternsIn(source))
+        longest = std::max(longest, seconds(pattern->motion->period()));
     return longest;
 }
 
-// Width / height of the first pattern's canvas.
+// Of all movements the slowest.
+double loopOf(const std::vector<render::PictureSource>& sources) {
+    double longest = 0;
+    for (const render::PictureSource& source : sources) longest = std::max(longest, loopOf(source));
+    return longest;
+}
+
+// Width / height of a picture's canvas, where it has one of its own.
+std::optional<double> aspectOf(const render::PictureSource& source) {
+    const auto ratio = [](glm::ivec2 size) { return static_cast<double>(size.x) / size.y; };
+    if (const auto* video = std::get_if<render::VideoSource>(&source)) return ratio(video->stream->content().size);
+    if (const auto* image = std::get_if<render::ImageSource>(&source))
+        return ratio({image->picture->width(), image->picture->height()});
+    const auto patterns = patternsIn(source);
+    return patterns.empty() ? std::nullopt : std::optional(patterns[0]->pattern->aspect());
+}
+
+// Of the first canvas that has one.
 std::optional<double> aspectOf(const std::vector<render::PictureSource>& sources) {
     for (const render::PictureSource& source : sources)
-        for (const render::PatternSource* pattern : patternsIn(source)) return pattern->pattern->aspect();
+        if (const auto aspect = aspectOf(source)) return aspect;
     return std::nullopt;
 }
 
@@ -114,7 +131,7 @@ Result<Film> Film::ofPattern(const FilmRequest& request) {
     film.size_ = request.size.value_or(sizeOfCanvas(kCanvasRows, *aspectOf(sources)));
     film.frameRate_ = request.frameRate.value_or(kPatternRate);
     film.seconds_ = request.seconds.value_or(loopOf(sources));
-    film.screen_ = TRY(OffScreen::open(film.size_, rectangleCorners(film.size_.x, film.size_.y), sources));
+    film.screen_ = TRY(OffScreen::open(film.size_, sources));
     film.seenAt_ = [state = show::OutputState{{{0, 1.0f}}}](Time) { return Seen{state, {}}; };
     return film;
 }
@@ -126,23 +143,23 @@ Result<Film> Film::ofShow(const FilmRequest& request) {
     RunOptions run;
     run.show = request.what;
     run.site = request.site.empty() ? dataFolder() / "config/simulated" : request.site;
+    run.asFastAsPossible = true;  // nobody watches: a frame may wait for its video
     run.fromCue = request.cue.empty() ? request.from : request.cue;
     Programme programme = TRY(readProgramme(run));
     const std::size_t index = TRY(outputNamed(programme.site, request.output));
     const show::Output& output = programme.site.outputs[index];
 
     Film film;
-    film.size_ = request.size.value_or(output.size);
-    auto corners = output.corners;
+    film.size_ = request.size.value_or(output.size());
     if (request.canvas) {
         if (const auto aspect = aspectOf(programme.sources); aspect && !request.size)
             film.size_ = sizeOfCanvas(kCanvasRows, *aspect);
-        corners = rectangleCorners(film.size_.x, film.size_.y);
+        film.screen_ = TRY(OffScreen::open(film.size_, programme.sources));
     } else {
-        for (glm::dvec2& corner : corners) corner *= glm::dvec2(film.size_) / glm::dvec2(output.size);
+        const show::Site scaled = programme.site.scaled(glm::dvec2(film.size_) / glm::dvec2(output.size()));
+        film.screen_ = TRY(OffScreen::open(scaled.outputs[index].projection, blendOf(scaled, index), programme.sources));
     }
     film.frameRate_ = request.frameRate.value_or(output.refreshRate);
-    film.screen_ = TRY(OffScreen::open(film.size_, corners, programme.sources));
 
     show::CueList& cues = programme.cues;
     std::size_t toCome = cues.cues.size() - (programme.firstInput ? static_cast<std::size_t>(programme.firstInput->cue) + 1 : 0);

@@ -1,7 +1,12 @@
 #include "app/frame_loop.h"
 
+#include "app/site_models.h"
+
+#include "core/log.h"
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace fantascope::app {
@@ -10,8 +15,8 @@ FrameLoop::FrameLoop(const show::Site& site, const show::CueList& cues, std::vec
                      std::filesystem::path assets, Devices& devices, Clock& clock)
     : sources_(std::move(sources)), assets_(std::move(assets)), clock_(clock), replica_(cues) {
     for (std::size_t i = 0; i < site.outputs.size(); ++i) {
-        outputs_.push_back({site.outputs[i], *devices.displays[i]});
-        reports_.push_back({.name = site.outputs[i].name});
+        outputs_.push_back({site.outputs[i], *devices.displays[i], blendOf(site, i)});
+        outputs_.back().report.name = site.outputs[i].name;
     }
 }
 
@@ -24,48 +29,94 @@ FrameLoop::~FrameLoop() {
     }
 }
 
-render::FrameReader& FrameLoop::tap(std::size_t output) {
-    std::optional<render::FrameTap>& tap = outputs_[output].tap;
-    if (!tap) tap.emplace(output, outputs_[output].site.size);
-    return tap->addReader();
+render::FrameTap& FrameLoop::tap(std::size_t output) {
+    std::unique_ptr<render::FrameTap>& tap = outputs_[output].tap;
+    if (!tap) tap = std::make_unique<render::FrameTap>(output, outputs_[output].site.size());
+    return *tap;
+}
+
+void FrameLoop::look() {
+    for (Output& output : outputs_) output.running = output.display.poll();
+}
+
+std::vector<OutputReport> FrameLoop::outputs() const {
+    std::vector<OutputReport> reports;
+    for (const Output& output : outputs_) reports.push_back(output.report);
+    return reports;
 }
 
 FrameLoop::Output* FrameLoop::leader() {
-    const auto running = [](const Output& output) { return output.display.status().state == DeviceState::Running; };
-    const auto first = std::find_if(outputs_.begin(), outputs_.end(), running);
+    const auto first = std::find_if(outputs_.begin(), outputs_.end(), [](const Output& output) { return output.running; });
     return first == outputs_.end() ? nullptr : &*first;
 }
 
-Result<void> FrameLoop::makeRenderer(Output& output) {
-    if (output.renderer) return {};
+Result<void> FrameLoop::makeRenderer(Output& output, const Projection& projection,
+                                     const std::shared_ptr<const render::BlendMap>& blend) {
     const render::OutputRenderer::Options options{
-        .size = output.display.size(), .corners = output.site.corners, .shaders = assets_ / "shaders"};
-    output.renderer = TRY(render::OutputRenderer::create(options, sources_).in("output '" + output.site.name + "'"));
+        .projection = projection, .blend = blend, .shaders = assets_ / "shaders", .clock = &clock_};
+    output.renderer = TRY(render::OutputRenderer::create(options, sources_));
+    output.bends = projection.warp.bends();
+    output.renderer->warmUp(output.display.framebuffer());
+    output.renderer->draw({}, Wind{}, Time{}, output.display.framebuffer());
+    return {};
+}
+
+Result<void> FrameLoop::beReady(Output& output) {
+    if (output.renderer) return {};
+    TRY(makeRenderer(output, output.site.projection, output.blend).in("output '" + output.site.name + "'"));
+    if (output.tap) output.tap->prepare();
     return {};
 }
 
 Result<void> FrameLoop::prepare() {
-    show::OutputState everything;
-    for (std::uint32_t source = 0; source < sources_.size(); ++source) everything.layers.push_back({source, 1.0f});
-    for (Output& output : outputs_) {
-        if (!output.display.makeCurrent()) continue;
-        TRY(makeRenderer(output));
-        for (const show::OutputState& state : {everything, show::OutputState{}})
-            output.renderer->draw(state, Wind{}, Time{}, output.display.framebuffer());
-    }
+    for (Output& output : outputs_)
+        if (output.display.makeCurrent()) TRY(beReady(output));
+    look();
     return {};
 }
 
-Result<void> FrameLoop::draw(Output& output, std::size_t index, Time showTime, OutputReport& report) {
+void FrameLoop::followSettings(Output& output) {
+    if (!output.settings->update()) return;
+    const OutputSettings& wanted = *output.settings->value();
+    const auto followed = [&]() -> Result<void> {
+        // Only a renderer that was made for a mesh bends exactly.
+        if (wanted.projection.warp.bends() && !output.bends)
+            TRY(makeRenderer(output, wanted.projection, wanted.blend));
+        else
+            TRY(output.renderer->follow(wanted.projection, wanted.blend));
+        return output.renderer->setUp(wanted.overlay.get(), wanted.card.get());
+    }();
+    if (!followed) log::error("app", "output '" + output.site.name + "' stays as it was: " + followed.error().message());
+}
+
+void FrameLoop::spend(Output& output, FramePart part, Time time) {
+    const auto index = static_cast<std::size_t>(part);
+    output.spent[index] += time;
+    spent_[index] += time;
+}
+
+Result<void> FrameLoop::draw(Output& output, const show::OutputState& state, const Wind& wind, Time showTime) {
     output.drawn = false;
+    output.spent = {};
+    if (!output.running) return {};  // its status says why, and it comes back by itself
     const Time began = clock_.now();
-    if (!output.display.makeCurrent()) return {};  // lost; its status says so, and it comes back by itself
-    TRY(makeRenderer(output));
-    output.renderer->draw(state_.outputs[index], state_.winds[index], showTime, output.display.framebuffer());
+    if (!output.display.makeCurrent()) return {};
+    TRY(beReady(output));
+    followSettings(output);
+    output.renderer->draw(state, wind, showTime, output.display.framebuffer());
     if (output.tap) output.tap->capture(output.display.framebuffer(), showTime);
-    report.frame.add(clock_.now() - began);
+    const Time uploading = output.renderer->uploading();
+    spend(output, FramePart::Upload, uploading);
+    spend(output, FramePart::Render, clock_.now() - began - uploading);
     output.drawn = true;
     return {};
+}
+
+void FrameLoop::finish(Output& output) {
+    if (!output.drawn) return;
+    const Time began = clock_.now();
+    output.drawn = output.display.finish().has_value();
+    spend(output, FramePart::Render, clock_.now() - began);
 }
 
 Time FrameLoop::refreshFrom(Time moment) {
@@ -81,27 +132,67 @@ Time FrameLoop::refreshFrom(Time moment) {
 
 void FrameLoop::begin(Time start) {
     start_ = start;
-    for (Output& output : outputs_) output.shown = start;  // every refresh after it is one to be met
+    for (Output& output : outputs_) output.shown = Shown{.at = start};  // every refresh after it is one to be met
 }
 
-void FrameLoop::countLate(std::size_t output, std::int64_t refreshes) {
-    reports_[output].lateFrames += refreshes;
+void FrameLoop::countLate(Output& output, std::int64_t refreshes) {
+    if (refreshes <= 0) return;
+    PartTimes spent;
+    std::transform(spent_.begin(), spent_.end(), output.spentUntilShown.begin(), spent.begin(), std::minus());
+    const auto cause = causeOfDelay(spent, fromSeconds(1 / output.display.refreshRate()));
+    (cause ? output.report.lateBy[static_cast<std::size_t>(*cause)] : output.report.lateByMachine) += refreshes;
     framesLate_ += refreshes;
 }
 
 void FrameLoop::finish(Time end) {
-    for (std::size_t i = 0; i < outputs_.size(); ++i) {
-        // A refresh right at the end belongs to the show, and a display tells its moments to a part of a period only.
-        constexpr double kTolerance = 0.1;
-        if (const std::optional<Time> shown = std::exchange(outputs_[i].shown, std::nullopt); shown && *shown < end)
-            countLate(
-                i, static_cast<std::int64_t>(std::floor(seconds(end - *shown) * outputs_[i].display.refreshRate() + kTolerance)));
+    // A refresh right at the end belongs to the show, and a display tells its moments to a part of a period only.
+    constexpr double kTolerance = 0.1;
+    for (Output& output : outputs_) {
+        if (const std::optional<Shown> shown = std::exchange(output.shown, std::nullopt); shown && shown->at < end)
+            countLate(output, static_cast<std::int64_t>(
+                                  std::floor(seconds(end - shown->at) * output.display.refreshRate() + kTolerance)));
+        if (output.tap && output.display.makeCurrent()) output.tap->finish();
     }
 }
 
 Time FrameLoop::nextDue() { return refreshFrom(Time{}); }
 
+void FrameLoop::show(Output& output, const Presenting& present) {
+    const std::optional<Shown> before = std::exchange(output.shown, std::nullopt);
+    if (!output.drawn) return;
+    const Result<Shown> shown = present(output.display);
+    if (!shown) return;
+    output.shown = *shown;
+    spend(output, FramePart::Swap, shown->swap);
+    // Whatever kept us: every refresh since the last one that had a frame counts.
+    if (before) countLate(output, std::llround(seconds(shown->at - before->at) * output.display.refreshRate()) - 1);
+    output.spentUntilShown = spent_;
+    ++output.report.frames;
+    ++framesShown_;
+    for (std::size_t part = 0; part < kFrameParts; ++part) output.report.took[part].add(output.spent[part]);
+}
+
+void FrameLoop::giveToReaders(Output& output) {
+    if (!output.tap || !output.shown || !output.display.makeCurrent()) return;
+    const Time began = clock_.now();
+    output.tap->publish(*output.shown);
+    spend(output, FramePart::Render, clock_.now() - began);
+}
+
+void FrameLoop::measureSkew() {
+    Time first = Time::max(), last = Time::min();
+    int swaps = 0;
+    for (const Output& output : outputs_) {
+        if (!output.shown) continue;
+        first = std::min(first, output.shown->swapped);
+        last = std::max(last, output.shown->swapped);
+        ++swaps;
+    }
+    if (swaps > 1) swapSkew_.add(last - first);
+}
+
 Result<void> FrameLoop::step() {
+    look();
     Output* const leads = leader();
     // A display that takes the lead may hold no frame yet for a refresh that the others have theirs for.
     if (nextDue() <= newest_) clock_.sleepUntil(newest_);
@@ -110,35 +201,22 @@ Result<void> FrameLoop::step() {
 
     Time oldestInput = Time::max();
     replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput = std::min(oldestInput, input.at); });
-    for (std::size_t i = 0; i < outputs_.size(); ++i) TRY(draw(outputs_[i], i, showTime, reports_[i]));
+    for (std::size_t i = 0; i < outputs_.size(); ++i) TRY(draw(outputs_[i], state_.outputs[i], state_.winds[i], showTime));
+    for (Output& output : outputs_) finish(output);
 
     // The leader waits as its refreshes ask, the others show with it.
-    std::optional<Time> seen;
-    const auto show = [&](std::size_t i, auto present) {
-        Output& output = outputs_[i];
-        const std::optional<Time> before = std::exchange(output.shown, std::nullopt);
-        if (!output.drawn || !output.display.makeCurrent()) return;
-        const Result<Shown> shown = present(output.display);
-        if (!shown) return;
-        if (output.tap) output.tap->publish(*shown);
-        output.shown = shown->at;
-        if (!seen) seen = shown->at;
-        // Whatever kept us: every refresh since the last one that had a frame counts.
-        const double rate = output.display.refreshRate();
-        const std::int64_t late =
-            before ? std::max<std::int64_t>(0, std::llround(seconds(shown->at - *before) * rate) - 1) : std::int64_t{0};
-        ++reports_[i].frames;
-        ++framesShown_;
-        countLate(i, late);
-    };
-    if (leads != nullptr)
-        show(static_cast<std::size_t>(leads - outputs_.data()), [](DisplaySink& display) { return display.present(); });
-    if (!seen) clock_.sleepUntil(due);
-    const Time leading = seen.value_or(due);
-    for (std::size_t i = 0; i < outputs_.size(); ++i)
-        if (&outputs_[i] != leads) show(i, [&](DisplaySink& display) { return display.presentWith(leading); });
+    if (leads != nullptr) show(*leads, [](DisplaySink& display) { return display.present(); });
+    const bool led = leads != nullptr && leads->shown;
+    if (!led) clock_.sleepUntil(due);
+    const Time leading = led ? leads->shown->at : due;
+    for (Output& output : outputs_)
+        if (&output != leads) show(output, [&](DisplaySink& display) { return display.presentWith(leading); });
+    measureSkew();
+    for (Output& output : outputs_) giveToReaders(output);
 
-    if (seen && oldestInput != Time::max()) inputToFrame_.add(*seen - start_ - oldestInput);
+    const auto seen =
+        std::find_if(outputs_.begin(), outputs_.end(), [](const Output& output) { return output.shown.has_value(); });
+    if (seen != outputs_.end() && oldestInput != Time::max()) inputToFrame_.add(seen->shown->at - start_ - oldestInput);
     if (stateSlot_ != nullptr) {
         stateSlot_->writable() = state_;
         stateSlot_->publish();

@@ -11,16 +11,27 @@
 #include "core/latest_value.h"
 
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 namespace fantascope::app {
 
+// How an output is set while somebody sets it up.
+struct OutputSettings {
+    Projection projection;
+    std::shared_ptr<const render::BlendMap> blend;
+    std::shared_ptr<const RgbaImage> overlay, card;  // as OutputRenderer::setUp() takes them; null: none
+};
+
 // The render thread's work: frame after frame it asks the playback what is to be seen when the next refresh takes place, draws that on
 // every output and shows it. The first running display leads: its refresh paces the loop; the others follow within the same refresh. A
-// display that is lost is left out until it is back. A display that holds a finished frame lets the loop be a frame ahead. Thread: bound to the render thread, but for the slots and counters.
+// display that is lost is left out until it is back. All pictures of a frame are finished before the first is shown. A display that holds a
+// finished frame lets the loop be a frame ahead. Thread: bound to the render thread, but for the slots and counters.
 class FrameLoop {
 public:
     // All outlive it. `assets`: the folder of the shaders.
@@ -29,13 +40,16 @@ public:
     ~FrameLoop();
 
     PlaybackReplica& replica() { return replica_; }
-    // A further reader of the frames that `output` shows. Before the first frame.
-    render::FrameReader& tap(std::size_t output);
+    // Where the frames that `output` shows are read. Readers come before the first frame, best before prepare().
+    render::FrameTap& tap(std::size_t output);
     // The state of the newest frame goes into this slot too. Before the first frame.
     void publishStateTo(LatestValue<show::ShowState>& slot) { stateSlot_ = &slot; }
 
-    // Makes the renderers of the displays that are there and draws every source once, so that nothing is compiled while people watch.
-    // Error: a renderer cannot be made for a display.
+    // New settings of an output, from one other thread: they hold from the next frame on.
+    LatestValue<std::shared_ptr<const OutputSettings>>& settingsOf(std::size_t output) { return *outputs_[output].settings; }
+
+    // Makes the renderers, also of displays that are to come, and draws every source once, so that nothing is compiled while people watch.
+    // A display that has no context yet gets its renderer with that. Error: a renderer cannot be made for a display.
     Result<void> prepare();
     // The first refresh at or after a moment; a show that begins with one has a whole period for its first frame.
     Time refreshFrom(Time moment);
@@ -45,29 +59,49 @@ public:
     Time nextDue();
     // One frame on every output; returns when another can be made. Error: a renderer cannot be made for a display.
     Result<void> step();
-    // The show is over: refreshes up to `end` that no frame was made for count as late. After the last frame.
+    // The show is over: refreshes up to `end` that no frame was made for count as late, and the taps' readers get what is still on its way.
+    // After the last frame.
     void finish(Time end);
 
     // Counters for the progress line. Thread-safe.
     std::int64_t framesShown() const { return framesShown_; }
     std::int64_t framesLate() const { return framesLate_; }
     // After the last frame.
-    const std::vector<OutputReport>& outputs() const { return reports_; }
+    std::vector<OutputReport> outputs() const;
+    const Durations& swapSkew() const { return swapSkew_; }
     const Durations& inputToFrame() const { return inputToFrame_; }
 
 private:
     struct Output {
         const show::Output& site;
         DisplaySink& display;
-        std::unique_ptr<render::OutputRenderer> renderer{};  // made when the display is first there
-        std::optional<render::FrameTap> tap{};               // where somebody reads
+        std::shared_ptr<const render::BlendMap> blend;  // by the site file
+        std::unique_ptr<LatestValue<std::shared_ptr<const OutputSettings>>> settings =
+            std::make_unique<LatestValue<std::shared_ptr<const OutputSettings>>>();
+        std::unique_ptr<render::OutputRenderer> renderer{};  // made when the display's context is first there
+        std::unique_ptr<render::FrameTap> tap{};             // where somebody reads
+        bool bends = false;                                  // the renderer was made for a mesh
+        bool running = false;                                // when it was asked last
         bool drawn = false;                                  // in the frame that is being made
-        std::optional<Time> shown{};                         // when the newest frame was, or will be; none since it was lost
+        PartTimes spent{};                                   // on that frame so far
+        std::optional<Shown> shown{};                        // the newest frame; none since it was lost
+        PartTimes spentUntilShown{};                         // spent_ then
+        OutputReport report{};
     };
-    Result<void> makeRenderer(Output& output);
-    Result<void> draw(Output& output, std::size_t index, Time showTime, OutputReport& report);
+    // In place of the one that is there, which stays where this fails.
+    Result<void> makeRenderer(Output& output, const Projection& projection, const std::shared_ptr<const render::BlendMap>& blend);
+    Result<void> beReady(Output& output);
+    void followSettings(Output& output);
+    Result<void> draw(Output& output, const show::OutputState& state, const Wind& wind, Time showTime);
+    void finish(Output& output);
+    using Presenting = std::function<Result<Shown>(DisplaySink&)>;
+    void show(Output& output, const Presenting& present);
+    void giveToReaders(Output& output);
+    void measureSkew();
+    void look();
     Output* leader();
-    void countLate(std::size_t output, std::int64_t refreshes);
+    void spend(Output& output, FramePart part, Time time);
+    void countLate(Output& output, std::int64_t refreshes);
 
     std::vector<render::PictureSource> sources_;
     std::filesystem::path assets_;
@@ -78,7 +112,8 @@ private:
     show::ShowState state_;
     std::vector<Output> outputs_;
     LatestValue<show::ShowState>* stateSlot_ = nullptr;
-    std::vector<OutputReport> reports_;
+    PartTimes spent_{};  // on all frames of all outputs
+    Durations swapSkew_;
     Durations inputToFrame_;
     std::atomic<std::int64_t> framesShown_ = 0, framesLate_ = 0;
 };

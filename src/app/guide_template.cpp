@@ -41,15 +41,14 @@ struct Sample {
 class Survey {
 public:
     Survey(const CanvasView& view, glm::ivec2 size)
-        : view_(view),
-          scene_(view.objects),
-          size_(size),
-          projectorFromPicture_(Homography::fromCorners(rectangleCorners(size.x, size.y), view.corners).value()) {}
+        : view_(view), scene_(view.objects), size_(size), part_(view.warp.shape().part) {}
 
     Sample at(glm::dvec2 pixel) const {
         Sample sample;
-        const glm::dvec2 sent = projectorFromPicture_(pixel);
-        if (!view_.projector.inPicture(sent)) return sample;
+        const glm::dvec2 canvas = pixel / glm::dvec2(size_), sent = view_.warp.projectorFromCanvas(canvas);
+        const bool shown =
+            canvas.x >= part_.low.x && canvas.y >= part_.low.y && canvas.x <= part_.high.x && canvas.y <= part_.high.y;
+        if (!shown || !view_.projector.inPicture(sent)) return sample;
         const vision::Ray ray = view_.projector.rayThrough(sent);
         const auto hit = scene_.nearest(ray.origin, ray.direction);
         sample.meets = Meets::Nothing;
@@ -69,7 +68,9 @@ public:
     std::optional<glm::dvec2> pixelOf(glm::dvec3 point) const {
         const auto sent = view_.projector.pixelFromWorld(point);
         if (!sent) return std::nullopt;
-        return projectorFromPicture_.inverse()(*sent);
+        const auto canvas = view_.warp.canvasFromProjector(*sent);
+        if (!canvas) return std::nullopt;
+        return *canvas * glm::dvec2(size_);
     }
 
     glm::ivec2 size() const { return size_; }
@@ -79,7 +80,7 @@ private:
     const CanvasView& view_;
     const site::Scene scene_;
     const glm::ivec2 size_;
-    const Homography projectorFromPicture_;
+    const CanvasPart part_;
 };
 
 // The number of the line of equal coordinate on an axis that runs between two samples of one object, if one does.
@@ -278,15 +279,17 @@ void labelObjects(const GuideTemplate& drawn, const std::vector<site::SceneObjec
 
 std::optional<glm::dvec2> CanvasView::sizeOnSurface() const {
     if (!surface) return std::nullopt;
+    const CanvasPart& part = warp.shape().part;
+    const std::array<glm::dvec2, 4> canvas = {{part.low, {part.high.x, part.low.y}, part.high, {part.low.x, part.high.y}}};
     std::array<glm::dvec3, 4> points;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const auto point = surface->hitBy(projector.rayThrough(corners[i]));
+        const auto point = surface->hitBy(projector.rayThrough(warp.projectorFromCanvas(canvas[i])));
         if (!point) return std::nullopt;
         points[i] = *point;
     }
     return glm::dvec2(glm::distance(points[0], points[1]) + glm::distance(points[3], points[2]),
                       glm::distance(points[0], points[3]) + glm::distance(points[1], points[2])) /
-           2.0;
+           2.0 / (part.high - part.low);
 }
 
 GuideTemplate drawGuideTemplate(const CanvasView& view, glm::ivec2 size, double grid, int threads) {

@@ -4,8 +4,8 @@
 
 #include "vision/camera_model.h"
 
-#include "core/geometry.h"
 #include "core/image.h"
+#include "core/warp.h"
 
 #include <glm/vec2.hpp>
 
@@ -30,7 +30,7 @@ struct CanvasView {
     std::string name;  // the output's
     vision::CameraModel projector;
     std::optional<vision::Plane> surface;  // what the output is meant for
-    std::array<glm::dvec2, 4> corners;     // where the canvas's go, in projector pixels, clockwise from its top left
+    Warp warp;
     const std::vector<site::SceneObject>& objects;
 
     // Metres across and down the canvas on the surface, each the mean of two sides; nothing where no surface is declared, or it is not

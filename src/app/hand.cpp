@@ -1,14 +1,29 @@
 #include "app/hand.h"
 
+#include "show/contact_inputs.h"
+
 #include "core/log.h"
 
 #include <fmt/format.h>
 
-namespace fantascope::app {
+#include <array>
+#include <cstddef>
+#include <string_view>
 
-Hand::Hand(const show::Show& show, const show::CueList& cues, const show::Site& site, CueController* controller, Time start)
-    : show_(show), controller_(controller), start_(start), buttons_(site.buttons), playback_(cues) {
+namespace fantascope::app {
+namespace {
+
+// On a key, in the order of show::Button.
+constexpr std::array<std::string_view, 14> kWords = {"GO",   "BACK", "DARK",   "EDIT", "LEFT",    "RIGHT", "UP",
+                                                     "DOWN", "NEXT", "OUTPUT", "TOOL", "PICTURE", "UNDO",  "WRITE"};
+static_assert(kWords.size() == static_cast<std::size_t>(show::Button::Write) + 1);
+
+}  // namespace
+
+Hand::Hand(const show::Show& show, const show::CueList& cues, const show::Site& site, Devices& devices, Time start)
+    : show_(show), site_(site), devices_(devices), start_(start), buttons_(site.buttons), playback_(cues) {
     entered_.reserve(show.cues.size());
+    lights_.resize(site.buttons.size());
 }
 
 void Hand::give(const show::Input& input) {
@@ -19,17 +34,57 @@ void Hand::give(const show::Input& input) {
 }
 
 void Hand::tick(Time moment) {
-    while (controller_ != nullptr) {
-        const auto event = controller_->poll();
+    while (devices_.cueController) {
+        const auto event = devices_.cueController->poll();
         if (!event) break;
         if (const auto input = buttons_.inputFor(event->button, event->pressed, event->at - start_)) give(*input);
+        for (const auto& [number, button] : site_.buttons)
+            if (number == event->button && button >= show::Button::Edit) edit(button, event->pressed);
     }
+    for (std::size_t bank = 0; bank < devices_.contactBanks.size(); ++bank)
+        while (const auto change = devices_.contactBanks[bank]->poll())
+            if (const auto input =
+                    show::inputFor(site_, bank, change->contact, change->closed, change->witnessed, change->at - start_))
+                give(*input);
     playback_.stateAt(moment - start_, state_);
+    light(moment - start_);
     if (state_.cue == cue_) return;
     cue_ = state_.cue;
     const std::string& name = show_.cues[static_cast<std::size_t>(cue_)].name;
     entered_.push_back({name, moment - start_});
     tell(fmt::format("cue {} of {}: {}", cue_ + 1, show_.cues.size(), name));
+}
+
+ButtonLight Hand::lightOf(show::Button button, Time showTime) const {
+    using State = ButtonLight::State;
+    const auto lit = [&](bool on, State state) { return on ? state : State::Off; };
+    const auto state = [&] {
+        switch (button) {
+            case show::Button::Go:
+                if (playback_.fadesAt(showTime)) return State::Active;
+                return lit(state_.cue + 1 < static_cast<int>(show_.cues.size()), State::Ready);
+            case show::Button::Back:
+                return lit(state_.cue > 0, State::Ready);
+            case show::Button::Blackout:
+                return lit(state_.blackout, State::Alarm);
+            case show::Button::Edit:
+                return lit(editing(), State::Active);
+            default:  // of no use but there
+                return lit(editing(), State::Ready);
+        }
+    };
+    return {state(), std::string(kWords[static_cast<std::size_t>(button)])};
+}
+
+void Hand::light(Time showTime) {
+    if (!devices_.cueController) return;
+    for (std::size_t i = 0; i < site_.buttons.size(); ++i) {
+        const auto& [number, button] = site_.buttons[i];
+        ButtonLight light = lightOf(button, showTime);
+        if (light == lights_[i]) continue;
+        devices_.cueController->light(number, light);
+        lights_[i] = std::move(light);
+    }
 }
 
 bool GoSchedule::due(Time showTime) {

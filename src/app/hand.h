@@ -14,14 +14,15 @@
 
 namespace fantascope::app {
 
-// The operator's side of a run: polls the cue controller, turns its presses into inputs and gives each to every replica, so that the
-// whole show agrees. Keeps a copy of the playback itself, to tell which cue is on.
+// The operator's side of a run: polls the cue controller and the contacts, turns what they say into inputs and gives each to every replica,
+// so that the whole show agrees; lights the controller's buttons by what they are good for. Keeps a copy of the playback itself, to tell
+// which cue is on.
 class Hand {
 public:
-    // All outlive it. Show time 0 is `start` on the clock.
-    Hand(const show::Show& show, const show::CueList& cues, const show::Site& site, CueController* controller, Time start);
+    // All outlive it; without `devices`' controller or contacts it does without. Show time 0 is `start` on the clock.
+    Hand(const show::Show& show, const show::CueList& cues, const show::Site& site, Devices& devices, Time start);
 
-    // How often the controller is asked: a press waits 5 ms at most.
+    // How often both are asked: a press waits 5 ms at most.
     static constexpr double kRate = 200;
     // A part of the run that is given every input. Before the first tick.
     void feed(PlaybackReplica& replica) { replicas_.push_back(&replica); }
@@ -32,18 +33,28 @@ public:
     // Called on the input thread with a sentence whenever an input or a cue change is worth telling the operator.
     std::function<void(const std::string&)> tell = [](const std::string&) {};
 
+    // Called on the input thread with buttons that set the outputs up.
+    std::function<void(show::Button, bool pressed)> edit = [](show::Button, bool) {};
+    // Asked on the input thread: whether they do so now.
+    std::function<bool()> editing = [] { return false; };
+
     // Once the input part has ended.
     const std::vector<CueReport>& cues() const { return entered_; }
 
 private:
+    ButtonLight lightOf(show::Button button, Time showTime) const;
+    void light(Time showTime);
+
     const show::Show& show_;
-    CueController* controller_;
+    const show::Site& site_;
+    Devices& devices_;
     const Time start_;
     show::CueButtons buttons_;
     show::Playback playback_;
     show::ShowState state_;
     std::vector<PlaybackReplica*> replicas_;
     std::vector<CueReport> entered_;
+    std::vector<ButtonLight> lights_;  // of Site::buttons, as the controller was told
     int cue_ = -1;
 };
 

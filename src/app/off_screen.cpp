@@ -6,18 +6,28 @@
 #include "core/check.h"
 #include "core/config.h"
 
+#include <limits>
+
 namespace fantascope::app {
 
-Result<std::unique_ptr<OffScreen>> OffScreen::open(glm::ivec2 size, const std::array<glm::dvec2, 4>& corners,
+Result<std::unique_ptr<OffScreen>> OffScreen::open(glm::ivec2 size, const std::vector<render::PictureSource>& sources) {
+    Projection straight{size, Warp::straight(size)};
+    straight.light.dither = false;
+    return open(straight, nullptr, sources);
+}
+
+Result<std::unique_ptr<OffScreen>> OffScreen::open(const Projection& projection,
+                                                   const std::shared_ptr<const render::BlendMap>& blend,
                                                    const std::vector<render::PictureSource>& sources) {
+    const glm::ivec2 size = projection.size;
     std::unique_ptr<OffScreen> screen(new OffScreen);
     const ConfigNode options = TRY(ConfigNode::parse("driver: headless\n", "off screen"));
     screen->display_ = TRY(drivers::openDisplay(options, {"picture", size, 1.0}, {screen->clock_}));
     TRY(screen->display_->makeCurrent());
-    screen->renderer_ = TRY(
-        render::OutputRenderer::create({.size = size, .corners = corners, .shaders = dataFolder() / "assets/shaders"}, sources));
+    screen->renderer_ = TRY(render::OutputRenderer::create(
+        {.projection = projection, .blend = blend, .shaders = dataFolder() / "assets/shaders"}, sources));
     screen->tap_ = std::make_unique<render::FrameTap>(0, size);
-    screen->frames_ = &screen->tap_->addReader();
+    screen->frames_ = &screen->tap_->addNewest(std::numeric_limits<double>::infinity());
     return screen;
 }
 
@@ -32,6 +42,7 @@ const RgbaImage& OffScreen::draw(const show::OutputState& state, const Wind& win
     renderer_->draw(state, wind, showTime, display_->framebuffer());
     tap_->capture(display_->framebuffer(), showTime);
     tap_->publish({});
+    tap_->finish();
     const render::ShownFrame* const frame = frames_->next(Time::max());
     FANTASCOPE_CHECK(frame != nullptr, "what was captured is published");
     return frame->image;

@@ -7,11 +7,11 @@
 
 #include "core/clock.h"
 #include "core/image.h"
+#include "core/projection.h"
 #include "core/result.h"
 
 #include <glm/vec2.hpp>
 
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -21,9 +21,12 @@ namespace fantascope::app {
 // Thread: thread-bound, with the OpenGL context that it makes.
 class OffScreen {
 public:
-    // `corners`: where the canvas's corners go in the picture's `size` pixels. Error: no OpenGL here, or a size that it does not have.
-    static Result<std::unique_ptr<OffScreen>> open(glm::ivec2 size, const std::array<glm::dvec2, 4>& corners,
+    // `blend`: as the output's renderer has it. Error: no OpenGL here, or a size that it does not have.
+    static Result<std::unique_ptr<OffScreen>> open(const Projection& projection,
+                                                   const std::shared_ptr<const render::BlendMap>& blend,
                                                    const std::vector<render::PictureSource>& sources);
+    // The whole canvas from edge to edge of `size` pixels, as it is before any projector.
+    static Result<std::unique_ptr<OffScreen>> open(glm::ivec2 size, const std::vector<render::PictureSource>& sources);
     ~OffScreen();
 
     // Stored values as they would go to a projector. Valid until the next call.

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 namespace fantascope::app {
@@ -87,10 +88,36 @@ Result<Picture> readPicture(const show::MirrorBallSource& source) {
                    {}};
 }
 
-Result<Pictures> readPictures(const show::Show& show) {
+Result<Picture> readPicture(const show::ImageSource& source) {
+    return Picture{render::ImageSource{std::make_shared<const RgbaImage>(TRY(readRgba(source.file)))}, {}};
+}
+
+Result<Picture> readPicture(const show::VideoSource& source, render::VideoStream::Pace pace) {
+    return Picture{render::VideoSource{TRY(render::VideoStream::open(source.file, pace)), source.loop, source.speed}, {}};
+}
+
+Result<Picture> readPicture(const std::shared_ptr<render::PictureFeed>& camera) {
+    if (camera == nullptr) return Error("the site has no camera; take this source out, or declare a 'camera' in the site file");
+    return Picture{render::CameraSource{camera}, {}};
+}
+
+// `camera`: null if the site has none.
+Result<Pictures> readPictures(const show::Show& show, render::VideoStream::Pace pace,
+                              const std::shared_ptr<render::PictureFeed>& camera) {
     Pictures pictures;
     for (const show::Source& source : show.sources) {
-        Picture picture = TRY(std::visit([](const auto& kind) { return readPicture(kind); }, source.picture));
+        const auto read = [&](const auto& kind) -> Result<Picture> {
+            using Kind = std::decay_t<decltype(kind)>;
+            if constexpr (std::is_same_v<Kind, show::VideoSource>)
+                return readPicture(kind, pace);
+            else if constexpr (std::is_same_v<Kind, show::CameraSource>)
+                return readPicture(camera);
+            else
+                return readPicture(kind);
+        };
+        auto made = std::visit(read, source.picture);
+        if (!made) return source.at.error(made.error().message());
+        Picture picture = std::move(*made);
         pictures.sources.push_back(std::move(picture.source));
         pictures.guides.push_back(std::move(picture.guide));
     }
@@ -127,7 +154,10 @@ Result<Programme> readProgramme(const RunOptions& options) {
         const std::size_t cue = TRY(programme.show.cueNamed(options.fromCue));
         programme.firstInput = show::Input{Time{}, show::Input::Kind::Jump, static_cast<int>(cue)};
     }
-    Pictures pictures = TRY(readPictures(programme.show));
+    if (programme.site.nominalCamera)
+        programme.camera = std::make_shared<render::PictureFeed>(programme.site.nominalCamera->size);
+    using Pace = render::VideoStream::Pace;
+    Pictures pictures = TRY(readPictures(programme.show, options.asFastAsPossible ? Pace::Exact : Pace::Live, programme.camera));
     programme.sources = std::move(pictures.sources);
     programme.comparisons = TRY(compareWith(pictures.guides, programme.site));
     return programme;

@@ -11,18 +11,21 @@
 #include "core/result.h"
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
 namespace fantascope::app {
 
-// Everything that a run reads from files, before anything lights up. Constant afterwards.
+// Everything that a run reads from files, before anything lights up. Constant afterwards, but for what
+// moves in its pictures.
 struct Programme {
     show::Show show;
     show::Site site;
     show::CueList cues;
     std::optional<show::Input> firstInput;        // the cue to start from
     std::vector<render::PictureSource> sources;   // in the order of Show::sources
+    std::shared_ptr<render::PictureFeed> camera;  // what the camera's sources show; null where the site has none
     std::vector<Watch::Comparisons> comparisons;  // [output][source]
 };
 

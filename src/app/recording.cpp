@@ -68,8 +68,9 @@ void Recording::lighting(Time showTime, int universe, std::span<const std::uint8
     fmt::format_to(std::back_inserter(dmx_), "{:.6f},{},{}\n", seconds(showTime), universe, fmt::join(slots, " "));
 }
 
-void Recording::relays(Time showTime, const std::vector<bool>& states) {
-    relays_ += fmt::format("{:.6f},", seconds(showTime));
+void Recording::relays(Time showTime, const std::string& bank, const std::vector<bool>& states) {
+    const std::lock_guard lock(relaysMutex_);
+    relays_ += fmt::format("{:.6f},{},", seconds(showTime), bank);
     for (const bool on : states) relays_ += on ? '1' : '0';
     relays_ += '\n';
 }

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,10 +23,10 @@ namespace fantascope::app {
 //   NAME.mp4           the video of each output
 //   frames.csv         refresh, show time, output and the hash of each recorded frame's pixels
 //   dmx.csv            show time, universe and slots of each frame sent to the lamps
-//   relays.csv         show time and states whenever the relays were written
+//   relays.csv         show time, bank and states whenever relays were written
 //   contact-sheet.png  the site as the camera saw it at the end of each cue
 // or, where the target is a file that ends in .mp4, one video with the outputs side by side.
-// Thread: frame() from one thread, lighting() from one, relays() from one, cue() from one; finish() when these have ended.
+// Thread: frame() from one thread, lighting() from one, cue() from one, relays() from any; finish() when these have ended.
 class Recording {
 public:
     struct Output {
@@ -39,7 +40,7 @@ public:
     // `picture` was shown on `output` from `refresh` on. Refreshes of one output rise; one that was seen already is left out.
     Result<void> frame(std::size_t output, const RgbaImage& picture, std::int64_t refresh, Time showTime);
     void lighting(Time showTime, int universe, std::span<const std::uint8_t> slots);
-    void relays(Time showTime, const std::vector<bool>& states);
+    void relays(Time showTime, const std::string& bank, const std::vector<bool>& states);
     // The newest camera picture of a cue; the last one given for a cue goes onto the contact sheet.
     void cue(int index, const std::string& label, const RgbaImage& picture);
 
@@ -60,7 +61,8 @@ private:
     RgbaImage tiled_;            // the outputs side by side
     std::string frames_ = "refresh,show_time_s,output,fnv1a64\n";
     std::string dmx_ = "show_time_s,universe,slots\n";
-    std::string relays_ = "show_time_s,states\n";
+    std::mutex relaysMutex_;
+    std::string relays_ = "show_time_s,bank,states\n";
     std::map<int, std::pair<std::string, RgbaImage>> cues_;
 };
 

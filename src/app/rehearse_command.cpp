@@ -14,6 +14,7 @@ namespace {
 
 struct Options {
     std::string show, site, fromCue, record;
+    std::string pictures = RunOptions{}.pictures;
     std::optional<double> length;  // seconds
     std::filesystem::path report;
     std::uint64_t seed = 1;
@@ -48,10 +49,11 @@ Result<void> runAndReport(const RunOptions& run, const std::filesystem::path& re
     std::int64_t frames = 0, late = 0;
     for (const OutputReport& output : report.outputs) {
         frames += output.frames;
-        late += output.lateFrames;
+        late += output.lateFrames();
     }
-    fmt::print("{:.1f} s, {} cues entered, {} frames shown, {} late (an idle thread missed {} of {} refreshes)\n",
-               seconds(report.length), report.cues.size(), frames, late, report.yardstickLate, report.yardstickTicks);
+    fmt::print("{:.1f} s, {} cues entered, {} frames shown, {} late ({}an idle thread missed {} of {} refreshes)\n",
+               seconds(report.length), report.cues.size(), frames, late, late > 0 ? lateFramesByCause(report.outputs) + "; " : "",
+               report.yardstickLate, report.yardstickTicks);
     return {};
 }
 
@@ -60,6 +62,7 @@ void declareCommon(CLI::App& command, Options& options) {
     command.add_option("--from", options.fromCue, "enter this cue at once, by its name");
     command.add_option("--record", options.record,
                        "leave videos, traces and a contact sheet in this folder, or one video in FILE.mp4");
+    command.add_option("--pictures", options.pictures, "where the key s leaves a picture of every output")->capture_default_str();
     command.add_option("--report", options.report, "write the run's figures to this JSON file (docs/report.md)");
 }
 
@@ -70,6 +73,7 @@ RunOptions commonOf(const Options& options) {
     if (options.length) run.length = fromSeconds(*options.length);
     run.fromCue = options.fromCue;
     run.recordTo = options.record;
+    run.pictures = options.pictures;
     run.seed = options.seed;
     return run;
 }
@@ -81,7 +85,8 @@ void declareRehearse(CLI::App& command, Options& options) {
     command.add_option("--seed", options.seed, "of the simulated site's noise")->capture_default_str();
     command.add_flag("--window", options.window, "show the pictures in windows");
     command.add_flag("--as-fast-as-possible", options.asFastAsPossible, "on a stepped clock: the same bytes every time");
-    command.add_flag("--by-hand", options.byHand, "press no GO: wait for space (GO), b (back), 0 (blackout); q ends");
+    command.add_flag("--by-hand", options.byHand,
+                     "press no GO: wait for space (GO), b (back), 0 (blackout); s takes pictures, q ends");
 }
 
 Result<void> rehearse(const Options& options) {

@@ -1,7 +1,14 @@
 #include "app/run_report.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace fantascope::app {
 namespace {
+
+constexpr std::array<const char*, kFrameParts> kPartNames = {"upload", "render", "swap"};
+constexpr const char* kMachine = "machine";
 
 Report jsonOf(const Durations& durations) {
     return {{"count", durations.count()},
@@ -12,25 +19,51 @@ Report jsonOf(const Durations& durations) {
 
 }  // namespace
 
+std::optional<FramePart> causeOfDelay(const PartTimes& spent, Time period) {
+    if (std::accumulate(spent.begin(), spent.end(), Time{}) <= period) return std::nullopt;
+    return static_cast<FramePart>(std::max_element(spent.begin(), spent.end()) - spent.begin());
+}
+
+std::string lateFramesByCause(const std::vector<OutputReport>& outputs) {
+    std::string text;
+    const auto add = [&](const char* cause, auto countOf) {
+        std::int64_t late = 0;
+        for (const OutputReport& output : outputs) late += countOf(output);
+        if (late > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", late, cause);
+    };
+    for (std::size_t part = 0; part < kFrameParts; ++part)
+        add(kPartNames[part], [&](const OutputReport& output) { return output.lateBy[part]; });
+    add(kMachine, [](const OutputReport& output) { return output.lateByMachine; });
+    return text;
+}
+
 Report jsonOf(const RunReport& report) {
-    Report json, frameMs = Report::object(), lateBy = Report::object(), framesBy = Report::object();
-    std::int64_t frames = 0, late = 0;
+    Report json, frameMs = Report::object(), late = Report::object(), lateBy = Report::object(), framesBy = Report::object();
+    std::int64_t frames = 0, lateFrames = 0;
     for (const OutputReport& output : report.outputs) {
         frames += output.frames;
-        late += output.lateFrames;
+        lateFrames += output.lateFrames();
         framesBy[output.name] = output.frames;
-        lateBy[output.name] = output.lateFrames;
-        frameMs[output.name] = jsonOf(output.frame);
+        late[output.name] = output.lateFrames();
+        for (std::size_t part = 0; part < kFrameParts; ++part) {
+            lateBy[output.name][kPartNames[part]] = output.lateBy[part];
+            frameMs[output.name][kPartNames[part]] = jsonOf(output.took[part]);
+        }
+        lateBy[output.name][kMachine] = output.lateByMachine;
     }
     json["seconds"] = seconds(report.length);
     json["seed"] = report.seed;
     json["stop_reason"] = report.stopReason;
     json["frames"] = frames;
-    json["late_frames"] = late;
+    json["late_frames"] = lateFrames;
     json["frames_by_output"] = framesBy;
-    json["late_frames_by_output"] = lateBy;
+    json["late_frames_by_output"] = late;
+    json["late_frames_by_cause"] = lateBy;
     json["yardstick"] = {{"ticks", report.yardstickTicks}, {"late", report.yardstickLate}};
     json["frame_ms"] = frameMs;
+    json["swap_skew_ms"] = jsonOf(report.swapSkew);
+    json["late_video_frames"] = Report::object();
+    for (const auto& [source, lateFrames] : report.lateVideoFrames) json["late_video_frames"][source] = lateFrames;
     json["input_to_frame_ms"] = jsonOf(report.inputToFrame);
     json["dmx_interval_ms"] = jsonOf(report.dmxInterval);
     json["cues"] = Report::array();

@@ -5,19 +5,40 @@
 
 #include "core/clock.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fantascope::app {
 
+// Where the time of an output's frame goes. docs/report.md has their names.
+enum class FramePart {
+    Upload,  // instances and pictures to the GPU
+    Render,  // drawing and its completion
+    Swap     // handing the picture to the display, without the wait for its refresh
+};
+constexpr std::size_t kFrameParts = 3;
+using PartTimes = std::array<Time, kFrameParts>;
+
+// What made a refresh pass without a frame of its own, by what the thread did since the frame before, on all outputs: the part that took
+// longest, where all together took more than a refresh's period. Nothing: the thread had time, and the machine did not run it.
+std::optional<FramePart> causeOfDelay(const PartTimes& spent, Time period);
+
 // What one output did in a run.
 struct OutputReport {
     std::string name;
-    std::int64_t frames = 0;      // shown
-    std::int64_t lateFrames = 0;  // refreshes that passed between the one that a frame was for and the one that showed it
-    Durations frame{};            // from the start of drawing to the picture being ready for its refresh
+    std::int64_t frames = 0;                         // shown
+    std::array<std::int64_t, kFrameParts> lateBy{};  // refreshes without a frame of their own, by the part that made them so
+    std::int64_t lateByMachine = 0;                  // and by none
+    std::array<Durations, kFrameParts> took{};       // of each frame shown
+
+    std::int64_t lateFrames() const { return std::accumulate(lateBy.begin(), lateBy.end(), lateByMachine); }
 };
 
 struct CueReport {
@@ -35,6 +56,7 @@ struct RunReport {
     Time length{};
     std::uint64_t seed = 0;
     std::vector<OutputReport> outputs;
+    Durations swapSkew;      // between the first and the last output's swap of one frame
     Durations inputToFrame;  // from a button's arrival to the first refresh that shows its effect
     Durations dmxInterval;   // between the lamps' frames
     std::int64_t yardstickTicks = 0,
@@ -42,9 +64,12 @@ struct RunReport {
     std::vector<CueReport> cues;
     std::vector<FaultReport> faults;
     std::map<std::string, std::vector<std::pair<Time, double>>> zCamera;  // per output
+    std::map<std::string, std::int64_t> lateVideoFrames;                  // per source that is a video
     std::string stopReason;
 };
 
+// All late frames by what made them so: "3 render, 1 machine"; empty where none was late.
+std::string lateFramesByCause(const std::vector<OutputReport>& outputs);
 // The keys stand in docs/report.md.
 Report jsonOf(const RunReport& report);
 

@@ -18,12 +18,13 @@ struct RunOptions {
     std::filesystem::path show;  // a folder or a show.yaml
     std::filesystem::path site;  // a folder or a site.yaml
     Backends backends = Backends::AsDeclared;
-    std::optional<Time> length;      // until interrupted where there is none
-    std::string fromCue;             // enter this cue at once; empty: wait for the first GO in the dark
-    std::filesystem::path recordTo;  // nowhere if empty; see Recording
-    bool asFastAsPossible = false;   // on a stepped clock: the same bytes every time. Needs a length
-    bool handsOff = false;           // the simulated controller presses GO by itself, evenly over the length
-    std::uint64_t seed = 1;          // of the simulated site's noise
+    std::optional<Time> length;                              // until interrupted where there is none
+    std::string fromCue;                                     // enter this cue at once; empty: wait for the first GO in the dark
+    std::filesystem::path recordTo;                          // nowhere if empty; see Recording
+    std::filesystem::path pictures = "fantascope-pictures";  // the folder of what the operator takes pictures of; see Screenshots
+    bool asFastAsPossible = false;                           // on a stepped clock: the same bytes every time. Needs a length
+    bool handsOff = false;   // the simulated controller presses GO by itself, evenly over the length
+    std::uint64_t seed = 1;  // of the simulated site's noise
 };
 
 // What is worth a progress line, about every half second.

@@ -1,6 +1,7 @@
 #include "app/site_models.h"
 
 #include "core/config.h"
+#include "core/parallel.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +11,7 @@ namespace fantascope::app {
 namespace {
 
 vision::CameraModel projectorOf(const show::Output& output) {
-    return vision::CameraModel::fromThrowRatio(output.projector->pose, output.size, output.projector->throwRatio,
+    return vision::CameraModel::fromThrowRatio(output.projector->pose, output.size(), output.projector->throwRatio,
                                                output.projector->lensShift);
 }
 
@@ -33,6 +34,15 @@ Result<std::size_t> outputNamed(const show::Site& site, const std::string& name)
         nearest.empty() ? fmt::format("its outputs: {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", nearest)));
 }
 
+std::shared_ptr<const render::BlendMap> blendOf(const show::Site& site, std::size_t output) {
+    const std::vector<std::size_t> together = site.outputsOn(site.outputs[output].canvas);
+    std::vector<Projection> projections;
+    for (const std::size_t index : together) projections.push_back(site.outputs[index].projection);
+    const auto which = static_cast<std::size_t>(std::find(together.begin(), together.end(), output) - together.begin());
+    auto map = render::blendMap(projections, which, hardwareThreads());
+    return map ? std::make_shared<const render::BlendMap>(std::move(*map)) : nullptr;
+}
+
 Result<site::NominalSite> simulationOf(const show::Site& site) {
     site::NominalSite nominal;
     for (const show::Output& output : site.outputs) {
@@ -46,10 +56,17 @@ Result<site::NominalSite> simulationOf(const show::Site& site) {
     }
     for (const show::Fixture& fixture : site.fixtures)
         nominal.fixtures.push_back({fixture.name, fixture.universe, fixture.address, fixture.channels});
-    for (const show::Relay& relay : site.relays) nominal.relays.push_back({relay.name, static_cast<std::size_t>(relay.coil)});
-    for (const show::Universe& universe : site.universes) nominal.devices.push_back(fmt::format("universe {}", universe.number));
-    if (site.relayBank) nominal.devices.emplace_back("relay bank");
+    for (const show::Relay& relay : site.relays)
+        nominal.relays.push_back({relay.name, site.relayBanks[relay.bank].name, static_cast<std::size_t>(relay.coil)});
+    for (const show::Contact& contact : site.contacts)
+        nominal.contacts.push_back({contact.name, site.contactBanks[contact.bank].name, static_cast<std::size_t>(contact.input)});
+    for (const show::Universe& universe : site.universes) {
+        nominal.devices.push_back(fmt::format("universe {}", universe.number));
+        if (universe.desk) nominal.devices.push_back(fmt::format("desk {}", universe.number));
+    }
+    for (const show::Bank& bank : site.relayBanks) nominal.devices.push_back(bank.name);
     if (site.cueController) nominal.devices.emplace_back("cue controller");
+    for (const show::Bank& bank : site.contactBanks) nominal.devices.push_back(bank.name);
     if (site.camera) {
         nominal.camera = TRY(cameraOf(site));
         nominal.devices.emplace_back("camera");
@@ -64,7 +81,7 @@ Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site,
     view.camera = TRY(cameraOf(site));
     view.projector = projectorOf(from);
     view.canvasAspect = canvasAspect;
-    view.projectorFromCanvas = from.projectorFromCanvas(canvasAspect);
+    view.warp = from.projection.warp;
     view.surface = {from.surface->point, from.surface->normal};
     return std::optional(view);
 }

@@ -3,6 +3,7 @@
 
 #include "drivers/site/simulated_site.h"
 
+#include "render/blend_map.h"
 #include "show/site.h"
 #include "vision/guide_comparison.h"
 
@@ -12,6 +13,9 @@ namespace fantascope::app {
 
 // The index of an output. Error: the site has none of this name; says which one was perhaps meant.
 Result<std::size_t> outputNamed(const show::Site& site, const std::string& name);
+
+// What an output gives to each pixel beside the others on its canvas; null where it gives all of its light.
+std::shared_ptr<const render::BlendMap> blendOf(const show::Site& site, std::size_t output);
 
 // Error: the site lacks a projector's place, the camera or a usable optic; names what to add to the site file.
 Result<site::NominalSite> simulationOf(const show::Site& site);

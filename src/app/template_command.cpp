@@ -65,10 +65,10 @@ Result<void> run(const Options& options) {
     const show::Output& output = site.outputs[index];
     std::optional<vision::Plane> surface;
     if (output.surface) surface = vision::Plane{output.surface->point, output.surface->normal};
-    const CanvasView view{output.name, nominal.outputs[index].projector, surface, output.corners, simulation.objects};
+    const CanvasView view{output.name, nominal.outputs[index].projector, surface, output.projection.warp, simulation.objects};
 
     const auto metres = view.sizeOnSurface();
-    const glm::dvec2 proportions = metres.value_or(glm::dvec2(output.size));
+    const glm::dvec2 proportions = metres.value_or(glm::dvec2(output.size()));
     const glm::ivec2 size =
         options.size.value_or(glm::ivec2(2 * std::max(1L, std::lround(kRows * proportions.x / proportions.y / 2)), kRows));
     const double grid = options.grid.value_or(handyStep(metres ? metres->y : 5, 8));

@@ -14,7 +14,8 @@ public:
     TerminalKeys(const TerminalKeys&) = delete;
     TerminalKeys& operator=(const TerminalKeys&) = delete;
 
-    std::optional<char> poll();  // the next key, never waits
+    bool listens() const { return saved_ != nullptr; }  // whether there is a terminal
+    std::optional<char> poll();                         // the next key, never waits
 
 private:
     struct Settings;

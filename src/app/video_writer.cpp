@@ -189,8 +189,9 @@ Result<void> VideoWriter::write(const RgbaImage& picture, std::int64_t number) {
     if (impl_->encoder->pix_fmt == kFrom16Bit) {  // libswscale would make 254 / 255 of white
         Rgba16Image wide(picture.width(), picture.height());
         const auto word = [](std::uint8_t byte) { return static_cast<std::uint16_t>(257 * byte); };
-        std::transform(picture.pixels().begin(), picture.pixels().end(), wide.pixels().begin(),
-                       [&](Rgba8 pixel) { return Rgba16{word(pixel.r), word(pixel.g), word(pixel.b), word(pixel.a)}; });
+        std::transform(picture.pixels().begin(), picture.pixels().end(), wide.pixels().begin(), [&](Rgba8 pixel) {
+            return Rgba16{word(pixel.r), word(pixel.g), word(pixel.b), word(pixel.a)};
+        });
         return write(wide, number);
     }
     return impl_->write(picture.pixels().data(), picture.width() * static_cast<int>(sizeof(Rgba8)), kFrom8Bit, number);

@@ -7,11 +7,12 @@
 namespace fantascope::app {
 
 Watch::Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
-             Time start, Recording* recording)
+             render::PictureFeed* pictures, Time start, Recording* recording)
     : show_(show),
       outputs_(std::move(outputs)),
       comparisons_(std::move(comparisons)),
       camera_(camera),
+      pictures_(pictures),
       start_(start),
       recording_(recording),
       scores_(outputs_.size()) {
@@ -37,6 +38,7 @@ void Watch::tick(Time) {
     shown_.update();
     const auto frame = camera_->newest();
     if (!frame) return;
+    if (pictures_ != nullptr) pictures_->publish({frame, &frame->image});
     const Time showTime = frame->exposed - start_;
     for (std::size_t output = 0; output < outputs_.size(); ++output) {
         const vision::GuideComparison* comparison = comparisonOf(output);

@@ -2,6 +2,7 @@
 
 #include "app/recording.h"
 
+#include "render/picture_feed.h"
 #include "show/show.h"
 #include "vision/guide_comparison.h"
 
@@ -24,9 +25,10 @@ public:
     // What an output is compared with, for each source of the show; null where there is nothing to compare.
     using Comparisons = std::vector<std::shared_ptr<const vision::GuideComparison>>;
 
-    // All outlive it; `camera` and `recording` may be null. `comparisons[output][source]`. Show time 0 is `start` on the clock.
+    // All outlive it; `camera`, `pictures` and `recording` may be null. `comparisons[output][source]`. What the camera sees goes on into
+    // `pictures`. Show time 0 is `start` on the clock.
     Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
-          Time start, Recording* recording);
+          render::PictureFeed* pictures, Time start, Recording* recording);
 
     // How often the camera is asked for a new frame.
     static constexpr double kRate = 50;
@@ -52,6 +54,7 @@ private:
     std::vector<std::string> outputs_;
     std::vector<Comparisons> comparisons_;
     CameraSource* camera_;
+    render::PictureFeed* pictures_;
     const Time start_;
     Recording* recording_;
     LatestValue<show::ShowState> shown_;

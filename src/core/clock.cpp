@@ -25,6 +25,8 @@ Time SteadyClock::now() const { return std::chrono::duration_cast<Time>(std::chr
 
 void SteadyClock::sleepUntil(Time time) { std::this_thread::sleep_until(start_ + time); }
 
+Time kernelTime() { return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now().time_since_epoch()); }
+
 void ManualClock::advanceTo(Time time) {
     Time seen = now_.load();
     while (seen < time && !now_.compare_exchange_weak(seen, time)) {

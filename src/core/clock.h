@@ -38,6 +38,10 @@ private:
     std::chrono::steady_clock::time_point start_;
 };
 
+// The monotonic clock by which the system's kernel stamps what devices give (CLOCK_MONOTONIC), since the machine's start. It runs as fast
+// as a SteadyClock does, so that a stamp and a Clock's time differ by what the two differ by now.
+Time kernelTime();
+
 // A clock that moves only when told to: in tests, and to rehearse as fast as possible. sleepUntil moves it.
 class ManualClock final : public Clock {
 public:

@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -55,9 +56,30 @@ bool parseNumber(const std::string& text, Number& value) {
 
 }  // namespace
 
+namespace {
+
+// The line of the first byte that is not UTF-8 (RFC 3629), if there is one.
+std::optional<int> lineOfNoUtf8(std::string_view text) {
+    int line = 1;
+    for (std::size_t at = 0; at < text.size();) {
+        const auto lead = static_cast<unsigned char>(text[at]);
+        const std::size_t length = lead < 0x80 ? 1 : lead < 0xc2 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : lead < 0xf5 ? 4 : 0;
+        if (length == 0 || at + length > text.size()) return line;
+        for (std::size_t next = 1; next < length; ++next)
+            if ((static_cast<unsigned char>(text[at + next]) & 0xc0) != 0x80) return line;
+        if (text[at] == '\n') ++line;
+        at += length;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
 Result<ConfigNode> ConfigNode::load(const fs::path& path) { return parse(TRY(readFile(path)), path); }
 
 Result<ConfigNode> ConfigNode::parse(const std::string& text, const fs::path& name) {
+    if (const auto line = lineOfNoUtf8(text))
+        return Error(fmt::format("{}:{}: not UTF-8; save the file in that encoding", name.string(), *line));
     try {
         auto impl = std::make_shared<Impl>(Impl{std::make_shared<const fs::path>(name), YAML::Load(text), ""});
         if (!impl->node.IsMap())

@@ -34,7 +34,7 @@ Result<std::string> readStart(const fs::path& path, std::size_t bytes) {
     return content;
 }
 
-Result<void> writeFile(const fs::path& path, std::string_view bytes) {
+Result<void> writeFile(const fs::path& path, std::string_view bytes, const fs::path& like) {
     const auto refused = [&](int reason) {
         return Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(reason)));
     };
@@ -42,7 +42,15 @@ Result<void> writeFile(const fs::path& path, std::string_view bytes) {
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
     if (failure) return refused(failure.value());
 
-    std::string aside = path.string() + ".XXXXXX";
+    std::error_code ignored;
+    const fs::path target = fs::is_symlink(path, ignored) ? fs::canonical(path, failure) : path;
+    if (failure) return refused(failure.value());  // a link to nowhere
+    struct stat standing = {}, model = {};
+    const bool stands = ::stat(target.c_str(), &standing) == 0;
+    if (stands && ((standing.st_mode & 0222) == 0 || ::access(target.c_str(), W_OK) != 0)) return refused(EACCES);
+    const bool modelled = ::stat(like.empty() ? target.c_str() : like.c_str(), &model) == 0;
+
+    std::string aside = target.string() + ".XXXXXX";  // mkstemp(3) puts letters there that no file has yet
     const int descriptor = ::mkstemp(aside.data());
     if (descriptor < 0) return refused(errno);
     const auto abandon = [&](int reason) {
@@ -56,8 +64,11 @@ Result<void> writeFile(const fs::path& path, std::string_view bytes) {
         if (written < 0) return abandon(errno);
         bytes.remove_prefix(static_cast<std::size_t>(written));
     }
-    if (::fchmod(descriptor, 0644) != 0 || ::fsync(descriptor) != 0) return abandon(errno);
-    if (::rename(aside.c_str(), path.c_str()) != 0) return abandon(errno);
+    // Only root may give a file away, others may to a group of their own; where neither is allowed the file is the writer's.
+    [[maybe_unused]] const bool given = modelled && (::fchown(descriptor, model.st_uid, model.st_gid) == 0 ||
+                                                     ::fchown(descriptor, static_cast<uid_t>(-1), model.st_gid) == 0);
+    if (::fchmod(descriptor, modelled ? model.st_mode & 0777 : 0644) != 0 || ::fsync(descriptor) != 0) return abandon(errno);
+    if (::rename(aside.c_str(), target.c_str()) != 0) return abandon(errno);
     ::close(descriptor);
     return {};
 }

@@ -183,8 +183,41 @@ Result<void> writePng(const fs::path& path, const Rgba16Image& image) {
     return encodeColours(path, image, 3);
 }  // they come by the thousand
 
+std::vector<std::uint8_t> jpegOf(const RgbaImage& image, int quality) {
+    FANTASCOPE_CHECK(!image.empty(), "an empty image has no file");
+    cv::Mat swapped;
+    cv::cvtColor(view(image), swapped, cv::COLOR_RGBA2BGR);
+    std::vector<std::uint8_t> bytes;
+    cv::imencode(".jpg", swapped, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
+    return bytes;
+}
+
 GreyImage resized(const GreyImage& image, int width, int height) { return resizedImage(image, width, height); }
 RgbaImage resized(const RgbaImage& image, int width, int height) { return resizedImage(image, width, height); }
+
+RgbaImage resizedLight(const RgbaImage& image, int width, int height) {
+    static const cv::Mat kLight = [] {
+        cv::Mat table(1, 256, CV_32FC4);
+        for (int value = 0; value < 256; ++value) {
+            const float stored = static_cast<float>(value) / 255, light = linearFromSrgb(stored);
+            table.at<cv::Vec4f>(value) = {light, light, light, stored};
+        }
+        return table;
+    }();
+    cv::Mat light, resized;
+    cv::LUT(view(image), kLight, light);
+    const bool shrinks = width < image.width() || height < image.height();
+    cv::resize(light, resized, {width, height}, 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+    RgbaImage result(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const auto stored = [](float value) { return static_cast<std::uint8_t>(std::lround(value * 255)); };
+            const cv::Vec4f& pixel = resized.at<cv::Vec4f>(y, x);
+            result.at(x, y) = {stored(srgbFromLinear(pixel[0])), stored(srgbFromLinear(pixel[1])),
+                               stored(srgbFromLinear(pixel[2])), stored(pixel[3])};
+        }
+    return result;
+}
 
 GreyImage inverted(GreyImage image) {
     for (float& value : image.pixels()) value = 1 - value;

@@ -77,9 +77,14 @@ Result<void> writePng(const std::filesystem::path& path, const GreyImage& image)
 Result<void> writePng(const std::filesystem::path& path, const RgbaImage& image);
 Result<void> writePng(const std::filesystem::path& path, const Rgba16Image& image);
 
+// The bytes of a JPEG file; alpha is left out. quality: 1 is small, 100 good. The same picture gives the same bytes.
+std::vector<std::uint8_t> jpegOf(const RgbaImage& image, int quality);
+
 // Area-averaging when it shrinks, bilinear when it grows. width, height > 0.
 GreyImage resized(const GreyImage& image, int width, int height);
 RgbaImage resized(const RgbaImage& image, int width, int height);
+// The same of the light that stored sRGB values stand for, as an eye far away sees it: fine bright shapes do not darken.
+RgbaImage resizedLight(const RgbaImage& image, int width, int height);
 
 // Light for dark: 1 minus every value.
 GreyImage inverted(GreyImage image);

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
@@ -19,7 +20,7 @@ namespace {
 constexpr double kBlur = 1.0 / 36;
 constexpr int kRows = 72;                 // cells down the canvas: two a sigma
 constexpr int kPlaces = 3;                // across and down a cell
-constexpr double kMostlySeen = 0.5;       // share of the canvas that the camera must see
+constexpr double kMostlySeen = 0.5;       // share of what is shown of the canvas that the camera must see
 constexpr double kOutliers = 0.02;        // share of the darkest and of the brightest cells that has no say in the scale
 constexpr float kFlat = 0.02f;            // a picture that spans less, in linear light of full white, is noise and ambient light
 constexpr int kBackgroundTerms = 6;       // 1, x, y, x^2, xy, y^2
@@ -35,6 +36,7 @@ struct Cell {
 
 // All cells that the camera sees whole, by rows; the strongest gain is 1.
 std::vector<Cell> cellsInSight(const NominalView& view, glm::ivec2 grid) {
+    const CanvasPart& part = view.warp.shape().part;
     std::vector<Cell> cells;
     double strongest = 0;
     for (int row = 0; row < grid.y; ++row)
@@ -42,9 +44,9 @@ std::vector<Cell> cellsInSight(const NominalView& view, glm::ivec2 grid) {
             Cell cell{column, row, {}, 0};
             for (int i = 0; i < kPlaces * kPlaces; ++i) {
                 const glm::dvec2 within((i % kPlaces + 0.5) / kPlaces, (i / kPlaces + 0.5) / kPlaces);
-                const glm::dvec2 canvas =
-                    (glm::dvec2(column, row) + within) * glm::dvec2(view.canvasAspect, 1) / glm::dvec2(grid);
-                const auto point = view.surface.hitBy(view.projector.rayThrough(view.projectorFromCanvas(canvas)));
+                const glm::dvec2 canvas = (glm::dvec2(column, row) + within) / glm::dvec2(grid);
+                if (glm::any(glm::lessThan(canvas, part.low)) || glm::any(glm::greaterThan(canvas, part.high))) break;
+                const auto point = view.surface.hitBy(view.projector.rayThrough(view.warp.projectorFromCanvas(canvas)));
                 const auto pixel = point ? view.camera.pixelFromWorld(*point) : std::nullopt;
                 if (!pixel || !view.camera.inPicture(*pixel)) break;
                 cell.places.emplace_back(*pixel);
@@ -105,7 +107,8 @@ Exposure exposureOf(std::vector<float> seen, std::vector<float> wanted) {
 
 struct GuideComparison::Tables {
     glm::ivec2 frameSize;
-    glm::ivec2 grid;  // cells across and down the canvas
+    glm::ivec2 grid;   // cells across and down the canvas
+    double shown = 1;  // the share of the canvas that the output shows
     std::vector<Cell> cells;
     GreyImage weights;             // of the cells in sight under the low-pass
     std::vector<float> wanted;     // low-passed, of the cells in sight
@@ -128,6 +131,8 @@ GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wante
     auto tables = std::make_shared<Tables>();
     tables->frameSize = view.camera.size;
     tables->grid = {std::max(1, static_cast<int>(std::lround(kRows * view.canvasAspect))), kRows};
+    const glm::dvec2 part = view.warp.shape().part.high - view.warp.shape().part.low;
+    tables->shown = part.x * part.y;
     tables->cells = cellsInSight(view, tables->grid);
     const auto count = static_cast<int>(tables->cells.size());
     tables_ = tables;
@@ -159,9 +164,9 @@ GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wante
 
 std::optional<double> GuideComparison::compare(const RgbaImage& frame) const {
     const Tables& tables = *tables_;
-    FANTASCOPE_CHECK(frame.width() == tables.frameSize.x && frame.height() == tables.frameSize.y, "a frame of the camera's size");
+    if (frame.width() != tables.frameSize.x || frame.height() != tables.frameSize.y) return std::nullopt;
     const auto count = static_cast<int>(tables.cells.size());
-    if (count < kMostlySeen * tables.grid.x * tables.grid.y) return std::nullopt;
+    if (count < kMostlySeen * tables.shown * tables.grid.x * tables.grid.y) return std::nullopt;
 
     // The light on every cell, and what of it comes from sky and lamps: each channel for itself, since that has a colour of its
     // own.

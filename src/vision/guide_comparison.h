@@ -2,8 +2,8 @@
 
 #include "vision/camera_model.h"
 
-#include "core/geometry.h"
 #include "core/image.h"
+#include "core/warp.h"
 
 #include <memory>
 #include <optional>
@@ -15,8 +15,8 @@ namespace fantascope::vision {
 struct NominalView {
     CameraModel camera;
     CameraModel projector;
-    double canvasAspect = 16.0 / 9;  // the canvas is [0, canvasAspect] x [0, 1]
-    Homography projectorFromCanvas;
+    double canvasAspect = 16.0 / 9;  // width / height
+    Warp warp = Warp::straight({1, 1});
     Plane surface;  // what the picture falls on
 };
 
@@ -29,8 +29,8 @@ public:
     // stored values for the paper's method, its linear light for one that compares light. Not empty; stretched over the canvas.
     GuideComparison(const NominalView& view, const GreyImage& wanted);
 
-    // z in [0, 1] of one camera frame (stored sRGB values, camera.size pixels), or nothing if the frame shows no picture to
-    // compare: too dark, too flat, or the camera does not see most of the output. Whether the show wants the guide there at this
+    // z in [0, 1] of one camera frame (stored sRGB values), or nothing if the frame shows no picture to compare: it is not of
+    // camera.size, too dark, too flat, or the camera does not see most of the output. Whether the show wants the guide there at this
     // moment is for the caller to know: any other picture scores badly. Exposure, fades, the colour of the shapes and smooth
     // light of other lamps hardly matter; where the picture stands does. Thread: reentrant.
     std::optional<double> compare(const RgbaImage& frame) const;

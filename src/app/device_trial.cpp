@@ -1,0 +1,151 @@
+#include "app/device_trial.h"
+
+#include "core/image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+
+namespace fantascope::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time kAtOnce = 10ms;     // soon enough for a finger
+constexpr Time kToBeSeen = 400ms;  // how long a lamp or a relay stays as it is
+
+std::string shown(const std::vector<bool>& states) {
+    std::string text;
+    for (const bool on : states) text += on ? " on" : " off";
+    return text;
+}
+
+// The mean of a picture's stored values, 0..1.
+double brightnessOf(const RgbaImage& image) {
+    double sum = 0;
+    for (const Rgba8 pixel : image.pixels()) sum += pixel.r + pixel.g + pixel.b;
+    return image.empty() ? 0 : sum / (3 * 255.0 * static_cast<double>(image.pixels().size()));
+}
+
+}  // namespace
+
+Result<void> DeviceTrial::every(Time period, const Device& device, const std::function<Result<void>()>& step) {
+    std::optional<std::string> missing;  // and why
+    bool wasThere = false;
+    for (Time moment = clock_.now(); goesOn(); moment = std::max(moment + period, clock_.now())) {
+        clock_.sleepUntil(moment);
+        const DeviceStatus status = device.status();
+        if (status.state == DeviceState::Running) {
+            if (missing || !wasThere) out_ << fmt::format("{} ({}) is there", status.name, status.driver) << std::endl;
+            missing.reset();
+            wasThere = true;
+            TRY(step());
+        } else if (missing != status.detail) {
+            missing = status.detail;
+            out_ << fmt::format("{} ({}) is {}: {}", status.name, status.driver, nameOf(status.state), status.detail)
+                 << std::endl;
+        }
+    }
+    if (!wasThere) return Error(device.status().name + " was not there");
+    return {};
+}
+
+Result<void> DeviceTrial::chase(DmxPort& port, const std::vector<std::size_t>& slots) {
+    std::array<std::uint8_t, kDmxSlots> frame{};
+    std::size_t next = 0;
+    const auto tried = every(kToBeSeen, port, [&]() -> Result<void> {
+        const std::size_t slot = slots[next++ % slots.size()];
+        frame.fill(0);
+        frame[slot] = 255;
+        out_ << fmt::format("slot {} is at full", slot + 1) << std::endl;
+        (void)port.send(frame);  // lost in this moment: the next round tells
+        return {};
+    });
+    frame.fill(0);
+    (void)port.send(frame);
+    return tried;
+}
+
+Result<void> DeviceTrial::click(RelayBank& bank, const std::vector<bool>& safeStates) {
+    std::size_t next = 0;
+    const auto tried = every(kToBeSeen, bank, [&]() -> Result<void> {
+        std::vector<bool> states = safeStates;
+        const std::size_t relay = next / 2 % states.size();
+        if (next++ % 2 == 0) states[relay] = !states[relay];
+        if (const auto written = bank.write(states); !written) {
+            out_ << written.error().message() << std::endl;
+            return {};
+        }
+        const auto read = bank.read();
+        if (!read) return {};
+        out_ << fmt::format("coil {} is {}; the bank says{}", relay, states[relay] ? "on" : "off", shown(*read)) << std::endl;
+        if (*read != states)
+            return Error(fmt::format("{} was told{} and says{}", bank.status().name, shown(states), shown(*read)));
+        return {};
+    });
+    (void)bank.write(safeStates);
+    return tried;
+}
+
+Result<void> DeviceTrial::tellPresses(CueController& controller) {
+    return every(kAtOnce, controller, [&]() -> Result<void> {
+        while (const auto event = controller.poll())
+            out_ << fmt::format("button {} {}", event->button, event->pressed ? "down" : "up") << std::endl;
+        return {};
+    });
+}
+
+Result<void> DeviceTrial::tellContacts(InputBank& bank) {
+    return every(kAtOnce, bank, [&]() -> Result<void> {
+        while (const auto change = bank.poll())
+            out_ << fmt::format("input {} {}{}", change->contact, change->closed ? "closed" : "open",
+                                change->witnessed ? "" : ", as it was found")
+                 << std::endl;
+        return {};
+    });
+}
+
+Result<void> DeviceTrial::tellDesk(DmxSource& source) {
+    std::map<std::string, DmxInput> last;
+    return every(kAtOnce, source, [&]() -> Result<void> {
+        while (const auto frame = source.receive()) {
+            const auto [known, isNew] = last.try_emplace(frame->source, *frame);
+            if (isNew) out_ << fmt::format("'{}' sends with priority {}", frame->source, frame->priority) << std::endl;
+            for (std::size_t slot = 0; slot < kDmxSlots; ++slot)
+                if (isNew ? frame->slots[slot] != 0 : frame->slots[slot] != known->second.slots[slot])
+                    out_ << fmt::format("'{}': slot {} is {}", frame->source, slot + 1, frame->slots[slot]) << std::endl;
+            known->second = *frame;
+        }
+        return {};
+    });
+}
+
+Result<void> DeviceTrial::snapshot(CameraSource& camera, const std::filesystem::path& file) {
+    std::shared_ptr<const CameraFrame> first, newest;
+    std::uint64_t frames = 0;
+    TRY(every(kAtOnce, camera, [&]() -> Result<void> {
+        auto frame = camera.newest();
+        if (!frame) return {};
+        ++frames;
+        newest = std::move(frame);
+        if (first) return {};
+        first = newest;
+        TRY(writePng(file, first->image));
+        out_ << fmt::format("{}: {} x {}, brightness {:.2f} of 1", file.string(), first->image.width(), first->image.height(),
+                            brightnessOf(first->image))
+             << std::endl;
+        return {};
+    }));
+    if (!first) return Error(camera.status().name + " is there and gives no picture");
+    if (newest->exposed > first->exposed)
+        out_ << fmt::format("{:.1f} pictures a second, {} missed",
+                            static_cast<double>(frames - 1) / seconds(newest->exposed - first->exposed),
+                            newest->sequence - first->sequence + 1 - frames)
+             << std::endl;
+    return {};
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "app/interrupt.h"
+
+#include "device/camera_source.h"
+#include "device/cue_controller.h"
+#include "device/dmx_port.h"
+#include "device/dmx_source.h"
+#include "device/input_bank.h"
+#include "device/relay_bank.h"
+
+#include "core/clock.h"
+#include "core/result.h"
+
+#include <filesystem>
+#include <functional>
+#include <ostream>
+#include <vector>
+
+namespace fantascope::app {
+
+// Tries one device, in a way that somebody on a ladder sees: a lamp after the other, a click, a press, a picture. Each waits until the
+// device is there, and goes on when it was lost and is back. Error: it was not there all the while, or what it did is not what it was
+// told to do. Thread: the one that the port is bound to.
+class DeviceTrial {
+public:
+    // All outlive it. It ends after `length`, or when interrupted. `out` is told what is to be seen, a line each.
+    DeviceTrial(Clock& clock, Time length, const Interrupt* interrupt, std::ostream& out)
+        : clock_(clock), end_(clock.now() + length), interrupt_(interrupt), out_(out) {}
+
+    // Lights one of these slots (0 .. 511) after the other, the others dark, over and over; dark at the end.
+    Result<void> chase(DmxPort& port, const std::vector<std::size_t>& slots);
+    // Switches each relay to its unsafe state and back, one after the other, and asks the bank each time what it did; safe at the end.
+    Result<void> click(RelayBank& bank, const std::vector<bool>& safeStates);
+    // Tells of every button that goes down or up, and of every contact.
+    Result<void> tellPresses(CueController& controller);
+    Result<void> tellContacts(InputBank& bank);
+    // Tells who sends, and which slots change.
+    Result<void> tellDesk(DmxSource& source);
+    // Leaves the first picture in a PNG file and tells its size, brightness and how many come a second.
+    Result<void> snapshot(CameraSource& camera, const std::filesystem::path& file);
+
+private:
+    bool goesOn() const { return clock_.now() < end_ && (interrupt_ == nullptr || !interrupt_->requested()); }
+    // Does something every `period` while the device is there. Error: it never was, or what `step` says.
+    Result<void> every(Time period, const Device& device, const std::function<Result<void>()>& step);
+
+    Clock& clock_;
+    const Time end_;
+    const Interrupt* interrupt_;
+    std::ostream& out_;
+};
+
+}  // namespace fantascope::app
