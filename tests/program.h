@@ -5,6 +5,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <pty.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -57,8 +59,18 @@ inline Outcome runProgram(const std::vector<std::string>& arguments, const std::
     }
     int status = 0;
     ::waitpid(child, &status, 0);
-    return {statusOf(status), contentsOf(out), contentsOf(errors)};
+    Outcome outcome{statusOf(status), contentsOf(out), contentsOf(errors)};
+    // Its report is one of our faults whatever status the program was to end with.
+    if (outcome.errors.find("Sanitizer") != std::string::npos) ADD_FAILURE() << outcome.errors;
+    return outcome;
 }
+
+inline void PrintTo(const Outcome& outcome, std::ostream* out) {
+    *out << fmt::format("a program that ended with {} and said:\n{}{}", outcome.status, outcome.out, outcome.errors);
+}
+
+// EXPECT_THAT(run(...), exits(0)) tells of a program that ended otherwise what it had said.
+MATCHER_P(exits, status, fmt::format("{} with {}", negation ? "does not end" : "ends", status)) { return arg.status == status; }
 
 // Runs fantascope with `arguments` in `folder`, presses Ctrl-C once it has told `lines` lines of progress, and waits for it: the exit
 // status, or 128 + the signal; -1 if it ended before.
@@ -80,6 +92,37 @@ inline int interruptProgram(const std::vector<std::string>& arguments, const std
     ::waitpid(child, &status, 0);
     ::close(pipe[0]);
     return lines > 0 ? -1 : statusOf(status);
+}
+
+// Runs fantascope with `arguments` in `folder` on a terminal of its own and types: each key once the text before it has been read that
+// often since the last key. The exit status, or 128 + the signal.
+struct Typed {
+    std::string after;
+    int times;
+    char key;
+};
+inline int typeAtProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                         const std::vector<Typed>& typed) {
+    int terminal = -1;
+    const pid_t child = ::forkpty(&terminal, nullptr, nullptr, nullptr);
+    if (child == 0) {
+        if (::chdir(folder.c_str()) != 0) ::_exit(127);
+        execute(arguments);
+    }
+    std::string read;
+    auto next = typed.begin();
+    char byte = 0;
+    for (int times = 0; ::read(terminal, &byte, 1) == 1;) {  // fails once the program has ended
+        read += byte;
+        if (next == typed.end() || !read.ends_with(next->after) || ++times < next->times) continue;
+        if (::write(terminal, &next->key, 1) != 1) break;
+        ++next;
+        times = 0;
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ::close(terminal);
+    return statusOf(status);
 }
 
 }  // namespace fantascope

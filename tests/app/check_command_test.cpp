@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/image.h"
 #include "scratch_folder.h"
+#include "test_video.h"
 
 #include <gmock/gmock.h>
 
@@ -104,6 +105,29 @@ TEST(Check, a_show_is_checked_with_the_patterns_and_guides_that_it_names) {
     const Checked checked = check(folder, {{show}, std::nullopt});
     EXPECT_THAT(checked.lines, HasSubstr("\nleaves.png: "));
     EXPECT_EQ(checked.refusal, "1 of 3 files refused");
+}
+
+// Example failure: the show loads, and the projector stays dark since the video was copied by halves.
+TEST(Check, a_show_is_checked_with_its_images_and_videos) {
+    const ScratchFolder folder;
+    const auto video = folder.path() / "rain.mp4", image = folder.path() / "poster.png";
+    writeVideo(video, {.rate = 30}, 60, [](int number) { return numbered({64, 64}, number); });
+    ASSERT_TRUE(writePng(image, RgbaImage(64, 36)));
+    const auto show =
+        folder.file("show.yaml", replaced(std::string(kShow), "dim: {solid: [0.1, 0.1, 0.1]}",
+                                          "dim: {video: rain.mp4}, poster: {image: poster.png}, wall: {camera: {}}"));
+    EXPECT_EQ(check(folder, {{show}, std::nullopt}).lines,
+              "ok show.yaml: show, 2 cues, 1 look, 3 sources\n"
+              "ok rain.mp4: video, 64 x 64 px, 60 frames, 2.00 s, h264\n"
+              "ok poster.png: guide, 64 x 36 px\n");
+    const std::string bytes = readFile(video).value();
+    folder.file("rain.mp4", bytes.substr(0, bytes.size() / 2));
+    const Checked checked = check(folder, {{show}, std::nullopt});
+    EXPECT_THAT(checked.lines, HasSubstr("\nrain.mp4: not a video that can be read, or a truncated one"));
+    EXPECT_EQ(checked.refusal, "1 of 3 files refused");
+
+    const auto site = folder.file("site.yaml", kSite);
+    EXPECT_THAT(check(folder, {{show}, site}).lines, HasSubstr("show.yaml:4:70: sources.wall: site.yaml has no camera"));
 }
 
 TEST(Check, a_shape_is_checked_as_a_pattern_would_take_it) {

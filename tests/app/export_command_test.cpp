@@ -54,9 +54,8 @@ public:
         show::ShowState later;
         playback.stateAt(std::chrono::minutes(1), later);
         state_ = later.outputs[0];
-        auto corners = programme.site.outputs[0].corners;
-        for (glm::dvec2& corner : corners) corner *= glm::dvec2(size) / glm::dvec2(programme.site.outputs[0].size);
-        screen_ = app::OffScreen::open(size, corners, programme.sources).value();
+        const show::Site scaled = programme.site.scaled(glm::dvec2(size) / glm::dvec2(programme.site.outputs[0].size()));
+        screen_ = app::OffScreen::open(scaled.outputs[0].projection, nullptr, programme.sources).value();
     }
     const RgbaImage& at(Time time) { return screen_->draw(state_, {}, time); }
 
@@ -90,7 +89,7 @@ RgbaImage overBlack(const Rgba16Image& picture) {
 // Example failures: the frame after, the refresh's time instead of the frame's, a fade that still runs.
 TEST_F(ExportCommand, frame_k_is_what_the_renderer_draws_at_k_over_the_rate) {
     const Outcome done = exportLeft("frames", {"--alpha", "none", "--report", "r.json"});
-    ASSERT_EQ(done.status, 0) << done.errors;
+    ASSERT_THAT(done, exits(0));
     Drawn drawn({160, 90});
     for (int k = 0; k < 6; ++k) {
         const RgbaImage picture = frame(fmt::format("frames/frame-{:06}.png", k));
@@ -110,7 +109,7 @@ TEST_F(ExportCommand, videos_have_every_frame_for_as_long_as_the_next) {
     for (const auto& [name, codec] : {std::pair("a.mp4", "h264"), {"a.mov", "prores"}, {"a.mkv", "ffv1"}}) {
         SCOPED_TRACE(name);
         const Outcome done = exportLeft(name, {}, "2.5");
-        ASSERT_EQ(done.status, 0) << done.errors;
+        ASSERT_THAT(done, exits(0));
         const Video video = readVideo(folder_ / name);
         EXPECT_EQ(video.codec, codec);
         ASSERT_EQ(video.frames.size(), 30u);
@@ -122,9 +121,9 @@ TEST_F(ExportCommand, videos_have_every_frame_for_as_long_as_the_next) {
 }
 
 TEST_F(ExportCommand, what_has_alpha_gives_the_frame_again_over_black) {
-    ASSERT_EQ(exportLeft("a.mkv").status, 0);
-    ASSERT_EQ(exportLeft("a.mov").status, 0);
-    ASSERT_EQ(exportLeft("frames").status, 0);
+    ASSERT_THAT(exportLeft("a.mkv"), exits(0));
+    ASSERT_THAT(exportLeft("a.mov"), exits(0));
+    ASSERT_THAT(exportLeft("frames"), exits(0));
     const Video lossless = readVideo(folder_ / "a.mkv"), prores = readVideo(folder_ / "a.mov");
     Drawn drawn({160, 90});
     for (int k = 0; k < 6; ++k) {
@@ -159,9 +158,9 @@ TEST_F(ExportCommand, plays_the_cues_as_a_rehearsal_does) {
             for (const std::uint8_t byte : {pixel.r, pixel.g, pixel.b}) hash = (hash ^ byte) * 0x100000001b3u;
         return hash;
     };
-    ASSERT_EQ(run({"rehearse", "--seconds", "6", "--record", "rehearsal", "--as-fast-as-possible"}).status, 0);
-    ASSERT_EQ(
-        run({"export", kShow, "--output", "right", "--seconds", "6", "--fps", "3", "--alpha", "none", "-o", "frames"}).status, 0);
+    ASSERT_THAT(run({"rehearse", "--seconds", "6", "--record", "rehearsal", "--as-fast-as-possible"}), exits(0));
+    ASSERT_THAT(run({"export", kShow, "--output", "right", "--seconds", "6", "--fps", "3", "--alpha", "none", "-o", "frames"}),
+                exits(0));
     const std::string csv = contentsOf(folder_ / "rehearsal/frames.csv");
     for (int k = 1; k < 18; ++k) {
         const RgbaImage picture = frame(fmt::format("frames/frame-{:06}.png", k));
@@ -171,7 +170,7 @@ TEST_F(ExportCommand, plays_the_cues_as_a_rehearsal_does) {
 
 TEST_F(ExportCommand, a_pattern_alone_fills_the_frame_and_loops) {
     const std::string pattern = kShow + "/left.pattern.yaml";
-    ASSERT_EQ(run({"export", pattern, "--size", "96x54", "--fps", "1", "--alpha", "none", "-o", "frames"}).status, 0);
+    ASSERT_THAT(run({"export", pattern, "--size", "96x54", "--fps", "1", "--alpha", "none", "-o", "frames"}), exits(0));
     // 2000 frames at 30 Hz are one loop; at one frame a second the 67 frames come round to within a frame.
     EXPECT_TRUE(fs::exists(folder_ / "frames/frame-000066.png"));
     EXPECT_FALSE(fs::exists(folder_ / "frames/frame-000067.png"));
@@ -180,8 +179,8 @@ TEST_F(ExportCommand, a_pattern_alone_fills_the_frame_and_loops) {
 
 // The canvas is what a light mask wants: the keystone is for the projector alone.
 TEST_F(ExportCommand, leaves_the_keystone_out_when_asked_to) {
-    ASSERT_EQ(exportLeft("warped", {"--alpha", "none"}, "0.01").status, 0);
-    ASSERT_EQ(exportLeft("straight", {"--alpha", "none", "--canvas"}, "0.01").status, 0);
+    ASSERT_THAT(exportLeft("warped", {"--alpha", "none"}, "0.01"), exits(0));
+    ASSERT_THAT(exportLeft("straight", {"--alpha", "none", "--canvas"}, "0.01"), exits(0));
     ASSERT_EQ(
         run({"export", kShow + "/left.pattern.yaml", "--size", "160x90", "--seconds", "0.01", "--alpha", "none", "-o", "pattern"})
             .status,
@@ -193,7 +192,7 @@ TEST_F(ExportCommand, leaves_the_keystone_out_when_asked_to) {
 TEST_F(ExportCommand, refuses_with_advice) {
     const auto refusal = [&](const std::vector<std::string>& arguments) {
         const Outcome outcome = run(arguments);
-        EXPECT_EQ(outcome.status, 1) << outcome.errors;
+        EXPECT_THAT(outcome, exits(1));
         return outcome.errors;
     };
     const std::string show = kShow;
@@ -202,10 +201,10 @@ TEST_F(ExportCommand, refuses_with_advice) {
     EXPECT_THAT(refusal({"export", show, "--output", "left", "--cue", "Ful", "-o", "a.mp4"}), HasSubstr("Full"));
     EXPECT_THAT(refusal({"export", show, "--output", "left", "-o", "a.gif"}), HasSubstr("FILE.mov"));
     EXPECT_THAT(refusal({"export", show, "--output", "left", "-o", "a.mp4", "--alpha", "stored"}), HasSubstr("no alpha"));
-    ASSERT_EQ(exportLeft("frames").status, 0);
+    ASSERT_THAT(exportLeft("frames"), exits(0));
     EXPECT_THAT(exportLeft("frames").errors, HasSubstr("there are frames in it already"));
-    EXPECT_EQ(run({"export", show, "--output", "left", "-o", "a.mp4", "--size", "160"}).status, 2);
-    EXPECT_EQ(run({"export", show, "--output", "left", "-o", "a.mp4", "--cue", "Full", "--from", "Full"}).status, 2);
+    EXPECT_THAT(run({"export", show, "--output", "left", "-o", "a.mp4", "--size", "160"}), exits(2));
+    EXPECT_THAT(run({"export", show, "--output", "left", "-o", "a.mp4", "--cue", "Full", "--from", "Full"}), exits(2));
     EXPECT_FALSE(fs::exists(folder_ / "a.mp4"));
 }
 

@@ -5,10 +5,15 @@
 #include "pattern/elemental_shape.h"
 #include "pattern/pattern_motion.h"
 
+#include "scratch_folder.h"
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <array>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace fantascope::app {
@@ -20,7 +25,8 @@ using namespace std::chrono_literals;
 class SlowDisplay final : public DisplaySink {
 public:
     SlowDisplay(std::unique_ptr<DisplaySink> display, ManualClock& clock) : display_(std::move(display)), clock_(clock) {}
-    Time nextTakes{};  // the next frame's drawing
+    Time nextTakes{}, completionTakes{}, swapTakes{};  // of the next frame: drawing, its completion, swapping
+    Time swapsAfter{};                                 // its refreshes' moments
 
     DeviceStatus status() const override { return display_->status(); }
     glm::ivec2 size() const override { return display_->size(); }
@@ -31,11 +37,30 @@ public:
         clock_.advance(std::exchange(nextTakes, Time{}));
         return display_->makeCurrent();
     }
+    bool poll() override { return display_->poll(); }
     unsigned framebuffer() const override { return display_->framebuffer(); }
-    Result<Shown> present() override { return display_->present(); }
-    Result<Shown> presentWith(Time leading) override { return display_->presentWith(leading); }
+    Result<void> finish() override {
+        clock_.advance(std::exchange(completionTakes, Time{}));
+        return display_->finish();
+    }
+    Result<Shown> present() override {
+        return swapped([&] { return display_->present(); });
+    }
+    Result<Shown> presentWith(Time leading) override {
+        return swapped([&] { return display_->presentWith(leading); });
+    }
 
 private:
+    Result<Shown> swapped(auto present) {
+        const Time took = std::exchange(swapTakes, Time{});
+        clock_.advance(took);
+        auto shown = present();
+        if (shown) {
+            shown->swap = took;
+            shown->swapped += swapsAfter;
+        }
+        return shown;
+    }
     std::unique_ptr<DisplaySink> display_;
     ManualClock& clock_;
 };
@@ -48,7 +73,7 @@ protected:
         run_.devices.displays[0] = std::move(slow);
         const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{});
         loop_.emplace(run_.site, run_.cues, sources, FANTASCOPE_SOURCE_DIR "/assets", run_.devices, run_.clock);
-        for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output));
+        for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output).addQueue());
         EXPECT_TRUE(loop_->prepare());
         loop_->begin(run_.clock.now());
     }
@@ -101,8 +126,8 @@ TEST_F(FrameLoopPart, a_gap_of_almost_two_periods_does_not_show) {
 TEST_F(FrameLoopPart, every_missed_refresh_counts_on_every_output) {
     step(5);
     slowStep(4.5);  // of two that it had
-    EXPECT_EQ(loop_->outputs()[0].lateFrames, 3);
-    EXPECT_EQ(loop_->outputs()[1].lateFrames, 3);
+    EXPECT_EQ(loop_->outputs()[0].lateFrames(), 3);
+    EXPECT_EQ(loop_->outputs()[1].lateFrames(), 3);
     EXPECT_EQ(loop_->framesLate(), 6);
     step(5);
     EXPECT_EQ(loop_->framesLate(), 6) << "what comes after is in time again";
@@ -112,12 +137,12 @@ TEST_F(FrameLoopPart, every_missed_refresh_counts_on_every_output) {
 TEST_F(FrameLoopPart, refreshes_that_no_frame_was_for_count_too) {
     run_.clock.advance(fromSeconds(2.0 / 30));
     step();
-    EXPECT_EQ(loop_->outputs()[0].lateFrames, 2) << "before the first frame";
+    EXPECT_EQ(loop_->outputs()[0].lateFrames(), 2) << "before the first frame";
     step(5);
     run_.clock.advance(fromSeconds(3.0 / 30));
     step(5);
-    EXPECT_EQ(loop_->outputs()[0].lateFrames, 4) << "of three one was covered by the frame in hand";
-    EXPECT_EQ(loop_->outputs()[1].lateFrames, 4);
+    EXPECT_EQ(loop_->outputs()[0].lateFrames(), 4) << "of three one was covered by the frame in hand";
+    EXPECT_EQ(loop_->outputs()[1].lateFrames(), 4);
 }
 
 // Example failure: a run whose last frames took too long reports fewer refreshes than it lasted, and nobody missed any.
@@ -125,10 +150,114 @@ TEST_F(FrameLoopPart, refreshes_before_the_end_that_no_frame_was_for_count_too) 
     step(5);
     run_.clock.advance(fromSeconds(3.5 / 30));
     loop_->finish(run_.clock.now());
-    EXPECT_EQ(loop_->outputs()[0].lateFrames, 2) << "of three one was covered by the frame in hand";
-    EXPECT_EQ(loop_->outputs()[1].lateFrames, 2);
+    EXPECT_EQ(loop_->outputs()[0].lateFrames(), 2) << "of three one was covered by the frame in hand";
+    EXPECT_EQ(loop_->outputs()[1].lateFrames(), 2);
     loop_->finish(run_.clock.now());
     EXPECT_EQ(loop_->framesLate(), 4) << "counted once";
+}
+
+// What kept the thread on the one output made the other one late, too.
+// Example failure: the wait for a refresh counts as a long swap, so that every late frame is its.
+TEST_F(FrameLoopPart, late_frames_are_told_apart_by_what_made_them_late) {
+    constexpr std::size_t kRender = 1, kSwap = 2, kMachine = 3;
+    const Time long_ = fromSeconds(4.5 / 30);
+    const std::array<std::pair<std::function<void()>, std::size_t>, 4> cases = {
+        {{[&] { left_->nextTakes = long_; }, kRender},
+         {[&] { left_->completionTakes = long_; }, kRender},
+         {[&] { left_->swapTakes = long_; }, kSwap},
+         {[&] { run_.clock.advance(long_); }, kMachine}}};
+    std::array<std::int64_t, 4> expected{};
+    for (const auto& [delay, cause] : cases) {
+        step(5);
+        const std::int64_t before = loop_->framesLate();
+        delay();
+        step(5);
+        const std::int64_t late = loop_->framesLate() - before;
+        EXPECT_GE(late, 2 * 2) << "cause " << cause;
+        expected[cause] += late;
+    }
+    std::array<std::int64_t, 4> seen{};
+    for (const OutputReport& output : loop_->outputs()) {
+        for (std::size_t part = 0; part < kFrameParts; ++part) seen[part] += output.lateBy[part];
+        seen[kMachine] += output.lateByMachine;
+    }
+    EXPECT_EQ(seen, expected);
+    EXPECT_EQ(lateFramesByCause(loop_->outputs()),
+              fmt::format("{} render, {} swap, {} machine", expected[kRender], expected[kSwap], expected[kMachine]));
+}
+
+TEST_F(FrameLoopPart, measures_the_parts_of_each_outputs_frames) {
+    step(5);
+    left_->nextTakes = 7ms, left_->completionTakes = 5ms, left_->swapTakes = 3ms;
+    step();
+    const auto mostMs = [&](std::size_t output, FramePart part) {
+        return loop_->outputs()[output].took[static_cast<std::size_t>(part)].maxMs();
+    };
+    EXPECT_EQ(mostMs(0, FramePart::Render), 12);
+    EXPECT_EQ(mostMs(0, FramePart::Swap), 3);
+    EXPECT_EQ(mostMs(1, FramePart::Render), 0);
+    EXPECT_EQ(mostMs(1, FramePart::Swap), 0);
+    EXPECT_EQ(loop_->outputs()[0].took[0].count(), 6u);
+    EXPECT_EQ(loop_->framesLate(), 0);
+}
+
+TEST_F(FrameLoopPart, measures_how_far_the_outputs_swaps_are_apart) {
+    step(5);
+    EXPECT_EQ(loop_->swapSkew().count(), 5u);
+    EXPECT_EQ(loop_->swapSkew().maxMs(), 0);
+    left_->swapsAfter = 2ms;
+    step();
+    EXPECT_EQ(loop_->swapSkew().maxMs(), 2);
+    run_.world.setPlugged("right", false);
+    step(5);
+    EXPECT_EQ(loop_->swapSkew().count(), 6u) << "one output alone has nothing to be apart from";
+}
+
+TEST(FrameDelays, are_the_machines_where_the_thread_had_time) {
+    EXPECT_EQ(causeOfDelay({1ms, 20ms, 3ms}, 30ms), std::nullopt);
+    EXPECT_EQ(causeOfDelay({11ms, 12ms, 13ms}, 30ms), FramePart::Swap) << "none of them alone";
+    EXPECT_EQ(causeOfDelay({31ms, 0ms, 0ms}, 30ms), FramePart::Upload);
+}
+
+// A clock on which each look takes a microsecond.
+class TickingClock final : public Clock {
+public:
+    explicit TickingClock(ManualClock& clock) : clock_(clock) {}
+    Time now() const override {
+        clock_.advance(1us);
+        return clock_.now();
+    }
+    void sleepUntil(Time time) override { clock_.sleepUntil(time); }
+
+private:
+    ManualClock& clock_;
+};
+
+// Example failure: warming up counts, or what one output uploads is the other's.
+TEST(FrameUploads, are_told_apart_from_drawing) {
+    RunningShow run;
+    TickingClock clock(run.clock);
+    const auto pattern = std::make_shared<const pattern::ShapePattern>([] {
+        pattern::ShapePattern square;
+        square.width = 16, square.height = 9;
+        square.shapes.push_back(valueOf(pattern::loadShape("square")));
+        square.instances.resize(1);
+        return square;
+    }());
+    show::CueList cues = run.cues;
+    cues.cues.resize(1);
+    cues.cues[0].fade = Time{};
+    cues.cues[0].look.outputs[0].layers = {{0, 1.0f}};
+    cues.cues[0].look.outputs[1].layers = {{1, 1.0f}};
+    FrameLoop loop(run.site, cues, {render::PatternSource{pattern, nullptr}, render::SolidSource{}},
+                   FANTASCOPE_SOURCE_DIR "/assets", run.devices, clock);
+    ASSERT_TRUE(loop.prepare());
+    loop.begin(run.clock.now());
+    ASSERT_TRUE(loop.replica().give({Time{}, show::Input::Kind::Go}));
+    for (int frame = 0; frame < 5; ++frame) ASSERT_TRUE(loop.step());
+    constexpr auto kUpload = static_cast<std::size_t>(FramePart::Upload);
+    EXPECT_EQ(loop.outputs()[0].took[kUpload].maxMs(), 1e-3);
+    EXPECT_EQ(loop.outputs()[1].took[kUpload].maxMs(), 0);
 }
 
 TEST_F(FrameLoopPart, a_frame_in_hand_covers_the_end) {
@@ -196,7 +325,7 @@ TEST(FrameLoopWind, each_output_sways_in_its_own) {
     cues.cues[0].fade = Time{};
     cues.cues[0].winds = {{.strength = 0}, {.strength = 4}};
     FrameLoop loop(run.site, cues, {source}, FANTASCOPE_SOURCE_DIR "/assets", run.devices, run.clock);
-    const std::array<render::FrameReader*, 2> readers{&loop.tap(0), &loop.tap(1)};
+    const std::array<render::FrameReader*, 2> readers{&loop.tap(0).addQueue(), &loop.tap(1).addQueue()};
     ASSERT_TRUE(loop.prepare());
     loop.begin(run.clock.now());
     ASSERT_TRUE(loop.replica().give({run.clock.now(), show::Input::Kind::Go}));
@@ -210,6 +339,44 @@ TEST(FrameLoopWind, each_output_sways_in_its_own) {
     }
     EXPECT_EQ(changes[0], 1) << "the first picture, and no other after it";
     EXPECT_GT(changes[1], 20);
+}
+
+// Somebody sets a mesh while the show runs, and no renderer can be made for it: what was on the wall stays there.
+TEST(FrameLoop, keeps_its_renderer_where_a_new_one_cannot_be_made) {
+    const ScratchFolder folder;
+    std::filesystem::create_directories(folder / "assets");
+    std::filesystem::copy(FANTASCOPE_SOURCE_DIR "/assets/shaders", folder / "assets/shaders",
+                          std::filesystem::copy_options::recursive);
+    RunningShow run;
+    const std::vector<render::PictureSource> sources(run.show.sources.size(), render::SolidSource{});
+    FrameLoop loop(run.site, run.cues, sources, folder / "assets", run.devices, run.clock);
+    render::FrameReader& reader = loop.tap(0).addQueue();
+    ASSERT_TRUE(loop.prepare());
+    loop.begin(run.clock.now() - 30s);  // the cue is faded in
+    loop.replica().give(run.jumpTo("Both"));
+    const auto shown = [&] {
+        EXPECT_TRUE(loop.step());
+        RgbaImage image;
+        while (const render::ShownFrame* const frame = reader.next(Time::max())) image = frame->image;
+        return image;
+    };
+    const RgbaImage before = shown();
+    auto settings = std::make_shared<OutputSettings>();
+    settings->projection = run.site.outputs[0].projection;
+    WarpShape shape = settings->projection.warp.shape();
+    shape.mesh = WarpMesh{WarpMesh::Between::Smooth, {2, 2}, {{9, 9}, {0, 0}, {0, 0}, {0, 0}}};
+    settings->projection.warp = Warp::of(shape).value();
+    const auto give = [&] {
+        loop.settingsOf(0).writable() = settings;
+        loop.settingsOf(0).publish();
+    };
+    std::filesystem::rename(folder / "assets/shaders/shape.frag", folder / "aside");
+    give();
+    EXPECT_EQ(shown(), before);
+    EXPECT_EQ(shown(), before);
+    std::filesystem::rename(folder / "aside", folder / "assets/shaders/shape.frag");
+    give();
+    EXPECT_NE(shown(), before) << "and takes the next settings";
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ protected:
     CanvasView left() const {
         const show::Output& output = site_.outputs[0];
         return {"left", nominal_.outputs[0].projector, vision::Plane{output.surface->point, output.surface->normal},
-                output.corners, simulation_.objects};
+                output.projection.warp, simulation_.objects};
     }
     GuideTemplate drawn(int threads = 2) const { return drawGuideTemplate(left(), kSize, kGrid, threads); }
 
@@ -88,7 +88,7 @@ TEST_F(TemplateTest, what_is_drawn_over_a_thing_lights_that_thing) {
     dot.shapes = {pattern::loadShape("circle").value()};
     dot.instances = {{.centre = pixel / static_cast<double>(kSize.y), .size = 0.06}};
     const render::PatternSource source{std::make_shared<const pattern::ShapePattern>(dot), nullptr};
-    const auto screen = OffScreen::open(site_.outputs[0].size, site_.outputs[0].corners, {source}).value();
+    const auto screen = OffScreen::open(site_.outputs[0].projection, nullptr, {source}).value();
 
     ManualClock clock;
     site::World world(clock);
@@ -142,11 +142,11 @@ TEST_F(TemplateTest, marks_what_is_hidden_from_the_projector) {
     for (const site::SceneObject& object : view.objects)
         if (object.name != "wall" && object.name != "marker") others.push_back(object);
     const site::Scene inTheWay(others);
-    const Homography projectorFromPicture = Homography::fromCorners(rectangleCorners(kSize.x, kSize.y), view.corners).value();
     int hidden = 0, wrong = 0, hatched = 0;
     for (int y = 0; y < kSize.y; ++y)
         for (int x = 0; x < kSize.x; ++x) {
-            const vision::Ray ray = view.projector.rayThrough(projectorFromPicture({x + 0.5, y + 0.5}));
+            const vision::Ray ray =
+                view.projector.rayThrough(view.warp.projectorFromCanvas(glm::dvec2(x + 0.5, y + 0.5) / glm::dvec2(kSize)));
             const bool blocked = inTheWay.blocked(view.surface->hitBy(ray).value(), view.projector.pose.position);
             hidden += blocked;
             wrong += blocked != (picture.meets.at(x, y) == Meets::Object);
@@ -180,18 +180,18 @@ TEST_F(TemplateTest, as_a_command_writes_the_picture_or_says_what_to_do) {
         return runProgram(arguments, folder_.path());
     };
     const Outcome done = run({"--output", "left", "--size", "320x180", "--grid", "0.5"});
-    EXPECT_EQ(done.status, 0) << done.errors;
+    EXPECT_THAT(done, exits(0));
     EXPECT_EQ(readRgba(folder_ / "t.png").value(), drawn().picture);
     EXPECT_THAT(done.out, HasSubstr("5.12 x 2.88 m"));
     fs::remove(folder_ / "t.png");
 
-    EXPECT_EQ(run({"--output", "lefft"}).status, 1);
+    EXPECT_THAT(run({"--output", "lefft"}), exits(1));
     EXPECT_THAT(run({"--output", "lefft"}).errors, HasSubstr("did you mean 'left'?"));
     std::string text = contentsOf(folder_ / "site/site.yaml");
     text.resize(text.find("simulation:"));
     folder_.file("site/site.yaml", text);
     const Outcome bare = run({"--output", "left"});
-    EXPECT_EQ(bare.status, 1);
+    EXPECT_THAT(bare, exits(1));
     EXPECT_THAT(bare.errors, testing::AllOf(HasSubstr("'simulation'"), HasSubstr("photograph")));
     EXPECT_FALSE(fs::exists(folder_ / "t.png"));
 }

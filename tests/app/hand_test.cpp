@@ -4,6 +4,11 @@
 
 #include <gmock/gmock.h>
 
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
 namespace fantascope::app {
 namespace {
 
@@ -30,7 +35,7 @@ protected:
 
     RunningShow run_;
     PlaybackReplica lamps_{run_.cues};
-    Hand hand_{run_.show, run_.cues, run_.site, run_.devices.cueController.get(), Time{}};
+    Hand hand_{run_.show, run_.cues, run_.site, run_.devices, Time{}};
     std::vector<std::string> told_;
 };
 
@@ -66,6 +71,110 @@ TEST_F(HandPart, a_controller_that_is_pulled_out_and_put_back_presses_nothing) {
     EXPECT_EQ(stateOfLamps().cue, -1);
     press(show::Button::Go);
     EXPECT_EQ(stateOfLamps().cue, 0);
+}
+
+// What a button of the default show is good for, as its lamp says it. Cue 1 (Dusk) takes some seconds to come.
+TEST_F(HandPart, lights_the_buttons_by_what_a_press_would_do) {
+    using enum ButtonLight::State;
+    bool editing = false;
+    hand_.editing = [&] { return editing; };
+    const auto lit = [&](show::Button button) {
+        hand_.tick(run_.clock.now());
+        return run_.world.light(run_.buttonOf(button)).state;
+    };
+    EXPECT_EQ(lit(show::Button::Go), Ready);
+    EXPECT_EQ(lit(show::Button::Back), Off) << "there is no cue before";
+    EXPECT_EQ(lit(show::Button::Blackout), Off);
+    EXPECT_EQ(run_.world.light(run_.buttonOf(show::Button::Blackout)).word, "DARK");
+
+    run_.clock.advance(2s);
+    press(show::Button::Go);
+    EXPECT_EQ(lit(show::Button::Go), Active) << "it fades";
+    run_.clock.advance(run_.cues.cues[0].fade);
+    EXPECT_EQ(lit(show::Button::Go), Ready);
+    EXPECT_EQ(lit(show::Button::Back), Off);
+    press(show::Button::Go);
+    EXPECT_EQ(lit(show::Button::Back), Ready);
+
+    press(show::Button::Blackout);
+    EXPECT_EQ(lit(show::Button::Blackout), Alarm);
+    press(show::Button::Blackout);
+    EXPECT_EQ(lit(show::Button::Blackout), Off);
+
+    hand_.give(run_.jumpTo(run_.show.cues.back().name));
+    run_.clock.advance(run_.cues.cues.back().fade);
+    EXPECT_EQ(lit(show::Button::Go), Off) << "this is the last cue";
+    EXPECT_EQ(lit(show::Button::Back), Ready);
+}
+
+// Counts what it is told, and is otherwise not there.
+class CountingController final : public CueController {
+public:
+    explicit CountingController(std::vector<std::pair<int, ButtonLight>>& told) : told_(told) {}
+    DeviceStatus status() const override { return {}; }
+    std::optional<ButtonEvent> poll() override { return std::nullopt; }
+    void light(int button, const ButtonLight& light) override { told_.emplace_back(button, light); }
+
+private:
+    std::vector<std::pair<int, ButtonLight>>& told_;
+};
+
+TEST(HandLights, are_told_once_a_change_and_of_editing_too) {
+    using enum ButtonLight::State;
+    using testing::Pair;
+    RunningShow run;
+    std::vector<std::pair<int, ButtonLight>> told;
+    run.site.buttons = {{4, show::Button::Go}, {7, show::Button::Edit}, {9, show::Button::Left}};
+    run.devices.cueController = std::make_unique<CountingController>(told);
+    Hand hand{run.show, run.cues, run.site, run.devices, Time{}};
+    bool editing = false;
+    hand.editing = [&] { return editing; };
+    const auto toldIn = [&](Time length) {
+        told.clear();
+        for (const Time end = run.clock.now() + length; run.clock.now() < end; run.clock.advance(5ms)) hand.tick(run.clock.now());
+        return told;
+    };
+    EXPECT_THAT(toldIn(1s), ElementsAre(Pair(4, ButtonLight{Ready, "GO"}), Pair(7, ButtonLight{Off, "EDIT"}),
+                                        Pair(9, ButtonLight{Off, "LEFT"})));
+    EXPECT_THAT(toldIn(1s), ElementsAre());
+    editing = true;
+    EXPECT_THAT(toldIn(1s), ElementsAre(Pair(7, ButtonLight{Active, "EDIT"}), Pair(9, ButtonLight{Ready, "LEFT"})));
+    hand.give({run.clock.now(), show::Input::Kind::Go});
+    EXPECT_THAT(toldIn(run.cues.cues[0].fade + 1s),
+                ElementsAre(Pair(4, ButtonLight{Active, "GO"}), Pair(4, ButtonLight{Ready, "GO"})));
+}
+
+// The default site's, with a gate that starts the next cue and an emergency button, each the second contact of a bank of its own.
+TEST(ContactsPart, a_gate_steps_the_cues_and_an_emergency_button_darkens_the_show) {
+    RunningShow run;
+    const show::DeviceConfig simulated{"simulated", valueOf(ConfigNode::parse("driver: simulated\n", "site.yaml"))};
+    run.site.contactBanks = {{"doors", simulated}, {"desk", simulated}};
+    run.site.contacts = {{"gate", 0, 1, show::ContactAction::Go, {}},
+                         {"emergency", 1, 1, show::ContactAction::Dark, show::ContactAction::Light}};
+    run.devices = valueOf(openDevices(run.site, Backends::SimulatedHeadless, {run.clock, &run.world}));
+    PlaybackReplica lamps{run.cues};
+    Hand hand{run.show, run.cues, run.site, run.devices, Time{}};
+    hand.feed(lamps);
+    const auto stateAfter = [&](const char* bank, bool closed) {
+        run.world.setContact(bank, 1, closed);
+        hand.tick(run.clock.now());
+        run.clock.advance(2s);
+        show::ShowState state;
+        lamps.stateAt(run.clock.now(), state);
+        return state;
+    };
+    hand.tick(run.clock.now());
+    EXPECT_EQ(stateAfter("doors", true).cue, 0);
+    EXPECT_EQ(stateAfter("doors", false).cue, 0);
+    EXPECT_EQ(stateAfter("doors", true).cue, 1);
+    EXPECT_TRUE(stateAfter("desk", true).blackout);
+    EXPECT_FALSE(stateAfter("desk", false).blackout);
+    for (const char* bank : {"doors", "desk"}) run.world.setPlugged(bank, false);
+    EXPECT_FALSE(stateAfter("desk", true).blackout) << "nobody can know";
+    EXPECT_EQ(stateAfter("doors", false).cue, 1);
+    for (const char* bank : {"doors", "desk"}) run.world.setPlugged(bank, true);
+    EXPECT_TRUE(stateAfter("doors", true).blackout) << "it was pressed meanwhile";
+    EXPECT_EQ(stateAfter("doors", true).cue, 1) << "the gate moved while nobody saw it";
 }
 
 std::vector<Time> pressesOf(GoSchedule schedule) {

@@ -153,11 +153,11 @@ protected:
 // Example failures: mirrored, upside down, stretched, or another moment.
 TEST_F(PreviewCommand, a_wall_that_faces_the_projector_shows_the_pattern_as_it_is) {
     const Outcome done = preview("p.png", kSquarely);
-    ASSERT_EQ(done.status, 0) << done.errors;
+    ASSERT_THAT(done, exits(0));
     const RgbaImage picture = readRgba(folder_ / "p.png").value();
     const auto source = readPatternSource(kPattern).value();
     const RgbaImage pattern =
-        OffScreen::open({320, 180}, rectangleCorners(320, 180), {source}).value()->draw({{{0, 1.0f}}}, {}, std::chrono::seconds(3));
+        OffScreen::open(glm::ivec2(320, 180), {source}).value()->draw({{{0, 1.0f}}}, {}, std::chrono::seconds(3));
     const auto apart = [&](auto columnOf) {
         double sum = 0;
         for (int y = 0; y < 180; ++y)
@@ -177,7 +177,7 @@ TEST_F(PreviewCommand, films_the_sway) {
     std::vector<std::string> arguments = kSquarely;
     arguments[9] = "0.5";  // --seconds
     const Outcome done = preview("p.mp4", arguments);
-    ASSERT_EQ(done.status, 0) << done.errors;
+    ASSERT_THAT(done, exits(0));
     const Video film = readVideo(folder_ / "p.mp4");
     ASSERT_EQ(film.frames.size(), 15u);
     EXPECT_NEAR(film.seconds, 0.5, 1e-3);
@@ -188,7 +188,7 @@ TEST_F(PreviewCommand, takes_a_picture_for_a_pattern) {
     ASSERT_TRUE(writePng(folder_ / "white.png", RgbaImage(32, 18, {255, 255, 255, 255})));
     std::vector<std::string> arguments = {"preview", "white.png", "--scene", "wall.obj", "--size", "320x180", "-o", "p.png"};
     arguments.insert(arguments.end(), kSquarely.begin(), kSquarely.end());
-    ASSERT_EQ(runProgram(arguments, folder_.path()).status, 0);
+    ASSERT_THAT(runProgram(arguments, folder_.path()), exits(0));
     EXPECT_GT(readRgba(folder_ / "p.png").value().at(160, 90).g, 240);
 }
 
@@ -196,8 +196,8 @@ TEST_F(PreviewCommand, refuses_with_advice) {
     EXPECT_THAT(preview("p.gif", {}).errors, HasSubstr("FILE.png"));
     folder_.file("wall.obj", "v 0 0 0\n");
     EXPECT_THAT(preview("p.png", {}).errors, HasSubstr("wall.obj"));
-    EXPECT_EQ(preview("p.png", {}).status, 1);
-    EXPECT_EQ(preview("p.png", {"--projector", "1,2"}).status, 2);
+    EXPECT_THAT(preview("p.png", {}), exits(1));
+    EXPECT_THAT(preview("p.png", {"--projector", "1,2"}), exits(2));
     folder_.file("wall.obj", "v -1.6 -0.9 0\nv 1.6 -0.9 0\nv 1.6 0.9 0\nf 1 2 3\n");
     EXPECT_THAT(preview("p.png", {"--viewer", "0,0,0", "--viewer-look-at", "0,0,0"}).errors, HasSubstr("the viewer"));
     EXPECT_FALSE(fs::exists(folder_ / "p.png"));

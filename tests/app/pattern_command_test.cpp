@@ -60,7 +60,7 @@ protected:
 TEST_F(PatternCommand, writes_a_pattern_with_all_it_needs_beside_it) {
     const Outcome done =
         find({"--iterations", "20", "--shapes", "circle,sculpture.obj", "--image", "out/p.png", "--report", "out/r.json"});
-    ASSERT_EQ(done.status, 0) << done.errors;
+    ASSERT_THAT(done, exits(0));
     EXPECT_THAT(written(), ElementsAre("p.guide.png", "p.pattern.yaml", "p.png", "p.sculpture.obj", "r.json"));
     fs::rename(folder_ / "out", folder_ / "moved");  // as a folder it can go anywhere
     const auto pattern = pattern::readPattern(folder_ / "moved/p.pattern.yaml");
@@ -73,12 +73,12 @@ TEST_F(PatternCommand, writes_a_pattern_with_all_it_needs_beside_it) {
 TEST_F(PatternCommand, takes_its_arguments_in_any_order) {
     const Outcome done =
         run({"pattern", "--iterations", "1", "-o", "out/p.pattern.yaml", "--shapes", "leaf,circle", "guide.png"});
-    EXPECT_EQ(done.status, 0) << done.errors;
+    EXPECT_THAT(done, exits(0));
 }
 
 TEST_F(PatternCommand, refers_to_what_lies_beside_or_below_it) {
     const Outcome done = run({"pattern", "guide.png", "-o", "p.pattern.yaml", "--iterations", "2", "--shapes", "sculpture.obj"});
-    ASSERT_EQ(done.status, 0) << done.errors;
+    ASSERT_THAT(done, exits(0));
     EXPECT_THAT(text("p.pattern.yaml"), HasSubstr("guide: guide.png"));
     EXPECT_THAT(text("p.pattern.yaml"), HasSubstr("file: sculpture.obj"));
     EXPECT_FALSE(fs::exists(folder_ / "p.guide.png"));
@@ -87,7 +87,7 @@ TEST_F(PatternCommand, refers_to_what_lies_beside_or_below_it) {
 // The paper's black shapes on white: shapes stand where the drawing is dark, and the drawing of the shadows goes with the pattern.
 TEST_F(PatternCommand, fills_what_the_drawing_leaves_dark_when_shapes_are_shadows) {
     const Outcome done = find({"--shadows", "--iterations", "300", "--image", "out/p.png"});
-    ASSERT_EQ(done.status, 0) << done.errors;
+    ASSERT_THAT(done, exits(0));
     EXPECT_THAT(written(), ElementsAre("p.pattern.yaml", "p.png", "p.shadows.png"));
     const GreyImage guide = readGrey(folder_ / "guide.png").value(), shadows = readGrey(folder_ / "out/p.shadows.png").value();
     EXPECT_EQ(pattern::readPattern(folder_ / "out/p.pattern.yaml")->guide, folder_ / "out/p.shadows.png");
@@ -104,7 +104,7 @@ TEST_F(PatternCommand, fills_what_the_drawing_leaves_dark_when_shapes_are_shadow
 TEST_F(PatternCommand, reports_the_figures_of_the_picture_that_it_writes) {
     for (const auto& [method, evaluations] : {std::pair("paper", 1 + 12 * 30), {"refined", 1000 * 30}}) {
         SCOPED_TRACE(method);
-        ASSERT_EQ(find({"--method", method, "--iterations", "30", "--image", "out/p.png", "--report", "out/r.json"}).status, 0);
+        ASSERT_THAT(find({"--method", method, "--iterations", "30", "--image", "out/p.png", "--report", "out/r.json"}), exits(0));
         const GreyImage guide = readGrey(folder_ / "guide.png").value(), image = readGrey(folder_ / "out/p.png").value();
         double sum = 0;
         for (std::size_t i = 0; i < guide.pixels().size(); ++i) sum += std::abs(guide.pixels()[i] - image.pixels()[i]);
@@ -127,18 +127,18 @@ TEST_F(PatternCommand, reports_the_figures_of_the_picture_that_it_writes) {
 TEST_F(PatternCommand, a_run_that_stopped_by_time_is_replayed_byte_for_byte_by_its_iterations) {
     for (const char* method : {"paper", "refined"}) {
         SCOPED_TRACE(method);
-        ASSERT_EQ(
-            find({"--method", method, "--seconds", "0.2", "--threads", "2", "--seed", "5", "--report", "out/r.json"}).status, 0);
+        ASSERT_THAT(find({"--method", method, "--seconds", "0.2", "--threads", "2", "--seed", "5", "--report", "out/r.json"}),
+                    exits(0));
         const nlohmann::json figures = report();
         EXPECT_EQ(figures["stop_reason"], "time");
         const std::string first = text("out/p.pattern.yaml"), count = figures["iterations"].dump();
-        ASSERT_EQ(find({"--method", method, "--iterations", count, "--threads", "1", "--seed", "5"}).status, 0);
+        ASSERT_THAT(find({"--method", method, "--iterations", count, "--threads", "1", "--seed", "5"}), exits(0));
         EXPECT_EQ(text("out/p.pattern.yaml"), first);
     }
 }
 
 TEST_F(PatternCommand, gives_the_same_bytes_in_another_folder) {
-    ASSERT_EQ(find({"--iterations", "10", "--shapes", "sculpture.obj"}).status, 0);
+    ASSERT_THAT(find({"--iterations", "10", "--shapes", "sculpture.obj"}), exits(0));
     const std::string guide = folder_ / "guide.png", mesh = folder_ / "sculpture.obj";
     ASSERT_EQ(
         run({"pattern", guide, "-o", "a/b/p.pattern.yaml", "--instances", "40", "--iterations", "10", "--shapes", mesh}).status,
@@ -150,7 +150,7 @@ TEST_F(PatternCommand, takes_its_numbers_from_a_settings_file_and_the_line_has_t
     folder_.file("s.yaml",
                  "fantascope: pattern-settings\nversion: 1\nguide_transfer: linear\nshapes: {instances: 500}\n"
                  "paper: {candidates: 3}\nmotion: {frames: 100}\n");
-    ASSERT_EQ(find({"--method", "paper", "--iterations", "4", "--settings", "s.yaml", "--report", "out/r.json"}).status, 0);
+    ASSERT_THAT(find({"--method", "paper", "--iterations", "4", "--settings", "s.yaml", "--report", "out/r.json"}), exits(0));
     EXPECT_EQ(report()["evaluations"], 1 + 3 * 4);
     EXPECT_EQ(report()["guide_transfer"], "linear");
     EXPECT_LE(report()["instances"], 40);
@@ -163,7 +163,7 @@ TEST_F(PatternCommand, takes_shapes_from_the_settings_unless_the_line_names_them
     folder_.file("in/s.yaml",
                  "fantascope: pattern-settings\nversion: 1\nshapes: {each: [{builtin: letter-A, colours: [{from: [1, 0, 0]}]}, "
                  "{file: leaf.svg, size: [0.05, 0.06]}]}\n");
-    ASSERT_EQ(find({"--iterations", "5", "--settings", "in/s.yaml"}).status, 0);
+    ASSERT_THAT(find({"--iterations", "5", "--settings", "in/s.yaml"}), exits(0));
     EXPECT_THAT(written(), ElementsAre("p.guide.png", "p.leaf.svg", "p.pattern.yaml"));
     auto pattern = pattern::readPattern(folder_ / "out/p.pattern.yaml").value();
     ASSERT_EQ(pattern.shapes.size(), 2u);
@@ -174,7 +174,7 @@ TEST_F(PatternCommand, takes_shapes_from_the_settings_unless_the_line_names_them
             EXPECT_NEAR(instance.size, 0.055, 0.005001);
         }
     }
-    ASSERT_EQ(find({"--iterations", "5", "--settings", "in/s.yaml", "--shapes", "circle,in/leaf.svg"}).status, 0);
+    ASSERT_THAT(find({"--iterations", "5", "--settings", "in/s.yaml", "--shapes", "circle,in/leaf.svg"}), exits(0));
     pattern = pattern::readPattern(folder_ / "out/p.pattern.yaml").value();
     EXPECT_EQ(pattern.shapes[0].name, "circle");
     for (const auto& instance : pattern.instances)
@@ -196,11 +196,11 @@ TEST_F(PatternCommand, copies_a_gltf_only_if_it_is_whole) {
     folder_.file("b.gltf", gltf("b.bin"));
     folder_.file("b.bin", std::string("\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0", 36));
     const Outcome whole = find({"--iterations", "2", "--shapes", "a.gltf"});
-    EXPECT_EQ(whole.status, 0) << whole.errors;
+    EXPECT_THAT(whole, exits(0));
     const Outcome parted = find({"--iterations", "2", "--shapes", "b.gltf"});
-    EXPECT_EQ(parted.status, 1);
+    EXPECT_THAT(parted, exits(1));
     EXPECT_THAT(parted.errors, HasSubstr("export it as .glb"));
-    EXPECT_EQ(run({"pattern", "guide.png", "-o", "p.pattern.yaml", "--iterations", "2", "--shapes", "b.gltf"}).status, 0)
+    EXPECT_THAT(run({"pattern", "guide.png", "-o", "p.pattern.yaml", "--iterations", "2", "--shapes", "b.gltf"}), exits(0))
         << "where it is it has all it needs";
 }
 
@@ -210,7 +210,7 @@ TEST_F(PatternCommand, bad_input_is_refused_with_one_message_and_leaves_nothing)
         Arguments arguments = {"pattern", guide, "-o", "out/p.pattern.yaml", "--iterations", "1"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Outcome outcome = run(arguments);
-        EXPECT_EQ(outcome.status, 1) << outcome.errors;
+        EXPECT_THAT(outcome, exits(1));
         EXPECT_THAT(outcome.errors, StartsWith("fantascope: error: "));
         EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
         EXPECT_THAT(written(), IsEmpty());
@@ -248,15 +248,15 @@ TEST_F(PatternCommand, wrong_usage_has_a_status_of_its_own_and_points_to_the_hel
                                           {"--method", "refind"}, {"--nonsense"}};
     for (const Arguments& arguments : wrong) {
         const Outcome outcome = find(arguments);
-        EXPECT_EQ(outcome.status, 2) << arguments[0];
+        EXPECT_THAT(outcome, exits(2)) << arguments[0];
         EXPECT_THAT(outcome.errors, StartsWith("fantascope: error: "));
         EXPECT_THAT(outcome.errors, HasSubstr("See 'fantascope pattern --help'."));
     }
     EXPECT_THAT(find({"--method", "refind"}).errors, testing::AllOf(HasSubstr("refined"), HasSubstr("paper")));
-    EXPECT_EQ(run({"pattern"}).status, 2);
+    EXPECT_THAT(run({"pattern"}), exits(2));
     // A slip that would write the pattern over the drawing.
-    EXPECT_EQ(run({"pattern", "guide.png", "-o", "guide.png"}).status, 2);
-    EXPECT_EQ(run({"pattern", "--help"}).status, 0);
+    EXPECT_THAT(run({"pattern", "guide.png", "-o", "guide.png"}), exits(2));
+    EXPECT_THAT(run({"pattern", "--help"}), exits(0));
 }
 
 // The artist's stop: Ctrl-C keeps the best pattern so far. The signal is sent once the first line of progress says that the
@@ -274,11 +274,11 @@ TEST_F(PatternCommand, ctrl_c_keeps_the_best_so_far) {
 // movement of what stays are drawn anew.
 TEST_F(PatternCommand, goes_on_from_a_pattern_in_a_region) {
     ASSERT_TRUE(writeFile(folder_ / "linear.yaml", "fantascope: pattern-settings\nversion: 1\nguide_transfer: linear\n"));
-    ASSERT_EQ(find({"--iterations", "20", "--seed", "5", "--shapes", "sculpture.obj", "--settings", "linear.yaml"}).status, 0);
+    ASSERT_THAT(find({"--iterations", "20", "--seed", "5", "--shapes", "sculpture.obj", "--settings", "linear.yaml"}), exits(0));
     const pattern::ShapePattern before = pattern::readPattern(folder_ / "out" / "p.pattern.yaml").value();
     const Outcome outcome = run({"pattern", "guide.png", "-o", "out/q.pattern.yaml", "--start", "out/p.pattern.yaml", "--region",
                                  "0.9,0,1.8,1", "--iterations", "5"});
-    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    ASSERT_THAT(outcome, exits(0));
     const pattern::ShapePattern after = pattern::readPattern(folder_ / "out" / "q.pattern.yaml").value();
     EXPECT_EQ(after.seed, 5u);
     EXPECT_EQ(after.groups, before.groups);
@@ -304,8 +304,8 @@ TEST_F(PatternCommand, goes_on_from_a_pattern_in_a_region) {
     EXPECT_THAT(refused({"--method", "paper"}).errors, HasSubstr("leave --method out"));
     EXPECT_THAT(refused({"--shapes", "leaf"}).errors, HasSubstr("leave --shapes out"));
     EXPECT_THAT(refused({"--region", "1,0,0.5,1"}).errors, HasSubstr("left top corner comes first"));
-    EXPECT_EQ(refused({"--region", "1,0,1.5"}).status, 2);
-    EXPECT_EQ(find({"--region", "0,0,1,1"}).status, 2) << "a region of what?";
+    EXPECT_THAT(refused({"--region", "1,0,1.5"}), exits(2));
+    EXPECT_THAT(find({"--region", "0,0,1,1"}), exits(2)) << "a region of what?";
     EXPECT_TRUE(writePng(folder_ / "square.png", GreyImage(36, 36)));
     EXPECT_THAT(run({"pattern", "square.png", "-o", "out/q.pattern.yaml", "--start", "out/p.pattern.yaml"}).errors,
                 HasSubstr("cannot be compared"));

@@ -33,10 +33,10 @@ protected:
 
 TEST_F(PlotCommand, draws_a_pattern_or_a_report_by_what_it_is) {
     for (const char* figure : {"difference", "trajectories", "spectrum"})
-        EXPECT_EQ(run({"plot", "p.pattern.yaml", "--figure", figure, "-o", std::string(figure) + ".png"}).status, 0) << figure;
-    EXPECT_EQ(run({"plot", "p.json", "--figure", "search", "-o", "search.png"}).status, 0);
-    EXPECT_EQ(run({"plot", "p.pattern.yaml", "-o", "pattern.png"}).status, 0);
-    EXPECT_EQ(run({"plot", "p.json", "-o", "report.svg"}).status, 0);
+        EXPECT_THAT(run({"plot", "p.pattern.yaml", "--figure", figure, "-o", std::string(figure) + ".png"}), exits(0)) << figure;
+    EXPECT_THAT(run({"plot", "p.json", "--figure", "search", "-o", "search.png"}), exits(0));
+    EXPECT_THAT(run({"plot", "p.pattern.yaml", "-o", "pattern.png"}), exits(0));
+    EXPECT_THAT(run({"plot", "p.json", "-o", "report.svg"}), exits(0));
     EXPECT_EQ(readFile(folder_ / "pattern.png").value(), readFile(folder_ / "difference.png").value());
     EXPECT_NE(readFile(folder_ / "trajectories.png").value(), readFile(folder_ / "spectrum.png").value());
     EXPECT_GT(width("search.png"), 500);
@@ -60,12 +60,12 @@ theatre::Cast aCast(const std::filesystem::path& target) {
 TEST_F(PlotCommand, draws_a_cast) {
     ASSERT_TRUE(theatre::writeCast(folder_ / "c.cast.yaml", aCast(folder_ / "guide.png")));
     for (const char* figure : {"stage", "side", "shadow", "actors"})
-        EXPECT_EQ(run({"plot", "c.cast.yaml", "--figure", figure, "-o", std::string(figure) + ".png"}).status, 0) << figure;
-    EXPECT_EQ(run({"plot", "c.cast.yaml", "-o", "cast.png"}).status, 0);
+        EXPECT_THAT(run({"plot", "c.cast.yaml", "--figure", figure, "-o", std::string(figure) + ".png"}), exits(0)) << figure;
+    EXPECT_THAT(run({"plot", "c.cast.yaml", "-o", "cast.png"}), exits(0));
     const auto height = [&](const std::string& picture) { return readRgba(folder_ / picture).value().height(); };
     EXPECT_EQ(height("cast.png"), height("stage.png") + height("shadow.png") + height("actors.png"));
     EXPECT_NE(readFile(folder_ / "stage.png").value(), readFile(folder_ / "side.png").value());
-    EXPECT_EQ(run({"plot", "c.cast.yaml", "--frame", "1", "-o", "second.png"}).status, 0);
+    EXPECT_THAT(run({"plot", "c.cast.yaml", "--frame", "1", "-o", "second.png"}), exits(0));
     EXPECT_NE(readFile(folder_ / "second.png").value(), readFile(folder_ / "cast.png").value());
     EXPECT_THAT(run({"plot", "c.cast.yaml", "--frame", "2", "-o", "x.png"}).errors, HasSubstr("--frame 2 is beyond its last, 1"));
     EXPECT_THAT(run({"plot", "c.cast.yaml", "--figure", "search", "-o", "x.png"}).errors, HasSubstr("needs the report"));
@@ -77,13 +77,13 @@ TEST_F(PlotCommand, says_what_it_cannot_draw) {
     EXPECT_TRUE(writeFile(folder_ / "broken.json", "{"));
     for (const char* file : {"other.json", "broken.json"}) {
         const Outcome refused = run({"plot", file, "-o", "x.png"});
-        EXPECT_EQ(refused.status, 1);
+        EXPECT_THAT(refused, exits(1));
         EXPECT_THAT(refused.errors, HasSubstr(std::string(file) + ": is no report of a search"));
     }
     EXPECT_THAT(run({"plot", "p.json", "--figure", "spectrum", "-o", "x.png"}).errors, HasSubstr("needs a pattern"));
     EXPECT_THAT(run({"plot", "p.pattern.yaml", "--figure", "search", "-o", "x.png"}).errors, HasSubstr("needs the report"));
     EXPECT_THAT(run({"plot", "absent.pattern.yaml", "-o", "x.png"}).errors, HasSubstr("absent.pattern.yaml"));
-    EXPECT_EQ(run({"plot", "p.pattern.yaml", "-o", "x.jpg"}).status, 2);
+    EXPECT_THAT(run({"plot", "p.pattern.yaml", "-o", "x.jpg"}), exits(2));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "x.png"));
 }
 

@@ -65,7 +65,7 @@ protected:
 
 TEST_F(PoseCommand, writes_a_cast_with_its_target_beside_it) {
     const Outcome done = find({"--trials", "2", "--actors", "2", "--height", "1.5", "--stature", "1.6,1.8", "--seed", "7"});
-    ASSERT_EQ(done.status, 0) << done.errors;
+    ASSERT_THAT(done, exits(0));
     EXPECT_THAT(done.out, AllOf(StartsWith("out/c.cast.yaml: IoU 0."), HasSubstr("2 actors, 1.5 m high, the best of 2 trials")));
     EXPECT_THAT(written(), ElementsAre("c.cast.yaml", "c.target.png"));
     fs::rename(folder_ / "out", folder_ / "moved");  // as a folder it can go anywhere
@@ -81,7 +81,7 @@ TEST_F(PoseCommand, writes_a_cast_with_its_target_beside_it) {
 }
 
 TEST_F(PoseCommand, refers_to_a_target_beside_or_below_it) {
-    ASSERT_EQ(run({"pose", "hill.png", "-o", "c.cast.yaml", "--trials", "1", "--evaluations", "1000"}).status, 0);
+    ASSERT_THAT(run({"pose", "hill.png", "-o", "c.cast.yaml", "--trials", "1", "--evaluations", "1000"}), exits(0));
     EXPECT_THAT(text("c.cast.yaml"), HasSubstr("target: hill.png"));
     EXPECT_FALSE(fs::exists(folder_ / "c.target.png"));
 }
@@ -91,7 +91,7 @@ TEST_F(PoseCommand, gives_the_same_file_for_a_seed_on_any_number_of_threads) {
     for (const Arguments& more : {Arguments{"--threads", "1"}, {"--threads", "3"}, {"--threads", "1", "--seed", "2"}}) {
         Arguments arguments = {"--trials", "3", "--actors", "1"};
         arguments.insert(arguments.end(), more.begin(), more.end());
-        ASSERT_EQ(find(arguments).status, 0);
+        ASSERT_THAT(find(arguments), exits(0));
         found.push_back(text("out/c.cast.yaml"));
     }
     EXPECT_EQ(found[0], found[1]);
@@ -99,7 +99,7 @@ TEST_F(PoseCommand, gives_the_same_file_for_a_seed_on_any_number_of_threads) {
 }
 
 TEST_F(PoseCommand, reports_what_it_found_and_each_trial) {
-    ASSERT_EQ(find({"--trials", "3", "--actors", "2", "--report", "out/r.json"}).status, 0);
+    ASSERT_THAT(find({"--trials", "3", "--actors", "2", "--report", "out/r.json"}), exits(0));
     const nlohmann::json report = json("out/r.json");
     for (const char* key : {"iou", "contour_mean_px", "contour_max_px", "seconds", "seconds_per_trial", "height"})
         EXPECT_GT(report[key].get<double>(), 0) << key;
@@ -259,7 +259,7 @@ TEST_F(PoseCommand, chooses_actors_for_a_height_and_a_height_for_actors) {
     const auto found = [&](const Arguments& more) {
         Arguments arguments = {"--trials", "1", "--report", "out/r.json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
-        EXPECT_EQ(find(arguments).status, 0);
+        EXPECT_THAT(find(arguments), exits(0));
         const nlohmann::json report = json("out/r.json");
         std::size_t fewest = 100;
         for (const nlohmann::json& round : report["rounds"]) fewest = std::min(fewest, round["actors"].get<std::size_t>());
@@ -278,7 +278,7 @@ TEST_F(PoseCommand, adds_actors_where_so_many_are_not_enough) {
                          })));
     const Arguments wanted = {"--trials", "2", "--height", "1", "--report", "out/r.json"};
     const Outcome done = find(wanted);
-    ASSERT_EQ(done.status, 0) << done.errors;
+    ASSERT_THAT(done, exits(0));
     EXPECT_THAT(done.errors, AllOf(HasSubstr("2 actors are not enough"), HasSubstr("3 actors are not enough")));
     const nlohmann::json rounds = json("out/r.json")["rounds"];
     ASSERT_EQ(rounds.size(), 3u);
@@ -306,7 +306,7 @@ TEST_F(PoseCommand, the_papers_method_is_another) {
     const auto cast = [&](const Arguments& more) {
         Arguments arguments = {"--trials", "1", "--actors", "2", "--report", "out/r.json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
-        EXPECT_EQ(find(arguments).status, 0);
+        EXPECT_THAT(find(arguments), exits(0));
         return text("out/c.cast.yaml");
     };
     const std::string refined = cast({});
@@ -328,7 +328,7 @@ TEST_F(PoseCommand, a_stage_goes_with_the_cast_and_its_meshes) {
                           "props:\n  - {name: box, mesh: box.obj, at: [-0.5, 0, 2]}\n"));
     const Outcome done = find({"--trials", "1", "--actors", "1", "--stage", "halls/hall.stage.yaml", "--meshes", "out/m",
                                "--image", "out/i.png", "--view", "out/v.png"});
-    ASSERT_EQ(done.status, 0) << done.errors;
+    ASSERT_THAT(done, exits(0));
     EXPECT_THAT(written("out/m"), ElementsAre("actor-1.obj", "prop-box.obj", "prop-step.obj", "stage.json"));
     const auto box = readMesh(folder_ / "out/m/prop-box.obj"), step = readMesh(folder_ / "out/m/prop-step.obj");
     ASSERT_TRUE(box && step);
@@ -345,7 +345,7 @@ TEST_F(PoseCommand, a_stage_goes_with_the_cast_and_its_meshes) {
     ASSERT_EQ(cast->stage.props.size(), 1u);
     EXPECT_EQ(cast->stage.platforms.size(), 1u);
     const Outcome drawn = run({"plot", "moved/c.cast.yaml", "-o", "moved/all.png"});
-    EXPECT_EQ(drawn.status, 0) << drawn.errors;
+    EXPECT_THAT(drawn, exits(0));
 }
 
 // The world refuses: one message, status 1, and nothing is written.
@@ -355,7 +355,7 @@ TEST_F(PoseCommand, bad_input_is_refused_with_one_message_and_leaves_nothing) {
         arguments.insert(arguments.end(), more.begin(), more.end());
         if (std::find(more.begin(), more.end(), "-o") == more.end()) arguments.insert(arguments.end(), {"-o", "out/c.cast.yaml"});
         const Outcome outcome = run(arguments);
-        EXPECT_EQ(outcome.status, 1) << outcome.errors;
+        EXPECT_THAT(outcome, exits(1));
         EXPECT_THAT(outcome.errors, StartsWith("fantascope: error: "));
         EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
         EXPECT_THAT(written(), IsEmpty());
@@ -409,8 +409,8 @@ TEST_F(PoseCommand, takes_grey_pictures) {
     for (int y = 10; y < 60; ++y)
         for (int x = 10; x < 50; ++x) soft.at(x, y) = {200, 210, 190};
     ASSERT_TRUE(writePng(folder_ / "soft.png", soft));
-    EXPECT_EQ(
-        run({"pose", "soft.png", "-o", "out/c.cast.yaml", "--trials", "1", "--evaluations", "1000", "--actors", "1"}).status, 0);
+    EXPECT_THAT(run({"pose", "soft.png", "-o", "out/c.cast.yaml", "--trials", "1", "--evaluations", "1000", "--actors", "1"}),
+                exits(0));
 }
 
 TEST_F(PoseCommand, wrong_usage_has_a_status_of_its_own_and_points_to_the_help) {
@@ -418,13 +418,13 @@ TEST_F(PoseCommand, wrong_usage_has_a_status_of_its_own_and_points_to_the_help) 
                                           {"--stature", "3"},   {"--seed", "-1"},    {"--nonsense"},    {"--image", "out/i.jpg"}};
     for (const Arguments& arguments : wrong) {
         const Outcome outcome = find(arguments);
-        EXPECT_EQ(outcome.status, 2) << arguments[0];
+        EXPECT_THAT(outcome, exits(2)) << arguments[0];
         EXPECT_THAT(outcome.errors, StartsWith("fantascope: error: "));
         EXPECT_THAT(outcome.errors, HasSubstr("See 'fantascope pose --help'."));
     }
-    EXPECT_EQ(run({"pose"}).status, 2);
-    EXPECT_EQ(run({"pose", "hill.png", "-o", "hill.png"}).status, 2);
-    EXPECT_EQ(run({"pose", "--help"}).status, 0);
+    EXPECT_THAT(run({"pose"}), exits(2));
+    EXPECT_THAT(run({"pose", "hill.png", "-o", "hill.png"}), exits(2));
+    EXPECT_THAT(run({"pose", "--help"}), exits(0));
 }
 
 // The signal is sent once the first line of progress says that the search runs: its first trial would take years.

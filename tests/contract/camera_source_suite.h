@@ -78,6 +78,26 @@ inline Suite<CameraSourceRig> cameraSourceSuite() {
                                             }
                                             return "";
                                         }},
+                                       {"its count and its times go on rising after a loss",
+                                        [](CameraSourceRig& rig) -> std::string {
+                                            std::shared_ptr<const CameraFrame> last;
+                                            for (int life = 0; life < 2; ++life) {
+                                                for (int i = 0; i < 3; ++i) {
+                                                    rig.expose(100);
+                                                    rig.letTimePass();
+                                                    auto frame = rig.port().newest();
+                                                    CONTRACT_REQUIRE(frame != nullptr, "no frame came");
+                                                    CONTRACT_REQUIRE(!last || frame->sequence > last->sequence,
+                                                                     "count {} after {}", frame->sequence, last->sequence);
+                                                    CONTRACT_REQUIRE(!last || frame->exposed > last->exposed, "{} s after {} s",
+                                                                     seconds(frame->exposed), seconds(last->exposed));
+                                                    last = std::move(frame);
+                                                }
+                                                rig.lose();
+                                                rig.giveBack();
+                                            }
+                                            return "";
+                                        }},
                                        {"a frame that is held stays as it was while others come",
                                         [](CameraSourceRig& rig) -> std::string {
                                             rig.expose(80);

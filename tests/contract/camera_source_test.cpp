@@ -96,6 +96,24 @@ TEST(CameraSourceContract, finds_a_camera_that_takes_the_arrival_for_the_exposur
                 ElementsAre("a frame tells when it was exposed, and both its time and its count rise"));
 }
 
+class CountsAnewAfterALoss : public Between<CameraSource> {
+    using Between::Between;
+    std::shared_ptr<const CameraFrame> newest() override {
+        const auto frame = good_->newest();
+        if (!frame) return nullptr;
+        if (const int losses = good_->status().losses; std::exchange(losses_, losses) != losses) first_ = frame->sequence;
+        CameraFrame counted = *frame;
+        counted.sequence -= first_;
+        return std::make_shared<const CameraFrame>(std::move(counted));
+    }
+    int losses_ = 0;
+    std::uint64_t first_ = 0;
+};
+// As every kernel's driver does; whoever looks for gaps would find them, or none.
+TEST(CameraSourceContract, finds_a_camera_that_counts_anew_after_a_loss) {
+    EXPECT_THAT(brokenBy<CountsAnewAfterALoss>(), ElementsAre("its count and its times go on rising after a loss"));
+}
+
 class LeavesAlphaOpen : public Between<CameraSource> {
     using Between::Between;
     std::shared_ptr<const CameraFrame> newest() override {

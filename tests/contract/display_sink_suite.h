@@ -46,8 +46,10 @@ inline int storedRed(const DisplaySink& sink, int x, int y) {
 inline Suite<DisplaySinkRig> displaySinkSuite() {
     const auto serves = [](DisplaySinkRig& rig) -> std::string {
         for (const bool leads : {true, false}) {
+            CONTRACT_REQUIRE(rig.port().poll(), "poll() does not find it");
             CONTRACT_SUCCEEDS(rig.port().makeCurrent());
             fill(rig.port(), 1);
+            CONTRACT_SUCCEEDS(rig.port().finish());
             CONTRACT_REQUIRE(storedRed(rig.port(), 0, 0) == 255, "what is drawn is not there");
             CONTRACT_SUCCEEDS(leads ? rig.port().present() : rig.port().presentWith(rig.clock().now()));
         }
@@ -174,11 +176,14 @@ inline Suite<DisplaySinkRig> displaySinkSuite() {
                  return "";
              }},
             // With several outputs on one thread all are drawn before the first is presented.
-            {"present() makes its own context current",
+            {"finish() and present() make their own context current",
              [](DisplaySinkRig& rig) -> std::string {
                  CONTRACT_SUCCEEDS(rig.port().makeCurrent());
                  GLuint buffer = 0;
                  glCreateBuffers(1, &buffer);
+                 CONTRACT_SUCCEEDS(rig.otherOutput().makeCurrent());
+                 CONTRACT_SUCCEEDS(rig.port().finish());
+                 CONTRACT_REQUIRE(glIsBuffer(buffer), "after finish() another display's context is current");
                  CONTRACT_SUCCEEDS(rig.otherOutput().makeCurrent());
                  CONTRACT_SUCCEEDS(rig.port().presentWith(rig.clock().now()));
                  CONTRACT_REQUIRE(glIsBuffer(buffer), "after present() another display's context is current");
@@ -198,17 +203,18 @@ inline Suite<DisplaySinkRig> displaySinkSuite() {
                  CONTRACT_REQUIRE(stored == 255, "its white became {} when another output was drawn", stored);
                  return "";
              }},
-            {"calls on a lost display are errors that name it, at once",
+            {"a lost display shows nothing, says so and names itself, at once",
              [](DisplaySinkRig& rig) -> std::string {
                  CONTRACT_REQUIRE(rig.port().status().onLoss == LossAction::Dark, "a projector without a signal goes dark");
                  rig.lose();
                  const Time before = rig.clock().now();
-                 const auto current = rig.port().makeCurrent();
-                 CONTRACT_REQUIRE(!current, "makeCurrent() claims success");
-                 CONTRACT_REQUIRE(current.error().message().find(rig.port().status().name) != std::string::npos,
-                                  "which display? {}", current.error().message());
-                 CONTRACT_REQUIRE(!rig.port().present(), "present() claims success");
-                 CONTRACT_REQUIRE(!rig.port().presentWith(before), "presentWith() claims success");
+                 CONTRACT_REQUIRE(!rig.port().poll(), "poll() finds it");
+                 for (const bool leads : {true, false}) {
+                     const auto shown = leads ? rig.port().present() : rig.port().presentWith(before);
+                     CONTRACT_REQUIRE(!shown, "{} claims success", leads ? "present()" : "presentWith()");
+                     CONTRACT_REQUIRE(shown.error().message().find(rig.port().status().name) != std::string::npos,
+                                      "which display? {}", shown.error().message());
+                 }
                  CONTRACT_REQUIRE(rig.clock().now() == before, "it waited {} s", seconds(rig.clock().now() - before));
                  return "";
              }},
@@ -217,10 +223,46 @@ inline Suite<DisplaySinkRig> displaySinkSuite() {
                  CONTRACT_SUCCEEDS(rig.port().makeCurrent());
                  GLuint buffer = 0;
                  glCreateBuffers(1, &buffer);
-                 rig.lose();
-                 rig.giveBack();
+                 for (const bool lost : {true, false}) {
+                     lost ? rig.lose() : rig.giveBack();
+                     CONTRACT_SUCCEEDS(rig.otherOutput().makeCurrent());
+                     CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                     CONTRACT_REQUIRE(glIsBuffer(buffer), "after the {} it is gone", lost ? "loss" : "return");
+                 }
+                 return "";
+             }},
+            // So that what it will show is made before people watch.
+            {"a display that is missing at the start has its context all the same",
+             [](DisplaySinkRig& rig) -> std::string {
+                 rig.unplug();
+                 rig.reopen();
+                 CONTRACT_REQUIRE(!rig.port().poll(), "poll() finds it");
                  CONTRACT_SUCCEEDS(rig.port().makeCurrent());
-                 CONTRACT_REQUIRE(glIsBuffer(buffer), "after the return it is gone");
+                 fill(rig.port(), 1);
+                 GLuint buffer = 0;
+                 glCreateBuffers(1, &buffer);
+                 rig.giveBack();
+                 CONTRACT_SUCCEEDS(rig.otherOutput().makeCurrent());
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 CONTRACT_REQUIRE(glIsBuffer(buffer), "once it is there it is another one");
+                 CONTRACT_REQUIRE(storedRed(rig.port(), 1, 1) == 255, "what was drawn before it came is lost");
+                 return "";
+             }},
+            {"a picture is shown when it says, and handing it over takes no longer than the call",
+             [](DisplaySinkRig& rig) -> std::string {
+                 for (const bool leads : {true, false}) {
+                     const Time before = rig.clock().now();
+                     CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                     CONTRACT_SUCCEEDS(rig.port().finish());
+                     const auto shown = leads ? rig.port().present() : rig.port().presentWith(before);
+                     CONTRACT_SUCCEEDS(shown);
+                     const Time after = rig.clock().now();
+                     CONTRACT_REQUIRE(shown->swapped == shown->at || (before <= shown->swapped && shown->swapped <= after),
+                                      "called from {} s to {} s it swapped at {} s", seconds(before), seconds(after),
+                                      seconds(shown->swapped));
+                     CONTRACT_REQUIRE(Time{} <= shown->swap && shown->swap <= after - before, "the swap took {} s of {} s",
+                                      seconds(shown->swap), seconds(after - before));
+                 }
                  return "";
              }},
         });

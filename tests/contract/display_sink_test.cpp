@@ -10,6 +10,7 @@ namespace {
 using testing::Contains;
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::UnorderedElementsAre;
 
 // A display of the named driver as an output of a simulated site.
 class DrivenDisplayRig final : public SimulatedRig<DisplaySinkRig> {
@@ -23,7 +24,7 @@ public:
     DisplaySink& otherOutput() override { return *other_; }
     void letTimePass() override {
         SimulatedRig::letTimePass();
-        (void)port().makeCurrent();  // a window hears of its fate when its thread looks
+        (void)port().poll();  // a window hears of its fate when its thread looks
     }
 
 private:
@@ -57,8 +58,10 @@ class AlmostGood : public Between<DisplaySink> {
     double refreshRate() const override { return good_->refreshRate(); }
     std::int64_t nextRefresh() const override { return good_->nextRefresh(); }
     Time refreshTime(std::int64_t number) const override { return good_->refreshTime(number); }
+    bool poll() override { return good_->poll(); }
     Result<void> makeCurrent() override { return good_->makeCurrent(); }
     unsigned framebuffer() const override { return good_->framebuffer(); }
+    Result<void> finish() override { return good_->finish(); }
     Result<Shown> present() override { return good_->present(); }
     Result<Shown> presentWith(Time leading) override { return good_->presentWith(leading); }
 };
@@ -160,26 +163,46 @@ class TakesAnyContext : public AlmostGood {
     }
 };
 TEST(DisplaySinkContract, finds_a_present_that_leaves_another_context_current) {
-    EXPECT_THAT(brokenBy<TakesAnyContext>(), Contains("present() makes its own context current"));
+    EXPECT_THAT(brokenBy<TakesAnyContext>(), Contains("finish() and present() make their own context current"));
 }
 
 class DeniesItsLoss : public AlmostGood {
     using AlmostGood::AlmostGood;
+    bool poll() override { return true; }
+};
+TEST(DisplaySinkContract, finds_a_lost_display_that_claims_to_be_there) {
+    EXPECT_THAT(brokenBy<DeniesItsLoss>(), Contains("a lost display shows nothing, says so and names itself, at once"));
+}
+
+// Nothing can be made ready for it before people watch.
+class HasNoContextWhileAway : public AlmostGood {
+    using AlmostGood::AlmostGood;
     Result<void> makeCurrent() override {
-        (void)good_->makeCurrent();
+        if (!running()) return Error("left is gone");
+        return good_->makeCurrent();
+    }
+};
+TEST(DisplaySinkContract, finds_a_context_that_is_away_with_its_display) {
+    EXPECT_THAT(brokenBy<HasNoContextWhileAway>(),
+                UnorderedElementsAre("a display that is missing at the start has its context all the same",
+                                     "what is in its context outlives a loss"));
+}
+
+// Whatever comes next is drawn into another display's context.
+class FinishesWhateverIsCurrent : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    Result<void> finish() override {
+        glFinish();
         return {};
     }
 };
-TEST(DisplaySinkContract, finds_a_lost_display_that_claims_success) {
-    EXPECT_THAT(brokenBy<DeniesItsLoss>(), ElementsAre("calls on a lost display are errors that name it, at once"));
+TEST(DisplaySinkContract, finds_a_finish_that_leaves_another_context_current) {
+    EXPECT_THAT(brokenBy<FinishesWhateverIsCurrent>(), ElementsAre("finish() and present() make their own context current"));
 }
 
 class StaysAway : public AlmostGood {
     using AlmostGood::AlmostGood;
-    Result<void> makeCurrent() override {
-        if (good_->status().losses > 0) return Error("left is gone");
-        return good_->makeCurrent();
-    }
+    bool poll() override { return good_->poll() && good_->status().losses == 0; }
 };
 TEST(DisplaySinkContract, finds_a_display_that_does_not_come_back) {
     EXPECT_THAT(brokenBy<StaysAway>(), Contains("a lost device comes back by itself and the same object serves"));

@@ -22,6 +22,13 @@ public:
         frame.priority = priority;
         world_.sendFromDesk(1, frame);
     }
+    bool deskSaysGoodbye(const std::string& source) override {
+        DmxInput goodbye;
+        goodbye.source = source;
+        goodbye.ended = true;
+        world_.sendFromDesk(1, goodbye);
+        return true;
+    }
 
 private:
     std::unique_ptr<DmxSource> open() override { return drivers::openDmxSource(options_, 1, around_).value(); }
@@ -86,7 +93,55 @@ class HasOnePlaceForAll : public Between<DmxSource> {
     std::deque<DmxInput> kept_;
 };
 TEST(DmxSourceContract, finds_a_source_where_a_loud_sender_drowns_a_quiet_one) {
-    EXPECT_THAT(brokenBy<HasOnePlaceForAll>(), ElementsAre("of each sender at least the newest frame is kept, and in order"));
+    EXPECT_THAT(brokenBy<HasOnePlaceForAll>(),
+                ElementsAre("of each sender at least the newest frame is kept, and in order",
+                            "a goodbye is kept when nobody takes frames, as a sender's newest is"));
+}
+
+class HearsNoGoodbye : public Between<DmxSource> {
+    using Between::Between;
+    std::optional<DmxInput> receive() override {
+        auto frame = good_->receive();
+        while (frame && frame->ended) frame = good_->receive();
+        return frame;
+    }
+};
+TEST(DmxSourceContract, finds_a_source_that_hears_no_goodbye) {
+    EXPECT_THAT(brokenBy<HearsNoGoodbye>(),
+                ElementsAre("a goodbye is given once, after the frames before it, and its sender may come back",
+                            "a goodbye is kept when nobody takes frames, as a sender's newest is"));
+}
+
+// As E1.31 says it three times.
+class RepeatsGoodbyes : public Between<DmxSource> {
+    using Between::Between;
+    std::optional<DmxInput> receive() override {
+        if (repeats_ > 0 && repeats_-- > 0) return goodbye_;
+        auto frame = good_->receive();
+        if (frame && frame->ended) {
+            goodbye_ = frame;
+            repeats_ = 2;
+        }
+        return frame;
+    }
+    std::optional<DmxInput> goodbye_;
+    int repeats_ = 0;
+};
+TEST(DmxSourceContract, finds_a_source_that_gives_a_goodbye_three_times) {
+    EXPECT_THAT(brokenBy<RepeatsGoodbyes>(),
+                ElementsAre("a goodbye is given once, after the frames before it, and its sender may come back"));
+}
+
+class WaitsForNobody : public Between<DmxSource> {
+    using Between::Between;
+    std::optional<DmxInput> receive() override {
+        auto frame = good_->receive();
+        if (frame) frame->silence = Time::zero();
+        return frame;
+    }
+};
+TEST(DmxSourceContract, finds_a_source_that_does_not_say_how_long_a_sender_may_be_silent) {
+    EXPECT_THAT(brokenBy<WaitsForNobody>(), ElementsAre("a frame says how long its sender may be silent"));
 }
 
 class RepeatsTheLastFrame : public Between<DmxSource> {

@@ -103,6 +103,31 @@ inline Suite<InputBankRig> inputBankSuite() {
                  }
                  return "contact 2 is not reported while contact 0 moves";
              }},
+            {"what was found so at the first look was not witnessed, a movement afterwards was",
+             [](InputBankRig& rig) -> std::string {
+                 const auto witnessed = [&](std::size_t contact, bool closed) -> std::string {
+                     rig.letTimePass();
+                     const auto change = rig.port().poll();
+                     CONTRACT_REQUIRE(change && change->contact == contact && change->closed == closed,
+                                      "the movement of contact {} is not reported", contact);
+                     return change->witnessed ? "witnessed" : "found";
+                 };
+                 const auto require = [](const std::string& seen, const std::string& wanted) {
+                     return seen == wanted ? "" : seen + ", not " + wanted;
+                 };
+                 rig.setContact(0, true);
+                 rig.reopen();
+                 if (auto wrong = require(witnessed(0, true), "found"); !wrong.empty()) return "at the start: " + wrong;
+                 rig.setContact(0, false);
+                 if (auto wrong = require(witnessed(0, false), "witnessed"); !wrong.empty()) return "then: " + wrong;
+                 rig.lose();
+                 rig.setContact(1, true);
+                 rig.giveBack();
+                 if (auto wrong = require(witnessed(1, true), "found"); !wrong.empty()) return "after a loss: " + wrong;
+                 rig.setContact(1, false);
+                 if (auto wrong = require(witnessed(1, false), "witnessed"); !wrong.empty()) return "at last: " + wrong;
+                 return "";
+             }},
             {"a loss is no change",
              [](InputBankRig& rig) -> std::string {
                  rig.setContact(1, true);

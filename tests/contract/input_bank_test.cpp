@@ -14,12 +14,12 @@ using testing::IsEmpty;
 
 class SimulatedInputBankRig final : public SimulatedRig<InputBankRig> {
 public:
-    explicit SimulatedInputBankRig(Wrap<InputBank> wrap = {}) : SimulatedRig("contacts", std::move(wrap)) { reopen(); }
+    explicit SimulatedInputBankRig(Wrap<InputBank> wrap = {}) : SimulatedRig("doors", std::move(wrap)) { reopen(); }
 
-    void setContact(std::size_t contact, bool closed) override { world_.setContact(contact, closed); }
+    void setContact(std::size_t contact, bool closed) override { world_.setContact("doors", contact, closed); }
 
 private:
-    std::unique_ptr<InputBank> open() override { return drivers::openInputBank(options_, 3, around_).value(); }
+    std::unique_ptr<InputBank> open() override { return drivers::openInputBank(options_, "doors", 3, around_).value(); }
 };
 
 template <class Broken>
@@ -62,7 +62,7 @@ class ForgetsWhatItSaid : public AlmostGood {
         if (std::exchange(seen_, losses) != losses) said_ = {};
         if (!running()) return std::nullopt;
         for (const std::size_t contact : {2, 1, 0}) {
-            const bool closed = around_.world->contact(contact);
+            const bool closed = around_.world->contact("doors", contact);
             if (std::exchange(said_[contact], closed) != closed) return ContactChange{contact, closed, around_.clock.now()};
         }
         return std::nullopt;
@@ -72,7 +72,22 @@ class ForgetsWhatItSaid : public AlmostGood {
 };
 TEST(InputBankContract, finds_a_bank_that_starts_anew_after_a_loss) {
     EXPECT_THAT(brokenBy<ForgetsWhatItSaid>(),
-                ElementsAre("a loss is no change", "after the return only what differs from the last report is reported"));
+                ElementsAre("what was found so at the first look was not witnessed, a movement afterwards was",
+                            "a loss is no change", "after the return only what differs from the last report is reported"));
+}
+
+class ClaimsToHaveSeenIt : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    std::optional<ContactChange> poll() override {
+        auto change = good_->poll();
+        if (change) change->witnessed = true;
+        return change;
+    }
+};
+// Example failure: a gate that stood open while the program started fires the cue of its opening.
+TEST(InputBankContract, finds_a_bank_that_claims_to_have_seen_what_it_found) {
+    EXPECT_THAT(brokenBy<ClaimsToHaveSeenIt>(),
+                ElementsAre("what was found so at the first look was not witnessed, a movement afterwards was"));
 }
 
 class StaresAtOneContact : public AlmostGood {

@@ -90,6 +90,27 @@ inline Suite<RelayBankRig> relayBankSuite() {
                  (void)rig.port().read();
                  return relaysDiffer(rig, RelayBankRig::kSafe);
              }},
+            {"relays that are found other than written are a loss, counted once, and stay so until they are written",
+             [](RelayBankRig& rig) -> std::string {
+                 const std::vector<bool> byHand = {true, true, false};
+                 for (int losses = 0; losses < 2; ++losses) {
+                     CONTRACT_SUCCEEDS(rig.port().write(kUnsafe));
+                     rig.letTimePass();
+                     CONTRACT_REQUIRE(rig.port().status().losses == losses, "{} losses after {}", rig.port().status().losses,
+                                      losses);
+                     rig.handSwitches(byHand);
+                     rig.letTimePass();
+                     CONTRACT_REQUIRE(rig.port().status().losses == losses + 1, "{} losses after {} and a hand",
+                                      rig.port().status().losses, losses);
+                     if (auto wrong = misreports(rig.port(), true); !wrong.empty()) return wrong;
+                     rig.handSwitches(RelayBankRig::kSafe);  // nobody has written since
+                     rig.letTimePass();
+                     CONTRACT_REQUIRE(rig.port().status().losses == losses + 1, "it is counted again: {} losses",
+                                      rig.port().status().losses);
+                     if (auto wrong = relaysDiffer(rig, RelayBankRig::kSafe); !wrong.empty()) return wrong;
+                 }
+                 return "";
+             }},
             {"closing leaves the relays safe",
              [](RelayBankRig& rig) -> std::string {
                  CONTRACT_SUCCEEDS(rig.port().write(kUnsafe));

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <mutex>
+#include <utility>
+
 namespace fantascope::contract {
 namespace {
 
@@ -11,14 +14,14 @@ using testing::IsEmpty;
 
 class SimulatedRelayBankRig final : public SimulatedRig<RelayBankRig> {
 public:
-    explicit SimulatedRelayBankRig(Wrap<RelayBank> wrap = {}) : SimulatedRig("relay bank", std::move(wrap)) { reopen(); }
+    explicit SimulatedRelayBankRig(Wrap<RelayBank> wrap = {}) : SimulatedRig("road", std::move(wrap)) { reopen(); }
 
-    std::vector<bool> relays() override { return world_.relays(); }
-    void handSwitches(const std::vector<bool>& states) override { world_.setRelays(states); }
+    std::vector<bool> relays() override { return world_.relays("road"); }
+    void handSwitches(const std::vector<bool>& states) override { world_.switchRelaysByHand("road", states); }
     void close() override { port_.reset(); }
 
 private:
-    std::unique_ptr<RelayBank> open() override { return drivers::openRelayBank(options_, kSafe, around_).value(); }
+    std::unique_ptr<RelayBank> open() override { return drivers::openRelayBank(options_, "road", kSafe, around_).value(); }
 };
 
 template <class Broken>
@@ -67,20 +70,91 @@ class WritesAgainByItself : public AlmostGood {
     std::vector<bool> last_;
 };
 TEST(RelayBankContract, finds_a_bank_that_leaves_its_safe_states_by_itself) {
-    EXPECT_THAT(brokenBy<WritesAgainByItself>(), ElementsAre("after its return the bank stays safe until it is written again"));
+    EXPECT_THAT(brokenBy<WritesAgainByItself>(), ElementsAre("read() tells what the relays are now, whoever switched them",
+                                                             "after its return the bank stays safe until it is written again"));
 }
 
 class LeavesTheLightsAsTheyAre : public AlmostGood {
 public:
     using AlmostGood::AlmostGood;
     ~LeavesTheLightsAsTheyAre() override {
-        const std::vector<bool> last = around_.world->relays();
+        const std::vector<bool> last = around_.world->relays("road");
         good_.reset();
-        around_.world->setRelays(last);
+        around_.world->setRelays("road", last);
     }
 };
 TEST(RelayBankContract, finds_a_bank_that_leaves_the_lights_as_they_are) {
     EXPECT_THAT(brokenBy<LeavesTheLightsAsTheyAre>(), ElementsAre("closing leaves the relays safe"));
+}
+
+constexpr const char* kFoundOtherwise =
+    "relays that are found other than written are a loss, counted once, and stay so until they are written";
+
+// Its plug is all that it knows of.
+class DoesNotLookAtItsRelays : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    DeviceStatus status() const override {
+        const std::lock_guard lock(mutex_);
+        DeviceStatus status = good_->status();
+        // What the plug does leaves the relays safe; anything else that the good bank noticed was a hand.
+        const bool byHand = around_.world->relays("road") != RelayBankRig::kSafe;
+        if (const int more = status.losses - std::exchange(seen_, status.losses); !byHand) counted_ += more;
+        status.losses = counted_;
+        return status;
+    }
+    mutable std::mutex mutex_;
+    mutable int seen_ = 0, counted_ = 0;
+};
+TEST(RelayBankContract, finds_a_bank_that_does_not_look_at_its_relays) {
+    EXPECT_THAT(brokenBy<DoesNotLookAtItsRelays>(), ElementsAre(kFoundOtherwise));
+}
+
+// Knows when a hand has switched its relays.
+class FeelsTheHand : public AlmostGood {
+public:
+    using AlmostGood::AlmostGood;
+    Result<void> write(const std::vector<bool>& states) override {
+        const std::lock_guard lock(mutex_);
+        last_ = states;
+        return good_->write(states);
+    }
+
+protected:
+    // With the mutex. What the plug does leaves the relays safe.
+    bool wasSwitched() const {
+        const std::vector<bool> is = around_.world->relays("road");
+        return running() && !last_.empty() && is != last_ && is != RelayBankRig::kSafe;
+    }
+    mutable std::mutex mutex_;
+    std::vector<bool> last_;
+};
+
+// The street lamps and somebody's hand fight for the switch, and nobody is told.
+class SwitchesBackByItself : public FeelsTheHand {
+    using FeelsTheHand::FeelsTheHand;
+    DeviceStatus status() const override {
+        const std::lock_guard lock(mutex_);
+        if (wasSwitched()) around_.world->setRelays("road", last_);
+        return good_->status();
+    }
+};
+TEST(RelayBankContract, finds_a_bank_that_switches_back_by_itself) {
+    EXPECT_THAT(brokenBy<SwitchesBackByItself>(), ElementsAre(kFoundOtherwise));
+}
+
+class CountsAtEveryLook : public FeelsTheHand {
+    using FeelsTheHand::FeelsTheHand;
+    DeviceStatus status() const override {
+        const std::lock_guard lock(mutex_);
+        DeviceStatus status = good_->status();
+        if (wasSwitched()) ++looks_;
+        status.losses += looks_;
+        return status;
+    }
+    mutable int looks_ = 0;
+};
+TEST(RelayBankContract, finds_a_bank_that_counts_a_hand_at_every_look) {
+    EXPECT_THAT(brokenBy<CountsAtEveryLook>(), ElementsAre(kFoundOtherwise));
 }
 
 class DoesNotWaitForTheAnswer : public AlmostGood {

@@ -24,6 +24,22 @@ Connection connectionTo(const std::string& name) {
     return connection;
 }
 
+std::vector<std::vector<std::array<std::uint8_t, 3>>> rowsOf(Display* display, int first, int count) {
+    const int width = DisplayWidth(display, DefaultScreen(display));  // as it is now: the connection is new
+    XImage* const image = XGetImage(display, DefaultRootWindow(display), 0, first, static_cast<unsigned>(width),
+                                    static_cast<unsigned>(count), AllPlanes, ZPixmap);
+    FANTASCOPE_CHECK(image != nullptr, "no such rows");
+    std::vector<std::vector<std::array<std::uint8_t, 3>>> rows(static_cast<std::size_t>(count));
+    for (int y = 0; y < count; ++y)
+        for (int x = 0; x < width; ++x) {
+            const unsigned long rgb = XGetPixel(image, x, y);  // 8 bits each at depth 24
+            rows[static_cast<std::size_t>(y)].push_back(
+                {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8), static_cast<std::uint8_t>(rgb)});
+        }
+    XDestroyImage(image);
+    return rows;
+}
+
 // Without a window manager every window hangs from the root. 0: there is none.
 Window windowTitled(Display* display, const std::string& title) {
     Window root = 0, parent = 0, *children = nullptr, found = 0;
@@ -42,17 +58,26 @@ Window windowTitled(Display* display, const std::string& title) {
 }  // namespace
 
 Result<std::unique_ptr<XServer>> XServer::start() {
+    auto server = start({"Xvfb", "-screen", "0", "1280x720x24", "-nolisten", "tcp"});
+    if (!server) return Error("Xvfb does not start; install Debian's package xvfb: apt-get install xvfb");
+    return server;
+}
+
+Result<std::unique_ptr<XServer>> XServer::start(std::vector<std::string> command) {
     int ends[2];
     FANTASCOPE_CHECK(::pipe(ends) == 0, "no pipe");
-    const std::string numberTo = std::to_string(ends[1]);
+    // By itself it starts afresh when its last client leaves, and turns away whoever comes meanwhile.
+    command.insert(command.end(), {"-noreset", "-displayfd", std::to_string(ends[1])});
+    std::vector<char*> words;
+    for (std::string& word : command) words.push_back(word.data());
+    words.push_back(nullptr);
     const pid_t child = ::fork();
     FANTASCOPE_CHECK(child >= 0, "no process");
     if (child == 0) {
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // a test that crashes leaves no server behind
         ::close(ends[0]);
         ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
-        ::execlp("Xvfb", "Xvfb", "-displayfd", numberTo.c_str(), "-screen", "0", "1280x720x24", "-nolisten", "tcp",
-                 static_cast<char*>(nullptr));
+        ::execvp(words[0], words.data());
         ::_exit(127);
     }
     ::close(ends[1]);
@@ -64,7 +89,7 @@ Result<std::unique_ptr<XServer>> XServer::start() {
     if (letter == '\n') return std::unique_ptr<XServer>(new XServer(child, ":" + number));
     ::kill(child, SIGTERM);
     ::waitpid(child, nullptr, 0);
-    return Error("Xvfb does not start; install Debian's package xvfb: apt-get install xvfb");
+    return Error(command[0] + " does not start");
 }
 
 XServer::XServer(pid_t child, const std::string& display) : child_(child), display_(display) {
@@ -83,16 +108,12 @@ XServer::~XServer() {
 
 std::vector<std::array<std::uint8_t, 3>> XServer::row(int y) const {
     const Connection connection = connectionTo(display_);
-    XImage* const image = XGetImage(connection.get(), DefaultRootWindow(connection.get()), 0, y, 1280, 1, AllPlanes, ZPixmap);
-    FANTASCOPE_CHECK(image != nullptr, "no such row");
-    std::vector<std::array<std::uint8_t, 3>> pixels;
-    for (int x = 0; x < image->width; ++x) {
-        const unsigned long rgb = XGetPixel(image, x, 0);  // 8 bits each at depth 24
-        pixels.push_back(
-            {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8), static_cast<std::uint8_t>(rgb)});
-    }
-    XDestroyImage(image);
-    return pixels;
+    return rowsOf(connection.get(), y, 1).front();
+}
+
+std::vector<std::vector<std::array<std::uint8_t, 3>>> XServer::rows() const {
+    const Connection connection = connectionTo(display_);
+    return rowsOf(connection.get(), 0, DisplayHeight(connection.get(), DefaultScreen(connection.get())));
 }
 
 bool XServer::hasWindow(const std::string& title) const {

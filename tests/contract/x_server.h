@@ -14,18 +14,21 @@
 
 namespace fantascope {
 
-// Xvfb with one screen of 1280 x 720 pixels, monitor "screen", no window manager. While it runs, DISPLAY names it.
+// An X server without a window manager. While it runs, DISPLAY names it.
 class XServer {
 public:
-    // Error: Xvfb is not installed or does not start.
+    // Xvfb with one screen of 1280 x 720 pixels, monitor "screen". Error: it is not installed or does not start.
     static Result<std::unique_ptr<XServer>> start();
+    // `command` starts an X server; -noreset and -displayfd are added. Error: it does not start.
+    static Result<std::unique_ptr<XServer>> start(std::vector<std::string> command);
     ~XServer();
     XServer(const XServer&) = delete;
     XServer& operator=(const XServer&) = delete;
 
-    // What the screen shows in its row `y` from the top: 1280 pixels of red, green, blue as they are stored.
+    // What the screen shows in its row `y` from the top: pixels of red, green, blue as they are stored.
     std::vector<std::array<std::uint8_t, 3>> row(int y) const;
-    bool hasWindow(const std::string& title) const;  // a visible one
+    std::vector<std::vector<std::array<std::uint8_t, 3>>> rows() const;  // all of them
+    bool hasWindow(const std::string& title) const;                      // a visible one
     // Presses a key while the window has the focus; the key's name as xmodmap has it: "space", "Escape", "a".
     void pressKey(const std::string& title, const std::string& key) const;
     // Asks the window to close, as its close button does.

@@ -92,5 +92,17 @@ TEST(Config, shortest_numbers_read_back_exactly) {
     for (const double value : {0.1, 1.0 / 3, 1e-300, -123456789.125, 0.0}) EXPECT_EQ(std::stod(shortest(value)), value);
 }
 
+// An editor of another age, or a file that is none of ours.
+TEST(ConfigNode, refuses_what_is_not_utf8_with_its_line) {
+    const auto refusal = [](const std::string& text) {
+        const auto node = ConfigNode::parse(text, "a.yaml");
+        return node ? "accepted" : node.error().message();
+    };
+    EXPECT_EQ(refusal("name: M\xc3\xbcller \xe2\x82\xac \xf0\x9f\x8c\x99\n"), "accepted");
+    EXPECT_EQ(refusal("a: 1\nname: M\xfcller\n"), "a.yaml:2: not UTF-8; save the file in that encoding");
+    for (const char* broken : {"a: \xc3", "a: \xc3(", "a: \x80", "a: \xc0\xaf", "a: \xe2\x82", "a: \xf8\x88\x80\x80\x80"})
+        EXPECT_EQ(refusal(broken), "a.yaml:1: not UTF-8; save the file in that encoding") << broken;
+}
+
 }  // namespace
 }  // namespace fantascope

@@ -3,6 +3,11 @@
 #include "scratch_folder.h"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
 
 namespace fantascope {
 namespace {
@@ -44,6 +49,74 @@ TEST(File, a_file_that_cannot_be_read_is_named_with_the_reason) {
     EXPECT_EQ(readFile(folder / "none").error().message(),
               (folder / "none").string() + ": cannot be read: No such file or directory");
     EXPECT_EQ(readFile(folder / "").error().message(), (folder / "").string() + ": is a folder, a file is needed");
+}
+
+std::filesystem::perms permissions(const std::filesystem::path& file) { return std::filesystem::status(file).permissions(); }
+
+TEST(File, permissions_and_links_stay_as_they_are) {
+    using std::filesystem::perms;
+    const ScratchFolder folder;
+    folder.file("deep/a", "old");
+    std::filesystem::permissions(folder / "deep/a", perms::owner_read | perms::owner_write | perms::group_write);
+    std::filesystem::create_symlink("deep/a", folder / "link");
+    ASSERT_TRUE(writeFile(folder / "link", "new"));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+    EXPECT_EQ(*readFile(folder / "deep/a"), "new");
+    EXPECT_EQ(permissions(folder / "deep/a"), perms::owner_read | perms::owner_write | perms::group_write);
+
+    ASSERT_TRUE(writeFile(folder / "b", "x"));
+    EXPECT_EQ(permissions(folder / "b"), perms(0644));
+    ASSERT_TRUE(writeFile(folder / "c", "x", folder / "deep/a"));
+    EXPECT_EQ(permissions(folder / "c"), permissions(folder / "deep/a"));
+
+    std::filesystem::create_symlink("nowhere", folder / "broken");
+    EXPECT_THAT(writeFile(folder / "broken", "x").error().message(), HasSubstr("cannot be written: No such file"));
+    EXPECT_THAT(folder.names(), ElementsAre("b", "broken", "c", "deep", "link"));
+}
+
+// Only root may give files away, so anybody else can try it with files of their own alone.
+TEST(File, the_owner_stays) {
+    const bool root = ::geteuid() == 0;
+    const uid_t owner = root ? 1234 : ::geteuid();
+    const gid_t group = root ? 2345 : ::getegid();
+    const ScratchFolder folder;
+    folder.file("a", "old");
+    ASSERT_EQ(::chown((folder / "a").c_str(), owner, group), 0);
+    ASSERT_TRUE(writeFile(folder / "a", "new"));
+    ASSERT_TRUE(writeFile(folder / "b", "x", folder / "a"));
+    for (const char* name : {"a", "b"}) {
+        struct stat status = {};
+        ASSERT_EQ(::stat((folder / name).c_str(), &status), 0);
+        EXPECT_EQ(status.st_uid, owner) << name;
+        EXPECT_EQ(status.st_gid, group) << name;
+    }
+}
+
+TEST(File, a_file_that_is_kept_from_being_written_is_not_replaced) {
+    const ScratchFolder folder;
+    folder.file("a", "old");
+    std::filesystem::permissions(folder / "a", std::filesystem::perms(0444));
+    EXPECT_EQ(writeFile(folder / "a", "new").error().message(),
+              (folder / "a").string() + ": cannot be written: Permission denied");
+    EXPECT_EQ(*readFile(folder / "a"), "old");
+    EXPECT_THAT(folder.names(), ElementsAre("a"));
+}
+
+// As on a full disk: some bytes were written aside already. Example failure: the half of them stays there, or becomes the file.
+TEST(File, a_write_that_fails_half_way_leaves_the_old_bytes) {
+    const ScratchFolder folder;
+    folder.file("a", "old");
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limited = {1000, before.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limited), 0);
+    const auto written = writeFile(folder / "a", std::string(5000, 'x'));
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+    std::signal(SIGXFSZ, handler);
+    EXPECT_EQ(written.error().message(), (folder / "a").string() + ": cannot be written: File too large");
+    EXPECT_EQ(*readFile(folder / "a"), "old");
+    EXPECT_THAT(folder.names(), ElementsAre("a"));
 }
 
 // The rename fails, at the very end: what was there stays, and nothing written aside is left lying about.

@@ -1,5 +1,6 @@
 #include "core/image.h"
 
+#include "core/random.h"
 #include "scratch_folder.h"
 
 #include <gmock/gmock.h>
@@ -7,8 +8,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace fantascope {
 namespace {
@@ -175,6 +179,26 @@ TEST_F(ImageTest, a_pictures_size_stands_in_its_head) {
     EXPECT_THAT(pictureSize(folder_ / "absent").error().message(), HasSubstr("absent: cannot be read"));
 }
 
+// Example failure: red for blue on every key of the pad.
+TEST_F(ImageTest, a_jpeg_has_the_picture_as_it_was_but_for_its_loss) {
+    RgbaImage image(32, 16, {200, 40, 0, 255});
+    for (int x = 16; x < 32; ++x)
+        for (int y = 0; y < 16; ++y) image.at(x, y) = {0, 60, 220, 255};
+    const std::vector<std::uint8_t> bytes = jpegOf(image, 95);
+    EXPECT_EQ(bytes, jpegOf(image, 95));
+    EXPECT_LT(jpegOf(image, 10).size(), bytes.size());
+    const cv::Mat read = cv::imdecode(bytes, cv::IMREAD_COLOR);
+    ASSERT_EQ(read.size(), cv::Size(32, 16));
+    for (const int x : {4, 28})
+        for (const int y : {3, 12}) {
+            const auto pixel = read.at<cv::Vec3b>(y, x);
+            const Rgba8 was = image.at(x, y);
+            EXPECT_NEAR(pixel[0], was.b, 8);
+            EXPECT_NEAR(pixel[1], was.g, 8);
+            EXPECT_NEAR(pixel[2], was.r, 8);
+        }
+}
+
 TEST_F(ImageTest, values_that_are_no_numbers_are_refused) {
     cv::Mat picture(2, 2, CV_32FC1, cv::Scalar(0.5));
     EXPECT_THAT(grey(encoded(".tiff", picture)).pixels(), Each(0.5f));
@@ -205,6 +229,41 @@ TEST(Resized, averages_when_it_shrinks_and_keeps_even_pictures_even) {
     EXPECT_THAT(resized(image, 2, 1).pixels(), testing::ElementsAre(0.5f, 0.75f));
     EXPECT_THAT(resized(GreyImage(5, 3, 0.25f), 17, 11).pixels(), Each(testing::FloatNear(0.25f, 1e-6f)));
     EXPECT_THAT(resized(RgbaImage(9, 6, {10, 20, 30, 40}), 3, 2).pixels(), Each(Rgba8{10, 20, 30, 40}));
+}
+
+// Against the definition: the light of each stored value times the share of the target pixel that it covers.
+// Example failure: stored values are averaged, so that a fine pattern is half as bright as on the wall.
+TEST(ResizedLight, is_the_area_average_of_the_light) {
+    RgbaImage image(53, 31);
+    Rng rng(5);
+    for (Rgba8& pixel : image.pixels()) {
+        const auto value = [&] { return static_cast<std::uint8_t>(rng.uniform() < 0.5 ? 0 : rng.uniform(0, 256)); };
+        pixel = {value(), value(), value(), 255};
+    }
+    for (const auto& [width, height] : {std::pair{16, 9}, {53, 8}, {7, 31}, {1, 1}}) {
+        const RgbaImage small = resizedLight(image, width, height);
+        ASSERT_EQ(small.width(), width);
+        ASSERT_EQ(small.height(), height);
+        const double across = 53.0 / width, down = 31.0 / height;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                std::array<double, 3> light{};
+                for (int v = 0; v < 31; ++v)
+                    for (int u = 0; u < 53; ++u) {
+                        const double share =
+                            std::max(0.0, std::min(u + 1.0, (x + 1) * across) - std::max<double>(u, x * across)) *
+                            std::max(0.0, std::min(v + 1.0, (y + 1) * down) - std::max<double>(v, y * down)) / (across * down);
+                        const Rgba8 pixel = image.at(u, v);
+                        for (const auto& [sum, stored] :
+                             {std::pair(&light[0], pixel.r), {&light[1], pixel.g}, {&light[2], pixel.b}})
+                            *sum += share * linearFromSrgb(static_cast<float>(stored) / 255);
+                    }
+                const Rgba8 pixel = small.at(x, y);
+                for (const auto& [wanted, stored] : {std::pair(light[0], pixel.r), {light[1], pixel.g}, {light[2], pixel.b}})
+                    EXPECT_NEAR(255 * srgbFromLinear(static_cast<float>(wanted)), stored, 1) << width << " " << x << "," << y;
+                EXPECT_EQ(pixel.a, 255);
+            }
+    }
 }
 
 TEST(Blurred, spreads_light_as_a_gaussian_and_loses_none) {

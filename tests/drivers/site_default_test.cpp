@@ -32,7 +32,8 @@ TEST(DefaultSite, corners_put_each_canvas_on_its_rectangle) {
         ASSERT_TRUE(corners) << corners.error().message();
         std::string line = output.name + ":";
         for (const glm::dvec2 corner : *corners) line += fmt::format(" [{:.2f}, {:.2f}]", corner.x, corner.y);
-        const Homography projectorFromCanvas = output.projectorFromCanvas(kAspect);
+        const Homography projectorFromCanvas =
+            *Homography::fromCorners(rectangleCorners(kAspect, 1), output.projection.warp.shape().corners);
         for (const glm::dvec2 canvas :
              {glm::dvec2(0, 0), glm::dvec2(kAspect, 0), glm::dvec2(kAspect / 2, 0.5), glm::dvec2(0.3, 1)}) {
             const glm::dvec3 wanted =
@@ -75,7 +76,7 @@ TEST(DefaultSite, is_dark_until_its_lights_come_on) {
     World world(clock);
     const auto opened = SimulatedSite::open(site.simulation.value(), nominal, 1, world);
     ASSERT_TRUE(opened) << opened.error().message();
-    world.installRelays({false, false});
+    world.installRelays("road", {false, false});
     (*opened)->begin(Time{});
     std::int64_t frames = 0;
     const auto seen = [&] {
@@ -102,12 +103,12 @@ TEST(DefaultSite, is_dark_until_its_lights_come_on) {
 
     slots[0] = 0;
     world.setSlots(1, slots);
-    world.setRelays({true, false});
+    world.setRelays("road", {true, false});
     const RgbaImage north = seen();
     EXPECT_GT(grey(north, besideNorthPole), 80);
     EXPECT_LT(grey(north, besideSouthPole), 45);
 
-    world.setRelays({false, false});
+    world.setRelays("road", {false, false});
     world.setFrame("right", std::make_shared<const RgbaImage>(640, 360, Rgba8{255, 255, 255, 255}));
     const RgbaImage projector = seen();
     EXPECT_GT(grey(projector, rightPicture), 200);

@@ -77,9 +77,11 @@ std::vector<Disc> discsAfter(const GreyImage& guide, bool coloured) {
 std::shared_ptr<const RgbaImage> frameOf(const std::vector<Disc>& discs, const show::Output& output, double opacity,
                                          double phase) {
     constexpr int kSide = 3;  // samples across and down a pixel
-    const Homography projectorFromCanvas = output.projectorFromCanvas(kAspect),
+    const glm::ivec2 size = output.size();
+    const Homography projectorFromCanvas =
+                         *Homography::fromCorners(rectangleCorners(kAspect, 1), output.projection.warp.shape().corners),
                      canvasFromProjector = projectorFromCanvas.inverse();
-    Image<glm::dvec3> light(output.size.x, output.size.y, glm::dvec3(0));
+    Image<glm::dvec3> light(size.x, size.y, glm::dvec3(0));
     for (const Disc& disc : discs) {
         if (disc.radius < 1e-3) continue;
         const glm::dvec2 centre =
@@ -90,15 +92,15 @@ std::shared_ptr<const RgbaImage> frameOf(const std::vector<Disc>& discs, const s
             low = glm::min(low, pixel);
             high = glm::max(high, pixel);
         }
-        for (int y = std::max(0, static_cast<int>(low.y)); y <= std::min(output.size.y - 1, static_cast<int>(high.y)); ++y)
-            for (int x = std::max(0, static_cast<int>(low.x)); x <= std::min(output.size.x - 1, static_cast<int>(high.x)); ++x)
+        for (int y = std::max(0, static_cast<int>(low.y)); y <= std::min(size.y - 1, static_cast<int>(high.y)); ++y)
+            for (int x = std::max(0, static_cast<int>(low.x)); x <= std::min(size.x - 1, static_cast<int>(high.x)); ++x)
                 for (int i = 0; i < kSide * kSide; ++i) {
                     const glm::dvec2 within((i % kSide + 0.5) / kSide, (i / kSide + 0.5) / kSide);
                     if (glm::distance(canvasFromProjector(glm::dvec2(x, y) + within), centre) < disc.radius)
                         light.at(x, y) += disc.colour / static_cast<double>(kSide * kSide);
                 }
     }
-    auto frame = std::make_shared<RgbaImage>(output.size.x, output.size.y);
+    auto frame = std::make_shared<RgbaImage>(size.x, size.y);
     const auto stored = [&](double linear) {
         return static_cast<std::uint8_t>(std::lround(255 * srgbFromLinear(static_cast<float>(std::min(linear, 1.0) * opacity))));
     };
@@ -117,12 +119,11 @@ public:
         const ConfigNode simulation = ConfigNode::parse(readFile(file).value() + "  faults: [" + faults + "]\n", file).value();
         const NominalSite nominal = nominalPartsOf(site_);
         simulated_ = SimulatedSite::open(section(simulation), nominal, 1, world_).value();
-        world_.installRelays({false, false});
+        world_.installRelays("road", {false, false});
         simulated_->begin(Time{});
         for (std::size_t i = 0; i < 2; ++i)
             comparisons_.emplace_back(
-                vision::NominalView{
-                    *nominal.camera, nominal.outputs[i].projector, kAspect, site_.outputs[i].projectorFromCanvas(kAspect), {}},
+                vision::NominalView{*nominal.camera, nominal.outputs[i].projector, kAspect, site_.outputs[i].projection.warp, {}},
                 guides_[i]);
     }
 
@@ -143,7 +144,7 @@ public:
         std::array<std::uint8_t, kDmxSlots> slots{};
         slots[0] = sculpture ? 255 : 0;
         world_.setSlots(1, slots);
-        world_.setRelays({roads, roads});
+        world_.setRelays("road", {roads, roads});
     }
     double opacity_ = 1;
     bool coloured_ = false;

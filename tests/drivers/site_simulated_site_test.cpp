@@ -29,9 +29,10 @@ NominalSite nominalSite() {
     NominalSite site;
     site.outputs = {{"left", projectorAt(-1)}, {"right", projectorAt(1)}};
     site.fixtures = {{"spot", 3, 10, {"intensity", "pan"}}, {"wash", 3, 12, {"red", "green", "blue"}}};
-    site.relays = {{"road", 1}};
+    site.relays = {{"road", "road", 1}};
+    site.contacts = {{"gate", "doors", 3}, {"emergency", "desk", 3}};
     site.camera = vision::CameraModel::fromFieldOfView(facing({0, 0, 4}, {0, 0, 0}), {48, 24}, 1.0).value();
-    site.devices = {"left", "right", "universe 3", "relay bank", "camera"};
+    site.devices = {"left", "right", "universe 3", "road", "camera"};
     return site;
 }
 
@@ -60,7 +61,7 @@ public:
     explicit Stage(const std::string& more = "", const std::string& camera = kNoiseless, std::uint64_t seed = 1) {
         const ConfigNode node = ConfigNode::parse(simulationText(more, camera), "site.yaml").value();
         site_ = SimulatedSite::open(node, nominalSite(), seed, world_).value();
-        world_.installRelays({true, false});
+        world_.installRelays("road", {true, false});
         site_->begin(Time{});
     }
 
@@ -171,11 +172,11 @@ TEST(SimulatedSite, sees_what_projectors_lamps_and_relays_do) {
     EXPECT_EQ(seen[2].r, dark[2].r);
 
     stage.setSlot(13, 0);
-    stage.world_.setRelays({false, true});
+    stage.world_.setRelays("road", {false, true});
     seen = stage.lookAtPictures();
     EXPECT_GT(seen[2].r, seen[2].g + 10) << "the street lamp is orange";
     EXPECT_EQ(seen[2].b, dark[2].b);
-    stage.world_.setRelays({true, false});
+    stage.world_.setRelays("road", {true, false});
     EXPECT_EQ(stage.lookAtPictures(), dark);
 }
 
@@ -327,6 +328,33 @@ TEST(SimulatedSite, lets_fog_come_and_go) {
     EXPECT_THAT(told(*stage.site_), ElementsAre("1.0 fog of 0.2 / m comes within 2 s", "5.0 fog clears within 2 s"));
 }
 
+// Two who stand in the gate: it opens when the last one goes.
+TEST(SimulatedSite, closes_the_contacts_of_each_bank_for_as_long_as_it_is_told) {
+    Stage stage(R"(contacts:
+  - {contact: gate, at: 1, until: 3}
+  - {contact: gate, at: 2, until: 4}
+  - {contact: emergency, at: 2.5}
+)");
+    std::string seen;
+    for (const Time time : {999ms, 1000ms, 2500ms, 3500ms, 4000ms}) {
+        stage.advanceTo(time);
+        seen += fmt::format(" {:d}{:d}", stage.world_.contact("doors", 3), stage.world_.contact("desk", 3));
+    }
+    EXPECT_EQ(seen, " 00 10 11 11 01");
+    EXPECT_THAT(told(*stage.site_), IsEmpty()) << "it is no fault";
+}
+
+// Example failure: a gate closes with the next picture of the camera.
+TEST(SimulatedSite, the_next_movement_of_a_contact_is_an_event) {
+    Stage stage("contacts: [{contact: gate, at: 0.04, until: 0.07}]\n");
+    stage.advanceTo(0ms);
+    EXPECT_EQ(stage.site_->nextEvent(), Time(40ms));
+    stage.advanceTo(40ms);
+    EXPECT_EQ(stage.site_->nextEvent(), Time(70ms));
+    stage.advanceTo(70ms);
+    EXPECT_EQ(stage.site_->nextEvent(), Time(100ms));
+}
+
 std::string refusal(const std::string& text) {
     ManualClock clock;
     World world(clock);
@@ -339,7 +367,7 @@ TEST(SimulatedSite, refuses_a_malformed_section_with_place_and_advice) {
     EXPECT_EQ(with(""), "accepted");
     EXPECT_EQ(with("fogg: 3"),
               "config/site.yaml:13:1: fogg: unknown key (known here: ambient, sky, objects, projectors, lamps, "
-              "street_lamps, camera, faults)");
+              "street_lamps, camera, contacts, faults)");
     EXPECT_EQ(refusal(simulationText("", "whit: 40")),
               "config/site.yaml:12:10: camera.whit: unknown key (did you mean 'white'?)");
     EXPECT_THAT(refusal(simulationText("", "white: 0")), StartsWith("config/site.yaml:12:17: camera.white: 0 is out of range"));
@@ -362,6 +390,10 @@ TEST(SimulatedSite, refuses_a_malformed_section_with_place_and_advice) {
     EXPECT_THAT(lamps("spot: {position: [0, 0, 1], look_at: [0, 0, 1], candela: 1, beam_angle: 10, field_angle: 20}"),
                 HasSubstr("look_at must differ from position"));
 
+    const auto closing = [&](const std::string& keys) { return with("contacts: [{" + keys + "}]"); };
+    EXPECT_THAT(closing("contact: gat, at: 1"), HasSubstr("one of gate, emergency is needed, here is 'gat'"));
+    EXPECT_THAT(closing("contact: gate, at: 2, until: 2"), HasSubstr("'until' must be later than 'at'"));
+
     const auto fault = [&](const std::string& keys) { return with("faults: [{" + keys + "}]"); };
     EXPECT_THAT(fault("at: 1, device: left"), HasSubstr("faults[0]: 'kind' is missing"));
     EXPECT_THAT(
@@ -369,7 +401,7 @@ TEST(SimulatedSite, refuses_a_malformed_section_with_place_and_advice) {
         HasSubstr(
             "13:31: faults[0].kind: one of unplug, freeze, bump, fog is needed, here is 'unplugg' (did you mean 'unplug'?)"));
     EXPECT_THAT(fault("kind: unplug, device: universe 4, at: 1"), HasSubstr("did you mean 'universe 3'?"));
-    EXPECT_THAT(fault("kind: freeze, device: relay bank, at: 1"), HasSubstr("one of left, right, camera is needed"));
+    EXPECT_THAT(fault("kind: freeze, device: road, at: 1"), HasSubstr("one of left, right, camera is needed"));
     EXPECT_THAT(fault("kind: bump, output: left, at: 1, density: 0.1"), HasSubstr("density: unknown key"));
     EXPECT_THAT(fault("kind: bump, output: middle, at: 1"), HasSubstr("one of left, right is needed"));
     EXPECT_THAT(fault("kind: fog, at: 2, until: 1, density: 0.1"), HasSubstr("'until' must be later than 'at'"));

@@ -42,8 +42,8 @@ protected:
 TEST_F(WorldTest, everything_is_plugged_in_and_dark_at_first) {
     EXPECT_TRUE(world_.plugged("universe 1"));
     EXPECT_THAT(world_.slots(1), testing::Each(0));
-    EXPECT_THAT(world_.relays(), IsEmpty());
-    EXPECT_FALSE(world_.contact(0));
+    EXPECT_THAT(world_.relays("road"), IsEmpty());
+    EXPECT_FALSE(world_.contact("doors", 0));
     EXPECT_EQ(world_.frame("left"), nullptr);
     EXPECT_EQ(world_.takeFromDesk(1), std::nullopt);
     EXPECT_EQ(world_.takePress(), std::nullopt);
@@ -52,14 +52,14 @@ TEST_F(WorldTest, everything_is_plugged_in_and_dark_at_first) {
 
 TEST_F(WorldTest, a_plug_counts_each_time_it_is_really_pulled) {
     world_.setPlugged("camera", true);
-    EXPECT_EQ(world_.unpluggings("camera"), 0);
+    EXPECT_EQ(world_.losses("camera"), 0);
     world_.setPlugged("camera", false);
     world_.setPlugged("camera", false);
     EXPECT_FALSE(world_.plugged("camera"));
-    EXPECT_EQ(world_.unpluggings("camera"), 1);
+    EXPECT_EQ(world_.losses("camera"), 1);
     world_.setPlugged("camera", true);
     EXPECT_TRUE(world_.plugged("camera"));
-    EXPECT_EQ(world_.unpluggings("camera"), 1);
+    EXPECT_EQ(world_.losses("camera"), 1);
 }
 
 // Most dimmers hold their last level when the line falls silent.
@@ -73,24 +73,42 @@ TEST_F(WorldTest, lamps_hold_their_levels_while_their_own_line_is_unplugged) {
 }
 
 TEST_F(WorldTest, relays_are_safe_when_installed_and_when_their_plug_is_pulled) {
-    world_.installRelays({true, false});
-    EXPECT_THAT(world_.relays(), ElementsAre(true, false));
-    EXPECT_TRUE(world_.setRelays({false, true}));
-    EXPECT_THAT(world_.relays(), ElementsAre(false, true));
-    world_.setPlugged("relay bank", false);
-    EXPECT_THAT(world_.relays(), ElementsAre(true, false));
-    EXPECT_FALSE(world_.setRelays({false, true}));
-    world_.setPlugged("relay bank", true);
-    EXPECT_THAT(world_.relays(), ElementsAre(true, false));
+    world_.installRelays("road", {true, false});
+    EXPECT_THAT(world_.relays("road"), ElementsAre(true, false));
+    EXPECT_TRUE(world_.setRelays("road", {false, true}));
+    EXPECT_THAT(world_.relays("road"), ElementsAre(false, true));
+    world_.setPlugged("road", false);
+    EXPECT_THAT(world_.relays("road"), ElementsAre(true, false));
+    EXPECT_FALSE(world_.setRelays("road", {false, true}));
+    world_.setPlugged("road", true);
+    EXPECT_THAT(world_.relays("road"), ElementsAre(true, false));
+}
+
+// Example failure: every switch by hand is a loss, and who tries the lamps one after the other is written about a dozen times.
+TEST_F(WorldTest, a_hand_at_the_relays_is_a_loss_where_they_were_as_written) {
+    world_.installRelays("road", {true, false});
+    world_.installRelays("park", {true});
+    world_.switchRelaysByHand("road", {true, true});
+    EXPECT_EQ(world_.losses("road"), 0) << "nobody had written them";
+    EXPECT_TRUE(world_.setRelays("road", {false, true}));
+    EXPECT_TRUE(world_.setRelays("park", {false}));
+    world_.switchRelaysByHand("road", {false, true});
+    EXPECT_EQ(world_.losses("road"), 0) << "as written";
+    world_.switchRelaysByHand("road", {true, true});
+    world_.switchRelaysByHand("road", {false, false});
+    EXPECT_EQ(world_.losses("road"), 1);
+    EXPECT_THAT(world_.relays("road"), ElementsAre(false, false));
+    EXPECT_THAT(world_.relays("park"), ElementsAre(false));
+    EXPECT_EQ(world_.losses("park"), 0);
 }
 
 // A door opens whether or not the module that watches it has power.
 TEST_F(WorldTest, contacts_move_while_nobody_is_connected_to_them) {
-    world_.setPlugged("contacts", false);
-    world_.setContact(3, true);
-    EXPECT_TRUE(world_.contact(3));
-    world_.setContact(3, false);
-    EXPECT_FALSE(world_.contact(3));
+    world_.setPlugged("doors", false);
+    world_.setContact("doors", 3, true);
+    EXPECT_TRUE(world_.contact("doors", 3));
+    world_.setContact("doors", 3, false);
+    EXPECT_FALSE(world_.contact("doors", 3));
 }
 
 TEST_F(WorldTest, desk_frames_are_stamped_on_arrival_and_lost_with_the_plug) {

@@ -1,5 +1,6 @@
 // Whole rehearsals of the default show with the built program, as a newcomer would run them; most of them on the stepped clock.
 
+#include "core/image.h"
 #include "program.h"
 
 #include <gmock/gmock.h>
@@ -45,7 +46,7 @@ TEST(Rehearsal, in_real_time_reaches_every_cue) {
     const ScratchFolder folder;
     const Outcome outcome =
         runProgram({"rehearse", "--seconds", "6", "--record", "rehearsal", "--report", "report.json"}, folder.path());
-    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    ASSERT_THAT(outcome, exits(0));
     const json report = json::parse(contentsOf(folder / "report.json"));
     EXPECT_EQ(report["cues"].size(), kCues.size());
     EXPECT_EQ(report["stop_reason"], "length");
@@ -59,10 +60,29 @@ TEST(Rehearsal, in_real_time_reaches_every_cue) {
     EXPECT_GT(report["dmx_interval_ms"]["count"], 0);
 }
 
+// With every part on its thread, and a terminal that has the key.
+TEST(Rehearsal, the_key_s_takes_a_picture_of_every_output_while_the_show_runs) {
+    const ScratchFolder folder;
+    EXPECT_EQ(typeAtProgram({"rehearse", "--by-hand", "--from", "Full", "--pictures", "shots"}, folder.path(),
+                            {{"frames/s", 4, 's'}, {"picture: ", 2, 'q'}}),
+              0);
+    std::vector<std::string> outputs;
+    for (const auto& entry : fs::directory_iterator(folder / "shots")) {
+        const std::string name = entry.path().filename();
+        outputs.push_back(name.substr(name.rfind('-')));
+        EXPECT_THAT(name, HasSubstr("s-5-Full-"));
+        const auto picture = readRgba(entry.path());
+        ASSERT_TRUE(picture) << picture.error().message();
+        const auto isLit = [](const Rgba8& pixel) { return pixel.r + pixel.g + pixel.b > 0; };
+        EXPECT_TRUE(std::ranges::any_of(picture->pixels(), isLit)) << name;
+    }
+    EXPECT_THAT(outputs, testing::UnorderedElementsAre("-left.png", "-right.png"));
+}
+
 TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
     const ScratchFolder folder;
     const Outcome outcome = rehearse(folder.path(), {"--seconds", "30"});
-    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    ASSERT_THAT(outcome, exits(0));
     const json report = json::parse(contentsOf(folder / "report.json"));
     std::vector<std::string> entered;
     for (const json& cue : report["cues"]) entered.push_back(cue["name"]);
@@ -77,7 +97,7 @@ TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
         EXPECT_GT(fs::file_size(folder / "rehearsal" / file), 0u) << file;
     // The road lamps are on before and after the show and off during it; the sculpture's lamp follows the looks.
     const std::string relays = contentsOf(folder / "rehearsal/relays.csv");
-    EXPECT_THAT(relays, testing::MatchesRegex("show_time_s,states\n[0-9.]+,11\n[0-9.]+,00\n[0-9.]+,11\n"));
+    EXPECT_THAT(relays, testing::MatchesRegex("show_time_s,bank,states\n[0-9.]+,road,11\n[0-9.]+,road,00\n[0-9.]+,road,11\n"));
     EXPECT_THAT(contentsOf(folder / "rehearsal/dmx.csv"), HasSubstr(",1,255\n"));
 }
 
@@ -85,8 +105,8 @@ TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
 // that depends on which thread came first.
 TEST(Rehearsal, is_the_same_byte_for_byte_in_another_folder_and_with_other_threads) {
     const ScratchFolder one, other;
-    ASSERT_EQ(rehearse(one.path(), {"--seconds", "6"}, {{"LP_NUM_THREADS", "0"}}).status, 0);
-    ASSERT_EQ(rehearse(other.path(), {"--seconds", "6"}, {{"LP_NUM_THREADS", "2"}}).status, 0);
+    ASSERT_THAT(rehearse(one.path(), {"--seconds", "6"}, {{"LP_NUM_THREADS", "0"}}), exits(0));
+    ASSERT_THAT(rehearse(other.path(), {"--seconds", "6"}, {{"LP_NUM_THREADS", "2"}}), exits(0));
     for (const char* file : {"frames.csv", "dmx.csv", "relays.csv", "left.mp4", "right.mp4", "contact-sheet.png"})
         EXPECT_EQ(contentsOf(one / "rehearsal" / file), contentsOf(other / "rehearsal" / file)) << file;
     json reportOne = json::parse(contentsOf(one / "report.json")), reportOther = json::parse(contentsOf(other / "report.json"));
@@ -95,8 +115,8 @@ TEST(Rehearsal, is_the_same_byte_for_byte_in_another_folder_and_with_other_threa
 
 TEST(Rehearsal, another_seed_gives_other_camera_noise_and_the_same_show) {
     const ScratchFolder one, other;
-    ASSERT_EQ(rehearse(one.path(), {"--seconds", "3", "--by-hand", "--from", "Full", "--seed", "1"}).status, 0);
-    ASSERT_EQ(rehearse(other.path(), {"--seconds", "3", "--by-hand", "--from", "Full", "--seed", "2"}).status, 0);
+    ASSERT_THAT(rehearse(one.path(), {"--seconds", "3", "--by-hand", "--from", "Full", "--seed", "1"}), exits(0));
+    ASSERT_THAT(rehearse(other.path(), {"--seconds", "3", "--by-hand", "--from", "Full", "--seed", "2"}), exits(0));
     EXPECT_EQ(contentsOf(one / "rehearsal/frames.csv"), contentsOf(other / "rehearsal/frames.csv"));
     EXPECT_NE(contentsOf(one / "rehearsal/contact-sheet.png"), contentsOf(other / "rehearsal/contact-sheet.png"));
 }
@@ -120,7 +140,7 @@ TEST(Rehearsal, the_cameras_score_rises_while_a_projector_is_bumped_and_only_for
     const fs::path site = siteWith(
         folder, "  faults:\n    - {at: 6, until: 12, kind: bump, output: left, move: [0.05, 0, 0], turn: [0, 1.5, 0.5]}\n");
     const Outcome outcome = rehearse(folder.path(), {"--seconds", "18", "--by-hand", "--from", "Full", "--site", site.string()});
-    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    ASSERT_THAT(outcome, exits(0));
     const json report = json::parse(contentsOf(folder / "report.json"));
     EXPECT_EQ(report["faults"].size(), 2u) << report["faults"];
     const json &left = report["z_camera"]["left"], &right = report["z_camera"]["right"];
@@ -135,11 +155,15 @@ TEST(Rehearsal, the_cameras_score_rises_while_a_projector_is_bumped_and_only_for
 TEST(Rehearsal, an_unplugged_projector_goes_dark_and_comes_back_while_the_other_plays_on) {
     const ScratchFolder folder;
     const fs::path site = siteWith(folder, "  faults:\n    - {at: 2, until: 4, kind: unplug, device: left}\n");
-    ASSERT_EQ(rehearse(folder.path(), {"--seconds", "6", "--by-hand", "--from", "Full", "--site", site.string()}).status, 0);
+    const Outcome outcome = rehearse(folder.path(), {"--seconds", "6", "--by-hand", "--from", "Full", "--site", site.string()});
+    ASSERT_THAT(outcome, exits(0));
     const json report = json::parse(contentsOf(folder / "report.json"));
     EXPECT_EQ(report["frames_by_output"]["right"], 180);
     EXPECT_NEAR(report["frames_by_output"]["left"].get<double>(), 120, 2);
     EXPECT_EQ(report["late_frames"], 0);
+    // The operator is told, in the dark.
+    EXPECT_THAT(outcome.errors, HasSubstr("left (headless) is missing: "));
+    EXPECT_THAT(outcome.errors, HasSubstr("left (headless) is back"));
 }
 
 // Each mistake ends with one message that says where and what to do, exit status 1, and nothing half written.
@@ -147,7 +171,7 @@ TEST(Rehearsal, bad_input_is_refused_before_anything_is_shown) {
     const ScratchFolder folder;
     const auto refused = [&](std::vector<std::string> arguments) {
         const Outcome outcome = rehearse(folder.path(), std::move(arguments));
-        EXPECT_EQ(outcome.status, 1) << outcome.errors;
+        EXPECT_THAT(outcome, exits(1));
         EXPECT_FALSE(fs::exists(folder / "rehearsal"));
         EXPECT_FALSE(fs::exists(folder / "report.json"));
         return outcome.errors;
@@ -168,10 +192,10 @@ TEST(Rehearsal, bad_input_is_refused_before_anything_is_shown) {
 
 TEST(Rehearsal, wrong_usage_has_its_own_exit_status) {
     const ScratchFolder folder;
-    EXPECT_EQ(runProgram({"rehearse", "--secnds", "5"}, folder.path()).status, 2);
-    EXPECT_EQ(runProgram({"rehears"}, folder.path()).status, 2);
-    EXPECT_EQ(runProgram({}, folder.path()).status, 2);
-    EXPECT_EQ(runProgram({"rehearse", "--help"}, folder.path()).status, 0);
+    EXPECT_THAT(runProgram({"rehearse", "--secnds", "5"}, folder.path()), exits(2));
+    EXPECT_THAT(runProgram({"rehears"}, folder.path()), exits(2));
+    EXPECT_THAT(runProgram({}, folder.path()), exits(2));
+    EXPECT_THAT(runProgram({"rehearse", "--help"}, folder.path()), exits(0));
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ const std::map<std::string_view, Names> kLibraries = {
     {"Eigen", {"Eigen/"}},
     {"OpenCV", {"opencv2/"}},
     {"yaml-cpp", {"yaml-cpp/"}},
+    {"libyaml", {"yaml.h"}},
     {"spdlog", {"spdlog/"}},
     {"assimp", {"assimp/"}},
     {"CGAL", {"CGAL/"}},
@@ -38,13 +39,16 @@ const std::map<std::string_view, Names> kLibraries = {
     {"OpenGL", {"epoxy/gl.h"}},
     {"EGL", {"epoxy/egl.h"}},
     {"GLFW", {"GLFW/"}},
+    {"XCB", {"xcb/"}},
     {"libav", {"libavcodec/", "libavformat/", "libavutil/", "libswscale/"}},
-    {"libusb", {"libusb-1.0/"}},
-    {"libmodbus", {"modbus/"}},
+    {"libusb", {"libusb.h"}},
+    {"libmodbus", {"modbus.h"}},
     {"V4L2", {"linux/videodev2.h"}},
     {"CLI11", {"CLI/"}},
     {"nlohmann-json", {"nlohmann/"}},
-    {"POSIX", {"sys/", "fcntl.h", "poll.h", "sched.h", "signal.h", "termios.h", "unistd.h"}},
+    {"POSIX",
+     {"sys/", "arpa/", "asm/termbits.h", "net/", "netinet/", "fcntl.h", "grp.h", "ifaddrs.h", "linux/serial.h", "poll.h",
+      "sched.h", "signal.h", "termios.h", "unistd.h"}},
 };
 const Names kEverywhere = {"fmt", "GLM"};  // besides the standard library
 
@@ -56,10 +60,19 @@ struct Row {
 };
 
 // A driver knows its own family and the simulated site's state; its vendor's library stays in its .cpp.
-const Names kOfDrivers = {"core", "device", "drivers/surroundings.h", "drivers/site/world.h", "drivers/site/plug.h"};
+const Names kOfDrivers = {
+    "core", "device", "drivers/common", "drivers/surroundings.h", "drivers/site/world.h", "drivers/site/plug.h"};
+// A protocol on a serial line has the line from next door.
+const Names kOnALine = {"core",
+                        "device",
+                        "drivers/common",
+                        "drivers/byte_stream",
+                        "drivers/surroundings.h",
+                        "drivers/site/world.h",
+                        "drivers/site/plug.h"};
 
 const std::vector<Row> kTable = {
-    {"core", {}, {"Eigen"}, {"OpenCV", "yaml-cpp", "spdlog", "assimp", "CGAL", "FreeType", "librsvg", "POSIX"}},
+    {"core", {}, {"Eigen"}, {"OpenCV", "yaml-cpp", "libyaml", "spdlog", "assimp", "CGAL", "FreeType", "librsvg", "POSIX"}},
     {"device", {"core"}, {}, {}},
     {"pattern", {"core"}, {"Eigen"}, {"FFTW"}},
     {"theatre", {"core"}, {"Eigen"}, {"FFTW"}},
@@ -76,16 +89,19 @@ const std::vector<Row> kTable = {
 
     {"drivers/registry", {"core", "device", "drivers"}, {}, {}},
     {"drivers/surroundings", {"core"}, {}, {}},
+    {"drivers/common", {"core", "device"}, {}, {"POSIX"}},
     {"drivers/site", {"core", "device", "vision/camera_model.h", "drivers/surroundings.h"}, {}, {}},
     {"drivers/display", kOfDrivers, {}, {"OpenGL"}},
     {"drivers/display/headless", kOfDrivers, {}, {"OpenGL", "EGL"}},
     {"drivers/display/glfw", kOfDrivers, {}, {"OpenGL", "GLFW"}},
     {"drivers/display/glfw_library", kOfDrivers, {}, {"GLFW"}},
+    {"drivers/display/monitor_watch", kOfDrivers, {}, {"POSIX"}},
     {"drivers/display/picture_window", kOfDrivers, {}, {"OpenGL", "GLFW"}},
-    {"drivers/dmx", kOfDrivers, {}, {"POSIX"}},
-    {"drivers/modbus", kOfDrivers, {}, {"libmodbus"}},
-    {"drivers/cue_controller", kOfDrivers, {}, {"libusb"}},
-    {"drivers/camera", kOfDrivers, {}, {"V4L2", "POSIX"}},
+    {"drivers/display/x_screen", kOfDrivers, {}, {"XCB"}},
+    {"drivers/dmx", kOnALine, {}, {"POSIX"}},
+    {"drivers/modbus", kOnALine, {}, {"libmodbus", "POSIX"}},
+    {"drivers/cue_controller", kOfDrivers, {}, {"libusb", "POSIX"}},
+    {"drivers/camera", kOfDrivers, {}, {"V4L2", "libav", "POSIX"}},
     {"drivers/byte_stream", kOfDrivers, {}, {"POSIX"}},
 };
 

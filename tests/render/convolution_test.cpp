@@ -50,26 +50,26 @@ pattern::ShapePattern mosaic(const GreyImage& picture) {
 // A context, and what it takes to blur in it.
 struct Gpu {
     DrawnOutput context{{16, 16}, rectangleCorners(16, 16), {}};
-    gpu::ShapePainter painter = gpu::ShapePainter::create(shaderFolder()).value();
-    gpu::ProgramCache programs{shaderFolder()};
+    static constexpr int kSamples = 4;
+    DrawingTools tools{gpu::ShapePainter::create(shaderFolder()).value(), gpu::ProgramCache(shaderFolder()), gpu::Bend(),
+                       gpu::Bend(), kSamples, Stopwatch(nullptr)};
 
     // `picture` in black all round, painted, and blurred by the GPU.
     GreyImage blurred(const GreyImage& picture, const GreyImage& filter, glm::vec2 fromCoverage = {0, 1}, int block = 1) {
-        constexpr int kSamples = 4;
         const glm::ivec2 size(picture.width(), picture.height());
-        auto convolution = gpu::Convolution::create(size, filter, block, kSamples, programs);
+        auto convolution = gpu::Convolution::create(size, filter, block, kSamples, tools.programs);
         EXPECT_TRUE(convolution) << convolution.error().message();
         const glm::ivec2 painted = block * (size + 2 * convolution->margin());
         auto layer = gpu::LayerPicture::create(painted, kSamples);
-        CanvasPlace place{painted, rectangleCorners(block * size.x, block * size.y)};
-        for (glm::dvec2& corner : place.corners) {
+        WarpShape upsideDown{.corners = rectangleCorners(block * size.x, block * size.y)};
+        for (glm::dvec2& corner : upsideDown.corners) {
             corner += glm::dvec2(block * convolution->margin());
             corner.y = painted.y - corner.y;
         }
         layer->begin();
         const PatternSource source = resting(mosaic(picture));
-        DrawnInstances instances(PlacedSource::create(source, place).value());
-        if (!source.pattern->instances.empty()) instances.paint(Time{}, {}, DrawnInstances::Bounds::Picture, painter);
+        DrawnInstances instances(source, {painted, Warp::of(upsideDown).value()});
+        if (!source.pattern->instances.empty()) instances.paint({}, tools);
         convolution->run(*layer, fromCoverage);
         GreyImage result(size.x, size.y);
         glGetTextureImage(convolution->texture(), 0, GL_RED, GL_FLOAT, static_cast<GLsizei>(result.pixels().size_bytes()),

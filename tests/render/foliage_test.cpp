@@ -62,8 +62,7 @@ TEST(Foliage, is_what_a_sum_over_the_suns_disc_gives) {
         instance.colour = glm::vec3(1);
         poses.push_back({instance.centre, instance.size, instance.rotation});
     }
-    const RgbaImage covered =
-        referencePicture(white, poses, *Homography::fromCorners(rectangleCorners(kAspect, 1), upright(kSize)), kSize, 4);
+    const RgbaImage covered = referencePicture(white, poses, Warp::straight(kSize), kSize, 4);
     for (const double diameter : {3.0, 9.5, 16.0, 30.0, 70.0}) {
         DrawnOutput output(kSize, upright(kSize), {FoliageSource{.layers = {leaves(pattern, diameter)}}});
         const RgbaImage& drawn = output.frame({{0, 1}});

@@ -119,7 +119,7 @@ TEST(OutputRenderer, is_nearer_to_the_truth_than_a_bent_picture_of_the_canvas) {
     const pattern::ShapePattern pattern = smallPattern();
     const auto corners = keystone(kLarge);
     const Homography projectorFromCanvas = *Homography::fromCorners(rectangleCorners(kAspect, 1), corners);
-    const RgbaImage truth = referencePicture(pattern, restingPoses(pattern), projectorFromCanvas, kLarge, 6);
+    const RgbaImage truth = referencePicture(pattern, restingPoses(pattern), Warp::of({.corners = corners}).value(), kLarge, 6);
     const double through = difference(DrawnOutput(kLarge, corners, {resting(pattern)}).frame({{0, 1}}), truth).rms;
 
     DrawnOutput flat(kLarge, upright(kLarge), {resting(pattern)});
@@ -149,8 +149,8 @@ TEST(OutputRenderer, draws_what_a_point_by_point_reference_draws) {
     const auto corners = keystone(kLarge);
     DrawnOutput output(kLarge, corners, {resting(pattern)});
     const RgbaImage& drawn = output.frame({{0, 1}});
-    const RgbaImage reference = referencePicture(pattern, restingPoses(pattern),
-                                                 *Homography::fromCorners(rectangleCorners(kAspect, 1), corners), kLarge, 6);
+    const RgbaImage reference =
+        referencePicture(pattern, restingPoses(pattern), Warp::of({.corners = corners}).value(), kLarge, 6);
     const Difference apart = difference(drawn, reference);
     std::printf("rms %.2f of 255 against 36 points a pixel\n", apart.rms);
     RecordProperty("rms", std::to_string(apart.rms));
@@ -278,7 +278,8 @@ TEST(OutputRenderer, shows_the_pattern_in_the_wind_that_it_is_given) {
 
 TEST(OutputRenderer, allocates_nothing_once_it_runs) {
     DrawnOutput output(kSize, keystone(kSize), {moving(smallPattern()), moving(smallPattern()), SolidSource{}});
-    FrameReader& reader = output.tap().addReader();
+    FrameReader& reader = output.tap().addQueue();
+    output.tap().prepare();
     const show::OutputState look{{{0, 0.5f}, {1, 0.5f}, {2, 0.1f}}};
     for (int frame = 0; frame < 3; ++frame) output.frame(look, tickTime(frame, 30));
     int read = 0;
@@ -298,15 +299,12 @@ TEST(OutputRenderer, leaves_no_opengl_error_and_refuses_what_cannot_be_drawn) {
         const auto renderer = OutputRenderer::create(options, sources);
         return renderer ? "accepted" : renderer.error().message();
     };
-    OutputRenderer::Options options{{64, 36}, upright({64, 36}), 4, shaderFolder()};
+    OutputRenderer::Options options{projectionTo({64, 36}, upright({64, 36})), {}, 4, shaderFolder()};
     EXPECT_EQ(refusal(options), "accepted");
-    std::swap(options.corners[0], options.corners[1]);
-    EXPECT_THAT(refusal(options), HasSubstr("crossed"));
-    options.corners = upright({64, 36});
     options.samples = 1000;
     EXPECT_THAT(refusal(options), HasSubstr("1000 samples a pixel: this OpenGL has 1 .. "));
     options.samples = 4;
-    options.size.x = 1'000'000;
+    options.projection.size.x = 1'000'000;
     EXPECT_THAT(refusal(options), HasSubstr("1000000 x 36 pixels"));
 }
 
@@ -317,10 +315,13 @@ TEST(OutputRenderer, names_the_shader_that_does_not_compile) {
     std::filesystem::copy(shaderFolder(), folder,
                           std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
     const auto refusal = [&] {
-        const auto renderer = OutputRenderer::create({{64, 36}, upright({64, 36}), 4, folder}, {});
+        const auto renderer = OutputRenderer::create({projectionTo({64, 36}, upright({64, 36})), {}, 4, folder}, {});
         return renderer ? "accepted" : renderer.error().message();
     };
-    ASSERT_TRUE(writeFile(folder / "shape.frag", "void main() { colour = 1; }\n"));
+    std::string text = readFile(folder / "shape.frag").value();
+    const std::string_view assigned = "root = vec4(";
+    text.replace(text.find(assigned), assigned.size(), "colour = vec4(");
+    ASSERT_TRUE(writeFile(folder / "shape.frag", text));
     EXPECT_THAT(refusal(), AllOf(HasSubstr("broken_shaders/shape.frag: the shader does not compile"), HasSubstr("colour")));
     std::filesystem::remove(folder / "shape.frag");
     EXPECT_THAT(refusal(), HasSubstr("broken_shaders/shape.frag"));

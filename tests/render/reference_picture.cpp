@@ -1,6 +1,7 @@
 #include "render/reference_picture.h"
 
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -51,14 +52,29 @@ std::vector<Facet> facetsOf(const TriangleMesh& mesh, const pattern::InstancePos
 
 }  // namespace
 
-RgbaImage referencePicture(const pattern::ShapePattern& pattern, std::span<const pattern::InstancePose> poses,
-                           const Homography& projectorFromCanvas, glm::ivec2 size, int samples) {
+CanvasUnderPixels::CanvasUnderPixels(const Warp& warp, glm::ivec2 size) : part_(warp.shape().part), size_(size) {
+    for (int y = 0; y <= size.y; ++y)
+        for (int x = 0; x <= size.x; ++x) corners_.push_back(warp.canvasFromProjector({x, y}));
+}
+
+std::optional<glm::dvec2> CanvasUnderPixels::at(glm::dvec2 pixel) const {
+    const glm::ivec2 cell = glm::min(glm::ivec2(pixel), size_ - 1);
+    const glm::dvec2 share = pixel - glm::dvec2(cell);
+    const auto* top = &corners_[static_cast<std::size_t>(cell.y * (size_.x + 1) + cell.x)];
+    const auto* bottom = top + size_.x + 1;
+    if (!top[0] || !top[1] || !bottom[0] || !bottom[1]) return std::nullopt;
+    const glm::dvec2 canvas = glm::mix(glm::mix(*top[0], *top[1], share.x), glm::mix(*bottom[0], *bottom[1], share.x), share.y);
+    if (glm::any(glm::lessThan(canvas, part_.low)) || glm::any(glm::greaterThan(canvas, part_.high))) return std::nullopt;
+    return canvas;
+}
+
+RgbaImage referencePicture(const pattern::ShapePattern& pattern, std::span<const pattern::InstancePose> poses, const Warp& warp,
+                           glm::ivec2 size, int samples) {
     std::vector<std::vector<Facet>> instances;
     for (std::size_t i = 0; i < poses.size(); ++i)
         instances.push_back(facetsOf(pattern.shapes[pattern.instances[i].shape].mesh, poses[i], pattern.instances[i].colour));
 
     const auto lightAt = [&](glm::dvec2 point) -> glm::dvec3 {
-        if (point.x < 0 || point.y < 0 || point.x > pattern.aspect() || point.y > 1) return glm::dvec3(0);
         for (std::size_t i = poses.size(); i-- > 0;) {
             if (glm::distance(point, poses[i].centre) > poses[i].size) continue;  // outside the sphere around the shape
             double highest = -INFINITY;
@@ -73,14 +89,15 @@ RgbaImage referencePicture(const pattern::ShapePattern& pattern, std::span<const
         return glm::dvec3(0);
     };
 
-    const Homography canvasFromProjector = projectorFromCanvas.inverse();
+    const CanvasUnderPixels under(warp, size);
     RgbaImage picture(size.x, size.y);
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x) {
             glm::dvec3 light(0);
             for (int sample = 0; sample < samples * samples; ++sample) {
                 const glm::dvec2 within((sample % samples + 0.5) / samples, (sample / samples + 0.5) / samples);
-                light += lightAt(canvasFromProjector(glm::dvec2(x, y) + within));
+                if (const auto canvas = under.at(glm::dvec2(x, y) + within))
+                    light += lightAt(*canvas * glm::dvec2(pattern.aspect(), 1));
             }
             light /= samples * samples;
             const auto stored = [](double linear) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 namespace fantascope::render {
 namespace {
@@ -107,15 +108,22 @@ std::array<glm::dvec2, 4> keystone(glm::ivec2 size) {
     return {at(0.12, 0.05), at(0.93, 0.16), at(0.98, 0.91), at(0.04, 0.97)};
 }
 
-DrawnOutput::DrawnOutput(glm::ivec2 size, const std::array<glm::dvec2, 4>& corners, const std::vector<PictureSource>& sources,
-                         const std::string& driver) {
+Projection projectionTo(glm::ivec2 size, const std::array<glm::dvec2, 4>& corners) {
+    Projection projection{size, Warp::of({.corners = corners}).value()};
+    projection.light.dither = false;
+    return projection;
+}
+
+DrawnOutput::DrawnOutput(const Projection& projection, const std::vector<PictureSource>& sources,
+                         std::shared_ptr<const BlendMap> blend, const std::string& driver) {
+    const glm::ivec2 size = projection.size;
     const ConfigNode options = valueOf(ConfigNode::parse("driver: " + driver, "site.yaml"));
     sink_ = valueOf(drivers::openDisplay(options, {"output", size, 30}, {clock_}));
     const Result<void> current = sink_->makeCurrent();
     FANTASCOPE_CHECK(current.has_value(), current.error().message());
-    renderer_ = valueOf(OutputRenderer::create({size, corners, 4, shaderFolder()}, sources));
+    renderer_ = valueOf(OutputRenderer::create({projection, std::move(blend), 4, shaderFolder()}, sources));
     tap_ = std::make_unique<FrameTap>(0, size);
-    newest_ = &tap_->addReader();
+    newest_ = &tap_->addNewest(std::numeric_limits<double>::infinity());
 }
 
 DrawnOutput::~DrawnOutput() {
@@ -128,7 +136,9 @@ const RgbaImage& DrawnOutput::frame(const show::OutputState& state, Time time, c
     FANTASCOPE_CHECK(sink_->makeCurrent().has_value(), "nobody unplugs it");
     renderer_->draw(state, wind, time, sink_->framebuffer());
     tap_->capture(sink_->framebuffer(), time);
+    FANTASCOPE_CHECK(sink_->finish().has_value(), "nobody unplugs it");
     tap_->publish(valueOf(sink_->present()));
+    tap_->finish();
     const ShownFrame* const frame = newest_->next(Time::max());
     FANTASCOPE_CHECK(frame != nullptr, "what was presented is published");
     return frame->image;

@@ -10,6 +10,7 @@
 
 #include "core/clock.h"
 #include "core/image.h"
+#include "core/projection.h"
 
 #include <glm/vec2.hpp>
 
@@ -33,11 +34,17 @@ pattern::ShapePattern squareAt(glm::dvec2 centre, double size, glm::vec3 colour,
 // Corners in a picture of `size`, with a clear keystone, all inside.
 std::array<glm::dvec2, 4> keystone(glm::ivec2 size);
 
+// Corners in a picture of `size` for a projector that neither dithers nor colours.
+Projection projectionTo(glm::ivec2 size, const std::array<glm::dvec2, 4>& corners);
+
 // One output of the named driver, its renderer and a tap of it.
 class DrawnOutput {
 public:
+    DrawnOutput(const Projection& projection, const std::vector<PictureSource>& sources,
+                std::shared_ptr<const BlendMap> blend = nullptr, const std::string& driver = "headless");
     DrawnOutput(glm::ivec2 size, const std::array<glm::dvec2, 4>& corners, const std::vector<PictureSource>& sources,
-                const std::string& driver = "headless");
+                const std::string& driver = "headless")
+        : DrawnOutput(projectionTo(size, corners), sources, nullptr, driver) {}
     ~DrawnOutput();
 
     // Draws and presents one frame, and returns it as it was shown.
@@ -47,6 +54,7 @@ public:
         return frame(show::OutputState{layers}, time);
     }
     FrameTap& tap() { return *tap_; }
+    OutputRenderer& renderer() { return *renderer_; }
     DisplaySink& sink() { return *sink_; }
 
 private:

@@ -76,9 +76,15 @@ std::string siteRefusal(const std::string& text) {
     return site ? "" : site.error().message();
 }
 
+// The files that the example of a show names; nobody looks into them here.
+void layFiles(const ScratchFolder& folder) {
+    for (const char* file : {"patterns/leaves.pattern.yaml", "pictures/poster.png", "clips/rain.mp4", "clips/opening.mov"})
+        folder.file(file, "");
+}
+
 std::string showRefusal(const std::string& text) {
     const ScratchFolder folder;
-    folder.file("patterns/leaves.pattern.yaml", "");
+    layFiles(folder);
     const auto show = Show::load(folder.file("show.yaml", text));
     return show ? "" : show.error().message();
 }
@@ -95,7 +101,7 @@ TEST(Docs, the_example_of_a_show_loads_and_plays_on_the_example_of_a_site) {
     ASSERT_THAT(showRefusal(examples[0]), IsEmpty());
 
     const ScratchFolder folder;
-    folder.file("patterns/leaves.pattern.yaml", "");
+    layFiles(folder);
     const auto show = Show::load(folder.file("show.yaml", examples[0]));
     const auto site = readSite(folder.file("site.yaml", examplesIn(documentOf("site-format.md"))[0]));
     const auto list = show->bind(*site);

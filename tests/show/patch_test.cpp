@@ -13,7 +13,8 @@ using testing::ElementsAre;
 Site testSite() {
     Site site;
     site.fixtures = {{"a", 1, 1, {"intensity"}}, {"b", 2, 5, {"intensity"}}, {"c", 1, 511, {"red", "green"}}};
-    site.relays = {{"road", 3, true}, {"fog", 0, false}};
+    site.relayBanks = {{"street", {}}, {"stage", {}}};
+    site.relays = {{"road", 0, 3, true}, {"fog", 1, 1, false}, {"path", 0, 0, false}};
     return site;
 }
 
@@ -44,13 +45,16 @@ TEST(Patch, levels_are_rounded_to_the_nearest_step) {
         EXPECT_EQ(slots(Look{{}, {level, 0, 0, 0}, {}}, 1)[0], slot) << level;
 }
 
-TEST(Patch, relays_go_to_their_coils_and_coils_between_are_off) {
+TEST(Patch, relays_go_to_the_coils_of_their_bank_and_coils_between_are_off) {
     Look look;
-    look.relays = {1, 1};
-    EXPECT_THAT(coilsOf(testSite(), look), ElementsAre(true, false, false, true));
-    look.relays = {0, 1};
-    EXPECT_THAT(coilsOf(testSite(), look), ElementsAre(true, false, false, false));
-    EXPECT_THAT(safeCoils(testSite()), ElementsAre(false, false, false, true));
+    look.relays = {1, 1, 1};
+    EXPECT_THAT(coilsOf(testSite(), look, 0), ElementsAre(true, false, false, true));
+    EXPECT_THAT(coilsOf(testSite(), look, 1), ElementsAre(false, true));
+    look.relays = {0, 1, 1};
+    EXPECT_THAT(coilsOf(testSite(), look, 0), ElementsAre(true, false, false, false));
+    EXPECT_THAT(coilsOf(testSite(), look, 1), ElementsAre(false, true));
+    EXPECT_THAT(safeCoils(testSite(), 0), ElementsAre(false, false, false, true));
+    EXPECT_THAT(safeCoils(testSite(), 1), ElementsAre(false, false));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace fantascope::show {
@@ -60,12 +61,28 @@ ShowState stateOf(const Playback& playback, Time time) {
     return state;
 }
 
-Look lookOf(const Playback& playback, Time time) { return stateOf(playback, time); }
+// But for when layers began, which has tests of its own.
+Look lookOf(const Playback& playback, Time time) {
+    Look look = stateOf(playback, time);
+    for (OutputState& output : look.outputs)
+        for (LayerState& layer : output.layers) layer.begun = Time{};
+    return look;
+}
 
+std::size_t addedOnes(const OutputState& output) {
+    return output.pictures.empty() ? output.layers.size() : output.pictures[0].first;
+}
+
+// How much of a source there is in all of an output.
 float opacity(const Look& look, std::size_t output, std::uint32_t source) {
-    for (const LayerState& layer : look.outputs[output].layers)
-        if (layer.source == source) return layer.opacity;
-    return 0;
+    const OutputState& state = look.outputs[output];
+    float sum = 0;
+    for (std::size_t i = 0; i < addedOnes(state); ++i)
+        if (state.layers[i].source == source) sum += state.layers[i].opacity;
+    for (const ComposedPicture& picture : state.pictures)
+        for (std::size_t i = picture.first; i < picture.last; ++i)
+            if (state.layers[i].source == source) sum += picture.share * state.layers[i].opacity;
+    return sum;
 }
 
 TEST(Playback, before_the_first_cue_all_is_dark_and_the_relays_are_safe) {
@@ -88,11 +105,50 @@ TEST(Playback, go_fades_linearly_to_the_next_look_and_stays_there) {
 }
 
 // A source on both sides moves from its one opacity to its other. Example failure: it dips, since each look is faded as a whole.
+TEST(Playback, a_cue_fades_until_its_look_is_whole) {
+    const Playback playback = after(followingCues(), {go(10s)});
+    for (const Time time : {10s, 11s, 13s, 16s}) EXPECT_TRUE(playback.fadesAt(time)) << seconds(time);
+    for (const Time time : {9s, 12s, 17s, 18s, 30s}) EXPECT_FALSE(playback.fadesAt(time)) << seconds(time);
+}
+
 TEST(Playback, crossfade_matches_layers_by_their_source) {
     const Playback playback = after(threeCues(), {go(0s), go(10s)});
     EXPECT_THAT(lookOf(playback, 11s).outputs[0].layers, ElementsAre(LayerState{0, 0.875f}, LayerState{1, 0.25f}));
     EXPECT_THAT(lookOf(playback, 12s).levels, ElementsAre(0.5f, 0.25f));
     EXPECT_EQ(lookOf(playback, 14s), threeCues().cues[1].look);
+}
+
+// A slide over a light must not go before the light does: the picture fades as one.
+TEST(Playback, a_picture_of_blended_layers_comes_and_goes_as_a_whole) {
+    CueList list = threeCues();
+    list.cues[0].look.outputs[0] = {{{0, 1.0f}, {1, 0.75f, Blend::Multiply}}, {{0, 2, 1.0f}}};
+    list.cues[1].look.outputs[0] = {{{0, 1.0f}}, {}};
+    const Playback playback = after(list, {go(10s), go(20s), blackout(30s), jump(40s, 0), blackout(40s), jump(41s, 0)});
+    const auto seen = [&](Time time) { return lookOf(playback, time).outputs[0]; };
+    const std::vector<LayerState> slide = {{0, 1.0f}, {1, 0.75f, Blend::Multiply}};
+    EXPECT_EQ(seen(11s), (OutputState{slide, {{0, 2, 0.5f}}})) << "it comes in two seconds";
+    EXPECT_EQ(seen(21s), (OutputState{{{0, 0.25f}, slide[0], slide[1]}, {{1, 3, 0.75f}}})) << "and goes as the light comes";
+    EXPECT_EQ(seen(25s), (OutputState{{{0, 1.0f}}, {}}));
+    EXPECT_EQ(seen(31s), OutputState{}) << "blackout";
+    EXPECT_EQ(seen(42s).pictures, (std::vector<ComposedPicture>{{1, 3, 0.75f}}))
+        << "the same look on both sides of a fade is one picture: half of the way, and half of the rest";
+}
+
+// A video goes on through the cues that show it and begins anew in one that brings it back.
+TEST(Playback, a_layer_begins_when_its_source_comes_onto_the_output) {
+    const Playback playback = after(threeCues(), {go(10s), go(20s), go(30s), jump(40s, 0)});
+    const auto begun = [&](Time time, std::uint32_t source) -> std::optional<Time> {
+        const ShowState state = stateOf(playback, time);
+        for (const LayerState& layer : state.outputs[0].layers)
+            if (layer.source == source) return layer.begun;
+        return std::nullopt;
+    };
+    EXPECT_EQ(begun(15s, 0), 10s);
+    EXPECT_EQ(begun(21s, 0), 10s) << "in the fade between two cues that show it";
+    EXPECT_EQ(begun(29s, 0), 10s);
+    EXPECT_EQ(begun(29s, 1), 20s);
+    EXPECT_EQ(begun(31s, 0), std::nullopt) << "the third cue is dark";
+    EXPECT_EQ(begun(41s, 0), 40s);
 }
 
 TEST(Playback, a_cue_without_fade_is_there_at_once) {
@@ -175,6 +231,27 @@ TEST(Playback, blackout_and_back_are_taken_at_any_moment) {
     EXPECT_EQ(playback.apply(blackout(2s + 1ms)), Outcome::Taken);
     EXPECT_EQ(playback.apply(back(2s + 2ms)), Outcome::Taken);
     EXPECT_EQ(playback.apply(blackout(2s + 3ms)), Outcome::Taken);
+}
+
+// An emergency button must not turn the light on. Example failure: the operator has blacked out, the button is pressed, and it is light.
+TEST(Playback, dark_and_light_are_so_whatever_was_before) {
+    Playback playback(threeCues());
+    const auto isDark = [&](Time at) {
+        ShowState state;
+        playback.stateAt(at, state);
+        return state.blackout;
+    };
+    for (const auto& [at, kind, dark] : {std::tuple{1s, Input::Kind::Light, false},
+                                         {2s, Input::Kind::Dark, true},
+                                         {3s, Input::Kind::Dark, true},
+                                         {4s, Input::Kind::Blackout, false},
+                                         {5s, Input::Kind::Blackout, true},
+                                         {6s, Input::Kind::Dark, true},
+                                         {7s, Input::Kind::Light, false},
+                                         {8s, Input::Kind::Light, false}}) {
+        EXPECT_EQ(playback.apply({at, kind}), Outcome::Taken);
+        EXPECT_EQ(isDark(at + 900ms), dark) << "after the input at " << at.count() << " s";
+    }
 }
 
 // A blackout wins over everything in flight. Example failure: a fade started earlier lifts a channel afterwards.
@@ -260,9 +337,13 @@ CueList randomCues(Rng& rng) {
     const auto look = [&] {
         Look look;
         look.outputs.resize(kOutputs);
-        for (OutputState& output : look.outputs)
+        for (OutputState& output : look.outputs) {
             for (std::uint32_t source = 0; source < kSources; ++source)
                 if (rng.uniform() < 0.4) output.layers.push_back({source, static_cast<float>(rng.uniform())});
+            if (output.layers.empty() || rng.uniform() < 0.5) continue;
+            output.layers.back().blend = static_cast<Blend>(1 + rng.below(3));
+            output.pictures.push_back({0, static_cast<std::uint32_t>(output.layers.size()), 1.0f});
+        }
         for (int i = 0; i < kChannels; ++i) look.levels.push_back(static_cast<float>(rng.uniform()));
         look.relays.push_back(static_cast<std::uint8_t>(rng.below(2)));
         return look;
@@ -422,13 +503,29 @@ TEST(Playback, every_state_is_well_formed) {
         for (int i = 0; i < 300; ++i) {
             const Look look = lookOf(playback, fromSeconds(rng.uniform(0, 60)));
             for (const OutputState& output : look.outputs) {
-                std::vector<std::uint32_t> sources;
                 for (const LayerState& layer : output.layers) {
                     EXPECT_GT(layer.opacity, 0);
                     EXPECT_LE(layer.opacity, 1);
-                    EXPECT_EQ(std::count(sources.begin(), sources.end(), layer.source), 0) << seed;
-                    sources.push_back(layer.source);
                 }
+                const auto allDiffer = [&](std::size_t first, std::size_t last) {
+                    std::set<std::uint32_t> sources;
+                    for (std::size_t i = first; i < last; ++i) sources.insert(output.layers[i].source);
+                    return sources.size() == last - first;
+                };
+                std::size_t end = addedOnes(output);
+                EXPECT_TRUE(allDiffer(0, end)) << seed;
+                for (std::size_t i = 0; i < end; ++i) EXPECT_EQ(output.layers[i].blend, Blend::Add);
+                double shares = 0;
+                for (const ComposedPicture& picture : output.pictures) {
+                    EXPECT_EQ(picture.first, end) << seed;
+                    EXPECT_GT(picture.last, picture.first);
+                    EXPECT_GT(picture.share, 0);
+                    EXPECT_TRUE(allDiffer(picture.first, picture.last)) << seed;
+                    shares += double{picture.share};
+                    end = picture.last;
+                }
+                EXPECT_EQ(end, output.layers.size());
+                EXPECT_LE(shares, 1 + 1e-5);
             }
             for (const float level : look.levels) EXPECT_TRUE(level >= 0 && level <= 1) << level;
         }

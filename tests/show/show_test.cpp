@@ -5,6 +5,7 @@
 #include "core/geometry.h"
 #include "scratch_folder.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace fantascope::show {
@@ -39,10 +40,10 @@ Site testSite() {
     Site site;
     site.file = "site.yaml";
     site.outputs.resize(2);
-    site.outputs[0].name = "right";
-    site.outputs[1].name = "left";
+    site.outputs[0].name = site.outputs[0].canvas = "right";
+    site.outputs[1].name = site.outputs[1].canvas = "left";
     site.fixtures = {{"sculpture", 1, 1, {"intensity"}}, {"fountain", 1, 2, {"red", "green", "blue"}}};
-    site.relays = {{"fog", 0, false}, {"road", 1, true}};
+    site.relays = {{"fog", 0, 0, false}, {"road", 0, 1, true}};
     return site;
 }
 
@@ -140,7 +141,7 @@ TEST(ShowFile, a_source_is_of_exactly_one_kind) {
     const std::string_view kinds = "{solid: [0.1, 0.2, 0.3]}";
     const std::string answer =
         "show.yaml:6:8: sources.dim: exactly one kind of source is needed: 'pattern', 'solid', "
-        "'foliage', 'caustics' or 'mirror_ball'";
+        "'foliage', 'caustics', 'mirror_ball', 'image', 'video' or 'camera'";
     EXPECT_EQ(refusalAfter(kinds, "{}"), answer);
     EXPECT_EQ(refusalAfter(kinds, "{solid: [0, 0, 0], pattern: patterns/leaves.pattern.yaml}"), answer);
     EXPECT_THAT(refusalAfter(kinds, "{solid: [0, 0]}"), HasSubstr("sources.dim.solid: a list of exactly 3 items is needed"));
@@ -170,7 +171,7 @@ TEST(ShowFile, foliage_has_layers_at_their_distances) {
     EXPECT_EQ(source.layers[0].distance, 6);
     EXPECT_TRUE(source.layers[1].holes);
     EXPECT_TRUE(source.layers[1].filter.has_value());
-    EXPECT_THAT(patternsOf(loaded.show->sources[1]), testing::SizeIs(2));
+    EXPECT_THAT(filesOf(loaded.show->sources[1]), testing::SizeIs(2));
 
     const Loaded bare(replaced(std::string(kShow), solid, foliage("")));
     EXPECT_EQ(std::get<FoliageSource>(bare.show->sources[1].picture).sun, radians(0.53));
@@ -203,6 +204,33 @@ TEST(ShowFile, water_and_mirrors_need_no_numbers) {
     EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {lamp: [0, 0.5, 2.2]}}"), HasSubstr("inside the ball"));
     EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {facet: 0.001}}"), HasSubstr("has mirrors of 0.005 m to 0.25 m"));
     EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {turn: 0}}"), HasSubstr("a turn takes a second at least"));
+}
+
+TEST(ShowFile, pictures_and_videos_are_files_and_a_camera_is_none) {
+    const std::string_view solid = "dim: {solid: [0.1, 0.2, 0.3]}";
+    const std::string file = "patterns/leaves.pattern.yaml";  // what is in it is not looked at here
+    const Loaded loaded(
+        replaced(std::string(kShow), solid,
+                 fmt::format("dim: {{image: {0}}}\n  rain: {{video: {0}}}\n"
+                             "  snow: {{video: {{file: {0}, loop: false, speed: 0.5}}}}\n  wall: {{camera: {{}}}}",
+                             file)));
+    ASSERT_TRUE(loaded.show) << loaded.show.error().message();
+    const auto& sources = loaded.show->sources;
+    EXPECT_EQ(std::get<ImageSource>(sources[1].picture).file, loaded.folder / file);
+    EXPECT_TRUE(std::get<VideoSource>(sources[2].picture).loop);
+    EXPECT_EQ(std::get<VideoSource>(sources[2].picture).speed, 1);
+    EXPECT_FALSE(std::get<VideoSource>(sources[3].picture).loop);
+    EXPECT_EQ(std::get<VideoSource>(sources[3].picture).speed, 0.5);
+    EXPECT_TRUE(std::holds_alternative<CameraSource>(sources[4].picture));
+    for (const std::size_t named : {1u, 2u, 3u}) EXPECT_THAT(filesOf(sources[named]), ElementsAre(loaded.folder / file));
+
+    const auto refused = [&](const std::string& source) { return refusalAfter("{solid: [0.1, 0.2, 0.3]}", source); };
+    EXPECT_THAT(refused("{image: no.png}"), HasSubstr("image: there is no file no.png; it is a picture (PNG, JPEG or TIFF)"));
+    EXPECT_THAT(refused("{video: no.mp4}"), HasSubstr("video: there is no file no.mp4; it is a video"));
+    EXPECT_THAT(refused("{video: {loop: true}}"), HasSubstr("'file' is missing"));
+    EXPECT_THAT(refused("{video: {file: patterns/leaves.pattern.yaml, speed: 0}}"), HasSubstr("speed: "));
+    EXPECT_THAT(refused("{camera: {size: 3}}"), HasSubstr("unknown key"));
+    EXPECT_THAT(refused("{camera: {}, image: patterns/leaves.pattern.yaml}"), HasSubstr("exactly one kind of source"));
 }
 
 // Fades match layers by their source: with two of one, which goes where would be a guess.
@@ -277,6 +305,39 @@ TEST(ShowBind, names_that_the_site_does_not_have_are_refused_with_place_and_the_
     const Loaded loaded{std::string(kShow)};
     EXPECT_THAT(loaded.show->bind(bare).error().message(),
                 EndsWith("no relay is called 'road' (there is none at all) in site.yaml"));
+}
+
+// Several projectors on one wall show one picture; an output may still have its own.
+TEST(ShowBind, a_canvas_stands_for_all_of_its_outputs_and_an_outputs_own_layers_go_before) {
+    Site site = testSite();
+    site.outputs.resize(3);
+    site.outputs[2].name = "middle";
+    for (Output& output : site.outputs) output.canvas = "wall";
+    const Loaded loaded(replaced(std::string(kShow), "left: [{source: leaves, opacity: 0.5}, {source: dim}]",
+                                 "left: [{source: dim}]\n      wall: {layers: [{source: leaves}], wind: {strength: 3}}"));
+    ASSERT_TRUE(loaded.show) << loaded.show.error().message();
+    const auto list = loaded.show->bind(site);
+    ASSERT_TRUE(list) << list.error().message();
+    const Look& look = list->cues[1].look;
+    EXPECT_THAT(look.outputs[0].layers, ElementsAre(LayerState{0, 1.0f}));
+    EXPECT_THAT(look.outputs[1].layers, ElementsAre(LayerState{1, 1.0f}));
+    EXPECT_THAT(look.outputs[2].layers, ElementsAre(LayerState{0, 1.0f}));
+    EXPECT_EQ(list->cues[1].winds[2].strength, 3);
+    const Loaded wrong(replaced(std::string(kShow), "left: [", "wal: ["));
+    EXPECT_THAT(wrong.show->bind(site).error().message(),
+                HasSubstr("no output or canvas is called 'wal' (did you mean 'wall'?)"));
+}
+
+TEST(ShowBind, layers_that_do_more_than_add_make_a_picture_in_their_order) {
+    const Loaded loaded(replaced(std::string(kShow), "{source: dim}]", "{source: dim, blend: multiply}]"));
+    ASSERT_TRUE(loaded.show) << loaded.show.error().message();
+    const auto list = loaded.show->bind(testSite());
+    const OutputState& left = list->cues[1].look.outputs[1];
+    EXPECT_THAT(left.layers, ElementsAre(LayerState{0, 0.5f}, LayerState{1, 1.0f, Blend::Multiply}));
+    EXPECT_THAT(left.pictures, ElementsAre(ComposedPicture{0, 2, 1.0f}));
+    EXPECT_EQ(refusalAfter("{source: dim}]", "{source: dim, blend: multply}]"),
+              "show.yaml:11:67: looks.bright.outputs.left[1].blend: one of add, over, multiply, screen is needed, here is "
+              "'multply' (did you mean 'multiply'?)");
 }
 
 // Example failure: the wind of the one output that has its own is everybody's, or goes by the show's order instead of the site's.

@@ -4,6 +4,7 @@
 
 #include "scratch_folder.h"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 
@@ -12,9 +13,12 @@
 namespace fantascope::show {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::EndsWith;
+using testing::HasSubstr;
 using testing::Pair;
+using testing::StartsWith;
 
 constexpr std::string_view kSite = R"(fantascope: site
 version: 1
@@ -28,18 +32,22 @@ outputs:
     surface: {point: [0, 0, 0], normal: [0, 0, 0.5]}
   - {name: right, display: {driver: glfw}, size: [1920, 1080], refresh_rate: 59.94}
 universes:
-  - {number: 1, port: {driver: simulated}}
+  - {number: 1, port: {driver: simulated}, desk: {device: {driver: sacn}, merge: ltp, own_priority: 90, settling: 2}}
   - {number: 7, port: {driver: artnet, address: 10.0.0.7}}
 fixtures:
   - {name: sculpture, universe: 1, address: 1, channels: [intensity]}
   - {name: fountain, universe: 1, address: 510, channels: [red, green, blue]}
   - {name: lawn, universe: 7, address: 1, channels: [warm, cold]}
-relay_bank:
-  device: {driver: simulated}
-  relays: [{name: road-north, coil: 4, safe: on}, {name: fog, coil: 0, safe: off}]
+relay_banks: [{name: street, device: {driver: simulated}}, {name: stage, device: {driver: modbus_tcp, host: 10.0.0.8}}]
+relays: [{name: road-north, bank: street, coil: 4, safe: on}, {name: fog, bank: stage, coil: 4, safe: off},
+         {name: road-south, bank: street, coil: 0, safe: on}]
 cue_controller:
   device: {driver: simulated}
   buttons: {go: 1, blackout: 3}
+contact_banks: [{name: doors, device: {driver: simulated}}]
+contacts:
+  - {name: gate, input: 4, closes: go}
+  - {name: emergency, input: 0, closes: dark, opens: light}
 camera:
   device: {driver: simulated}
   size: [320, 180]
@@ -67,9 +75,10 @@ TEST(Site, reads_everything_that_the_file_says) {
     const Output& left = site->outputs[0];
     EXPECT_EQ(left.name, "left");
     EXPECT_EQ(left.display.driver, "headless");
-    EXPECT_EQ(left.size, glm::ivec2(640, 360));
+    EXPECT_EQ(left.size(), glm::ivec2(640, 360));
     EXPECT_EQ(left.refreshRate, 30);
-    EXPECT_THAT(left.corners, ElementsAre(glm::dvec2(10, 0), glm::dvec2(640, 20), glm::dvec2(630, 360), glm::dvec2(0, 350)));
+    EXPECT_THAT(left.projection.warp.shape().corners,
+                ElementsAre(glm::dvec2(10, 0), glm::dvec2(640, 20), glm::dvec2(630, 360), glm::dvec2(0, 350)));
     EXPECT_EQ(left.projector->pose.position, glm::dvec3(0, 4, 9));
     EXPECT_EQ(left.projector->throwRatio, 1.4);
     EXPECT_EQ(left.surface->normal, glm::dvec3(0, 0, 1));  // made a unit
@@ -77,13 +86,27 @@ TEST(Site, reads_everything_that_the_file_says) {
     ASSERT_EQ(site->universes.size(), 2u);
     EXPECT_EQ(site->universes[1].number, 7);
     EXPECT_EQ(site->universes[1].port.driver, "artnet");
+    EXPECT_FALSE(site->universes[1].desk);
+    EXPECT_EQ(site->universes[0].desk->device.driver, "sacn");
+    EXPECT_EQ(site->universes[0].desk->merge.rule, DmxMerge::Rule::Latest);
+    EXPECT_EQ(site->universes[0].desk->merge.ownPriority, 90);
+    EXPECT_EQ(site->universes[0].desk->merge.settling, std::chrono::seconds(2));
     EXPECT_THAT(site->fixtures[1].channels, ElementsAre("red", "green", "blue"));
     EXPECT_EQ(site->channelCount(), 6u);
+    EXPECT_EQ(site->relayBanks[1].name, "stage");
+    EXPECT_EQ(site->relayBanks[1].device.driver, "modbus_tcp");
+    EXPECT_EQ(site->relays[0].bank, 0u);
     EXPECT_EQ(site->relays[0].coil, 4);
     EXPECT_TRUE(site->relays[0].safe);
+    EXPECT_EQ(site->relays[1].bank, 1u);
     EXPECT_FALSE(site->relays[1].safe);
-    EXPECT_EQ(site->coilCount(), 5u);
+    EXPECT_EQ(site->coilCount(0), 5u);
     EXPECT_THAT(site->buttons, ElementsAre(Pair(1, Button::Go), Pair(3, Button::Blackout)));
+    EXPECT_EQ(site->contacts[0].bank, 0u) << "there is one";
+    EXPECT_EQ(site->contacts[0].closes, ContactAction::Go);
+    EXPECT_EQ(site->contacts[0].opens, std::nullopt);
+    EXPECT_EQ(site->contacts[1].opens, ContactAction::Light);
+    EXPECT_EQ(site->inputCount(0), 5u);
     EXPECT_NEAR(site->nominalCamera->fieldOfView, std::numbers::pi / 3, 1e-12);
     EXPECT_EQ(site->nominalCamera->k1, -0.05);
     EXPECT_TRUE(site->simulation);
@@ -103,11 +126,10 @@ TEST(Site, hands_the_drivers_keys_on_unread) {
 TEST(Site, without_corners_the_canvas_fills_the_picture) {
     const ScratchFolder folder;
     const auto site = readSite(folder.file("site.yaml", kSite));
-    const Homography projectorFromCanvas = site->outputs[1].projectorFromCanvas(16.0 / 9);
-    EXPECT_LT(glm::distance(projectorFromCanvas({16.0 / 9, 1}), glm::dvec2(1920, 1080)), 1e-9);
-    EXPECT_LT(glm::distance(projectorFromCanvas({8.0 / 9, 0.5}), glm::dvec2(960, 540)), 1e-9);
-    const Homography warped = site->outputs[0].projectorFromCanvas(16.0 / 9);
-    EXPECT_LT(glm::distance(warped({16.0 / 9, 0}), glm::dvec2(640, 20)), 1e-9);
+    const Warp& straight = site->outputs[1].projection.warp;
+    EXPECT_LT(glm::distance(straight.projectorFromCanvas({1, 1}), glm::dvec2(1920, 1080)), 1e-9);
+    EXPECT_LT(glm::distance(straight.projectorFromCanvas({0.5, 0.5}), glm::dvec2(960, 540)), 1e-9);
+    EXPECT_LT(glm::distance(site->outputs[0].projection.warp.projectorFromCanvas({1, 0}), glm::dvec2(640, 20)), 1e-9);
 }
 
 TEST(Site, a_site_of_projectors_alone_is_a_site) {
@@ -124,11 +146,13 @@ TEST(Site, mistakes_are_refused_with_place_and_advice) {
     EXPECT_EQ(refusalAfter("[1920, 1080]", "[1920, 0]"),
               "site.yaml:11:57: outputs[1].size[1]: 0 is out of range, 1 .. 16384 is allowed");
     EXPECT_EQ(refusalAfter("field_of_view: 60", "field_of_view: 1.2 rad"),
-              "site.yaml:28:18: camera.field_of_view: a number in 1 .. 179 degrees is needed, here is '1.2 rad'");
+              "site.yaml:32:18: camera.field_of_view: a number in 1 .. 179 degrees is needed, here is '1.2 rad'");
     EXPECT_EQ(refusalAfter("display: {driver: glfw}", "display: {name: glfw}"),
               "site.yaml:11:28: outputs[1].display: 'driver' is missing: the name of the device's driver");
     EXPECT_EQ(refusalAfter("safe: off", "safe: open"),
-              "site.yaml:21:78: relay_bank.relays[1].safe: one of off, on is needed, here is 'open'");
+              "site.yaml:20:103: relays[1].safe: one of off, on is needed, here is 'open'");
+    EXPECT_EQ(refusalAfter(", closes: go", ""),
+              "site.yaml:27:5: contacts[0]: 'gate' asks for nothing; say what it does when it 'closes' or 'opens'");
     EXPECT_EQ(refusalAfter("look_at: [0, 1, 0], throw", "look_at: [0, 4, 9], throw"),
               "site.yaml:9:16: outputs[0].projector: looks at the point where it stands; move the target or the position");
     EXPECT_EQ(refusal("fantascope: site\nversion: 1\noutputs: []\n"),
@@ -152,11 +176,44 @@ TEST(Site, what_must_differ_is_refused_when_it_is_the_same) {
     EXPECT_EQ(refusalAfter("[warm, cold]", "[warm, warm]"),
               "site.yaml:18:60: fixtures[2].channels[1]: warm is taken by another channel of this fixture; each needs its own");
     EXPECT_EQ(refusalAfter("name: fog", "name: road-north"),
-              "site.yaml:21:58: relay_bank.relays[1].name: road-north is taken by another relay; each needs its own");
+              "site.yaml:20:70: relays[1].name: road-north is taken by another relay; each needs its own");
     EXPECT_EQ(refusalAfter("coil: 0", "coil: 4"),
-              "site.yaml:21:69: relay_bank.relays[1].coil: 4 is taken by another relay; each needs its own");
+              "site.yaml:21:49: relays[2].coil: 4 is taken by another relay of its bank; each needs its own");
     EXPECT_EQ(refusalAfter("blackout: 3", "blackout: 1"),
               "site.yaml:24:30: cue_controller.buttons.blackout: 1 is taken by another button; each needs its own");
+    EXPECT_EQ(refusalAfter("input: 0", "input: 4"),
+              "site.yaml:28:30: contacts[1].input: 4 is taken by another contact of its bank; each needs its own");
+}
+
+// Devices go by their names in messages, tests and fault scripts.
+TEST(Site, no_bank_has_the_name_of_another_device) {
+    for (const char* taken : {"street", "left", "universe 7", "desk 1", "cue controller", "camera"})
+        EXPECT_EQ(
+            refusalAfter("name: doors", std::string("name: ") + taken),
+            fmt::format("site.yaml:25:24: contact_banks[0].name: {} is taken by another device; each needs its own", taken));
+}
+
+TEST(Site, a_bank_is_named_where_there_are_several_and_holds_something) {
+    EXPECT_EQ(refusalAfter("name: fog, bank: stage", "name: fog"), "site.yaml:20:63: relays[1]: 'bank' is missing");
+    EXPECT_EQ(refusalAfter("bank: stage", "bank: stag"),
+              "site.yaml:20:81: relays[1].bank: one of street, stage is needed, here is 'stag' (did you mean 'stage'?)");
+    EXPECT_EQ(refusalAfter("bank: stage", "bank: street"),
+              "site.yaml:20:95: relays[1].coil: 4 is taken by another relay of its bank; each needs its own");
+    EXPECT_EQ(refusalAfter("fog, bank: stage, coil: 4", "fog, bank: street, coil: 1"),
+              "site.yaml:19:60: relay_banks[1]: nothing is in the bank 'stage'; say what under 'relays', or take it away");
+    EXPECT_EQ(refusalAfter("contact_banks: [{name: doors, device: {driver: simulated}}]\n", ""),
+              "site.yaml:26:25: contacts[0].input: there is no bank; add it under 'contact_banks'");
+}
+
+// What files said as long as there could be one of each.
+TEST(Site, the_old_keys_of_a_bank_are_refused_with_what_to_write_now) {
+    EXPECT_EQ(refusalAfter("contact_banks: [{name: doors, device: {driver: simulated}}]\ncontacts:",
+                           "contact_bank:\n  device: {driver: simulated}\n  contacts:"),
+              "site.yaml:26:3: contact_bank: there may be several now; write 'contact_banks: [{name: NAME, device: ...}]', and "
+              "'contacts' beside it instead of in it");
+    EXPECT_EQ(refusalAfter("relay_banks: [", "relay_bank: ["),
+              "site.yaml:19:13: relay_bank: there may be several now; write 'relay_banks: [{name: NAME, device: ...}]', and "
+              "'relays' beside it instead of in it");
 }
 
 TEST(Site, fixtures_stay_in_their_universe_and_off_each_other) {
@@ -175,6 +232,56 @@ TEST(Site, corners_that_make_no_picture_are_refused) {
         "bottom-right, bottom-left");
     EXPECT_EQ(refusalAfter("[[10, 0], [640, 20], [630, 360], [0, 350]]", "[[10, 0], [640, 20], [630, 360]]"),
               "site.yaml:8:14: outputs[0].corners: a list of exactly 4 items is needed, here are 3");
+}
+
+TEST(Site, reads_how_a_projector_throws_its_part_of_a_canvas) {
+    const ScratchFolder folder;
+    writePng(folder.path() / "trees.png", GreyImage(4, 2, 1.0f)).value();
+    folder.file("warm.cube", "LUT_3D_SIZE 2\n" + std::string("0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n"));
+    const std::string text = replaced(std::string(kSite), "refresh_rate: 59.94}",
+                                      R"(refresh_rate: 59.94, canvas: wall, part: [0.4, 0, 1, 0.9], flip: horizontal, turn: 270,
+     mesh: {points: [2, 2], between: straight, offsets: [[0, 0], [1, 2], [0, 0], [3, 4]]},
+     masks: [{polygon: [[0, 0], [9, 0], [0, 9]], hides: outside, feather: 5}, {image: trees.png}],
+     light: {gamma: 2.4, black_level: 0.001, white: [1, 0.9, 0.8], brightness: 0.7, lut: warm.cube, dither: false}})");
+    const auto site = readSite(folder.file("site.yaml", text));
+    ASSERT_TRUE(site) << site.error().message();
+    EXPECT_EQ(site->outputs[0].canvas, "left") << "alone on a canvas of its own";
+    EXPECT_THAT(site->outputsOn("wall"), ElementsAre(1u));
+    const Projection& projection = site->outputs[1].projection;
+    const WarpShape& warp = projection.warp.shape();
+    EXPECT_EQ(warp.part, (CanvasPart{{0.4, 0}, {1, 0.9}}));
+    EXPECT_EQ(warp.orientation, (Orientation{Orientation::Flip::Horizontal, 3}));
+    EXPECT_EQ(warp.mesh, (WarpMesh{WarpMesh::Between::Straight, {2, 2}, {{0, 0}, {1, 2}, {0, 0}, {3, 4}}}));
+    ASSERT_EQ(projection.masks.size(), 2u);
+    EXPECT_TRUE(projection.masks[0].hidesOutside);
+    EXPECT_EQ(projection.masks[0].feather, 5);
+    EXPECT_EQ(projection.masks[1].image->width(), 4);
+    EXPECT_EQ(projection.light.gamma, 2.4);
+    EXPECT_EQ(projection.light.white, glm::dvec3(1, 0.9, 0.8));
+    EXPECT_EQ(projection.light.cube->side, 2);
+    EXPECT_FALSE(projection.light.dither);
+    EXPECT_EQ(site->outputs[0].projection.light.gamma, std::nullopt) << "a monitor";
+}
+
+TEST(Site, what_cannot_be_projected_is_refused_with_place_and_advice) {
+    const auto refusalOf = [](const std::string& keys) {
+        return refusalAfter("refresh_rate: 59.94}", "refresh_rate: 59.94, " + keys + "}");
+    };
+    EXPECT_THAT(refusalOf("corners: [[2000, 0], [2100, 0], [2100, 9], [2000, 9]]"),
+                EndsWith("nothing of the picture would be seen: its corners lie outside of the 1920 x 1080 pixels"));
+    EXPECT_THAT(refusalOf("part: [0.5, 0, 0.5, 1]"),
+                EndsWith("left comes before right and top before bottom: [left, top, right, bottom]"));
+    EXPECT_THAT(refusalOf("turn: 45"), EndsWith("outputs[1].turn: one of 0, 90, 180, 270 is needed, here is '45'"));
+    EXPECT_THAT(refusalOf("mesh: {points: [2, 2], offsets: [[0, 0]]}"),
+                EndsWith("outputs[1]: a mesh of 2 x 2 points has 4 offsets, here are 1"));
+    EXPECT_THAT(refusalOf("mesh: {points: [2, 2], offsets: [[3000, 0], [0, 0], [0, 0], [0, 0]]}"),
+                HasSubstr("folds the picture"));
+    EXPECT_THAT(refusalOf("masks: [{feather: 3}]"), EndsWith("a mask is either a 'polygon' or an 'image'"));
+    EXPECT_THAT(refusalOf("masks: [{image: nowhere.png}]"), HasSubstr("nowhere.png"));
+    EXPECT_THAT(refusalOf("light: {gamma: bright}"), EndsWith("here is 'bright'; or 'srgb'"));
+    EXPECT_THAT(refusalOf("light: {lut: nowhere.cube}"),
+                AllOf(StartsWith("site.yaml:11:"), HasSubstr("nowhere.cube: cannot be read")));
+    EXPECT_THAT(refusalOf("canvas: left"), EndsWith("'left' is the name of an output; give the canvas another"));
 }
 
 TEST(Site, a_surface_faces_its_projector) {

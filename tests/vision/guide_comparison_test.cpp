@@ -28,7 +28,7 @@ NominalView nominalView() {
     view.canvasAspect = kAspect;
     const auto corners =
         rectifyingCorners(view.projector, {{{-1.2, 1.875, 0}, {1.2, 1.875, 0}, {1.2, 0.525, 0}, {-1.2, 0.525, 0}}});
-    view.projectorFromCanvas = Homography::fromCorners(rectangleCorners(kAspect, 1), corners.value()).value();
+    view.warp = Warp::of({.corners = corners.value()}).value();
     return view;
 }
 
@@ -66,7 +66,6 @@ RgbaImage photographed(const GreyImage& picture, const Photograph& how) {
     const NominalView view = nominalView();
     CameraModel projector = view.projector;
     projector.pose.worldFromLocal = projector.pose.worldFromLocal * rotationXyz({0, how.turned * std::numbers::pi / 180, 0});
-    const Homography canvasFromProjector = view.projectorFromCanvas.inverse();
     RgbaImage frame(view.camera.size.x, view.camera.size.y);
     Rng rng(3);
     constexpr int kSide = 3;
@@ -76,7 +75,8 @@ RgbaImage photographed(const GreyImage& picture, const Photograph& how) {
             for (int i = 0; i < kSide * kSide; ++i) {
                 const glm::dvec2 pixel(x + (i % kSide + 0.5) / kSide, y + (i / kSide + 0.5) / kSide);
                 const glm::dvec3 point = view.surface.hitBy(view.camera.rayThrough(pixel)).value();
-                const glm::dvec2 canvas = canvasFromProjector(projector.pixelFromWorld(point).value());
+                const glm::dvec2 canvas =
+                    view.warp.canvasFromProjector(projector.pixelFromWorld(point).value()).value() * glm::dvec2(kAspect, 1);
                 light += how.ambient + how.ambientAcross * (0.5 + point.x / 4);
                 if (canvas.x < 0 || canvas.y < 0 || canvas.x >= kAspect || canvas.y >= 1) continue;
                 const float shown = picture.at(static_cast<int>(canvas.x * 180), static_cast<int>(canvas.y * 180));

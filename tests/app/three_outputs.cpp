@@ -1,0 +1,116 @@
+#include "app/three_outputs.h"
+
+#include "render/scene.h"
+
+#include "core/check.h"
+#include "test_video.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+constexpr const char* kSite = R"(fantascope: site
+version: 1
+outputs:
+  - name: left
+    display: {}
+    size: [320, 180]
+    refresh_rate: 60
+    canvas: wall
+    part: [0, 0, 0.55, 1]
+    corners: [[20, 12], [310, 4], [318, 176], [6, 170]]
+    light: {{gamma: 2.2, black_level: 0.001, white: [1, 0.95, 0.9]}}
+  - name: middle
+    display: {}
+    size: [320, 180]
+    refresh_rate: 60
+    canvas: wall
+    part: [0.45, 0, 1, 1]
+    mesh: {{points: [3, 2], offsets: [[0, 0], [0, -6], [0, 0], [0, 0], [0, 5], [0, 0]]}}
+    masks: [{{polygon: [[150, 150], [170, 150], [160, 180]], feather: 6}}]
+    light: {{gamma: 2.2, lut: table.cube}}
+  - name: right
+    display: {}
+    size: [320, 180]
+    refresh_rate: 60
+    masks: [{{image: mask.png}}]
+    light: {{dither: false}}
+)";
+// The corners of a cube of colours, the primaries a little mixed; red runs fastest.
+constexpr const char* kTable =
+    "LUT_3D_SIZE 2\n0 0 0\n0.9 0.05 0\n0 0.9 0.05\n0.95 0.95 0\n0.05 0 0.9\n0.95 0 0.95\n0 0.95 0.95\n1 1 1\n";
+
+show::Site siteIn(const ScratchFolder& folder, const std::array<std::string, 3>& displays) {
+    folder.file("table.cube", kTable);
+    RgbaImage mask(32, 18, {255, 255, 255, 255});
+    for (int x = 0; x < 4; ++x) mask.at(x, 0) = {0, 0, 0, 255};
+    FANTASCOPE_CHECK(writePng(folder / "mask.png", mask).has_value(), "the temporary folder can be written to");
+    auto site = show::readSite(folder.file("site.yaml", fmt::format(fmt::runtime(kSite), displays[0], displays[1], displays[2])));
+    FANTASCOPE_CHECK(site.has_value(), site.error().message());
+    return std::move(site).value();
+}
+
+std::shared_ptr<render::VideoStream> videoIn(const ScratchFolder& folder) {
+    writeVideo(folder / "rain.mp4", {.size = {128, 72}, .rate = 25}, 50, [](int number) {
+        return RgbaImage(128, 72, {static_cast<std::uint8_t>(number * 5), 60, 120, 255});
+    });
+    auto stream = render::VideoStream::open(folder / "rain.mp4", render::VideoStream::Pace::Live);
+    FANTASCOPE_CHECK(stream.has_value(), stream.error().message());
+    return std::move(stream).value();
+}
+
+}  // namespace
+
+ThreeOutputs::ThreeOutputs(const std::array<std::string, 3>& displays)
+    : site(siteIn(folder, displays)),
+      camera(std::make_shared<render::PictureFeed>(glm::ivec2(64, 36))),
+      seen(64, 36, {200, 150, 100, 255}) {
+    const render::PatternSource pattern = render::moving(render::smallPattern());
+    render::FoliageSource foliage{glm::vec3(1, 0.93f, 0.76f), glm::vec3(0.01f), {}};
+    foliage.layers.push_back({pattern, {}});
+    foliage.layers.push_back({pattern, {0.1, nullptr}});
+    auto picture = std::make_shared<RgbaImage>(64, 36);
+    for (int y = 0; y < picture->height(); ++y)
+        for (int x = 0; x < picture->width(); ++x)
+            picture->at(x, y) = {static_cast<std::uint8_t>(4 * x), static_cast<std::uint8_t>(7 * y), 90,
+                                 static_cast<std::uint8_t>(x < 32 ? 255 : 128)};
+    sources = {pattern,
+               render::SolidSource{{0.2f, 0.05f, 0.3f}},
+               foliage,
+               render::CausticsSource{glm::vec3(0.1f, 0.15f, 0.17f), {16.0 / 3, 3}, 1.2, 0.55, 0.02, 1},
+               render::MirrorBallSource{glm::vec3(3), {16.0 / 3, 3}, {0, 0.5, 2.2}, 0.25, 0.03, {2.6, 1.8, 1}, 0.05, 60},
+               render::ImageSource{picture},
+               render::VideoSource{videoIn(folder)},
+               render::CameraSource{camera}};
+
+    using show::Blend;
+    constexpr Time kFade = std::chrono::milliseconds(40);
+    constexpr std::array kBlends = {Blend::Add, Blend::Over, Blend::Multiply, Blend::Screen};
+    const auto count = static_cast<std::uint32_t>(sources.size());
+    cues.dark.outputs.resize(site.outputs.size());
+    for (std::uint32_t cue = 0; cue < count; ++cue) {
+        show::Look look = cues.dark;
+        for (std::uint32_t output = 0; output < look.outputs.size(); ++output)
+            for (std::uint32_t layer = 0; layer < 3; ++layer)
+                look.outputs[output].layers.push_back(
+                    {(cue + output + layer * 2) % count, 0.8f, layer == 0 ? Blend::Add : kBlends[(cue + layer) % 4]});
+        // A look whose layers do more than add is composed as a picture of its own.
+        for (show::OutputState& state : look.outputs) state.pictures = {{0, 3, 1}};
+        cues.cues.push_back({look, kFade, std::nullopt});
+    }
+    // Shapes over a colour, a picture and both, none of which moves.
+    const std::uint32_t resting = count;
+    sources.push_back(render::resting(render::smallPattern()));
+    show::Look look = cues.dark;
+    look.outputs[0].layers = {{1, 1.0f}, {resting, 0.9f, Blend::Over}};
+    look.outputs[1].layers = {{5, 1.0f}, {resting, 0.7f, Blend::Screen}};
+    look.outputs[2].layers = {{resting, 1.0f}, {5, 1.0f, Blend::Over}};
+    for (show::OutputState& state : look.outputs) state.pictures = {{0, 2, 1}};
+    still = static_cast<int>(cues.cues.size());
+    cues.cues.push_back({look, kFade, std::nullopt});
+}
+
+}  // namespace fantascope::app

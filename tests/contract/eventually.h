@@ -1,0 +1,21 @@
+#pragma once
+
+#include "core/check.h"
+#include "core/clock.h"
+
+#include <chrono>
+
+namespace fantascope::contract {
+
+// Returns once the condition holds. For what real threads and a real kernel have on their way; a test that waits in vain fails, after far
+// longer than a loaded machine takes.
+template <class Condition>
+void eventually(const char* what, Condition condition) {
+    SteadyClock clock;
+    while (!condition()) {
+        FANTASCOPE_CHECK(clock.now() < std::chrono::seconds(30), what);
+        clock.sleepUntil(clock.now() + std::chrono::milliseconds(1));
+    }
+}
+
+}  // namespace fantascope::contract

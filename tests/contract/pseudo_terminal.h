@@ -1,0 +1,64 @@
+#pragma once
+
+#include "drivers/common/file_handle.h"
+
+#include "core/check.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <pty.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace fantascope::contract {
+
+// A line of the kernel with a file at one end, as an adapter gives one, and the far end in our hands. It is unplugged with the object:
+// whoever has the file open is hung up, and the name goes.
+class PseudoTerminal {
+public:
+    PseudoTerminal() {
+        int master = -1, slave = -1;
+        termios raw{};
+        cfmakeraw(&raw);
+        raw.c_cflag |= CS8 | CREAD;
+        FANTASCOPE_CHECK(openpty(&master, &slave, nullptr, &raw, nullptr) == 0, "the kernel has pseudo-terminals");
+        far_ = drivers::FileHandle(master);
+        near_ = drivers::FileHandle(slave);
+        fcntl(master, F_SETFL, O_NONBLOCK);
+        name_ = ttyname(slave);
+    }
+
+    const std::string& name() const { return name_; }
+    int far() const { return far_.get(); }
+    int near() const { return near_.get(); }
+
+    // What has arrived at the far end.
+    std::vector<std::uint8_t> receive() {
+        std::vector<std::uint8_t> all;
+        std::uint8_t bytes[4096];
+        for (ssize_t count = 0; (count = ::read(far_.get(), bytes, sizeof bytes)) > 0;)
+            all.insert(all.end(), bytes, bytes + count);
+        return all;
+    }
+    void send(std::span<const std::uint8_t> bytes) {
+        FANTASCOPE_CHECK(::write(far_.get(), bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()),
+                         "the line has room for what a test sends");
+    }
+    // Whether all that was sent has been read at the near end. The question itself brings what is on its way to that end.
+    bool hasBeenRead() const {
+        pollfd line{near_.get(), POLLIN, 0};
+        return poll(&line, 1, 0) == 0;
+    }
+
+private:
+    drivers::FileHandle far_;
+    drivers::FileHandle near_;  // kept open, so that the far end is not hung up while the program has the file closed
+    std::string name_;
+};
+
+}  // namespace fantascope::contract

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace fantascope::contract {
+
+// What a widget keeps, in its units; as from the factory.
+struct WidgetSettings {
+    std::uint8_t breakTime = 9, markAfterBreak = 1, rate = 40;
+};
+
+// Stands in for an Enttec DMX USB Pro at the far end of a line. It reads the protocol with code of its own, none of the driver's; that it
+// is one in the eyes of others is shown in tests/peers. Thread: thread-safe.
+class Widget {
+public:
+    using Frame = std::array<std::uint8_t, 512>;
+    using Parameters = WidgetSettings;
+
+    // On the open file `line`, which outlives it. `number`: its eight digits, "ffffffff" for none.
+    explicit Widget(int line, std::string number = "01234567", Parameters parameters = {});
+    ~Widget();
+
+    // The DMX line out of it: the frame that it repeats, and how many it was sent.
+    std::optional<Frame> out() const;
+    int framesOut() const;
+    // Whoever speaks to it does not keep to the protocol: what it did wrong first.
+    std::string complaint() const;
+    Parameters parameters() const;
+    int parametersWritten() const;
+    bool wasToldToReceive() const;
+
+    // A frame comes in by its DMX line: these slots behind a start code. It passes on every one until it is given one to send out.
+    void comesIn(std::span<const std::uint8_t> slots, std::uint8_t startCode = 0, std::uint8_t status = 0);
+    // It stops to answer, and reads on; or reads nothing more.
+    void fallSilent() { silent_ = true; }
+    void stopReading() { deaf_ = true; }
+    // As it is when a program has broken off in the middle of a message.
+    void hasHeard(std::vector<std::uint8_t> bytes);
+
+private:
+    void run();
+    bool take();  // the next whole message in heard_; whether there was one
+    void answer(std::uint8_t label, const std::vector<std::uint8_t>& data);
+    void say(std::uint8_t label, const std::vector<std::uint8_t>& data);
+
+    const int line_;
+    const std::string number_;
+    mutable std::mutex mutex_;
+    Parameters parameters_;
+    std::vector<std::uint8_t> heard_;
+    std::optional<Frame> out_;
+    int framesOut_ = 0, written_ = 0;
+    bool input_ = true, everyFrame_ = true, toldToReceive_ = false;
+    std::string complaint_;
+    std::atomic<bool> silent_ = false, deaf_ = false, ending_ = false;
+    std::thread thread_;
+};
+
+}  // namespace fantascope::contract

@@ -1,0 +1,267 @@
+// Frames of every coding against pictures that were coded by this file's own arithmetic, or by other people's encoders.
+
+#include "drivers/camera/frame_decoder.h"
+
+#include "core/random.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+}
+
+namespace fantascope::drivers {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr glm::ivec2 kSize{96, 32};
+constexpr int kBar = 8;  // px wide
+constexpr std::array<Rgba8, 12> kBars{{{255, 255, 255},
+                                       {255, 255, 0},
+                                       {0, 255, 255},
+                                       {0, 255, 0},
+                                       {255, 0, 255},
+                                       {255, 0, 0},
+                                       {0, 0, 255},
+                                       {0, 0, 0},
+                                       {200, 120, 40},
+                                       {30, 60, 90},
+                                       {128, 128, 128},
+                                       {17, 200, 130}}};
+
+Rgba8 barAt(int x) { return kBars[static_cast<std::size_t>(x / kBar)]; }
+
+// Rec. ITU-R BT.601, BT.709 and BT.2020, and JFIF's full range.
+struct Components {
+    std::uint8_t y, cb, cr;
+};
+Components componentsOf(Rgba8 colour, LumaWeights weights, bool fullRange) {
+    const auto [red, blue] = weights == LumaWeights::Rec601   ? std::pair(.299, .114)
+                             : weights == LumaWeights::Rec709 ? std::pair(.2126, .0722)
+                                                              : std::pair(.2627, .0593);
+    const double r = colour.r / 255., g = colour.g / 255., b = colour.b / 255.;
+    const double y = red * r + (1 - red - blue) * g + blue * b, cb = (b - y) / (2 - 2 * blue), cr = (r - y) / (2 - 2 * red);
+    const auto byte = [](double value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0., 255.))); };
+    if (fullRange) return {byte(255 * y), byte(128 + 255 * cb), byte(128 + 255 * cr)};
+    return {byte(16 + 219 * y), byte(128 + 224 * cb), byte(128 + 224 * cr)};
+}
+
+// What stands in the padding is seen if somebody takes it for pixels.
+constexpr std::uint8_t kRubbish = 0xa5;
+
+Bytes coded(const FrameFormat& format) {
+    const auto row = [&](const auto& write) {
+        Bytes bytes;
+        for (int x = 0; x < format.size.x; ++x) write(bytes, x, componentsOf(barAt(x), format.weights, format.fullRange));
+        bytes.resize(static_cast<std::size_t>(format.stride), kRubbish);
+        return bytes;
+    };
+    Bytes luma, colour;
+    switch (format.coding) {
+        case FrameCoding::Yuyv:
+            luma = row([](Bytes& to, int x, Components c) { to.insert(to.end(), {c.y, x % 2 == 0 ? c.cb : c.cr}); });
+            break;
+        case FrameCoding::Uyvy:
+            luma = row([](Bytes& to, int x, Components c) { to.insert(to.end(), {x % 2 == 0 ? c.cb : c.cr, c.y}); });
+            break;
+        case FrameCoding::Nv12:
+            luma = row([](Bytes& to, int, Components c) { to.push_back(c.y); });
+            colour = row([](Bytes& to, int x, Components c) { to.push_back(x % 2 == 0 ? c.cb : c.cr); });
+            break;
+        case FrameCoding::Rgb24:
+            luma = row([](Bytes& to, int x, Components) { to.insert(to.end(), {barAt(x).r, barAt(x).g, barAt(x).b}); });
+            break;
+        case FrameCoding::Grey:
+            luma = row([](Bytes& to, int, Components c) { to.push_back(c.y); });
+            break;
+        case FrameCoding::Mjpg:
+            break;
+    }
+    Bytes frame;
+    for (int y = 0; y < format.size.y; ++y) frame.insert(frame.end(), luma.begin(), luma.end());
+    for (int y = 0; y < format.size.y / 2; ++y) frame.insert(frame.end(), colour.begin(), colour.end());
+    return frame;
+}
+
+// The middle of each bar, where no neighbour's colour reaches; JPEG's blocks and bars are as wide as each other.
+void expectBars(const RgbaImage& picture, int tolerance) {
+    for (int x = kBar / 2; x < kSize.x; x += kBar)
+        for (const int y : {0, kSize.y / 2, kSize.y - 1}) {
+            const Rgba8 seen = picture.at(x, y), wanted = barAt(x);
+            EXPECT_NEAR(seen.r, wanted.r, tolerance) << x << ", " << y;
+            EXPECT_NEAR(seen.g, wanted.g, tolerance) << x << ", " << y;
+            EXPECT_NEAR(seen.b, wanted.b, tolerance) << x << ", " << y;
+            EXPECT_EQ(seen.a, 255);
+        }
+}
+
+class CodedFrames : public testing::TestWithParam<std::tuple<FrameCoding, LumaWeights, bool, int>> {};
+
+FrameFormat formatOf(const CodedFrames::ParamType& kind) {
+    const auto [coding, weights, fullRange, padding] = kind;
+    return {coding, kSize, leastStride(coding, kSize.x) + padding, fullRange, weights};
+}
+
+std::string nameOfKind(const testing::TestParamInfo<CodedFrames::ParamType>& kind) {
+    const auto [coding, weights, fullRange, padding] = kind.param;
+    constexpr const char* kWeights[] = {"601", "709", "2020"};
+    return fmt::format("{}_{}_{}_{}", nameOf(coding), kWeights[static_cast<int>(weights)], fullRange ? "full" : "limited",
+                       padding > 0 ? "padded" : "dense");
+}
+
+TEST_P(CodedFrames, show_their_colours) {
+    const FrameFormat format = formatOf(GetParam());
+    RgbaImage picture(kSize.x, kSize.y);
+    FrameDecoder decoder(format);
+    ASSERT_TRUE(decoder.decode(coded(format), picture));
+    expectBars(picture, 3);
+}
+INSTANTIATE_TEST_SUITE_P(OfEveryKind, CodedFrames,
+                         testing::Combine(testing::Values(FrameCoding::Yuyv, FrameCoding::Uyvy, FrameCoding::Nv12,
+                                                          FrameCoding::Rgb24),
+                                          testing::Values(LumaWeights::Rec601, LumaWeights::Rec709, LumaWeights::Rec2020),
+                                          testing::Bool(), testing::Values(0, 32)),
+                         nameOfKind);
+
+TEST(GreyFrames, show_the_luma_in_either_range) {
+    for (const bool fullRange : {false, true}) {
+        const FrameFormat format{FrameCoding::Grey, kSize, kSize.x + 16, fullRange, LumaWeights::Rec601};
+        RgbaImage picture(kSize.x, kSize.y);
+        ASSERT_TRUE(FrameDecoder(format).decode(coded(format), picture));
+        for (int x = 0; x < kSize.x; ++x) {
+            const Rgba8 seen = picture.at(x, 5);
+            EXPECT_NEAR(seen.r, componentsOf(barAt(x), LumaWeights::Rec601, true).y, 1);
+            EXPECT_EQ(seen, (Rgba8{seen.r, seen.r, seen.r, 255}));
+        }
+    }
+}
+
+// Some drivers leave out the padding of a picture's last row, and all else is worth nothing.
+TEST(CodedFrame, that_is_too_short_is_refused) {
+    for (const FrameCoding coding : {FrameCoding::Yuyv, FrameCoding::Nv12, FrameCoding::Grey, FrameCoding::Rgb24}) {
+        const FrameFormat format{coding, kSize, leastStride(coding, kSize.x) + 32, false, LumaWeights::Rec601};
+        RgbaImage picture(kSize.x, kSize.y);
+        FrameDecoder decoder(format);
+        Bytes frame = coded(format);
+        frame.resize(frame.size() - 32);
+        EXPECT_TRUE(decoder.decode(frame, picture)) << nameOf(coding);
+        frame.pop_back();
+        EXPECT_FALSE(decoder.decode(frame, picture)) << nameOf(coding);
+        EXPECT_FALSE(decoder.decode({}, picture)) << nameOf(coding);
+    }
+}
+
+FrameFormat jpegFormat(glm::ivec2 size) { return {FrameCoding::Mjpg, size, 0, true, LumaWeights::Rec601}; }
+
+// 4:2:2 as most USB cameras code, by libav's encoder from this file's own components.
+Bytes jpegByLibav() {
+    const AVCodec* const codec = avcodec_find_encoder(AV_CODEC_ID_MJPEG);
+    AVCodecContext* context = avcodec_alloc_context3(codec);
+    context->width = kSize.x;
+    context->height = kSize.y;
+    context->pix_fmt = AV_PIX_FMT_YUVJ422P;
+    context->time_base = {1, 25};
+    context->flags |= AV_CODEC_FLAG_QSCALE;
+    context->global_quality = FF_QP2LAMBDA;
+    EXPECT_EQ(avcodec_open2(context, codec, nullptr), 0);
+    AVFrame* frame = av_frame_alloc();
+    frame->width = kSize.x;
+    frame->height = kSize.y;
+    frame->format = AV_PIX_FMT_YUVJ422P;
+    frame->quality = FF_QP2LAMBDA;
+    EXPECT_EQ(av_frame_get_buffer(frame, 0), 0);
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x) {
+            const Components components = componentsOf(barAt(x), LumaWeights::Rec601, true);
+            frame->data[0][y * frame->linesize[0] + x] = components.y;
+            frame->data[1][y * frame->linesize[1] + x / 2] = components.cb;
+            frame->data[2][y * frame->linesize[2] + x / 2] = components.cr;
+        }
+    AVPacket* packet = av_packet_alloc();
+    EXPECT_EQ(avcodec_send_frame(context, frame), 0);
+    EXPECT_EQ(avcodec_receive_packet(context, packet), 0);
+    Bytes bytes(packet->data, packet->data + packet->size);
+    av_packet_free(&packet);
+    av_frame_free(&frame);
+    avcodec_free_context(&context);
+    return bytes;
+}
+
+// By libjpeg's encoder. BGR or grey.
+Bytes jpegByLibjpeg(const cv::Mat& pixels) {
+    Bytes bytes;
+    cv::imencode(".jpg", pixels, bytes, {cv::IMWRITE_JPEG_QUALITY, 98});
+    return bytes;
+}
+
+TEST(JpegFrame, shows_its_colours) {
+    RgbaImage picture(kSize.x, kSize.y);
+    FrameDecoder decoder(jpegFormat(kSize));
+    ASSERT_TRUE(decoder.decode(jpegByLibav(), picture));
+    expectBars(picture, 8);
+
+    // libjpeg's colours are at half the size both ways: bars of twice the width, then.
+    constexpr int kTwice = 2;
+    cv::Mat bars(kSize.y * kTwice, kSize.x * kTwice, CV_8UC3);
+    for (int y = 0; y < bars.rows; ++y)
+        for (int x = 0; x < bars.cols; ++x) {
+            const Rgba8 colour = barAt(x / kTwice);
+            bars.at<cv::Vec3b>(y, x) = {colour.b, colour.g, colour.r};
+        }
+    RgbaImage large(bars.cols, bars.rows);
+    ASSERT_TRUE(FrameDecoder(jpegFormat({bars.cols, bars.rows})).decode(jpegByLibjpeg(bars), large));
+    expectBars(resized(large, kSize.x, kSize.y), 8);
+}
+
+TEST(JpegFrame, without_colours_is_grey) {
+    RgbaImage picture(kSize.x, kSize.y);
+    ASSERT_TRUE(
+        FrameDecoder(jpegFormat(kSize)).decode(jpegByLibjpeg(cv::Mat(kSize.y, kSize.x, CV_8UC1, cv::Scalar(77))), picture));
+    EXPECT_EQ(picture.at(40, 20), (Rgba8{77, 77, 77, 255}));
+}
+
+// A cable that is too long loses packets, and what is decoded all the same is a torn picture. JPEG has no checksum: where a packet is lost in
+// the middle, what follows may happen to make sense.
+TEST(JpegFrame, that_lost_a_part_is_refused_and_the_next_one_is_not) {
+    cv::Mat noise(240, 320, CV_8UC3);
+    Rng rng(1);
+    for (int i = 0; i < noise.rows * noise.cols * 3; ++i) noise.data[i] = static_cast<std::uint8_t>(rng.below(256));
+    const Bytes whole = jpegByLibjpeg(noise);
+    RgbaImage picture(noise.cols, noise.rows);
+    FrameDecoder decoder(jpegFormat({noise.cols, noise.rows}));
+    constexpr std::size_t kPacket = 512;
+    int losses = 0, found = 0;
+    for (std::size_t lost = 1000; lost + 2 * kPacket < whole.size(); lost += whole.size() / 40) {
+        Bytes torn = whole;
+        torn.erase(torn.begin() + static_cast<std::ptrdiff_t>(lost), torn.begin() + static_cast<std::ptrdiff_t>(lost + kPacket));
+        ++losses;
+        found += decoder.decode(torn, picture) ? 0 : 1;
+        torn = whole;
+        torn.resize(lost);
+        EXPECT_FALSE(decoder.decode(torn, picture)) << "cut at " << lost;
+    }
+    EXPECT_GT(found, losses * 3 / 4) << "of " << losses;
+    EXPECT_TRUE(decoder.decode(whole, picture)) << "what was damaged leaves nothing behind";
+}
+
+TEST(JpegFrame, that_is_none_or_of_another_size_is_refused) {
+    RgbaImage picture(kSize.x, kSize.y);
+    FrameDecoder decoder(jpegFormat(kSize));
+    EXPECT_FALSE(decoder.decode({}, picture));
+    EXPECT_FALSE(decoder.decode(Bytes(5000, 0), picture));
+    EXPECT_FALSE(decoder.decode(jpegByLibjpeg(cv::Mat(kSize.y, kSize.x + 16, CV_8UC1, cv::Scalar(77))), picture));
+    EXPECT_TRUE(decoder.decode(jpegByLibav(), picture));
+}
+
+}  // namespace
+}  // namespace fantascope::drivers

@@ -1,0 +1,348 @@
+#include "render/picture_source.h"
+#include "render/video_stream.h"
+
+#include "allocations.h"
+#include "core/file.h"
+#include "scratch_folder.h"
+#include "test_video.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <thread>
+
+namespace fantascope::render {
+namespace {
+
+using testing::HasSubstr;
+using Pace = VideoStream::Pace;
+
+template <class T>
+T valueOf(Result<T> result) {
+    FANTASCOPE_CHECK(result.has_value(), result.error().message());
+    return std::move(result).value();
+}
+
+// What a reader shows, by the numbers on the frames; -1 before the first.
+class Seen {
+public:
+    explicit Seen(std::shared_ptr<VideoStream> stream) : reader_(std::move(stream)) {}
+    int at(Time position) {
+        reader_.at(position, [&](const RgbaImage& picture) { number_ = numberOn(picture); });
+        return number_;
+    }
+
+private:
+    VideoStream::Reader reader_;
+    int number_ = -1;
+};
+
+class Videos : public testing::Test {
+protected:
+    // A video whose frames carry their numbers, from 1 so that none is all dark.
+    std::filesystem::path make(const std::string& name, const VideoCoding& coding, int frames) const {
+        writeVideo(folder_ / name, coding, frames, [&](int i) { return numbered(coding.size, i + 1); });
+        return folder_ / name;
+    }
+    std::shared_ptr<VideoStream> open(const std::filesystem::path& file, Pace pace = Pace::Exact) const {
+        return valueOf(VideoStream::open(file, pace));
+    }
+    std::string refusal(const std::filesystem::path& file) const {
+        const auto stream = VideoStream::open(file, Pace::Exact);
+        return stream ? "accepted" : folder_.relative(stream.error().message());
+    }
+    const ScratchFolder folder_;
+};
+
+struct Rate {
+    int rate, divisor;
+};
+constexpr Rate kRates[] = {{24, 1}, {25, 1}, {30000, 1001}, {30, 1}, {24000, 1001}};
+
+// At every frame's first and last nanosecond, in files that keep exact times and in those that keep milliseconds.
+// Example failures: the frame after; frames in the order of decoding; one lost with the decoder's delay at the end.
+TEST_F(Videos, show_exactly_the_frame_of_the_moment) {
+    for (const auto& [rate, divisor] : kRates)
+        for (const int bFrames : {0, 3})
+            for (const char* ending : {"mp4", "mkv"}) {
+                SCOPED_TRACE(fmt::format("{}/{} Hz, {} B-frames, {}", rate, divisor, bFrames, ending));
+                const auto stream = open(make(std::string("a.") + ending,
+                                              {.rate = rate, .rateDivisor = divisor, .bFrames = bFrames, .keyEvery = 12}, 40));
+                const auto& frames = stream->content().frames;
+                ASSERT_EQ(frames.size(), 40u);
+                const double period = static_cast<double>(divisor) / rate,
+                             unit = *ending == 'm' && ending[1] == 'k' ? 0.5e-3 : 1e-9;
+                EXPECT_NEAR(seconds(stream->content().length), 40 * period, 2 * unit);
+                Seen seen(stream);
+                for (int i = 0; i < 40; ++i) {
+                    const auto number = static_cast<std::size_t>(i);
+                    ASSERT_NEAR(seconds(frames[number].begins), i * period, 1.01 * unit);
+                    ASSERT_EQ(seen.at(frames[number].begins), i + 1);
+                    const Time end = i == 39 ? stream->content().length : frames[number + 1].begins;
+                    ASSERT_EQ(seen.at(end - Time(1)), i + 1);
+                }
+                EXPECT_EQ(stream->lateFrames(), 0);
+            }
+}
+
+TEST_F(Videos, show_each_frame_for_as_long_as_the_file_says) {
+    const std::vector<std::int64_t> begins = {0, 1, 2, 7, 8, 20, 21, 22, 23, 40};
+    const VideoCoding coding{.rate = 50, .bFrames = 2};
+    for (const char* name : {"a.mp4", "a.mkv", "a.mov"}) {
+        SCOPED_TRACE(name);
+        writeVideo(folder_ / name, coding, begins, [&](int i) { return numbered(coding.size, i + 1); });
+        const auto stream = open(folder_ / name);
+        Seen seen(stream);
+        EXPECT_EQ(stream->content().length, std::chrono::milliseconds(41 * 20));
+        for (int tick = 0; tick <= 40; ++tick) {
+            const auto after = std::ranges::upper_bound(begins, tick);
+            ASSERT_EQ(seen.at(std::chrono::milliseconds(20 * tick)), static_cast<int>(after - begins.begin())) << tick;
+        }
+    }
+}
+
+// The coder may have put its keyframes where it liked; whichever frame is asked for comes.
+// Example failure: a frame that is shown before the keyframe that it was coded after, with open groups of pictures.
+TEST_F(Videos, come_to_the_right_frame_from_any_other) {
+    for (const char* name : {"a.mp4", "a.mkv", "a.ts", "a.mov"})
+        for (const bool openGroups : {false, true}) {
+            SCOPED_TRACE(fmt::format("{} {}", name, openGroups));
+            const auto stream = open(make(name, {.bFrames = 3, .keyEvery = 10, .openGroups = openGroups}, 73));
+            Seen seen(stream);
+            const auto& frames = stream->content().frames;
+            ASSERT_EQ(frames.size(), 73u);
+            std::size_t at = 0;
+            for (int jump = 0; jump < 100; ++jump) {
+                at = (at * 31 + 17) % frames.size();
+                ASSERT_EQ(seen.at(frames[at].begins), static_cast<int>(at) + 1);
+            }
+        }
+}
+
+TEST_F(Videos, of_other_coders_are_right_too) {
+    for (const auto& [name, encoder, pixels] : {std::array{"a.mov", "prores_ks", "yuv444p10le"},
+                                                {"a.mkv", "ffv1", "yuv420p"},
+                                                {"a.webm", "libvpx-vp9", "yuv420p"},
+
+                                                {"a.avi", "mjpeg", "yuvj420p"},
+                                                {"a.mpg", "mpeg2video", "yuv420p"}}) {
+        SCOPED_TRACE(encoder);
+        const auto stream = open(make(name, {.encoder = encoder, .pixels = pixels}, 30));
+        Seen seen(stream);
+        ASSERT_EQ(stream->content().frames.size(), 30u);
+        for (const std::size_t i : {0u, 1u, 29u, 3u, 28u, 12u, 13u, 11u})
+            ASSERT_EQ(seen.at(stream->content().frames[i].begins), static_cast<int>(i) + 1);
+    }
+}
+
+// What a moment asks for never comes too late where the show waits, over many rounds: none twice, none missing, in either way of asking.
+TEST_F(Videos, loop_without_a_gap) {
+    const auto stream = open(make("a.mp4", {.rate = 30, .bFrames = 3, .keyEvery = 250}, 47));
+    const VideoSource source{stream};
+    Seen seen(stream);
+    for (std::int64_t refresh = 0; refresh < 47 * 5; ++refresh)
+        ASSERT_EQ(seen.at(positionAt(source, tickTime(refresh, 30))), refresh % 47 + 1) << refresh;
+    // At another rate than the video's, what follows is the same frame or the next.
+    int before = seen.at(Time{});
+    for (std::int64_t refresh = 1; refresh < 400; ++refresh) {
+        const int now = seen.at(positionAt(source, tickTime(refresh, 50)));
+        ASSERT_TRUE(now == before || now == before % 47 + 1) << before << " " << now;
+        before = now;
+    }
+}
+
+// Waits until the decoding thread has got to a frame, and counts what is seen on the way.
+std::set<int> until(Seen& seen, Time position, int wanted) {
+    std::set<int> numbers;
+    for (int number = seen.at(position); number != wanted; number = seen.at(position)) {
+        numbers.insert(number);
+        std::this_thread::yield();
+    }
+    return numbers;
+}
+
+// A live show never waits: what is late stays away, and the last good frame stays.
+TEST_F(Videos, keep_the_last_frame_until_a_late_one_comes) {
+    const auto stream = open(make("a.mp4", {.bFrames = 3, .keyEvery = 250}, 200), Pace::Live);
+    const auto begins = [&](std::size_t i) { return stream->content().frames[i].begins; };
+    Seen seen(stream);
+    EXPECT_EQ(seen.at(begins(0)), 1) << "the first frame is there before the show";
+    until(seen, begins(3), 4);
+    for (const int number : until(seen, begins(150), 151)) EXPECT_TRUE(number >= 4 && number <= 10) << number;
+    EXPECT_GE(stream->lateFrames(), 1);
+    const std::int64_t late = stream->lateFrames();
+    EXPECT_EQ(seen.at(begins(0)), 1) << "a video begins again at once";
+    EXPECT_EQ(seen.at(begins(2)), 3);
+    EXPECT_EQ(stream->lateFrames(), late);
+    until(seen, begins(151), 152);
+}
+
+// The same video that began at different times on two outputs: neither disturbs the other.
+TEST_F(Videos, serve_outputs_that_are_at_different_moments) {
+    const auto stream = open(make("a.mp4", {.bFrames = 3, .keyEvery = 250}, 300));
+    Seen left(stream), right(stream), same(stream);
+    for (std::size_t i = 0; i < 600; ++i) {
+        const auto position = [&](std::size_t frame) { return stream->content().frames[frame % 300].begins; };
+        ASSERT_EQ(left.at(position(i)), static_cast<int>(i % 300) + 1);
+        ASSERT_EQ(same.at(position(i)), static_cast<int>(i % 300) + 1);
+        ASSERT_EQ(right.at(position(i + 140)), static_cast<int>((i + 140) % 300) + 1);
+    }
+}
+
+TEST_F(Videos, are_read_without_allocating) {
+    for (const Pace pace : {Pace::Exact, Pace::Live}) {
+        const auto stream = open(make("a.mp4", {.bFrames = 3}, 60), pace);
+        VideoStream::Reader reader(stream);
+        int shown = 0;
+        const std::int64_t before = allocationsSoFar();
+        for (std::int64_t refresh = 0; refresh < 200; ++refresh)
+            reader.at(tickTime(refresh, 25) % stream->content().length, [&](const RgbaImage&) { ++shown; });
+        EXPECT_EQ(allocationsSoFar() - before, 0);
+        EXPECT_GE(shown, 1);
+    }
+}
+
+// Colours by the matrix and the range that the file states, or the one that its height stands for.
+TEST_F(Videos, keep_their_colours) {
+    const Rgba8 colours[] = {{200, 60, 20, 255}, {20, 200, 60, 255}, {40, 20, 220, 255}, {0, 0, 0, 255}, {255, 255, 255, 255}};
+    struct Case {
+        const char *name, *encoder, *pixels, *matrix, *range;
+        glm::ivec2 size;
+        int tolerance;
+    };
+    for (const Case& one : {Case{"a.mp4", "libx264", "yuv420p", "bt709", "tv", {64, 48}, 4},
+                            {"b.mp4", "libx264", "yuv420p", "smpte170m", "tv", {64, 48}, 4},
+                            {"c.mp4", "libx264", "yuv444p", "bt709", "pc", {64, 48}, 4},
+                            {"d.mp4", "libx264", "yuv420p", "unknown", "tv", {64, 720}, 4},
+                            {"e.mkv", "ffv1", "bgr0", "gbr", "pc", {64, 48}, 0},
+                            {"f.mkv", "ffv1", "rgba64le", "gbr", "pc", {64, 48}, 1},
+                            {"g.mov", "prores_ks", "yuv444p10le", "bt709", "tv", {64, 48}, 2}}) {
+        SCOPED_TRACE(one.name);
+        writeVideo(folder_ / one.name,
+                   {.encoder = one.encoder, .pixels = one.pixels, .size = one.size, .matrix = one.matrix, .range = one.range}, 5,
+                   [&](int i) { return RgbaImage(one.size.x, one.size.y, colours[i]); });
+        const auto stream = open(folder_ / one.name);
+        VideoStream::Reader reader(stream);
+        for (std::size_t i = 0; i < 5; ++i) {
+            Rgba8 seen;
+            reader.at(stream->content().frames[i].begins, [&](const RgbaImage& picture) { seen = picture.at(30, 20); });
+            EXPECT_NEAR(seen.r, colours[i].r, one.tolerance) << i;
+            EXPECT_NEAR(seen.g, colours[i].g, one.tolerance) << i;
+            EXPECT_NEAR(seen.b, colours[i].b, one.tolerance) << i;
+            EXPECT_EQ(seen.a, 255);
+        }
+    }
+}
+
+// Straight alpha in the file; half of it is half of the light.
+TEST_F(Videos, keep_their_alpha) {
+    for (const auto& [name, encoder, pixels] : {std::array{"a.mov", "prores_ks", "yuva444p10le"}, {"a.mkv", "ffv1", "bgra"}}) {
+        SCOPED_TRACE(name);
+        writeVideo(folder_ / name, {.encoder = encoder, .pixels = pixels}, 1, [&](int) {
+            RgbaImage picture(64, 64, {255, 255, 255, 128});
+            for (int y = 0; y < 64; ++y)
+                for (int x = 32; x < 64; ++x) picture.at(x, y).a = 0;
+            return picture;
+        });
+        VideoStream::Reader reader(open(folder_ / name));
+        reader.at(Time{}, [&](const RgbaImage& picture) {
+            EXPECT_NEAR(picture.at(10, 10).a, 128, 1);
+            EXPECT_NEAR(picture.at(10, 10).r, 188, 2);
+            EXPECT_NEAR(picture.at(50, 10).a, 0, 1);
+            EXPECT_NEAR(picture.at(50, 10).r, 0, 3);
+        });
+    }
+}
+
+TEST_F(Videos, that_are_broken_are_refused_with_advice) {
+    EXPECT_THAT(refusal(folder_ / "absent.mp4"), HasSubstr("absent.mp4: not a video that can be read"));
+    EXPECT_THAT(refusal(folder_.file("text.mp4", "no video at all, only words\n")),
+                HasSubstr("text.mp4: not a video that can be read, or a truncated one"));
+    EXPECT_THAT(refusal(folder_.file("empty.mp4", "")), HasSubstr("empty.mp4: "));
+    // Sound alone: a second of silence.
+    std::string wave("RIFF\x24\x3e\0\0WAVEfmt \x10\0\0\0\1\0\1\0\x40\x1f\0\0\x80\x3e\0\0\2\0\x10\0data\x80\x3e\0\0", 44);
+    wave.resize(44 + 16000);
+    EXPECT_THAT(refusal(folder_.file("sound.wav", wave)), HasSubstr("sound.wav: there is no video in it; "));
+
+    // 5 s, cut in the middle: with its table of contents before, as streams have it, after, and without one.
+    const auto cut = [&](const std::filesystem::path& file) {
+        const std::string bytes = readFile(file).value();
+        return folder_.file("cut-" + file.filename().string(), std::string_view(bytes).substr(0, bytes.size() / 2));
+    };
+    EXPECT_THAT(refusal(cut(make("a.mp4", {}, 125))), HasSubstr("cut-a.mp4: not a video that can be read, or a truncated one"));
+    EXPECT_THAT(refusal(cut(make("a.mkv", {}, 125))), HasSubstr("cut-a.mkv: truncated: it ends after "));
+    writeVideo(folder_ / "large.mov", {.encoder = "qtrle", .pixels = "gray", .size = {8200, 4400}}, 1,
+               [](int) { return RgbaImage(); });
+    EXPECT_THAT(refusal(folder_ / "large.mov"), HasSubstr("large.mov: 8200 x 4400 pixels are too many; at most 8192 x 4320"));
+}
+
+// Overwrites the coded frames of a video between two shares of the file.
+std::filesystem::path damaged(const ScratchFolder& folder, const std::filesystem::path& file, double from, double to) {
+    std::string bytes = readFile(file).value();
+    const auto at = [&](double share) { return static_cast<std::size_t>(share * static_cast<double>(bytes.size())); };
+    for (std::size_t i = at(from); i < at(to); ++i) bytes[i] = static_cast<char>(i * 37 % 251);
+    return folder.file("damaged-" + file.filename().string(), bytes);
+}
+
+// Noise is large when coded, so that the damage is within frames.
+RgbaImage noisy(glm::ivec2 size, int number) {
+    RgbaImage picture = numbered(size, number);
+    unsigned state = static_cast<unsigned>(number) * 2654435761u + 1;
+    for (Rgba8& pixel : picture.pixels()) {
+        state = state * 1664525u + 1013904223u;
+        const auto off = static_cast<std::uint8_t>(state >> 28);
+        pixel = {static_cast<std::uint8_t>(pixel.r + off), static_cast<std::uint8_t>(pixel.g + off),
+                 static_cast<std::uint8_t>(pixel.b + off), 255};
+    }
+    return picture;
+}
+
+// Example failures: the show waits for ever for a frame that never comes; grey blocks on the wall; the rest is lost too.
+TEST_F(Videos, leave_out_what_is_damaged_and_go_on) {
+    for (const auto& [name, encoder, pixels] : {std::array{"a.mp4", "libx264", "yuv420p"}, {"a.mov", "png", "rgb24"}}) {
+        SCOPED_TRACE(name);
+        writeVideo(folder_ / name, {.encoder = encoder, .pixels = pixels, .size = {128, 128}, .keyEvery = 1}, 100, [](int i) {
+            return noisy({128, 128}, i + 1);
+        });
+        const auto stream = open(damaged(folder_, folder_ / name, 0.42, 0.48));
+        const auto& frames = stream->content().frames;
+        Seen seen(stream);
+        int good = 0, before = 0, last = 0;
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            const int number = seen.at(frames[i].begins), own = static_cast<int>(i) + 1;
+            ASSERT_TRUE(number == own || number == before) << own << " shows " << number;
+            good += number == own;
+            before = number;
+            last = own;
+        }
+        EXPECT_EQ(before, last) << "the end is whole again";
+        EXPECT_GE(good, static_cast<int>(frames.size()) - 12);
+        EXPECT_LT(good, 100);
+        EXPECT_EQ(seen.at(Time{}), 1) << "and it comes round";
+    }
+}
+
+// Somebody copies a new version over the file, or the disk goes: what was there stays on the wall, and whole again it goes on.
+// Example failure: the show waits for ever.
+TEST_F(Videos, whose_file_goes_away_stay_as_they_were) {
+    const auto file = folder_ / "a.mov";
+    writeVideo(file, {.encoder = "png", .pixels = "rgb24", .size = {128, 128}, .keyEvery = 1}, 100, [](int i) {
+        return noisy({128, 128}, i + 1);
+    });
+    const std::string bytes = readFile(file).value();
+    const auto stream = open(file);
+    const auto begins = [&](std::size_t i) { return stream->content().frames[i].begins; };
+    Seen seen(stream);
+    ASSERT_EQ(seen.at(begins(40)), 41);
+    std::filesystem::resize_file(file, 100);
+    EXPECT_EQ(seen.at(begins(80)), 41);
+    EXPECT_EQ(seen.at(begins(20)), 41);
+    std::ofstream(file, std::ios::binary) << bytes;
+    EXPECT_EQ(seen.at(begins(60)), 61);
+}
+
+}  // namespace
+}  // namespace fantascope::render
