@@ -7,14 +7,15 @@
 
 #include "core/check.h"
 #include "core/random.h"
+#include "crystals.h"
 
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <functional>
 #include <memory>
-#include <numbers>
 #include <vector>
 
 namespace fantascope::render {
@@ -23,94 +24,49 @@ namespace {
 constexpr glm::ivec2 kSize{640, 360};
 constexpr int kSamples = 4;
 
-// A closed crystal of 2 * segments * (rings - 1) facets.
-TriangleMesh crystal(std::uint32_t segments, std::uint32_t rings) {
-    TriangleMesh mesh;
-    mesh.vertices.push_back({0, 1, 0});
-    for (std::uint32_t ring = 1; ring < rings; ++ring)
-        for (std::uint32_t segment = 0; segment < segments; ++segment) {
-            const double polar = std::numbers::pi * ring / rings, around = 2 * std::numbers::pi * segment / segments;
-            mesh.vertices.push_back({std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around)});
-        }
-    mesh.vertices.push_back({0, -1, 0});
-    const auto bottom = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
-    for (std::uint32_t segment = 0; segment < segments; ++segment) {
-        const std::uint32_t next = (segment + 1) % segments;
-        mesh.triangles.push_back({0, 1 + next, 1 + segment});
-        for (std::uint32_t ring = 0; ring + 2 < rings; ++ring) {
-            const std::uint32_t upper = 1 + ring * segments, lower = upper + segments;
-            mesh.triangles.push_back({upper + segment, upper + next, lower + segment});
-            mesh.triangles.push_back({upper + next, lower + next, lower + segment});
-        }
-        mesh.triangles.push_back({bottom, bottom - segments + segment, bottom - segments + next});
-    }
-    return mesh;
-}
-
-struct Crystals {
-    int count;
-    std::uint32_t segments = 6, rings = 6;  // of 60 facets
-    double largest = 0.06;                  // canvas heights
-};
 constexpr Crystals kDefaultShow{110}, kHeavyShow{330}, kThreeThousand{3000, 10, 11, 0.03};
 
-PatternSource swayingCrystals(const Crystals& crystals) {
-    pattern::ShapePattern pattern;
-    pattern.width = kSize.x;
-    pattern.height = kSize.y;
-    pattern.shapes.push_back({"crystal", crystal(crystals.segments, crystals.rings)});
-    Rng rng(1);
-    for (std::uint32_t id = 0; id < static_cast<std::uint32_t>(crystals.count); ++id) {
-        pattern::ShapeInstance instance;
-        instance.id = id;
-        instance.centre = {rng.uniform(0, pattern.aspect()), rng.uniform()};
-        instance.size = rng.uniform(crystals.largest / 3, crystals.largest);
-        instance.rotation = {rng.uniform(0, 3), rng.uniform(0, 3), rng.uniform(0, 3)};
-        pattern.instances.push_back(instance);
-    }
-    const auto shared = std::make_shared<const pattern::ShapePattern>(std::move(pattern));
-    return {shared, std::make_shared<const pattern::PatternMotion>(*shared)};
-}
+// A projector that neither dithers nor colours.
+const ProjectorLight kPlain = [] {
+    ProjectorLight light;
+    light.dither = false;
+    return light;
+}();
 
 struct Output {
     std::unique_ptr<DisplaySink> sink;
     std::unique_ptr<OutputRenderer> renderer;
 };
 
-// Ends on a refusal: a bench has nobody to tell.
-template <class T>
-T valueOf(Result<T> result) {
-    FANTASCOPE_CHECK(result.has_value(), result.error().message());
-    return std::move(result).value();
-}
-
 // One frame on `outputs` displays: drawn one after the other, presented together.
-void drawFrame(benchmark::State& state, int outputs, int layers, const std::vector<PictureSource>& sources,
-               glm::ivec2 size = kSize) {
+void drawFrame(
+    benchmark::State& state, int outputs, int layers, const std::vector<PictureSource>& sources, glm::ivec2 size = kSize,
+    const std::function<void()>& before = [] {}, const ProjectorLight& light = kPlain) {
     ManualClock clock;
     std::vector<Output> all;
     for (int i = 0; i < outputs; ++i) {
         Output output;
-        const ConfigNode options = valueOf(ConfigNode::parse("driver: headless", "bench"));
-        output.sink = valueOf(drivers::HeadlessDisplay::open(options, {"output", size, 30}, {clock}));
+        const ConfigNode driver = valueOf(ConfigNode::parse("driver: headless", "bench"));
+        output.sink = valueOf(drivers::HeadlessDisplay::open(driver, {"output", size, 30}, {clock}));
         FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "a new display is there");
-        OutputRenderer::Options keystone;
-        keystone.size = size;
-        keystone.corners = {{{40, 20}, {610, 5}, {630, 350}, {10, 340}}};
-        for (glm::dvec2& corner : keystone.corners) corner *= glm::dvec2(size) / glm::dvec2(kSize);
-        keystone.samples = kSamples;
-        keystone.shaders = FANTASCOPE_SOURCE_DIR "/assets/shaders";
-        output.renderer = valueOf(OutputRenderer::create(keystone, sources));
+        const WarpShape keystone{.corners = {{{40, 20}, {610, 5}, {630, 350}, {10, 340}}}};
+        OutputRenderer::Options options;
+        options.projection = {size, Warp::of(keystone.scaled(glm::dvec2(size) / glm::dvec2(kSize))).value(), {}, light};
+        options.samples = kSamples;
+        options.shaders = FANTASCOPE_SOURCE_DIR "/assets/shaders";
+        output.renderer = valueOf(OutputRenderer::create(options, sources));
         all.push_back(std::move(output));
     }
     show::OutputState look;
     for (int layer = 0; layer < layers; ++layer) look.layers.push_back({static_cast<std::uint32_t>(layer), 0.5f});
     const auto frame = [&] {
         clock.advance(tickTime(1, 30));
+        before();
         for (Output& output : all) {
             FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "nobody unplugs it");
             output.renderer->draw(look, {}, clock.now(), output.sink->framebuffer());
         }
+        for (Output& output : all) FANTASCOPE_CHECK(output.sink->finish().has_value(), "nobody unplugs it");
         for (Output& output : all) FANTASCOPE_CHECK(output.sink->presentWith(clock.now()).has_value(), "nobody unplugs it");
     };
     frame();  // OpenGL compiles its shaders at the first use
@@ -140,6 +96,39 @@ void drawMirrorBall(benchmark::State& state) {
     drawFrame(state, 1, 1, {MirrorBallSource{glm::vec3(1), {16.0 / 3, 3}, {0, 0.4, 2.4}, 0.25, 0.02, {3.6, 1.6, 1.2}, 0.04, 40}});
 }
 
+// A picture of so many rows that stands still; one that is another every frame, as a video's or a camera's.
+RgbaImage noise(int rows) {
+    RgbaImage picture(rows * 16 / 9, rows);
+    Rng rng(5);
+    for (Rgba8& pixel : picture.pixels()) pixel = {static_cast<std::uint8_t>(rng.uniform(0, 255)), 100, 200, 255};
+    return picture;
+}
+void drawImage(benchmark::State& state) {
+    const int rows = static_cast<int>(state.range(0));
+    drawFrame(state, 1, 1, {ImageSource{std::make_shared<const RgbaImage>(noise(rows))}});
+}
+void drawChangingPicture(benchmark::State& state) {
+    const auto picture = std::make_shared<const RgbaImage>(noise(static_cast<int>(state.range(0))));
+    const auto feed = std::make_shared<PictureFeed>(glm::ivec2(picture->width(), picture->height()));
+    drawFrame(state, 1, 1, {CameraSource{feed}}, kSize, [&] { feed->publish(picture); });
+}
+
+// One frame of a video that the caller names by FANTASCOPE_VIDEO, decoded and converted.
+void decodeVideo(benchmark::State& state) {
+    const char* const file = std::getenv("FANTASCOPE_VIDEO");
+    if (file == nullptr) return state.SkipWithError("name a video in FANTASCOPE_VIDEO");
+    const auto content = valueOf(VideoDecoder::examine(file));
+    const auto decoder = valueOf(VideoDecoder::open(content));
+    RgbaImage picture(content->size.x, content->size.y);
+    for (auto _ : state) {
+        if (!decoder->next()) {
+            decoder->seek(0);
+            decoder->next();
+        }
+        if (state.range(0) != 0) decoder->picture(picture);
+    }
+}
+
 void settings(benchmark::internal::Benchmark* bench) {
     bench->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 }
@@ -153,6 +142,9 @@ BENCHMARK(drawThreeThousand)->Apply(settings);
 BENCHMARK(drawFoliage)->ArgName("radius")->Arg(0)->Arg(2)->Arg(5)->Arg(10)->Arg(20)->Arg(40)->Arg(80)->Apply(settings);
 BENCHMARK(drawCaustics)->Apply(settings);
 BENCHMARK(drawMirrorBall)->Apply(settings);
+BENCHMARK(drawImage)->ArgName("rows")->Arg(360)->Arg(720)->Arg(1080)->Arg(2160)->Apply(settings);
+BENCHMARK(drawChangingPicture)->ArgName("rows")->Arg(360)->Arg(720)->Arg(1080)->Arg(2160)->Apply(settings);
+BENCHMARK(decodeVideo)->ArgName("converted")->Arg(0)->Arg(1)->Apply(settings);
 
 // The yardstick: what one multisampled picture needs at least, on one core: every sample's colour and depth cleared, then
 // averaged.
