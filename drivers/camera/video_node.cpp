@@ -1,6 +1,7 @@
 #include "drivers/camera/video_node.h"
 
 #include <fcntl.h>
+#include <linux/dma-buf.h>
 #include <linux/videodev2.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
@@ -114,23 +115,52 @@ struct Description {
     Description& operator=(const Description&) = delete;
 };
 
+int callOf(int file, unsigned long request, void* argument) {
+    int answer = 0;
+    do answer = ioctl(file, request, argument);
+    while (answer < 0 && errno == EINTR);
+    return answer < 0 ? errno : 0;
+}
+
+// Tells the kernel that a DMABUF is read from now on, or no more.
+bool synchronise(int dmabuf, std::uint64_t edge) {
+    dma_buf_sync sync{edge | DMA_BUF_SYNC_READ};
+    int error = 0;
+    do error = callOf(dmabuf, DMA_BUF_IOCTL_SYNC, &sync);
+    while (error == EAGAIN);
+    return error == 0;
+}
+
+std::span<std::uint8_t> mapped(int file, int protection, std::size_t length, std::int64_t offset) {
+    void* const seen = mmap(nullptr, length, protection, MAP_SHARED, file, offset);
+    if (seen == MAP_FAILED) return {};
+    return {static_cast<std::uint8_t*>(seen), length};
+}
+
 }  // namespace
 
-VideoNode::Memory::Memory(int file, std::size_t length, std::int64_t offset) {
-    void* const seen = mmap(nullptr, length, PROT_READ | PROT_WRITE, MAP_SHARED, file, offset);
-    if (seen != MAP_FAILED) bytes_ = {static_cast<std::uint8_t*>(seen), length};
+VideoNode::Memory::Memory(FileHandle dmabuf, int node, std::size_t length, std::int64_t offset) {
+    if (dmabuf.isOpen() && synchronise(dmabuf.get(), DMA_BUF_SYNC_START) && synchronise(dmabuf.get(), DMA_BUF_SYNC_END))
+        bytes_ = mapped(dmabuf.get(), PROT_READ, length, 0);
+    if (!bytes_.empty())
+        dmabuf_ = std::move(dmabuf);
+    else
+        bytes_ = mapped(node, PROT_READ | PROT_WRITE, length, offset);  // some drivers map for both or not at all
 }
 
 VideoNode::Memory::~Memory() {
     if (!bytes_.empty()) munmap(bytes_.data(), bytes_.size());
 }
 
-int VideoNode::call(unsigned long request, void* argument) const {
-    int answer = 0;
-    do answer = ioctl(file_.get(), request, argument);
-    while (answer < 0 && errno == EINTR);
-    return answer < 0 ? errno : 0;
+void VideoNode::Memory::beginReading() const {
+    if (isDmabuf()) synchronise(dmabuf_.get(), DMA_BUF_SYNC_START);
 }
+
+void VideoNode::Memory::endReading() const {
+    if (isDmabuf()) synchronise(dmabuf_.get(), DMA_BUF_SYNC_END);
+}
+
+int VideoNode::call(unsigned long request, void* argument) const { return callOf(file_.get(), request, argument); }
 
 unsigned VideoNode::type() const { return planar_ ? V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE : V4L2_BUF_TYPE_VIDEO_CAPTURE; }
 
@@ -238,7 +268,7 @@ int VideoNode::start() {
         if (const int error = call(VIDIOC_QUERYBUF, &buffer.buffer); error != 0) return error;
         const auto [length, offset] = planar_ ? std::pair(buffer.planes[0].length, buffer.planes[0].m.mem_offset)
                                               : std::pair(buffer.buffer.length, buffer.buffer.m.offset);
-        memories_.emplace_back(file_.get(), length, offset);
+        memories_.emplace_back(dmabufOf(index), file_.get(), length, offset);
         if (memories_.back().bytes().empty()) return errno;
     }
     return memories_.empty() ? ENOMEM : restart();
@@ -249,7 +279,7 @@ int VideoNode::restart() {
     // It gives every buffer back to us, whoever had it.
     if (const int error = call(VIDIOC_STREAMOFF, &type); error != 0) return error;
     for (unsigned index = 0; index < memories_.size(); ++index)
-        if (const int error = giveBack(index); error != 0) return error;
+        if (const int error = queue(index); error != 0) return error;
     return call(VIDIOC_STREAMON, &type);
 }
 
@@ -258,6 +288,7 @@ int VideoNode::take(Buffer& taken) {
     if (const int error = call(VIDIOC_DQBUF, &description.buffer); error != 0) return error;
     const v4l2_buffer& buffer = description.buffer;
     if (buffer.index >= memories_.size()) return EIO;
+    memories_[buffer.index].beginReading();
     const auto all = memories_[buffer.index].bytes();
     const std::size_t end = std::min<std::size_t>(planar_ ? description.planes[0].bytesused : buffer.bytesused, all.size());
     const std::size_t begin = planar_ ? std::min<std::size_t>(description.planes[0].data_offset, end) : 0;
@@ -273,6 +304,20 @@ int VideoNode::take(Buffer& taken) {
 }
 
 int VideoNode::giveBack(unsigned index) {
+    memories_[index].endReading();
+    return queue(index);
+}
+
+// Closed, if the driver offers none.
+FileHandle VideoNode::dmabufOf(unsigned index) const {
+    v4l2_exportbuffer exported{};
+    exported.type = type();
+    exported.index = index;
+    exported.flags = O_RDONLY | O_CLOEXEC;
+    return call(VIDIOC_EXPBUF, &exported) == 0 ? FileHandle(exported.fd) : FileHandle();
+}
+
+int VideoNode::queue(unsigned index) {
     Description description(type(), planar_);
     description.buffer.index = index;
     if (planar_) description.buffer.length = 1;

@@ -55,6 +55,8 @@ public:
     // Streams, with all buffers waiting for frames.
     int start();
     int restart();  // what was not taken yet is gone
+    // Whether its memory is seen as DMABUFs: since start(), where the driver offers them.
+    bool sharesDmabufs() const { return !memories_.empty() && memories_.front().isDmabuf(); }
 
     struct Buffer {
         unsigned index = 0;
@@ -64,27 +66,36 @@ public:
         std::optional<Time> stamp;    // kernelTime(), where the driver stamps by it
         bool stampedAtStart = false;  // of the exposure; else when the frame ended
     };
-    // EAGAIN: no frame has come yet. What is taken must be given back.
+    // EAGAIN: no frame has come yet. What is taken must be given back, and is not read after that.
     int take(Buffer& buffer);
     int giveBack(unsigned index);
 
 private:
-    // What the kernel's memory of a buffer is seen by.
+    // What the kernel's memory of a buffer is seen by. As a DMABUF, its caches are made to agree with the device's around each reading:
+    // a driver that shares memory with other devices need not do so by itself.
     class Memory {
     public:
-        Memory(int file, std::size_t length, std::int64_t offset);
+        // `dmabuf`: the buffer's, if the driver exports it and this kernel lets it be read, closed otherwise; then the driver's `node` is
+        // mapped at `offset`.
+        Memory(FileHandle dmabuf, int node, std::size_t length, std::int64_t offset);
         ~Memory();
-        Memory(Memory&& other) noexcept : bytes_(std::exchange(other.bytes_, {})) {}
+        Memory(Memory&& other) noexcept : dmabuf_(std::move(other.dmabuf_)), bytes_(std::exchange(other.bytes_, {})) {}
         Memory& operator=(Memory&&) = delete;
         std::span<const std::uint8_t> bytes() const { return bytes_; }  // empty if it cannot be seen
+        bool isDmabuf() const { return dmabuf_.isOpen(); }
+        void beginReading() const;
+        void endReading() const;
 
     private:
+        FileHandle dmabuf_;
         std::span<std::uint8_t> bytes_;
     };
 
     VideoNode(FileHandle file, std::string card, bool planar) : file_(std::move(file)), card_(std::move(card)), planar_(planar) {}
     int call(unsigned long request, void* argument) const;
     unsigned type() const;
+    FileHandle dmabufOf(unsigned index) const;
+    int queue(unsigned index);
 
     FileHandle file_;
     std::string card_;

@@ -43,7 +43,7 @@ const std::map<std::string_view, Names> kLibraries = {
     {"libav", {"libavcodec/", "libavformat/", "libavutil/", "libswscale/"}},
     {"libusb", {"libusb.h"}},
     {"libmodbus", {"modbus.h"}},
-    {"V4L2", {"linux/videodev2.h"}},
+    {"V4L2", {"linux/videodev2.h", "linux/dma-buf.h"}},
     {"CLI11", {"CLI/"}},
     {"nlohmann-json", {"nlohmann/"}},
     {"POSIX",

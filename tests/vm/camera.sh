@@ -11,7 +11,7 @@ insmod "$2" video_nr=7 card_label=Loopback max_buffers=4
 # The other variant of the interface, which cameras on a board speak.
 until modprobe -r vivid 2>/dev/null; do :; done # whoever looked at its nodes when they came is gone soon
 modprobe "${vivid[@]}" multiplanar=2
-"$1" --gtest_filter='*colours*:*flag*:*unplugged*'
+"$1" --gtest_filter='*colours*:*dmabufs*:*flag*:*unplugged*'
 # Two of them, for the contract.
 until modprobe -r vivid 2>/dev/null; do :; done
 modprobe "${vivid[@]/n_devs=1/n_devs=2}" vid_cap_nr=10,11

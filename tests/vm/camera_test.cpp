@@ -2,6 +2,7 @@
 // program feeds it. tests/vm/camera.sh brings them up, on a machine of its own; elsewhere every test here is skipped.
 
 #include "drivers/camera/v4l2.h"
+#include "drivers/camera/video_node.h"
 #include "drivers/common/file_handle.h"
 
 #include "contract/camera_source_suite.h"
@@ -120,6 +121,18 @@ TEST_F(RealNodes, stamp_each_frame_by_our_clock_and_count_it) {
         }
         last = std::move(frame);
     }
+}
+
+// So the colours above came through DMABUFs; v4l2loopback offers none, and its film comes through memory that is mapped.
+TEST_F(RealNodes, share_dmabufs) {
+    int error = 0;
+    auto node = VideoNode::open(vivid_, error);
+    ASSERT_TRUE(node) << error;
+    VideoNode::Grant grant;
+    ASSERT_EQ(node->ask(FrameCoding::Yuyv, {640, 360}, 30, grant), 0);
+    EXPECT_FALSE(node->sharesDmabufs()) << "before it streams";
+    ASSERT_EQ(node->start(), 0);
+    EXPECT_TRUE(node->sharesDmabufs());
 }
 
 // vivid answers with a format that it has.
