@@ -200,6 +200,7 @@ int MockCamera::answer(std::uint32_t request, void* argument) {
             return 0;
         }
         case static_cast<std::uint32_t>(VIDIOC_REQBUFS): {
+            if (busy_) return EBUSY;
             auto& buffers = *static_cast<v4l2_requestbuffers*>(argument);
             buffers.count = std::min(buffers.count, 4u);
             return ftruncate(memory_, static_cast<off_t>(buffers.count) * length) == 0 ? 0 : ENOMEM;
@@ -214,7 +215,6 @@ int MockCamera::answer(std::uint32_t request, void* argument) {
             empty_.push_back(static_cast<v4l2_buffer*>(argument)->index);
             return 0;
         case static_cast<std::uint32_t>(VIDIOC_STREAMON):
-            if (busy_) return EBUSY;
             streaming_ = true;
             ++streams_;
             changed_.notify_all();

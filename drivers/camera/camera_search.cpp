@@ -154,6 +154,7 @@ std::vector<FoundDevice> findCameras() {
             const VideoNode::Offer offer = open->offer();
             std::vector<std::string> names;
             for (const FrameCoding coding : offer.codings) names.emplace_back(nameOf(coding));
+            if (open->isTaken()) camera.why = whyNotUsed(node.file, "", EBUSY).why;
             if (names.empty()) camera.why = fmt::format("it offers {} alone, which cannot be decoded here", listed(offer.others));
             names.insert(names.end(), offer.others.begin(), offer.others.end());
             if (!names.empty()) camera.what += fmt::format(" ({})", listed(names));

@@ -181,6 +181,13 @@ std::optional<VideoNode> VideoNode::open(const std::filesystem::path& path, int&
     return std::nullopt;
 }
 
+bool VideoNode::isTaken() const {
+    v4l2_requestbuffers none{};  // whoever has none need not be asked; only another's are in the way
+    none.type = type();
+    none.memory = V4L2_MEMORY_MMAP;
+    return call(VIDIOC_REQBUFS, &none) == EBUSY;
+}
+
 VideoNode::Offer VideoNode::offer() const {
     std::vector<std::uint32_t> offered;
     v4l2_fmtdesc format{};

@@ -28,6 +28,7 @@ public:
 
     const std::string& card() const { return card_; }  // "HD Webcam C525"
     int file() const { return file_.get(); }           // readable when there is a frame
+    bool isTaken() const;                              // by another program
 
     // What it offers that can be decoded here, and its names of what cannot.
     struct Offer {

@@ -423,6 +423,9 @@ TEST_F(V4l2Cameras, that_another_program_uses_are_faulted_until_it_lets_them_go)
     open();
     ASSERT_TRUE(comesTo(DeviceState::Faulted));
     EXPECT_THAT(camera_->status().detail, AllOf(HasSubstr("/dev/video0"), HasSubstr("another program uses it")));
+    const auto listed = findCameras();
+    ASSERT_EQ(listed.size(), 1u);
+    EXPECT_EQ(listed[0].why, camera_->status().detail);
     mock.setBusy(false);
     EXPECT_TRUE(comesTo(DeviceState::Running)) << camera_->status().detail;
     EXPECT_EQ(camera_->status().losses, 0);

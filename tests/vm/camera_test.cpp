@@ -175,6 +175,10 @@ TEST_F(RealNodes, that_another_program_streams_from_are_busy) {
     open(fmt::format("card: {}\n", kVivid));
     EXPECT_TRUE(becomes([&] { return camera_->status().state == DeviceState::Faulted; }));
     EXPECT_THAT(camera_->status().detail, HasSubstr("another program uses it"));
+    for (const FoundDevice& listed : findCameras()) {
+        if (listed.where != vivid_) continue;
+        EXPECT_THAT(listed.why, HasSubstr("another program uses it"));
+    }
     kill(other, SIGTERM);
     waitpid(other, nullptr, 0);
     EXPECT_NE(next(), nullptr) << "it is free again: " << camera_->status().detail;
