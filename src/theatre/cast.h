@@ -1,26 +1,16 @@
 #pragma once
 
-#include "theatre/pose_problem.h"
+#include "theatre/actor_pose.h"
+#include "theatre/stage.h"
 
 #include "core/result.h"
 
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 namespace fantascope::theatre {
-
-// M_n = (v_0, q_0, q_1 .. q_M) of Won & Lee 2016, section 3: where the root is and how it is turned, in the stage's frame (metres), and how each
-// further joint is turned against its parent, in the body's order.
-struct ActorPose {
-    glm::dvec3 root{0};
-    std::vector<glm::dquat> turns;  // of all joints, the root's first
-};
-ActorPose poseOf(const Body& body, std::span<const double> freedoms);
-// The freedoms nearest to a pose, within the joints' limits.
-std::vector<double> freedomsOf(const Body& body, const ActorPose& pose);
 
 // What a search for poses leaves behind: who stands how, on which stage, for which target.
 struct Cast {

@@ -8,7 +8,20 @@
 
 namespace fantascope::theatre {
 
-FreedomSearch::FreedomSearch(const PoseProblem& problem) : problem_(problem) {}
+std::vector<std::size_t> limb(const Body& body, std::size_t joint) {
+    std::vector<char> in(body.joints.size(), 0);
+    in[joint] = 1;
+    for (std::size_t i = joint + 1; i < in.size(); ++i) in[i] = in[body.joints[i].parent];
+    if (body.joints[joint].parent != 0) in[body.joints[joint].parent] = 1;
+    std::vector<std::size_t> freedoms;
+    for (std::size_t i = 1; i < in.size(); ++i)
+        for (std::size_t k = 0; in[i] != 0 && k < body.joints[i].motion.size(); ++k) freedoms.push_back(body.joints[i].first + k);
+    return freedoms;
+}
+
+FreedomSearch::FreedomSearch(const PoseProblem& problem) : problem_(problem) {
+    for (const Body& body : problem.actors) kinematics_.emplace_back(body);
+}
 
 double FreedomSearch::run(SceneEnergy& energy, std::span<double> freedoms, std::span<const std::size_t> which,
                           const Settings& settings, Rng& rng, const std::function<bool(int)>& beforeGeneration) {
@@ -55,7 +68,7 @@ double FreedomSearch::run(SceneEnergy& energy, std::span<double> freedoms, std::
                 const Body& body = problem_.actors[part.actor];
                 const auto pose = std::span(candidate_).subspan(part.first, body.freedoms);
                 body.limit(pose);
-                energy.pose(part.actor, pose);
+                energy.pose(part.actor, held(part.actor, pose));
             }
             for (std::size_t i = 0; i < which.size(); ++i) own[i] = candidate_[which[i]];
             values_[k] = energy.energy();
@@ -67,7 +80,19 @@ double FreedomSearch::run(SceneEnergy& energy, std::span<double> freedoms, std::
             freedoms[which[i]] = candidates[static_cast<std::size_t>(least - values_.begin()) * which.size() + i];
         search.tell(values_);
     }
+    for (const Part& part : parts) {
+        const auto pose = freedoms.subspan(part.first, problem_.actors[part.actor].freedoms);
+        std::ranges::copy(held(part.actor, pose), pose.begin());
+    }
     return best;
+}
+
+// The pose itself, if nothing is held.
+std::span<const double> FreedomSearch::held(std::size_t actor, std::span<const double> pose) {
+    if (problem_.continuity.empty() || problem_.continuity[actor].contacts.empty()) return pose;
+    held_.assign(pose.begin(), pose.end());
+    kinematics_[actor].hold(held_, problem_.continuity[actor].contacts);
+    return held_;
 }
 
 }  // namespace fantascope::theatre

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "theatre/inverse_kinematics.h"
 #include "theatre/scene_energy.h"
 
 #include "core/random.h"
@@ -10,6 +11,9 @@
 #include <vector>
 
 namespace fantascope::theatre {
+
+// The freedoms of a joint, of all that hang on it, and of the one that it hangs on; not the root's.
+std::vector<std::size_t> limb(const Body& body, std::size_t joint);
 
 // CMA-ES over some of the freedoms of a scene while the others are held: of one limb, of one actor, or all of them. Each actor's are a block of
 // the covariance matrix, unless it is to be full.
@@ -27,7 +31,8 @@ public:
     explicit FreedomSearch(const PoseProblem& problem);
 
     // Searches from `freedoms` over those with a number in `which` (ascending, of all actors' freedoms) and leaves the best candidate of
-    // the last generation there; gives its energy. Candidates are brought within the limits. `beforeGeneration` may change the
+    // the last generation there; gives its energy. Candidates are brought within the limits, and what is held to where it is held, by
+    // whatever freedoms it takes. `beforeGeneration` may change the
     // problem's weights; when it gives false the search ends.
     double run(SceneEnergy& energy, std::span<double> freedoms, std::span<const std::size_t> which, const Settings& settings,
                Rng& rng, const std::function<bool(int)>& beforeGeneration = {});
@@ -35,8 +40,11 @@ public:
     std::int64_t evaluations() const { return evaluations_; }
 
 private:
+    std::span<const double> held(std::size_t actor, std::span<const double> pose);
+
     const PoseProblem& problem_;
-    std::vector<double> candidate_, values_;
+    std::vector<double> candidate_, values_, held_;
+    std::vector<InverseKinematics> kinematics_;  // of each actor
     std::int64_t evaluations_ = 0;
 };
 

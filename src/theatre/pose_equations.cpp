@@ -54,6 +54,32 @@ void PoseEquations::addPoint(std::size_t joint, const glm::dvec3& point, const g
     pulls_[joint] += weight * residual * asked;
 }
 
+void PoseEquations::addPlace(std::size_t joint, const glm::dvec3& point, const glm::dvec3& off, double weight) {
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 unit(0);
+        unit[axis] = 1;
+        addPoint(joint, point, unit, off[axis], weight);
+    }
+}
+
+// A turn is the moment's part of a spatial vector. To turn on about the vector itself is all that a rotation vector's length follows.
+void PoseEquations::addTurn(std::size_t joint, const glm::dvec3& off, double weight) {
+    for (int axis = 0; axis < 3; ++axis) {
+        squares_[joint](3 + axis, 3 + axis) += weight;
+        pulls_[joint][3 + axis] += weight * off[axis];
+    }
+}
+
+void PoseEquations::addBend(std::size_t joint, const glm::dvec3& off, double weight) {
+    const std::size_t first = joint == 0 ? 3 : body_.joints[joint].first;
+    const std::size_t count = joint == 0 ? 3 : body_.joints[joint].motion.size();
+    for (std::size_t k = first; k < first + count; ++k) {
+        gradient_[static_cast<Eigen::Index>(k)] += weight * glm::dot(axes_[k], off);
+        for (std::size_t l = first; l <= k; ++l)
+            hessian_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) += weight * glm::dot(axes_[k], axes_[l]);
+    }
+}
+
 void PoseEquations::addMotion(Eigen::VectorXd& row, std::size_t joint, const glm::dvec3& point,
                               const glm::dvec3& direction) const {
     const Spatial asked = spatial(point, direction);

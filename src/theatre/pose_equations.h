@@ -22,6 +22,12 @@ public:
     void begin(const PosedBody& posed, std::span<const double> freedoms);
     // A residual that grows by direction.dx when `point`, fixed to `joint`, moves by dx; stage frame, metres.
     void addPoint(std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction, double residual, double weight);
+    // Three: how far `point` is off from where it is to be, along x, y and z.
+    void addPlace(std::size_t joint, const glm::dvec3& point, const glm::dvec3& off, double weight);
+    // Three: how a joint's segment is turned off from how it is to be in the stage's frame, a rotation vector.
+    void addTurn(std::size_t joint, const glm::dvec3& off, double weight);
+    // The same of how it is turned against its parent, by the joint's own freedoms alone; `off` in the stage's frame, too.
+    void addBend(std::size_t joint, const glm::dvec3& off, double weight);
     // One that depends on two points of the body.
     void addPoints(std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction, std::size_t otherJoint,
                    const glm::dvec3& otherPoint, const glm::dvec3& otherDirection, double residual, double weight);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "theatre/body_mesh.h"
+#include "theatre/continuity.h"
 #include "theatre/contour.h"
 #include "theatre/pose_hints.h"
 #include "theatre/pose_weights.h"
@@ -10,6 +11,7 @@
 #include "core/result.h"
 
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace fantascope::theatre {
@@ -26,6 +28,11 @@ struct PoseTarget {
     // silhouette wider than kWidest times its height, a picture with a side of more than kMostSide pixels, or one
     // that a projector's light does not hold.
     static Result<PoseTarget> from(const GreyImage& picture, const Stage& stage, double height, int rows);
+    // The frames of a silhouette that moves, in one frame on the screen: the representative one (from 0) is laid by as from() lays a picture, and the
+    // masks hold them all. Error: names the frame (from 1); as from(), and pictures of different sizes, or a silhouette that reaches below where the
+    // representative one stands by more than kBelow of its height.
+    static Result<std::vector<PoseTarget>> ofSequence(std::span<const GreyImage> pictures, std::size_t representative,
+                                                      const Stage& stage, double height, int rows);
     // The same in pixels of twice the side, with half as many points: for a search's first look.
     PoseTarget halved(const Stage& stage) const;
 
@@ -33,7 +40,7 @@ struct PoseTarget {
     static Result<void> checkSize(int width, int height);
 
     static constexpr int kFewest = 64, kWidest = 8, kMostSide = 2048;
-    static constexpr double kFarApart = 0.125;
+    static constexpr double kFarApart = 0.125, kBelow = 0.02;
 
     ScreenFrame frame;
     BitMask mask;
@@ -56,6 +63,7 @@ struct PoseProblem {
     // Gives them their skins; actors of one stature share one.
     void dress();
     std::vector<PoseHint> hints{};
+    std::vector<Continuity> continuity{};  // of the actors, at a frame of a motion; none: a still
 
     std::size_t freedoms() const { return firstFreedom(actors.size()); }
     // Of an actor's, among those of all.

@@ -150,19 +150,6 @@ private:
         }
     }
 
-    // The freedoms of a joint, of all that hang on it, and of the one that it hangs on.
-    static std::vector<std::size_t> limb(const Body& body, std::size_t joint) {
-        std::vector<char> in(body.joints.size(), 0);
-        in[joint] = 1;
-        for (std::size_t i = joint + 1; i < in.size(); ++i) in[i] = in[body.joints[i].parent];
-        if (body.joints[joint].parent != 0) in[body.joints[joint].parent] = 1;
-        std::vector<std::size_t> freedoms;
-        for (std::size_t i = 1; i < in.size(); ++i)
-            for (std::size_t k = 0; in[i] != 0 && k < body.joints[i].motion.size(); ++k)
-                freedoms.push_back(body.joints[i].first + k);
-        return freedoms;
-    }
-
     const PoseSearch::Options& options_;
     const PoseSearch::AskStop& askStop_;
     Workshop true_, fine_, coarse_;

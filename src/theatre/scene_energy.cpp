@@ -65,6 +65,13 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     findIntrusions(stage, standing_, body, actor.body, actor.held, actor.intrusions);
     actor.own.surroundings = depthInStage(actor.body) + squaredDepths(actor.intrusions) + 1e6 * actor.outside * actor.outside;
     matchHints(problem_.hints, frame, body, actor.body, actor.matches);
+    if (problem_.continuity.empty()) return;
+    const Continuity& others = problem_.continuity[index];
+    for (const ActorPose& beside : others.neighbours) actor.own.smooth += poseDifference(body, freedoms, beside);
+    if (others.principal) actor.own.regular = poseDifference(body, freedoms, *others.principal);
+    const ContactDrift drift = contactDrift(others.contacts, actor.body);
+    actor.own.contactPlace = drift.place;
+    actor.own.contactTurn = drift.turn;
 }
 
 void SceneEnergy::poseProps(std::size_t index) {
@@ -92,6 +99,10 @@ const EnergyTerms& SceneEnergy::terms() {
         terms_.margin += actor.own.margin;
         terms_.people += actor.own.people;
         terms_.surroundings += actor.own.surroundings;
+        terms_.smooth += actor.own.smooth;
+        terms_.regular += actor.own.regular;
+        terms_.contactPlace += actor.own.contactPlace;
+        terms_.contactTurn += actor.own.contactTurn;
         for (std::size_t j = i + 1; j < actors_.size(); ++j) terms_.people += depthsInOthers_[i * actors_.size() + j];
         if (actor.held.empty()) continue;
         shadow_.add(actor.heldShadow);

@@ -105,6 +105,7 @@ SilhouetteFit::SilhouetteFit(const PoseProblem& problem)
     std::size_t first = 0;
     for (const Body& body : problem.actors) {
         equations_.emplace_back(body);
+        kinematics_.emplace_back(body);
         first_.push_back(first);
         first += body.freedoms;
     }
@@ -123,7 +124,9 @@ double SilhouetteFit::run(SceneEnergy& energy, std::span<double> freedoms, int s
             const std::size_t first = first_[a], count = problem_.actors[a].freedoms;
             const Eigen::VectorXd& step = equations_[a].step(damping, moves.empty() ? moves : moves.subspan(first, count));
             for (std::size_t k = 0; k < count; ++k) trial_[first + k] += step[static_cast<Eigen::Index>(k)];
-            problem_.actors[a].limit(std::span(trial_).subspan(first, count));
+            const auto pose = std::span(trial_).subspan(first, count);
+            problem_.actors[a].limit(pose);
+            if (!problem_.continuity.empty()) kinematics_[a].hold(pose, problem_.continuity[a].contacts);
         }
         energy.pose(trial_);
         ++evaluations_;
@@ -151,6 +154,7 @@ void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> freed
     addContour(energy);
     addHints(energy);
     addPhysics(energy);
+    if (!problem_.continuity.empty()) addContinuity(energy, freedoms);
     for (PoseEquations& equations : equations_) equations.finish();
 }
 
@@ -241,6 +245,33 @@ void SilhouetteFit::addIntrusions(const SceneEnergy& energy, std::size_t actor, 
         findIntrusions(problem_.actors[other], energy.posed(other), energy.held(actor), intrusions_);
         for (const Intrusion& in : intrusions_)
             equations.addPoint(*in.otherJoint, in.point, 1000.0 * in.outward, 500 * in.depth, weight);
+    }
+}
+
+// Equations 8 and 10, by equation 9, and equation 11.
+void SilhouetteFit::addContinuity(const SceneEnergy& energy, std::span<const double> freedoms) {
+    const PoseWeights& weights = problem_.weights;
+    for (std::size_t a = 0; a < equations_.size(); ++a) {
+        const Body& body = problem_.actors[a];
+        const PosedBody& posed = energy.posed(a);
+        const auto own = freedoms.subspan(first_[a], body.freedoms);
+        const Continuity& others = problem_.continuity[a];
+        const auto pull = [&](const ActorPose& to, double weight) {
+            equations_[a].addPlace(0, posed.place(0), posed.place(0) - to.root, weight * kRootWeight);
+            equations_[a].addBend(0, turnBetween(to.turns[0], posed.turn(0)), weight * kTurnWeight);
+            for (std::size_t i = 1; i < body.joints.size(); ++i) {
+                const Body::Joint& joint = body.joints[i];
+                const glm::dquat turn = joint.motion.orientation(own.subspan(joint.first, joint.motion.size()));
+                equations_[a].addBend(i, posed.turn(joint.parent) * turnBetween(to.turns[i], turn), weight * kTurnWeight);
+            }
+        };
+        for (const ActorPose& beside : others.neighbours) pull(beside, weights.w13);
+        if (others.principal) pull(*others.principal, weights.w14);
+        for (const HeldContact& contact : others.contacts) {
+            const glm::dvec3& place = posed.place(contact.joint);
+            equations_[a].addPlace(contact.joint, place, place - contact.place, 1e6 * weights.w15);
+            equations_[a].addTurn(contact.joint, turnBetween(contact.turn, posed.turn(contact.joint)), weights.w16);
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "theatre/inverse_kinematics.h"
 #include "theatre/pose_equations.h"
 #include "theatre/scene_energy.h"
 
@@ -12,8 +13,8 @@ namespace fantascope::theatre {
 
 // Moves actors' limbs so that the outline of their shadow goes where the target's is: Levenberg's damped steps (1944) on how far each point
 // of the shadow's contour is from the target's along its normal, with the analytic derivative of the shadow by the joints. The residuals
-// are reweighted at each step so that their squares add up to what equations 2, 3, 6 and 7 charge; a step is kept only if the energy itself
-// falls. From poses that are far from the target it finds nothing: it finishes what a global search has begun.
+// are reweighted at each step so that their squares add up to what equations 2, 3, 6, 7, 8, 10 and 11 charge; a step is kept only if the
+// energy itself falls, once what is held has been put back. From poses that are far from the target it finds nothing: it finishes what a global search has begun.
 // Thread: thread-bound.
 class SilhouetteFit {
 public:
@@ -33,13 +34,15 @@ private:
     void addHints(const SceneEnergy& energy);
     void addIntrusions(const SceneEnergy& energy, std::size_t actor, double weight);
     void addPhysics(SceneEnergy& energy);
+    void addContinuity(const SceneEnergy& energy, std::span<const double> freedoms);
     void addBalance(const SceneEnergy& energy, std::size_t actor, const PoseWeights& weights);
 
     const PoseProblem& problem_;
     GreyImage distance_;  // of the target, signedDistance()
     ContourDisc disc_;
     std::vector<PoseEquations> equations_;  // of each actor: a residual moves with his joints alone
-    std::vector<std::size_t> first_;        // freedom of each actor
+    std::vector<InverseKinematics> kinematics_;
+    std::vector<std::size_t> first_;  // freedom of each actor
     std::vector<double> trial_;
     std::vector<Intrusion> intrusions_;
     std::vector<SupportTangent> tangents_;

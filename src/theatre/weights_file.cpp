@@ -22,7 +22,9 @@ constexpr std::array kWeights = {
     Weight{"w1", &PoseWeights::w1},   Weight{"w2", &PoseWeights::w2},   Weight{"w3", &PoseWeights::w3},
     Weight{"w4", &PoseWeights::w4},   Weight{"w5", &PoseWeights::w5},   Weight{"w6", &PoseWeights::w6},
     Weight{"w7", &PoseWeights::w7},   Weight{"w8", &PoseWeights::w8},   Weight{"w9", &PoseWeights::w9},
-    Weight{"w10", &PoseWeights::w10}, Weight{"w11", &PoseWeights::w11}, Weight{"w12", &PoseWeights::w12}};
+    Weight{"w10", &PoseWeights::w10}, Weight{"w11", &PoseWeights::w11}, Weight{"w12", &PoseWeights::w12},
+    Weight{"w13", &PoseWeights::w13}, Weight{"w14", &PoseWeights::w14}, Weight{"w15", &PoseWeights::w15},
+    Weight{"w16", &PoseWeights::w16}};
 
 // `base` but for what the node says.
 Result<PoseWeights> changed(PoseWeights base, const ConfigNode& node) {

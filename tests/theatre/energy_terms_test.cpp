@@ -116,11 +116,13 @@ TEST(OwnerChanges, CountAround) {
 
 TEST(EnergyTerms, TotalIsWeightedByTheTables) {
     EnergyTerms terms;
-    double* const all[] = {&terms.contourPoint, &terms.contourNormal, &terms.contourCurvature, &terms.coverage, &terms.coherence,
-                           &terms.visible,      &terms.floor,         &terms.supportArea,      &terms.margin,   &terms.people,
-                           &terms.surroundings, &terms.hint};
-    PoseWeights weights{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 2};
-    const double wanted[] = {2, 3, 5, 7, 11, 13, 34, 38, 46, 58, 62, 37};
+    double* const all[] = {
+        &terms.contourPoint, &terms.contourNormal, &terms.contourCurvature, &terms.coverage, &terms.coherence,
+        &terms.visible,      &terms.floor,         &terms.supportArea,      &terms.margin,   &terms.people,
+        &terms.surroundings, &terms.hint,          &terms.smooth,           &terms.regular,  &terms.contactPlace,
+        &terms.contactTurn};
+    PoseWeights weights{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 2};
+    const double wanted[] = {2, 3, 5, 7, 11, 13, 34, 38, 46, 58, 62, 37, 41, 43, 47, 53};
     for (std::size_t i = 0; i < std::size(all); ++i) {
         *all[i] = 1;
         EXPECT_EQ(terms.total(weights), wanted[i]) << i;

@@ -1,0 +1,31 @@
+#include "theatre/continuity.h"
+
+#include <glm/geometric.hpp>
+
+namespace fantascope::theatre {
+namespace {
+
+double squareOf(const glm::dvec3& vector) { return glm::dot(vector, vector); }
+
+}  // namespace
+
+double poseDifference(const Body& body, std::span<const double> freedoms, const ActorPose& other) {
+    double turns = squareOf(turnBetween(other.turns[0], rotationOf({freedoms[3], freedoms[4], freedoms[5]})));
+    for (std::size_t i = 1; i < body.joints.size(); ++i) {
+        const Body::Joint& joint = body.joints[i];
+        const glm::dquat turn = joint.motion.orientation(freedoms.subspan(joint.first, joint.motion.size()));
+        turns += squareOf(turnBetween(other.turns[i], turn));
+    }
+    return kRootWeight * squareOf(glm::dvec3(freedoms[0], freedoms[1], freedoms[2]) - other.root) + kTurnWeight * turns;
+}
+
+ContactDrift contactDrift(std::span<const HeldContact> contacts, const PosedBody& posed) {
+    ContactDrift drift;
+    for (const HeldContact& contact : contacts) {
+        drift.place += 1e6 * squareOf(posed.place(contact.joint) - contact.place);
+        drift.turn += squareOf(turnBetween(contact.turn, posed.turn(contact.joint)));
+    }
+    return drift;
+}
+
+}  // namespace fantascope::theatre

@@ -1,0 +1,253 @@
+#include "theatre/motion_adaptation.h"
+
+#include "theatre/freedom_search.h"
+#include "theatre/generalised_cone.h"
+#include "theatre/inverse_kinematics.h"
+#include "theatre/scene_energy.h"
+#include "theatre/silhouette_fit.h"
+#include "theatre/streams.h"
+
+#include "core/check.h"
+#include "core/parallel.h"
+#include "core/random.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <set>
+
+namespace fantascope::theatre {
+namespace {
+
+constexpr int kReachSteps = 20, kFitSteps = 30, kRefitSteps = 12, kLastFitSteps = 15, kPassSteps = 12;
+constexpr std::array kMending = {2.0, 4.0, 8.0, 16.0};  // physics' stiffness, while somebody cannot stand
+
+// A frame's problem and what works on it.
+struct Workshop {
+    explicit Workshop(PoseProblem given) : problem(std::move(given)), energy(problem), fit(problem), search(problem) {}
+    std::int64_t evaluations() const { return fit.evaluations() + search.evaluations(); }
+    double iou() {
+        const double shadow = static_cast<double>(energy.shadow().count()), target = problem.target.area;
+        const double both = 0.5 * (shadow + target - static_cast<double>(differing(energy.shadow(), problem.target.mask)));
+        return both / (shadow + target - both);
+    }
+    PoseProblem problem;
+    SceneEnergy energy;
+    SilhouetteFit fit;
+    FreedomSearch search;
+};
+
+class Adaptation {
+public:
+    Adaptation(const MotionProblem& motion, std::span<const double> freedoms, std::uint64_t seed,
+               const MotionAdaptation::Options& options, const MotionAdaptation::Tell& tell, MotionAdaptation::Frames known)
+        : motion_(motion), seed_(seed), options_(options), tell_(tell), frames_(std::move(known)) {
+        frames_.resize(motion.targets.size());
+        const PoseProblem& principal = motion.principal;
+        const GeneralisedCone cone(principal.stage.light, motion.triangles, motion.corners[motion.representative]);
+        PosedBody posed;
+        for (std::size_t a = 0; a < principal.actors.size(); ++a) {
+            const Body& body = principal.actors[a];
+            const auto own = freedoms.subspan(principal.firstFreedom(a), body.freedoms);
+            posed.pose(body, own);
+            std::vector<GeneralisedCone::Coordinates>& coordinates = coordinates_.emplace_back();
+            for (std::size_t i = 0; i < body.joints.size(); ++i) coordinates.push_back(cone.coordinates(posed.place(i)));
+            continuity_.push_back({{}, poseOf(body, own), MotionAdaptation::contactsOf(principal, a, own)});
+        }
+        auto& representative = frames_[motion.representative];
+        if (!representative) representative.emplace().freedoms.assign(freedoms.begin(), freedoms.end());
+        for (std::size_t i = 0; i < frames_.size(); ++i)
+            if (frames_[i]) frames_[i]->quality = PoseSearch::measure(problemAt(i), frames_[i]->freedoms);
+    }
+
+    MotionAdaptation::Frames run() {
+        // Forwards and backwards know nothing of each other.
+        parallelFor(2, options_.threads, [&](int way) {
+            const std::size_t count = frames_.size();
+            for (std::size_t i = motion_.representative; !isStopped_;) {
+                const std::size_t from = i;
+                if (way == 0 ? i + 1 == count : i == 0) break;
+                i = way == 0 ? i + 1 : i - 1;
+                if (frames_[i]) continue;
+                MotionAdaptation::Frame frame = adapted(i, frames_[from]->freedoms);
+                const std::lock_guard lock(mutex_);
+                frames_[i] = std::move(frame);
+                if (tell_ && tell_(i, *frames_[i])) isStopped_ = true;
+            }
+        });
+        for (int pass = 0; pass < options_.passes && !isStopped_; ++pass) settle();
+        return std::move(frames_);
+    }
+
+private:
+    PoseProblem problemAt(std::size_t frame) const {
+        PoseProblem problem = motion_.principal;
+        problem.target = motion_.targets[frame];
+        problem.continuity = continuity_;
+        return problem;
+    }
+    void addNeighbour(PoseProblem& problem, std::span<const double> freedoms) const {
+        for (std::size_t a = 0; a < problem.actors.size(); ++a)
+            problem.continuity[a].neighbours.push_back(
+                poseOf(problem.actors[a], freedoms.subspan(problem.firstFreedom(a), problem.actors[a].freedoms)));
+    }
+
+    // Lines 7 and 8 of Algorithm 1.
+    std::vector<double> throughCone(std::size_t frame, std::vector<double> freedoms) const {
+        const PoseProblem& principal = motion_.principal;
+        const GeneralisedCone cone(principal.stage.light, motion_.triangles, motion_.corners[frame]);
+        std::vector<glm::dvec3> places;
+        for (std::size_t a = 0; a < principal.actors.size(); ++a) {
+            const Body& body = principal.actors[a];
+            places.clear();
+            for (const GeneralisedCone::Coordinates& joint : coordinates_[a]) places.push_back(cone.point(joint));
+            const auto own = std::span(freedoms).subspan(principal.firstFreedom(a), body.freedoms);
+            InverseKinematics(body).reach(own, places, continuity_[a].contacts, kReachSteps);
+        }
+        return freedoms;
+    }
+
+    // Line 10, from the poses of a frame beside this one.
+    MotionAdaptation::Frame adapted(std::size_t frame, const std::vector<double>& beside) const {
+        PoseProblem problem = problemAt(frame);
+        addNeighbour(problem, beside);
+        Workshop shop(simpler(in256Rows(problem)));
+        MotionAdaptation::Frame found;
+        found.freedoms = beside;
+        double energy = shop.fit.run(shop.energy, found.freedoms, kFitSteps), iou = shop.iou();
+        std::vector<double> other = throughCone(frame, beside);
+        if (const double now = shop.fit.run(shop.energy, other, kFitSteps); now < energy)
+            found.freedoms = other, energy = now, iou = shop.iou();
+        Rng rng(streamSeed(seed_, {Stream::Moves, frame}));
+        for (int i = 0; i < options_.searches && iou < options_.wanted && !isStopped_; ++i) {
+            other = found.freedoms;
+            const std::vector<std::size_t> limb = anyLimb(shop.problem, rng);
+            shop.search.run(shop.energy, other, limb, {0.3, 12, 6}, rng);
+            if (const double now = shop.fit.run(shop.energy, other, kRefitSteps); now < energy)
+                found.freedoms = other, energy = now, iou = shop.iou();
+        }
+        found.evaluations = shop.evaluations();
+        finish(problem, found, kLastFitSteps);
+        return found;
+    }
+
+    // The last steps, on the true skins, until everyone stands.
+    void finish(const PoseProblem& problem, MotionAdaptation::Frame& frame, int steps) const {
+        Workshop shop(in256Rows(problem));
+        shop.fit.run(shop.energy, frame.freedoms, steps);
+        for (const double stiffness : kMending) {
+            if (PoseSearch::measure(shop.problem, frame.freedoms).isValid()) break;
+            shop.problem.weights.stiffen(stiffness);
+            shop.fit.run(shop.energy, frame.freedoms, steps);
+        }
+        frame.quality = PoseSearch::measure(problem, frame.freedoms);
+        frame.evaluations += shop.evaluations();
+    }
+
+    // Every frame but the representative one between both its neighbours: first every other one, then those between.
+    void settle() {
+        const std::size_t count = frames_.size();
+        for (std::size_t parity = 0; parity < 2; ++parity) {
+            std::vector<std::size_t> which;
+            for (std::size_t i = parity; i < count; i += 2)
+                if (i != motion_.representative) which.push_back(i);
+            parallelFor(static_cast<int>(which.size()), options_.threads, [&](int k) {
+                if (isStopped_) return;
+                const std::size_t i = which[static_cast<std::size_t>(k)];
+                PoseProblem problem = problemAt(i);
+                const bool isFirst = i == 0, isLast = i + 1 == count;
+                // A loop of an odd number of frames has two neighbours in one half: then the one that may be at work is left out.
+                if (!isFirst)
+                    addNeighbour(problem, frames_[i - 1]->freedoms);
+                else if (motion_.loops && count % 2 == 0)
+                    addNeighbour(problem, frames_[count - 1]->freedoms);
+                if (!isLast)
+                    addNeighbour(problem, frames_[i + 1]->freedoms);
+                else if (motion_.loops && count % 2 == 0)
+                    addNeighbour(problem, frames_[0]->freedoms);
+                MotionAdaptation::Frame frame = *frames_[i];
+                finish(problem, frame, kPassSteps);
+                const std::lock_guard lock(mutex_);
+                if (frame.quality.isValid() || !frames_[i]->quality.isValid()) frames_[i] = std::move(frame);
+                if (tell_ && tell_(i, *frames_[i])) isStopped_ = true;
+            });
+        }
+    }
+
+    static std::vector<std::size_t> anyLimb(const PoseProblem& problem, Rng& rng) {
+        const std::size_t actor = rng.below(static_cast<std::uint32_t>(problem.actors.size()));
+        const Body& body = problem.actors[actor];
+        std::vector<std::size_t> freedoms = limb(body, 1 + rng.below(static_cast<std::uint32_t>(body.joints.size() - 1)));
+        for (std::size_t& freedom : freedoms) freedom += problem.firstFreedom(actor);
+        return freedoms;
+    }
+
+    const MotionProblem& motion_;
+    std::uint64_t seed_;
+    const MotionAdaptation::Options& options_;
+    const MotionAdaptation::Tell& tell_;
+    MotionAdaptation::Frames frames_;
+    std::vector<std::vector<GeneralisedCone::Coordinates>> coordinates_;  // C_n^0, of each actor's joints
+    std::vector<Continuity> continuity_;                                  // without neighbours
+    std::mutex mutex_;
+    std::atomic<bool> isStopped_ = false;
+};
+
+}  // namespace
+
+MotionAdaptation::Frames MotionAdaptation::run(const MotionProblem& problem, std::span<const double> freedoms, std::uint64_t seed,
+                                               const Options& options, const Tell& tell, Frames known) {
+    FANTASCOPE_CHECK(problem.representative < problem.targets.size() && problem.corners.size() == problem.targets.size(),
+                     "each frame has a target and an interior");
+    return Adaptation(problem, freedoms, seed, options, tell, std::move(known)).run();
+}
+
+std::vector<HeldContact> MotionAdaptation::contactsOf(const PoseProblem& problem, std::size_t actor,
+                                                      std::span<const double> freedoms) {
+    constexpr double kBears = 2 * kTouch;  // spheres are near to the skin, no more
+    const Body& body = problem.actors[actor];
+    PosedBody posed;
+    posed.pose(body, freedoms);
+    std::set<std::uint32_t> joints;
+    for (std::size_t i = 0; i < body.spheres.size(); ++i) {
+        const auto& [centre, radius] = posed.spheres()[i];
+        if (centre.y - radius - problem.stage.groundUnder(centre) <= kBears) joints.insert(body.spheres[i].joint);
+    }
+    std::vector<HeldContact> contacts;
+    for (const std::uint32_t joint : joints) contacts.push_back({joint, posed.place(joint), posed.turn(joint)});
+    return contacts;
+}
+
+MotionQuality measureMotion(const MotionProblem& problem, const MotionAdaptation::Frames& frames, double framesPerSecond) {
+    MotionQuality quality;
+    const PoseProblem& principal = problem.principal;
+    PosedBody posed;
+    for (std::size_t a = 0; a < principal.actors.size(); ++a) {
+        const Body& body = principal.actors[a];
+        const auto ownOf = [&](std::size_t frame) {
+            return std::span(frames[frame]->freedoms).subspan(principal.firstFreedom(a), body.freedoms);
+        };
+        const auto contacts = MotionAdaptation::contactsOf(principal, a, ownOf(problem.representative));
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            if (!frames[i]) continue;
+            posed.pose(body, ownOf(i));
+            for (const HeldContact& contact : contacts)
+                quality.farthestContact =
+                    std::max(quality.farthestContact, glm::distance(posed.place(contact.joint), contact.place));
+            const std::size_t next = i + 1 < frames.size() ? i + 1 : 0;
+            if ((next == 0 && !problem.loops) || !frames[next]) continue;
+            const ActorPose here = poseOf(body, ownOf(i)), there = poseOf(body, ownOf(next));
+            quality.fastestRoot = std::max(quality.fastestRoot, framesPerSecond * glm::distance(here.root, there.root));
+            for (std::size_t k = 0; k < here.turns.size(); ++k)
+                quality.fastestJoint =
+                    std::max(quality.fastestJoint, framesPerSecond * glm::length(turnBetween(here.turns[k], there.turns[k])));
+        }
+    }
+    return quality;
+}
+
+}  // namespace fantascope::theatre

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "theatre/pose_search.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace fantascope::theatre {
+
+// A silhouette that moves, and the principal poses of its representative frame (Won & Lee 2016, section 5).
+struct MotionProblem {
+    PoseProblem principal;            // its target is the representative frame's
+    std::vector<PoseTarget> targets;  // of all frames
+    std::size_t representative = 0;   // a frame, from 0
+    // The consistent triangulation of the targets' interiors.
+    std::vector<glm::uvec3> triangles;
+    std::vector<std::vector<glm::dvec2>> corners;  // [frame][corner], on the screen, metres
+    bool loops = false;                            // after the last frame comes the first
+};
+
+// Algorithm 1 of Won & Lee 2016: principal poses are adapted to the frames beside theirs, those poses to the next, forwards and backwards.
+// A frame's first guess comes through the generalised cone, by inverse kinematics, and is fitted with all terms of the energy; what still does
+// not match is searched limb by limb. What bears at the representative frame is held there throughout. When all frames are there each is fitted
+// again between both its neighbours.
+//
+// A frame's work is a number of evaluations, never a time: the same problem, poses, seed and options give the same motion, byte for byte, on any
+// number of threads.
+// Thread: reentrant.
+class MotionAdaptation {
+public:
+    struct Options {
+        double wanted = 0.95;  // intersection over union: a frame that has it is not searched any further
+        int searches = 24;     // of limbs, for a frame that has not
+        int passes = 2;        // of fitting between both neighbours
+        int threads = 1;
+    };
+    struct Frame {
+        std::vector<double> freedoms;  // of all actors, one after the other
+        PoseSearch::Quality quality;
+        std::int64_t evaluations = 0;
+    };
+    using Frames = std::vector<std::optional<Frame>>;  // of each frame, as far as there are any
+
+    // Told of each frame that is new, from the thread that made it, one at a time; true ends it all with what is there.
+    using Tell = std::function<bool(std::size_t frame, const Frame&)>;
+
+    // `freedoms`: the principal poses. `known`: what an earlier run has come to, or nothing; frames that it has are not adapted again.
+    static Frames run(const MotionProblem& problem, std::span<const double> freedoms, std::uint64_t seed, const Options& options,
+                      const Tell& tell = {}, Frames known = {});
+
+    // What of an actor bears in a pose, so that it is to be held: the parts that touch the floor or a platform.
+    static std::vector<HeldContact> contactsOf(const PoseProblem& problem, std::size_t actor, std::span<const double> freedoms);
+};
+
+// How fast and how steady a motion is, over all actors, for people and reports.
+struct MotionQuality {
+    double fastestJoint = 0;     // radians a second, of a joint against its parent, or of the root
+    double fastestRoot = 0;      // metres a second
+    double farthestContact = 0;  // metres: how far what is held goes from where it was at the representative frame
+};
+MotionQuality measureMotion(const MotionProblem& problem, const MotionAdaptation::Frames& frames, double framesPerSecond);
+
+}  // namespace fantascope::theatre

@@ -1,0 +1,146 @@
+#include "theatre/motion_adaptation.h"
+
+#include "a_scene.h"
+
+#include <gmock/gmock.h>
+
+#include <string>
+#include <vector>
+
+namespace fantascope::theatre {
+namespace {
+
+constexpr std::size_t kFrames = 7, kRepresentative = 2;
+
+// Two people side by side; one raises an arm and bends his knees, frame by frame, and each frame's shadow is its target.
+struct Dance {
+    MotionProblem motion{aScene({1.7, 1.6}), {}, kRepresentative, {}, {}};
+    std::vector<std::vector<double>> wanted;
+
+    Dance() {
+        motion.principal.dress();
+        for (std::size_t i = 0; i < kFrames; ++i) {
+            PoseProblem problem = motion.principal;
+            makeTarget(problem, wanted.emplace_back(poseAt(static_cast<double>(i))));
+            motion.targets.push_back(problem.target);
+        }
+        motion.principal.target = motion.targets[kRepresentative];
+        // A triangulation that stays: the fit has to do it all.
+        motion.triangles = {{0, 1, 2}, {0, 2, 3}};
+        motion.corners.assign(kFrames, {{-3, 0}, {3, 0}, {3, 3}, {-3, 3}});
+    }
+
+    std::vector<double> poseAt(double frame) const {
+        const Body& body = motion.principal.actors[0];
+        std::vector<double> pose = aRow(motion.principal, {-0.7, 0.7}, 2);
+        for (const char* arm : {"left shoulder", "right shoulder"})
+            pose[body.joints[body.joint(arm)].first] += 0.12 * (frame - kRepresentative);
+        pose[body.joints[body.joint("left elbow")].first] += 0.1 + 0.1 * frame;
+        return pose;
+    }
+};
+
+TEST(MotionAdaptation, FollowsAShadowThatMoves) {
+    const Dance dance;
+    std::vector<std::size_t> told;
+    const auto frames = MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, {.passes = 0},
+                                              [&](std::size_t frame, const MotionAdaptation::Frame&) {
+                                                  told.push_back(frame);
+                                                  return false;
+                                              });
+    EXPECT_THAT(told, testing::UnorderedElementsAre(0u, 1u, 3u, 4u, 5u, 6u));
+    ASSERT_EQ(frames.size(), kFrames);
+    const double still = PoseSearch::measure(
+                             [&] {
+                                 PoseProblem problem = dance.motion.principal;
+                                 problem.target = dance.motion.targets.back();
+                                 return problem;
+                             }(),
+                             dance.wanted[kRepresentative])
+                             .iou;
+    EXPECT_LT(still, 0.93) << "who stays as he was does not match";
+    for (std::size_t i = 0; i < kFrames; ++i) EXPECT_GT(frames[i]->quality.iou, 0.96) << i;
+    const MotionQuality quality = measureMotion(dance.motion, frames, 12);
+    EXPECT_LT(quality.farthestContact, 0.005);
+    EXPECT_LT(quality.fastestJoint, 12 * 0.3) << "as fast as the shadow asks for, and not much more";
+}
+
+TEST(MotionAdaptation, IsTheSameOnAnyNumberOfThreads) {
+    const Dance dance;
+    const auto bytes = [&](int threads) {
+        std::vector<double> all;
+        for (const auto& frame :
+             MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 4, {.passes = 1, .threads = threads}))
+            all.insert(all.end(), frame->freedoms.begin(), frame->freedoms.end());
+        return all;
+    };
+    EXPECT_EQ(bytes(1), bytes(2));
+}
+
+// Frames that were found each for itself tremble; fitted between both their neighbours they do so less, and match no worse.
+TEST(MotionAdaptation, IsSteadierForItsPasses) {
+    const Dance dance;
+    Rng rng(7);
+    MotionAdaptation::Frames trembling(kFrames);
+    for (std::size_t i = 0; i < kFrames; ++i) {
+        auto& frame = trembling[i].emplace();
+        frame.freedoms = i == kRepresentative ? dance.wanted[i] : nudged(dance.motion.principal, dance.wanted[i], rng, 0.04);
+    }
+    const auto tremor = [&](const MotionAdaptation::Frames& frames) {
+        double sum = 0;
+        for (std::size_t i = 1; i < kFrames; ++i)
+            for (std::size_t a = 0; a < 2; ++a) {
+                const Body& body = dance.motion.principal.actors[a];
+                const std::size_t first = dance.motion.principal.firstFreedom(a);
+                const auto ownOf = [&](std::size_t frame) {
+                    return std::span(frames[frame]->freedoms).subspan(first, body.freedoms);
+                };
+                sum += poseDifference(body, ownOf(i), poseOf(body, ownOf(i - 1)));
+            }
+        return sum;
+    };
+    const auto run = [&](int passes) {
+        return MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, {.passes = passes}, {}, trembling);
+    };
+    const auto as = run(0), after = run(2);
+    EXPECT_EQ(tremor(as), tremor(trembling)) << "what is known is not adapted again";
+    EXPECT_LT(tremor(after), 0.6 * tremor(as));
+    for (std::size_t i = 0; i < kFrames; ++i) EXPECT_GT(after[i]->quality.iou, 0.95) << i;
+}
+
+// Who is told to stop keeps what there is, and goes on from it.
+TEST(MotionAdaptation, GoesOnFromWhatIsThere) {
+    const Dance dance;
+    const MotionAdaptation::Options options{.passes = 0};
+    const auto whole = MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, options);
+    auto part = MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, options,
+                                      [](std::size_t, const MotionAdaptation::Frame&) { return true; });
+    const auto there = std::count_if(part.begin(), part.end(), [](const auto& frame) { return frame.has_value(); });
+    EXPECT_GT(there, 1);
+    EXPECT_LT(there, static_cast<std::ptrdiff_t>(kFrames));
+    std::size_t more = 0;
+    const auto rest = MotionAdaptation::run(
+        dance.motion, dance.wanted[kRepresentative], 1, options,
+        [&](std::size_t, const MotionAdaptation::Frame&) {
+            ++more;
+            return false;
+        },
+        std::move(part));
+    EXPECT_EQ(more, kFrames - static_cast<std::size_t>(there));
+    for (std::size_t i = 0; i < kFrames; ++i) EXPECT_EQ(rest[i]->freedoms, whole[i]->freedoms) << i;
+}
+
+TEST(MotionAdaptation, HoldsWhatTouchesTheGround) {
+    const Dance dance;
+    const Body& body = dance.motion.principal.actors[0];
+    std::vector<std::string> names;
+    for (const HeldContact& contact : MotionAdaptation::contactsOf(dance.motion.principal, 0, dance.wanted[0]))
+        names.push_back(body.joints[contact.joint].name);
+    EXPECT_THAT(names, testing::UnorderedElementsAre("left ankle", "right ankle"));
+    std::vector<double> lifted = dance.wanted[0];
+    lifted[1] += 0.1;
+    EXPECT_THAT(MotionAdaptation::contactsOf(dance.motion.principal, 0, lifted), testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace fantascope::theatre
