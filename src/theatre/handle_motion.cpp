@@ -71,7 +71,7 @@ private:
         if (const double away = glm::distance(nearest, place); away > kFarOutside) {
             const glm::dvec2 within = nearest / size_;
             return node.error(
-                fmt::format("handle '{}' is {:.1f} pixels outside the white, and would hold nothing; the nearest point of the "
+                fmt::format("handle '{}' is {:.0f} pixels outside the white, and would hold nothing; the nearest point of the "
                             "white is [{:.3f}, {:.3f}]: both are shares of the picture, from 0 (left, top) to 1 (right, bottom)",
                             handle, away, within.x, within.y));
         }
