@@ -82,7 +82,9 @@ void declare(CLI::App& command, Options& options) {
 
 Result<void> checkOutputs(const Options& options) {
     TRY(SequenceFolder::check(options.output));
-    const auto isSame = [](const fs::path& a, const fs::path& b) { return fs::weakly_canonical(a) == fs::weakly_canonical(b); };
+    const auto isSame = [](const fs::path& a, const fs::path& b) {
+        return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
+    };
     for (const auto& [input, what] : {std::pair(options.silhouette, "silhouette"), {options.motion, "motion"}}) {
         if (SequenceFolder::replaces(options.output, input))
             return Error(fmt::format("{}: is the {}, and would be overwritten; choose another folder than {}", input.string(),

@@ -73,7 +73,7 @@ SequenceFolder::~SequenceFolder() {
 }
 
 bool SequenceFolder::replaces(const fs::path& folder, const fs::path& file) {
-    const fs::path canonical = fs::weakly_canonical(file);
+    const fs::path canonical = fs::weakly_canonical(fs::absolute(file));
     const std::string name = canonical.filename();
     return canonical.parent_path() == fs::weakly_canonical(plain(folder)) && (name == kSequence || isFrame(name));
 }

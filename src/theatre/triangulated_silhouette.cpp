@@ -23,8 +23,6 @@ namespace {
 constexpr double kBlur = 0.6, kMargin = 4;
 // How far the triangles' border may be from the picture's: a share of their edges, and at least so many pixels, what the fine outline does not show.
 constexpr double kCoarse = 0.06, kLeastCoarse = 0.1;
-// The fine outline's points: closer to it than an eye sees.
-constexpr double kFine = 0.05;
 constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 
 double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
@@ -180,9 +178,9 @@ Result<TriangulatedSilhouette> TriangulatedSilhouette::of(const GreyImage& pictu
     TriangulatedSilhouette silhouette;
     silhouette.width = picture.width();
     silhouette.height = picture.height();
-    const Outline fine = simplified(borders, kFine, kAny);
     silhouette.rest = meshOf(borders, vertices);
-    for (const auto& ring : fine.rings) {
+    // All its points: a straight side is not straight once the triangles along it are bent.
+    for (const auto& ring : borders.rings) {
         auto& points = silhouette.outline.emplace_back();
         for (const glm::dvec2 point : ring) points.push_back(silhouette.carried(point));
     }
