@@ -282,10 +282,11 @@ Result<void> write(const Deformed& deformed) {
         return {};
     }));
     if (const auto error = interrupted(made, wanted)) return *error;
+    TRY(folder->finish(sequence));
     if (options.sheet)
         TRY(writePng(*options.sheet, motionSheet(deformed.silhouette, deformed.motion, deformed.rest, deformed.frames, size)));
     if (video) TRY(video->finish());
-    return folder->finish(sequence);
+    return {};
 }
 
 Report reportOf(const Deformed& deformed, const GreyImage& source, double seconds) {

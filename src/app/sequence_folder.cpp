@@ -24,9 +24,9 @@ bool isFrame(std::string_view name) {
     return std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-// As an absolute path without a slash at its end.
+// Where it really is, without a slash at its end.
 fs::path plain(const fs::path& folder) {
-    const fs::path path = fs::absolute(folder).lexically_normal();
+    const fs::path path = fs::weakly_canonical(fs::absolute(folder));
     return path.has_filename() ? path : path.parent_path();
 }
 
@@ -75,7 +75,7 @@ SequenceFolder::~SequenceFolder() {
 bool SequenceFolder::replaces(const fs::path& folder, const fs::path& file) {
     const fs::path canonical = fs::weakly_canonical(fs::absolute(file));
     const std::string name = canonical.filename();
-    return canonical.parent_path() == fs::weakly_canonical(plain(folder)) && (name == kSequence || isFrame(name));
+    return canonical.parent_path() == plain(folder) && (name == kSequence || isFrame(name));
 }
 
 fs::path SequenceFolder::frame(std::int64_t number) const { return making_ / fmt::format("{}{:04}{}", kBegin, number + 1, kEnd); }

@@ -195,6 +195,7 @@ TriangleMesh filled(const Outline& outline) {
 }
 
 FlatMesh meshed(const Outline& outline, double longest) {
+    constexpr int kMostSteps = 300'000;
     constexpr double kAngle = 0.125;  // the square of the sine of 20.7 degrees, with which the refinement is sure to end
     FineTriangulation triangulation;
     insertRings(outline, triangulation);
@@ -203,7 +204,9 @@ FlatMesh meshed(const Outline& outline, double longest) {
     using Criteria = CGAL::Delaunay_mesh_size_criteria_2<FineTriangulation>;
     CGAL::Delaunay_mesher_2<FineTriangulation, Criteria> mesher(triangulation, Criteria(kAngle, longest));
     mesher.init(true);
-    mesher.refine_mesh();
+    // Where rings run within rounding of themselves the refinement may try for ever; what it has by then will do.
+    for (int step = 0; step < kMostSteps && mesher.try_one_step_refine_mesh(); ++step) {
+    }
     return trianglesOf(triangulation, [](const auto& face) { return face.is_in_domain(); });
 }
 

@@ -31,7 +31,7 @@ struct FlatMesh {
 };
 
 // The region as triangles that bend well: no edge is longer than `longest`, > 0, and no angle below 20 degrees but where two sides of the
-// outline meet at a sharper one. Points are added on the outline and within (Shewchuk 2002); where rings cross, too.
+// outline meet at a sharper one, or where rings all but touch. Points are added on the outline and within (Shewchuk 2002); where rings cross, too.
 FlatMesh meshed(const Outline& outline, double longest);
 
 // The borders of what is lighter than a half, in pixels, x right, y down: where the light passes a half between the centres of two pixels. What

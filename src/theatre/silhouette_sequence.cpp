@@ -7,9 +7,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <iterator>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace fantascope::theatre {
@@ -18,35 +21,52 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kVersion = 1;
-constexpr std::size_t kMostFrames = 100'000, kMostVertices = 1'000'000;
+constexpr std::size_t kMostFrames = 100'000;
+constexpr std::uint32_t kMostVertices = 1'000'000;
 constexpr double kFarthest = 1e6;  // pixels
 constexpr double kLeastRate = 0.001, kMostRate = 1000;
 
+// Numbers with spaces between, as one text: a list of them would be a hundred times as large in memory.
+template <class Number>
+Result<std::vector<Number>> readNumbers(const ConfigNode& node, Number low, Number high) {
+    const std::string text = TRY(node.text());
+    std::vector<Number> numbers;
+    for (const char *at = text.data(), *const end = at + text.size(); at != end;) {
+        if (*at == ' ') {
+            ++at;
+            continue;
+        }
+        Number number{};
+        const auto [next, failure] = std::from_chars(at, end, number);
+        if (failure != std::errc() || (next != end && *next != ' ') || !(number >= low && number <= high))
+            return node.error(fmt::format("'{}' is no number within {} .. {}; numbers stand with a space between",
+                                          std::string_view(at, std::find(at, end, ' ')), low, high));
+        numbers.push_back(number);
+        at = next;
+    }
+    return numbers;
+}
+
 Result<std::vector<glm::uvec3>> readTriangles(const ConfigNode& node) {
-    const std::vector<ConfigNode> numbers = TRY(node.items());
+    const std::vector<std::uint32_t> numbers = TRY(readNumbers<std::uint32_t>(node, 0, kMostVertices - 1));
     if (numbers.empty() || numbers.size() % 3 != 0)
         return node.error(fmt::format("{} numbers; each triangle takes three, the vertices at its corners", numbers.size()));
     std::vector<glm::uvec3> triangles;
     for (std::size_t i = 0; i < numbers.size(); i += 3) {
-        glm::uvec3 triangle(0);
-        for (int corner = 0; corner < 3; ++corner)
-            triangle[corner] = static_cast<std::uint32_t>(
-                TRY(numbers[i + std::size_t(corner)].integer(0, static_cast<std::int64_t>(kMostVertices) - 1)));
+        const glm::uvec3 triangle(numbers[i], numbers[i + 1], numbers[i + 2]);
         if (triangle.x == triangle.y || triangle.y == triangle.z || triangle.z == triangle.x)
-            return numbers[i].error("a triangle's corners are three different vertices");
+            return node.error(fmt::format("triangle {} has the corners {}, {} and {}; they are three different vertices", i / 3,
+                                          triangle.x, triangle.y, triangle.z));
         triangles.push_back(triangle);
     }
     return triangles;
 }
 
 Result<std::vector<glm::dvec2>> readVertices(const ConfigNode& node) {
-    const std::vector<ConfigNode> numbers = TRY(node.items());
+    const std::vector<double> numbers = TRY(readNumbers(node, -kFarthest, kFarthest));
     if (numbers.size() % 2 != 0) return node.error(fmt::format("{} numbers; each vertex takes two, x and y", numbers.size()));
     std::vector<glm::dvec2> vertices;
-    for (std::size_t i = 0; i < numbers.size(); i += 2) {
-        const double x = TRY(numbers[i].number(-kFarthest, kFarthest, "px"));
-        vertices.emplace_back(x, TRY(numbers[i + 1].number(-kFarthest, kFarthest, "px")));
-    }
+    for (std::size_t i = 0; i < numbers.size(); i += 2) vertices.emplace_back(numbers[i], numbers[i + 1]);
     return vertices;
 }
 
@@ -122,16 +142,15 @@ Result<void> writeSequence(const fs::path& file, const SilhouetteSequence& seque
     for (const fs::path& picture : sequence.pictures) add("  - {}\n", fantascope::quoted(TRY(relativeTo(file, picture))));
     if (sequence.interior) {
         const auto list = [&](const auto& points, int size) {
-            text += '[';
             for (const auto& point : points)
-                for (int i = 0; i < size; ++i) add("{}{}", text.back() == '[' ? "" : ", ", shortest(point[i]));
-            text += "]\n";
+                for (int i = 0; i < size; ++i) add(" {}", shortest(point[i]));
+            text += '\n';
         };
-        add("interior:\n  triangles: ");
+        add("interior:\n  triangles:");
         list(sequence.interior->triangles, 3);
         add("  frames:\n");
         for (const auto& vertices : sequence.interior->vertices) {
-            add("    - ");
+            add("    -");
             list(vertices, 2);
         }
     }

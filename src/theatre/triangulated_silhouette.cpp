@@ -13,7 +13,6 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 namespace fantascope::theatre {
@@ -95,34 +94,33 @@ Result<void> checkBorders(const Outline& borders, const GreyImage& picture) {
 }
 
 // Coarser than the picture's outline where nothing is lost by it: what comes apart, or together, is cut finer.
-FlatMesh meshOf(const Outline& borders, double edge) {
+Result<FlatMesh> meshOf(const Outline& borders, double edge) {
     const auto islands = static_cast<std::size_t>(
         std::count_if(borders.rings.begin(), borders.rings.end(), [](const auto& ring) { return areaOf(ring) > 0; }));
-    for (double tolerance = std::max(kLeastCoarse, kCoarse * edge);; tolerance /= 2) {
-        const bool isWhole = tolerance < kLeastCoarse;
-        FlatMesh mesh = meshed(isWhole ? borders : simplified(borders, tolerance, kAny), edge);
+    for (double tolerance = std::max(kLeastCoarse, kCoarse * edge); tolerance >= kLeastCoarse / 2; tolerance /= 2) {
+        FlatMesh mesh = meshed(simplified(borders, tolerance, kAny), edge);
         const std::vector<std::size_t> numbers = islandsOf(mesh);
-        const bool isAsDrawn =
-            !numbers.empty() && *std::max_element(numbers.begin(), numbers.end()) + 1 == islands && partsOf(mesh) == islands;
-        if (isAsDrawn || isWhole) return mesh;
+        if (!numbers.empty() && *std::max_element(numbers.begin(), numbers.end()) + 1 == islands && partsOf(mesh) == islands)
+            return mesh;
     }
+    return Error("some of its parts all but touch each other; draw them a pixel or two apart, or together");
 }
 
 // Of a mesh with about so many vertices.
-FlatMesh meshOf(const Outline& borders, int vertices) {
+Result<FlatMesh> meshOf(const Outline& borders, int vertices) {
     constexpr int kRounds = 6;
     constexpr double kNear = 0.05;
     double area = 0;
     for (const auto& ring : borders.rings) area += areaOf(ring);
-    std::optional<FlatMesh> best;
+    FlatMesh best;
     double edge = 1.6 * std::sqrt(area / vertices), bestAway = std::numeric_limits<double>::max();
     for (int round = 0; round < kRounds && bestAway > kNear; ++round) {
-        FlatMesh mesh = meshOf(borders, edge);
+        FlatMesh mesh = TRY(meshOf(borders, edge));
         const double away = std::log(static_cast<double>(mesh.vertices.size()) / vertices);
         edge *= std::exp(away / 2);
         if (std::abs(away) < bestAway) bestAway = std::abs(away), best = std::move(mesh);
     }
-    return *std::move(best);
+    return best;
 }
 
 glm::dvec3 sharesAt(glm::dvec2 point, const glm::uvec3& triangle, std::span<const glm::dvec2> vertices) {
@@ -178,7 +176,7 @@ Result<TriangulatedSilhouette> TriangulatedSilhouette::of(const GreyImage& pictu
     TriangulatedSilhouette silhouette;
     silhouette.width = picture.width();
     silhouette.height = picture.height();
-    silhouette.rest = meshOf(borders, vertices);
+    silhouette.rest = TRY(meshOf(borders, vertices));
     // All its points: a straight side is not straight once the triangles along it are bent.
     for (const auto& ring : borders.rings) {
         auto& points = silhouette.outline.emplace_back();

@@ -26,7 +26,7 @@ struct TriangulatedSilhouette {
 
     // What is lighter than a half, in triangles of much the same size: about so many `vertices`, or more where the outline takes them. Islands and
     // holes stay what they are. Error: nothing white, nothing black, an island of fewer than PoseTarget::kFewest pixels, more than kMostRings
-    // islands and holes, a picture that is too large.
+    // islands and holes, parts that all but touch, a picture that is too large.
     static Result<TriangulatedSilhouette> of(const GreyImage& picture, int vertices = kVertices);
 
     // The triangle at a point, or the nearest to it, carries the point.

@@ -44,7 +44,7 @@ TEST_F(SequenceFile, comes_back_to_the_last_bit) {
     ASSERT_TRUE(again->interior);
     EXPECT_EQ(again->interior->triangles, sequence.interior->triangles);
     EXPECT_EQ(again->interior->vertices, sequence.interior->vertices);
-    EXPECT_THAT(readFile(folder_ / "sequence.yaml").value(), HasSubstr("- [1, 2, 3, 4, 5, 6, 7, 8]\n")) << "no digit too many";
+    EXPECT_THAT(readFile(folder_ / "sequence.yaml").value(), HasSubstr("- 1 2 3 4 5 6 7 8\n")) << "no digit too many";
 }
 
 TEST_F(SequenceFile, may_be_pictures_alone) {
@@ -79,14 +79,20 @@ TEST_F(SequenceFile, is_refused_with_the_place_and_what_is_wrong) {
     const auto withInterior = [&](const std::string& triangles, const std::string& frames) {
         return refusal(pictures + "interior:\n  triangles: " + triangles + "\n  frames: " + frames + "\n");
     };
-    EXPECT_EQ(withInterior("[0, 1, 2]", "[[0, 0, 1, 0, 0, 1], [0, 0, 1, 0, 0, 1]]"), "read");
-    EXPECT_THAT(withInterior("[0, 1]", "[[0, 0], [0, 0]]"), AllOf(HasSubstr("interior.triangles"), HasSubstr("takes three")));
-    EXPECT_THAT(withInterior("[0, 1, 1]", "[[0, 0], [0, 0]]"), HasSubstr("three different"));
-    EXPECT_THAT(withInterior("[0, 1, 3]", "[[0, 0, 1, 0, 0, 1], [0, 0, 1, 0, 0, 1]]"), HasSubstr("number 3 for a corner"));
-    EXPECT_THAT(withInterior("[0, 1, 2]", "[[0, 0, 1, 0, 0, 1], [0, 0, 1, 0]]"),
+    EXPECT_EQ(withInterior("0 1 2", "[0 0 1 0 0 1, 0 0 1 0 0 1]"), "read");
+    EXPECT_THAT(withInterior("0 1", "[0 0, 0 0]"), AllOf(HasSubstr("interior.triangles"), HasSubstr("takes three")));
+    EXPECT_THAT(withInterior("0 1 1", "[0 0, 0 0]"), HasSubstr("three different"));
+    EXPECT_THAT(withInterior("0 1 3", "[0 0 1 0 0 1, 0 0 1 0 0 1]"), HasSubstr("number 3 for a corner"));
+    EXPECT_THAT(withInterior("0 1 2", "[0 0 1 0 0 1, 0 0 1 0]"),
                 AllOf(HasSubstr("frames[1]"), HasSubstr("2 vertices, and the first frame has 3")));
-    EXPECT_THAT(withInterior("[0, 1, 2]", "[[0, 0, 1, 0, 0, 1], [0, 0, 1]]"), HasSubstr("takes two"));
-    EXPECT_THAT(withInterior("[0, 1, 2]", "[[0, 0, 1, 0, 0, 1]]"), HasSubstr("1 frames, and there are 2 pictures"));
+    EXPECT_THAT(withInterior("0 1 2", "[0 0 1 0 0 1, 0 0 1]"), HasSubstr("takes two"));
+    EXPECT_THAT(withInterior("0 1 2", "[0 0 1 0 0 1]"), HasSubstr("1 frames, and there are 2 pictures"));
+    EXPECT_THAT(withInterior("0 1 2", "[0 0 1 0 0 1, 0 0 1 0 0 one]"),
+                AllOf(HasSubstr("frames[1]"), HasSubstr("'one' is no number")));
+    EXPECT_THAT(withInterior("0 1 2", "[0 0 1 0 0 1, 0 0 1 0 0 1e7]"),
+                HasSubstr("'1e7' is no number within -1000000 .. 1000000"));
+    EXPECT_THAT(withInterior("0 1 2", "[0 0 1 0 0 1, 0 0 1 0 0 nan]"), HasSubstr("'nan' is no number"));
+    EXPECT_THAT(withInterior("0 1 -2", "[0 0 1 0 0 1, 0 0 1 0 0 1]"), HasSubstr("'-2' is no number"));
     EXPECT_THAT(refusal(pictures + "speed: 3\n"), HasSubstr("unknown key"));
 }
 
