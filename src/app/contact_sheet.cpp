@@ -6,12 +6,12 @@
 
 namespace fantascope::app {
 
-RgbaImage contactSheet(const std::vector<LabelledPicture>& pictures) {
+RgbaImage contactSheet(const std::vector<LabelledPicture>& pictures, int columns) {
     if (pictures.empty()) return {};
-    constexpr int kColumns = 2, kMargin = 8, kLabelHeight = 24;
+    constexpr int kMargin = 8, kLabelHeight = 24;
     constexpr Rgba8 kPaper{24, 24, 28, 255};
     const int width = pictures[0].image.width(), height = pictures[0].image.height();
-    const int columns = std::min<int>(kColumns, static_cast<int>(pictures.size()));
+    columns = std::min(columns, static_cast<int>(pictures.size()));
     const int rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
     const int stepX = width + kMargin, stepY = height + kLabelHeight + kMargin;
     RgbaImage sheet(columns * stepX + kMargin, rows * stepY + kMargin, kPaper);

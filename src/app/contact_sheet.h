@@ -12,8 +12,7 @@ struct LabelledPicture {
     RgbaImage image;
 };
 
-// The pictures in a grid, two columns, each with its label, in order from the top left; all pictures of the first one's size.
-// Empty if there are none.
-RgbaImage contactSheet(const std::vector<LabelledPicture>& pictures);
+// The pictures in a grid, each with its label, in order from the top left; all pictures of the first one's size. Empty if there are none.
+RgbaImage contactSheet(const std::vector<LabelledPicture>& pictures, int columns = 2);
 
 }  // namespace fantascope::app

@@ -1,5 +1,6 @@
 #include "app/check_command.h"
 #include "app/command.h"
+#include "app/deform_command.h"
 #include "app/devices_command.h"
 #include "app/export_command.h"
 #include "app/pattern_command.h"
@@ -15,9 +16,9 @@ namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-constexpr AddCommand kCommands[] = {addPatternCommand, addPoseCommand,     addRehearseCommand, addRunCommand,
-                                    addExportCommand,  addTemplateCommand, addPreviewCommand,  addPlotCommand,
-                                    addCheckCommand,   addDevicesCommand};
+constexpr AddCommand kCommands[] = {addPatternCommand, addPoseCommand,   addDeformCommand,   addRehearseCommand,
+                                    addRunCommand,     addExportCommand, addTemplateCommand, addPreviewCommand,
+                                    addPlotCommand,    addCheckCommand,  addDevicesCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "theatre/silhouette_sequence.h"
+
+#include "core/result.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+namespace fantascope::app {
+
+// A folder that becomes a silhouette sequence: frame-0001.png, frame-0002.png, .. and sequence.yaml. Everything is made in a folder beside it and put
+// in place by finish(); without it nothing is left behind. A sequence that was there before is replaced; other files in the folder stay.
+// Thread: thread-bound.
+class SequenceFolder {
+public:
+    // Whether open() can: the folder is not there, empty, or holds a sequence.
+    static Result<void> check(const std::filesystem::path& folder);
+    static Result<std::unique_ptr<SequenceFolder>> open(const std::filesystem::path& folder);
+    ~SequenceFolder();
+
+    // Whether finish() would write over, or remove, this file.
+    static bool replaces(const std::filesystem::path& folder, const std::filesystem::path& file);
+
+    // Where picture `number`, from 0, is to be written.
+    std::filesystem::path frame(std::int64_t number) const;
+    // `sequence` has these pictures.
+    Result<void> finish(const theatre::SilhouetteSequence& sequence);
+
+private:
+    SequenceFolder(std::filesystem::path folder, std::filesystem::path making)
+        : folder_(std::move(folder)), making_(std::move(making)) {}
+
+    std::filesystem::path folder_, making_;
+};
+
+}  // namespace fantascope::app
