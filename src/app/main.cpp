@@ -1,3 +1,4 @@
+#include "app/adapt_command.h"
 #include "app/check_command.h"
 #include "app/command.h"
 #include "app/deform_command.h"
@@ -16,9 +17,9 @@ namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-constexpr AddCommand kCommands[] = {addPatternCommand, addPoseCommand,   addDeformCommand,   addRehearseCommand,
-                                    addRunCommand,     addExportCommand, addTemplateCommand, addPreviewCommand,
-                                    addPlotCommand,    addCheckCommand,  addDevicesCommand};
+constexpr AddCommand kCommands[] = {addPatternCommand,  addPoseCommand, addDeformCommand, addAdaptCommand,
+                                    addRehearseCommand, addRunCommand,  addExportCommand, addTemplateCommand,
+                                    addPreviewCommand,  addPlotCommand, addCheckCommand,  addDevicesCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

@@ -89,6 +89,18 @@ Result<Cast> castOf(const ConfigNode& root) {
         return std::optional(file);
     });
     fields.optional().number("frames_per_second", cast.framesPerSecond, 0, 1000);
+    fields.optional().read("sequence", cast.sequence, [](const ConfigNode& node) -> Result<std::optional<Cast::Sequence>> {
+        Cast::Sequence sequence;
+        std::int64_t representative = 0, first = 0;
+        ConfigFields parts(node);
+        parts.path("file", sequence.file);
+        parts.integer("representative", representative, 1, kMostFrames);
+        parts.integer("first", first, 1, kMostFrames);
+        TRY(parts.finish());
+        sequence.representative = static_cast<std::size_t>(representative - 1);
+        sequence.first = static_cast<std::size_t>(first - 1);
+        return std::optional(sequence);
+    });
     fields.integer("seed", cast.seed, 0, std::numeric_limits<std::int64_t>::max());
     ConfigNode actors;
     fields.read("actors", actors, [](const ConfigNode& at) -> Result<ConfigNode> { return at; });
@@ -120,6 +132,10 @@ Result<void> writeCast(const fs::path& file, const Cast& cast) {
     else
         add("light: [{}, {}, {}]\n", cast.stage.light.x, cast.stage.light.y, cast.stage.light.z);
     if (cast.framesPerSecond > 0) add("frames_per_second: {}\n", cast.framesPerSecond);
+    if (cast.sequence)
+        add("sequence: {{file: {}, representative: {}, first: {}}}\n",
+            fantascope::quoted(TRY(relativeTo(file, cast.sequence->file))), cast.sequence->representative + 1,
+            cast.sequence->first + 1);
     add("seed: {}\nactors:\n", cast.seed);
     for (const Cast::Actor& actor : cast.actors) {
         const Body body = humanBody(actor.stature);

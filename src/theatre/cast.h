@@ -26,6 +26,12 @@ struct Cast {
     double framesPerSecond = 0;  // 0: a still, with one frame
     std::uint64_t seed = 0;
     std::vector<Actor> actors;
+    // What a motion follows: the silhouette that moves, the frame of it that the target is, and the one that the first poses are of; from 0.
+    struct Sequence {
+        std::filesystem::path file;  // sequence.yaml, in the cast's folder or below it
+        std::size_t representative = 0, first = 0;
+    };
+    std::optional<Sequence> sequence{};
 };
 
 // *.cast.yaml, docs/cast-format.md; a stage's file is read with it, and must be there when a cast that names it is written. A quaternion that is not of length 1, or outside a joint's limits by more than a thousandth of a degree, is

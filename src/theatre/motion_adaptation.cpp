@@ -65,18 +65,20 @@ public:
     }
 
     MotionAdaptation::Frames run() {
-        // Forwards and backwards know nothing of each other.
+        // Forwards and backwards know nothing of each other; around a loop they go until they meet.
+        const std::size_t count = frames_.size(), before = motion_.loops ? (count - 1) / 2 : motion_.representative;
         parallelFor(2, options_.threads, [&](int way) {
-            const std::size_t count = frames_.size();
-            for (std::size_t i = motion_.representative; !isStopped_;) {
-                const std::size_t from = i;
-                if (way == 0 ? i + 1 == count : i == 0) break;
-                i = way == 0 ? i + 1 : i - 1;
-                if (frames_[i]) continue;
-                MotionAdaptation::Frame frame = adapted(i, frames_[from]->freedoms);
-                const std::lock_guard lock(mutex_);
-                frames_[i] = std::move(frame);
-                if (tell_ && tell_(i, *frames_[i])) isStopped_ = true;
+            const std::size_t steps = way == 0 ? count - 1 - before : before;
+            std::size_t from = motion_.representative;
+            for (std::size_t step = 0; step < steps && !isStopped_; ++step) {
+                const std::size_t i = (from + (way == 0 ? 1 : count - 1)) % count;
+                if (!frames_[i]) {
+                    MotionAdaptation::Frame frame = adapted(i, frames_[from]->freedoms);
+                    const std::lock_guard lock(mutex_);
+                    frames_[i] = std::move(frame);
+                    if (tell_ && tell_(i, *frames_[i])) isStopped_ = true;
+                }
+                from = i;
             }
         });
         for (int pass = 0; pass < options_.passes && !isStopped_; ++pass) settle();
