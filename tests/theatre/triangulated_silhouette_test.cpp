@@ -103,24 +103,31 @@ TEST(TriangulatedSilhouette, keeps_islands_and_holes) {
 
 // Coarse triangles would join islands that are close, and cut what hangs together by a thread.
 TEST(TriangulatedSilhouette, what_is_close_stays_apart_and_what_is_thin_stays_whole) {
-    // Combs whose teeth are 2 pixels apart: straight borders need no more points than their corners, wavy ones do.
-    const auto wave = [](int y) { return static_cast<int>(std::lround(4 * std::sin(y * 0.2))); };
-    const TriangulatedSilhouette close = silhouetteOf(
-        pictureOf(
-            200, 160,
-            [&](int x, int y) { return y > 20 && y < 140 && x > 20 && x < 180 && x != 100 + wave(y) && x != 101 + wave(y); }),
-        30);
+    const auto wave = [](int at) { return static_cast<int>(std::lround(5 * std::sin(at * 0.3))); };
+    const TriangulatedSilhouette close =
+        silhouetteOf(pictureOf(200, 160, [&](int x, int y) { return isIn(x, y, 20, 20, 160, 120) && x != 100 + wave(y); }), 30);
     EXPECT_EQ(islands(close.rest), 2u);
     EXPECT_EQ(eulersNumber(close.rest), 2);
-    const TriangulatedSilhouette thin =
-        silhouetteOf(pictureOf(200, 160,
-                               [&](int x, int y) {
-                                   return isIn(x, y, 20, 20, 40, 120) || isIn(x, y, 140, 20, 40, 120) ||
-                                          (x > 30 && x < 170 && (y == 80 + wave(x) || y == 81 + wave(x)));
-                               }),
-                     30);
+    const TriangulatedSilhouette thin = silhouetteOf(pictureOf(200, 160,
+                                                               [&](int x, int y) {
+                                                                   const int away = y - 80 - wave(x);
+                                                                   return isIn(x, y, 20, 20, 40, 120) ||
+                                                                          isIn(x, y, 140, 20, 40, 120) ||
+                                                                          (x > 30 && x < 170 && (away == 0 || away == 1));
+                                                               }),
+                                                     30);
     EXPECT_EQ(islands(thin.rest), 1u);
     EXPECT_EQ(eulersNumber(thin.rest), 1);
+}
+
+// A slanting line of single pixels is less than half light wherever the picture is smoothed.
+TEST(TriangulatedSilhouette, a_line_one_pixel_wide_is_there) {
+    const GreyImage picture = pictureOf(
+        160, 120, [](int x, int y) { return isIn(x, y, 10, 20, 40, 80) || (x == y + 30 && isIn(x, y, 60, 10, 90, 100)); });
+    const TriangulatedSilhouette silhouette = silhouetteOf(picture);
+    EXPECT_EQ(islands(silhouette.rest), 2u);
+    EXPECT_EQ(silhouette.outline.size(), 2u);
+    EXPECT_GT(overlap(picture, drawn(silhouette.outlineAt(silhouette.rest.vertices), 160, 120)), 0.98);
 }
 
 TEST(TriangulatedSilhouette, carries_any_point_by_the_triangle_at_it_or_nearest_to_it) {
