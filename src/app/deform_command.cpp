@@ -155,9 +155,9 @@ struct Deformed {
     std::vector<Fold> folds{};
 };
 
-std::optional<Error> interrupted(std::int64_t made, std::int64_t wanted) {
-    if (made == wanted) return std::nullopt;
-    return Error("interrupted; nothing is written");
+Result<void> checkWhole(std::int64_t made, std::int64_t wanted) {
+    if (made < wanted) return Error("interrupted; nothing is written");
+    return {};
 }
 
 Result<void> deform(Deformed& deformed) {
@@ -177,8 +177,7 @@ Result<void> deform(Deformed& deformed) {
         deformed.frames.push_back(std::move(frame));
         return {};
     }));
-    if (const auto error = interrupted(made, wanted)) return *error;
-    return {};
+    return checkWhole(made, wanted);
 }
 
 // Widens the canvas for all that leaves the picture, and moves everything into it.
@@ -263,16 +262,21 @@ void warn(const Deformed& deformed) {
     }
 }
 
+// From the first file to the last Ctrl-C is heard by makeFrames alone: it ends the drawing, and all is removed, or comes too late and all is there.
 Result<void> write(const Deformed& deformed) {
     const Options& options = deformed.options;
     const glm::ivec2 size = deformed.canvas.size;
-    const auto folder = TRY(SequenceFolder::open(options.output));
+    std::unique_ptr<SequenceFolder> folder;
     std::unique_ptr<VideoWriter> video;
-    if (options.video) video = TRY(VideoWriter::open(*options.video, size, deformed.schedule.frameRate, VideoKind::Film));
     theatre::SilhouetteSequence sequence{{}, deformed.schedule.frameRate, deformed.motion.loops, {}};
     sequence.interior = {deformed.silhouette.rest.triangles, {}};
     const std::int64_t wanted = deformed.schedule.frames;
-    const std::int64_t made = TRY(makeFrames("draw", wanted, [&](std::int64_t number) -> Result<void> {
+    const auto open = [&]() -> Result<void> {
+        folder = TRY(SequenceFolder::open(options.output));
+        if (options.video) video = TRY(VideoWriter::open(*options.video, size, deformed.schedule.frameRate, VideoKind::Film));
+        return {};
+    };
+    const auto draw = [&](std::int64_t number) -> Result<void> {
         const DeformedFrame& frame = deformed.frames[static_cast<std::size_t>(number)];
         const GreyImage picture = pictureOf(deformed.silhouette, frame, size);
         sequence.pictures.push_back(folder->frame(number));
@@ -280,13 +284,22 @@ Result<void> write(const Deformed& deformed) {
         TRY(writePng(sequence.pictures.back(), picture));
         if (video) TRY(video->write(opaque(picture), number));
         return {};
+    };
+    const auto finish = [&]() -> Result<void> {
+        TRY(folder->finish(sequence));
+        if (options.sheet)
+            TRY(writePng(*options.sheet,
+                         motionSheet(deformed.silhouette, deformed.motion, deformed.rest, deformed.frames, size)));
+        if (video) TRY(video->finish());
+        return {};
+    };
+    const std::int64_t made = TRY(makeFrames("draw", wanted, [&](std::int64_t number) -> Result<void> {
+        if (number == 0) TRY(open());
+        TRY(draw(number));
+        if (number + 1 == wanted) TRY(finish());
+        return {};
     }));
-    if (const auto error = interrupted(made, wanted)) return *error;
-    TRY(folder->finish(sequence));
-    if (options.sheet)
-        TRY(writePng(*options.sheet, motionSheet(deformed.silhouette, deformed.motion, deformed.rest, deformed.frames, size)));
-    if (video) TRY(video->finish());
-    return {};
+    return checkWhole(made, wanted);
 }
 
 Report reportOf(const Deformed& deformed, const GreyImage& source, double seconds) {

@@ -62,6 +62,7 @@ template <class Triangulation>
 void insertRings(const Outline& outline, Triangulation& triangulation) {
     for (const auto& ring : outline.rings) {
         std::vector<Point> points;
+        points.reserve(ring.size());
         for (const glm::dvec2 point : ring) points.emplace_back(point.x, point.y);
         triangulation.insert_constraint(points.begin(), points.end(), true);
     }

@@ -97,8 +97,10 @@ Result<void> checkBorders(const Outline& borders, const GreyImage& picture) {
 Result<FlatMesh> meshOf(const Outline& borders, double edge) {
     const auto islands = static_cast<std::size_t>(
         std::count_if(borders.rings.begin(), borders.rings.end(), [](const auto& ring) { return areaOf(ring) > 0; }));
-    for (double tolerance = std::max(kLeastCoarse, kCoarse * edge); tolerance >= kLeastCoarse / 2; tolerance /= 2) {
+    double tolerance = std::max(kLeastCoarse, kCoarse * edge);
+    while (tolerance >= kLeastCoarse / 2) {
         FlatMesh mesh = meshed(simplified(borders, tolerance, kAny), edge);
+        tolerance /= 2;
         const std::vector<std::size_t> numbers = islandsOf(mesh);
         if (!numbers.empty() && *std::max_element(numbers.begin(), numbers.end()) + 1 == islands && partsOf(mesh) == islands)
             return mesh;

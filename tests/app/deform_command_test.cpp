@@ -301,8 +301,8 @@ TEST_F(DeformCommand, wrong_usage_has_a_status_of_its_own_and_points_to_the_help
 // The signal is sent once a line of progress says that it draws; as many frames take minutes.
 TEST_F(DeformCommand, ctrl_c_leaves_nothing_half) {
     motion(1000, "");
-    const Arguments endless = {"deform",  "bar.png", "--motion", "bar.motion.yaml", "-o",    "out",
-                               "--video", "v.mp4",   "--frames", "10000",           "--fps", "10"};
+    const Arguments endless = {"deform", "bar.png",  "--motion", "bar.motion.yaml", "-o", "out",        "--video",
+                               "v.mp4",  "--frames", "10000",    "--fps",           "10", "--vertices", "20"};
     EXPECT_EQ(interruptProgram(endless, folder_ / ".", 2), 1);
     EXPECT_THAT(written(), ElementsAre("bar.motion.yaml", "bar.png"));
 }

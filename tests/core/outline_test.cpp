@@ -186,6 +186,19 @@ TEST(Borders, of_greys_lie_where_the_light_passes_a_half) {
     EXPECT_THAT(tracedBorders(GreyImage(5, 5)).rings, IsEmpty());
 }
 
+// Two light pixels across a corner hang together over it where the middle is no darker than a half.
+TEST(Borders, join_what_meets_in_a_corner_unless_it_is_dark_there) {
+    const auto rings = [](float light, float dark) {
+        GreyImage picture(4, 4, 0);
+        picture.at(1, 1) = picture.at(2, 2) = light;
+        picture.at(2, 1) = picture.at(1, 2) = dark;
+        return tracedBorders(picture).rings.size();
+    };
+    EXPECT_EQ(rings(1, 0), 1u);
+    EXPECT_EQ(rings(0.6f, 0.45f), 1u);
+    EXPECT_EQ(rings(0.6f, 0.2f), 2u);
+}
+
 TEST(Drawn, is_how_much_of_a_pixel_is_covered) {
     const GreyImage picture = drawn({{{{1.25, 1}, {3.5, 1}, {3.5, 2.5}, {1.25, 2.5}}}}, 5, 4);
     const std::vector<std::vector<float>> wanted = {

@@ -4,11 +4,13 @@
 #include "pictures.h"
 #include "scratch_folder.h"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace fantascope::theatre {
 namespace {
@@ -91,13 +93,16 @@ TEST_F(MotionFile, does_not_stop_at_a_key_on_its_way) {
 }
 
 TEST_F(MotionFile, that_loops_goes_on_from_its_end_to_its_beginning) {
-    // The same keys, given once and over three rounds.
-    const std::string round = "{time: 0.25, by: [0, 0]}, {time: 0.5, by: [0, 0.1]}, {time: 0.75, by: [0.1, 0.3]}";
+    // The same keys, given once and over three rounds: through the first one it passes without a stop, coming from the last.
+    const std::vector<double> places = {0.1, 0.3, 0.2, 0};
+    std::string round, rounds;
+    for (int i = 0; i < 12; ++i) {
+        const std::string key =
+            fmt::format("{{time: {}, by: [0, {}]}}, ", 0.25 * i + 0.125, places[static_cast<std::size_t>(i % 4)]);
+        rounds += key;
+        if (i < 4) round += key;
+    }
     const auto loop = read("  - {name: a, at: [0.7, 0.3], keys: [" + round + "]}\n", "loop: true\nseconds: 1\n");
-    std::string rounds;
-    for (int i = 0; i < 3; ++i)
-        rounds += "{time: " + std::to_string(i + 0.25) + ", by: [0, 0]}, {time: " + std::to_string(i + 0.5) +
-                  ", by: [0, 0.1]}, {time: " + std::to_string(i + 0.75) + ", by: [0.1, 0.3]}, ";
     const auto wound = read("  - {name: a, at: [0.7, 0.3], keys: [" + rounds + "]}\n", "seconds: 3\n");
     ASSERT_TRUE(loop && wound);
     for (double time = 0; time < 1; time += 0.01)
