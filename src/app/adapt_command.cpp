@@ -236,10 +236,12 @@ MotionAdaptation::Frames knownOf(const Adapted& adapted) {
     if (!cast || !cast->sequence || cast->actors.size() != adapted.cast.actors.size()) return {};
     const auto& [file, representative, first] = *cast->sequence;
     const std::size_t count = cast->actors[0].poses.size(), all = adapted.motion.targets.size();
-    if (representative != adapted.motion.representative || count == all || first + count > all) return {};
-    if (freedomsAt(*cast, adapted.motion.principal, representative - first) != adapted.principal) return {};
+    const std::size_t own = (representative + all - first) % all;  // of its poses, those of the representative frame
+    if (representative != adapted.motion.representative || count >= all || first >= all || own >= count) return {};
+    if (freedomsAt(*cast, adapted.motion.principal, own) != adapted.principal) return {};
     MotionAdaptation::Frames known(all);
-    for (std::size_t i = 0; i < count; ++i) known[first + i].emplace().freedoms = freedomsAt(*cast, adapted.motion.principal, i);
+    for (std::size_t i = 0; i < count; ++i)
+        known[(first + i) % all].emplace().freedoms = freedomsAt(*cast, adapted.motion.principal, i);
     fmt::print(stderr, "adapt: goes on with {} of {} frames from {}\n", count, all, adapted.options.output.string());
     return known;
 }
@@ -255,19 +257,23 @@ void adapt(Adapted& adapted) {
     MotionAdaptation::Frames known = knownOf(adapted);
     double done =
         static_cast<double>(std::count_if(known.begin(), known.end(), [](const auto& frame) { return frame.has_value(); }));
+    std::string last = "first frame";
     MotionAdaptation::Options options = adapted.options.search;
     options.threads = adapted.options.threads;
     adapted.frames = MotionAdaptation::run(
         adapted.motion, adapted.principal, adapted.options.seed, options,
-        [&](std::size_t frame, const MotionAdaptation::Frame& found) {
-            adapted.seconds[frame] = seconds(clock.now() - start - attendance.paused());
-            const auto tell = [&](const char* how) {
-                progress.update(++done / steps, fmt::format("frame {}  IoU {:.3f}{}{}", frame + 1, found.quality.iou,
-                                                            found.quality.isValid() ? "" : " (cannot be held)", how));
-            };
-            tell("");
-            return !attendance.goesOn([&] { progress.update(done / steps, "paused, space goes on"); });
-        },
+        {.tell =
+             [&](std::size_t frame, const MotionAdaptation::Frame& found) {
+                 adapted.seconds[frame] = seconds(clock.now() - start - attendance.paused());
+                 last = fmt::format("frame {}  IoU {:.3f}{}", frame + 1, found.quality.iou,
+                                    found.quality.isValid() ? "" : " (cannot be held)");
+                 progress.update(++done / steps, last);
+             },
+         .askStop =
+             [&] {
+                 progress.update(done / steps, last);
+                 return !attendance.goesOn([&] { progress.update(done / steps, last + "  paused, space goes on"); });
+             }},
         std::move(known));
 }
 
@@ -296,13 +302,27 @@ Result<fs::path> placeSequence(const Adapted& adapted) {
     return own;
 }
 
+// The frames that are there, in the order in which they are played: they hang together, in a loop also over its end.
+std::vector<std::size_t> framesThere(const Adapted& adapted) {
+    const std::size_t all = adapted.frames.size();
+    std::size_t first = adapted.motion.representative;
+    for (std::size_t steps = 1; steps < all && adapted.frames[(first + all - 1) % all] && (first > 0 || adapted.motion.loops);
+         ++steps)
+        first = (first + all - 1) % all;
+    if (adapted.isWhole()) first = 0;
+    std::vector<std::size_t> there;
+    for (std::size_t i = first; there.size() < all && adapted.frames[i]; i = (i + 1) % all) {
+        there.push_back(i);
+        if (i + 1 == all && !adapted.motion.loops) break;
+    }
+    return there;
+}
+
 Result<void> writeMotion(const Adapted& adapted) {
-    const auto isThere = [](const auto& frame) { return frame.has_value(); };
-    const auto first = std::find_if(adapted.frames.begin(), adapted.frames.end(), isThere);
-    const auto last = std::find_if_not(first, adapted.frames.end(), isThere);
+    const std::vector<std::size_t> there = framesThere(adapted);
     theatre::Cast cast = adapted.cast;
     const fs::path sequence = TRY(placeSequence(adapted));
-    cast.sequence = {sequence, adapted.motion.representative, static_cast<std::size_t>(first - adapted.frames.begin())};
+    cast.sequence = {sequence, adapted.motion.representative, there.front()};
     cast.framesPerSecond = adapted.sequence.framesPerSecond;
     cast.seed = adapted.options.seed;
     const fs::path folder = fs::absolute(adapted.options.output).parent_path();
@@ -312,9 +332,10 @@ Result<void> writeMotion(const Adapted& adapted) {
     for (std::size_t a = 0; a < cast.actors.size(); ++a) {
         const theatre::Body& body = adapted.motion.principal.actors[a];
         cast.actors[a].poses.clear();
-        for (auto frame = first; frame != last; ++frame)
+        for (const std::size_t frame : there)
             cast.actors[a].poses.push_back(theatre::poseOf(
-                body, std::span((*frame)->freedoms).subspan(adapted.motion.principal.firstFreedom(a), body.freedoms)));
+                body,
+                std::span(adapted.frames[frame]->freedoms).subspan(adapted.motion.principal.firstFreedom(a), body.freedoms)));
     }
     return theatre::writeCast(adapted.options.output, cast);
 }
@@ -329,9 +350,7 @@ RgbaImage pictureOf(const Adapted& adapted, std::size_t frame, glm::ivec2 size) 
 
 Result<void> drawPictures(const Adapted& adapted) {
     const Options& options = adapted.options;
-    std::vector<std::size_t> there;
-    for (std::size_t i = 0; i < adapted.frames.size(); ++i)
-        if (adapted.frames[i]) there.push_back(i);
+    const std::vector<std::size_t> there = framesThere(adapted);
     if (options.sheet) {
         std::vector<LabelledPicture> cells;
         const std::size_t count = std::min(kMostCells, there.size());

@@ -4,6 +4,7 @@
 
 #include "pattern/shape_pattern.h"
 #include "theatre/cast.h"
+#include "theatre/silhouette_sequence.h"
 
 #include "core/file.h"
 #include "plot/cast_figures.h"
@@ -108,13 +109,29 @@ Result<plot::Page> drawPattern(const fs::path& file, Figure figure) {
     return figure == Figure::Trajectories ? plot::trajectoriesFigure(pattern) : plot::spectrumFigure(pattern);
 }
 
+// Of a frame of the cast's, from 0.
+Result<theatre::PoseTarget> targetOf(const theatre::Cast& cast, std::size_t frame, const fs::path& file) {
+    if (!cast.sequence) {
+        const GreyImage silhouette = TRY(readGrey(cast.target).in(file.string() + ": target"));
+        return theatre::PoseTarget::from(silhouette, cast.stage, cast.height, kMaskRows).in(cast.target.string());
+    }
+    const theatre::SilhouetteSequence sequence = TRY(theatre::readSequence(cast.sequence->file));
+    const auto& [name, representative, first] = *cast.sequence;
+    if (representative >= sequence.pictures.size())
+        return Error(
+            fmt::format("{}: has no frame {}, which the poses of {} are of", name.string(), representative + 1, file.string()));
+    std::vector<GreyImage> pictures;
+    for (const fs::path& picture : sequence.pictures) pictures.push_back(TRY(readGrey(picture)));
+    auto targets =
+        TRY(theatre::PoseTarget::ofSequence(pictures, representative, cast.stage, cast.height, kMaskRows).in(name.string()));
+    return std::move(targets[(first + frame) % targets.size()]);
+}
+
 Result<plot::CastPicture> picture(const fs::path& file, std::size_t frame) {
     const theatre::Cast cast = TRY(theatre::readCast(file));
     const std::size_t frames = cast.actors[0].poses.size();
     if (frame >= frames) return Error(fmt::format("{}: --frame {} is beyond its last, {}", file.string(), frame, frames - 1));
-    const GreyImage silhouette = TRY(readGrey(cast.target).in(file.string() + ": target"));
-    theatre::PoseTarget target =
-        TRY(theatre::PoseTarget::from(silhouette, cast.stage, cast.height, kMaskRows).in(cast.target.string()));
+    theatre::PoseTarget target = TRY(targetOf(cast, frame, file));
     theatre::PoseProblem problem{cast.stage, std::move(target), {}, {}};
     std::vector<double> freedoms;
     for (const theatre::Cast::Actor& actor : cast.actors) {

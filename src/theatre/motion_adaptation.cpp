@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <set>
@@ -44,8 +43,8 @@ struct Workshop {
 class Adaptation {
 public:
     Adaptation(const MotionProblem& motion, std::span<const double> freedoms, std::uint64_t seed,
-               const MotionAdaptation::Options& options, const MotionAdaptation::Tell& tell, MotionAdaptation::Frames known)
-        : motion_(motion), seed_(seed), options_(options), tell_(tell), frames_(std::move(known)) {
+               const MotionAdaptation::Options& options, const MotionAdaptation::Watch& watch, MotionAdaptation::Frames known)
+        : motion_(motion), seed_(seed), options_(options), watch_(watch), frames_(std::move(known)) {
         frames_.resize(motion.targets.size());
         const PoseProblem& principal = motion.principal;
         const GeneralisedCone cone(principal.stage.light, motion.triangles, motion.corners[motion.representative]);
@@ -70,18 +69,17 @@ public:
         parallelFor(2, options_.threads, [&](int way) {
             const std::size_t steps = way == 0 ? count - 1 - before : before;
             std::size_t from = motion_.representative;
-            for (std::size_t step = 0; step < steps && !isStopped_; ++step) {
+            for (std::size_t step = 0; step < steps; ++step) {
                 const std::size_t i = (from + (way == 0 ? 1 : count - 1)) % count;
                 if (!frames_[i]) {
-                    MotionAdaptation::Frame frame = adapted(i, frames_[from]->freedoms);
-                    const std::lock_guard lock(mutex_);
-                    frames_[i] = std::move(frame);
-                    if (tell_ && tell_(i, *frames_[i])) isStopped_ = true;
+                    auto frame = adapted(i, frames_[from]->freedoms);
+                    if (!frame) break;
+                    keep(i, std::move(*frame));
                 }
                 from = i;
             }
         });
-        for (int pass = 0; pass < options_.passes && !isStopped_; ++pass) settle();
+        for (int pass = 0; pass < options_.passes && !mustStop(); ++pass) settle();
         return std::move(frames_);
     }
 
@@ -113,8 +111,19 @@ private:
         return freedoms;
     }
 
-    // Line 10, from the poses of a frame beside this one.
-    MotionAdaptation::Frame adapted(std::size_t frame, const std::vector<double>& beside) const {
+    bool mustStop() {
+        const std::lock_guard lock(mutex_);
+        isStopped_ = isStopped_ || (watch_.askStop && watch_.askStop());
+        return isStopped_;
+    }
+    void keep(std::size_t i, MotionAdaptation::Frame frame) {
+        const std::lock_guard lock(mutex_);
+        frames_[i] = std::move(frame);
+        if (watch_.tell) watch_.tell(i, *frames_[i]);
+    }
+
+    // Line 10, from the poses of a frame beside this one; nothing if it is to end before that is done.
+    std::optional<MotionAdaptation::Frame> adapted(std::size_t frame, const std::vector<double>& beside) {
         PoseProblem problem = problemAt(frame);
         addNeighbour(problem, beside);
         Workshop shop(simpler(in256Rows(problem)));
@@ -125,13 +134,15 @@ private:
         if (const double now = shop.fit.run(shop.energy, other, kFitSteps); now < energy)
             found.freedoms = other, energy = now, iou = shop.iou();
         Rng rng(streamSeed(seed_, {Stream::Moves, frame}));
-        for (int i = 0; i < options_.searches && iou < options_.wanted && !isStopped_; ++i) {
+        for (int i = 0; i < options_.searches && iou < options_.wanted; ++i) {
+            if (mustStop()) return std::nullopt;
             other = found.freedoms;
             const std::vector<std::size_t> limb = anyLimb(shop.problem, rng);
             shop.search.run(shop.energy, other, limb, {0.3, 12, 6}, rng);
             if (const double now = shop.fit.run(shop.energy, other, kRefitSteps); now < energy)
                 found.freedoms = other, energy = now, iou = shop.iou();
         }
+        if (mustStop()) return std::nullopt;
         found.evaluations = shop.evaluations();
         finish(problem, found, kLastFitSteps);
         return found;
@@ -158,7 +169,7 @@ private:
             for (std::size_t i = parity; i < count; i += 2)
                 if (i != motion_.representative) which.push_back(i);
             parallelFor(static_cast<int>(which.size()), options_.threads, [&](int k) {
-                if (isStopped_) return;
+                if (mustStop()) return;
                 const std::size_t i = which[static_cast<std::size_t>(k)];
                 PoseProblem problem = problemAt(i);
                 const bool isFirst = i == 0, isLast = i + 1 == count;
@@ -173,9 +184,7 @@ private:
                     addNeighbour(problem, frames_[0]->freedoms);
                 MotionAdaptation::Frame frame = *frames_[i];
                 finish(problem, frame, kPassSteps);
-                const std::lock_guard lock(mutex_);
-                if (frame.quality.isValid() || !frames_[i]->quality.isValid()) frames_[i] = std::move(frame);
-                if (tell_ && tell_(i, *frames_[i])) isStopped_ = true;
+                keep(i, frame.quality.isValid() || !frames_[i]->quality.isValid() ? std::move(frame) : *frames_[i]);
             });
         }
     }
@@ -191,21 +200,21 @@ private:
     const MotionProblem& motion_;
     std::uint64_t seed_;
     const MotionAdaptation::Options& options_;
-    const MotionAdaptation::Tell& tell_;
+    const MotionAdaptation::Watch& watch_;
     MotionAdaptation::Frames frames_;
     std::vector<std::vector<GeneralisedCone::Coordinates>> coordinates_;  // C_n^0, of each actor's joints
     std::vector<Continuity> continuity_;                                  // without neighbours
-    std::mutex mutex_;
-    std::atomic<bool> isStopped_ = false;
+    std::mutex mutex_;                                                    // of isStopped_, the watch, and where a frame is kept
+    bool isStopped_ = false;
 };
 
 }  // namespace
 
 MotionAdaptation::Frames MotionAdaptation::run(const MotionProblem& problem, std::span<const double> freedoms, std::uint64_t seed,
-                                               const Options& options, const Tell& tell, Frames known) {
+                                               const Options& options, const Watch& watch, Frames known) {
     FANTASCOPE_CHECK(problem.representative < problem.targets.size() && problem.corners.size() == problem.targets.size(),
                      "each frame has a target and an interior");
-    return Adaptation(problem, freedoms, seed, options, tell, std::move(known)).run();
+    return Adaptation(problem, freedoms, seed, options, watch, std::move(known)).run();
 }
 
 std::vector<HeldContact> MotionAdaptation::contactsOf(const PoseProblem& problem, std::size_t actor,

@@ -46,12 +46,15 @@ public:
     };
     using Frames = std::vector<std::optional<Frame>>;  // of each frame, as far as there are any
 
-    // Told of each frame that is new, from the thread that made it, one at a time; true ends it all with what is there.
-    using Tell = std::function<bool(std::size_t frame, const Frame&)>;
+    // Both from any thread, one at a time: told of each frame that is new; and asked now and then, true ends it all with the frames that are done.
+    struct Watch {
+        std::function<void(std::size_t frame, const Frame&)> tell{};
+        std::function<bool()> askStop{};
+    };
 
     // `freedoms`: the principal poses. `known`: what an earlier run has come to, or nothing; frames that it has are not adapted again.
     static Frames run(const MotionProblem& problem, std::span<const double> freedoms, std::uint64_t seed, const Options& options,
-                      const Tell& tell = {}, Frames known = {});
+                      const Watch& watch = {}, Frames known = {});
 
     // What of an actor bears in a pose, so that it is to be held: the parts that touch the floor or a platform.
     static std::vector<HeldContact> contactsOf(const PoseProblem& problem, std::size_t actor, std::span<const double> freedoms);

@@ -43,11 +43,9 @@ struct Dance {
 TEST(MotionAdaptation, FollowsAShadowThatMoves) {
     const Dance dance;
     std::vector<std::size_t> told;
-    const auto frames = MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, {.passes = 0},
-                                              [&](std::size_t frame, const MotionAdaptation::Frame&) {
-                                                  told.push_back(frame);
-                                                  return false;
-                                              });
+    const auto frames =
+        MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, {.passes = 0},
+                              {.tell = [&](std::size_t frame, const MotionAdaptation::Frame&) { told.push_back(frame); }});
     EXPECT_THAT(told, testing::UnorderedElementsAre(0u, 1u, 3u, 4u, 5u, 6u));
     ASSERT_EQ(frames.size(), kFrames);
     const double still = PoseSearch::measure(
@@ -112,21 +110,18 @@ TEST(MotionAdaptation, IsSteadierForItsPasses) {
 TEST(MotionAdaptation, GoesOnFromWhatIsThere) {
     const Dance dance;
     const MotionAdaptation::Options options{.passes = 0};
-    const auto whole = MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, options);
-    auto part = MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, options,
-                                      [](std::size_t, const MotionAdaptation::Frame&) { return true; });
-    const auto there = std::count_if(part.begin(), part.end(), [](const auto& frame) { return frame.has_value(); });
-    EXPECT_GT(there, 1);
-    EXPECT_LT(there, static_cast<std::ptrdiff_t>(kFrames));
-    std::size_t more = 0;
-    const auto rest = MotionAdaptation::run(
-        dance.motion, dance.wanted[kRepresentative], 1, options,
-        [&](std::size_t, const MotionAdaptation::Frame&) {
-            ++more;
-            return false;
-        },
-        std::move(part));
-    EXPECT_EQ(more, kFrames - static_cast<std::size_t>(there));
+    const auto run = [&](const MotionAdaptation::Watch& watch, MotionAdaptation::Frames known) {
+        return MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, options, watch, std::move(known));
+    };
+    const auto whole = run({}, {});
+    std::size_t told = 0;
+    const auto count = [&](std::size_t, const MotionAdaptation::Frame&) { ++told; };
+    auto part = run({count, [&] { return told >= 2; }}, {});
+    EXPECT_EQ(told, 2u);
+    EXPECT_EQ(std::count_if(part.begin(), part.end(), [](const auto& frame) { return frame.has_value(); }), 3);
+    told = 0;
+    const auto rest = run({count, {}}, std::move(part));
+    EXPECT_EQ(told, kFrames - 3);
     for (std::size_t i = 0; i < kFrames; ++i) EXPECT_EQ(rest[i]->freedoms, whole[i]->freedoms) << i;
 }
 
