@@ -238,10 +238,15 @@ MotionAdaptation::Frames knownOf(const Adapted& adapted) {
     const std::size_t count = cast->actors[0].poses.size(), all = adapted.motion.targets.size();
     const std::size_t own = (representative + all - first) % all;  // of its poses, those of the representative frame
     if (representative != adapted.motion.representative || count >= all || first >= all || own >= count) return {};
-    if (freedomsAt(*cast, adapted.motion.principal, own) != adapted.principal) return {};
+    for (std::size_t a = 0; a < cast->actors.size(); ++a) {
+        const theatre::Body& body = adapted.motion.principal.actors[a];
+        const auto his = std::span(adapted.principal).subspan(adapted.motion.principal.firstFreedom(a), body.freedoms);
+        const theatre::ActorPose there = cast->actors[a].poses[own], wanted = theatre::poseOf(body, his);
+        if (there.root != wanted.root || there.turns != wanted.turns) return {};
+    }
     MotionAdaptation::Frames known(all);
     for (std::size_t i = 0; i < count; ++i)
-        known[(first + i) % all].emplace().freedoms = freedomsAt(*cast, adapted.motion.principal, i);
+        if (i != own) known[(first + i) % all].emplace().freedoms = freedomsAt(*cast, adapted.motion.principal, i);
     fmt::print(stderr, "adapt: goes on with {} of {} frames from {}\n", count, all, adapted.options.output.string());
     return known;
 }
@@ -263,7 +268,7 @@ void adapt(Adapted& adapted) {
     adapted.frames = MotionAdaptation::run(
         adapted.motion, adapted.principal, adapted.options.seed, options,
         {.tell =
-             [&](std::size_t frame, const MotionAdaptation::Frame& found) {
+             [&](std::size_t frame, const theatre::AdaptedFrame& found) {
                  adapted.seconds[frame] = seconds(clock.now() - start - attendance.paused());
                  last = fmt::format("frame {}  IoU {:.3f}{}", frame + 1, found.quality.iou,
                                     found.quality.isValid() ? "" : " (cannot be held)");

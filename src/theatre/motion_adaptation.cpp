@@ -43,7 +43,7 @@ struct Workshop {
 class Adaptation {
 public:
     Adaptation(const MotionProblem& motion, std::span<const double> freedoms, std::uint64_t seed,
-               const MotionAdaptation::Options& options, const MotionAdaptation::Watch& watch, MotionAdaptation::Frames known)
+               const MotionAdaptation::Options& options, const AdaptationWatch& watch, MotionAdaptation::Frames known)
         : motion_(motion), seed_(seed), options_(options), watch_(watch), frames_(std::move(known)) {
         frames_.resize(motion.targets.size());
         const PoseProblem& principal = motion.principal;
@@ -116,18 +116,18 @@ private:
         isStopped_ = isStopped_ || (watch_.askStop && watch_.askStop());
         return isStopped_;
     }
-    void keep(std::size_t i, MotionAdaptation::Frame frame) {
+    void keep(std::size_t i, AdaptedFrame frame) {
         const std::lock_guard lock(mutex_);
         frames_[i] = std::move(frame);
         if (watch_.tell) watch_.tell(i, *frames_[i]);
     }
 
     // Line 10, from the poses of a frame beside this one; nothing if it is to end before that is done.
-    std::optional<MotionAdaptation::Frame> adapted(std::size_t frame, const std::vector<double>& beside) {
+    std::optional<AdaptedFrame> adapted(std::size_t frame, const std::vector<double>& beside) {
         PoseProblem problem = problemAt(frame);
         addNeighbour(problem, beside);
         Workshop shop(simpler(in256Rows(problem)));
-        MotionAdaptation::Frame found;
+        AdaptedFrame found;
         found.freedoms = beside;
         double energy = shop.fit.run(shop.energy, found.freedoms, kFitSteps), iou = shop.iou();
         std::vector<double> other = throughCone(frame, beside);
@@ -149,7 +149,7 @@ private:
     }
 
     // The last steps, on the true skins, until everyone stands.
-    void finish(const PoseProblem& problem, MotionAdaptation::Frame& frame, int steps) const {
+    void finish(const PoseProblem& problem, AdaptedFrame& frame, int steps) const {
         Workshop shop(in256Rows(problem));
         shop.fit.run(shop.energy, frame.freedoms, steps);
         for (const double stiffness : kMending) {
@@ -182,7 +182,7 @@ private:
                     addNeighbour(problem, frames_[i + 1]->freedoms);
                 else if (motion_.loops && count % 2 == 0)
                     addNeighbour(problem, frames_[0]->freedoms);
-                MotionAdaptation::Frame frame = *frames_[i];
+                AdaptedFrame frame = *frames_[i];
                 finish(problem, frame, kPassSteps);
                 keep(i, frame.quality.isValid() || !frames_[i]->quality.isValid() ? std::move(frame) : *frames_[i]);
             });
@@ -200,7 +200,7 @@ private:
     const MotionProblem& motion_;
     std::uint64_t seed_;
     const MotionAdaptation::Options& options_;
-    const MotionAdaptation::Watch& watch_;
+    const AdaptationWatch& watch_;
     MotionAdaptation::Frames frames_;
     std::vector<std::vector<GeneralisedCone::Coordinates>> coordinates_;  // C_n^0, of each actor's joints
     std::vector<Continuity> continuity_;                                  // without neighbours
@@ -211,7 +211,7 @@ private:
 }  // namespace
 
 MotionAdaptation::Frames MotionAdaptation::run(const MotionProblem& problem, std::span<const double> freedoms, std::uint64_t seed,
-                                               const Options& options, const Watch& watch, Frames known) {
+                                               const Options& options, const AdaptationWatch& watch, Frames known) {
     FANTASCOPE_CHECK(problem.representative < problem.targets.size() && problem.corners.size() == problem.targets.size(),
                      "each frame has a target and an interior");
     return Adaptation(problem, freedoms, seed, options, watch, std::move(known)).run();

@@ -23,6 +23,20 @@ struct MotionProblem {
     bool loops = false;                            // after the last frame comes the first
 };
 
+// The poses of a frame.
+struct AdaptedFrame {
+    std::vector<double> freedoms;  // of all actors, one after the other
+    PoseSearch::Quality quality;
+    std::int64_t evaluations = 0;
+};
+
+// Who watches an adaptation. Both are called from any thread, one at a time: told of each frame that is new; and asked now and then, true ends it all
+// with the frames that are done.
+struct AdaptationWatch {
+    std::function<void(std::size_t frame, const AdaptedFrame&)> tell{};
+    std::function<bool()> askStop{};
+};
+
 // Algorithm 1 of Won & Lee 2016: principal poses are adapted to the frames beside theirs, those poses to the next, forwards and backwards.
 // A frame's first guess comes through the generalised cone, by inverse kinematics, and is fitted with all terms of the energy; what still does
 // not match is searched limb by limb. What bears at the representative frame is held there throughout. When all frames are there each is fitted
@@ -39,22 +53,11 @@ public:
         int passes = 2;        // of fitting between both neighbours
         int threads = 1;
     };
-    struct Frame {
-        std::vector<double> freedoms;  // of all actors, one after the other
-        PoseSearch::Quality quality;
-        std::int64_t evaluations = 0;
-    };
-    using Frames = std::vector<std::optional<Frame>>;  // of each frame, as far as there are any
-
-    // Both from any thread, one at a time: told of each frame that is new; and asked now and then, true ends it all with the frames that are done.
-    struct Watch {
-        std::function<void(std::size_t frame, const Frame&)> tell{};
-        std::function<bool()> askStop{};
-    };
+    using Frames = std::vector<std::optional<AdaptedFrame>>;  // of each frame, as far as there are any
 
     // `freedoms`: the principal poses. `known`: what an earlier run has come to, or nothing; frames that it has are not adapted again.
     static Frames run(const MotionProblem& problem, std::span<const double> freedoms, std::uint64_t seed, const Options& options,
-                      const Watch& watch = {}, Frames known = {});
+                      const AdaptationWatch& watch = {}, Frames known = {});
 
     // What of an actor bears in a pose, so that it is to be held: the parts that touch the floor or a platform.
     static std::vector<HeldContact> contactsOf(const PoseProblem& problem, std::size_t actor, std::span<const double> freedoms);

@@ -37,7 +37,7 @@ protected:
                      "  - {name: left foot, at: [0.4, 0.9]}\n  - {name: right foot, at: [0.54, 0.9]}\n"
                      "  - {name: top, at: [0.47, 0.25], keys: [{time: 0, by: [0, 0]}, {time: 0.5, by: [0.2, 0.05]}]}\n");
         EXPECT_THAT(run({"deform", "bar.png", "--motion", "bar.motion.yaml", "-o", "moves"}), exits(0));
-        EXPECT_THAT(run({"pose", "bar.png", "-o", "bar.cast.yaml", "--actors", "1", "--trials", "1", "--evaluations", "6000"}),
+        EXPECT_THAT(run({"pose", "bar.png", "-o", "bar.cast.yaml", "--actors", "1", "--trials", "1", "--evaluations", "2000"}),
                     exits(0));
     }
     static GreyImage bar(int left) {
@@ -79,9 +79,7 @@ TEST_F(AdaptCommand, poses_follow_the_silhouette_and_the_feet_stay) {
     EXPECT_LE(report["farthest_contact"].get<double>(), 0.01);
     EXPECT_LE(report["fastest_joint"].get<double>(), 600);
     ASSERT_EQ(report["frames"].size(), 6u);
-    // Who stays as he was does worse than who follows.
-    ASSERT_THAT(adapt({"--report", "still.json"}), exits(0));
-    EXPECT_GT(report["frames"][5]["iou"].get<double>(), 0.8);
+    EXPECT_GT(report["iou_worst"].get<double>(), 0.8);
     for (const char* file : {"sheet.png", "v.mp4"}) EXPECT_GT(fs::file_size(folder_ / file), 1000u) << file;
 
     // A frame of it is drawn against that frame's silhouette.
@@ -114,7 +112,6 @@ TEST_F(AdaptCommand, goes_on_with_what_was_interrupted) {
 
 // Where poses and silhouettes come from different hands.
 TEST_F(AdaptCommand, finds_the_frame_that_the_poses_are_of) {
-    const ScratchFolder pictures;
     fs::create_directories(folder_ / "shots");
     for (int i = 0; i < 4; ++i)  // narrower ones first
         EXPECT_TRUE(writePng(folder_ / fmt::format("shots/{}.png", i),
@@ -157,8 +154,6 @@ TEST_F(AdaptCommand, refuses_what_it_cannot_follow) {
     refused(shots, AllOf(HasSubstr("frame 2"), HasSubstr("all are to be of one size")));
     shot(2, pictureOf(160, 140, [](int x, int y) { return isIn(x, y, 60, 35, 30, 100); }));
     refused(shots, AllOf(HasSubstr("frame 2"), HasSubstr("below the floor")));
-    shot(2, bar(61));
-    refused({"adapt", "bar.cast.yaml", "shots", "-o", "m.cast.yaml", "--fps", "0"}, HasSubstr("--fps"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "theatre/body_mesh.h"
 #include "theatre/cast.h"
 #include "theatre/mesh_shadow.h"
+#include "theatre/pose_problem.h"
 
 #include "core/file.h"
 #include "core/image.h"

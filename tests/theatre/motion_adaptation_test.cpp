@@ -43,9 +43,8 @@ struct Dance {
 TEST(MotionAdaptation, FollowsAShadowThatMoves) {
     const Dance dance;
     std::vector<std::size_t> told;
-    const auto frames =
-        MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, {.passes = 0},
-                              {.tell = [&](std::size_t frame, const MotionAdaptation::Frame&) { told.push_back(frame); }});
+    const auto frames = MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, {.passes = 0},
+                                              {.tell = [&](std::size_t frame, const AdaptedFrame&) { told.push_back(frame); }});
     EXPECT_THAT(told, testing::UnorderedElementsAre(0u, 1u, 3u, 4u, 5u, 6u));
     ASSERT_EQ(frames.size(), kFrames);
     const double still = PoseSearch::measure(
@@ -110,12 +109,12 @@ TEST(MotionAdaptation, IsSteadierForItsPasses) {
 TEST(MotionAdaptation, GoesOnFromWhatIsThere) {
     const Dance dance;
     const MotionAdaptation::Options options{.passes = 0};
-    const auto run = [&](const MotionAdaptation::Watch& watch, MotionAdaptation::Frames known) {
+    const auto run = [&](const AdaptationWatch& watch, MotionAdaptation::Frames known) {
         return MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, options, watch, std::move(known));
     };
     const auto whole = run({}, {});
     std::size_t told = 0;
-    const auto count = [&](std::size_t, const MotionAdaptation::Frame&) { ++told; };
+    const auto count = [&](std::size_t, const AdaptedFrame&) { ++told; };
     auto part = run({count, [&] { return told >= 2; }}, {});
     EXPECT_EQ(told, 2u);
     EXPECT_EQ(std::count_if(part.begin(), part.end(), [](const auto& frame) { return frame.has_value(); }), 3);

@@ -65,7 +65,7 @@ TEST_F(WeightsFile, is_refused_with_the_place_and_the_weight) {
     EXPECT_THAT(refusal("common: {w5: -1}\n"),
                 AllOf(HasSubstr("a.weights.yaml:3:14: common.w5: -1 is out of range"), HasSubstr("0 ..")));
     EXPECT_THAT(refusal("presets:\n  cat: {w1: 1}\n  dog: {w4: -2}\n", "cat"), HasSubstr("presets.dog.w4: -2"));
-    EXPECT_THAT(refusal("common: {w13: 1}\n"), HasSubstr("unknown key"));
+    EXPECT_THAT(refusal("common: {w17: 1}\n"), HasSubstr("unknown key"));
     EXPECT_THAT(refusal("weights: {w1: 1}\n"), HasSubstr("unknown key"));
     EXPECT_THAT(refusal("presets:\n  cat: {w1: 1}\n  dog: {}\n", "cta"),
                 AllOf(HasSubstr("no preset 'cta'"), HasSubstr("it has cat, dog")));
