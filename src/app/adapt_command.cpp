@@ -2,6 +2,7 @@
 
 #include "app/attendance.h"
 #include "app/contact_sheet.h"
+#include "app/frame_run.h"
 #include "app/output.h"
 #include "app/progress.h"
 #include "app/report.h"
@@ -10,6 +11,7 @@
 
 #include "theatre/cast.h"
 #include "theatre/motion_adaptation.h"
+#include "theatre/pose_spline.h"
 #include "theatre/silhouette_sequence.h"
 #include "theatre/triangulated_silhouette.h"
 
@@ -38,6 +40,7 @@ constexpr int kLookRows = 96;   // of those that are compared to find the repres
 constexpr double kAlike = 0.9;  // intersection over union: what may be the cast's target
 constexpr glm::ivec2 kVideo{960, 540}, kCell{480, 270};
 constexpr std::size_t kMostCells = 12;
+constexpr double kLeastRate = 30;  // of the video, Hz
 
 struct Options {
     fs::path cast, sequence, output;
@@ -92,7 +95,10 @@ void declare(CLI::App& command, Options& options) {
         ->check(CLI::Range(1, 256));
     command.add_option("--sheet", options.sheet, "Also draw people and shadow at moments of the motion, side by side")
         ->check(onlyEnding(".png", "PNG"));
-    command.add_option("--video", options.video, "Also write a video of people and shadow, H.264")
+    command
+        .add_option(
+            "--video", options.video,
+            "Also write a video of people and shadow, H.264, with poses in between where there are fewer than 30 a second")
         ->check(onlyEnding(".mp4", "MP4"));
     command.add_option("--report", options.report, "Also write figures, as JSON (docs/report.md)");
     command.footer(
@@ -345,12 +351,43 @@ Result<void> writeMotion(const Adapted& adapted) {
     return theatre::writeCast(adapted.options.output, cast);
 }
 
-// People and their shadow at a frame.
-RgbaImage pictureOf(const Adapted& adapted, std::size_t frame, glm::ivec2 size) {
+// People and their shadow, against a frame's silhouette.
+RgbaImage pictureOf(const Adapted& adapted, std::size_t frame, std::span<const double> freedoms, glm::ivec2 size) {
     theatre::PoseProblem problem = adapted.motion.principal;
     problem.target = adapted.motion.targets[frame];
-    const plot::CastPicture picture = plot::castPicture(problem, adapted.frames[frame]->freedoms);
+    const plot::CastPicture picture = plot::castPicture(problem, freedoms);
     return picture.view.draw(picture.view.closeUp(double(size.x) / size.y), size.x, size.y);
+}
+
+// As it would be played: with poses in between where the frames are few.
+Result<void> film(const Adapted& adapted, const std::vector<std::size_t>& there, const fs::path& file) {
+    const auto& principal = adapted.motion.principal;
+    const double rate = std::max(adapted.sequence.framesPerSecond, kLeastRate);
+    const bool loops = adapted.motion.loops && adapted.isWhole();
+    std::vector<theatre::PoseSpline> splines;
+    for (std::size_t a = 0; a < principal.actors.size(); ++a) {
+        const theatre::Body& body = principal.actors[a];
+        std::vector<theatre::ActorPose> poses;
+        for (const std::size_t frame : there)
+            poses.push_back(theatre::poseOf(
+                body, std::span(adapted.frames[frame]->freedoms).subspan(principal.firstFreedom(a), body.freedoms)));
+        splines.emplace_back(body, principal.stage, std::move(poses), loops);
+    }
+    const auto video = TRY(VideoWriter::open(file, kVideo, rate, VideoKind::Film));
+    const double last = static_cast<double>(there.size()) - (loops ? 0 : 1), step = adapted.sequence.framesPerSecond / rate;
+    const auto count = static_cast<std::int64_t>(std::floor(last / step)) + (loops ? 0 : 1);
+    const std::int64_t made = TRY(makeFrames("video", count, [&](std::int64_t number) -> Result<void> {
+        const double frame = static_cast<double>(number) * step;
+        std::vector<double> freedoms;
+        for (theatre::PoseSpline& spline : splines) {
+            const std::vector<double> his = spline.at(frame);
+            freedoms.insert(freedoms.end(), his.begin(), his.end());
+        }
+        const std::size_t nearest = there[static_cast<std::size_t>(std::lround(frame)) % there.size()];
+        return video->write(pictureOf(adapted, nearest, freedoms, kVideo), number);
+    }));
+    if (made == 0) return {};
+    return video->finish();
 }
 
 Result<void> drawPictures(const Adapted& adapted) {
@@ -361,16 +398,13 @@ Result<void> drawPictures(const Adapted& adapted) {
         const std::size_t count = std::min(kMostCells, there.size());
         for (std::size_t k = 0; k < count; ++k) {
             const std::size_t i = there[count == 1 ? 0 : k * (there.size() - 1) / (count - 1)];
-            cells.push_back(
-                {fmt::format("frame {}, IoU {:.3f}", i + 1, adapted.frames[i]->quality.iou), pictureOf(adapted, i, kCell)});
+            cells.push_back({fmt::format("frame {}, IoU {:.3f}", i + 1, adapted.frames[i]->quality.iou),
+                             pictureOf(adapted, i, adapted.frames[i]->freedoms, kCell)});
         }
         TRY(writePng(*options.sheet, contactSheet(cells, 3)));
     }
-    if (!options.video) return {};
-    const auto video = TRY(VideoWriter::open(*options.video, kVideo, adapted.sequence.framesPerSecond, VideoKind::Film));
-    for (std::size_t k = 0; k < there.size(); ++k)
-        TRY(video->write(pictureOf(adapted, there[k], kVideo), static_cast<std::int64_t>(k)));
-    return video->finish();
+    if (options.video) TRY(film(adapted, there, *options.video));
+    return {};
 }
 
 double mean(const Adapted& adapted) {

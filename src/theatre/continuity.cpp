@@ -1,6 +1,11 @@
 #include "theatre/continuity.h"
 
+#include "theatre/balance.h"
+
 #include <glm/geometric.hpp>
+
+#include <cstdint>
+#include <set>
 
 namespace fantascope::theatre {
 namespace {
@@ -8,6 +13,18 @@ namespace {
 double squareOf(const glm::dvec3& vector) { return glm::dot(vector, vector); }
 
 }  // namespace
+
+std::vector<HeldContact> bearingParts(const Body& body, const Stage& stage, const PosedBody& posed) {
+    constexpr double kBears = 2 * kTouch;
+    std::set<std::uint32_t> joints;
+    for (std::size_t i = 0; i < body.spheres.size(); ++i) {
+        const auto& [centre, radius] = posed.spheres()[i];
+        if (centre.y - radius - stage.groundUnder(centre) <= kBears) joints.insert(body.spheres[i].joint);
+    }
+    std::vector<HeldContact> parts;
+    for (const std::uint32_t joint : joints) parts.push_back({joint, posed.place(joint), posed.turn(joint)});
+    return parts;
+}
 
 double poseDifference(const Body& body, std::span<const double> freedoms, const ActorPose& other) {
     double turns = squareOf(turnBetween(other.turns[0], rotationOf({freedoms[3], freedoms[4], freedoms[5]})));

@@ -2,6 +2,7 @@
 
 #include "theatre/actor_pose.h"
 #include "theatre/posed_body.h"
+#include "theatre/stage.h"
 
 #include <optional>
 #include <span>
@@ -15,6 +16,9 @@ struct HeldContact {
     glm::dvec3 place{0};
     glm::dquat turn{1, 0, 0, 0};
 };
+
+// The parts of a body that touch the floor or a platform: whose spheres do, or nearly, since they are near to the skin and no more.
+std::vector<HeldContact> bearingParts(const Body& body, const Stage& stage, const PosedBody& posed);
 
 // What ties an actor's pose at one frame to those at others (Won & Lee 2016, section 5).
 struct Continuity {

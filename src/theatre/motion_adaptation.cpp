@@ -17,7 +17,6 @@
 #include <array>
 #include <cmath>
 #include <mutex>
-#include <set>
 
 namespace fantascope::theatre {
 namespace {
@@ -55,7 +54,7 @@ public:
             posed.pose(body, own);
             std::vector<GeneralisedCone::Coordinates>& coordinates = coordinates_.emplace_back();
             for (std::size_t i = 0; i < body.joints.size(); ++i) coordinates.push_back(cone.coordinates(posed.place(i)));
-            continuity_.push_back({{}, poseOf(body, own), MotionAdaptation::contactsOf(principal, a, own)});
+            continuity_.push_back({{}, poseOf(body, own), bearingParts(body, principal.stage, posed)});
         }
         auto& representative = frames_[motion.representative];
         if (!representative) representative.emplace().freedoms.assign(freedoms.begin(), freedoms.end());
@@ -217,22 +216,6 @@ MotionAdaptation::Frames MotionAdaptation::run(const MotionProblem& problem, std
     return Adaptation(problem, freedoms, seed, options, watch, std::move(known)).run();
 }
 
-std::vector<HeldContact> MotionAdaptation::contactsOf(const PoseProblem& problem, std::size_t actor,
-                                                      std::span<const double> freedoms) {
-    constexpr double kBears = 2 * kTouch;  // spheres are near to the skin, no more
-    const Body& body = problem.actors[actor];
-    PosedBody posed;
-    posed.pose(body, freedoms);
-    std::set<std::uint32_t> joints;
-    for (std::size_t i = 0; i < body.spheres.size(); ++i) {
-        const auto& [centre, radius] = posed.spheres()[i];
-        if (centre.y - radius - problem.stage.groundUnder(centre) <= kBears) joints.insert(body.spheres[i].joint);
-    }
-    std::vector<HeldContact> contacts;
-    for (const std::uint32_t joint : joints) contacts.push_back({joint, posed.place(joint), posed.turn(joint)});
-    return contacts;
-}
-
 MotionQuality measureMotion(const MotionProblem& problem, const MotionAdaptation::Frames& frames, double framesPerSecond) {
     MotionQuality quality;
     const PoseProblem& principal = problem.principal;
@@ -242,7 +225,8 @@ MotionQuality measureMotion(const MotionProblem& problem, const MotionAdaptation
         const auto ownOf = [&](std::size_t frame) {
             return std::span(frames[frame]->freedoms).subspan(principal.firstFreedom(a), body.freedoms);
         };
-        const auto contacts = MotionAdaptation::contactsOf(principal, a, ownOf(problem.representative));
+        posed.pose(body, ownOf(problem.representative));
+        const auto contacts = bearingParts(body, principal.stage, posed);
         for (std::size_t i = 0; i < frames.size(); ++i) {
             if (!frames[i]) continue;
             posed.pose(body, ownOf(i));

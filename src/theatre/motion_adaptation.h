@@ -58,9 +58,6 @@ public:
     // `freedoms`: the principal poses. `known`: what an earlier run has come to, or nothing; frames that it has are not adapted again.
     static Frames run(const MotionProblem& problem, std::span<const double> freedoms, std::uint64_t seed, const Options& options,
                       const AdaptationWatch& watch = {}, Frames known = {});
-
-    // What of an actor bears in a pose, so that it is to be held: the parts that touch the floor or a platform.
-    static std::vector<HeldContact> contactsOf(const PoseProblem& problem, std::size_t actor, std::span<const double> freedoms);
 };
 
 // How fast and how steady a motion is, over all actors, for people and reports.

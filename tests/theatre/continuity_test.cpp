@@ -5,9 +5,9 @@
 #include "a_scene.h"
 
 #include <glm/geometric.hpp>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
-#include <numbers>
+#include <string>
 
 namespace fantascope::theatre {
 namespace {
@@ -37,6 +37,23 @@ TEST(PoseDifference, TakesTheShortWayAround) {
     EXPECT_NEAR(near, kTurnWeight * 0.01, 1e-12);
     for (glm::dquat& turn : other.turns) turn = -turn;
     EXPECT_NEAR(poseDifference(body, here, other), near, 1e-12);
+}
+
+TEST(BearingParts, AreThoseThatTouchTheGround) {
+    const PoseProblem problem = aScene({1.7});
+    const Body& body = problem.actors[0];
+    std::vector<double> freedoms = aRow(problem, {0}, 2);
+    PosedBody posed;
+    posed.pose(body, freedoms);
+    std::vector<std::string> names;
+    for (const HeldContact& contact : bearingParts(body, problem.stage, posed)) names.push_back(body.joints[contact.joint].name);
+    EXPECT_THAT(names, testing::UnorderedElementsAre("left ankle", "right ankle"));
+    freedoms[1] += 0.1;
+    posed.pose(body, freedoms);
+    EXPECT_THAT(bearingParts(body, problem.stage, posed), testing::IsEmpty());
+    Stage raised = problem.stage;
+    raised.platforms = {{"box", {0, 0.05, 2}, {1, 0.1, 1}}};
+    EXPECT_THAT(bearingParts(body, raised, posed), testing::SizeIs(2));
 }
 
 TEST(ContactDrift, IsInSquareMillimetresAndRadians) {

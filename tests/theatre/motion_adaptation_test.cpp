@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include <string>
 #include <vector>
 
 namespace fantascope::theatre {
@@ -122,18 +121,6 @@ TEST(MotionAdaptation, GoesOnFromWhatIsThere) {
     const auto rest = run({count, {}}, std::move(part));
     EXPECT_EQ(told, kFrames - 3);
     for (std::size_t i = 0; i < kFrames; ++i) EXPECT_EQ(rest[i]->freedoms, whole[i]->freedoms) << i;
-}
-
-TEST(MotionAdaptation, HoldsWhatTouchesTheGround) {
-    const Dance dance;
-    const Body& body = dance.motion.principal.actors[0];
-    std::vector<std::string> names;
-    for (const HeldContact& contact : MotionAdaptation::contactsOf(dance.motion.principal, 0, dance.wanted[0]))
-        names.push_back(body.joints[contact.joint].name);
-    EXPECT_THAT(names, testing::UnorderedElementsAre("left ankle", "right ankle"));
-    std::vector<double> lifted = dance.wanted[0];
-    lifted[1] += 0.1;
-    EXPECT_THAT(MotionAdaptation::contactsOf(dance.motion.principal, 0, lifted), testing::IsEmpty());
 }
 
 }  // namespace
