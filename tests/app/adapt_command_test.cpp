@@ -30,15 +30,22 @@ using Arguments = std::vector<std::string>;
 // Somebody whose shadow is about a bar, and the bar that bends to the right within six frames.
 class AdaptCommand : public testing::Test {
 protected:
-    AdaptCommand() {
-        EXPECT_TRUE(writePng(folder_ / "bar.png", bar(60)));
-        folder_.file("bar.motion.yaml",
-                     "fantascope: motion\nversion: 1\nseconds: 0.5\nframes_per_second: 10\nhandles:\n"
-                     "  - {name: left foot, at: [0.4, 0.9]}\n  - {name: right foot, at: [0.54, 0.9]}\n"
-                     "  - {name: top, at: [0.47, 0.25], keys: [{time: 0, by: [0, 0]}, {time: 0.5, by: [0.2, 0.05]}]}\n");
-        EXPECT_THAT(run({"deform", "bar.png", "--motion", "bar.motion.yaml", "-o", "moves"}), exits(0));
-        EXPECT_THAT(run({"pose", "bar.png", "-o", "bar.cast.yaml", "--actors", "1", "--trials", "1", "--evaluations", "2000"}),
-                    exits(0));
+    AdaptCommand() { fs::copy(prepared() / ".", folder_ / ".", fs::copy_options::recursive); }
+    // What every test begins with, made once.
+    static const ScratchFolder& prepared() {
+        static const ScratchFolder folder;
+        if (fs::exists(folder / "bar.cast.yaml")) return folder;
+        EXPECT_TRUE(writePng(folder / "bar.png", bar(60)));
+        folder.file("bar.motion.yaml",
+                    "fantascope: motion\nversion: 1\nseconds: 0.5\nframes_per_second: 10\nhandles:\n"
+                    "  - {name: left foot, at: [0.4, 0.9]}\n  - {name: right foot, at: [0.54, 0.9]}\n"
+                    "  - {name: top, at: [0.47, 0.25], keys: [{time: 0, by: [0, 0]}, {time: 0.5, by: [0.2, 0.05]}]}\n");
+        EXPECT_THAT(runProgram({"deform", "bar.png", "--motion", "bar.motion.yaml", "-o", "moves"}, folder / "."), exits(0));
+        EXPECT_THAT(
+            runProgram({"pose", "bar.png", "-o", "bar.cast.yaml", "--actors", "1", "--trials", "1", "--evaluations", "2000"},
+                       folder / "."),
+            exits(0));
+        return folder;
     }
     static GreyImage bar(int left) {
         return pictureOf(160, 140, [=](int x, int y) { return isIn(x, y, left, 30, 30, 100); });
