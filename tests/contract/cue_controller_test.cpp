@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <set>
 #include <utility>
@@ -172,7 +173,7 @@ class ForgetsItsLamps : public BetweenControllers {
     using BetweenControllers::BetweenControllers;
     DeviceStatus status() const override {
         const DeviceStatus status = good_->status();
-        if (status.losses != std::exchange(losses_, status.losses))
+        if (status.losses != losses_.exchange(status.losses))
             for (const int button : {1, 2}) good_->light(button, {});
         return status;
     }
@@ -184,7 +185,7 @@ class ForgetsItsLamps : public BetweenControllers {
         status();
         good_->light(button, light);
     }
-    mutable int losses_ = 0;
+    mutable std::atomic<int> losses_ = 0;
 };
 TEST(CueControllerContract, finds_a_controller_that_is_dark_after_its_return) {
     EXPECT_THAT(brokenBy<ForgetsItsLamps>(),

@@ -105,7 +105,11 @@ public:
                 "\nP: {0}\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber={1:02x}\\n\n"
                 "\nP: {2}\nE: SUBSYSTEM=hid\nH: report_descriptor={3}\n",
                 interfaceFolder(i).substr(4), i, hidFolder(i).substr(4), hex(device_.reportDescriptors[i]));
+        // Somebody answers before there is a device to be found: umockdev ends a program that asks too early.
         GError* error = nullptr;
+        handler_ = umockdev_ioctl_base_new();
+        g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(&Plugged::onIoctl), this);
+        FANTASCOPE_CHECK(umockdev_testbed_attach_ioctl(bed_, node_.c_str(), handler_, &error) != 0, error->message);
         FANTASCOPE_CHECK(umockdev_testbed_add_from_string(bed_, entries.c_str(), &error) != 0, error->message);
         // usbfs says by POLLOUT that an answer can be fetched; a pipe says so unless it is full.
         unlink(file().c_str());
@@ -113,9 +117,6 @@ public:
         pipe_ = ::open(file().c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
         FANTASCOPE_CHECK(fcntl(pipe_, F_SETPIPE_SZ, kPipe) == kPipe, "no small pipe");
         showAnswers();
-        handler_ = umockdev_ioctl_base_new();
-        g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(&Plugged::onIoctl), this);
-        FANTASCOPE_CHECK(umockdev_testbed_attach_ioctl(bed_, node_.c_str(), handler_, &error) != 0, error->message);
         umockdev_testbed_uevent(bed_, folder_.c_str(), "add");
     }
     ~Plugged() {
