@@ -109,14 +109,18 @@ public:
         GError* error = nullptr;
         handler_ = umockdev_ioctl_base_new();
         g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(&Plugged::onIoctl), this);
+        { const std::lock_guard lock(mutex_); }  // umockdev's thread takes it, and sees all of the above
         FANTASCOPE_CHECK(umockdev_testbed_attach_ioctl(bed_, node_.c_str(), handler_, &error) != 0, error->message);
         FANTASCOPE_CHECK(umockdev_testbed_add_from_string(bed_, entries.c_str(), &error) != 0, error->message);
         // usbfs says by POLLOUT that an answer can be fetched; a pipe says so unless it is full.
-        unlink(file().c_str());
-        FANTASCOPE_CHECK(mkfifo(file().c_str(), 0600) == 0, "no pipe");
-        pipe_ = ::open(file().c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-        FANTASCOPE_CHECK(fcntl(pipe_, F_SETPIPE_SZ, kPipe) == kPipe, "no small pipe");
-        showAnswers();
+        {
+            const std::lock_guard lock(mutex_);  // somebody may ask already
+            unlink(file().c_str());
+            FANTASCOPE_CHECK(mkfifo(file().c_str(), 0600) == 0, "no pipe");
+            pipe_ = ::open(file().c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+            FANTASCOPE_CHECK(fcntl(pipe_, F_SETPIPE_SZ, kPipe) == kPipe, "no small pipe");
+            showAnswers();
+        }
         umockdev_testbed_uevent(bed_, folder_.c_str(), "add");
     }
     ~Plugged() {
