@@ -52,14 +52,6 @@ struct Options {
     std::optional<fs::path> sheet, video, report;
 };
 
-CLI::Validator onlyEnding(const std::string& ending, const std::string& type) {
-    return {[ending](const std::string& file) {
-                return fs::path(file).extension() == ending ? std::string()
-                                                            : fmt::format("'{}' does not end in {}", file, ending);
-            },
-            type};
-}
-
 void declare(CLI::App& command, Options& options) {
     command.add_option("CAST", options.cast, "The principal poses, *.cast.yaml, as 'fantascope pose' finds them")->required();
     command

@@ -48,14 +48,6 @@ struct Options {
     std::optional<fs::path> sheet, video, report;
 };
 
-CLI::Validator onlyEnding(const std::string& ending, const std::string& type) {
-    return {[ending](const std::string& file) {
-                return fs::path(file).extension() == ending ? std::string()
-                                                            : fmt::format("'{}' does not end in {}", file, ending);
-            },
-            type};
-}
-
 void declare(CLI::App& command, Options& options) {
     command.add_option("SILHOUETTE", options.silhouette, "What is to move, white on black: PNG or JPEG")->required();
     command.add_option("--motion", options.motion, "Its handles and how they move, *.motion.yaml (docs/motion-format.md)")

@@ -18,6 +18,14 @@ CLI::Validator onlyYaml(const std::string& example) {
             "YAML"};
 }
 
+CLI::Validator onlyEnding(const std::string& ending, const std::string& type) {
+    return {[ending](const std::string& file) {
+                return fs::path(file).extension() == ending ? std::string()
+                                                            : fmt::format("'{}' does not end in {}", file, ending);
+            },
+            type};
+}
+
 Result<void> checkWritable(const fs::path& file) {
     std::error_code ignored;
     if (fs::is_directory(file, ignored)) return Error(fmt::format("{}: cannot be written: it is a folder", file.string()));

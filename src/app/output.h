@@ -12,6 +12,8 @@ namespace fantascope::app {
 
 // Keeps a slip of the finger from writing over a picture: a name that ends in .yaml, such as `example`.
 CLI::Validator onlyYaml(const std::string& example);
+// The same of one ending, such as ".mp4"; `type`: how the help calls it.
+CLI::Validator onlyEnding(const std::string& ending, const std::string& type);
 
 // Whether `file` could be written, as far as can be told before the work; its folder need not be there yet.
 Result<void> checkWritable(const std::filesystem::path& file);
