@@ -372,7 +372,7 @@ Result<void> film(const Adapted& adapted, const std::vector<std::size_t>& there,
         const double frame = static_cast<double>(number) * step;
         std::vector<double> freedoms;
         for (theatre::PoseSpline& spline : splines) {
-            const std::vector<double> his = spline.at(frame);
+            const std::vector<double>& his = spline.at(frame);
             freedoms.insert(freedoms.end(), his.begin(), his.end());
         }
         const std::size_t nearest = there[static_cast<std::size_t>(std::lround(frame)) % there.size()];
