@@ -1,7 +1,7 @@
 #version 450 core
-// The light that a shadow takes away.
+// A shadow's colour: what it looks like, or what it takes away.
 
-layout(location = 2) uniform vec3 taken;
-layout(location = 0) out vec4 sum;
+layout(location = 2) uniform vec3 shadow;
+layout(location = 0) out vec4 colour;
 
-void main() { sum = vec4(taken, 1.0); }
+void main() { colour = vec4(shadow, 1.0); }

@@ -1,10 +1,14 @@
 #version 450 core
-// Throws a point from a light onto the screen, and the screen onto the output's picture.
+// Throws a point from a light onto the screen, and the screen onto the output's picture. With INSIDE what is beyond its edges is cut off.
 
 layout(location = 0) in vec4 position;  // metres, stage frame
 
 layout(location = 0) uniform mat4x3 screenFromStage;  // (X, Y, W); W: metres from the light
 layout(location = 1) uniform mat3 clipFromScreen;     // (x, y, w)
+#ifdef INSIDE
+layout(location = 3) uniform vec3 inside[4];  // dot with clip (x, y, w) is positive inside, before a mesh bends it
+out float gl_ClipDistance[4];
+#endif
 
 // What is nearer to the light than this throws no shadow that could be drawn.
 const float nearest = 0.02;
@@ -14,6 +18,9 @@ invariant gl_Position;
 void main() {
     vec3 clip = clipFromScreen * (screenFromStage * position);
     gl_Position = vec4(clip.xy, clip.z - nearest, clip.z);  // depth: 0 at the light, growing along each ray
+#ifdef INSIDE
+    for (int edge = 0; edge < 4; ++edge) gl_ClipDistance[edge] = dot(inside[edge], clip);
+#endif
 #ifdef BENT
     gl_Position = bent(gl_Position);
 #endif

@@ -1,16 +1,17 @@
 #include "render/drawn_shadow.h"
 
 #include "render/facet_mesh.h"
-#include "render/gpu/canvas_surface.h"
 #include "render/gpu/screen_painter.h"
 #include "render/gpu/shadow_caster.h"
+#include "render/gpu/shadow_sum.h"
 #include "theatre/body_mesh.h"
 #include "theatre/moving_cast.h"
 
-#include "core/check.h"
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/matrix.hpp>
 
-#include <glm/geometric.hpp>
-
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -59,10 +60,11 @@ glm::mat4x3 screenFromStage(const glm::dvec3& light) {
     return {{light.z, 0, 0}, {0, light.z, 0}, {-light.x, -light.y, -1}, {0, 0, light.z}};
 }
 
-// One lamp, ready to be cast.
+// One lamp.
 struct Shining {
     std::vector<ShadowCaster::Light> points;
-    std::vector<glm::vec3> taken;  // of each piece, by each point
+    std::vector<glm::vec3>
+        colours;  // of each piece: its shadow as a layer picture holds it, or what it takes away of each point's light
     bool alike = true;
 };
 
@@ -72,32 +74,46 @@ public:
                                                        DrawingTools& tools) {
         std::unique_ptr<DrawnShadow> made(new DrawnShadow(source, tools));
         const std::vector<ShadowCaster::Piece> pieces = made->pieces();
-        made->caster_.emplace(TRY(ShadowCaster::create(pieces, place.size, tools.samples, tools.bend, tools.programs)));
-        made->painter_.emplace(TRY(gpu::ScreenPainter::create(made->caster_->samples(), tools.bend, tools.programs)));
+        made->caster_.emplace(TRY(ShadowCaster::create(pieces, tools.bend, tools.programs)));
+        // The shadow of one point of light is painted as it is; those of many add up first.
+        const bool sums = source.lamps.size() > 1 || pointsOf(source.lamps[0], source.samples).size() > 1;
+        if (sums) made->sum_.emplace(TRY(gpu::ShadowSum::create(place.size, tools.samples)));
+        made->painter_.emplace(TRY(gpu::ScreenPainter::create(sums ? made->sum_->samples() : 0, tools.bend, tools.programs)));
         made->shine(pieces.size());
         made->follow(place);
-        made->moveStanding();
+        made->moveStanding(pieces.size());
         return std::unique_ptr<DrawnSource>(std::move(made));
     }
 
     void paint(const Moment& moment, gpu::LayerPicture& picture) override {
         tools_.uploads.time([&] { move(frameAt(source_, moment.ofLayer)); });
-        caster_->begin();
-        for (const Shining& lamp : lamps_)
-            for (const ShadowCaster::Light& light : lamp.points) caster_->cast(light, lamp.taken, lamp.alike);
-        caster_->end();
+        if (sum_) {
+            sum_->begin();
+            for (const Shining& lamp : lamps_)
+                for (const ShadowCaster::Light& light : lamp.points) sum_->add(*caster_, light, lamp.colours, lamp.alike);
+            sum_->end();
+        }
         picture.begin();
-        painter_->paint(caster_->texture(), dark_, bright_, lit_);
+        painter_->paint(screen_, sum_ ? sum_->texture() : 0);
+        if (!sum_) caster_->paint(lamps_[0].points[0], lamps_[0].colours, inside_);
     }
 
     void follow(const CanvasPlace& place) override {
         painter_->follow(place);
+        const glm::dmat3 clip = clipFromCanvas(1, place);
         const glm::dvec2 size = source_.to - source_.from;
         const glm::dmat3 canvasFromScreen(1 / size.x, 0, 0, 0, -1 / size.y, 0, -source_.from.x / size.x, source_.to.y / size.y,
                                           1);
-        const glm::mat3 clipFromScreen(clipFromCanvas(1, place) * canvasFromScreen);
         for (Shining& lamp : lamps_)
-            for (ShadowCaster::Light& light : lamp.points) light.clipFromScreen = clipFromScreen;
+            for (ShadowCaster::Light& light : lamp.points) light.clipFromScreen = glm::mat3(clip * canvasFromScreen);
+        // A line e of the canvas, dot(e, (x, y, 1)) = 0, is the line inverse(H)^T e of its image.
+        const CanvasPart& part = place.warp.shape().part;
+        const glm::dvec4 lit(screen_.lit);
+        const glm::dvec2 low = glm::max(part.low, glm::dvec2(lit)), high = glm::min(part.high, glm::dvec2(lit.z, lit.w));
+        const glm::dmat3 clipFromEdge = glm::transpose(glm::inverse(clip));
+        const std::array<glm::dvec3, 4> edges = {{{1, 0, -low.x}, {-1, 0, high.x}, {0, 1, -low.y}, {0, -1, high.y}}};
+        std::transform(edges.begin(), edges.end(), inside_.begin(),
+                       [&](const glm::dvec3& edge) { return glm::vec3(clipFromEdge * edge); });
     }
 
 private:
@@ -123,19 +139,20 @@ private:
     void shine(std::size_t pieces) {
         for (const ShadowSource::Lamp& lamp : source_.lamps) {
             Shining& shining = lamps_.emplace_back();
-            const std::vector<glm::dvec3> points = pointsOf(lamp, source_.samples);
-            for (const glm::dvec3& point : points) shining.points.push_back({screenFromStage(point), {}});
-            const float share = 1 / static_cast<float>(points.size());
-            shining.taken.assign(pieces, share * (lamp.light - lamp.shadow));
+            for (const glm::dvec3& point : pointsOf(lamp, source_.samples))
+                shining.points.push_back({screenFromStage(point), {}});
             shining.alike = lamp.actors.empty();
-            for (std::size_t i = 0; i < lamp.actors.size(); ++i) shining.taken[i] = share * (lamp.light - lamp.actors[i]);
-            dark_ += lamp.shadow;
-            bright_ += lamp.light - lamp.shadow;
+            shining.colours.assign(pieces, lamp.shadow);
+            std::copy(lamp.actors.begin(), lamp.actors.end(), shining.colours.begin());
+            const float share = 1 / static_cast<float>(shining.points.size());
+            for (glm::vec3& colour : shining.colours) colour = sum_ ? share * (lamp.light - colour) : glm::sqrt(colour);
+            screen_.dark += lamp.shadow;
+            screen_.bright += lamp.light - lamp.shadow;
         }
         if (const auto& lit = source_.cast->stage.lit) {
             const glm::dvec2 size = source_.to - source_.from;
-            lit_ = {(lit->from.x - source_.from.x) / size.x, (source_.to.y - lit->to.y) / size.y,
-                    (lit->to.x - source_.from.x) / size.x, (source_.to.y - lit->from.y) / size.y};
+            screen_.lit = {(lit->from.x - source_.from.x) / size.x, (source_.to.y - lit->to.y) / size.y,
+                           (lit->to.x - source_.from.x) / size.x, (source_.to.y - lit->from.y) / size.y};
         }
     }
 
@@ -147,9 +164,9 @@ private:
         caster_->move(piece, std::span(parts).first(2 * motions.size()));
     }
 
-    void moveStanding() {
+    void moveStanding(std::size_t pieces) {
         const theatre::DualQuaternion none = theatre::motionOf({1, 0, 0, 0}, glm::dvec3(0));
-        for (std::size_t piece = firstStanding_; piece < lamps_[0].taken.size(); ++piece) give(piece, {&none, 1});
+        for (std::size_t piece = firstStanding_; piece < pieces; ++piece) give(piece, {&none, 1});
     }
 
     void move(double frame) {
@@ -165,6 +182,7 @@ private:
                 give(held++, {&motion, 1});
             }
         }
+        caster_->moved();
     }
 
     ShadowSource source_;
@@ -173,10 +191,11 @@ private:
     std::vector<theatre::PlacedProp> standing_;
     std::size_t firstStanding_ = 0;
     std::optional<ShadowCaster> caster_;
+    std::optional<gpu::ShadowSum> sum_;
     std::optional<gpu::ScreenPainter> painter_;
     std::vector<Shining> lamps_;
-    glm::vec3 dark_{0}, bright_{0};
-    glm::vec4 lit_{-1e6f, -1e6f, 1e6f, 1e6f};  // of the canvas
+    gpu::ScreenPainter::Screen screen_;
+    std::array<glm::vec3, 4> inside_{};  // of the canvas's shown part, and of what is lit
 };
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <glm/gtc/type_ptr.hpp>
 
+#include <string>
+
 namespace fantascope::render::gpu {
 namespace {
 
@@ -14,15 +16,16 @@ constexpr GLuint kTaken = 0;
 }  // namespace
 
 Result<ScreenPainter> ScreenPainter::create(int samples, const Bend& bend, ProgramCache& programs) {
-    return ScreenPainter(TRY(CanvasSurface::create("screen.frag", fmt::format("#define SAMPLES {}\n", samples), bend, programs)));
+    const std::string taken = samples > 0 ? fmt::format("#define TAKEN\n#define SAMPLES {}\n", samples) : "";
+    return ScreenPainter(TRY(CanvasSurface::create("screen.frag", taken, bend, programs)));
 }
 
-void ScreenPainter::paint(unsigned taken, glm::vec3 dark, glm::vec3 bright, glm::vec4 lit) {
+void ScreenPainter::paint(const Screen& screen, unsigned taken) {
     surface_.use();
-    glUniform3fv(kDark, 1, glm::value_ptr(dark));
-    glUniform3fv(kBright, 1, glm::value_ptr(bright));
-    glUniform4fv(kLit, 1, glm::value_ptr(lit));
-    glBindTextureUnit(kTaken, taken);
+    glUniform3fv(kDark, 1, glm::value_ptr(screen.dark));
+    glUniform3fv(kBright, 1, glm::value_ptr(screen.bright));
+    glUniform4fv(kLit, 1, glm::value_ptr(screen.lit));
+    if (taken != 0) glBindTextureUnit(kTaken, taken);
     surface_.draw();
 }
 

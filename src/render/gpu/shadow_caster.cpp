@@ -19,20 +19,22 @@ constexpr unsigned kTogether = 64;  // vertices of a work group
 
 // Of assets/shaders/shadow.vert and shadow.frag.
 constexpr GLuint kPosition = 0;
-constexpr GLint kScreenFromStage = 0, kClipFromScreen = 1, kTaken = 2;
-
-constexpr int kMostMarks = 255;  // a stencil of 8 bits, 0 being nobody's
+constexpr GLint kScreenFromStage = 0, kClipFromScreen = 1, kColour = 2, kInside = 3;
 
 static_assert(sizeof(ShadowCaster::Vertex) == 8 * sizeof(float), "the shader reads two vectors a vertex");
 
 }  // namespace
 
-Result<ShadowCaster> ShadowCaster::create(std::span<const Piece> pieces, glm::ivec2 size, int samples, const Bend& bend,
-                                          ProgramCache& programs) {
-    ShadowCaster caster(size, bend);
+Result<ShadowCaster> ShadowCaster::create(std::span<const Piece> pieces, const Bend& bend, ProgramCache& programs) {
+    ShadowCaster caster(bend);
+    const auto made = [&](const std::string& definitions) -> Result<Programs> {
+        return Programs{
+            TRY(programs.drawing("shadow.vert", "shadow.frag", definitions)),
+            TRY(programs.drawing("shadow.vert", "shadow.frag", definitions + TRY(Bend::definitions(programs.folder()))))};
+    };
     caster.skin_ = TRY(programs.compute("skin.comp", fmt::format("#define JOINTS {}\n", kMostJoints)));
-    caster.straight_ = TRY(programs.drawing("shadow.vert", "shadow.frag"));
-    caster.bent_ = TRY(programs.drawing("shadow.vert", "shadow.frag", TRY(Bend::definitions(programs.folder()))));
+    caster.anywhere_ = TRY(made(""));
+    caster.inside_ = TRY(made("#define INSIDE\n"));
 
     std::vector<Vertex> vertices;
     std::vector<glm::uvec3> triangles;
@@ -55,16 +57,6 @@ Result<ShadowCaster> ShadowCaster::create(std::span<const Piece> pieces, glm::iv
     glEnableVertexArrayAttrib(array, kPosition);
     glVertexArrayAttribFormat(array, kPosition, 4, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(array, kPosition, 0);
-
-    glTextureStorage2DMultisample(caster.taken_.name(), samples, GL_RGBA32F, size.x, size.y, GL_TRUE);
-    glGetTextureLevelParameteriv(caster.taken_.name(), 0, GL_TEXTURE_SAMPLES, &caster.samples_);
-    glNamedRenderbufferStorageMultisample(caster.depth_.name(), samples, GL_DEPTH24_STENCIL8, size.x, size.y);
-    const GLuint framebuffer = caster.framebuffer_.name();
-    glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, caster.taken_.name(), 0);
-    glNamedFramebufferRenderbuffer(framebuffer, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, caster.depth_.name());
-    if (glCheckNamedFramebufferStatus(framebuffer, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        return Error(
-            fmt::format("{} x {} pixels with {} samples: this OpenGL cannot draw shadows in them", size.x, size.y, samples));
     return caster;
 }
 
@@ -78,69 +70,39 @@ void ShadowCaster::move(std::size_t piece, std::span<const glm::vec4> motions) {
     glDispatchCompute((part.vertexCount + kTogether - 1) / kTogether, 1, 1);
 }
 
-void ShadowCaster::begin() {
-    constexpr GLfloat kNothing[] = {0, 0, 0, 0};
-    glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.name());
-    glViewport(0, 0, size_.x, size_.y);
-    glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, 0, kNothing);
-    glClearNamedFramebufferfi(framebuffer_.name(), GL_DEPTH_STENCIL, 0, 1, 0);
-    mark_ = 0;
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE);
-    glEnable(GL_STENCIL_TEST);
-    glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+void ShadowCaster::moved() { glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT); }
+
+void ShadowCaster::paint(const Light& light, std::span<const glm::vec3> colours, const std::array<glm::vec3, 4>& inside) {
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    for (GLuint plane = 0; plane < inside.size(); ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
+    draw(inside_, light, colours, &inside);
+    for (GLuint plane = 0; plane < inside.size(); ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
 }
 
-void ShadowCaster::cast(const Light& light, std::span<const glm::vec3> taken, bool alike) {
+void ShadowCaster::draw(const Light& light, std::span<const glm::vec3> colours) { draw(anywhere_, light, colours, nullptr); }
+
+void ShadowCaster::draw(const Programs& programs, const Light& light, std::span<const glm::vec3> colours,
+                        const std::array<glm::vec3, 4>* inside) {
+    FANTASCOPE_CHECK(colours.size() == parts_.size(), "one colour for each piece");
+    // Depth is 0 at the light.
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     const bool bends = bend_->any();
-    glUseProgram(bends ? bent_ : straight_);
+    glUseProgram(bends ? programs.bent : programs.straight);
     if (bends) bend_->use();
     glUniformMatrix4x3fv(kScreenFromStage, 1, GL_FALSE, glm::value_ptr(light.screenFromStage));
     glUniformMatrix3fv(kClipFromScreen, 1, GL_FALSE, glm::value_ptr(light.clipFromScreen));
+    if (inside != nullptr) glUniform3fv(kInside, static_cast<GLsizei>(inside->size()), glm::value_ptr((*inside)[0]));
     glBindVertexArray(vertexArray_.name());
     // The screen has y up, as OpenGL: the warp of an upright picture does not turn over.
     glFrontFace(glm::determinant(light.clipFromScreen) > 0 ? GL_CCW : GL_CW);
-
-    // A sample that this light's shadow has reached is marked, so that no second mesh takes away the same light.
-    const GLint none = 0;
-    if (++mark_ > kMostMarks) {
-        glClearNamedFramebufferiv(framebuffer_.name(), GL_STENCIL, 0, &none);
-        mark_ = 1;
-    }
-    if (!alike) {
-        constexpr GLfloat kFarthest = 1;
-        glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &kFarthest);
-        glEnable(GL_DEPTH_TEST);
-        glDepthFunc(GL_LESS);
-        glDepthMask(GL_TRUE);
-        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-        glDisable(GL_STENCIL_TEST);
-        draw(taken);
-        glEnable(GL_STENCIL_TEST);
-        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        glDepthFunc(GL_EQUAL);
-    }
-    glStencilFunc(GL_NOTEQUAL, mark_, 0xff);
-    draw(taken);
-    glDisable(GL_DEPTH_TEST);
-}
-
-void ShadowCaster::draw(std::span<const glm::vec3> taken) {
-    FANTASCOPE_CHECK(taken.size() == parts_.size(), "one colour for each piece");
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const Part& part = parts_[i];
         (part.closed ? glEnable : glDisable)(GL_CULL_FACE);
-        glUniform3fv(kTaken, 1, glm::value_ptr(taken[i]));
+        glUniform3fv(kColour, 1, glm::value_ptr(colours[i]));
         glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.indexCount), GL_UNSIGNED_INT,
                        reinterpret_cast<const void*>(part.firstIndex * sizeof(std::uint32_t)));
     }
-}
-
-void ShadowCaster::end() {
-    glDisable(GL_BLEND);
-    glDisable(GL_STENCIL_TEST);
 }
 
 }  // namespace fantascope::render::gpu

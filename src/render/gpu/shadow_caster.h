@@ -10,6 +10,7 @@
 #include <glm/mat4x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include <array>
 #include <cstdint>
@@ -18,8 +19,7 @@
 
 namespace fantascope::render::gpu {
 
-// Shadows of meshes that follow joints, straight through an output's warp: what they take away of lamps' light, in a picture of the output. A frame: move() every
-// piece that moved; begin(); cast() once for each point of light; end(). Thread: the context's.
+// Meshes that follow joints, and their shadows, straight through a screen and an output's warp. Thread: the context's.
 class ShadowCaster {
 public:
     static constexpr std::size_t kMostJoints = 64;
@@ -35,50 +35,48 @@ public:
         std::vector<glm::uvec3> triangles;
         bool closed = false;  // anticlockwise as seen from outside: half of them need not be drawn
     };
-    // One point of light.
+    // One point of light, and the screen before it.
     struct Light {
         glm::mat4x3 screenFromStage{
-            1};  // (X, Y, W), the shadow being at X / W, Y / W on the screen; W is the distance from the light along its axis, metres
+            1};  // (X, Y, W), the shadow being at X / W, Y / W on the screen; W: metres from the light, along its axis
         glm::mat3 clipFromScreen{1};  // (x, y, w), w >= 1 where W is 1
     };
 
-    // `size`: pixels of the output; `samples`: a pixel. `bend` and `programs` outlive it. Error: more of them than this OpenGL has; a shader that does
-    // not compile.
-    static Result<ShadowCaster> create(std::span<const Piece> pieces, glm::ivec2 size, int samples, const Bend& bend,
-                                       ProgramCache& programs);
+    // `bend` and `programs` outlive it. Error: a shader does not compile.
+    static Result<ShadowCaster> create(std::span<const Piece> pieces, const Bend& bend, ProgramCache& programs);
 
-    // How each joint of a piece has moved from rest: two vectors each, the parts w, x, y, z of a unit dual quaternion.
+    // How each joint of a piece has moved from rest: two vectors each, the parts w, x, y, z of a unit dual quaternion. Before the first drawing, and
+    // whenever it has moved.
     void move(std::size_t piece, std::span<const glm::vec4> motions);
-    // Makes the picture the target of drawing; nothing is in shadow.
-    void begin();
-    // What each piece takes away in its shadow, linear light. Where shadows of pieces meet, that of the piece nearest to the light counts; `alike`: all
-    // pieces take the same, so that it need not be found out which that is.
-    void cast(const Light& light, std::span<const glm::vec3> taken, bool alike);
-    void end();
+    // After the last move() of a frame.
+    void moved();
 
-    int samples() const { return samples_; }
-    unsigned texture() const { return taken_.name(); }  // several samples a pixel
+    // Paints a light's shadow into the picture that has begun: of pieces that are behind each other the one nearest to the light. `colours`: of each
+    // piece, as the picture holds them. `inside`: four half planes that bound where it is seen; a point with clip coordinates (x, y, z, w) is in when
+    // dot(inside[i], (x, y, w)) >= 0 for each.
+    void paint(const Light& light, std::span<const glm::vec3> colours, const std::array<glm::vec3, 4>& inside);
+    // The same into the target that is set, by the tests that are set, wherever it falls.
+    void draw(const Light& light, std::span<const glm::vec3> colours);
 
 private:
     struct Part {
         unsigned firstVertex, vertexCount, firstIndex, indexCount;
         bool closed;
     };
+    struct Programs {
+        unsigned straight, bent;
+    };
 
-    ShadowCaster(glm::ivec2 size, const Bend& bend) : size_(size), bend_(&bend) {}
-    void draw(std::span<const glm::vec3> taken);
+    explicit ShadowCaster(const Bend& bend) : bend_(&bend) {}
+    void draw(const Programs& programs, const Light& light, std::span<const glm::vec3> colours,
+              const std::array<glm::vec3, 4>* inside);
 
-    glm::ivec2 size_;
-    int samples_ = 0;
     const Bend* bend_;
-    unsigned skin_ = 0, straight_ = 0, bent_ = 0;
+    unsigned skin_ = 0;
+    Programs anywhere_{}, inside_{};
     std::vector<Part> parts_;
     VertexArray vertexArray_;
     Buffer atRest_, moved_, indices_;
-    MultisampleTexture taken_;
-    Renderbuffer depth_;
-    Framebuffer framebuffer_;
-    int mark_ = 0;  // of the samples that this light has reached already
 };
 
 }  // namespace fantascope::render::gpu
