@@ -19,7 +19,7 @@ Time positionAt(const VideoSource& source, Time time) {
 
 namespace {
 
-// A motion in frames, there and back where it plays so.
+// A motion in frames, there and back where it plays so: it begins to move within a frame and comes to rest within one, at either end.
 double framesOf(const ShadowSource& source) {
     const std::size_t count = source.cast->actors.front().poses.size();
     const auto last = static_cast<double>(count - 1);
@@ -29,7 +29,7 @@ double framesOf(const ShadowSource& source) {
         case ShadowSource::Play::Loop:
             return last > 0 ? last + 1 : 0;
         case ShadowSource::Play::ToAndFro:
-            return 2 * last;
+            return last > 0 ? 2 * (last + 1) : 0;
     }
     return last;
 }
@@ -43,7 +43,9 @@ double frameAt(const ShadowSource& source, Time time) {
         std::max(0.0, std::chrono::duration<double>(time).count()) * source.speed * source.cast->framesPerSecond;
     if (source.play == ShadowSource::Play::Once) return std::min(played, whole);
     const double frame = std::fmod(played, whole);
-    return source.play == ShadowSource::Play::Loop ? frame : std::min(frame, whole - frame);
+    if (source.play == ShadowSource::Play::Loop) return frame;
+    const double half = whole / 2, way = std::min(frame, whole - frame), left = half - way;
+    return way < 1 ? 0.5 * way * way : left < 1 ? half - 1 - 0.5 * left * left : way - 0.5;
 }
 
 Time lengthOf(const ShadowSource& source) {

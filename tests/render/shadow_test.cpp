@@ -148,11 +148,15 @@ TEST(Shadow, plays_once_in_a_loop_or_to_and_fro) {
     EXPECT_DOUBLE_EQ(at(0.28125), 4.5) << "between the last and the first";
     EXPECT_DOUBLE_EQ(at(0.375), 1);
     source.play = ShadowSource::Play::ToAndFro;
-    EXPECT_DOUBLE_EQ(at(0.25), 4);
-    EXPECT_DOUBLE_EQ(at(0.375), 2);
-    EXPECT_DOUBLE_EQ(at(0.5), 0);
-    EXPECT_DOUBLE_EQ(at(0.625), 2);
-    EXPECT_EQ(lengthOf(source), std::chrono::milliseconds(500));
+    EXPECT_DOUBLE_EQ(at(0.03125), 0.125) << "from rest";
+    EXPECT_DOUBLE_EQ(at(0.15625), 2);
+    EXPECT_DOUBLE_EQ(at(0.3125), 4);
+    EXPECT_DOUBLE_EQ(at(0.46875), 2);
+    EXPECT_DOUBLE_EQ(at(0.625), 0);
+    EXPECT_DOUBLE_EQ(at(0.78125), 2);
+    EXPECT_EQ(lengthOf(source), std::chrono::milliseconds(625));
+    for (double second = 0; second < 1.3; second += 0.001)
+        EXPECT_LE(std::abs(at(second + 0.001) - at(second)), 0.016 + 1e-9) << "never faster than its frames are";
     source.cast = std::make_shared<const Cast>(aCast(1, 1, 1));
     for (const auto play : {ShadowSource::Play::Once, ShadowSource::Play::Loop, ShadowSource::Play::ToAndFro}) {
         source.play = play;
