@@ -66,14 +66,31 @@ Result<void> Stage::checkHolders(std::size_t actors) const {
     return {};
 }
 
-ScreenFrame::ScreenFrame(const Stage& stage, double left, double top, double pixel, int width, int height)
-    : light_(stage.light),
+glm::dmat4 Stage::screenFromStage(std::size_t beam) const {
+    const Screen& screen = screenOf(beam);
+    const glm::dvec3 origin = screen.screenFromStage(glm::dvec3(0));
+    glm::dmat4 matrix(1);
+    for (glm::length_t i = 0; i < 3; ++i) {
+        glm::dvec3 axis(0);
+        axis[i] = 1;
+        matrix[i] = glm::dvec4(screen.screenFromStage(axis) - origin, 0);
+    }
+    matrix[3] = glm::dvec4(origin, 1);
+    return matrix;
+}
+
+ScreenFrame::ScreenFrame(const Stage& stage, double left, double top, double pixel, int width, int height, std::size_t beam)
+    : light_(stage.beam(beam).light),
+      cosine_(std::cos(stage.screenOf(beam).turn)),
+      sine_(std::sin(stage.screenOf(beam).turn)),
       left_(left),
       top_(top),
       pixel_(pixel),
       width_(width),
-      height_(height),
-      foot_(pixelAt(light_.x, light_.y)),
-      focus_(light_.z / pixel) {}
+      height_(height) {
+    const glm::dvec3 light = stage.lightOnScreen(beam);
+    foot_ = pixelAt(light.x, light.y);
+    focus_ = light.z / pixel;
+}
 
 }  // namespace fantascope::theatre
