@@ -53,7 +53,7 @@ CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const dou
     const auto things = scene.things();
     const glm::dvec3 colour = actorColour(problem.actors.size());
     for (const auto& thing : things) picture.view.props.push_back({thing.mesh, colour});
-    if (!things.empty()) picture.actors.push_back({scene.propShadow(), things.size() == 1 ? things[0].name : "props", {}});
+    if (!things.empty()) picture.actors.push_back({scene.beam(0).propShadow(), things.size() == 1 ? things[0].name : "props", {}});
     picture.lines = {fmt::format("IoU {:.3f}", quality.iou), fmt::format("contour off by {:.1f} px of 256,", quality.contourMean),
                      fmt::format("{:.0f} px at most", quality.contourMost),
                      fallen.empty() ? "everyone can stand so" : "cannot stand so:" + fallen};

@@ -7,10 +7,12 @@
 
 namespace fantascope::theatre {
 
-glm::dvec3 Screen::screenFromStage(const glm::dvec3& point) const {
-    const double c = std::cos(turn), s = std::sin(turn), x = point.x - at.x, z = point.z - at.y;
-    return {c * x - s * z, point.y, s * x + c * z};
+glm::dvec3 Screen::turnedFromStage(const glm::dvec3& direction) const {
+    const double c = std::cos(turn), s = std::sin(turn);
+    return {c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z};
 }
+
+glm::dvec3 Screen::screenFromStage(const glm::dvec3& point) const { return turnedFromStage(point - glm::dvec3(at.x, 0, at.y)); }
 
 glm::dvec3 Screen::stageFromScreen(const glm::dvec3& point) const {
     const double c = std::cos(turn), s = std::sin(turn);

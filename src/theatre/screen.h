@@ -19,6 +19,7 @@ struct Screen {
     bool isCurved() const { return radius != 0; }
     glm::dvec3 screenFromStage(const glm::dvec3& point) const;
     glm::dvec3 stageFromScreen(const glm::dvec3& point) const;
+    glm::dvec3 turnedFromStage(const glm::dvec3& direction) const;
     // How far a point of the stage is before the screen, negative behind it, and the unit direction in which that grows. What a cylinder's half
     // ends at goes on to both sides as a wall.
     double distance(const glm::dvec3& point, glm::dvec3& outward) const;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +21,10 @@ glm::dvec3 inAxesOf(const Stage::Platform& platform, const glm::dvec3& point) {
 }
 
 }  // namespace
+
+glm::dvec3 Stage::Platform::point(const glm::dvec3& share) const {
+    return centre + glm::angleAxis(turn, glm::dvec3(0, 1, 0)) * (share * size);
+}
 
 bool Stage::Platform::isUnder(double x, double z) const {
     const glm::dvec3 local = inAxesOf(*this, {x, centre.y, z});

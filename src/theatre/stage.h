@@ -28,6 +28,8 @@ struct Stage {
         glm::dvec3 centre{0}, size{1};
         double turn = 0;
 
+        // Of its box, which is from -0.5 to 0.5 along each axis.
+        glm::dvec3 point(const glm::dvec3& share) const;
         double top() const { return centre.y + 0.5 * size.y; }
         bool isUnder(double x, double z) const;  // seen from above
         // The signed distance to it, negative inside, and the unit direction in which it grows. One that stands on the floor goes on below it.

@@ -92,12 +92,12 @@ TEST(Depth, InOthersSumsSquares) {
 }
 
 TEST(Depth, InTheStageIsOfFloorAndScreen) {
-    EXPECT_NEAR(depthInStage(Balls({{0, 0.09, 1}}).posed), 100, 1e-6);
-    EXPECT_NEAR(depthInStage(Balls({{0, 1, 0.08}}).posed), 400, 1e-6);
-    EXPECT_NEAR(depthInStage(Balls({{0, -0.1, 1}}).posed), 40000, 1e-6);
-    EXPECT_NEAR(deepestInStage(Balls({{0, 1, 0.08}, {1, 0.06, 1}}).posed), 0.04, 1e-9);
-    EXPECT_EQ(depthInStage(Balls({{0, 0.1, 0.1}}).posed), 0);
-    EXPECT_EQ(deepestInStage(Balls({{0, 5, 5}}).posed), 0);
+    EXPECT_NEAR(depthInStage({}, Balls({{0, 0.09, 1}}).posed), 100, 1e-6);
+    EXPECT_NEAR(depthInStage({}, Balls({{0, 1, 0.08}}).posed), 400, 1e-6);
+    EXPECT_NEAR(depthInStage({}, Balls({{0, -0.1, 1}}).posed), 40000, 1e-6);
+    EXPECT_NEAR(deepestInStage({}, Balls({{0, 1, 0.08}, {1, 0.06, 1}}).posed), 0.04, 1e-9);
+    EXPECT_EQ(depthInStage({}, Balls({{0, 0.1, 0.1}}).posed), 0);
+    EXPECT_EQ(deepestInStage({}, Balls({{0, 5, 5}}).posed), 0);
 }
 
 TEST(OwnerChanges, CountAround) {
