@@ -288,17 +288,22 @@ Result<void> PoseTarget::checkSize(int width, int height) {
 
 TargetPlace TargetPlace::on(const Stage& stage, std::size_t beam) {
     if (beam == 0) return {};
-    constexpr double kBefore = 1.8;  // the screen, metres: the middle of where a search begins
+    constexpr double kBefore = 1.8;  // the first screen, metres: the middle of where a search begins
     glm::dvec3 people(stage.light.x, 0, std::min(kBefore, 0.5 * stage.light.z));
-    if (stage.standing)
-        people.x = std::clamp(people.x, stage.standing->from.x, stage.standing->to.x),
-        people.z = std::clamp(people.z, stage.standing->from.y, stage.standing->to.y);
+    if (const auto& area = stage.standing) {
+        const glm::dvec2 floor = glm::clamp(glm::dvec2(people.x, people.z), area->from, area->to);
+        people.x = floor.x, people.z = floor.y;
+    }
+    const auto larger = [&](std::size_t i) {
+        const double light = stage.lightOnScreen(i).z;
+        return light / (light - stage.screenOf(i).screenFromStage(people).z);
+    };
+    const double scale = larger(beam);
+    if (!(scale > 0) || !std::isfinite(scale)) return {beam};  // they are behind the light
     const glm::dvec3 light = stage.lightOnScreen(beam), at = stage.screenOf(beam).screenFromStage(people);
-    if (at.z >= light.z) return {beam, {}};  // they throw none
-    const double shadow = light.x + (at.x - light.x) * light.z / (light.z - at.z);
-    const auto middle = unrolledFromFlat(stage.screenOf(beam), light, {shadow, light.y});
-    if (!middle) return {beam, {}};
-    return {beam, middle->x};
+    const auto middle = unrolledFromFlat(stage.screenOf(beam), light, {light.x + scale * (at.x - light.x), light.y});
+    if (!middle) return {beam};
+    return {beam, middle->x, scale / larger(0)};
 }
 
 Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage, double height, int rows,

@@ -27,7 +27,9 @@ struct TargetPlace {
     std::size_t beam = 0;
     std::optional<double> middle{};  // none: before the light
 
-    // Where a further beam throws the shadow of people who stand before the first beam's light.
+    double scale = 1;  // how many times as large as on the first beam's screen a shadow is there
+
+    // Where a beam throws the shadow of people who stand before the first beam's light.
     static TargetPlace on(const Stage& stage, std::size_t beam);
 };
 
