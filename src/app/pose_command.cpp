@@ -116,7 +116,7 @@ void declare(CLI::App& command, Options& options) {
         ->allow_extra_args(false);
     command
         .add_option("--further-height", options.furtherHeights,
-                    "Of each of them, metres (default: as much area for the actors as the first has on its screen)")
+                    "Of each of them, metres (default: people are as high as on the first screen)")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(CLI::Range(Troupe::kLeastHeight, Troupe::kMostHeight));
@@ -568,17 +568,16 @@ Result<void> checkFurther(const Options& options, std::size_t beams) {
     return {};
 }
 
-// `height`: with which it would have the first target's area.
+// People are as high on all screens: with the first target's height goes each other's.
 theatre::Cast::Target furtherTarget(const Options& options, const theatre::Stage& stage, std::size_t beam, double height) {
     const theatre::TargetPlace place = theatre::TargetPlace::on(stage, beam);
     theatre::Cast::Target target{options.targetOf(beam), 0, 0};
-    constexpr double kWhole = 100;  // centimetres
-    target.height = options.furtherHeights.empty() ? std::clamp(std::round(kWhole * height * place.scale) / kWhole,
-                                                                Troupe::kLeastHeight, Troupe::kMostHeight)
-                                                   : options.furtherHeights[beam - 1];
-    target.middle = options.furtherMiddles.empty()
-                        ? std::round(kWhole * place.middle.value_or(stage.lightOnScreen(beam).x)) / kWhole
-                        : options.furtherMiddles[beam - 1];
+    const auto inCentimetres = [](double metres) { return std::round(100 * metres) / 100; };
+    target.height = options.furtherHeights.empty()
+                        ? std::clamp(inCentimetres(height * place.scale), Troupe::kLeastHeight, Troupe::kMostHeight)
+                        : options.furtherHeights[beam - 1];
+    target.middle = options.furtherMiddles.empty() ? inCentimetres(place.middle.value_or(stage.lightOnScreen(beam).x))
+                                                   : options.furtherMiddles[beam - 1];
     return target;
 }
 
@@ -596,15 +595,18 @@ Result<void> run(const Options& options) {
         TRY(checkStage(options, *stage));
     }
     TRY(checkFurther(options, stage ? stage->further.size() : 0));
-    std::vector<double> areas;  // wherever the light is
-    for (std::size_t i = 0; i < silhouettes.size(); ++i)
-        areas.push_back(TRY(PoseTarget::from(silhouettes[i], {}, 1, kRows).in(options.targetOf(i).string())).area /
-                        (kRows * kRows));
-    const Troupe troupe = TRY(Troupe::of(areas[0], options.actors, options.height, options.statures));
+    // What people have to fill, in squares of the first silhouette's height, wherever the light is: on average over the beams.
+    double area = 0;
+    for (std::size_t i = 0; i < silhouettes.size(); ++i) {
+        const PoseTarget target = TRY(PoseTarget::from(silhouettes[i], {}, 1, kRows).in(options.targetOf(i).string()));
+        const double scale = i == 0 ? 1 : theatre::TargetPlace::on(*stage, i).scale;
+        area += scale * scale * target.area / (kRows * kRows) / static_cast<double>(silhouettes.size());
+    }
+    const Troupe troupe = TRY(Troupe::of(area, options.actors, options.height, options.statures));
     Found found{options, stage, troupe.height, {}};
     for (std::size_t i = 1; i < silhouettes.size(); ++i)
-        found.further.push_back(furtherTarget(options, *stage, i, troupe.height * std::sqrt(areas[0] / areas[i])));
-    TRY(search(found, silhouettes, areas[0], troupe, start, clock));
+        found.further.push_back(furtherTarget(options, *stage, i, troupe.height));
+    TRY(search(found, silhouettes, area, troupe, start, clock));
 
     TRY(writeCastWithMaterial(found, found.best().freedoms, options.output, options.output));
     TRY(drawPictures(found));
