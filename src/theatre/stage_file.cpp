@@ -139,8 +139,8 @@ Result<void> checkBeam(const ConfigNode& node, const Stage& stage, const Stage::
         for (std::size_t k = 0; k < stage.screens.size(); ++k)
             if (stage.screens[k].distance(stage.beam(i).light, outward) < 0)
                 return node.error(
-                    fmt::format("{} would stand before the light of beam {}, and keep it from its own; move one of them",
-                                nameOf(k, stage), i + 1));
+                    fmt::format("the light of beam {} is behind {}; that would keep it from its own screen: move one of them",
+                                i + 1, nameOf(k, stage)));
     if (!stage.further.empty() && beam.screen == 0 && beam.light == stage.light)
         return node.error(
             "it is the first beam over again: its shadow would be the same; move its light, or give it a screen of its own");

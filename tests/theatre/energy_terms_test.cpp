@@ -105,7 +105,7 @@ TEST(Depth, InTheStageIsOfFloorAndScreen) {
     EXPECT_NEAR(depthInStage(stage, Balls({{1.92, 1, 0.09}}).posed), 500, 1e-6);
     EXPECT_NEAR(deepestInStage(stage, Balls({{1.92, 1, 0.09}}).posed), 0.02, 1e-9);
     stage.screens[0].radius = 5;
-    EXPECT_NEAR(depthInStage(stage, Balls({{-3, 1, 1.08}}).posed), 400, 5) << "the hollow one is 1 m before its plane there";
+    EXPECT_NEAR(depthInStage(stage, Balls({{-3 + 0.6 * 0.08, 1, 1 + 0.8 * 0.08}}).posed), 400, 1e-6);
 }
 
 TEST(OwnerChanges, CountAround) {

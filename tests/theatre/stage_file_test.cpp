@@ -138,17 +138,17 @@ TEST_F(StageFile, says_all_of_further_beams_and_curved_screens) {
     const auto stage = read(R"(light: [0, 0, 7]
 screen: {radius: 4}
 further_beams:
-  - {light: [-6, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: -90, radius: -5}}
+  - {light: [-6, 0, 5], screen: {at: [2.5, 0, 5], turned: -90, radius: -5}}
   - {light: [3, 0, 6.3]}
-  - projector: {lens: [-5, 0.3, 1], picture: {x: [-2, 2], y: [0, 3]}}
-    screen: {at: [2.5, 0, 1.5], turned: -90, radius: -5}
+  - projector: {lens: [-5, 0.3, 5], picture: {x: [-2, 2], y: [0, 3]}}
+    screen: {at: [2.5, 0, 5], turned: -90, radius: -5}
 )");
     ASSERT_TRUE(stage) << stage.error().message();
     EXPECT_EQ(stage->light, glm::dvec3(0, 0, 7));
     ASSERT_EQ(stage->beams(), 4u);
     ASSERT_EQ(stage->screens.size(), 2u) << "the same screen once";
     EXPECT_EQ(stage->screens[0], (Screen{{0, 0}, 0, 4}));
-    EXPECT_EQ(stage->screens[1], (Screen{{2.5, 1.5}, radians(-90), -5}));
+    EXPECT_EQ(stage->screens[1], (Screen{{2.5, 5}, radians(-90), -5}));
     EXPECT_EQ(&stage->screenOf(2), &stage->screens[0]);
     EXPECT_EQ(&stage->screenOf(3), &stage->screens[1]);
     EXPECT_EQ(stage->beam(2).light, glm::dvec3(3, 0, 6.3));
@@ -174,9 +174,9 @@ TEST_F(StageFile, is_refused_where_a_beam_cannot_be) {
     EXPECT_THAT(beam("light: [-6, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: -90, radius: 0.5}"),
                 AllOf(HasSubstr("radius"), HasSubstr("a pillar")));
     EXPECT_THAT(beam("light: [-6, 0, 1.5], screen: {at: [-1, 0, 1.5], turned: -90}"),
-                HasSubstr("screen 2 would stand before the light of beam 1"));
+                HasSubstr("the light of beam 1 is behind screen 2"));
     EXPECT_THAT(beam("light: [-6, 0, -3], screen: {at: [2.5, 0, 1.5], turned: -90}"),
-                HasSubstr("which is at z = 0, would stand before the light of beam 2"));
+                HasSubstr("the light of beam 2 is behind the screen, which is at z = 0"));
     EXPECT_THAT(refusal(light + "further_beams: []\n"), HasSubstr("further_beams"));
     EXPECT_THAT(refusal(light + "screen: {radius: 0}\n"), AllOf(HasSubstr("screen.radius"), HasSubstr("leave 'radius' out")));
     EXPECT_THAT(refusal(light + "screen: {at: [0, 0, 1]}\n"), HasSubstr("unknown key"));
