@@ -194,6 +194,11 @@ std::vector<double> freedomsAt(const theatre::Cast& cast, const theatre::PosePro
 
 Result<Adapted> readAll(const Options& options) {
     theatre::Cast cast = TRY(theatre::readCast(options.cast));
+    if (cast.stage.beams() > 1 || cast.stage.screens[0].isCurved())
+        return Error(
+            fmt::format("{}: its stage has {}, and poses follow a silhouette that moves on one flat screen; find them with "
+                        "'fantascope pose' on a stage with one light and without a 'radius'",
+                        options.cast.string(), cast.stage.beams() > 1 ? "further_beams" : "a curved screen"));
     if (cast.actors[0].poses.size() != 1)
         return Error(fmt::format("{}: has {} poses of each actor; principal poses are those of one frame", options.cast.string(),
                                  cast.actors[0].poses.size()));

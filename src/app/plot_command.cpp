@@ -133,6 +133,12 @@ Result<plot::CastPicture> picture(const fs::path& file, std::size_t frame) {
     if (frame >= frames) return Error(fmt::format("{}: --frame {} is beyond its last, {}", file.string(), frame, frames - 1));
     theatre::PoseTarget target = TRY(targetOf(cast, frame, file));
     theatre::PoseProblem problem{cast.stage, std::move(target), {}, {}};
+    for (const auto& [picture, height, middle] : cast.further) {
+        const GreyImage silhouette = TRY(readGrey(picture).in(file.string() + ": further_targets"));
+        const theatre::TargetPlace place{1 + problem.further.size(), middle};
+        problem.further.push_back(
+            TRY(theatre::PoseTarget::from(silhouette, cast.stage, height, kMaskRows, place).in(picture.string())));
+    }
     std::vector<double> freedoms;
     for (const theatre::Cast::Actor& actor : cast.actors) {
         problem.actors.push_back(theatre::humanBody(actor.stature));
@@ -149,8 +155,8 @@ Result<plot::Page> drawCast(const fs::path& file, std::size_t frame, Figure figu
     const auto has = [&](Figure part) { return figure == part || figure == Figure::Cast; };
     if (has(Figure::Stage)) pages.push_back(plot::stageFigure(cast.view, cast.view.overview(plot::kStageAspect)));
     if (figure == Figure::Side) pages.push_back(plot::stageFigure(cast.view, cast.view.fromTheSide(plot::kStageAspect)));
-    if (has(Figure::Shadow)) pages.push_back(plot::shadowFigure(cast.actors, cast.view.target, cast.lines));
-    if (has(Figure::Actors)) pages.push_back(plot::actorsFigure(cast.actors, cast.view.target));
+    if (has(Figure::Shadow)) pages.push_back(cast.shadows());
+    if (has(Figure::Actors)) pages.push_back(cast.each());
     return plot::stacked(pages);
 }
 

@@ -67,6 +67,10 @@ void BitMask::keep(int left, int top, int right, int bottom) {
     }
 }
 
+void BitMask::keep(const BitMask& other) {
+    for (std::size_t i = 0; i < words_.size(); ++i) words_[i] &= other.words_[i];
+}
+
 std::int64_t BitMask::count() const {
     std::int64_t count = 0;
     for (const std::uint64_t word : words_) count += std::popcount(word);
@@ -77,6 +81,12 @@ std::int64_t differing(const BitMask& a, const BitMask& b) {
     std::int64_t count = 0;
     for (std::size_t i = 0; i < a.words_.size(); ++i) count += std::popcount(a.words_[i] ^ b.words_[i]);
     return count;
+}
+
+double intersectionOverUnion(const BitMask& a, const BitMask& b) {
+    const auto all = static_cast<double>(a.count() + b.count());
+    const double both = 0.5 * (all - static_cast<double>(differing(a, b)));
+    return both / (all - both);
 }
 
 BitMask difference(const BitMask& a, const BitMask& b) {

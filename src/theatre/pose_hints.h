@@ -17,7 +17,7 @@ struct PoseTarget;
 // What an artist knows of a target (Won & Lee 2016, strategy 2): a point of it, and the parts of a body whose shadow may come there.
 struct PoseHint {
     std::string name;             // of the point, for messages
-    glm::dvec2 place{0};          // on the screen, metres
+    glm::dvec2 place{0};          // on the first beam's flat screen, metres
     std::vector<BodyPart> parts;  // of any actor; whichever is nearest is drawn to the place
 };
 

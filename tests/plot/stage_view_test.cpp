@@ -13,9 +13,10 @@ constexpr int kWidth = 640, kHeight = 320;
 // A screen of 4 m x 2 m in pixels of 2 cm: the target is 1 m wide at its left, the shadow 1 m wide at its right, both 1 m high.
 StageView aView() {
     const theatre::Stage stage;
-    StageView view{
-        stage, theatre::ScreenFrame(stage, -2, 2, 0.02, 200, 100), theatre::BitMask(200, 100), theatre::BitMask(200, 100), {}};
-    for (int y = 50; y < 100; ++y) view.target.fill(y, 25, 75), view.shadow.fill(y, 125, 175);
+    StageView view{stage,
+                   {{theatre::ScreenFrame(stage, -2, 2, 0.02, 200, 100), theatre::BitMask(200, 100), theatre::BitMask(200, 100)}},
+                   {}};
+    for (int y = 50; y < 100; ++y) view.images[0].target.fill(y, 25, 75), view.images[0].shadow.fill(y, 125, 175);
     return view;
 }
 
