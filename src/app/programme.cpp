@@ -132,21 +132,37 @@ Result<Picture> readPicture(const show::ShadowSource& source) {
     shadow.samples = source.samples;
     shadow.play = TRY(playOf(source, *cast));
     shadow.speed = source.speed;
+    if (static_cast<std::size_t>(source.beam) > cast->stage.beams())
+        return Error(
+            fmt::format("'beam' is {}, and the stage of {} has {}", source.beam, source.cast.string(), cast->stage.beams()));
+    shadow.beam = static_cast<std::size_t>(source.beam - 1);
+    const glm::dvec3 light = cast->stage.beam(shadow.beam).light;
     for (const show::ShadowSource::Lamp& lamp : source.lamps) {
+        const glm::dvec3 place = lamp.at.value_or(light);
+        if (cast->stage.screenOf(shadow.beam).screenFromStage(place).z <= 0)
+            return Error(fmt::format("the lamp at [{}, {}, {}] is not before the screen, which it is to light", place.x, place.y,
+                                     place.z));
         if (!lamp.actors.empty() && lamp.actors.size() != cast->actors.size())
             return Error(fmt::format("{} colours of 'actors', and {} has {}; say one for each, in its order", lamp.actors.size(),
                                      source.cast.string(), cast->actors.size()));
-        shadow.lamps.push_back({lamp.at.value_or(cast->stage.light), lamp.size, lamp.light, lamp.shadow,
-                                std::vector<glm::vec3>(lamp.actors.begin(), lamp.actors.end())});
+        shadow.lamps.push_back(
+            {place, lamp.size, lamp.light, lamp.shadow, std::vector<glm::vec3>(lamp.actors.begin(), lamp.actors.end())});
     }
     if (source.picture) {
         shadow.from = {source.picture->x.x, source.picture->y.x};
         shadow.to = {source.picture->x.y, source.picture->y.y};
         return Picture{std::move(shadow), {}};
     }
-    GreyImage drawing = TRY(readGrey(cast->target));
-    auto target = theatre::PoseTarget::from(drawing, cast->stage, cast->height, kRows);
-    if (!target) return target.error().in(cast->target.string());
+    if (shadow.beam > cast->further.size())
+        return Error(fmt::format("{} has no target for beam {}; say with 'picture' what of its screen is seen",
+                                 source.cast.string(), source.beam));
+    const theatre::Cast::Target own{cast->target, cast->height, 0},
+        &wanted = shadow.beam == 0 ? own : cast->further[shadow.beam - 1];
+    theatre::TargetPlace where;
+    if (shadow.beam > 0) where = {shadow.beam, wanted.middle};
+    GreyImage drawing = TRY(readGrey(wanted.file));
+    auto target = theatre::PoseTarget::from(drawing, cast->stage, wanted.height, kRows, where);
+    if (!target) return target.error().in(wanted.file.string());
     const theatre::ScreenFrame& given = target->given;
     shadow.from = given.metresAt({0, given.height()});
     shadow.to = given.metresAt({given.width(), 0});

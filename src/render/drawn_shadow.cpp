@@ -43,20 +43,21 @@ ShadowCaster::Piece pieceOf(const TriangleMesh& thing) {
     return piece;
 }
 
-// Where a lamp shines from: spread evenly over its disc (Vogel 1979), or its middle alone.
-std::vector<glm::dvec3> pointsOf(const ShadowSource::Lamp& lamp, int samples) {
-    if (lamp.size <= 0) return {lamp.place};
+// Where a lamp shines from, in the screen's frame: spread evenly over its disc (Vogel 1979), or its middle alone.
+std::vector<glm::dvec3> pointsOf(const ShadowSource::Lamp& lamp, int samples, const theatre::Screen& screen) {
+    const glm::dvec3 middle = screen.screenFromStage(lamp.place);
+    if (lamp.size <= 0) return {middle};
     const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
     std::vector<glm::dvec3> points;
     for (int i = 0; i < samples; ++i) {
         const double radius = 0.5 * lamp.size * std::sqrt((i + 0.5) / samples), angle = i * golden;
-        points.push_back(lamp.place + glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), 0));
+        points.push_back(middle + glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), 0));
     }
     return points;
 }
 
-// From a point of light onto the screen at z = 0: (X, Y, W) of (x, y, z, 1).
-glm::mat4x3 screenFromStage(const glm::dvec3& light) {
+// From a point of light onto the flat screen at z = 0 of its own frame: (X, Y, W) of (x, y, z, 1).
+glm::dmat4x3 thrownFrom(const glm::dvec3& light) {
     return {{light.z, 0, 0}, {0, light.z, 0}, {-light.x, -light.y, -1}, {0, 0, light.z}};
 }
 
@@ -74,11 +75,13 @@ public:
                                                        DrawingTools& tools) {
         std::unique_ptr<DrawnShadow> made(new DrawnShadow(source, tools));
         const std::vector<ShadowCaster::Piece> pieces = made->pieces();
-        made->caster_.emplace(TRY(ShadowCaster::create(pieces, tools.bend, tools.programs)));
-        // The shadow of one point of light is painted as it is; those of many add up first.
-        const bool sums = source.lamps.size() > 1 || pointsOf(source.lamps[0], source.samples).size() > 1;
+        made->caster_.emplace(TRY(ShadowCaster::create(pieces, made->onto_.isCurved(), tools.bend, tools.programs)));
+        // The shadow of one point of light is painted as it is, within straight edges; those of many add up first.
+        const bool sums = source.lamps.size() > 1 || (source.lamps[0].size > 0 && source.samples > 1) ||
+                          (made->onto_.isCurved() && made->beam_.lit);
         if (sums) made->sum_.emplace(TRY(gpu::ShadowSum::create(place.size, tools.samples)));
-        made->painter_.emplace(TRY(gpu::ScreenPainter::create(sums ? made->sum_->samples() : 0, tools.bend, tools.programs)));
+        made->painter_.emplace(TRY(
+            gpu::ScreenPainter::create(sums ? made->sum_->samples() : 0, made->onto_.isCurved(), tools.bend, tools.programs)));
         made->shine(pieces.size());
         made->follow(place);
         made->moveStanding(pieces.size());
@@ -108,9 +111,12 @@ public:
             for (ShadowCaster::Light& light : lamp.points) light.clipFromScreen = glm::mat3(clip * canvasFromScreen);
         // A line e of the canvas, dot(e, (x, y, 1)) = 0, is the line inverse(H)^T e of its image.
         const CanvasPart& part = place.warp.shape().part;
-        const glm::dvec4 lit(screen_.lit);
-        const glm::dvec2 low = glm::max(part.low, glm::dvec2(lit)), high = glm::min(part.high, glm::dvec2(lit.z, lit.w));
         const glm::dmat3 clipFromEdge = glm::transpose(glm::inverse(clip));
+        glm::dvec2 low = part.low, high = part.high;
+        if (beam_.lit && !onto_.isCurved()) {
+            const glm::dvec2 from = (beam_.lit->from - source_.from) / size, to = (beam_.lit->to - source_.from) / size;
+            low = glm::max(low, glm::dvec2(from.x, 1 - to.y)), high = glm::min(high, glm::dvec2(to.x, 1 - from.y));
+        }
         const std::array<glm::dvec3, 4> edges = {{{1, 0, -low.x}, {-1, 0, high.x}, {0, 1, -low.y}, {0, -1, high.y}}};
         std::transform(edges.begin(), edges.end(), inside_.begin(),
                        [&](const glm::dvec3& edge) { return glm::vec3(clipFromEdge * edge); });
@@ -118,12 +124,17 @@ public:
 
 private:
     DrawnShadow(const ShadowSource& source, DrawingTools& tools)
-        : source_(source), tools_(tools), cast_(*source.cast, source.play == ShadowSource::Play::Loop) {}
+        : source_(source),
+          tools_(tools),
+          cast_(*source.cast, source.play == ShadowSource::Play::Loop),
+          beam_(source.cast->stage.beam(source.beam)),
+          onto_(source.cast->stage.screenOf(source.beam)) {}
 
     // Actors first, then what each of them holds, then what stands.
     std::vector<ShadowCaster::Piece> pieces() {
-        // A mesh bends triangles at their corners alone.
-        const double longest = tools_.bend.any() ? gpu::Bend::kLongestEdge * (source_.to.y - source_.from.y) : INFINITY;
+        // A mesh, and a curved screen, bend triangles at their corners alone.
+        const double longest =
+            tools_.bend.any() || onto_.isCurved() ? gpu::Bend::kLongestEdge * (source_.to.y - source_.from.y) : INFINITY;
         const auto thing = [&](const TriangleMesh& mesh) { return pieceOf(cutUp(mesh, longest)); };
         std::vector<ShadowCaster::Piece> pieces;
         for (std::size_t i = 0; i < cast_.actors(); ++i) pieces.push_back(pieceOf(theatre::humanMesh(cast_.body(i))));
@@ -139,8 +150,10 @@ private:
     void shine(std::size_t pieces) {
         for (const ShadowSource::Lamp& lamp : source_.lamps) {
             Shining& shining = lamps_.emplace_back();
-            for (const glm::dvec3& point : pointsOf(lamp, source_.samples))
-                shining.points.push_back({screenFromStage(point), {}});
+            for (const glm::dvec3& light : pointsOf(lamp, source_.samples, onto_))
+                shining.points.push_back({glm::mat4x3(thrownFrom(light) * source_.cast->stage.screenFromStage(source_.beam)),
+                                          {},
+                                          glm::vec4(light, onto_.radius)});
             shining.alike = lamp.actors.empty();
             shining.colours.assign(pieces, lamp.shadow);
             std::copy(lamp.actors.begin(), lamp.actors.end(), shining.colours.begin());
@@ -149,11 +162,9 @@ private:
             screen_.dark += lamp.shadow;
             screen_.bright += lamp.light - lamp.shadow;
         }
-        if (const auto& lit = source_.cast->stage.lit) {
-            const glm::dvec2 size = source_.to - source_.from;
-            screen_.lit = {(lit->from.x - source_.from.x) / size.x, (source_.to.y - lit->to.y) / size.y,
-                           (lit->to.x - source_.from.x) / size.x, (source_.to.y - lit->from.y) / size.y};
-        }
+        screen_.canvas = {source_.from, source_.to};
+        if (beam_.lit) screen_.lit = {beam_.lit->from, beam_.lit->to};
+        screen_.curve = glm::vec4(onto_.screenFromStage(source_.lamps[0].place), onto_.radius);
     }
 
     void give(std::size_t piece, std::span<const theatre::DualQuaternion> motions) {
@@ -188,6 +199,8 @@ private:
     ShadowSource source_;
     DrawingTools& tools_;
     theatre::MovingCast cast_;
+    theatre::Stage::Beam beam_;
+    theatre::Screen onto_;
     std::vector<theatre::PlacedProp> standing_;
     std::size_t firstStanding_ = 0;
     std::optional<ShadowCaster> caster_;

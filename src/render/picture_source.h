@@ -108,9 +108,11 @@ struct ShadowSource {
         ToAndFro
     };
     std::shared_ptr<const theatre::Cast> cast;
-    std::vector<Lamp> lamps;    // at least one
-    glm::dvec2 from{0}, to{1};  // the canvas's lower left and upper right corner on the screen, metres
-    int samples = 16;           // points of light in a lamp that has a size
+    std::size_t beam = 0;     // of its stage, whose screen the canvas lies on
+    std::vector<Lamp> lamps;  // at least one
+    glm::dvec2 from{0},
+        to{1};         // the canvas's lower left and upper right corner on the screen, which is unrolled if it is curved; metres
+    int samples = 16;  // points of light in a lamp that has a size
     Play play = Play::Once;
     double speed = 1;  // positive
 };

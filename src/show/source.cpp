@@ -28,7 +28,7 @@ constexpr double kLongestTurn = 3600;
 constexpr double kSlowest = 0.01, kFastest = 10;  // videos, casts
 constexpr double kWidestLamp = 2;                 // metres
 constexpr int kMostSamples = 128;
-constexpr std::size_t kMostLamps = 8, kMostActors = 50;
+constexpr std::size_t kMostLamps = 8, kMostActors = 50, kMostBeams = 8;
 
 Result<fs::path> readFile(const ConfigNode& node, std::string_view advice) {
     const fs::path file = TRY(node.path());
@@ -161,7 +161,6 @@ Result<ShadowSource::Lamp> readLamp(const ConfigNode& node) {
     ConfigFields fields(node);
     fields.read("at", lamp.at, [](const ConfigNode& at) -> Result<std::optional<glm::dvec3>> {
         const glm::dvec3 place = TRY(at.vector3(-kLargest, kLargest, "m"));
-        if (place.z <= 0) return at.error("a lamp stands before the screen: the third number says how far");
         return std::optional(place);
     });
     declareLamp(fields, lamp);
@@ -195,6 +194,7 @@ Result<ShadowSource> readShadow(const ConfigNode& node) {
         ConfigFields fields(node);
         fields.read("cast", shadow.cast, readCastFile);
         declareLamp(fields, first);
+        fields.optional().integer("beam", shadow.beam, 1, kMostBeams);
         fields.optional().list("lamps", shadow.lamps, readLamp, 0, kMostLamps - 1);
         fields.optional().integer("samples", shadow.samples, 1, kMostSamples);
         fields.optional().read("play", shadow.play, [](const ConfigNode& play) -> Result<std::optional<ShadowSource::Play>> {

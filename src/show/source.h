@@ -70,7 +70,7 @@ struct CameraSource {};
 // Shadow theatre. The numbers are those of render::ShadowSource.
 struct ShadowSource {
     struct Lamp {
-        std::optional<glm::dvec3> at;  // stage frame, metres; none: the light that the cast was made for
+        std::optional<glm::dvec3> at;  // stage frame, metres; none: the beam's light
         double size = 0;
         glm::dvec3 light{1}, shadow{0};
         std::vector<glm::dvec3> actors;
@@ -80,7 +80,8 @@ struct ShadowSource {
         glm::dvec2 x{0}, y{0};  // from, to; metres on the screen
     };
     std::filesystem::path cast;  // a *.cast.yaml
-    std::vector<Lamp> lamps;     // the cast's own first
+    int beam = 1;                // of the cast's stage, whose screen is seen
+    std::vector<Lamp> lamps;     // the beam's own first
     int samples = 16;
     std::optional<Play> play;  // none: a loop if the silhouette moves in one, else once
     double speed = 1;

@@ -305,6 +305,50 @@ TEST(Shadow, is_seen_in_the_projectors_picture_alone) {
         }
 }
 
+// The screens of further beams, and curved ones, which the canvas shows unrolled: every pixel against the ray from the lamp to its place.
+// Example failures: a second screen that shows what is on the first; one turned the wrong way round; a curve of the wrong sign.
+TEST(Shadow, falls_on_the_screen_of_its_beam) {
+    for (const double radius : {0.0, 3.5, -4.0})
+        for (const std::size_t beam : {std::size_t{0}, std::size_t{1}}) {
+            Cast cast = aCast(6, 1, 11);
+            furnish(cast);
+            cast.stage.screens[0].radius = radius;
+            cast.stage.screens.push_back({{2.6, 2.2}, -1.4, radius});
+            cast.stage.further.push_back({{-5.5, 0.6, 1.6}, 1, {}});
+            if (radius > 0) cast.stage.lit = cast.stage.further[0].lit = theatre::Stage::Area{{-2.1, 0.1}, {1.7, 2.3}};
+            const glm::dvec3 lamp = cast.stage.beam(beam).light;
+            ShadowSource source = sourceOf(cast);
+            source.beam = beam;
+            source.lamps[0].place = lamp;
+            const theatre::Screen& screen = cast.stage.screenOf(beam);
+            DrawnOutput output(kSize, upright(), {source});
+            const RgbaImage& image = output.frame({{0, 1}});
+
+            // A finer mask of the flat screen, looked up where the ray through the place on the curved one meets it.
+            constexpr double kFine = 0.004;
+            const ScreenFrame flat(cast.stage, -6, 5, kFine, 3000, 1400, beam);
+            const BitMask mask = solversShadow(cast, 0, false, flat);
+            const glm::dvec3 light = cast.stage.lightOnScreen(beam);
+            std::int64_t both = 0, either = 0;
+            for (int y = 0; y < kSize.y; ++y)
+                for (int x = 0; x < kSize.x; ++x) {
+                    const glm::dvec2 place(kFrom.x + (x + 0.5) * kPixel, kTo.y - (y + 0.5) * kPixel);
+                    const auto onFlat = theatre::flatFromUnrolled(screen, light, place);
+                    bool wanted = true;  // dark where no light comes
+                    if (onFlat) {
+                        const glm::ivec2 pixel(glm::floor(flat.pixelAt(onFlat->x, onFlat->y)));
+                        const auto& lit = cast.stage.beam(beam).lit;
+                        wanted = (lit && lit->outside(*onFlat) > 0) ||
+                                 (pixel.x >= 0 && pixel.y >= 0 && pixel.x < 3000 && pixel.y < 1400 && mask.at(pixel.x, pixel.y));
+                    }
+                    const bool drawn = lightAt(image, x, y) < 0.6;
+                    both += drawn && wanted, either += drawn || wanted;
+                }
+            ASSERT_GT(either, 5000);
+            EXPECT_GT(static_cast<double>(both) / static_cast<double>(either), 0.985) << "radius " << radius << ", beam " << beam;
+        }
+}
+
 // Who stands behind the lamp, or far beside, throws nothing; nobody is nothing's shadow.
 TEST(Shadow, of_what_is_behind_the_lamp_is_none) {
     Cast cast = aCast(2, 1, 5);

@@ -239,7 +239,7 @@ TEST(ShowFile, shadow_theatre_is_a_cast_with_its_lamps) {
     const auto with = [&](const std::string& key) {
         return refusalAfter(solid, fmt::format("{{shadow: {{cast: {}, {}}}}}", file, key));
     };
-    EXPECT_THAT(with("lamps: [{at: [1, 2, -3]}]"), HasSubstr("a lamp stands before the screen"));
+    EXPECT_THAT(with("beam: 0"), HasSubstr("1 .. 8"));
     EXPECT_THAT(with("lamps: [{size: 0.1}]"), HasSubstr("'at' is missing"));
     EXPECT_THAT(with("picture: {x: [2, -1], y: [0, 1]}"), HasSubstr("the smaller number comes first"));
     EXPECT_THAT(with("samples: 0"), HasSubstr("1 .. 128"));

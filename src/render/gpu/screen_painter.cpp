@@ -1,5 +1,7 @@
 #include "render/gpu/screen_painter.h"
 
+#include "theatre/screen.h"
+
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <glm/gtc/type_ptr.hpp>
@@ -10,14 +12,16 @@ namespace fantascope::render::gpu {
 namespace {
 
 // Of assets/shaders/screen.frag.
-constexpr GLint kDark = 1, kBright = 2, kLit = 3;
+constexpr GLint kDark = 1, kBright = 2, kLit = 3, kScreen = 4, kCurve = 5;
 constexpr GLuint kTaken = 0;
 
 }  // namespace
 
-Result<ScreenPainter> ScreenPainter::create(int samples, const Bend& bend, ProgramCache& programs) {
-    const std::string taken = samples > 0 ? fmt::format("#define TAKEN\n#define SAMPLES {}\n", samples) : "";
-    return ScreenPainter(TRY(CanvasSurface::create("screen.frag", taken, bend, programs)));
+Result<ScreenPainter> ScreenPainter::create(int samples, bool curved, const Bend& bend, ProgramCache& programs) {
+    std::string definitions;
+    if (samples > 0) definitions += fmt::format("#define TAKEN\n#define SAMPLES {}\n", samples);
+    if (curved) definitions += fmt::format("#define CURVED\n#define MOST_ARC {:.6f}\n", theatre::Screen::kMostArc);
+    return ScreenPainter(curved, TRY(CanvasSurface::create("screen.frag", definitions, bend, programs)));
 }
 
 void ScreenPainter::paint(const Screen& screen, unsigned taken) {
@@ -25,6 +29,8 @@ void ScreenPainter::paint(const Screen& screen, unsigned taken) {
     glUniform3fv(kDark, 1, glm::value_ptr(screen.dark));
     glUniform3fv(kBright, 1, glm::value_ptr(screen.bright));
     glUniform4fv(kLit, 1, glm::value_ptr(screen.lit));
+    glUniform4fv(kScreen, 1, glm::value_ptr(screen.canvas));
+    if (curved_) glUniform4fv(kCurve, 1, glm::value_ptr(screen.curve));
     if (taken != 0) glBindTextureUnit(kTaken, taken);
     surface_.draw();
 }

@@ -19,22 +19,23 @@ constexpr unsigned kTogether = 64;  // vertices of a work group
 
 // Of assets/shaders/shadow.vert and shadow.frag.
 constexpr GLuint kPosition = 0;
-constexpr GLint kScreenFromStage = 0, kClipFromScreen = 1, kColour = 2, kInside = 3;
+constexpr GLint kScreenFromStage = 0, kClipFromScreen = 1, kColour = 2, kInside = 3, kCurve = 7;
 
 static_assert(sizeof(ShadowCaster::Vertex) == 8 * sizeof(float), "the shader reads two vectors a vertex");
 
 }  // namespace
 
-Result<ShadowCaster> ShadowCaster::create(std::span<const Piece> pieces, const Bend& bend, ProgramCache& programs) {
-    ShadowCaster caster(bend);
+Result<ShadowCaster> ShadowCaster::create(std::span<const Piece> pieces, bool curved, const Bend& bend, ProgramCache& programs) {
+    ShadowCaster caster(curved, bend);
     const auto made = [&](const std::string& definitions) -> Result<Programs> {
         return Programs{
             TRY(programs.drawing("shadow.vert", "shadow.frag", definitions)),
             TRY(programs.drawing("shadow.vert", "shadow.frag", definitions + TRY(Bend::definitions(programs.folder()))))};
     };
     caster.skin_ = TRY(programs.compute("skin.comp", fmt::format("#define JOINTS {}\n", kMostJoints)));
-    caster.anywhere_ = TRY(made(""));
-    caster.inside_ = TRY(made("#define INSIDE\n"));
+    const std::string screen = curved ? "#define CURVED\n" : "";
+    caster.anywhere_ = TRY(made(screen));
+    caster.inside_ = TRY(made(screen + "#define INSIDE\n"));
 
     std::vector<Vertex> vertices;
     std::vector<glm::uvec3> triangles;
@@ -92,6 +93,7 @@ void ShadowCaster::draw(const Programs& programs, const Light& light, std::span<
     if (bends) bend_->use();
     glUniformMatrix4x3fv(kScreenFromStage, 1, GL_FALSE, glm::value_ptr(light.screenFromStage));
     glUniformMatrix3fv(kClipFromScreen, 1, GL_FALSE, glm::value_ptr(light.clipFromScreen));
+    if (curved_) glUniform4fv(kCurve, 1, glm::value_ptr(light.curve));
     if (inside != nullptr) glUniform3fv(kInside, static_cast<GLsizei>(inside->size()), glm::value_ptr((*inside)[0]));
     glBindVertexArray(vertexArray_.name());
     // The screen has y up, as OpenGL: the warp of an upright picture does not turn over.

@@ -39,11 +39,12 @@ public:
     struct Light {
         glm::mat4x3 screenFromStage{
             1};  // (X, Y, W), the shadow being at X / W, Y / W on the screen; W: metres from the light, along its axis
-        glm::mat3 clipFromScreen{1};  // (x, y, w), w >= 1 where W is 1
+        glm::mat3 clipFromScreen{1};  // (x, y, w), w >= 1 where W is 1; of a curved screen unrolled
+        glm::vec4 curve{0};           // of a curved screen: where the light is in its frame, and the cylinder's radius; metres
     };
 
-    // `bend` and `programs` outlive it. Error: a shader does not compile.
-    static Result<ShadowCaster> create(std::span<const Piece> pieces, const Bend& bend, ProgramCache& programs);
+    // `curved`: the screen is. `bend` and `programs` outlive it. Error: a shader does not compile.
+    static Result<ShadowCaster> create(std::span<const Piece> pieces, bool curved, const Bend& bend, ProgramCache& programs);
 
     // How each joint of a piece has moved from rest: two vectors each, the parts w, x, y, z of a unit dual quaternion. Before the first drawing, and
     // whenever it has moved.
@@ -67,10 +68,11 @@ private:
         unsigned straight, bent;
     };
 
-    explicit ShadowCaster(const Bend& bend) : bend_(&bend) {}
+    ShadowCaster(bool curved, const Bend& bend) : curved_(curved), bend_(&bend) {}
     void draw(const Programs& programs, const Light& light, std::span<const glm::vec3> colours,
               const std::array<glm::vec3, 4>* inside);
 
+    bool curved_;
     const Bend* bend_;
     unsigned skin_ = 0;
     Programs anywhere_{}, inside_{};
