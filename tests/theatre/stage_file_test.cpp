@@ -139,7 +139,7 @@ TEST_F(StageFile, says_all_of_further_beams_and_curved_screens) {
 screen: {radius: 4}
 further_beams:
   - {light: [-6, 0, 5], screen: {at: [2.5, 0, 5], turned: -90, radius: -5}}
-  - {light: [3, 0, 6.3]}
+  - {light: [1, 0, 6.3]}
   - projector: {lens: [-5, 0.3, 5], picture: {x: [-2, 2], y: [0, 3]}}
     screen: {at: [2.5, 0, 5], turned: -90, radius: -5}
 )");
@@ -151,7 +151,7 @@ further_beams:
     EXPECT_EQ(stage->screens[1], (Screen{{2.5, 5}, radians(-90), -5}));
     EXPECT_EQ(&stage->screenOf(2), &stage->screens[0]);
     EXPECT_EQ(&stage->screenOf(3), &stage->screens[1]);
-    EXPECT_EQ(stage->beam(2).light, glm::dvec3(3, 0, 6.3));
+    EXPECT_EQ(stage->beam(2).light, glm::dvec3(1, 0, 6.3));
     ASSERT_TRUE(stage->beam(3).lit);
     EXPECT_EQ(stage->beam(3).lit->to, glm::dvec2(2, 3));
     EXPECT_FALSE(stage->beam(1).lit || stage->lit);
