@@ -167,7 +167,7 @@ TEST_F(StageFile, is_refused_where_a_beam_cannot_be) {
                 AllOf(HasSubstr("0.3 m before its screen"), HasSubstr("0.5 m or farther")));
     EXPECT_THAT(beam("light: [3, -1, 6]"), HasSubstr("1 m below the floor"));
     EXPECT_THAT(beam("light: [3, 0, -6]"), HasSubstr("behind its screen"));
-    EXPECT_THAT(beam("light: [0, 0, 7]"), HasSubstr("the first beam over again"));
+    EXPECT_THAT(beam("light: [0, 0, 7]"), HasSubstr("beam 1 over again"));
     EXPECT_THAT(beam("screen: {at: [2.5, 0, 1.5], turned: -90}"), HasSubstr("no light"));
     EXPECT_THAT(beam("light: [-6, 0, 1.5], screen: {turned: -90}"), HasSubstr("at"));
     EXPECT_THAT(beam("light: [-6, 0, 1.5], screen: {at: [2.5, 1, 1.5], turned: -90}"), HasSubstr("a y of 0"));
