@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 using theatre::PoseProblem, theatre::PoseSearch, theatre::PoseTarget, theatre::Troupe;
 
 constexpr double kDefaultSeconds = 20;
-constexpr int kFewActors = 3;  // up to so many a trial is shorter
+constexpr int kFewActors = 3;  // up to so many, for one target, a trial is shorter
 constexpr std::int64_t kEvaluationsOfFew = 40'000, kEvaluationsOfMany = 80'000;
 constexpr int kRows = 512;    // of the target
 constexpr int kMostMore = 2;  // actors that come in where those asked for by the silhouette's size do not satisfy
@@ -134,10 +134,10 @@ void declare(CLI::App& command, Options& options) {
         .add_option("--seconds", options.seconds,
                     fmt::format("End after so long (default {} s, unless --trials is given)", kDefaultSeconds))
         ->check(CLI::Range(0.0, 1e6));
-    command.add_option(
-        "--evaluations", options.evaluations,
-        fmt::format("Of the energy, in a trial (default {}, and {} for more than {} actors; fewer where the time is short)",
-                    kEvaluationsOfFew, kEvaluationsOfMany, kFewActors));
+    command.add_option("--evaluations", options.evaluations,
+                       fmt::format("Of the energy, in a trial (default {}, and {} for more than {} actors or targets than one; "
+                                   "fewer where the time is short)",
+                                   kEvaluationsOfFew, kEvaluationsOfMany, kFewActors));
     command
         .add_option("--method", options.search.method,
                     "refined, or paper: CMA-ES as Won & Lee 2016 have it, with their refinement")
@@ -491,8 +491,8 @@ Result<Round> searchWith(const Options& options, PoseProblem problem, std::optio
                          Clock& clock) {
     problem.dress();
     PoseTrials::Options trials{options.search, options.seed, options.trials, seconds, {}, options.threads};
-    const bool areFew = problem.actors.size() <= std::size_t{kFewActors};
-    trials.search.evaluations = options.evaluations.value_or(areFew ? kEvaluationsOfFew : kEvaluationsOfMany);
+    const bool isShort = problem.actors.size() <= std::size_t{kFewActors} && problem.beams() == 1;
+    trials.search.evaluations = options.evaluations.value_or(isShort ? kEvaluationsOfFew : kEvaluationsOfMany);
     TRY(trials.search.check());
     if (seconds) {
         // All that came before counts.

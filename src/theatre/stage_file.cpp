@@ -141,9 +141,6 @@ Result<void> checkBeam(const ConfigNode& node, const Stage& stage, const Stage::
                 return node.error(
                     fmt::format("the light of beam {} is behind {}; that would keep it from its own screen: move one of them",
                                 i + 1, nameOf(k, stage)));
-    if (!stage.further.empty() && beam.screen == 0 && beam.light == stage.light)
-        return node.error(
-            "it is the first beam over again: its shadow would be the same; move its light, or give it a screen of its own");
     return {};
 }
 
@@ -166,6 +163,11 @@ Result<void> readFurther(const ConfigNode& node, Stage& stage) {
     });
     TRY(fields.finish());
     if (lights == 0) return node.error(kNoLight);
+    for (std::size_t i = 0; i < stage.beams(); ++i)
+        if (stage.beam(i).screen == beam.screen && stage.beam(i).light == beam.light)
+            return node.error(fmt::format(
+                "it is beam {} over again, and its shadow would be the same; move its light, or give it a screen of its own",
+                i + 1));
     stage.further.push_back(beam);
     return checkBeam(node, stage, beam);
 }

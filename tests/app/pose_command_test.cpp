@@ -354,7 +354,7 @@ TEST_F(PoseCommand, a_stage_goes_with_the_cast_and_its_meshes) {
 TEST_F(PoseCommand, one_set_of_poses_serves_several_screens) {
     ASSERT_TRUE(writeFile(folder_ / "corner.stage.yaml",
                           "fantascope: stage\nversion: 1\nlight: [0, 0, 7]\nscreen: {radius: 5}\n"
-                          "further_beams:\n  - {light: [-5, 0, 5.5], screen: {at: [2.5, 0, 5.5], turned: -70}}\n"));
+                          "further_beams:\n  - {light: [-5, 0, 5.5], screen: {at: [2.5, 0, 5.5], turned: -90}}\n"));
     ASSERT_TRUE(writePng(folder_ / "wall.png", pictureOf(80, 90, [](int x, int y) { return x > 9 && x < 70 && y > 9; })));
     const Arguments corner = {"--stage", "corner.stage.yaml", "--further-target", "wall.png", "--actors", "2", "--trials", "2"};
     std::vector<std::string> found;

@@ -139,7 +139,7 @@ TEST_F(StageFile, says_all_of_further_beams_and_curved_screens) {
 screen: {radius: 4}
 further_beams:
   - {light: [-6, 0, 5], screen: {at: [2.5, 0, 5], turned: -90, radius: -5}}
-  - {light: [3, 0, 6.3]}
+  - {light: [1, 0, 6.3]}
   - projector: {lens: [-5, 0.3, 5], picture: {x: [-2, 2], y: [0, 3]}}
     screen: {at: [2.5, 0, 5], turned: -90, radius: -5}
 )");
@@ -151,7 +151,7 @@ further_beams:
     EXPECT_EQ(stage->screens[1], (Screen{{2.5, 5}, radians(-90), -5}));
     EXPECT_EQ(&stage->screenOf(2), &stage->screens[0]);
     EXPECT_EQ(&stage->screenOf(3), &stage->screens[1]);
-    EXPECT_EQ(stage->beam(2).light, glm::dvec3(3, 0, 6.3));
+    EXPECT_EQ(stage->beam(2).light, glm::dvec3(1, 0, 6.3));
     ASSERT_TRUE(stage->beam(3).lit);
     EXPECT_EQ(stage->beam(3).lit->to, glm::dvec2(2, 3));
     EXPECT_FALSE(stage->beam(1).lit || stage->lit);
@@ -167,7 +167,7 @@ TEST_F(StageFile, is_refused_where_a_beam_cannot_be) {
                 AllOf(HasSubstr("0.3 m before its screen"), HasSubstr("0.5 m or farther")));
     EXPECT_THAT(beam("light: [3, -1, 6]"), HasSubstr("1 m below the floor"));
     EXPECT_THAT(beam("light: [3, 0, -6]"), HasSubstr("behind its screen"));
-    EXPECT_THAT(beam("light: [0, 0, 7]"), HasSubstr("the first beam over again"));
+    EXPECT_THAT(beam("light: [0, 0, 7]"), HasSubstr("beam 1 over again"));
     EXPECT_THAT(beam("screen: {at: [2.5, 0, 1.5], turned: -90}"), HasSubstr("no light"));
     EXPECT_THAT(beam("light: [-6, 0, 1.5], screen: {turned: -90}"), HasSubstr("at"));
     EXPECT_THAT(beam("light: [-6, 0, 1.5], screen: {at: [2.5, 1, 1.5], turned: -90}"), HasSubstr("a y of 0"));
