@@ -7,6 +7,7 @@
 #include "app/progress.h"
 #include "app/report.h"
 #include "app/silhouette_file.h"
+#include "app/stage_material.h"
 #include "app/video_writer.h"
 
 #include "theatre/cast.h"
@@ -197,6 +198,7 @@ Result<Adapted> readAll(const Options& options) {
     if (cast.actors[0].poses.size() != 1)
         return Error(fmt::format("{}: has {} poses of each actor; principal poses are those of one frame", options.cast.string(),
                                  cast.actors[0].poses.size()));
+    if (cast.stageFile) TRY(checkStageCanGo(*cast.stageFile, cast.stage, options.output));
     SilhouetteSequence sequence = TRY(sequenceAt(options));
     std::vector<GreyImage> pictures;
     for (const fs::path& file : sequence.pictures) pictures.push_back(TRY(readSilhouette(file)));
@@ -332,6 +334,7 @@ Result<void> writeMotion(const Adapted& adapted) {
     const Material target = materialFor(adapted.options.output, cast.target, "target" + cast.target.extension().string());
     TRY(copyTo(folder, target));
     cast.target = folder / target.name;
+    if (cast.stageFile) cast.stageFile = TRY(placeStage(*cast.stageFile, cast.stage, adapted.options.output));
     for (std::size_t a = 0; a < cast.actors.size(); ++a) {
         const theatre::Body& body = adapted.motion.principal.actors[a];
         cast.actors[a].poses.clear();

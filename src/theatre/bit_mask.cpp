@@ -79,6 +79,17 @@ std::int64_t differing(const BitMask& a, const BitMask& b) {
     return count;
 }
 
+std::int64_t shared(const BitMask& a, const BitMask& b) {
+    std::int64_t count = 0;
+    for (std::size_t i = 0; i < a.words_.size(); ++i) count += std::popcount(a.words_[i] & b.words_[i]);
+    return count;
+}
+
+double intersectionOverUnion(const BitMask& a, const BitMask& b) {
+    const std::int64_t both = shared(a, b);
+    return static_cast<double>(both) / static_cast<double>(both + differing(a, b));
+}
+
 BitMask difference(const BitMask& a, const BitMask& b) {
     BitMask result(a.width(), a.height());
     for (int y = 0; y < a.height(); ++y) {

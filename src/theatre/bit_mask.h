@@ -49,6 +49,7 @@ public:
     void noteRow(int y) { spread(y, y + 1); }  // words of this row were set through row()
     std::int64_t count() const;
     friend std::int64_t differing(const BitMask& a, const BitMask& b);
+    friend std::int64_t shared(const BitMask& a, const BitMask& b);
     friend bool operator==(const BitMask& a, const BitMask& b);
 
 private:
@@ -60,8 +61,11 @@ private:
     std::vector<std::uint64_t> words_;
 };
 
-// Of masks of one size: how many pixels differ, and which; whether some are white in both; whether all that are white in one are in the other.
+// Of masks of one size: how many pixels differ, and which; how many are white in both, and what share that is of those that are white in either, of
+// which there are some; whether some are white in both; whether all that are white in one are in the other.
 std::int64_t differing(const BitMask& a, const BitMask& b);
+std::int64_t shared(const BitMask& a, const BitMask& b);
+double intersectionOverUnion(const BitMask& a, const BitMask& b);
 BitMask difference(const BitMask& a, const BitMask& b);
 bool meet(const BitMask& a, const BitMask& b);
 bool isWithin(const BitMask& inner, const BitMask& outer);

@@ -28,11 +28,7 @@ constexpr std::array kMending = {2.0, 4.0, 8.0, 16.0};  // physics' stiffness, w
 struct Workshop {
     explicit Workshop(PoseProblem given) : problem(std::move(given)), energy(problem), fit(problem), search(problem) {}
     std::int64_t evaluations() const { return fit.evaluations() + search.evaluations(); }
-    double iou() {
-        const double shadow = static_cast<double>(energy.shadow().count()), target = problem.target.area;
-        const double both = 0.5 * (shadow + target - static_cast<double>(differing(energy.shadow(), problem.target.mask)));
-        return both / (shadow + target - both);
-    }
+    double iou() const { return intersectionOverUnion(energy.shadow(), problem.target.mask); }
     PoseProblem problem;
     SceneEnergy energy;
     SilhouetteFit fit;

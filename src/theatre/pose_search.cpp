@@ -103,9 +103,12 @@ PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<co
     Quality quality;
     quality.terms = energy.terms();
     quality.energy = quality.terms.total(problem.weights);
-    const double shadow = static_cast<double>(energy.shadow().count()), target = problem.target.area;
-    const double both = 0.5 * (shadow + target - static_cast<double>(differing(energy.shadow(), problem.target.mask)));
-    quality.iou = both / (shadow + target - both);
+    const BitMask& target = problem.target.mask;
+    BitMask people(target.width(), target.height());
+    for (std::size_t i = 0; i < problem.actors.size(); ++i) people.add(energy.shadow(i));
+    quality.iou = intersectionOverUnion(energy.shadow(), target);
+    quality.iouWithoutProps = intersectionOverUnion(people, target);
+    quality.propsCover = static_cast<double>(shared(energy.propShadow(), target)) / problem.target.area;
     for (std::size_t i = 0; i < problem.target.contour.size(); ++i) {
         const double off = problem.target.pixelsOf256 *
                            glm::distance(glm::dvec2(problem.target.contour[i].pixel), glm::dvec2(energy.nearest()[i].pixel));

@@ -59,6 +59,8 @@ public:
         double energy = 0;
         EnergyTerms terms;
         double iou = 0;                           // of shadow and target, intersection over union
+        double iouWithoutProps = 0;               // of the people's shadow alone, without that of platforms and props
+        double propsCover = 0;                    // the share of the target that is in the shadow of platforms and props
         double contourMean = 0, contourMost = 0;  // |p - p'|, pixels of a target 256 high
         std::vector<Actor> actors;
 
