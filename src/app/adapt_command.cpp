@@ -75,7 +75,7 @@ void declare(CLI::App& command, Options& options) {
                     "Intersection over union of shadow and target: a frame that has it is not searched any further")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
-    command.add_option("--searches", options.search.searches, "Of limbs, for a frame that has not")
+    command.add_option("--searches", options.search.searches, "Steps of local search, for a frame that has not")
         ->check(CLI::Range(0, 100'000))
         ->capture_default_str();
     command.add_option("--passes", options.search.passes, "In which each frame is fitted between both its neighbours")
@@ -184,10 +184,11 @@ struct Adapted {
     }
 };
 
-std::vector<double> freedomsAt(const theatre::Cast& cast, const theatre::PoseProblem& problem, std::size_t frame) {
+// Of the first frame.
+std::vector<double> freedomsOf(const theatre::Cast& cast, const theatre::PoseProblem& problem) {
     std::vector<double> freedoms;
     for (std::size_t i = 0; i < cast.actors.size(); ++i) {
-        const std::vector<double> his = theatre::freedomsOf(problem.actors[i], cast.actors[i].poses[frame]);
+        const std::vector<double> his = theatre::freedomsOf(problem.actors[i], cast.actors[i].poses[0]);
         freedoms.insert(freedoms.end(), his.begin(), his.end());
     }
     return freedoms;
@@ -222,7 +223,7 @@ Result<Adapted> readAll(const Options& options) {
         for (const glm::dvec2 vertex : sequence.interior->vertices[i])
             corners.push_back(motion.targets[i].given.metresAt(vertex));
     }
-    std::vector<double> principal = freedomsAt(cast, motion.principal, 0);
+    std::vector<double> principal = freedomsOf(cast, motion.principal);
     return Adapted{options, std::move(cast), std::move(sequence), std::move(motion), std::move(principal)};
 }
 
@@ -246,7 +247,10 @@ MotionAdaptation::Frames knownOf(const Adapted& adapted) {
     }
     MotionAdaptation::Frames known(all);
     for (std::size_t i = 0; i < count; ++i)
-        if (i != own) known[(first + i) % all].emplace().freedoms = freedomsAt(*cast, adapted.motion.principal, i);
+        if (i != own)
+            for (std::vector<theatre::ActorPose>& poses = known[(first + i) % all].emplace().poses;
+                 const theatre::Cast::Actor& actor : cast->actors)
+                poses.push_back(actor.poses[i]);
     fmt::print(stderr, "adapt: goes on with {} of {} frames from {}\n", count, all, adapted.options.output.string());
     return known;
 }
@@ -336,12 +340,8 @@ Result<void> writeMotion(const Adapted& adapted) {
     cast.target = folder / target.name;
     if (cast.stageFile) cast.stageFile = TRY(placeStage(*cast.stageFile, cast.stage, adapted.options.output));
     for (std::size_t a = 0; a < cast.actors.size(); ++a) {
-        const theatre::Body& body = adapted.motion.principal.actors[a];
         cast.actors[a].poses.clear();
-        for (const std::size_t frame : there)
-            cast.actors[a].poses.push_back(theatre::poseOf(
-                body,
-                std::span(adapted.frames[frame]->freedoms).subspan(adapted.motion.principal.firstFreedom(a), body.freedoms)));
+        for (const std::size_t frame : there) cast.actors[a].poses.push_back(adapted.frames[frame]->poses[a]);
     }
     return theatre::writeCast(adapted.options.output, cast);
 }
@@ -361,12 +361,9 @@ Result<void> film(const Adapted& adapted, const std::vector<std::size_t>& there,
     const bool loops = adapted.motion.loops && adapted.isWhole();
     std::vector<theatre::PoseSpline> splines;
     for (std::size_t a = 0; a < principal.actors.size(); ++a) {
-        const theatre::Body& body = principal.actors[a];
         std::vector<theatre::ActorPose> poses;
-        for (const std::size_t frame : there)
-            poses.push_back(theatre::poseOf(
-                body, std::span(adapted.frames[frame]->freedoms).subspan(principal.firstFreedom(a), body.freedoms)));
-        splines.emplace_back(body, principal.stage, std::move(poses), loops);
+        for (const std::size_t frame : there) poses.push_back(adapted.frames[frame]->poses[a]);
+        splines.emplace_back(principal.actors[a], principal.stage, std::move(poses), loops);
     }
     const auto video = TRY(VideoWriter::open(file, kVideo, rate, VideoKind::Film));
     const double last = static_cast<double>(there.size()) - (loops ? 0 : 1), step = adapted.sequence.framesPerSecond / rate;

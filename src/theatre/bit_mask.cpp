@@ -172,4 +172,10 @@ void ConvexFiller::fill(std::span<const glm::vec2> polygon, BitMask& mask) {
     mask.fill(first, left_, right_);
 }
 
+void ConvexFiller::fill(std::array<glm::vec2, 3> triangle, BitMask& mask) {
+    const glm::vec2 one = triangle[1] - triangle[0], other = triangle[2] - triangle[0];
+    if (one.x * other.y - one.y * other.x < 0) std::swap(triangle[1], triangle[2]);
+    fill(std::span<const glm::vec2>(triangle), mask);
+}
+
 }  // namespace fantascope::theatre

@@ -5,6 +5,7 @@
 #include <glm/vec2.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -102,6 +103,8 @@ private:
 class ConvexFiller {
 public:
     void fill(std::span<const glm::vec2> polygon, BitMask& mask);
+    // A triangle, either way around.
+    void fill(std::array<glm::vec2, 3> triangle, BitMask& mask);
 
 private:
     std::vector<float> left_, right_;  // scratch, kept for its memory

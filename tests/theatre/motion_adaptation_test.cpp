@@ -81,6 +81,11 @@ TEST(MotionAdaptation, IsSteadierForItsPasses) {
     for (std::size_t i = 0; i < kFrames; ++i) {
         auto& frame = trembling[i].emplace();
         frame.freedoms = i == kRepresentative ? dance.wanted[i] : nudged(dance.motion.principal, dance.wanted[i], rng, 0.04);
+        for (std::size_t a = 0; a < 2; ++a) {
+            const Body& body = dance.motion.principal.actors[a];
+            frame.poses.push_back(
+                poseOf(body, std::span(frame.freedoms).subspan(dance.motion.principal.firstFreedom(a), body.freedoms)));
+        }
     }
     const auto tremor = [&](const MotionAdaptation::Frames& frames) {
         double sum = 0;
@@ -99,7 +104,7 @@ TEST(MotionAdaptation, IsSteadierForItsPasses) {
         return MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, {.passes = passes}, {}, trembling);
     };
     const auto as = run(0), after = run(2);
-    EXPECT_EQ(tremor(as), tremor(trembling)) << "what is known is not adapted again";
+    EXPECT_NEAR(tremor(as), tremor(trembling), 1e-9) << "what is known is not adapted again";
     EXPECT_LT(tremor(after), 0.6 * tremor(as));
     for (std::size_t i = 0; i < kFrames; ++i) EXPECT_GT(after[i]->quality.iou, 0.95) << i;
 }
