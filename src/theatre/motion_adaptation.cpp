@@ -26,8 +26,10 @@ constexpr int kReachSteps = 20, kWalkSteps = 8, kFitSteps = 30, kRefitSteps = 12
 // Of the silhouette's height: how far its farthest corner goes in a step from a frame to the next, which a fit follows; and how many steps at most.
 constexpr double kStride = 0.02;
 constexpr int kMostStrides = 20;
+constexpr double kClearlyLess = 0.02;                   // of intersection over union
 constexpr std::array kMending = {2.0, 4.0, 8.0, 16.0};  // physics' stiffness, while somebody cannot stand
 
+constexpr std::array kRelaxing = {8.0, 4.0, 2.0, 1.0};
 constexpr FreedomSearch::Settings kAlone{0.05, 16, 15};  // of one who cannot
 // A frame's problem and what works on it.
 struct Workshop {
@@ -218,25 +220,36 @@ private:
     // The last steps, on the true skins, until everyone stands.
     void finish(std::size_t i, const PoseProblem& problem, AdaptedFrame& frame, int steps) const {
         Workshop shop(in256Rows(problem));
-        shop.fit.run(shop.energy, frame.freedoms, steps);
-        PoseSearch::Quality quality = PoseSearch::measure(shop.problem, frame.freedoms);
-        const auto fitAgain = [&] {
-            shop.fit.run(shop.energy, frame.freedoms, steps);
-            quality = PoseSearch::measure(shop.problem, frame.freedoms);
+        PoseSearch::Quality quality;
+        const auto fit = [&](std::vector<double>& freedoms) {
+            shop.fit.run(shop.energy, freedoms, steps);
+            quality = PoseSearch::measure(shop.problem, freedoms);
         };
+        fit(frame.freedoms);
         for (const double stiffness : kMending) {
             if (quality.isValid()) break;
             shop.problem.weights.stiffen(stiffness);
-            fitAgain();
+            fit(frame.freedoms);
         }
-        // Whom no small step brings back to his balance is searched, by himself.
-        Rng rng(streamSeed(seed_, {Stream::Mending, i}));
-        for (std::size_t a = 0; a < quality.actors.size(); ++a) {
-            if (quality.actors[a].isValid()) continue;
-            std::vector<std::size_t> his(problem.actors[a].freedoms);
-            std::iota(his.begin(), his.end(), problem.firstFreedom(a));
-            shop.search.run(shop.energy, frame.freedoms, his, kAlone, rng);
-            fitAgain();
+        if (!quality.isValid()) {
+            // Whom no small step brings back to his balance is searched, by himself.
+            Rng rng(streamSeed(seed_, {Stream::Mending, i}));
+            for (std::size_t a = 0; a < quality.actors.size(); ++a) {
+                if (quality.actors[a].isValid()) continue;
+                std::vector<std::size_t> his(problem.actors[a].freedoms);
+                std::iota(his.begin(), his.end(), problem.firstFreedom(a));
+                shop.search.run(shop.energy, frame.freedoms, his, kAlone, rng);
+                fit(frame.freedoms);
+            }
+            // That cost some of the shadow, which comes back where everyone still stands.
+            std::vector<double> relaxed = frame.freedoms;
+            for (const double stiffness : kRelaxing) {
+                if (!quality.isValid()) break;
+                frame.freedoms = relaxed;
+                shop.problem.weights.stiffen(stiffness);
+                fit(relaxed);
+            }
+            if (quality.isValid()) frame.freedoms = relaxed;
         }
         frame.quality = PoseSearch::measure(problem, frame.freedoms);
         frame.evaluations += shop.evaluations();
@@ -244,30 +257,52 @@ private:
 
     // Every frame but the representative one between both its neighbours: first every other one, then those between.
     void settle() {
-        const std::size_t count = frames_.size();
         for (std::size_t parity = 0; parity < 2; ++parity) {
             std::vector<std::size_t> which;
-            for (std::size_t i = parity; i < count; i += 2)
+            for (std::size_t i = parity; i < frames_.size(); i += 2)
                 if (i != motion_.representative) which.push_back(i);
             parallelFor(static_cast<int>(which.size()), options_.threads, [&](int k) {
-                if (mustStop()) return;
                 const std::size_t i = which[static_cast<std::size_t>(k)];
-                PoseProblem problem = problemAt(i);
-                const bool isFirst = i == 0, isLast = i + 1 == count;
-                // A loop of an odd number of frames has two neighbours in one half: then the one that may be at work is left out.
-                if (!isFirst)
-                    addNeighbour(problem, *frames_[i - 1]);
-                else if (motion_.loops && count % 2 == 0)
-                    addNeighbour(problem, *frames_[count - 1]);
-                if (!isLast)
-                    addNeighbour(problem, *frames_[i + 1]);
-                else if (motion_.loops && count % 2 == 0)
-                    addNeighbour(problem, *frames_[0]);
-                AdaptedFrame frame = *frames_[i];
-                finish(i, problem, frame, kPassSteps);
-                keep(i, frame.quality.isValid() || !frames_[i]->quality.isValid() ? std::move(frame) : *frames_[i]);
+                if (!mustStop()) keep(i, settled(i));
             });
         }
+    }
+
+    // Those that a frame lies between. A loop of an odd number of frames has two neighbours in one half: then the one that may be at work is left out.
+    std::vector<std::size_t> neighboursOf(std::size_t i) const {
+        const std::size_t last = frames_.size() - 1;
+        const bool isRound = motion_.loops && last % 2 == 1;
+        std::vector<std::size_t> neighbours;
+        if (i > 0 || isRound) neighbours.push_back(i > 0 ? i - 1 : last);
+        if (i < last || isRound) neighbours.push_back(i < last ? i + 1 : 0);
+        return neighbours;
+    }
+
+    // From its own poses, and, where it matches clearly less than a neighbour does, from that one's too, whichever way it was found.
+    AdaptedFrame settled(std::size_t i) const {
+        const std::vector<std::size_t> neighbours = neighboursOf(i);
+        PoseProblem problem = problemAt(i);
+        for (const std::size_t neighbour : neighbours) addNeighbour(problem, *frames_[neighbour]);
+        AdaptedFrame best = *frames_[i];
+        best.quality = PoseSearch::measure(problem, best.freedoms);
+        std::int64_t evaluations = best.evaluations;
+        const auto offer = [&](AdaptedFrame other) {
+            finish(i, problem, other, kPassSteps);
+            evaluations += other.evaluations;
+            if (isBetter(other.quality, best.quality)) best = std::move(other);
+        };
+        offer({{}, best.freedoms, {}, 0});
+        for (const std::size_t neighbour : neighbours) {
+            if (frames_[neighbour]->quality.iou < best.quality.iou + kClearlyLess) continue;
+            AdaptedFrame other{{}, frames_[neighbour]->freedoms, {}, 0};
+            walk(neighbour, i, other);
+            offer(std::move(other));
+        }
+        best.evaluations = evaluations;
+        return best;
+    }
+    static bool isBetter(const PoseSearch::Quality& a, const PoseSearch::Quality& b) {
+        return a.isValid() != b.isValid() ? a.isValid() : a.energy < b.energy;
     }
 
     const MotionProblem& motion_;
