@@ -178,4 +178,12 @@ void ConvexFiller::fill(std::array<glm::vec2, 3> triangle, BitMask& mask) {
     fill(std::span<const glm::vec2>(triangle), mask);
 }
 
+BitMask filled(int width, int height, std::span<const glm::uvec3> triangles, std::span<const glm::dvec2> corners) {
+    BitMask mask(width, height);
+    ConvexFiller filler;
+    for (const glm::uvec3& triangle : triangles)
+        filler.fill({glm::vec2(corners[triangle.x]), glm::vec2(corners[triangle.y]), glm::vec2(corners[triangle.z])}, mask);
+    return mask;
+}
+
 }  // namespace fantascope::theatre

@@ -3,6 +3,7 @@
 #include "core/image.h"
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <array>
@@ -109,5 +110,8 @@ public:
 private:
     std::vector<float> left_, right_;  // scratch, kept for its memory
 };
+
+// What triangles cover; corners in pixels, x right, y down.
+BitMask filled(int width, int height, std::span<const glm::uvec3> triangles, std::span<const glm::dvec2> corners);
 
 }  // namespace fantascope::theatre

@@ -147,19 +147,15 @@ private:
         if (watch_.tell) watch_.tell(i, *frames_[i]);
     }
 
-    // What the silhouette is like on the way from one frame to another: its triangles, filled.
+    // What the silhouette is like on the way from one frame to another: its triangles.
     PoseTarget between(std::size_t from, std::size_t to, double share) const {
         const PoseTarget& target = motion_.targets[to];
-        BitMask mask(target.mask.width(), target.mask.height());
-        ConvexFiller filler;
-        std::vector<glm::vec2> corners;
+        std::vector<glm::dvec2> corners;
         for (std::size_t i = 0; i < motion_.corners[to].size(); ++i) {
             const glm::dvec2 corner = glm::mix(motion_.corners[from][i], motion_.corners[to][i], share);
-            corners.emplace_back(target.frame.pixelAt(corner.x, corner.y));
+            corners.push_back(target.frame.pixelAt(corner.x, corner.y));
         }
-        for (const glm::uvec3& triangle : motion_.triangles)
-            filler.fill({corners[triangle.x], corners[triangle.y], corners[triangle.z]}, mask);
-        return target.reshaped(std::move(mask));
+        return target.reshaped(filled(target.mask.width(), target.mask.height(), motion_.triangles, corners));
     }
 
     // Takes poses along from one frame towards another, in steps that a fit can follow: farther than a limb is thick it finds nothing.
