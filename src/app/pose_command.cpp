@@ -442,7 +442,7 @@ Result<void> search(Found& found, const GreyImage& silhouette, double area, cons
     const PoseTarget target = TRY(PoseTarget::from(silhouette, stage, first.height, kRows).in(options.target.string()));
     const theatre::PoseWeights weights = TRY(weightsOf(options));
     std::vector<theatre::PoseHint> hints;
-    if (options.hints) hints = TRY(theatre::readHints(*options.hints, target));
+    if (options.hints) hints = TRY(theatre::readHints(*options.hints, target, stage));
     const int most = options.actors ? 0 : kMostMore;
     for (int more = 0; more <= most; ++more) {
         Result<Troupe> troupe = first;
