@@ -7,11 +7,13 @@
 #include "app/progress.h"
 #include "app/report.h"
 #include "app/silhouette_file.h"
+#include "app/stage_material.h"
 #include "app/video_writer.h"
 
 #include "theatre/cast.h"
 #include "theatre/motion_adaptation.h"
 #include "theatre/pose_spline.h"
+#include "theatre/sequence_frames.h"
 #include "theatre/silhouette_sequence.h"
 #include "theatre/triangulated_silhouette.h"
 
@@ -34,10 +36,14 @@ namespace {
 
 namespace fs = std::filesystem;
 using theatre::MotionAdaptation, theatre::MotionProblem, theatre::PoseTarget, theatre::SilhouetteSequence;
+using Quality = theatre::PoseSearch::Quality;
 
-constexpr int kRows = 512;      // of the targets
-constexpr int kLookRows = 96;   // of those that are compared to find the representative frame
-constexpr double kAlike = 0.9;  // intersection over union: what may be the cast's target
+constexpr int kRows = 512;     // of the targets
+constexpr int kLookRows = 96;  // of those that are compared to find the representative frame
+// Intersection over union: what may be the cast's target; what a picture and its triangles have at least; how much nearer to all others another frame
+// is than the one that the poses are of, for it to be told.
+constexpr double kAlike = 0.9, kCovered = 0.8, kNearer = 0.05;
+constexpr std::size_t kMostTold = 3;  // warnings of a kind
 constexpr glm::ivec2 kVideo{960, 540}, kCell{480, 270};
 constexpr std::size_t kMostCells = 12;
 constexpr double kLeastRate = 30;  // of the video, Hz
@@ -67,14 +73,18 @@ void declare(CLI::App& command, Options& options) {
         .add_option("--representative", options.representative,
                     "The frame that the poses are of, from 1 (default: the one most like the cast's target)")
         ->check(CLI::PositiveNumber);
-    command.add_option("--fps", options.frameRate, "Frames a second of a folder of pictures (default: 12)")
+    command
+        .add_option(
+            "--fps", options.frameRate,
+            "Frames a second, whatever the sequence says: the same frames, sooner or later (default: the sequence's; of a "
+            "folder of pictures 12)")
         ->check(CLI::Range(1.0, 1000.0));
     command
         .add_option("--wanted", options.search.wanted,
                     "Intersection over union of shadow and target: a frame that has it is not searched any further")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
-    command.add_option("--searches", options.search.searches, "Of limbs, for a frame that has not")
+    command.add_option("--searches", options.search.searches, "Steps of local search, for a frame that has not")
         ->check(CLI::Range(0, 100'000))
         ->capture_default_str();
     command.add_option("--passes", options.search.passes, "In which each frame is fitted between both its neighbours")
@@ -113,9 +123,9 @@ Result<SilhouetteSequence> sequenceAt(const Options& options) {
     std::error_code ignored;
     const fs::path file = fs::is_directory(given, ignored) ? given / "sequence.yaml" : given;
     if (fs::exists(file, ignored)) {
-        if (options.frameRate)
-            return Error(fmt::format("--fps is for a folder of pictures, and {} says how quickly it is played", file.string()));
-        return theatre::readSequence(file);
+        SilhouetteSequence sequence = TRY(theatre::readSequence(file));
+        sequence.framesPerSecond = options.frameRate.value_or(sequence.framesPerSecond);
+        return sequence;
     }
     if (!fs::is_directory(given, ignored)) return Error(fmt::format("{}: is not there", given.string()));
     SilhouetteSequence sequence;
@@ -183,13 +193,32 @@ struct Adapted {
     }
 };
 
-std::vector<double> freedomsAt(const theatre::Cast& cast, const theatre::PoseProblem& problem, std::size_t frame) {
+// Of the first frame.
+std::vector<double> freedomsOf(const theatre::Cast& cast, const theatre::PoseProblem& problem) {
     std::vector<double> freedoms;
     for (std::size_t i = 0; i < cast.actors.size(); ++i) {
-        const std::vector<double> his = theatre::freedomsOf(problem.actors[i], cast.actors[i].poses[frame]);
+        const std::vector<double> his = theatre::freedomsOf(problem.actors[i], cast.actors[i].poses[0]);
         freedoms.insert(freedoms.end(), his.begin(), his.end());
     }
     return freedoms;
+}
+
+// Triangles are of the pictures that they come with.
+Result<void> checkInterior(const MotionProblem& motion) {
+    std::vector<glm::dvec2> corners;
+    for (std::size_t i = 0; i < motion.targets.size(); ++i) {
+        const PoseTarget& target = motion.targets[i];
+        corners.clear();
+        for (const glm::dvec2 corner : motion.corners[i]) corners.push_back(target.frame.pixelAt(corner.x, corner.y));
+        const double alike = intersectionOverUnion(
+            theatre::filled(target.mask.width(), target.mask.height(), motion.triangles, corners), target.mask);
+        if (alike < kCovered)
+            return Error(fmt::format(
+                "frame {}: its triangles are not those of its picture: {:.0f} % of what either covers is in both, and "
+                "{:.0f} % are needed; leave 'interior' out of the sequence, or make it with 'fantascope deform'",
+                i + 1, 100 * alike, 100 * kCovered));
+    }
+    return {};
 }
 
 Result<Adapted> readAll(const Options& options) {
@@ -202,6 +231,7 @@ Result<Adapted> readAll(const Options& options) {
     if (cast.actors[0].poses.size() != 1)
         return Error(fmt::format("{}: has {} poses of each actor; principal poses are those of one frame", options.cast.string(),
                                  cast.actors[0].poses.size()));
+    if (cast.stageFile) TRY(checkStageCanGo(*cast.stageFile, cast.stage, options.output));
     SilhouetteSequence sequence = TRY(sequenceAt(options));
     std::vector<GreyImage> pictures;
     for (const fs::path& file : sequence.pictures) pictures.push_back(TRY(readSilhouette(file)));
@@ -212,7 +242,8 @@ Result<Adapted> readAll(const Options& options) {
         {cast.stage, targets[representative], {}, {}}, std::move(targets), representative, {}, {}, sequence.loops};
     for (const theatre::Cast::Actor& actor : cast.actors) motion.principal.actors.push_back(theatre::humanBody(actor.stature));
     motion.principal.dress();
-    if (!sequence.interior) {
+    const bool hasInterior = sequence.interior.has_value();
+    if (!hasInterior) {
         // Nobody says what became of what: a triangulation that stays leaves the first guess to the poses of the frame beside.
         const auto still =
             TRY(theatre::TriangulatedSilhouette::of(pictures[representative], theatre::TriangulatedSilhouette::kVertices)
@@ -225,8 +256,44 @@ Result<Adapted> readAll(const Options& options) {
         for (const glm::dvec2 vertex : sequence.interior->vertices[i])
             corners.push_back(motion.targets[i].given.metresAt(vertex));
     }
-    std::vector<double> principal = freedomsAt(cast, motion.principal, 0);
+    if (hasInterior) TRY(checkInterior(motion).in(options.sequence.string()));
+    std::vector<double> principal = freedomsOf(cast, motion.principal);
     return Adapted{options, std::move(cast), std::move(sequence), std::move(motion), std::move(principal)};
+}
+
+void tell(const std::vector<std::string>& warnings) {
+    for (std::size_t i = 0; i < std::min(kMostTold, warnings.size()); ++i)
+        fmt::print(stderr, "adapt: warning: {}\n", warnings[i]);
+    if (warnings.size() > kMostTold) fmt::print(stderr, "adapt: warning: and so at {} more\n", warnings.size() - kMostTold);
+}
+
+// What is hard to follow is followed as well as can be, and told of.
+void warn(const Adapted& adapted) {
+    const MotionProblem& motion = adapted.motion;
+    std::vector<theatre::BitMask> frames;
+    for (const PoseTarget& target : motion.targets) frames.push_back(target.mask);
+    std::vector<std::string> warnings;
+    for (const auto& [from, to, overlap] : theatre::jumpsOf(frames, motion.loops))
+        warnings.push_back(fmt::format(
+            "from frame {} to frame {} the silhouette jumps: {:.0f} % of what either covers is in both; poses that were good "
+            "there may not be found here: put frames in between",
+            from + 1, to + 1, 100 * overlap));
+    tell(std::exchange(warnings, {}));
+    const auto& vertices = adapted.sequence.interior->vertices;
+    const FlatMesh rest{vertices[motion.representative], motion.triangles};
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        if (const std::size_t folded = theatre::foldedTriangles(rest, vertices[i]).size(); folded > 0)
+            warnings.push_back(fmt::format(
+                "frame {}: {} of {} triangles are folded over, against frame {}; whoever is in them is led astray at first",
+                i + 1, folded, motion.triangles.size(), motion.representative + 1));
+    tell(std::exchange(warnings, {}));
+    const std::vector<double> least = theatre::leastOverlaps(frames);
+    const auto middle = static_cast<std::size_t>(std::max_element(least.begin(), least.end()) - least.begin());
+    if (least[middle] > least[motion.representative] + kNearer)
+        fmt::print(stderr,
+                   "adapt: frame {} is more like all the others than frame {}, which the poses are of; poses for it, 'fantascope "
+                   "pose {}', are likely to follow better\n",
+                   middle + 1, motion.representative + 1, adapted.sequence.pictures[middle].string());
 }
 
 // --- What is done
@@ -249,7 +316,10 @@ MotionAdaptation::Frames knownOf(const Adapted& adapted) {
     }
     MotionAdaptation::Frames known(all);
     for (std::size_t i = 0; i < count; ++i)
-        if (i != own) known[(first + i) % all].emplace().freedoms = freedomsAt(*cast, adapted.motion.principal, i);
+        if (i != own)
+            for (std::vector<theatre::ActorPose>& poses = known[(first + i) % all].emplace().poses;
+                 const theatre::Cast::Actor& actor : cast->actors)
+                poses.push_back(actor.poses[i]);
     fmt::print(stderr, "adapt: goes on with {} of {} frames from {}\n", count, all, adapted.options.output.string());
     return known;
 }
@@ -337,13 +407,10 @@ Result<void> writeMotion(const Adapted& adapted) {
     const Material target = materialFor(adapted.options.output, cast.target, "target" + cast.target.extension().string());
     TRY(copyTo(folder, target));
     cast.target = folder / target.name;
+    if (cast.stageFile) cast.stageFile = TRY(placeStage(*cast.stageFile, cast.stage, adapted.options.output));
     for (std::size_t a = 0; a < cast.actors.size(); ++a) {
-        const theatre::Body& body = adapted.motion.principal.actors[a];
         cast.actors[a].poses.clear();
-        for (const std::size_t frame : there)
-            cast.actors[a].poses.push_back(theatre::poseOf(
-                body,
-                std::span(adapted.frames[frame]->freedoms).subspan(adapted.motion.principal.firstFreedom(a), body.freedoms)));
+        for (const std::size_t frame : there) cast.actors[a].poses.push_back(adapted.frames[frame]->poses[a]);
     }
     return theatre::writeCast(adapted.options.output, cast);
 }
@@ -363,12 +430,9 @@ Result<void> film(const Adapted& adapted, const std::vector<std::size_t>& there,
     const bool loops = adapted.motion.loops && adapted.isWhole();
     std::vector<theatre::PoseSpline> splines;
     for (std::size_t a = 0; a < principal.actors.size(); ++a) {
-        const theatre::Body& body = principal.actors[a];
         std::vector<theatre::ActorPose> poses;
-        for (const std::size_t frame : there)
-            poses.push_back(theatre::poseOf(
-                body, std::span(adapted.frames[frame]->freedoms).subspan(principal.firstFreedom(a), body.freedoms)));
-        splines.emplace_back(body, principal.stage, std::move(poses), loops);
+        for (const std::size_t frame : there) poses.push_back(adapted.frames[frame]->poses[a]);
+        splines.emplace_back(principal.actors[a], principal.stage, std::move(poses), loops);
     }
     const auto video = TRY(VideoWriter::open(file, kVideo, rate, VideoKind::Film));
     const double last = static_cast<double>(there.size()) - (loops ? 0 : 1), step = adapted.sequence.framesPerSecond / rate;
@@ -404,10 +468,11 @@ Result<void> drawPictures(const Adapted& adapted) {
     return {};
 }
 
-double mean(const Adapted& adapted) {
+// Over the frames that there are.
+double mean(const Adapted& adapted, double Quality::*figure) {
     double sum = 0, count = 0;
     for (const auto& frame : adapted.frames)
-        if (frame) sum += frame->quality.iou, ++count;
+        if (frame) sum += frame->quality.*figure, ++count;
     return sum / count;
 }
 
@@ -427,6 +492,7 @@ Report reportOf(const Adapted& adapted, double seconds) {
         evaluations += frame->evaluations;
         rows.push_back({{"frame", i + 1},
                         {"iou", frame->quality.iou},
+                        {"iou_without_props", frame->quality.iouWithoutProps},
                         {"valid", frame->quality.isValid()},
                         {"energy", frame->quality.energy},
                         {"evaluations", frame->evaluations},
@@ -435,8 +501,10 @@ Report reportOf(const Adapted& adapted, double seconds) {
     report["representative"] = adapted.motion.representative + 1;
     report["fps"] = adapted.sequence.framesPerSecond;
     report["loops"] = adapted.motion.loops;
-    report["iou_mean"] = mean(adapted);
+    report["iou_mean"] = mean(adapted, &Quality::iou);
     report["iou_worst"] = worst;
+    report["iou_without_props_mean"] = mean(adapted, &Quality::iouWithoutProps);
+    report["props_cover_mean"] = mean(adapted, &Quality::propsCover);
     report["valid"] = areValid;
     report["fastest_joint"] = degrees(motion.fastestJoint);
     report["fastest_root"] = motion.fastestRoot;
@@ -459,7 +527,10 @@ std::string brief(const Adapted& adapted) {
         if (!adapted.frames[i]->quality.isValid()) fallen += fmt::format("{} {}", fallen.empty() ? "" : ",", i + 1);
     }
     std::string text = fmt::format("{}: {} frames from frame {}, mean IoU {:.3f}, worst {:.3f}", adapted.options.output.string(),
-                                   there, adapted.motion.representative + 1, mean(adapted), worst);
+                                   there, adapted.motion.representative + 1, mean(adapted, &Quality::iou), worst);
+    if (const double cover = mean(adapted, &Quality::propsCover); cover > 0)
+        text += fmt::format("; the people's shadow alone {:.3f}, and platforms and props cover {:.0f} % of the targets",
+                            mean(adapted, &Quality::iouWithoutProps), 100 * cover);
     if (!adapted.isWhole()) text += fmt::format("; interrupted, of {}: the same command goes on", adapted.frames.size());
     if (!fallen.empty()) text += fmt::format("; nobody can hold frame{}", fallen);
     return text;
@@ -473,6 +544,7 @@ Result<void> run(const Options& options) {
         return Error(fmt::format("{}: is the principal poses' file, and would be overwritten; choose another name",
                                  options.output.string()));
     Adapted adapted = TRY(readAll(options));
+    warn(adapted);
     adapt(adapted);
     TRY(writeMotion(adapted));
     if (options.report) TRY(writeReport(*options.report, reportOf(adapted, seconds(clock.now() - start))));

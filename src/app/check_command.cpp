@@ -1,11 +1,20 @@
 #include "app/check_command.h"
 
+#include "app/silhouette_file.h"
+
 #include "pattern/elemental_shape.h"
 #include "pattern/pattern_settings.h"
 #include "pattern/shape_pattern.h"
 #include "render/video_stream.h"
 #include "show/show.h"
 #include "show/site.h"
+#include "theatre/cast.h"
+#include "theatre/handle_motion.h"
+#include "theatre/pose_hints.h"
+#include "theatre/pose_problem.h"
+#include "theatre/silhouette_sequence.h"
+#include "theatre/stage_file.h"
+#include "theatre/weights_file.h"
 
 #include "core/config.h"
 #include "core/file.h"
@@ -74,6 +83,84 @@ Result<Finding> checkPatternSettings(const fs::path& path, const std::optional<s
     return Finding{fmt::format("pattern settings, at most {}{}", counted(settings.search.instances, "instance"), shapes), {}};
 }
 
+// The drawing of a motion or of hints: NAME.png for NAME.motion.yaml. Without it white all over, so that whatever it does not decide is looked at.
+struct Drawing {
+    GreyImage picture;
+    std::string note;  // of what was not looked at
+
+    static Result<Drawing> beside(const fs::path& path) {
+        const fs::path file = path.parent_path() / (path.stem().stem().string() + ".png");
+        std::error_code ignored;
+        if (fs::exists(file, ignored)) return Drawing{TRY(readSilhouette(file)), ""};
+        constexpr int kSide = 512;
+        GreyImage white(kSide, kSide);
+        for (int y = 1; y + 1 < kSide; ++y)
+            for (int x = 1; x + 1 < kSide; ++x) white.at(x, y) = 1;
+        return Drawing{std::move(white),
+                       fmt::format("; there is no {} to say whether its points are in the white", file.filename().string())};
+    }
+};
+
+Result<Finding> checkMotion(const fs::path& path, const std::optional<show::Site>&) {
+    using theatre::TriangulatedSilhouette;
+    const Drawing drawing = TRY(Drawing::beside(path));
+    const auto silhouette = TRY(TriangulatedSilhouette::of(drawing.picture, TriangulatedSilhouette::kVertices).in(path.string()));
+    const theatre::HandleMotion motion = TRY(theatre::readMotion(path, silhouette));
+    return Finding{fmt::format("motion, {}, {:g} s, {:g} frames a second{}{}", counted(motion.handles.size(), "handle"),
+                               motion.seconds, motion.framesPerSecond, motion.loops ? ", loops" : "", drawing.note),
+                   {}};
+}
+
+Result<Finding> checkSequence(const fs::path& path, const std::optional<show::Site>&) {
+    const theatre::SilhouetteSequence sequence = TRY(theatre::readSequence(path));
+    glm::ivec2 size(0);
+    for (const fs::path& file : sequence.pictures) {
+        const GreyImage picture = TRY(readSilhouette(file));
+        size = {picture.width(), picture.height()};
+    }
+    return Finding{fmt::format("sequence, {}, {} x {} px, {:g} a second{}{}", counted(sequence.pictures.size(), "frame"), size.x,
+                               size.y, sequence.framesPerSecond, sequence.loops ? ", loops" : "",
+                               sequence.interior ? ", " + counted(sequence.interior->triangles.size(), "triangle") : ""),
+                   {}};
+}
+
+Result<Finding> checkCast(const fs::path& path, const std::optional<show::Site>&) {
+    const theatre::Cast cast = TRY(theatre::readCast(path));
+    const std::size_t frames = cast.actors[0].poses.size();
+    const std::string motion =
+        cast.framesPerSecond > 0 ? fmt::format("{}, {:g} a second", counted(frames, "frame"), cast.framesPerSecond) : "still";
+    Finding finding{fmt::format("cast, {}, {}, {:g} m high", counted(cast.actors.size(), "actor"), motion, cast.height),
+                    {cast.target}};
+    if (cast.stageFile) finding.names.push_back(*cast.stageFile);
+    if (cast.sequence) finding.names.push_back(cast.sequence->file);
+    return finding;
+}
+
+Result<Finding> checkStage(const fs::path& path, const std::optional<show::Site>&) {
+    const theatre::Stage stage = TRY(theatre::readStage(path));
+    return Finding{fmt::format("stage, {}, {}, {}", stage.lit ? "projector" : "lamp", counted(stage.platforms.size(), "platform"),
+                               counted(stage.props.size(), "prop")),
+                   {}};
+}
+
+// With NAME.stage.yaml, where it is there, for the props that are meant.
+Result<Finding> checkHints(const fs::path& path, const std::optional<show::Site>&) {
+    const Drawing drawing = TRY(Drawing::beside(path));
+    const fs::path file = path.parent_path() / (path.stem().stem().string() + ".stage.yaml");
+    std::error_code ignored;
+    theatre::Stage stage;
+    if (fs::exists(file, ignored)) stage = TRY(theatre::readStage(file));
+    constexpr int kRows = 128;
+    const auto target = TRY(theatre::PoseTarget::from(drawing.picture, {}, 1, kRows).in(path.string()));
+    const auto hints = TRY(theatre::readHints(path, target, stage));
+    return Finding{fmt::format("hints, {}{}", counted(hints.size(), "point"), drawing.note), {}};
+}
+
+Result<Finding> checkWeights(const fs::path& path, const std::optional<show::Site>&) {
+    TRY(theatre::readWeights(path));
+    return Finding{"pose weights", {}};
+}
+
 Result<Finding> checkGuide(const fs::path& path) {
     const GreyImage guide = TRY(readGrey(path));
     return Finding{fmt::format("guide, {} x {} px", guide.width(), guide.height()), {}};
@@ -108,7 +195,9 @@ using Check = Result<Finding> (*)(const fs::path&, const std::optional<show::Sit
 
 // A YAML file says of itself of which kind it is.
 constexpr std::pair<std::string_view, Check> kKinds[] = {
-    {"show", checkShow}, {"site", checkSite}, {"pattern", checkPattern}, {"pattern-settings", checkPatternSettings}};
+    {"show", checkShow},     {"site", checkSite},           {"pattern", checkPattern}, {"pattern-settings", checkPatternSettings},
+    {"motion", checkMotion}, {"sequence", checkSequence},   {"cast", checkCast},       {"stage", checkStage},
+    {"hints", checkHints},   {"pose-weights", checkWeights}};
 
 Result<Finding> checkYaml(const fs::path& path, const std::optional<show::Site>& site) {
     std::vector<std::string> names;
@@ -121,8 +210,10 @@ Result<Finding> checkYaml(const fs::path& path, const std::optional<show::Site>&
 
 Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>& site) {
     std::error_code ignored;
-    if (fs::is_directory(path, ignored))
+    if (fs::is_directory(path, ignored)) {
+        if (fs::exists(path / "sequence.yaml", ignored)) return checkSequence(path / "sequence.yaml", site);
         return fs::exists(path / "site.yaml", ignored) ? checkSite(path / "site.yaml", site) : checkShow(path, site);
+    }
     if (path.extension() == ".yaml") return checkYaml(path, site);
     if (isVideoFile(path)) return checkVideo(path);
     return isShapeFile(path) ? checkShape(path) : checkGuide(path);
@@ -131,7 +222,9 @@ Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>&
 void declareOptions(CLI::App& command, CheckOptions& options) {
     command
         .add_option("path", options.paths,
-                    "Show and site folders, show, site and pattern files, guides and images, videos, shapes (SVG, meshes)")
+                    "Show, site and sequence folders; show, site and pattern files; casts, stages, motions, hints and weights; "
+                    "guides and "
+                    "images, videos, shapes (SVG, meshes)")
         ->required()
         ->type_name("PATH");
     command

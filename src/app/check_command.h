@@ -14,7 +14,7 @@
 namespace fantascope::app {
 
 struct CheckOptions {
-    std::vector<std::filesystem::path> paths;   // shows (a folder or its show.yaml), sites, patterns, their settings, guides
+    std::vector<std::filesystem::path> paths;   // shows (a folder or its show.yaml), and whatever else the program reads
     std::optional<std::filesystem::path> site;  // looked at too; every show must find its outputs, fixtures and relays there
 };
 

@@ -10,6 +10,7 @@
 
 #include "theatre/handle_motion.h"
 #include "theatre/pose_problem.h"
+#include "theatre/sequence_frames.h"
 #include "theatre/shape_manipulation.h"
 #include "theatre/silhouette_sequence.h"
 #include "theatre/triangulated_silhouette.h"
@@ -39,6 +40,7 @@ constexpr double kOutside = 0.5;                    // pixels: what is farther o
 constexpr int kMargin = 4;                          // around what left it
 constexpr double kRounding = 1e-3;                  // of the vertices in the file, pixels
 constexpr double kLeastRate = 1, kMostRate = 1000;  // frames a second, of a video
+constexpr int kLookRows = 128;                      // in which frames are compared
 
 struct Options {
     fs::path silhouette, motion, output;
@@ -294,6 +296,19 @@ Result<void> write(const Deformed& deformed) {
     return checkWhole(made, wanted);
 }
 
+// The frame, from 1, that is most like all others.
+std::size_t middleFrame(const Deformed& deformed) {
+    const double scale = kLookRows / double(deformed.canvas.size.y);
+    std::vector<theatre::BitMask> looks;
+    for (DeformedFrame frame : deformed.frames) {
+        for (glm::dvec2& vertex : frame.vertices) vertex *= scale;
+        looks.push_back(theatre::filled(static_cast<int>(std::ceil(scale * deformed.canvas.size.x)), kLookRows,
+                                        deformed.silhouette.rest.triangles, frame.vertices));
+    }
+    const std::vector<double> least = theatre::leastOverlaps(looks);
+    return static_cast<std::size_t>(std::max_element(least.begin(), least.end()) - least.begin()) + 1;
+}
+
 Report reportOf(const Deformed& deformed, const GreyImage& source, double seconds) {
     const GreyImage rest =
         drawn(deformed.silhouette.outlineAt(deformed.silhouette.rest.vertices), source.width(), source.height());
@@ -324,6 +339,7 @@ Report reportOf(const Deformed& deformed, const GreyImage& source, double second
         rows.push_back({{"time", frame.time},
                         {"area", areaOf(frame.vertices) / areaAtRest},
                         {"folded", theatre::foldedTriangles(deformed.silhouette.rest, frame.vertices).size()}});
+    report["middle_frame"] = middleFrame(deformed);
     report["rows"] = std::move(rows);
     report["seconds"] = seconds;
     return report;
@@ -334,6 +350,7 @@ std::string brief(const Deformed& deformed) {
     std::string text = fmt::format("{}: {}, {} x {} pixels, {} triangles", deformed.options.output.string(),
                                    outcomeOf(deformed.schedule.frames, deformed.schedule.frames, deformed.schedule.frameRate),
                                    canvas.size.x, canvas.size.y, deformed.silhouette.rest.triangles.size());
+    text += fmt::format("; frame {} is most like all others: poses for it are the ones to begin with", middleFrame(deformed));
     if (canvas.isWider())
         text += fmt::format(
             "; all pictures are wider than the silhouette's by {} pixels on the left, {} at the top, {} on the right, {} at the "

@@ -6,6 +6,7 @@
 #include "app/progress.h"
 #include "app/report.h"
 #include "app/silhouette_file.h"
+#include "app/stage_material.h"
 #include "app/stage_meshes.h"
 
 #include "theatre/cast.h"
@@ -232,31 +233,6 @@ Material targetFor(const Options& options, const fs::path& output, std::size_t b
     return materialFor(output, target, name + target.extension().string());
 }
 
-// Where the stage file of a cast is, or will be: one that does not lie in its folder goes with its meshes into a folder of its own.
-Result<std::optional<fs::path>> placeStage(const Found& found, const fs::path& output) {
-    if (!found.options.stage) return std::optional<fs::path>();
-    const fs::path source = fs::absolute(*found.options.stage), folder = fs::absolute(output).parent_path();
-    const Material stage = materialFor(output, source, "stage");
-    if (!stage.copied) return std::optional(folder / stage.name);
-    const fs::path own = folder / stage.name;
-    std::vector<fs::path> files{source};
-    for (const theatre::Prop& prop : found.stage->props) files.push_back(fs::absolute(prop.file));
-    for (const fs::path& file : files) TRY(copyTo(own, {file, TRY(relativeTo(source, file)), true}));
-    return std::optional(own / source.filename());
-}
-
-// Whether placeStage() can. It is asked before the search, so that nothing found is lost.
-Result<void> checkStage(const Options& options, const theatre::Stage& stage) {
-    if (!materialFor(options.output, fs::absolute(*options.stage), "stage").copied) return {};
-    for (const theatre::Prop& prop : stage.props)
-        if (endingOf(prop.file) == ".gltf")
-            return Error(
-                fmt::format("{}: prop '{}' is a .gltf, which refers to other files that would not be found beside the cast; "
-                            "export it as .glb, or write the cast into the stage file's folder",
-                            options.stage->string(), prop.name));
-    return {};
-}
-
 // What it names first, so that the cast never names what is not there.
 Result<void> writeCastWithMaterial(const Found& found, std::span<const double> freedoms, const fs::path& file,
                                    const fs::path& output) {
@@ -270,7 +246,7 @@ Result<void> writeCastWithMaterial(const Found& found, std::span<const double> f
         TRY(copyTo(folder, further));
         cast.further[i].file = folder / further.name;
     }
-    cast.stageFile = TRY(placeStage(found, output));
+    if (found.options.stage) cast.stageFile = TRY(placeStage(*found.options.stage, *found.stage, output));
     return theatre::writeCast(file, cast);
 }
 
@@ -392,6 +368,8 @@ Report reportOf(const Found& found) {
     const PoseTrials::Trial& best = found.best();
     Report report;
     report["iou"] = best.quality.iou;
+    report["iou_without_props"] = best.quality.iouWithoutProps;
+    report["props_cover"] = best.quality.propsCover;
     report["valid"] = best.quality.isValid();
     report["contour_mean_px"] = best.quality.contourMean;
     report["contour_max_px"] = best.quality.contourMost;
@@ -448,6 +426,9 @@ std::string brief(const Found& found) {
         text += fmt::format(", the best of {} trial{}", finished, finished == 1 ? "" : "s");
     else
         text += "; no trial was finished: take more --seconds, or fewer --evaluations";
+    if (best.quality.propsCover > 0)
+        text += fmt::format("; the people's shadow alone {:.3f}, and platforms and props cover {:.0f} % of the target",
+                            best.quality.iouWithoutProps, 100 * best.quality.propsCover);
     if (!best.quality.isValid())
         text += fmt::format("; nobody can hold these poses{}", finished > 0 ? ": more --trials or other --actors may help" : "");
     return text;
@@ -524,7 +505,7 @@ Result<void> search(Found& found, std::span<const GreyImage> silhouettes, double
     }
     const theatre::PoseWeights weights = TRY(weightsOf(options));
     std::vector<theatre::PoseHint> hints;
-    if (options.hints) hints = TRY(theatre::readHints(*options.hints, target));
+    if (options.hints) hints = TRY(theatre::readHints(*options.hints, target, stage));
     const int most = options.actors ? 0 : kMostMore;
     for (int more = 0; more <= most; ++more) {
         Result<Troupe> troupe = first;
@@ -592,7 +573,7 @@ Result<void> run(const Options& options) {
     std::optional<theatre::Stage> stage;
     if (options.stage) {
         stage = TRY(theatre::readStage(*options.stage));
-        TRY(checkStage(options, *stage));
+        TRY(checkStageCanGo(*options.stage, *stage, options.output));
     }
     TRY(checkFurther(options, stage ? stage->further.size() : 0));
     // What people have to fill, in squares of the first silhouette's height, wherever the light is: on average over the beams.

@@ -83,10 +83,15 @@ std::int64_t differing(const BitMask& a, const BitMask& b) {
     return count;
 }
 
+std::int64_t shared(const BitMask& a, const BitMask& b) {
+    std::int64_t count = 0;
+    for (std::size_t i = 0; i < a.words_.size(); ++i) count += std::popcount(a.words_[i] & b.words_[i]);
+    return count;
+}
+
 double intersectionOverUnion(const BitMask& a, const BitMask& b) {
-    const auto all = static_cast<double>(a.count() + b.count());
-    const double both = 0.5 * (all - static_cast<double>(differing(a, b)));
-    return both / (all - both);
+    const std::int64_t both = shared(a, b);
+    return static_cast<double>(both) / static_cast<double>(both + differing(a, b));
 }
 
 BitMask difference(const BitMask& a, const BitMask& b) {
@@ -169,6 +174,20 @@ void ConvexFiller::fill(std::span<const glm::vec2> polygon, BitMask& mask) {
             side[row] = x;
     }
     mask.fill(first, left_, right_);
+}
+
+void ConvexFiller::fill(std::array<glm::vec2, 3> triangle, BitMask& mask) {
+    const glm::vec2 one = triangle[1] - triangle[0], other = triangle[2] - triangle[0];
+    if (one.x * other.y - one.y * other.x < 0) std::swap(triangle[1], triangle[2]);
+    fill(std::span<const glm::vec2>(triangle), mask);
+}
+
+BitMask filled(int width, int height, std::span<const glm::uvec3> triangles, std::span<const glm::dvec2> corners) {
+    BitMask mask(width, height);
+    ConvexFiller filler;
+    for (const glm::uvec3& triangle : triangles)
+        filler.fill({glm::vec2(corners[triangle.x]), glm::vec2(corners[triangle.y]), glm::vec2(corners[triangle.z])}, mask);
+    return mask;
 }
 
 }  // namespace fantascope::theatre

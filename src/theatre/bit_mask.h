@@ -3,8 +3,10 @@
 #include "core/image.h"
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -50,6 +52,7 @@ public:
     void noteRow(int y) { spread(y, y + 1); }  // words of this row were set through row()
     std::int64_t count() const;
     friend std::int64_t differing(const BitMask& a, const BitMask& b);
+    friend std::int64_t shared(const BitMask& a, const BitMask& b);
     friend bool operator==(const BitMask& a, const BitMask& b);
 
 private:
@@ -61,8 +64,10 @@ private:
     std::vector<std::uint64_t> words_;
 };
 
-// Of masks of one size: how many pixels differ, and which; whether some are white in both; whether all that are white in one are in the other.
+// Of masks of one size: how many pixels differ, and which; how many are white in both, and what share that is of those that are white in either, of
+// which there are some; whether some are white in both; whether all that are white in one are in the other.
 std::int64_t differing(const BitMask& a, const BitMask& b);
+std::int64_t shared(const BitMask& a, const BitMask& b);
 BitMask difference(const BitMask& a, const BitMask& b);
 double intersectionOverUnion(const BitMask& a, const BitMask& b);  // one of them has something white
 bool meet(const BitMask& a, const BitMask& b);
@@ -100,9 +105,14 @@ private:
 class ConvexFiller {
 public:
     void fill(std::span<const glm::vec2> polygon, BitMask& mask);
+    // A triangle, either way around.
+    void fill(std::array<glm::vec2, 3> triangle, BitMask& mask);
 
 private:
     std::vector<float> left_, right_;  // scratch, kept for its memory
 };
+
+// What triangles cover; corners in pixels, x right, y down.
+BitMask filled(int width, int height, std::span<const glm::uvec3> triangles, std::span<const glm::dvec2> corners);
 
 }  // namespace fantascope::theatre

@@ -87,6 +87,27 @@ double FreedomSearch::run(SceneEnergy& energy, std::span<double> freedoms, std::
     return best;
 }
 
+void FreedomSearch::disturb(SceneEnergy& energy, std::span<double> freedoms, Rng& rng) {
+    const auto& actors = problem_.actors;
+    const std::size_t actor = rng.below(static_cast<std::uint32_t>(actors.size()));
+    const Body& body = actors[actor];
+    const std::size_t first = problem_.firstFreedom(actor);
+    std::vector<std::size_t> which;
+    const double kind = rng.uniform();
+    if (kind < 0.4) {
+        for (std::size_t k = 0; k < body.freedoms; ++k) which.push_back(first + k);
+        run(energy, freedoms, which, {0.3, 16, 10}, rng);
+    } else if (kind < 0.8) {
+        for (const std::size_t k : limb(body, 1 + rng.below(static_cast<std::uint32_t>(body.joints.size() - 1))))
+            which.push_back(first + k);
+        run(energy, freedoms, which, {0.8, 12, 8}, rng);
+    } else {
+        const auto own = freedoms.subspan(first, body.freedoms);
+        for (std::size_t k = 0; k < own.size(); ++k) own[k] += 0.4 * Body::scaleOf(k) * rng.normal();
+        body.limit(own);
+    }
+}
+
 // The pose itself, if nothing is held.
 std::span<const double> FreedomSearch::held(std::size_t actor, std::span<const double> pose) {
     if (problem_.continuity.empty() || problem_.continuity[actor].contacts.empty()) return pose;

@@ -37,6 +37,9 @@ public:
     double run(SceneEnergy& energy, std::span<double> freedoms, std::span<const std::size_t> which, const Settings& settings,
                Rng& rng, const std::function<bool(int)>& beforeGeneration = {});
 
+    // How a local search leaves where it is: one actor is searched anew, or one of his limbs, or he makes a step in the dark.
+    void disturb(SceneEnergy& energy, std::span<double> freedoms, Rng& rng);
+
     std::int64_t evaluations() const { return evaluations_; }
 
 private:

@@ -11,7 +11,7 @@ namespace {
 // Against the joints' squared metres: of a contact's place, and of its turn, a foot's length from it.
 constexpr double kHeldPlace = 1000, kHeldTurn = 20;
 constexpr double kReachDamping = 0.02, kHoldDamping = 1e-4, kMostDamping = 10;
-constexpr double kHeld = 0.001;    // metres, and radians a tenth of a metre away
+constexpr double kHeld = 0.0002;   // metres, and radians a tenth of a metre away
 constexpr double kSettled = 1e-5;  // of the objective: what a step must bring
 constexpr int kHoldSteps = 12;
 constexpr double kLever = 0.1;  // metres

@@ -19,7 +19,7 @@ public:
     // stay where they are. Ends after `steps`, or when a step brings nothing. Gives the root mean square of the joints' distances, metres.
     double reach(std::span<double> freedoms, std::span<const glm::dvec3> places, std::span<const HeldContact> contacts,
                  int steps);
-    // Brings the contacts to where they are held by as small a change of all else as it takes. False: they cannot be reached within a millimetre.
+    // Brings the contacts to where they are held by as small a change of all else as it takes. False: they cannot be reached within a fifth of a millimetre.
     bool hold(std::span<double> freedoms, std::span<const HeldContact> contacts);
 
     const PosedBody& posed() const { return posed_; }  // in the freedoms last given, as they were left

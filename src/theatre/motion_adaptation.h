@@ -25,7 +25,8 @@ struct MotionProblem {
 
 // The poses of a frame.
 struct AdaptedFrame {
-    std::vector<double> freedoms;  // of all actors, one after the other
+    std::vector<ActorPose> poses;  // of each actor
+    std::vector<double> freedoms;  // the same, of all actors, one after the other
     PoseSearch::Quality quality;
     std::int64_t evaluations = 0;
 };
@@ -38,9 +39,9 @@ struct AdaptationWatch {
 };
 
 // Algorithm 1 of Won & Lee 2016: principal poses are adapted to the frames beside theirs, those poses to the next, forwards and backwards.
-// A frame's first guess comes through the generalised cone, by inverse kinematics, and is fitted with all terms of the energy; what still does
-// not match is searched limb by limb. What bears at the representative frame is held there throughout. When all frames are there each is fitted
-// again between both its neighbours.
+// A frame has two first guesses: through the generalised cone, by inverse kinematics; and the poses beside, that follow the triangles on their way in
+// small steps. The better is fitted with all terms of the energy; what still does not match is searched. What bears at the representative frame is
+// held there throughout. When all frames are there each is fitted again between both its neighbours.
 //
 // A frame's work is a number of evaluations, never a time: the same problem, poses, seed and options give the same motion, byte for byte, on any
 // number of threads.
@@ -49,13 +50,13 @@ class MotionAdaptation {
 public:
     struct Options {
         double wanted = 0.95;  // intersection over union: a frame that has it is not searched any further
-        int searches = 24;     // of limbs, for a frame that has not
+        int searches = 20;     // steps of local search, for a frame that has not
         int passes = 2;        // of fitting between both neighbours
         int threads = 1;
     };
     using Frames = std::vector<std::optional<AdaptedFrame>>;  // of each frame, as far as there are any
 
-    // `freedoms`: the principal poses. `known`: what an earlier run has come to, or nothing; frames that it has are not adapted again.
+    // `freedoms`: the principal poses. `known`: what an earlier run has come to, its `poses`, or nothing; frames that it has are not adapted again.
     static Frames run(const MotionProblem& problem, std::span<const double> freedoms, std::uint64_t seed, const Options& options,
                       const AdaptationWatch& watch = {}, Frames known = {});
 };

@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kVersion = 1;
 constexpr std::size_t kMostHints = 100;
+constexpr double kFarthest = 20;  // metres: no prop is larger
 
 Result<std::vector<BodyPart>> readParts(const ConfigNode& node, const std::string& hint) {
     const std::vector<ConfigNode> words = TRY(node.items());
@@ -38,6 +39,25 @@ Result<std::vector<BodyPart>> readParts(const ConfigNode& node, const std::strin
             if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(part);
     }
     return parts;
+}
+
+// Of those that somebody holds.
+Result<const Prop*> readProp(const ConfigNode& node, const std::string& hint, const Stage& stage) {
+    const std::string name = TRY(node.text());
+    std::vector<std::string> held;
+    for (const Prop& prop : stage.props) {
+        if (prop.name != name) {
+            if (prop.holder) held.push_back(prop.name);
+            continue;
+        }
+        if (!prop.holder)
+            return node.error(fmt::format(
+                "hint '{}': the prop '{}' stands, and no search moves it; put it there in the stage file", hint, name));
+        return &prop;
+    }
+    return node.error(fmt::format(
+        "hint '{}': nobody on the stage holds '{}'; {}", hint, name,
+        held.empty() ? "its stage file, of --stage, has no prop with held_by" : fmt::format("held are: {}", listed(held))));
 }
 
 Result<glm::dvec2> readPlace(const ConfigNode& node, const std::string& hint, const PoseTarget& target,
@@ -72,23 +92,30 @@ Result<glm::dvec2> readPlace(const ConfigNode& node, const std::string& hint, co
 
 }  // namespace
 
-void matchHints(std::span<const PoseHint> hints, const ScreenFrame& frame, const Body& body, const PosedBody& posed,
-                std::vector<HintMatch>& matches) {
+void matchHints(std::span<const PoseHint> hints, const ScreenFrame& frame, std::size_t actor, const Body& body,
+                const PosedBody& posed, std::vector<HintMatch>& matches) {
     matches.resize(hints.size());
     const double far = 2.0 * (frame.width() + frame.height());
+    const auto partOf = [&](BodyPart part) -> const Body::Point& { return body.parts[static_cast<std::size_t>(part)]; };
     for (std::size_t i = 0; i < hints.size(); ++i) {
-        const glm::dvec2 wanted = frame.pixelAt(hints[i].place.x, hints[i].place.y);
-        HintMatch& best = matches[i] = {hints[i].parts[0], {0, 0}, far * far};
-        for (const BodyPart part : hints[i].parts) {
-            const glm::dvec3 point = posed.point(body.parts[static_cast<std::size_t>(part)]);
-            if (frame.fromLight(point).z <= 0) continue;
+        const PoseHint& hint = hints[i];
+        const glm::dvec2 wanted = frame.pixelAt(hint.place.x, hint.place.y);
+        HintMatch& best = matches[i] = {{}, {0, 0}, far * far};
+        const auto offer = [&](const Body::Point& candidate) {
+            const glm::dvec3 point = posed.point(candidate);
+            if (frame.fromLight(point).z <= 0) return;
             const glm::dvec2 away = frame.shadow(point) - wanted;
-            if (const double square = glm::dot(away, away); square < best.square) best = {part, away, square};
+            if (const double square = glm::dot(away, away); square < best.square) best = {candidate, away, square};
+        };
+        for (const BodyPart part : hint.parts) offer(partOf(part));
+        if (hint.held && hint.held->holder.actor == actor) {
+            const Body::Point& part = partOf(hint.held->holder.part);
+            offer({part.joint, part.local + hint.held->local});
         }
     }
 }
 
-Result<std::vector<PoseHint>> readHints(const fs::path& file, const PoseTarget& target) {
+Result<std::vector<PoseHint>> readHints(const fs::path& file, const PoseTarget& target, const Stage& stage) {
     const GreyImage inWhite = signedDistance(target.mask);
     std::vector<PoseHint> hints;
     ConfigFields fields(TRY(ConfigNode::load(file)));
@@ -106,8 +133,17 @@ Result<std::vector<PoseHint>> readHints(const fs::path& file, const PoseTarget& 
                 return name;
             });
             own.read("at", hint.place, [&](const ConfigNode& at) { return readPlace(at, hint.name, target, inWhite); });
-            own.read("parts", hint.parts, [&](const ConfigNode& at) { return readParts(at, hint.name); });
+            const Prop* prop = nullptr;
+            glm::dvec3 point(0);
+            own.optional().read("parts", hint.parts, [&](const ConfigNode& at) { return readParts(at, hint.name); });
+            own.optional().read("prop", prop, [&](const ConfigNode& at) { return readProp(at, hint.name, stage); });
+            own.optional().vector3("point", point, -kFarthest, kFarthest, "m");
             TRY(own.finish());
+            if (hint.parts.empty() == (prop == nullptr))
+                return node.error(
+                    fmt::format("hint '{}' has {}: say which 'parts' of a body may come to its point, or which 'prop'", hint.name,
+                                prop == nullptr ? "neither parts nor a prop" : "both parts and a prop"));
+            if (prop != nullptr) hint.held = {*prop->holder, prop->place + prop->turn * point};
             return hint;
         },
         0, kMostHints);

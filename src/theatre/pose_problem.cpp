@@ -378,6 +378,14 @@ PoseTarget PoseTarget::halved(const Stage& stage) const {
     return target;
 }
 
+PoseTarget PoseTarget::reshaped(BitMask given) const {
+    PoseTarget target = *this;
+    target.mask = std::move(given);
+    target.contour.clear();
+    sampleContour(target, contour.size());
+    return target;
+}
+
 void PoseProblem::dress() {
     skins.clear();
     for (const Body& actor : actors) {

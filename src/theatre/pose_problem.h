@@ -51,6 +51,9 @@ struct PoseTarget {
     // The same in pixels of twice the side, with half as many points: for a search's first look.
     PoseTarget halved(const Stage& stage) const;
 
+    // Another mask of the same frame instead of this one's.
+    PoseTarget reshaped(BitMask mask) const;
+
     // Whether from() takes a picture of this size.
     static Result<void> checkSize(int width, int height);
 

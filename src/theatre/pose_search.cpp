@@ -41,11 +41,17 @@ void keepBeforeScreens(const Stage& stage, glm::dvec2& floor) {
             floor += (kRoom - away) * glm::dvec2(outward.x, outward.z);
 }
 
-PoseSearch::Quality::Match matchOf(const BeamEnergy& beam) {
+PoseSearch::Quality::Match matchOf(const BeamEnergy& beam, std::size_t actors) {
     const PoseTarget& target = beam.target();
+    const BitMask& wanted = target.maskAsSeen();
+    BitMask people(target.mask.width(), target.mask.height());
+    for (std::size_t i = 0; i < actors; ++i) people.add(beam.shadow(i));
     PoseSearch::Quality::Match match;
-    match.iou = match.flatIou = intersectionOverUnion(beam.shadow(), target.mask);
-    if (target.unrolled) match.iou = intersectionOverUnion(target.asSeen(beam.shadow()), target.unrolled->mask);
+    match.iou = intersectionOverUnion(target.asSeen(beam.shadow()), wanted);
+    match.flatIou = intersectionOverUnion(beam.shadow(), target.mask);
+    match.iouWithoutProps = intersectionOverUnion(target.asSeen(people), wanted);
+    match.propsCover =
+        static_cast<double>(shared(target.asSeen(beam.propShadow()), wanted)) / static_cast<double>(wanted.count());
     for (std::size_t i = 0; i < target.contour.size(); ++i) {
         const double off =
             target.pixelsOf256 * glm::distance(glm::dvec2(target.contour[i].pixel), glm::dvec2(beam.nearest()[i].pixel));
@@ -127,10 +133,12 @@ PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<co
     Quality quality;
     quality.terms = energy.terms();
     quality.energy = quality.terms.total(problem.weights);
-    quality.iou = 1;
+    quality.iou = quality.iouWithoutProps = 1;
     for (std::size_t i = 0; i < problem.beams(); ++i) {
-        const PoseSearch::Quality::Match match = matchOf(energy.beam(i));
+        const PoseSearch::Quality::Match match = matchOf(energy.beam(i), problem.actors.size());
         quality.iou = std::min(quality.iou, match.iou);
+        quality.iouWithoutProps = std::min(quality.iouWithoutProps, match.iouWithoutProps);
+        quality.propsCover = std::max(quality.propsCover, match.propsCover);
         quality.contourMean += match.contourMean / static_cast<double>(problem.beams());
         quality.contourMost = std::max(quality.contourMost, match.contourMost);
         quality.matches.push_back(match);

@@ -60,13 +60,15 @@ public:
         EnergyTerms terms;
         // Of a beam's shadow and target.
         struct Match {
-            double iou = 0,
-                   flatIou =
-                       0;  // intersection over union as seen on the screen, and on the flat one, which is curved for the former
+            double iou = 0;                           // intersection over union, as seen on the screen
+            double flatIou = 0;                       // on the flat one, which is curved for the former
+            double iouWithoutProps = 0;               // of the people's shadow alone, without that of platforms and props
+            double propsCover = 0;                    // the share of the target that is in the shadow of platforms and props
             double contourMean = 0, contourMost = 0;  // |p - p'|, pixels of a target 256 high
         };
         std::vector<Match> matches;               // of each beam
-        double iou = 0;                           // the least of theirs
+        double iou = 0, iouWithoutProps = 0;      // the least of theirs
+        double propsCover = 0;                    // the most
         double contourMean = 0, contourMost = 0;  // of all
         std::vector<Actor> actors;
 

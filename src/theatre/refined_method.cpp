@@ -116,7 +116,7 @@ private:
             if (!goesOn(current)) break;
 
             next = here;
-            change(shop, next);
+            shop.search.disturb(shop.energy, next, rng_);
             const double found = shop.fit.run(shop.energy, next, kRefitSteps);
             const double progress = double(evaluations()) / double(options_.evaluations);
             const double tolerance = -kHot * std::pow(kCool, progress) * std::log(1 - rng_.uniform());
@@ -126,28 +126,6 @@ private:
             trial_.history.push_back(best);
         }
         shop.problem.weights.stiffen(1);
-    }
-
-    // One actor anew, one of his limbs, or a step in the dark.
-    void change(Workshop& shop, std::vector<double>& freedoms) {
-        const auto& actors = shop.problem.actors;
-        const std::size_t actor = rng_.below(static_cast<std::uint32_t>(actors.size()));
-        const Body& body = actors[actor];
-        const std::size_t first = shop.problem.firstFreedom(actor);
-        std::vector<std::size_t> which;
-        const double kind = rng_.uniform();
-        if (kind < 0.4) {
-            for (std::size_t k = 0; k < body.freedoms; ++k) which.push_back(first + k);
-            shop.search.run(shop.energy, freedoms, which, {0.3, 16, 10}, rng_);
-        } else if (kind < 0.8) {
-            for (const std::size_t k : limb(body, 1 + rng_.below(static_cast<std::uint32_t>(body.joints.size() - 1))))
-                which.push_back(first + k);
-            shop.search.run(shop.energy, freedoms, which, {0.8, 12, 8}, rng_);
-        } else {
-            const auto own = std::span(freedoms).subspan(first, body.freedoms);
-            for (std::size_t k = 0; k < own.size(); ++k) own[k] += 0.4 * Body::scaleOf(k) * rng_.normal();
-            body.limit(own);
-        }
     }
 
     const PoseSearch::Options& options_;

@@ -51,7 +51,7 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     findIntrusions(stage, standing_, body, actor.body, actor.held, actor.intrusions);
     actor.own.surroundings =
         depthInStage(stage, actor.body) + squaredDepths(actor.intrusions) + 1e6 * actor.outside * actor.outside;
-    matchHints(problem_.hints, problem_.target.frame, body, actor.body, actor.matches);
+    matchHints(problem_.hints, problem_.target.frame, index, body, actor.body, actor.matches);
     if (problem_.continuity.empty()) return;
     const Continuity& others = problem_.continuity[index];
     for (const ActorPose& beside : others.neighbours) actor.own.smooth += poseDifference(body, freedoms, beside);

@@ -215,13 +215,14 @@ void SilhouetteFit::addHints(const SceneEnergy& energy) {
     const double weight = problem_.weights.w12 * problem_.target.pixelsOf256 * problem_.target.pixelsOf256;
     for (std::size_t i = 0; i < problem_.hints.size(); ++i) {
         const auto [actor, match] = energy.hintOwner(i);
-        const Body::Point& part = problem_.actors[actor].parts[static_cast<std::size_t>(match.part)];
-        const glm::dvec3 point = energy.posed(actor).point(part), d = frame.fromLight(point);
-        if (d.z <= 0) continue;  // no shadow to move
+        if (!match.point) continue;
+        const glm::dvec3 point = energy.posed(actor).point(*match.point), d = frame.fromLight(point);
         // The derivative of foot + focus (x, y) / z.
         const double scale = frame.focus() / d.z;
-        equations_[actor].addPoint(part.joint, point, frame.onStage(scale * glm::dvec3(1, 0, -d.x / d.z)), match.away.x, weight);
-        equations_[actor].addPoint(part.joint, point, frame.onStage(scale * glm::dvec3(0, 1, -d.y / d.z)), match.away.y, weight);
+        equations_[actor].addPoint(match.point->joint, point, frame.onStage(scale * glm::dvec3(1, 0, -d.x / d.z)), match.away.x,
+                                   weight);
+        equations_[actor].addPoint(match.point->joint, point, frame.onStage(scale * glm::dvec3(0, 1, -d.y / d.z)), match.away.y,
+                                   weight);
     }
 }
 

@@ -8,8 +8,9 @@ namespace fantascope::theatre {
 // what a seed means: never change or reuse one.
 struct Stream {
     enum : std::uint64_t {
-        Trial = 1,  // + number: the seed of a search's trial
-        Moves = 2,  // of a trial
+        Trial = 1,    // + number: the seed of a search's trial
+        Moves = 2,    // of a trial
+        Mending = 3,  // + frame: of a motion's
     };
 };
 

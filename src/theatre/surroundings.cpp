@@ -64,15 +64,9 @@ public:
         }
     }
     void add(const glm::uvec3& face, BitMask& mask) {
-        std::array<glm::vec2, 3> corners;
-        for (glm::length_t i = 0; i < 3; ++i) {
+        for (glm::length_t i = 0; i < 3; ++i)
             if (throws_[face[i]] == 0) return;
-            corners[static_cast<std::size_t>(i)] = shadows_[face[i]];
-        }
-        // Clockwise as seen, y down.
-        const glm::vec2 one = corners[1] - corners[0], other = corners[2] - corners[0];
-        if (one.x * other.y - one.y * other.x < 0) std::reverse(corners.begin(), corners.end());
-        filler_.fill(corners, mask);
+        filler_.fill({shadows_[face.x], shadows_[face.y], shadows_[face.z]}, mask);
     }
 
 private:

@@ -25,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using Arguments = std::vector<std::string>;
 
 // Somebody whose shadow is about a bar, and the bar that bends to the right within six frames.
@@ -51,8 +52,9 @@ protected:
         return pictureOf(160, 140, [=](int x, int y) { return isIn(x, y, left, 30, 30, 100); });
     }
     Outcome run(const Arguments& arguments) const { return runProgram(arguments, folder_ / "."); }
-    Outcome adapt(const Arguments& more = {}) const {
-        Arguments arguments = {"adapt", "bar.cast.yaml", "moves", "-o", "motion.cast.yaml", "--searches", "4"};
+    Outcome adapt(const Arguments& more = {}) const { return adaptTo("motion.cast.yaml", more); }
+    Outcome adaptTo(const std::string& file, const Arguments& more) const {
+        Arguments arguments = {"adapt", "bar.cast.yaml", "moves", "-o", file, "--searches", "4"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run(arguments);
     }
@@ -105,10 +107,10 @@ TEST_F(AdaptCommand, goes_on_with_what_was_interrupted) {
     ASSERT_THAT(adapt({"--passes", "0"}), exits(0));
     const std::string whole = text("motion.cast.yaml");
     fs::remove(folder_ / "motion.cast.yaml");
-    // The signal is sent once it works: its first frame would take years.
+    // The signal is sent once it works, after a line on the frame in the middle: its first frame would take years.
     EXPECT_EQ(
         interruptProgram({"adapt", "bar.cast.yaml", "moves", "-o", "motion.cast.yaml", "--searches", "100000", "--wanted", "1"},
-                         folder_ / ".", 1),
+                         folder_ / ".", 2),
         0);
     EXPECT_EQ(cast().actors[0].poses.size(), 1u) << "the representative frame, which was there";
     const Outcome rest = adapt({"--passes", "0"});
@@ -146,9 +148,6 @@ TEST_F(AdaptCommand, refuses_what_it_cannot_follow) {
     fs::create_directories(folder_ / "empty");
     refused({"adapt", "bar.cast.yaml", "empty", "-o", "m.cast.yaml"}, HasSubstr("neither a sequence.yaml nor pictures"));
     refused({"adapt", "bar.cast.yaml", "moves", "-o", "m.cast.yaml", "--representative", "7"}, HasSubstr("has 6 frames"));
-    refused({"adapt", "bar.cast.yaml", "moves", "-o", "m.cast.yaml", "--fps", "7"},
-            HasSubstr("--fps is for a folder of pictures"));
-
     fs::create_directories(folder_ / "shots");
     const auto shot = [&](int number, const GreyImage& picture) {
         EXPECT_TRUE(writePng(folder_ / fmt::format("shots/{}.png", number), picture));
@@ -161,6 +160,106 @@ TEST_F(AdaptCommand, refuses_what_it_cannot_follow) {
     refused(shots, AllOf(HasSubstr("frame 2"), HasSubstr("all are to be of one size")));
     shot(2, pictureOf(160, 140, [](int x, int y) { return isIn(x, y, 60, 35, 30, 100); }));
     refused(shots, AllOf(HasSubstr("frame 2"), HasSubstr("below the floor")));
+}
+
+// Whatever the sequence says, and the frames stay the same ones.
+TEST_F(AdaptCommand, plays_a_sequence_at_another_rate) {
+    ASSERT_THAT(adapt({"--passes", "0"}), exits(0));
+    const theatre::Cast slow = cast();
+    ASSERT_THAT(adaptTo("quick.cast.yaml", {"--passes", "0", "--fps", "25"}), exits(0));
+    const theatre::Cast quick = cast("quick.cast.yaml");
+    EXPECT_EQ(slow.framesPerSecond, 10);
+    EXPECT_EQ(quick.framesPerSecond, 25);
+    ASSERT_EQ(quick.actors[0].poses.size(), slow.actors[0].poses.size());
+    for (std::size_t i = 0; i < slow.actors[0].poses.size(); ++i)
+        EXPECT_EQ(quick.actors[0].poses[i].root, slow.actors[0].poses[i].root) << i;
+}
+
+// What is left of a run that was interrupted is gone on with to the same bytes, wherever it was cut.
+TEST_F(AdaptCommand, goes_on_to_the_same_bytes) {
+    ASSERT_THAT(adapt({"--passes", "1"}), exits(0));
+    const std::string whole = text("motion.cast.yaml");
+    ASSERT_THAT(adapt({"--passes", "0"}), exits(0));
+    for (const std::size_t count : {2u, 4u}) {
+        theatre::Cast part = cast();
+        for (auto& actor : part.actors) actor.poses.resize(count);
+        ASSERT_TRUE(theatre::writeCast(folder_ / "part.cast.yaml", part));
+        const Outcome rest = adaptTo("part.cast.yaml", {"--passes", "1"});
+        ASSERT_THAT(rest, exits(0));
+        EXPECT_THAT(rest.errors, HasSubstr(fmt::format("goes on with {} of 6 frames", count)));
+        EXPECT_TRUE(whole == text("part.cast.yaml")) << count;
+    }
+}
+
+// A block that stands, and a rod in the hand: they are on the stage of every frame, and the stage goes where the motion goes.
+TEST_F(AdaptCommand, takes_the_stage_along_and_says_what_props_bring) {
+    const ScratchFolder elsewhere;
+    fs::copy(folder_ / "bar.png", elsewhere / "bar.png");
+    const std::string block = "v 0 0 0\nv 0.3 0 0\nv 0 0.3 0\nv 0 0 0.3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    elsewhere.file("block.obj", block);
+    elsewhere.file(
+        "hall.stage.yaml",
+        "fantascope: stage\nversion: 1\nlight: [0, 0, 7]\nprops:\n  - {name: block, mesh: block.obj, at: [-0.1, 0, 1]}\n"
+        "  - {name: rod, mesh: block.obj, scale: 0.5, held_by: {actor: 1, part: left hand}}\n");
+    ASSERT_THAT(run({"pose", "bar.png", "-o", elsewhere / "bar.cast.yaml", "--actors", "1", "--trials", "1", "--evaluations",
+                     "2000", "--stage", elsewhere / "hall.stage.yaml"}),
+                exits(0));
+    const Outcome done = run({"adapt", elsewhere / "bar.cast.yaml", "moves", "-o", "motion.cast.yaml", "--searches", "2",
+                              "--report", "r.json", "--sheet", "sheet.png"});
+    ASSERT_THAT(done, exits(0));
+    EXPECT_THAT(done.out, HasSubstr("; the people's shadow alone 0."));
+    const auto report = nlohmann::json::parse(text("r.json"));
+    EXPECT_GT(report["props_cover_mean"].get<double>(), 0.02);
+    EXPECT_LT(report["iou_without_props_mean"].get<double>(), report["iou_mean"].get<double>());
+    EXPECT_EQ(report["frames"][5].count("iou_without_props"), 1u);
+
+    for (const char* file : {"hall.stage.yaml", "block.obj"}) fs::remove(elsewhere / file);
+    const theatre::Cast motion = cast();
+    ASSERT_EQ(motion.stage.props.size(), 2u);
+    ASSERT_TRUE(motion.stageFile);
+    EXPECT_EQ(motion.stageFile->lexically_relative(folder_ / "."), "motion.stage/hall.stage.yaml");
+    EXPECT_THAT(run({"plot", "motion.cast.yaml", "-o", "p.png", "--frame", "5"}), exits(0));
+}
+
+// The best that can be done is done, and it says what is in doubt.
+TEST_F(AdaptCommand, warns_of_frames_that_are_hard_to_follow) {
+    const Outcome steady = adapt({"--passes", "0"});
+    EXPECT_THAT(steady, exits(0));
+    EXPECT_THAT(steady.errors, Not(HasSubstr("warning")));
+    fs::create_directories(folder_ / "shots");
+    const auto shots = [&](const std::vector<int>& lefts) {
+        for (std::size_t i = 0; i < lefts.size(); ++i)
+            EXPECT_TRUE(writePng(folder_ / fmt::format("shots/{}.png", i), bar(lefts[i])));
+        return run({"adapt", "bar.cast.yaml", "shots", "-o", "m.cast.yaml", "--searches", "0", "--passes", "0",
+                    "--representative", "1"});
+    };
+    const Outcome jumps = shots({60, 62, 85, 86});
+    EXPECT_THAT(jumps, exits(0));
+    EXPECT_THAT(
+        jumps.errors,
+        AllOf(HasSubstr("adapt: warning: from frame 2 to frame 3 the silhouette jumps: 13 % of what either covers is in both"),
+              HasSubstr("put frames in between"), Not(HasSubstr("from frame 1"))));
+    // 30 columns of which 22 are common from one to the next, and 14 to the one after it.
+    const Outcome aside = shots({60, 64, 68, 72});
+    EXPECT_THAT(aside.errors, AllOf(HasSubstr("adapt: frame 2 is more like all the others than frame 1"),
+                                    HasSubstr("shots/1.png"), Not(HasSubstr("warning"))));
+
+    theatre::SilhouetteSequence sequence = theatre::readSequence(folder_ / "moves/sequence.yaml").value();
+    auto& vertices = sequence.interior->vertices;
+    const glm::uvec3 triangle = sequence.interior->triangles[0];
+    const glm::dvec2 first = vertices[3][triangle.x];
+    // Its corner goes beyond its opposite side.
+    vertices[3][triangle.x] = vertices[3][triangle.y] + vertices[3][triangle.z] - first;
+    ASSERT_TRUE(theatre::writeSequence(folder_ / "moves/folded.yaml", sequence));
+    EXPECT_THAT(
+        run({"adapt", "bar.cast.yaml", "moves/folded.yaml", "-o", "f.cast.yaml", "--searches", "0", "--passes", "0"}).errors,
+        AllOf(HasSubstr("adapt: warning: frame 4: "), HasSubstr("are folded over, against frame 1")));
+    for (glm::dvec2& vertex : vertices[4]) vertex.x += 30;
+    ASSERT_TRUE(theatre::writeSequence(folder_ / "moves/other.yaml", sequence));
+    const Outcome other = run({"adapt", "bar.cast.yaml", "moves/other.yaml", "-o", "o.cast.yaml"});
+    EXPECT_THAT(other, exits(1));
+    EXPECT_THAT(other.errors,
+                AllOf(HasSubstr("frame 5: its triangles are not those of its picture"), HasSubstr("leave 'interior' out")));
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 #include "pattern/elemental_shape.h"
 #include "pattern/shape_pattern.h"
 #include "show/replaced.h"
+#include "theatre/body.h"
+#include "theatre/cast.h"
+#include "theatre/stage_file.h"
 
 #include "core/file.h"
 #include "core/image.h"
@@ -146,6 +149,72 @@ TEST(Check, a_shape_is_checked_as_a_pattern_would_take_it) {
     EXPECT_THAT(checked.lines, HasSubstr("\nok s.yaml: pattern settings, at most 1000 instances, 2 shapes\n"));
     EXPECT_THAT(checked.lines, HasSubstr("\nt.yaml:3:24: shapes.each[0].file: b.SVG: draws nothing"));
     EXPECT_EQ(checked.refusal, "3 of 5 files refused");
+}
+
+// Example failure: a motion's handle outside the drawing is found by whoever has an hour less.
+TEST(Check, what_the_theatre_reads_is_checked_as_it_would_be_read) {
+    const ScratchFolder folder;
+    GreyImage bar(80, 60);
+    for (int y = 10; y < 50; ++y)
+        for (int x = 30; x < 50; ++x) bar.at(x, y) = 1;
+    for (const char* file : {"bar.png", "one.png", "two.png"}) ASSERT_TRUE(writePng(folder / file, bar));
+    ASSERT_TRUE(writePng(folder / "other.png", GreyImage(60, 60, 1.0f)));
+    const std::string motion =
+                          "fantascope: motion\nversion: 1\nseconds: 1.3\nloop: true\nhandles:\n  - {name: a, at: [0.5, 0.7]}\n",
+                      sequence = "fantascope: sequence\nversion: 1\nframes_per_second: 10\npictures: [one.png, two.png]\n",
+                      stage =
+                          "fantascope: stage\nversion: 1\nlight: [0, 0, 7]\nprops:\n"
+                          "  - {name: rod, mesh: rod.obj, held_by: {actor: 1, part: head}}\n",
+                      hints = "fantascope: hints\nversion: 1\nhints:\n  - {name: a, at: [0.5, 0.7], prop: rod}\n";
+    folder.file("rod.obj", "v 0 0 0\nv 0.3 0 0\nv 0 0.3 0\nv 0 0 0.3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    const Checked good = check(
+        folder, {{folder.file("bar.motion.yaml", motion), folder.file("free.motion.yaml", motion),
+                  folder.file("moves.yaml", sequence), folder.file("bar.stage.yaml", stage), folder.file("bar.hints.yaml", hints),
+                  folder.file("w.yaml", "fantascope: pose-weights\nversion: 1\ncommon: {w1: 0.02}\n")},
+                 std::nullopt});
+    EXPECT_EQ(good.lines,
+              "ok bar.motion.yaml: motion, 1 handle, 1.3 s, 12 frames a second, loops\n"
+              "ok free.motion.yaml: motion, 1 handle, 1.3 s, 12 frames a second, loops; there is no free.png to say whether its "
+              "points are in the white\n"
+              "ok moves.yaml: sequence, 2 frames, 80 x 60 px, 10 a second\n"
+              "ok bar.stage.yaml: stage, lamp, 0 platforms, 1 prop\n"
+              "ok bar.hints.yaml: hints, 1 point\n"
+              "ok w.yaml: pose weights\n");
+
+    const Checked bad = check(folder, {{folder.file("bar.motion.yaml", replaced(motion, "0.5, 0.7", "0.1, 0.7")),
+                                        folder.file("moves.yaml", replaced(sequence, "two", "other")),
+                                        folder.file("bar.stage.yaml", replaced(stage, "rod.obj", "r.obj")),
+                                        folder.file("w.yaml", "fantascope: pose-weights\nversion: 1\ncommon: {w17: 1}\n")},
+                                       std::nullopt});
+    EXPECT_THAT(bad.lines, HasSubstr("bar.motion.yaml:6:19: handles[0].at: handle 'a' is 22 pixels outside the white"));
+    EXPECT_THAT(bad.lines, HasSubstr("other.png is 60 x 60 pixels, and the first picture 80 x 60"));
+    EXPECT_THAT(bad.lines, HasSubstr("bar.stage.yaml:5:23: props[0].mesh:"));
+    EXPECT_THAT(bad.lines, HasSubstr("w.yaml:3:10: common.w17: unknown key"));
+    EXPECT_EQ(bad.refusal, "4 of 4 files refused");
+}
+
+// With what it names: a cast's target, its stage, and the silhouette that it follows.
+TEST(Check, a_cast_is_checked_with_what_it_is_of) {
+    const ScratchFolder folder;
+    ASSERT_TRUE(writePng(folder / "t.png", GreyImage(80, 60)));
+    folder.file("s.yaml", "fantascope: sequence\nversion: 1\nframes_per_second: 10\npictures: [t.png, t.png]\n");
+    folder.file("a.stage.yaml", "fantascope: stage\nversion: 1\nlight: [0, 0, 7]\n");
+    const theatre::Body body = theatre::humanBody(1.7);
+    const theatre::ActorPose pose = theatre::poseOf(body, body.restPose({0, 1, 2}, {1, 0, 0, 0}));
+    theatre::Cast cast{folder / "t.png",
+                       1.7,
+                       theatre::readStage(folder / "a.stage.yaml").value(),
+                       folder / "a.stage.yaml",
+                       10,
+                       1,
+                       {{1.7, {pose, pose}}},
+                       theatre::Cast::Sequence{folder / "s.yaml", 0, 0}};
+    ASSERT_TRUE(theatre::writeCast(folder / "c.cast.yaml", cast));
+    EXPECT_EQ(check(folder, {{folder / "c.cast.yaml"}, std::nullopt}).lines,
+              "ok c.cast.yaml: cast, 1 actor, 2 frames, 10 a second, 1.7 m high\n"
+              "ok t.png: guide, 80 x 60 px\n"
+              "ok a.stage.yaml: stage, lamp, 0 platforms, 0 props\n"
+              "ok s.yaml: sequence, 2 frames, 80 x 60 px, 10 a second\n");
 }
 
 // One mistake does not hide the next file's.

@@ -329,8 +329,11 @@ TEST_F(PoseCommand, a_stage_goes_with_the_cast_and_its_meshes) {
                           "platforms:\n  - {name: step, centre: [1.5, 0.1, 2], size: [0.5, 0.2, 0.5]}\n"
                           "props:\n  - {name: box, mesh: box.obj, at: [-0.5, 0, 2]}\n"));
     const Outcome done = find({"--trials", "1", "--actors", "1", "--stage", "halls/hall.stage.yaml", "--meshes", "out/m",
-                               "--image", "out/i.png", "--view", "out/v.png"});
+                               "--image", "out/i.png", "--view", "out/v.png", "--report", "out/r.json"});
     ASSERT_THAT(done, exits(0));
+    EXPECT_THAT(done.out, HasSubstr("; the people's shadow alone 0."));
+    EXPECT_GT(json("out/r.json")["props_cover"].get<double>(), 0.01);
+    EXPECT_NE(json("out/r.json")["iou_without_props"], json("out/r.json")["iou"]);
     EXPECT_THAT(written("out/m"), ElementsAre("actor-1.obj", "prop-box.obj", "prop-step.obj", "stage.json"));
     const auto box = readMesh(folder_ / "out/m/prop-box.obj"), step = readMesh(folder_ / "out/m/prop-step.obj");
     ASSERT_TRUE(box && step);

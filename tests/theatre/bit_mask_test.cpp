@@ -59,6 +59,9 @@ TEST(BitMask, ClearAddCompareAndRows) {
     EXPECT_EQ(a.rowsTo(), 21);
     EXPECT_EQ(differing(a, b), 85 + 5 + 5 + 100);
     EXPECT_EQ(differing(a, a), 0);
+    EXPECT_EQ(shared(a, b), 5);
+    EXPECT_DOUBLE_EQ(intersectionOverUnion(a, b), 5.0 / (95 + 110 - 5));
+    EXPECT_EQ(intersectionOverUnion(a, a), 1);
     a.add(b);
     EXPECT_EQ(a.count(), 85 + 15 + 100);
     EXPECT_EQ(a.rowsFrom(), 10);

@@ -32,12 +32,13 @@ PoseTarget aTarget() {
 
 class HintsFile : public testing::Test {
 protected:
-    Result<std::vector<PoseHint>> read(const std::string& hints, const PoseTarget& target = aTarget()) {
+    Result<std::vector<PoseHint>> read(const std::string& hints, const PoseTarget& target = aTarget(),
+                                       const Stage& stage = kStage) {
         EXPECT_TRUE(writeFile(folder_ / "a.hints.yaml", "fantascope: hints\nversion: 1\nhints:\n" + hints));
-        return readHints(folder_ / "a.hints.yaml", target);
+        return readHints(folder_ / "a.hints.yaml", target, stage);
     }
-    std::string refusal(const std::string& hints) {
-        const auto found = read(hints);
+    std::string refusal(const std::string& hints, const Stage& stage = kStage) {
+        const auto found = read(hints, aTarget(), stage);
         return found ? "read" : found.error().message();
     }
     ScratchFolder folder_;
@@ -90,6 +91,34 @@ TEST_F(HintsFile, is_refused_with_the_place_the_hint_and_what_to_do) {
     EXPECT_THAT(refusal("  - {name: ear, at: [0.7, 0.5], parts: [head], weight: 2}\n"), HasSubstr("unknown key"));
 }
 
+// A stage with a box that stands and a stick in somebody's hand.
+Stage stageWithProps() {
+    Stage stage = kStage;
+    stage.props = {aBox({0.1, 0.1, 0.1}, {0, 0.1, 2}), aBox({0.1, 1, 0.1}, {0.2, 0, 0})};
+    stage.props[1].name = "stick";
+    stage.props[1].holder = Prop::Holder{1, BodyPart::LeftHand};
+    stage.props[1].turn = rotationOf({0, 0, std::numbers::pi / 2});
+    return stage;
+}
+
+TEST_F(HintsFile, may_mean_a_point_of_what_somebody_holds) {
+    const auto hints = read("  - {name: tip, at: [0.75, 0.5], prop: stick, point: [0, 0.5, 0]}\n", aTarget(), stageWithProps());
+    ASSERT_TRUE(hints) << hints.error().message();
+    ASSERT_TRUE((*hints)[0].held);
+    EXPECT_TRUE((*hints)[0].parts.empty());
+    EXPECT_EQ((*hints)[0].held->holder.actor, 1u);
+    EXPECT_LT(glm::distance((*hints)[0].held->local, {0.2 - 0.5, 0, 0}), 1e-9) << "turned with the prop";
+
+    const auto with = [&](const std::string& rest) {
+        return refusal("  - {name: tip, at: [0.75, 0.5]" + rest + "}\n", stageWithProps());
+    };
+    EXPECT_THAT(with(""), HasSubstr("hint 'tip' has neither parts nor a prop"));
+    EXPECT_THAT(with(", parts: [head], prop: stick"), HasSubstr("hint 'tip' has both parts and a prop"));
+    EXPECT_THAT(with(", prop: box"), AllOf(HasSubstr("the prop 'box' stands"), HasSubstr("put it there in the stage file")));
+    EXPECT_THAT(with(", prop: stock"), AllOf(HasSubstr("nobody on the stage holds 'stock'"), HasSubstr("held are: stick")));
+    EXPECT_THAT(refusal("  - {name: tip, at: [0.75, 0.5], prop: stick}\n"), HasSubstr("no prop with held_by"));
+}
+
 TEST_F(HintsFile, of_each_of_the_projects_silhouettes_is_read) {
     int files = 0;
     for (const auto& file : std::filesystem::recursive_directory_iterator(FANTASCOPE_SOURCE_DIR "/assets/silhouettes")) {
@@ -97,7 +126,7 @@ TEST_F(HintsFile, of_each_of_the_projects_silhouettes_is_read) {
         if (!path.ends_with(ending)) continue;
         const auto picture = readGrey(path.substr(0, path.size() - ending.size()) + ".png");
         ASSERT_TRUE(picture);
-        const auto hints = readHints(path, PoseTarget::from(*picture, kStage, 2, 256).value());
+        const auto hints = readHints(path, PoseTarget::from(*picture, kStage, 2, 256).value(), kStage);
         ASSERT_TRUE(hints) << hints.error().message();
         EXPECT_FALSE(hints->empty()) << path;
         ++files;
@@ -136,6 +165,10 @@ TEST(BodyParts, are_points_of_the_skin) {
     }
 }
 
+glm::dvec3 partOf(const PoseProblem& problem, BodyPart part) {
+    return problem.actors[1].parts[static_cast<std::size_t>(part)].local;
+}
+
 // By hand: the light at 7 m and a hand at 2.006 m make everything 7 / 4.994 times as large. The left hand of one who looks at the screen is on the left of
 // the picture.
 TEST(MatchHints, measures_the_nearest_shadow_in_pixels_of_256) {
@@ -150,7 +183,7 @@ TEST(MatchHints, measures_the_nearest_shadow_in_pixels_of_256) {
     energy.pose(poses);
     EXPECT_NEAR(energy.terms().hint, 4 * 25, 1e-6) << "a pixel of this mask is two of 256";
     EXPECT_EQ(energy.hintOwner(0).actor, 1u);
-    EXPECT_EQ(energy.hintOwner(0).match.part, BodyPart::RightHand);
+    EXPECT_EQ(energy.hintOwner(0).match.point->local, partOf(problem, BodyPart::RightHand));
     EXPECT_LT(glm::distance(energy.hintOwner(0).match.away, {-3, 4}), 1e-6);
     const double all = energy.energy();
     problem.weights.w12 = 0;
@@ -159,7 +192,7 @@ TEST(MatchHints, measures_the_nearest_shadow_in_pixels_of_256) {
     problem.hints[0].parts = {BodyPart::RightElbow, BodyPart::Pelvis};
     energy.pose(poses);
     EXPECT_GT(energy.terms().hint, 4 * 400);
-    EXPECT_EQ(energy.hintOwner(0).match.part, BodyPart::RightElbow);
+    EXPECT_EQ(energy.hintOwner(0).match.point->local, partOf(problem, BodyPart::RightElbow));
     // A second hint adds its own.
     const double one = energy.terms().hint;
     problem.hints.push_back({"b", {-handX, handY}, {BodyPart::LeftHand}});
@@ -186,6 +219,30 @@ double elbowAway(const PoseProblem& problem, const std::vector<double>& poses) {
     SceneEnergy energy(problem);
     energy.pose(poses);
     return std::sqrt(energy.terms().hint);
+}
+
+// The second one's stick, whoever of the others is nearer; the fit swings it there.
+TEST(Hints, lead_the_fit_to_bring_what_is_held_to_the_point) {
+    PoseProblem problem = aScene({1.7, 1.7});
+    problem.stage = stageWithProps();
+    std::vector<double> poses = aRow(problem, {-1, 1}, 2);
+    makeTarget(problem, poses);
+    problem.hints = {{"tip", {0.3, 2.6}, {}, PoseHint::Held{*problem.stage.props[1].holder, {-0.3, 0, 0}}}};
+    problem.weights = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
+    SceneEnergy energy(problem);
+    energy.pose(poses);
+    const double before = energy.terms().hint;
+    EXPECT_GT(before, 35 * 35);
+    const auto owner = energy.hintOwner(0);
+    EXPECT_EQ(owner.actor, 1u);
+    // Its shadow is where the prop's own point says.
+    const glm::dvec3 tip = energy.held(1)[0].point({0, 0.5, 0});
+    const glm::dvec2 wanted = problem.target.frame.pixelAt(0.3, 2.6);
+    EXPECT_LT(glm::distance(problem.target.frame.shadow(tip) - wanted, owner.match.away), 1e-6);
+    const std::vector<double> others(poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(problem.actors[0].freedoms));
+    SilhouetteFit(problem).run(energy, poses, 30);
+    EXPECT_LT(energy.terms().hint, 4);
+    EXPECT_TRUE(std::equal(others.begin(), others.end(), poses.begin())) << "it is nobody else's";
 }
 
 TEST(Hints, lead_the_fit_to_bring_an_elbow_to_the_point) {

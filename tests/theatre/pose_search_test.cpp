@@ -47,6 +47,28 @@ TEST(PoseSearch, begins_with_people_who_stand_apart_and_look_at_the_screen) {
     }
 }
 
+// A target that is somebody's shadow and, apart from it, a box's that stands and a box's that he holds: the three shares are told apart.
+TEST(PoseSearch, tells_what_props_bring) {
+    PoseProblem problem = aScene({1.7});
+    const std::vector<double> pose = aRow(problem, {-1}, 2);
+    makeTarget(problem, pose);
+    const double people = problem.target.area;
+    problem.stage.props = {aBox({0.6, 0.6, 0.2}, {1, 0.3, 2}), aBox({0.2, 0.2, 0.2}, {0.4, 0, 0})};
+    problem.stage.props[1].holder = Prop::Holder{0, BodyPart::LeftHand};
+    makeTarget(problem, pose);
+    const double all = problem.target.area;
+    ASSERT_GT(all, 1.2 * people);
+    auto quality = PoseSearch::measure(problem, pose);
+    EXPECT_EQ(quality.iou, 1);
+    EXPECT_NEAR(quality.iouWithoutProps, people / all, 1e-12);
+    EXPECT_NEAR(quality.propsCover, 1 - people / all, 1e-12);
+    problem.stage.props.clear();
+    quality = PoseSearch::measure(problem, pose);
+    EXPECT_NEAR(quality.iou, people / all, 1e-12);
+    EXPECT_EQ(quality.iouWithoutProps, quality.iou);
+    EXPECT_EQ(quality.propsCover, 0);
+}
+
 // The easy wrong version finds the shape with people who fall, or people who stand and no shape.
 TEST(PoseSearch, finds_a_shape_that_people_can_hold) {
     const PoseProblem problem = hill(2);
