@@ -356,8 +356,8 @@ TEST_F(PoseCommand, a_stage_goes_with_the_cast_and_its_meshes) {
 // Two lights with a screen each, the first hollow: the same people throw a shadow on both.
 TEST_F(PoseCommand, one_set_of_poses_serves_several_screens) {
     ASSERT_TRUE(writeFile(folder_ / "corner.stage.yaml",
-                          "fantascope: stage\nversion: 1\nlight: [0, 0, 7]\nscreen: {radius: 5}\n"
-                          "further_beams:\n  - {light: [-5, 0, 5.5], screen: {at: [2.5, 0, 5.5], turned: -90}}\n"));
+                          "fantascope: stage\nversion: 1\nlight: [0, 0, 7]\nscreen: {radius: 12}\n"
+                          "further_beams:\n  - {light: [-4, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: -90}}\n"));
     ASSERT_TRUE(writePng(folder_ / "wall.png", pictureOf(80, 90, [](int x, int y) { return x > 9 && x < 70 && y > 9; })));
     const Arguments corner = {"--stage", "corner.stage.yaml", "--further-target", "wall.png", "--actors", "2", "--trials", "2"};
     std::vector<std::string> found;
@@ -381,7 +381,7 @@ TEST_F(PoseCommand, one_set_of_poses_serves_several_screens) {
     EXPECT_EQ(beams[1]["iou"], beams[1]["flat_iou"]) << "flat";
     EXPECT_EQ(beams[1]["target"], "wall.png");
     const nlohmann::json stage = json("out/meshes/stage.json");
-    EXPECT_EQ(stage["screen"]["radius"], 5);
+    EXPECT_EQ(stage["screen"]["radius"], 12);
     // Upright, and as high as the picture on its screen.
     const auto& down = stage["further_beams"][0]["screen"]["v"];
     EXPECT_NEAR(down[1].get<double>(), -beams[1]["height"].get<double>() * 90 / 80, 1e-9);
@@ -394,11 +394,8 @@ TEST_F(PoseCommand, one_set_of_poses_serves_several_screens) {
     EXPECT_EQ(readFile(cast->further[0].file).value(), text("wall.png"));
     for (const char* figure : {"cast", "stage", "shadow", "side"})
         EXPECT_THAT(run({"plot", "moved/c.cast.yaml", "--figure", figure, "-o", "moved/f.png"}), exits(0)) << figure;
-    // Both shadows: higher than the first alone.
-    const auto shadows = readRgba(folder_ / "moved/f.png");
-    EXPECT_TRUE(shadows);
     // What follows a silhouette that moves knows one flat screen.
-    const Outcome adapted = run({"adapt", "moved/c.cast.yaml", "--sequence", ".", "-o", "moved/m.cast.yaml"});
+    const Outcome adapted = run({"adapt", "moved/c.cast.yaml", ".", "-o", "moved/m.cast.yaml"});
     EXPECT_THAT(adapted, exits(1));
     EXPECT_THAT(adapted.errors, HasSubstr("its stage has further_beams"));
 }
