@@ -274,7 +274,7 @@ private:
         return neighbours;
     }
 
-    // From its own poses, and, where it matches clearly less than a neighbour does, from that one's too, whichever way it was found.
+    // From its own poses, and, where it matches clearly less than a neighbour does, or cannot be held, from that one's too, whichever way it was found.
     AdaptedFrame settled(std::size_t i) const {
         const std::vector<std::size_t> neighbours = neighboursOf(i);
         PoseProblem problem = problemAt(i);
@@ -289,7 +289,8 @@ private:
         };
         offer({{}, best.freedoms, {}, 0});
         for (const std::size_t neighbour : neighbours) {
-            if (frames_[neighbour]->quality.iou < best.quality.iou + kClearlyLess) continue;
+            const PoseSearch::Quality& there = frames_[neighbour]->quality;
+            if (there.iou < best.quality.iou + kClearlyLess && !(there.isValid() && !best.quality.isValid())) continue;
             AdaptedFrame other{{}, frames_[neighbour]->freedoms, {}, 0};
             walk(neighbour, i, other);
             offer(std::move(other));
