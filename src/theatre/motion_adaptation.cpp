@@ -26,11 +26,11 @@ constexpr int kReachSteps = 20, kWalkSteps = 8, kFitSteps = 30, kRefitSteps = 12
 // Of the silhouette's height: how far its farthest corner goes in a step from a frame to the next, which a fit follows; and how many steps at most.
 constexpr double kStride = 0.02;
 constexpr int kMostStrides = 20;
-constexpr double kClearlyLess = 0.02;                   // of intersection over union
-constexpr std::array kMending = {2.0, 4.0, 8.0, 16.0};  // physics' stiffness, while somebody cannot stand
+constexpr double kClearlyLess = 0.02;  // of intersection over union
+// Physics' stiffness while somebody cannot stand, and on the way back; and the search of one whom that does not help.
+constexpr std::array kMending = {2.0, 4.0, 8.0, 16.0}, kRelaxing = {8.0, 4.0, 2.0, 1.0};
+constexpr FreedomSearch::Settings kAlone{0.05, 16, 15};
 
-constexpr std::array kRelaxing = {8.0, 4.0, 2.0, 1.0};
-constexpr FreedomSearch::Settings kAlone{0.05, 16, 15};  // of one who cannot
 // A frame's problem and what works on it.
 struct Workshop {
     explicit Workshop(PoseProblem given) : problem(std::move(given)), energy(problem), fit(problem), search(problem) {}
