@@ -26,11 +26,11 @@ constexpr int kReachSteps = 20, kWalkSteps = 8, kFitSteps = 30, kRefitSteps = 12
 // Of the silhouette's height: how far its farthest corner goes in a step from a frame to the next, which a fit follows; and how many steps at most.
 constexpr double kStride = 0.02;
 constexpr int kMostStrides = 20;
-constexpr double kClearlyLess = 0.02;                   // of intersection over union
-constexpr std::array kMending = {2.0, 4.0, 8.0, 16.0};  // physics' stiffness, while somebody cannot stand
+constexpr double kClearlyLess = 0.02;  // of intersection over union
+// Physics' stiffness while somebody cannot stand, and on the way back; and the search of one whom that does not help.
+constexpr std::array kMending = {2.0, 4.0, 8.0, 16.0}, kRelaxing = {8.0, 4.0, 2.0, 1.0};
+constexpr FreedomSearch::Settings kAlone{0.05, 16, 15};
 
-constexpr std::array kRelaxing = {8.0, 4.0, 2.0, 1.0};
-constexpr FreedomSearch::Settings kAlone{0.05, 16, 15};  // of one who cannot
 // A frame's problem and what works on it.
 struct Workshop {
     explicit Workshop(PoseProblem given) : problem(std::move(given)), energy(problem), fit(problem), search(problem) {}
@@ -274,7 +274,7 @@ private:
         return neighbours;
     }
 
-    // From its own poses, and, where it matches clearly less than a neighbour does, from that one's too, whichever way it was found.
+    // From its own poses, and, where it matches clearly less than a neighbour does, or cannot be held, from that one's too, whichever way it was found.
     AdaptedFrame settled(std::size_t i) const {
         const std::vector<std::size_t> neighbours = neighboursOf(i);
         PoseProblem problem = problemAt(i);
@@ -289,7 +289,8 @@ private:
         };
         offer({{}, best.freedoms, {}, 0});
         for (const std::size_t neighbour : neighbours) {
-            if (frames_[neighbour]->quality.iou < best.quality.iou + kClearlyLess) continue;
+            const PoseSearch::Quality& there = frames_[neighbour]->quality;
+            if (there.iou < best.quality.iou + kClearlyLess && !(there.isValid() && !best.quality.isValid())) continue;
             AdaptedFrame other{{}, frames_[neighbour]->freedoms, {}, 0};
             walk(neighbour, i, other);
             offer(std::move(other));

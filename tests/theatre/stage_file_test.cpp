@@ -1,10 +1,21 @@
 #include "theatre/stage_file.h"
 
+#include "theatre/pose_hints.h"
+#include "theatre/pose_problem.h"
+#include "theatre/surroundings.h"
+
 #include "core/file.h"
 #include "scratch_folder.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
 
 namespace fantascope::theatre {
 namespace {
@@ -193,6 +204,54 @@ TEST_F(StageFile, is_refused_where_a_beam_cannot_be) {
         refusal(
             "light: [0, 0, 7]\nscreen: {radius: -2}\nplatforms:\n  - {name: step, centre: [0, 0.2, 0.3], size: [3, 0.4, 1]}\n"),
         HasSubstr("through the screen"));
+}
+
+// What is bounded by a mesh: each edge has one face on either side, and all look outwards.
+bool isClosed(const TriangleMesh& mesh) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+    double volume = 0;
+    for (const glm::uvec3& t : mesh.triangles) {
+        for (const auto& edge : {std::pair(t.x, t.y), std::pair(t.y, t.z), std::pair(t.z, t.x)}) ++edges[edge];
+        volume +=
+            glm::dot(glm::dvec3(mesh.vertices[t.x]), glm::cross(glm::dvec3(mesh.vertices[t.y]), glm::dvec3(mesh.vertices[t.z])));
+    }
+    return volume > 0 && std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
+               const auto back = edges.find({edge.first.second, edge.first.first});
+               return edge.second == 1 && back != edges.end() && back->second == 1;
+           });
+}
+
+// Example failure: a wheel whose tyre looks inwards pushes everybody into itself.
+TEST(ProjectsProps, are_solids_and_their_hints_are_of_the_drawings) {
+    const std::filesystem::path assets = FANTASCOPE_SOURCE_DIR "/assets";
+    int standing = 0, held = 0, hints = 0;
+    for (const auto& [name, played, height] : {std::tuple("car", "car", 1.6),
+                                               {"airplane", "airplane", 2.3},
+                                               {"airplane", "airplane-worn", 2.3},
+                                               {"violin", "violin", 2.3}}) {
+        const auto stage = readStage(assets / "props" / (std::string(played) + ".stage.yaml"));
+        ASSERT_TRUE(stage) << stage.error().message();
+        const auto target =
+            PoseTarget::from(readGrey(assets / "silhouettes" / (std::string(name) + ".png")).value(), *stage, height, 512)
+                .value();
+        BitMask shadow(target.mask.width(), target.mask.height());
+        for (const Prop& prop : stage->props) {
+            EXPECT_TRUE(isClosed(prop.shape->mesh)) << prop.name;
+            EXPECT_LT(prop.shape->mesh.triangles.size(), 700u) << prop.name;
+            ++(prop.holder ? held : standing);
+            if (!prop.holder) addShadow(target.frame, meshOf(PlacedProp{&prop, 0, prop.place, prop.turn}), shadow);
+        }
+        // What stands has its shadow where the drawing is white.
+        EXPECT_GE(static_cast<double>(shared(shadow, target.mask)), 0.99 * static_cast<double>(shadow.count())) << played;
+        const auto file = assets / "props" / (std::string(name) + ".hints.yaml");
+        if (!std::filesystem::exists(file)) continue;
+        const auto read = readHints(file, target, *stage);
+        EXPECT_TRUE(read) << read.error().message();
+        hints += static_cast<int>(read->size());
+    }
+    EXPECT_EQ(standing, 2);
+    EXPECT_EQ(held, 5);
+    EXPECT_EQ(hints, 10);
 }
 
 }  // namespace
