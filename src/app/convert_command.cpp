@@ -1,0 +1,5 @@
+#include "app/convert_command.h"
+
+namespace fantascope::app {
+void addConvertCommand(CLI::App&, Action&) {}
+}  // namespace fantascope::app
