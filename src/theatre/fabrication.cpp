@@ -154,9 +154,10 @@ public:
         TRY(step(0.05, "union"));
         TRY(uniteAll());
         TRY(step(0.30, "walls"));
-        thicken();
-        TRY(step(0.42, "feet and plate"));
+        thicken(true);
+        TRY(step(0.38, "feet and plate"));
         joinContacts();
+        thicken(false);
         addPlate();
         TRY(step(0.48, "what hangs together"));
         joinIslands();
@@ -376,14 +377,16 @@ private:
         return {};
     }
 
-    void thicken() {
+    // `tells`: of people and things, not of what was made to hold them.
+    void thicken(bool tells) {
         std::map<std::string, double> least;
         for (const VoxelSolid::Thin& thin : solid_->thinnerThan(options_.wall)) {
+            // Balls a cell apart leave dents between them.
+            solid_->addRod(thin.middle, thin.middle, 0.5 * options_.wall + 0.25 * made_.cell);
+            if (!tells) continue;
             const std::string who = partAt(pieceAt(thin.middle), thin.middle);
             const auto [found, isNew] = least.try_emplace(who, thin.thickness);
             if (!isNew) found->second = std::min(found->second, thin.thickness);
-            // Balls a cell apart leave dents between them.
-            solid_->addRod(thin.middle, thin.middle, 0.5 * options_.wall + 0.25 * made_.cell);
         }
         for (const auto& [who, thickness] : least)
             made_.thin.push_back({who, thickness, options_.height * options_.wall / std::max(thickness, 0.05 * options_.wall)});
@@ -491,11 +494,12 @@ private:
         }
     }
 
+    // Above the plate, whose thickness is known.
     void measureWalls() {
         made_.leastWall = kWallsShown * options_.wall;
         std::optional<VoxelSolid::Thin> thinnest;
         for (const VoxelSolid::Thin& thin : solid_->thinnerThan(made_.leastWall))
-            if (!thinnest || thin.thickness < thinnest->thickness) thinnest = thin;
+            if (thin.middle.y > 0 && (!thinnest || thin.thickness < thinnest->thickness)) thinnest = thin;
         if (!thinnest) return;
         made_.leastWall = thinnest->thickness;
         made_.leastWallAt = partAt(pieceAt(thinnest->middle), thinnest->middle);
