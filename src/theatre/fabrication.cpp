@@ -142,6 +142,7 @@ public:
         : problem_(problem), options_(resolved(options)), watch_(watch), scene_(problem) {
         scene_.pose(freedoms);
         scene_.terms();
+        hidden_ = signedDistance(scene_.shadow());
     }
 
     Result<Fabrication> make() {
@@ -392,20 +393,19 @@ private:
             made_.thin.push_back({who, thickness, options_.height * options_.wall / std::max(thickness, 0.05 * options_.wall)});
     }
 
+    // How far a place is outside what the poses shade, on the spot; negative: hidden in their shadow.
+    double seen(const dvec3& p) const {
+        const ScreenFrame& frame = problem_.target.frame;
+        const dvec3 place = made_.stageOrigin + p / made_.scale;
+        const double toLight = problem_.stage.light.z - place.z;
+        if (toLight < kLow) return 0;
+        const dvec2 pixel = glm::clamp(frame.shadow(place), dvec2(0), dvec2(frame.width() - 1, frame.height() - 1));
+        return -double{hidden_.at(static_cast<int>(pixel.x), static_cast<int>(pixel.y))} * frame.pixel() * toLight /
+               problem_.stage.light.z * made_.scale;
+    }
+
     void joinContacts() {
         const double s = made_.scale, grow = options_.height / kFigure, firm = kFirm * grow * grow;
-        const GreyImage hidden = signedDistance(scene_.shadow());
-        const ScreenFrame& frame = problem_.target.frame;
-        // How far a place is outside what the poses shade, on the spot; negative: hidden in their shadow.
-        const auto seen = [&](const dvec3& p) {
-            const dvec3 place = made_.stageOrigin + p / s;
-            const double toLight = problem_.stage.light.z - place.z;
-            if (toLight < kLow) return 0.0;
-            const dvec2 pixel = frame.shadow(place);
-            const int x = std::clamp(static_cast<int>(std::floor(pixel.x)), 0, frame.width() - 1),
-                      y = std::clamp(static_cast<int>(std::floor(pixel.y)), 0, frame.height() - 1);
-            return -double{hidden.at(x, y)} * frame.pixel() * toLight / problem_.stage.light.z * s;
-        };
         for (Low& low : lows_) {
             const double ground = low.ground, into = ground - 0.5 * options_.plate,
                          radius = std::max(1.5 * made_.cell, 0.25 * options_.wall);
@@ -458,7 +458,25 @@ private:
             {{least.x, -t, least.y}, {most.x, 0, most.y}});
     }
 
-    // What does not hang together with the plate is held by a rod to what is nearest.
+    // The shortest, but that what of it is not hidden in the poses' shadow counts ten times.
+    std::pair<dvec3, dvec3> rodBetween(const std::vector<dvec3>& island, const std::vector<dvec3>& others) const {
+        constexpr std::size_t kOfIsland = 300, kOfOthers = 2000;
+        constexpr int kSamples = 12;
+        constexpr double kSeen = 10;
+        std::pair<dvec3, dvec3> best{island[0], others[0]};
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < island.size(); i += island.size() / kOfIsland + 1)
+            for (std::size_t k = 0; k < others.size(); k += others.size() / kOfOthers + 1) {
+                const double step = glm::distance(island[i], others[k]) / kSamples;
+                double cost = step * kSamples;
+                for (int sample = 0; sample < kSamples && cost < least; ++sample)
+                    if (seen(glm::mix(island[i], others[k], (sample + 0.5) / kSamples)) > 0) cost += (kSeen - 1) * step;
+                if (cost < least) least = cost, best = {island[i], others[k]};
+            }
+        return best;
+    }
+
+    // What does not hang together with the plate is held by a rod.
     void joinIslands() {
         for (;;) {
             std::vector<VoxelSolid::Piece> pieces = solid_->pieces();
@@ -478,11 +496,7 @@ private:
                     if (piece.number != plate->number) solid_->remove(piece);
                 return;
             }
-            dvec3 from = island->some[0], to = plate->some[0];
-            const std::size_t stride = island->some.size() / 2000 + 1;
-            for (std::size_t i = 0; i < island->some.size(); i += stride)
-                for (const dvec3& other : plate->some)
-                    if (glm::distance(island->some[i], other) < glm::distance(from, to)) from = island->some[i], to = other;
+            const auto [from, to] = rodBetween(island->some, plate->some);
             const Piece& piece = pieceAt(from);
             const double length = glm::distance(from, to),
                          radius = std::max(kLeastRod * options_.height / kFigure, 0.5 * options_.wall);
@@ -582,6 +596,7 @@ private:
     std::vector<dvec2> hull_;                // of the plate, (x, z)
     std::vector<std::vector<dvec2>> marks_;  // (x, z)
     std::optional<VoxelSolid> solid_;
+    GreyImage hidden_;  // how deep in the poses' shadow, pixels
     Fabrication made_;
 };
 
@@ -597,8 +612,9 @@ Result<void> Fabrication::Options::check() const {
     TRY(within("margin", margin, 4, 100));
     TRY(within("wall", wall, 0.2, 10));
     if (cell != 0) TRY(within("detail", cell, 0.05, 5));
-    if (plate != 0 && std::max(cell, cellFor(height, wall)) > plate / 3)
-        return Error(fmt::format("detail = {} mm is too coarse for a plate of {} mm; a third of it, at most", cell, plate));
+    if (const double used = cell != 0 ? cell : cellFor(height, wall); plate != 0 && used > plate / 3)
+        return Error(
+            fmt::format("plate = {} mm is too thin for a detail of {:.2f} mm; three times as much, at least", plate, used));
     return {};
 }
 
