@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -141,6 +142,14 @@ Result<void> run(const Options& options) {
         "and with the target to {:.3f} (theirs: {:.3f})\n",
         options.output.string(), options.print.height, 1000 / made.scale, made.check.volume / 1000, made.mesh.triangles.size(),
         made.shadowIou, made.targetIou, made.posesIou);
+    for (const auto& contact : made.contacts)
+        if (contact.reinforcedBy > 0)
+            fmt::print("{} stands on {:.1f} mm2: reinforced by {:.1f} mm around\n", contact.who, contact.area,
+                       contact.reinforcedBy);
+    for (const auto& part : made.thin)
+        fmt::print("{} is {:.2f} mm thick: made {:g} mm; thick enough by itself at --height {:.0f}\n", part.who, part.thickness,
+                   options.print.wall, std::ceil(part.height));
+    if (!made.leastWallAt.empty()) fmt::print("thinnest now: {:.2f} mm, {}\n", made.leastWall, made.leastWallAt);
     fmt::print("lamp: {:.1f} mm before the screen, {:.1f} mm above the plate's upper side\n", made.screen - made.light.y,
                made.light.z);
     return {};

@@ -68,9 +68,9 @@ SolidCheck checkSolid(const TriangleMesh& mesh) {
     return check;
 }
 
-std::vector<double> thicknesses(const TriangleMesh& mesh) {
+std::vector<double> thicknesses(const TriangleMesh& mesh, std::size_t every) {
     const Surface surface = surfaceOf(mesh);
-    std::vector<double> found(mesh.triangles.size(), std::numeric_limits<double>::infinity());
+    std::vector<double> found((mesh.triangles.size() + every - 1) / every, std::numeric_limits<double>::infinity());
     if (surface.number_of_faces() == 0) return found;
     using Primitive = CGAL::AABB_face_graph_triangle_primitive<Surface>;
     using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
@@ -78,7 +78,8 @@ std::vector<double> thicknesses(const TriangleMesh& mesh) {
     tree.build();
     constexpr int kSlices = 64;
     parallelFor(kSlices, hardwareThreads(), [&](int slice) {
-        for (auto t = static_cast<std::size_t>(slice); t < mesh.triangles.size(); t += kSlices) {
+        for (auto i = static_cast<std::size_t>(slice); i < found.size(); i += kSlices) {
+            const std::size_t t = i * every;
             const glm::uvec3& corners = mesh.triangles[t];
             const glm::dvec3 a = mesh.vertices[corners.x], b = mesh.vertices[corners.y], c = mesh.vertices[corners.z];
             const glm::dvec3 middle = (a + b + c) / 3.0, inward = -glm::cross(b - a, c - a);
@@ -89,7 +90,7 @@ std::vector<double> thicknesses(const TriangleMesh& mesh) {
             const auto hit = tree.first_intersection(ray, [&](const Surface::Face_index& face) { return face == own; });
             if (!hit) continue;
             if (const auto* at = boost::get<Kernel::Point_3>(&hit->first))
-                found[t] = glm::distance(middle, {at->x(), at->y(), at->z()});
+                found[i] = glm::distance(middle, {at->x(), at->y(), at->z()});
         }
     });
     return found;

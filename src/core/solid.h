@@ -23,9 +23,9 @@ struct SolidCheck {
 };
 SolidCheck checkSolid(const TriangleMesh& mesh);
 
-// Of every triangle, how far it is from its middle straight inwards to the other side, in the mesh's unit: the thickness of what it
-// bounds; infinite where nothing is met.
-std::vector<double> thicknesses(const TriangleMesh& mesh);
+// Of triangles 0, `every`, twice that and so on: how far it is from its middle straight inwards to the other side, in the mesh's unit: the
+// thickness of what it bounds; infinite where nothing is met.
+std::vector<double> thicknesses(const TriangleMesh& mesh, std::size_t every);
 
 // A binary STL, in the mesh's own units and axes. Equal vertices come back equal. Error: names the file and why it cannot be written.
 Result<void> writeStl(const std::filesystem::path& path, const TriangleMesh& mesh);

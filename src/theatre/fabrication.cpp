@@ -37,11 +37,12 @@ constexpr double kMark = 1, kMarkDepth = 0.6;        // of what is engraved
 constexpr double kLeastRod = 1;                      // its radius
 constexpr std::size_t kCrumb = 64;                   // nodes; what is smaller is lost
 constexpr double kMostNodes = 250e6;
-constexpr double kWallsShown = 1.5;  // of the wall: up to there the least is looked for
+constexpr double kFold = 3;  // of the wall: what is thin along less is a fold of the skin
 // Of the grid's cells: how far the surface may be off for the sake of fewer triangles, and around what it stays as it was.
 constexpr double kTolerance = 0.08, kKeptAround = 6;
 constexpr int kTries = 5;
-constexpr int kCellsHigh = 320, kCellsInWall = 4;
+constexpr std::size_t kSamples = 50'000;  // of the surface, where the wall behind it is measured
+constexpr int kCellsHigh = 280, kCellsInWall = 4;
 
 // --- Plane geometry
 
@@ -155,16 +156,17 @@ public:
         TRY(step(0.05, "union"));
         TRY(uniteAll());
         TRY(step(0.30, "walls"));
-        thicken(true);
-        TRY(step(0.38, "feet and plate"));
+        tellThin(thicken());
+        TRY(step(0.38, "feet"));
         joinContacts();
-        thicken(false);
+        thicken();
+        TRY(step(0.44, "walls"));
+        measureWalls();
+        TRY(step(0.48, "plate"));
         addPlate();
-        TRY(step(0.48, "what hangs together"));
+        TRY(step(0.50, "what hangs together"));
         joinIslands();
         solid_->fillCavities();
-        TRY(step(0.52, "walls"));
-        measureWalls();
         TRY(step(0.55, "surface"));
         TRY(makeSurface());
         TRY(step(0.92, "shadow"));
@@ -378,19 +380,24 @@ private:
         return {};
     }
 
-    // `tells`: of people and things, not of what was made to hold them.
-    void thicken(bool tells) {
-        std::map<std::string, double> least;
-        for (const VoxelSolid::Thin& thin : solid_->thinnerThan(options_.wall)) {
-            // Balls a cell apart leave dents between them.
-            solid_->addRod(thin.middle, thin.middle, 0.5 * options_.wall + 0.25 * made_.cell);
-            if (!tells) continue;
-            const std::string who = partAt(pieceAt(thin.middle), thin.middle);
-            const auto [found, isNew] = least.try_emplace(who, thin.thickness);
-            if (!isNew) found->second = std::min(found->second, thin.thickness);
+    // What was thinner than a wall, before.
+    std::vector<VoxelSolid::Thin> thicken() {
+        std::vector<VoxelSolid::Thin> thin = solid_->thinnerThan(options_.wall);
+        // Balls a cell apart leave dents between them.
+        for (const VoxelSolid::Thin& at : thin) solid_->addRod(at.middle, at.middle, 0.5 * options_.wall + 0.25 * made_.cell);
+        return thin;
+    }
+
+    // Of each part, unless it is a mere fold of the skin.
+    void tellThin(const std::vector<VoxelSolid::Thin>& thin) {
+        std::map<std::string, std::vector<double>> parts;
+        for (const VoxelSolid::Thin& at : thin) parts[partAt(pieceAt(at.middle), at.middle)].push_back(at.thickness);
+        for (auto& [who, found] : parts) {
+            if (static_cast<double>(found.size()) * made_.cell < kFold * options_.wall) continue;
+            std::sort(found.begin(), found.end());
+            const double middle = found[found.size() / 2];
+            made_.thin.push_back({who, middle, options_.height * options_.wall / middle});
         }
-        for (const auto& [who, thickness] : least)
-            made_.thin.push_back({who, thickness, options_.height * options_.wall / std::max(thickness, 0.05 * options_.wall)});
     }
 
     // How far a place is outside what the poses shade, on the spot; negative: hidden in their shadow.
@@ -510,9 +517,9 @@ private:
 
     // Above the plate, whose thickness is known.
     void measureWalls() {
-        made_.leastWall = kWallsShown * options_.wall;
+        made_.leastWall = options_.wall;
         std::optional<VoxelSolid::Thin> thinnest;
-        for (const VoxelSolid::Thin& thin : solid_->thinnerThan(made_.leastWall))
+        for (const VoxelSolid::Thin& thin : solid_->thinnerThan(options_.wall))
             if (thin.middle.y > 0 && (!thinnest || thin.thickness < thinnest->thickness)) thinnest = thin;
         if (!thinnest) return;
         made_.leastWall = thinnest->thickness;
@@ -559,15 +566,15 @@ private:
         made_.targetIou = iouOf(made_.shadow, target);
         made_.posesIou = iouOf(poses, target);
 
-        const std::vector<double> walls = thicknesses(made_.mesh);
+        const std::size_t every = made_.mesh.triangles.size() / kSamples + 1;
+        const std::vector<double> walls = thicknesses(made_.mesh, every);
         double all = 0, below = 0;
-        for (std::size_t t = 0; t < walls.size(); ++t) {
-            const glm::uvec3& c = made_.mesh.triangles[t];
-            const dvec3 a = made_.mesh.vertices[c.x];
-            const double area =
-                0.5 * glm::length(glm::cross(dvec3(made_.mesh.vertices[c.y]) - a, dvec3(made_.mesh.vertices[c.z]) - a));
+        for (std::size_t i = 0; i < walls.size(); ++i) {
+            const glm::uvec3& c = made_.mesh.triangles[i * every];
+            const dvec3 a = made_.mesh.vertices[c.x], b = made_.mesh.vertices[c.y], d = made_.mesh.vertices[c.z];
+            const double area = glm::length(glm::cross(b - a, d - a));
             all += area;
-            if (walls[t] < options_.wall) below += area;
+            if (walls[i] < options_.wall) below += area;
         }
         made_.shareBelowWall = below / all;
 

@@ -44,7 +44,7 @@ struct Fabrication {
     // Of a body's part: what was thinner than the wall.
     struct ThinPart {
         std::string who;
-        double thickness = 0;  // the least
+        double thickness = 0;  // half of it is thinner
         double height = 0;     // of a print in which it is as thick as the wall
     };
     // Somebody, or something, that nothing bears: it is held by a rod.
@@ -67,7 +67,8 @@ struct Fabrication {
     std::vector<Rod> rods;
     std::vector<std::string> warnings;
     SolidCheck check;
-    // The least between two surfaces, through the middle of what they bound, and whose it is; 1.5 walls and nobody's: all is thicker.
+    // The least between two surfaces, through the middle of what they bound, and whose it is; nobody's, and as thick as the wall was to be:
+    // all is as thick at least.
     double leastWall = 0;
     std::string leastWallAt{};
     double shareBelowWall = 0;  // of the surface: straight behind it is another nearer than the wall, as at sharp edges

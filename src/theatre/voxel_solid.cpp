@@ -66,24 +66,23 @@ std::array<VoxelSolid::Node, 2> VoxelSolid::nodesIn(const Box& box) const {
     return nodes;
 }
 
+std::size_t VoxelSolid::blockOf(const Node& node) const {
+    return (static_cast<std::size_t>(node[2] / kBlock) * static_cast<std::size_t>(blockCount_[1]) +
+            static_cast<std::size_t>(node[1] / kBlock)) *
+               static_cast<std::size_t>(blockCount_[0]) +
+           static_cast<std::size_t>(node[0] / kBlock);
+}
+
 const float* VoxelSolid::find(const Node& node) const {
-    const std::int32_t block = block_[(static_cast<std::size_t>(node[2] / kBlock) * static_cast<std::size_t>(blockCount_[1]) +
-                                       static_cast<std::size_t>(node[1] / kBlock)) *
-                                          static_cast<std::size_t>(blockCount_[0]) +
-                                      static_cast<std::size_t>(node[0] / kBlock)];
-    if (block < 0) return nullptr;
-    return &values_[static_cast<std::size_t>(block)]
-                   [static_cast<std::size_t>((node[2] % kBlock * kBlock + node[1] % kBlock) * kBlock + node[0] % kBlock)];
+    const std::int32_t block = block_[blockOf(node)];
+    return block < 0 ? nullptr : &values_[static_cast<std::size_t>(block)][inBlock(node)];
 }
 
 float* VoxelSolid::find(const Node& node) { return const_cast<float*>(std::as_const(*this).find(node)); }
 
 float& VoxelSolid::make(const Node& node) {
     if (float* const there = find(node)) return *there;
-    block_[(static_cast<std::size_t>(node[2] / kBlock) * static_cast<std::size_t>(blockCount_[1]) +
-            static_cast<std::size_t>(node[1] / kBlock)) *
-               static_cast<std::size_t>(blockCount_[0]) +
-           static_cast<std::size_t>(node[0] / kBlock)] = static_cast<std::int32_t>(values_.size());
+    block_[blockOf(node)] = static_cast<std::int32_t>(values_.size());
     values_.emplace_back().fill(kFar);
     return *find(node);
 }
@@ -353,7 +352,25 @@ std::vector<VoxelSolid::Thin> VoxelSolid::thinnerThan(double wall) const {
         dvec3 surface{0};
         double depth = 0;
     };
-    std::unordered_map<std::size_t, Depth> depths;
+    std::vector<Depth> depths;
+    // Of each node its place among the depths, in blocks; -1: none.
+    std::vector<std::int32_t> blocks(block_.size(), -1);
+    std::vector<std::array<std::int32_t, kBlock * kBlock * kBlock>> numbers;
+    const auto find = [&](const Node& node) -> Depth* {
+        const std::int32_t block = blocks[blockOf(node)];
+        if (block < 0) return nullptr;
+        const std::int32_t number = numbers[static_cast<std::size_t>(block)][inBlock(node)];
+        return number < 0 ? nullptr : &depths[static_cast<std::size_t>(number)];
+    };
+    const auto add = [&](const Node& node, const Depth& depth) {
+        std::int32_t& block = blocks[blockOf(node)];
+        if (block < 0) {
+            block = static_cast<std::int32_t>(numbers.size());
+            numbers.emplace_back().fill(-1);
+        }
+        numbers[static_cast<std::size_t>(block)][inBlock(node)] = static_cast<std::int32_t>(depths.size());
+        depths.push_back(depth);
+    };
     const double deepest = 0.5 * wall + 2 * cell_;
     std::vector<Node> front, next;
     for (int z = 1; z + 1 < count_[2]; ++z)
@@ -373,7 +390,7 @@ std::vector<VoxelSolid::Thin> VoxelSolid::thinnerThan(double wall) const {
                         if (!nearest || depth < nearest->depth) nearest = Depth{surface, depth};
                     }
                 if (!nearest) continue;
-                depths.emplace(index(node), *nearest);
+                add(node, *nearest);
                 front.push_back(node);
             }
     const auto forNeighbours = [&](const Node& node, auto visit) {
@@ -387,13 +404,16 @@ std::vector<VoxelSolid::Thin> VoxelSolid::thinnerThan(double wall) const {
     for (; !front.empty(); front.swap(next)) {
         next.clear();
         for (const Node& node : front) {
-            const Depth known = depths.at(index(node));
+            const Depth known = *find(node);
             forNeighbours(node, [&](const Node& other) {
                 const double depth = glm::distance(known.surface, place(other));
                 if (depth > deepest) return;
-                const auto [found, isNew] = depths.try_emplace(index(other), Depth{known.surface, depth});
-                if (!isNew && depth >= found->second.depth - 1e-9 * cell_) return;
-                found->second = {known.surface, depth};
+                if (Depth* const there = find(other)) {
+                    if (depth >= there->depth - 1e-9 * cell_) return;
+                    *there = {known.surface, depth};
+                } else {
+                    add(other, {known.surface, depth});
+                }
                 next.push_back(other);
             });
         }
@@ -408,19 +428,19 @@ std::vector<VoxelSolid::Thin> VoxelSolid::thinnerThan(double wall) const {
             for (int x = 1; x + 1 < count_[0]; ++x) {
                 const Node node{x, y, z};
                 if (inside_[index(node)] == 0) continue;
-                const auto found = depths.find(index(node));
-                if (found == depths.end() || found->second.depth > 0.5 * wall) continue;
+                const Depth* const found = find(node);
+                if (found == nullptr || found->depth > 0.5 * wall) continue;
                 bool isMiddle = true;
                 forNeighbours(node, [&](const Node& other) {
-                    const auto its = depths.find(index(other));
-                    const double depth = its == depths.end() ? deepest : its->second.depth;
-                    if (depth - found->second.depth > kTaper * glm::distance(place(node), place(other))) isMiddle = false;
+                    const Depth* const its = find(other);
+                    const double depth = its == nullptr ? deepest : its->depth;
+                    if (depth - found->depth > kTaper * glm::distance(place(node), place(other))) isMiddle = false;
                 });
                 if (!isMiddle) continue;
                 // From there straight on to the other side.
-                const dvec3 surface = found->second.surface, along = place(node) - surface;
+                const dvec3 surface = found->surface, along = place(node) - surface;
                 const dvec3 way = glm::length(along) > 0 ? glm::normalize(along) : dvec3(0, 1, 0);
-                double through = found->second.depth, last = at(surface + through * way);
+                double through = found->depth, last = at(surface + through * way);
                 for (const double step = 0.25 * cell_; through < wall; through += step) {
                     const double here = at(surface + (through + step) * way);
                     if (here >= 0) {

@@ -80,6 +80,10 @@ private:
     glm::dvec3 place(const Node& node) const { return least_ + cell_ * glm::dvec3(node[0], node[1], node[2]); }
     // The nodes in a box, cut at the grid's edges.
     std::array<Node, 2> nodesIn(const Box& box) const;
+    std::size_t blockOf(const Node& node) const;
+    static std::size_t inBlock(const Node& node) {
+        return static_cast<std::size_t>((node[2] % kBlock * kBlock + node[1] % kBlock) * kBlock + node[0] % kBlock);
+    }
     float* find(const Node& node);
     const float* find(const Node& node) const;
     float& make(const Node& node);

@@ -61,10 +61,11 @@ TEST(SolidCheck, an_edge_of_four_triangles_is_found) {
 }
 
 TEST(SolidCheck, a_box_is_as_thick_as_it_is) {
-    const std::vector<double> found = thicknesses(boxMesh({0, 0, 0}, {1, 2, 3}));
+    const std::vector<double> found = thicknesses(boxMesh({0, 0, 0}, {1, 2, 3}), 1);
     ASSERT_EQ(found.size(), 12u);
     const double expected[] = {3, 3, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1};  // faces across z, y, x
     for (std::size_t i = 0; i < 12; ++i) EXPECT_NEAR(found[i], expected[i], 1e-9) << i;
+    EXPECT_THAT(thicknesses(boxMesh({0, 0, 0}, {1, 2, 3}), 5), testing::ElementsAre(found[0], found[5], found[10]));
 }
 
 // By assimp, and by the bytes of the format.
