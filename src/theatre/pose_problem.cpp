@@ -278,6 +278,8 @@ Result<std::vector<PoseTarget>> laidOut(std::span<const Silhouette> silhouettes,
     return targets;
 }
 
+void halve(PoseTarget& target, const Stage& stage) { target = target.halved(stage); }
+
 }  // namespace
 
 Result<void> PoseTarget::checkSize(int width, int height) {
@@ -395,12 +397,6 @@ void PoseProblem::dress() {
         skins.push_back(index < skins.size() ? skins[index] : std::make_shared<const BodyMesh>(humanMesh(actor)));
     }
 }
-
-namespace {
-
-void halve(PoseTarget& target, const Stage& stage) { target = target.halved(stage); }
-
-}  // namespace
 
 PoseProblem in256Rows(PoseProblem problem) {
     while (problem.target.pixelsOf256 < 1) halve(problem.target, problem.stage);
