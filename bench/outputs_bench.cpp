@@ -20,6 +20,7 @@
 #include "core/clock.h"
 #include "core/file.h"
 #include "crystals.h"
+#include "people.h"
 
 #include <CLI/CLI.hpp>
 #include <epoxy/egl.h>
@@ -45,7 +46,7 @@ namespace {
 
 struct Settings {
     std::string driver = "headless";
-    int outputs = 3, width = 640, height = 360, crystals = 333, samples = 4, frames = 150;
+    int outputs = 3, width = 640, height = 360, crystals = 333, people = 0, samples = 4, frames = 150;
     double rate = 30, seconds = 30;  // Hz; of each run
 };
 
@@ -475,7 +476,9 @@ void playShow(const Settings& settings) {
     cues.cues.push_back({look, Time{}, std::nullopt});
 
     app::Devices devices = valueOf(app::openDevices(site, app::Backends::AsDeclared, {clock}));
-    app::FrameLoop loop(site, cues, {swayingCrystals({settings.crystals})}, FANTASCOPE_SOURCE_DIR "/assets", devices, clock);
+    const PictureSource source = settings.people > 0 ? PictureSource(swayingPeople({settings.people}))
+                                                     : PictureSource(swayingCrystals({settings.crystals}));
+    app::FrameLoop loop(site, cues, {source}, FANTASCOPE_SOURCE_DIR "/assets", devices, clock);
     must(loop.prepare());
     const Time start = loop.refreshFrom(clock.now() + std::chrono::milliseconds(200)),
                end = start + fromSeconds(settings.seconds);
@@ -502,8 +505,10 @@ void playShow(const Settings& settings) {
     report.outputs = loop.outputs();
     report.swapSkew = loop.swapSkew();
     const app::Report json = app::jsonOf(report);
-    fmt::print("{} outputs of {} x {} at {} Hz, {} triangles each, {}, {} s\n", settings.outputs, settings.width, settings.height,
-               settings.rate, settings.crystals * 60, settings.driver, settings.seconds);
+    const std::string shown = settings.people > 0 ? fmt::format("shadows of {} people", settings.people)
+                                                  : fmt::format("{} triangles", settings.crystals * 60);
+    fmt::print("{} outputs of {} x {} at {} Hz, {} each, {}, {} s\n", settings.outputs, settings.width, settings.height,
+               settings.rate, shown, settings.driver, settings.seconds);
     for (const char* key : {"frames_by_output", "late_frames_by_cause", "yardstick", "frame_ms", "swap_skew_ms"})
         fmt::print("{}: {}\n", key, json[key].dump());
 }
@@ -527,6 +532,7 @@ int runBench(int argc, char** argv) {
     show->add_option("--driver", settings.driver, "headless, or glfw on an X server")->capture_default_str();
     show->add_option("--seconds", settings.seconds)->capture_default_str();
     show->add_option("--rate", settings.rate, "Hz")->capture_default_str();
+    show->add_option("--people", settings.people, "shadows of so many, of 5,000 triangles each, instead of crystals");
     CLI11_PARSE(program, argc, argv);
     if (show->parsed()) playShow(settings);
     if (cost->parsed()) compareCost(settings);

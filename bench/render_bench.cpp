@@ -8,6 +8,7 @@
 #include "core/check.h"
 #include "core/random.h"
 #include "crystals.h"
+#include "people.h"
 
 #include <benchmark/benchmark.h>
 
@@ -96,6 +97,12 @@ void drawMirrorBall(benchmark::State& state) {
     drawFrame(state, 1, 1, {MirrorBallSource{glm::vec3(1), {16.0 / 3, 3}, {0, 0.4, 2.4}, 0.25, 0.02, {3.6, 1.6, 1.2}, 0.04, 40}});
 }
 
+// So many people's shadows, by so many points of light.
+void drawShadow(benchmark::State& state) {
+    const auto samples = static_cast<int>(state.range(1));
+    drawFrame(state, 1, 1, {swayingPeople({static_cast<int>(state.range(0)), samples > 1 ? 0.1 : 0, samples})});
+}
+
 // A picture of so many rows that stands still; one that is another every frame, as a video's or a camera's.
 RgbaImage noise(int rows) {
     RgbaImage picture(rows * 16 / 9, rows);
@@ -142,6 +149,7 @@ BENCHMARK(drawThreeThousand)->Apply(settings);
 BENCHMARK(drawFoliage)->ArgName("radius")->Arg(0)->Arg(2)->Arg(5)->Arg(10)->Arg(20)->Arg(40)->Arg(80)->Apply(settings);
 BENCHMARK(drawCaustics)->Apply(settings);
 BENCHMARK(drawMirrorBall)->Apply(settings);
+BENCHMARK(drawShadow)->ArgNames({"people", "points"})->ArgsProduct({{1, 6, 12}, {1, 16}})->Apply(settings);
 BENCHMARK(drawImage)->ArgName("rows")->Arg(360)->Arg(720)->Arg(1080)->Arg(2160)->Apply(settings);
 BENCHMARK(drawChangingPicture)->ArgName("rows")->Arg(360)->Arg(720)->Arg(1080)->Arg(2160)->Apply(settings);
 BENCHMARK(decodeVideo)->ArgName("converted")->Arg(0)->Arg(1)->Apply(settings);

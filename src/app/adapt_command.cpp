@@ -222,6 +222,11 @@ Result<void> checkInterior(const MotionProblem& motion) {
 
 Result<Adapted> readAll(const Options& options) {
     theatre::Cast cast = TRY(theatre::readCast(options.cast));
+    if (cast.stage.beams() > 1 || cast.stage.screens[0].isCurved())
+        return Error(
+            fmt::format("{}: its stage has {}, and poses follow a silhouette that moves on one flat screen; find them with "
+                        "'fantascope pose' on a stage with one light and without a 'radius'",
+                        options.cast.string(), cast.stage.beams() > 1 ? "further_beams" : "a curved screen"));
     if (cast.actors[0].poses.size() != 1)
         return Error(fmt::format("{}: has {} poses of each actor; principal poses are those of one frame", options.cast.string(),
                                  cast.actors[0].poses.size()));
@@ -435,7 +440,7 @@ Result<void> film(const Adapted& adapted, const std::vector<std::size_t>& there,
         const double frame = static_cast<double>(number) * step;
         std::vector<double> freedoms;
         for (theatre::PoseSpline& spline : splines) {
-            const std::vector<double> his = spline.at(frame);
+            const std::vector<double>& his = spline.at(frame);
             freedoms.insert(freedoms.end(), his.begin(), his.end());
         }
         const std::size_t nearest = there[static_cast<std::size_t>(std::lround(frame)) % there.size()];

@@ -36,6 +36,7 @@ std::vector<const render::PatternSource*> patternsIn(const render::PictureSource
 double loopOf(const render::PictureSource& source) {
     if (const auto* video = std::get_if<render::VideoSource>(&source))
         return seconds(video->stream->content().length) / video->speed;
+    if (const auto* shadow = std::get_if<render::ShadowSource>(&source)) return seconds(render::lengthOf(*shadow));
     double longest = 0;
     for (const render::PatternSource* pattern : patternsIn(source))
         longest = std::max(longest, seconds(pattern->motion->period()));
@@ -55,6 +56,10 @@ std::optional<double> aspectOf(const render::PictureSource& source) {
     if (const auto* video = std::get_if<render::VideoSource>(&source)) return ratio(video->stream->content().size);
     if (const auto* image = std::get_if<render::ImageSource>(&source))
         return ratio({image->picture->width(), image->picture->height()});
+    if (const auto* shadow = std::get_if<render::ShadowSource>(&source)) {
+        const glm::dvec2 screen = shadow->to - shadow->from;
+        return screen.x / screen.y;
+    }
     const auto patterns = patternsIn(source);
     return patterns.empty() ? std::nullopt : std::optional(patterns[0]->pattern->aspect());
 }

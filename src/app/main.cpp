@@ -1,9 +1,11 @@
 #include "app/adapt_command.h"
 #include "app/check_command.h"
 #include "app/command.h"
+#include "app/convert_command.h"
 #include "app/deform_command.h"
 #include "app/devices_command.h"
 #include "app/export_command.h"
+#include "app/fabricate_command.h"
 #include "app/pattern_command.h"
 #include "app/plot_command.h"
 #include "app/pose_command.h"
@@ -17,9 +19,10 @@ namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-constexpr AddCommand kCommands[] = {addPatternCommand,  addPoseCommand, addDeformCommand, addAdaptCommand,
-                                    addRehearseCommand, addRunCommand,  addExportCommand, addTemplateCommand,
-                                    addPreviewCommand,  addPlotCommand, addCheckCommand,  addDevicesCommand};
+constexpr AddCommand kCommands[] = {addPatternCommand,   addPoseCommand,     addDeformCommand,   addAdaptCommand,
+                                    addFabricateCommand, addConvertCommand,  addRehearseCommand, addRunCommand,
+                                    addExportCommand,    addTemplateCommand, addPreviewCommand,  addPlotCommand,
+                                    addCheckCommand,     addDevicesCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

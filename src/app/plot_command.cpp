@@ -1,10 +1,9 @@
 #include "app/plot_command.h"
 
+#include "app/cast_scene.h"
 #include "app/report.h"
 
 #include "pattern/shape_pattern.h"
-#include "theatre/cast.h"
-#include "theatre/silhouette_sequence.h"
 
 #include "core/file.h"
 #include "plot/cast_figures.h"
@@ -25,8 +24,6 @@ namespace fantascope::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kMaskRows = 512;  // of a cast's target
 
 enum class Subject { Pattern, Report, Cast };
 enum class Figure { Difference, Trajectories, Spectrum, Search, Cast, Stage, Side, Shadow, Actors };
@@ -109,48 +106,15 @@ Result<plot::Page> drawPattern(const fs::path& file, Figure figure) {
     return figure == Figure::Trajectories ? plot::trajectoriesFigure(pattern) : plot::spectrumFigure(pattern);
 }
 
-// Of a frame of the cast's, from 0.
-Result<theatre::PoseTarget> targetOf(const theatre::Cast& cast, std::size_t frame, const fs::path& file) {
-    if (!cast.sequence) {
-        const GreyImage silhouette = TRY(readGrey(cast.target).in(file.string() + ": target"));
-        return theatre::PoseTarget::from(silhouette, cast.stage, cast.height, kMaskRows).in(cast.target.string());
-    }
-    const theatre::SilhouetteSequence sequence = TRY(theatre::readSequence(cast.sequence->file));
-    const auto& [name, representative, first] = *cast.sequence;
-    if (representative >= sequence.pictures.size())
-        return Error(
-            fmt::format("{}: has no frame {}, which the poses of {} are of", name.string(), representative + 1, file.string()));
-    std::vector<GreyImage> pictures;
-    for (const fs::path& picture : sequence.pictures) pictures.push_back(TRY(readGrey(picture)));
-    auto targets =
-        TRY(theatre::PoseTarget::ofSequence(pictures, representative, cast.stage, cast.height, kMaskRows).in(name.string()));
-    return std::move(targets[(first + frame) % targets.size()]);
-}
-
-Result<plot::CastPicture> picture(const fs::path& file, std::size_t frame) {
-    const theatre::Cast cast = TRY(theatre::readCast(file));
-    const std::size_t frames = cast.actors[0].poses.size();
-    if (frame >= frames) return Error(fmt::format("{}: --frame {} is beyond its last, {}", file.string(), frame, frames - 1));
-    theatre::PoseTarget target = TRY(targetOf(cast, frame, file));
-    theatre::PoseProblem problem{cast.stage, std::move(target), {}, {}};
-    std::vector<double> freedoms;
-    for (const theatre::Cast::Actor& actor : cast.actors) {
-        problem.actors.push_back(theatre::humanBody(actor.stature));
-        const std::vector<double> his = theatre::freedomsOf(problem.actors.back(), actor.poses[frame]);
-        freedoms.insert(freedoms.end(), his.begin(), his.end());
-    }
-    problem.dress();
-    return plot::castPicture(problem, freedoms);
-}
-
 Result<plot::Page> drawCast(const fs::path& file, std::size_t frame, Figure figure) {
-    const plot::CastPicture cast = TRY(picture(file, frame));
+    const CastScene scene = TRY(readCastScene(file, frame));
+    const plot::CastPicture cast = plot::castPicture(scene.problem, scene.freedoms);
     std::vector<plot::Page> pages;
     const auto has = [&](Figure part) { return figure == part || figure == Figure::Cast; };
     if (has(Figure::Stage)) pages.push_back(plot::stageFigure(cast.view, cast.view.overview(plot::kStageAspect)));
     if (figure == Figure::Side) pages.push_back(plot::stageFigure(cast.view, cast.view.fromTheSide(plot::kStageAspect)));
-    if (has(Figure::Shadow)) pages.push_back(plot::shadowFigure(cast.actors, cast.view.target, cast.lines));
-    if (has(Figure::Actors)) pages.push_back(plot::actorsFigure(cast.actors, cast.view.target));
+    if (has(Figure::Shadow)) pages.push_back(cast.shadows());
+    if (has(Figure::Actors)) pages.push_back(cast.each());
     return plot::stacked(pages);
 }
 

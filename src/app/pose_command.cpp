@@ -25,6 +25,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -40,11 +41,12 @@ namespace fs = std::filesystem;
 using theatre::PoseProblem, theatre::PoseSearch, theatre::PoseTarget, theatre::Troupe;
 
 constexpr double kDefaultSeconds = 20;
-constexpr int kFewActors = 3;  // up to so many a trial is shorter
+constexpr int kFewActors = 3;  // up to so many, for one target, a trial is shorter
 constexpr std::int64_t kEvaluationsOfFew = 40'000, kEvaluationsOfMany = 80'000;
 constexpr int kRows = 512;    // of the target
 constexpr int kMostMore = 2;  // actors that come in where those asked for by the silhouette's size do not satisfy
 constexpr std::size_t kMostSolutions = 8;
+constexpr double kFarthest = 100;       // metres
 constexpr double kNearlyAsGood = 0.02;  // of intersection over union: what somebody may still prefer for another reason
 
 struct Options {
@@ -59,8 +61,12 @@ struct Options {
     int threads = hardwareThreads();
     PoseSearch::Options search;
     std::optional<fs::path> hints, stage;
+    std::vector<fs::path> furtherTargets;
+    std::vector<double> furtherHeights, furtherMiddles;
     std::optional<std::string> weights;  // a preset's name, or a file
     std::optional<fs::path> image, view, each, solutions, meshes, report;
+
+    const fs::path& targetOf(std::size_t beam) const { return beam == 0 ? target : furtherTargets[beam - 1]; }
 };
 
 std::string onlyPicture(const std::string& file) {
@@ -104,16 +110,35 @@ void declare(CLI::App& command, Options& options) {
     command.add_option("--stage", options.stage,
                        "Light or projector, platforms and props, *.stage.yaml (docs/stage-format.md); default: a lamp on the "
                        "floor, 7 m before the screen");
+    command
+        .add_option("--further-target", options.furtherTargets,
+                    "The silhouettes for the stage's further beams, other lights or screens, in their order, separated by commas")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    command
+        .add_option("--further-height", options.furtherHeights,
+                    "Of each of them, metres (default: people are as high as on the first screen)")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(Troupe::kLeastHeight, Troupe::kMostHeight));
+    command
+        .add_option(
+            "--further-middle", options.furtherMiddles,
+            "Where on its screen the middle of each is: metres to the right of where the screen stands (default: where the "
+            "shadow falls of people who stand before the first light)")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(-kFarthest, kFarthest));
     command.add_option("--trials", options.trials, "Searches to take the best of (default: as many as fit into the time)")
         ->check(CLI::Range(1, 1'000'000));
     command
         .add_option("--seconds", options.seconds,
                     fmt::format("End after so long (default {} s, unless --trials is given)", kDefaultSeconds))
         ->check(CLI::Range(0.0, 1e6));
-    command.add_option(
-        "--evaluations", options.evaluations,
-        fmt::format("Of the energy, in a trial (default {}, and {} for more than {} actors; fewer where the time is short)",
-                    kEvaluationsOfFew, kEvaluationsOfMany, kFewActors));
+    command.add_option("--evaluations", options.evaluations,
+                       fmt::format("Of the energy, in a trial (default {}, and {} for more than {} actors or targets than one; "
+                                   "fewer where the time is short)",
+                                   kEvaluationsOfFew, kEvaluationsOfMany, kFewActors));
     command
         .add_option("--method", options.search.method,
                     "refined, or paper: CMA-ES as Won & Lee 2016 have it, with their refinement")
@@ -161,8 +186,9 @@ std::vector<fs::path> outputsOf(const Options& options) {
 Result<void> checkOutputs(const Options& options) {
     for (const fs::path& file : outputsOf(options)) {
         TRY(checkWritable(file));
-        if (fs::weakly_canonical(file) == fs::weakly_canonical(options.target))
-            return Error(fmt::format("{}: is the target, and would be overwritten; choose another name", file.string()));
+        for (std::size_t i = 0; i <= options.furtherTargets.size(); ++i)
+            if (fs::weakly_canonical(file) == fs::weakly_canonical(options.targetOf(i)))
+                return Error(fmt::format("{}: is the target, and would be overwritten; choose another name", file.string()));
     }
     return {};
 }
@@ -181,7 +207,8 @@ struct Round {
 struct Found {
     const Options& options;
     const std::optional<theatre::Stage>& stage;  // of options.stage
-    double height;                               // of the silhouette, metres
+    double height;                               // of the first silhouette, metres
+    std::vector<theatre::Cast::Target> further;  // what the further beams' are
     std::vector<Round> rounds{};                 // the best last
 
     const Round& round() const { return rounds.back(); }
@@ -200,17 +227,25 @@ theatre::Cast castOf(const Found& found, std::span<const double> freedoms, const
     return cast;
 }
 
-Material targetFor(const Options& options, const fs::path& output) {
-    return materialFor(output, options.target, "target" + options.target.extension().string());
+Material targetFor(const Options& options, const fs::path& output, std::size_t beam) {
+    const fs::path& target = options.targetOf(beam);
+    const std::string name = beam == 0 ? "target" : fmt::format("target-{}", beam + 1);
+    return materialFor(output, target, name + target.extension().string());
 }
 
 // What it names first, so that the cast never names what is not there.
 Result<void> writeCastWithMaterial(const Found& found, std::span<const double> freedoms, const fs::path& file,
                                    const fs::path& output) {
     const fs::path folder = fs::absolute(file).parent_path();
-    const Material target = targetFor(found.options, output);
+    const Material target = targetFor(found.options, output, 0);
     TRY(copyTo(folder, target));
     theatre::Cast cast = castOf(found, freedoms, folder / target.name);
+    cast.further = found.further;
+    for (std::size_t i = 0; i < cast.further.size(); ++i) {
+        const Material further = targetFor(found.options, output, i + 1);
+        TRY(copyTo(folder, further));
+        cast.further[i].file = folder / further.name;
+    }
     if (found.options.stage) cast.stageFile = TRY(placeStage(*found.options.stage, *found.stage, output));
     return theatre::writeCast(file, cast);
 }
@@ -219,9 +254,9 @@ Result<void> drawPictures(const Found& found) {
     const Options& options = found.options;
     if (!options.image && !options.view && !options.each) return {};
     const plot::CastPicture picture = plot::castPicture(found.problem(), found.best().freedoms);
-    if (options.image) TRY(plot::shadowFigure(picture.actors, picture.view.target, picture.lines).write(*options.image));
+    if (options.image) TRY(picture.shadows().write(*options.image));
     if (options.view) TRY(plot::stageFigure(picture.view, picture.view.overview(plot::kStageAspect)).write(*options.view));
-    if (options.each) TRY(plot::actorsFigure(picture.actors, picture.view.target).write(*options.each));
+    if (options.each) TRY(picture.each().write(*options.each));
     return {};
 }
 
@@ -262,12 +297,14 @@ Result<void> writeSolutions(const Found& found) {
         TRY(writeCastWithMaterial(found, trial.freedoms, folder / file, folder / "solutions.png"));
         plot::CastPicture picture = plot::castPicture(problem, trial.freedoms);
         const plot::Camera camera = picture.view.closeUp(double(plot::kCellView.x) / plot::kCellView.y);
+        // The first beam's shadow; the view shows all.
+        plot::CastPicture::Image& image = picture.images[0];
         std::vector<std::string> lines{file};
-        lines.insert(lines.end(), picture.lines.begin(), picture.lines.end());
+        lines.insert(lines.end(), image.lines.begin(), image.lines.end());
         cells.push_back(
-            {picture.view.draw(camera, plot::kCellView.x, plot::kCellView.y), std::move(picture.actors), std::move(lines)});
+            {picture.view.draw(camera, plot::kCellView.x, plot::kCellView.y), std::move(image.actors), std::move(lines)});
     }
-    return plot::solutionsFigure(cells, problem.target.mask).write(folder / "solutions.png");
+    return plot::solutionsFigure(cells, problem.target.maskAsSeen()).write(folder / "solutions.png");
 }
 
 // The terms of equation 1, weighted: their sum is the total.
@@ -293,6 +330,20 @@ Report actorsOf(const PoseProblem& problem, const PoseTrials::Trial& best) {
                           {"within_limits", quality.withinLimits}});
     }
     return actors;
+}
+
+Report beamsOf(const Found& found, const PoseTrials::Trial& best) {
+    Report beams = Report::array();
+    for (std::size_t i = 0; i < best.quality.matches.size(); ++i) {
+        const PoseSearch::Quality::Match& match = best.quality.matches[i];
+        beams.push_back({{"target", found.options.targetOf(i).string()},
+                         {"height", i == 0 ? found.height : found.further[i - 1].height},
+                         {"iou", match.iou},
+                         {"flat_iou", match.flatIou},
+                         {"contour_mean_px", match.contourMean},
+                         {"contour_max_px", match.contourMost}});
+    }
+    return beams;
 }
 
 // Of this process so far, megabytes.
@@ -322,6 +373,7 @@ Report reportOf(const Found& found) {
     report["valid"] = best.quality.isValid();
     report["contour_mean_px"] = best.quality.contourMean;
     report["contour_max_px"] = best.quality.contourMost;
+    report["beams"] = beamsOf(found, best);
     report["energy"] = energyOf(found.problem(), best.quality);
     report["method"] = name(found.options.search.method);
     report["height"] = found.height;
@@ -363,8 +415,13 @@ Report reportOf(const Found& found) {
 std::string brief(const Found& found) {
     const PoseTrials::Trial& best = found.best();
     const std::size_t finished = found.trials().finished, actors = found.problem().actors.size();
-    std::string text = fmt::format("{}: IoU {:.3f}, {} actor{}, {} m high", found.options.output.string(), best.quality.iou,
-                                   actors, actors == 1 ? "" : "s", found.height);
+    std::string each;
+    if (best.quality.matches.size() > 1)
+        for (const PoseSearch::Quality::Match& match : best.quality.matches)
+            each += fmt::format("{}{:.3f}", each.empty() ? " (" : ", ", match.iou);
+    if (!each.empty()) each += " on its screens)";
+    std::string text = fmt::format("{}: IoU {:.3f}{}, {} actor{}, {} m high", found.options.output.string(), best.quality.iou,
+                                   each, actors, actors == 1 ? "" : "s", found.height);
     if (finished > 0)
         text += fmt::format(", the best of {} trial{}", finished, finished == 1 ? "" : "s");
     else
@@ -415,8 +472,8 @@ Result<Round> searchWith(const Options& options, PoseProblem problem, std::optio
                          Clock& clock) {
     problem.dress();
     PoseTrials::Options trials{options.search, options.seed, options.trials, seconds, {}, options.threads};
-    const bool areFew = problem.actors.size() <= std::size_t{kFewActors};
-    trials.search.evaluations = options.evaluations.value_or(areFew ? kEvaluationsOfFew : kEvaluationsOfMany);
+    const bool isShort = problem.actors.size() <= std::size_t{kFewActors} && problem.beams() == 1;
+    trials.search.evaluations = options.evaluations.value_or(isShort ? kEvaluationsOfFew : kEvaluationsOfMany);
     TRY(trials.search.check());
     if (seconds) {
         // All that came before counts.
@@ -434,12 +491,18 @@ Result<Round> searchWith(const Options& options, PoseProblem problem, std::optio
 }
 
 // Won & Lee 2016, section 4: the last resort is one more actor, and all begins anew.
-Result<void> search(Found& found, const GreyImage& silhouette, double area, const Troupe& first, Time start, Clock& clock) {
+Result<void> search(Found& found, std::span<const GreyImage> silhouettes, double area, const Troupe& first, Time start,
+                    Clock& clock) {
     const Options& options = found.options;
     std::optional<double> seconds = options.seconds;
     if (!options.trials && !seconds) seconds = kDefaultSeconds;
     theatre::Stage stage = found.stage.value_or(theatre::Stage{});
-    const PoseTarget target = TRY(PoseTarget::from(silhouette, stage, first.height, kRows).in(options.target.string()));
+    const PoseTarget target = TRY(PoseTarget::from(silhouettes[0], stage, first.height, kRows).in(options.target.string()));
+    std::vector<PoseTarget> further;
+    for (std::size_t i = 1; i < silhouettes.size(); ++i) {
+        const auto& [file, height, middle] = found.further[i - 1];
+        further.push_back(TRY(PoseTarget::from(silhouettes[i], stage, height, kRows, {i, middle}).in(file.string())));
+    }
     const theatre::PoseWeights weights = TRY(weightsOf(options));
     std::vector<theatre::PoseHint> hints;
     if (options.hints) hints = TRY(theatre::readHints(*options.hints, target, stage));
@@ -449,7 +512,7 @@ Result<void> search(Found& found, const GreyImage& silhouette, double area, cons
         if (more > 0) troupe = Troupe::of(area, static_cast<int>(first.statures.size()) + more, first.height, options.statures);
         if (!troupe) break;  // they would have too little of it
         TRY(stage.checkHolders(troupe->statures.size()));
-        PoseProblem problem{stage, target, {}, weights, {}, hints};
+        PoseProblem problem{stage, target, {}, weights, {}, hints, {}, further};
         for (const double stature : troupe->statures) problem.actors.push_back(theatre::humanBody(stature));
         found.rounds.push_back(TRY(searchWith(options, std::move(problem), seconds, more == most, start, clock)));
         const Round& round = found.round();
@@ -466,22 +529,65 @@ Result<void> search(Found& found, const GreyImage& silhouette, double area, cons
     return {};
 }
 
+Result<void> checkFurther(const Options& options, std::size_t beams) {
+    const std::size_t given = options.furtherTargets.size();
+    const std::string names = options.stage ? options.stage->string() : "the stage without a --stage";
+    if (given != beams)
+        return Error(beams == 0
+                         ? fmt::format("--further-target: {} has one light and one screen; give it further_beams "
+                                       "(docs/stage-format.md), or leave the option out",
+                                       names)
+                         : fmt::format("--further-target: {} has {} further beam{} and so {} further target{}, {} {} given; name "
+                                       "one for each, in their order, with commas between",
+                                       names, beams, beams == 1 ? "" : "s", beams, beams == 1 ? "" : "s", given,
+                                       given == 1 ? "is" : "are"));
+    for (const auto& [option, count] : {std::pair("--further-height", options.furtherHeights.size()),
+                                        std::pair("--further-middle", options.furtherMiddles.size())})
+        if (count != 0 && count != given)
+            return Error(fmt::format("{}: {} for {} further target{}; give one for each, or none", option, count, given,
+                                     given == 1 ? "" : "s"));
+    return {};
+}
+
+// People are as high on all screens: with the first target's height goes each other's.
+theatre::Cast::Target furtherTarget(const Options& options, const theatre::Stage& stage, std::size_t beam, double height) {
+    const theatre::TargetPlace place = theatre::TargetPlace::on(stage, beam);
+    theatre::Cast::Target target{options.targetOf(beam), 0, 0};
+    const auto inCentimetres = [](double metres) { return std::round(100 * metres) / 100; };
+    target.height = options.furtherHeights.empty()
+                        ? std::clamp(inCentimetres(height * place.scale), Troupe::kLeastHeight, Troupe::kMostHeight)
+                        : options.furtherHeights[beam - 1];
+    target.middle = options.furtherMiddles.empty() ? inCentimetres(place.middle.value_or(stage.lightOnScreen(beam).x))
+                                                   : options.furtherMiddles[beam - 1];
+    return target;
+}
+
 Result<void> run(const Options& options) {
     SteadyClock clock;
     const Time start = clock.now();
     // Whatever can be refused is refused before the search begins.
     TRY(checkOutputs(options));
-    const GreyImage silhouette = TRY(readSilhouette(options.target));
+    std::vector<GreyImage> silhouettes;
+    for (std::size_t i = 0; i <= options.furtherTargets.size(); ++i)
+        silhouettes.push_back(TRY(readSilhouette(options.targetOf(i))));
     std::optional<theatre::Stage> stage;
     if (options.stage) {
         stage = TRY(theatre::readStage(*options.stage));
         TRY(checkStageCanGo(*options.stage, *stage, options.output));
     }
-    // Wherever the light is.
-    const double area = TRY(PoseTarget::from(silhouette, {}, 1, kRows).in(options.target.string())).area / (kRows * kRows);
+    TRY(checkFurther(options, stage ? stage->further.size() : 0));
+    // What people have to fill, in squares of the first silhouette's height, wherever the light is: on average over the beams.
+    double area = 0;
+    for (std::size_t i = 0; i < silhouettes.size(); ++i) {
+        const PoseTarget target = TRY(PoseTarget::from(silhouettes[i], {}, 1, kRows).in(options.targetOf(i).string()));
+        const double scale = i == 0 ? 1 : theatre::TargetPlace::on(*stage, i).scale;
+        area += scale * scale * target.area / (kRows * kRows) / static_cast<double>(silhouettes.size());
+    }
     const Troupe troupe = TRY(Troupe::of(area, options.actors, options.height, options.statures));
-    Found found{options, stage, troupe.height};
-    TRY(search(found, silhouette, area, troupe, start, clock));
+    Found found{options, stage, troupe.height, {}};
+    for (std::size_t i = 1; i < silhouettes.size(); ++i)
+        found.further.push_back(furtherTarget(options, *stage, i, troupe.height));
+    TRY(search(found, silhouettes, area, troupe, start, clock));
 
     TRY(writeCastWithMaterial(found, found.best().freedoms, options.output, options.output));
     TRY(drawPictures(found));

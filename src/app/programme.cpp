@@ -4,6 +4,9 @@
 
 #include "pattern/shape_pattern.h"
 #include "render/penumbra.h"
+#include "theatre/cast.h"
+#include "theatre/pose_problem.h"
+#include "theatre/silhouette_sequence.h"
 
 #include "core/image.h"
 
@@ -99,6 +102,75 @@ Result<Picture> readPicture(const show::VideoSource& source, render::VideoStream
 Result<Picture> readPicture(const std::shared_ptr<render::PictureFeed>& camera) {
     if (camera == nullptr) return Error("the site has no camera; take this source out, or declare a 'camera' in the site file");
     return Picture{render::CameraSource{camera}, {}};
+}
+
+// Whether a cast's last frame comes before its first, as that of the whole of a silhouette that moves in a loop.
+Result<bool> closes(const theatre::Cast& cast) {
+    if (!cast.sequence) return false;
+    const theatre::SilhouetteSequence sequence = TRY(theatre::readSequence(cast.sequence->file));
+    return sequence.loops && sequence.pictures.size() == cast.actors.front().poses.size();
+}
+
+Result<render::ShadowSource::Play> playOf(const show::ShadowSource& source, const theatre::Cast& cast) {
+    using Asked = show::ShadowSource::Play;
+    using Play = render::ShadowSource::Play;
+    const bool loops = TRY(closes(cast));
+    if (!source.play) return loops ? Play::Loop : Play::Once;
+    if (*source.play == Asked::Loop && !loops)
+        return Error(
+            fmt::format("{}: its last frame does not lead to its first: as a loop it would jump; take 'to_and_fro', or a "
+                        "silhouette that moves in a loop",
+                        source.cast.string()));
+    return *source.play == Asked::Loop ? Play::Loop : *source.play == Asked::Once ? Play::Once : Play::ToAndFro;
+}
+
+Result<Picture> readPicture(const show::ShadowSource& source) {
+    constexpr int kRows = 64;  // nothing is compared here
+    auto cast = std::make_shared<const theatre::Cast>(TRY(theatre::readCast(source.cast)));
+    render::ShadowSource shadow;
+    shadow.cast = cast;
+    shadow.samples = source.samples;
+    shadow.play = TRY(playOf(source, *cast));
+    shadow.speed = source.speed;
+    if (static_cast<std::size_t>(source.beam) > cast->stage.beams())
+        return Error(
+            fmt::format("'beam' is {}, and the stage of {} has {}", source.beam, source.cast.string(), cast->stage.beams()));
+    shadow.beam = static_cast<std::size_t>(source.beam - 1);
+    const glm::dvec3 light = cast->stage.beam(shadow.beam).light;
+    for (const show::ShadowSource::Lamp& lamp : source.lamps) {
+        const glm::dvec3 place = lamp.at.value_or(light);
+        if (cast->stage.screenOf(shadow.beam).screenFromStage(place).z <= 0)
+            return Error(fmt::format("the lamp at [{}, {}, {}] is not before the screen, which it is to light", place.x, place.y,
+                                     place.z));
+        if (!lamp.actors.empty() && lamp.actors.size() != cast->actors.size())
+            return Error(fmt::format("{} colours of 'actors', and {} has {}; say one for each, in its order", lamp.actors.size(),
+                                     source.cast.string(), cast->actors.size()));
+        shadow.lamps.push_back(
+            {place, lamp.size, lamp.light, lamp.shadow, std::vector<glm::vec3>(lamp.actors.begin(), lamp.actors.end())});
+    }
+    if (source.picture) {
+        shadow.from = {source.picture->x.x, source.picture->y.x};
+        shadow.to = {source.picture->x.y, source.picture->y.y};
+        return Picture{std::move(shadow), {}};
+    }
+    if (shadow.beam > cast->further.size())
+        return Error(fmt::format("{} has no target for beam {}; say with 'picture' what of its screen is seen",
+                                 source.cast.string(), source.beam));
+    const theatre::Cast::Target own{cast->target, cast->height, 0},
+        &wanted = shadow.beam == 0 ? own : cast->further[shadow.beam - 1];
+    theatre::TargetPlace where;
+    if (shadow.beam > 0) where = {shadow.beam, wanted.middle};
+    GreyImage drawing = TRY(readGrey(wanted.file));
+    auto target = theatre::PoseTarget::from(drawing, cast->stage, wanted.height, kRows, where);
+    if (!target) return target.error().in(wanted.file.string());
+    const theatre::ScreenFrame& given = target->given;
+    shadow.from = given.metresAt({0, given.height()});
+    shadow.to = given.metresAt({given.width(), 0});
+    std::optional<Pictures::Guide> guide;
+    // On a white screen a still reads as its drawing's negative.
+    if (cast->actors.front().poses.size() == 1)
+        guide = Pictures::Guide{inverted(std::move(drawing)), static_cast<double>(given.width()) / given.height()};
+    return Picture{std::move(shadow), std::move(guide)};
 }
 
 // `camera`: null if the site has none.

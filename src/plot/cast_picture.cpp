@@ -39,25 +39,51 @@ CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const dou
     theatre::SceneEnergy scene(problem);
     scene.pose(freedoms);
     scene.terms();
-    CastPicture picture{{problem.stage, problem.target.frame, scene.shadow(), problem.target.mask, {}}, {}, {}};
-    std::string fallen;
-    for (std::size_t i = 0; i < problem.actors.size(); ++i) {
-        const PoseSearch::Actor& actor = quality.actors[i];
-        picture.actors.push_back(
-            {scene.shadow(i), fmt::format("actor {}, {:.2f} m", i + 1, problem.actors[i].stature), notesOf(actor)});
-        if (scene.shadow(i).count() == 0) picture.actors[i].notes.push_back("no shadow in the picture");
-        const std::span<const glm::vec3> skin = scene.skin(i);
-        picture.view.actors.push_back({{{skin.begin(), skin.end()}, problem.skins[i]->atRest.triangles}, actorColour(i)});
-        if (!actor.isValid()) fallen += fmt::format("{} {}", fallen.empty() ? "" : ",", i + 1);
-    }
+    CastPicture picture{{problem.stage, {}, {}}, {}};
     const auto things = scene.things();
     const glm::dvec3 colour = actorColour(problem.actors.size());
     for (const auto& thing : things) picture.view.props.push_back({thing.mesh, colour});
-    if (!things.empty()) picture.actors.push_back({scene.propShadow(), things.size() == 1 ? things[0].name : "props", {}});
-    picture.lines = {fmt::format("IoU {:.3f}", quality.iou), fmt::format("contour off by {:.1f} px of 256,", quality.contourMean),
-                     fmt::format("{:.0f} px at most", quality.contourMost),
-                     fallen.empty() ? "everyone can stand so" : "cannot stand so:" + fallen};
+    std::string fallen;
+    for (std::size_t i = 0; i < problem.actors.size(); ++i) {
+        const std::span<const glm::vec3> skin = scene.skin(i);
+        picture.view.actors.push_back({{{skin.begin(), skin.end()}, problem.skins[i]->atRest.triangles}, actorColour(i)});
+        if (!quality.actors[i].isValid()) fallen += fmt::format("{} {}", fallen.empty() ? "" : ",", i + 1);
+    }
+    for (std::size_t k = 0; k < problem.beams(); ++k) {
+        const theatre::BeamEnergy& beam = scene.beam(k);
+        const theatre::PoseTarget& target = beam.target();
+        picture.view.images.push_back({target.frameAsSeen(), target.asSeen(beam.shadow()), target.maskAsSeen()});
+        CastPicture::Image image{{}, target.maskAsSeen(), {}};
+        for (std::size_t i = 0; i < problem.actors.size(); ++i) {
+            image.actors.push_back({target.asSeen(beam.shadow(i)),
+                                    fmt::format("actor {}, {:.2f} m", i + 1, problem.actors[i].stature),
+                                    notesOf(quality.actors[i])});
+            if (beam.shadow(i).count() == 0) image.actors[i].notes.push_back("no shadow in the picture");
+        }
+        if (!things.empty())
+            image.actors.push_back({target.asSeen(beam.propShadow()), things.size() == 1 ? things[0].name : "props", {}});
+        const PoseSearch::Quality::Match& match = quality.matches[k];
+        if (problem.beams() > 1) image.lines.push_back(fmt::format("beam {}", k + 1));
+        for (const std::string& line : std::vector<std::string>{
+                 fmt::format("IoU {:.3f}", match.iou), fmt::format("contour off by {:.1f} px of 256,", match.contourMean),
+                 fmt::format("{:.0f} px at most", match.contourMost),
+                 fallen.empty() ? "everyone can stand so" : "cannot stand so:" + fallen})
+            image.lines.push_back(line);
+        picture.images.push_back(std::move(image));
+    }
     return picture;
+}
+
+Page CastPicture::shadows() const {
+    std::vector<Page> pages;
+    for (const Image& image : images) pages.push_back(shadowFigure(image.actors, image.target, image.lines));
+    return pages.size() == 1 ? std::move(pages[0]) : stacked(pages);
+}
+
+Page CastPicture::each() const {
+    std::vector<Page> pages;
+    for (const Image& image : images) pages.push_back(actorsFigure(image.actors, image.target));
+    return pages.size() == 1 ? std::move(pages[0]) : stacked(pages);
 }
 
 }  // namespace fantascope::plot

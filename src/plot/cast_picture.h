@@ -13,10 +13,19 @@ namespace fantascope::plot {
 
 // Poses of a problem with skins as the figures of a cast take them.
 struct CastPicture {
+    // What is on a beam's screen, as it looks there.
+    struct Image {
+        std::vector<ActorShadow>
+            actors;  // how each stands in his notes; after them, if there are any, all platforms and props as one
+        theatre::BitMask target;
+        std::vector<std::string> lines;  // how well the shadow fits, and whether everyone can stand so
+    };
     StageView view;
-    std::vector<ActorShadow>
-        actors;                      // how each stands in his notes; after them, if there are any, all platforms and props as one
-    std::vector<std::string> lines;  // how well the shadow fits, and whether everyone can stand so
+    std::vector<Image> images;  // of each beam
+
+    // shadowFigure() and actorsFigure() of each beam, below each other.
+    Page shadows() const;
+    Page each() const;
 };
 
 // `freedoms`: of all actors, one after the other.

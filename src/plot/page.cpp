@@ -2,6 +2,7 @@
 
 #include "core/file.h"
 
+#include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
 #include <fmt/format.h>
@@ -31,6 +32,20 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned count) {
 struct Page::Cairo {
     Surface surface;
     Context context;
+
+    // On what writes to `bytes`, or is written to it as PNG; then into the file.
+    Result<void> drawOn(cairo_surface_t* target, const std::filesystem::path& file, std::string& bytes) const {
+        {
+            const Context copy(cairo_create(target));
+            cairo_set_source_surface(copy.get(), surface.get(), 0, 0);
+            cairo_paint(copy.get());
+        }
+        if (cairo_surface_get_type(target) == CAIRO_SURFACE_TYPE_IMAGE) cairo_surface_write_to_png_stream(target, append, &bytes);
+        cairo_surface_finish(target);
+        if (const cairo_status_t status = cairo_surface_status(target); status != CAIRO_STATUS_SUCCESS)
+            return Error(fmt::format("{}: cannot be drawn: {}", file.string(), cairo_status_to_string(status)));
+        return writeFile(file, bytes);
+    }
 };
 
 Page::Page(int width, int height) : width_(width), height_(height), cairo_(new Cairo) {
@@ -151,21 +166,27 @@ bool Page::knows(const std::filesystem::path& file) { return file.extension() ==
 
 Result<void> Page::write(const std::filesystem::path& file) const {
     if (!knows(file)) return Error(fmt::format("{}: a plot's name ends in .png or .svg", file.string()));
-    const bool svg = file.extension() == ".svg";
     std::string bytes;
-    const Surface surface(svg ? cairo_svg_surface_create_for_stream(append, &bytes, width_, height_)
-                              : cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_, height_));
-    if (svg) cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_PX);
-    {
-        const Context context(cairo_create(surface.get()));
-        cairo_set_source_surface(context.get(), cairo_->surface.get(), 0, 0);
-        cairo_paint(context.get());
+    if (file.extension() == ".svg") {
+        const Surface surface(cairo_svg_surface_create_for_stream(append, &bytes, width_, height_));
+        cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_PX);
+        return cairo_->drawOn(surface.get(), file, bytes);
     }
-    if (!svg) cairo_surface_write_to_png_stream(surface.get(), append, &bytes);
-    cairo_surface_finish(surface.get());
-    if (const cairo_status_t status = cairo_surface_status(surface.get()); status != CAIRO_STATUS_SUCCESS)
-        return Error(fmt::format("{}: cannot be drawn: {}", file.string(), cairo_status_to_string(status)));
-    return writeFile(file, bytes);
+    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_, height_));
+    return cairo_->drawOn(surface.get(), file, bytes);
+}
+
+Result<void> Page::writeAsPaper(const std::filesystem::path& file) const {
+    std::string bytes;
+    if (file.extension() == ".svg") {
+        const Surface surface(cairo_svg_surface_create_for_stream(append, &bytes, width_, height_));
+        cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_PT);
+        return cairo_->drawOn(surface.get(), file, bytes);
+    }
+    if (file.extension() != ".pdf") return Error(fmt::format("{}: a paper's name ends in .pdf or .svg", file.string()));
+    const Surface surface(cairo_pdf_surface_create_for_stream(append, &bytes, width_, height_));
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");  // the same drawing, the same bytes
+    return cairo_->drawOn(surface.get(), file, bytes);
 }
 
 }  // namespace fantascope::plot

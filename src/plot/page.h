@@ -56,6 +56,8 @@ public:
     Result<void> write(const std::filesystem::path& file) const;
     // Whether write() knows what the name asks for.
     static bool knows(const std::filesystem::path& file);
+    // In true size, a point being 1/72 inch: .pdf or .svg.
+    Result<void> writeAsPaper(const std::filesystem::path& file) const;
 
 private:
     struct Cairo;

@@ -20,7 +20,7 @@ namespace fantascope::plot {
 namespace {
 
 constexpr double kFieldOfView = radians(32), kMargin = 0.05;
-// Where the cameras look: 50 degrees from the beam, 20 degrees down.
+// Where the cameras look: 50 degrees from the first beam, 20 degrees down.
 const glm::dvec3 kFromAbove{-std::sin(radians(50)), -std::tan(radians(20)), -std::cos(radians(50))};
 constexpr double kLamp = 0.07;       // radius of the lamp, metres
 constexpr double kFloorReach = 9;    // from the stage's middle to where the floor has faded, metres
@@ -29,6 +29,7 @@ constexpr double kOutline = 0.006;   // half of the outline's width, of the scre
 constexpr double kBase = 0.2;        // half the side of what the lamp's stand is on, metres
 constexpr double kFoot = 0.35;       // how far the screen's feet reach before and behind it, metres
 constexpr double kBar = 0.03;        // of the screen's frame, metres
+constexpr double kStrip = 0.1;       // the width of the flat strips that a curved screen is drawn in, metres
 
 // Linear light.
 constexpr glm::vec3 kBackground{0.80f, 0.83f, 0.87f}, kFloor{0.50f, 0.50f, 0.49f}, kGrid{0.36f, 0.37f, 0.38f};
@@ -143,13 +144,13 @@ private:
     GreyImage shade_;
 };
 
+// A rectangle of the unrolled screen.
 struct Extent {
-    glm::dvec3 leftTop, rightBottom;  // on the screen
+    glm::dvec2 leftTop, rightBottom;
 };
 
 Extent extentOf(const theatre::ScreenFrame& frame) {
-    const glm::dvec2 leftTop = frame.metresAt({0, 0}), rightBottom = frame.metresAt({frame.width(), frame.height()});
-    return {{leftTop, 0}, {rightBottom, 0}};
+    return {frame.metresAt({0, 0}), frame.metresAt({frame.width(), frame.height()})};
 }
 
 // The smallest rectangle of pixels around what is white; all if nothing is.
@@ -162,7 +163,54 @@ Extent extentOfWhite(const theatre::ScreenFrame& frame, const theatre::BitMask& 
                 left = std::min(left, x), right = std::max(right, x + 1);
                 top = std::min(top, y), bottom = std::max(bottom, y + 1);
             }
-    return {{frame.metresAt({left, top}), 0}, {frame.metresAt({right, bottom}), 0}};
+    return {frame.metresAt({left, top}), frame.metresAt({right, bottom})};
+}
+
+// A screen with the images that are on it.
+struct ShownScreen {
+    const theatre::Screen& screen;
+    std::vector<std::size_t> beams;
+    Extent extent;  // of all
+
+    // A place of it, or one so far before it; on the stage.
+    glm::dvec3 at(double along, double up, double before = 0) const {
+        glm::dvec3 place = screen.surface({along, up});
+        const double angle = screen.isCurved() ? along / screen.radius : 0;
+        place += before * glm::dvec3(-std::sin(angle), 0, std::cos(angle));
+        return screen.stageFromScreen(place);
+    }
+    // The place along it and up of a point of it.
+    glm::dvec2 unrolled(const glm::dvec3& point) const {
+        const glm::dvec3 p = screen.screenFromStage(point);
+        if (!screen.isCurved()) return {p.x, p.y};
+        return {screen.radius * std::atan2(p.x / screen.radius, 1 - p.z / screen.radius), p.y};
+    }
+    // Where it is cut into strips, each flat enough.
+    std::vector<double> cuts(double from, double to) const {
+        const int strips = screen.isCurved() ? std::max(1, static_cast<int>(std::ceil((to - from) / kStrip))) : 1;
+        std::vector<double> all;
+        for (int i = 0; i <= strips; ++i) all.push_back(std::lerp(from, to, double(i) / strips));
+        return all;
+    }
+};
+
+std::vector<ShownScreen> screensOf(const StageView& view) {
+    std::vector<ShownScreen> screens;
+    for (std::size_t i = 0; i < view.images.size(); ++i) {
+        const theatre::Screen& screen = view.stage.screenOf(i);
+        const Extent extent = extentOf(view.images[i].frame);
+        const auto known =
+            std::find_if(screens.begin(), screens.end(), [&](const ShownScreen& other) { return &other.screen == &screen; });
+        if (known == screens.end()) {
+            screens.push_back({screen, {i}, extent});
+            continue;
+        }
+        Extent& all = known->extent;
+        known->beams.push_back(i);
+        all.leftTop = {std::min(all.leftTop.x, extent.leftTop.x), std::max(all.leftTop.y, extent.leftTop.y)};
+        all.rightBottom = {std::max(all.rightBottom.x, extent.rightBottom.x), std::min(all.rightBottom.y, extent.rightBottom.y)};
+    }
+    return screens;
 }
 
 // Between the values at pixel centres; beyond the edge as at the edge.
@@ -194,8 +242,11 @@ Surface mattSurface(TriangleMesh mesh, const glm::vec3& colour, const glm::vec3&
 }
 
 Surface floorOf(const StageView& view, const ContactShade& contact) {
-    const auto reach = static_cast<float>(kFloorReach);
     const glm::vec3 middle(float(view.stage.light.x), 0, float(0.45 * view.stage.light.z));
+    // As far as the farthest lamp.
+    float reach = static_cast<float>(kFloorReach);
+    for (const theatre::Stage::Beam& beam : view.stage.further)
+        reach = std::max(reach, 1.5f * glm::distance(middle, glm::vec3(beam.light)));
     TriangleMesh mesh;
     addFace(mesh, middle + glm::vec3(-reach, 0, reach), {2 * reach, 0, 0}, {0, 0, -2 * reach});
     return {std::move(mesh), [=, &contact](const glm::vec3& place, const glm::vec3&) {
@@ -207,46 +258,92 @@ Surface floorOf(const StageView& view, const ContactShade& contact) {
             }};
 }
 
-Surface screenOf(const StageView& view) {
-    const Extent extent = extentOf(view.frame);
+// How one beam lights a screen's places, given unrolled.
+struct Lighting {
+    theatre::ScreenFrame frame;
+    GreyImage shadow, target;  // signed distances, pixels
+    bool hasTarget = false;
+    glm::dvec3 light;  // in the screen's frame
+    float half = 0;    // of the outline's width, metres
+
+    Lighting(const StageView& view, std::size_t beam)
+        : frame(view.images[beam].frame),
+          shadow(theatre::signedDistance(view.images[beam].shadow)),
+          target(theatre::signedDistance(view.images[beam].target)),
+          hasTarget(view.images[beam].target.count() > 0),
+          light(view.stage.lightOnScreen(beam)),
+          half(static_cast<float>(kOutline * frame.height() * frame.pixel())) {}
+
+    glm::vec3 colour(const theatre::Screen& screen, const glm::dvec2& place) const {
+        const glm::dvec2 pixel = frame.pixelAt(place.x, place.y);
+        const bool isIn = pixel.x >= 0 && pixel.y >= 0 && pixel.x <= frame.width() && pixel.y <= frame.height();
+        const float falloff = glm::distance(glm::vec2(light), glm::vec2(screen.surface(place))) / 6;
+        const glm::vec3 cloth = kCloth / (1 + falloff * falloff);
+        return isIn ? glm::mix(cloth, kShadow, glm::smoothstep(-0.5f, 0.5f, sampled(shadow, glm::vec2(pixel)))) : cloth;
+    }
+    // How much of the target's outline is there.
+    float outline(const glm::dvec2& place) const {
+        const auto pixel = static_cast<float>(frame.pixel());
+        const float off = std::abs(sampled(target, glm::vec2(frame.pixelAt(place.x, place.y)))) * pixel;
+        return hasTarget ? 1 - glm::smoothstep(half - 0.5f * pixel, half + 0.5f * pixel, off) : 0;
+    }
+};
+
+Surface surfaceOf(const StageView& view, const ShownScreen& shown) {
+    const auto [leftTop, rightBottom] = shown.extent;
     TriangleMesh mesh;
-    addFace(mesh, glm::vec3(extent.leftTop.x, extent.rightBottom.y, 0), glm::vec3(extent.rightBottom.x - extent.leftTop.x, 0, 0),
-            glm::vec3(0, extent.leftTop.y - extent.rightBottom.y, 0));
-    const auto pixel = static_cast<float>(view.frame.pixel());
-    const float half = static_cast<float>(kOutline * (extent.leftTop.y - extent.rightBottom.y));
-    const glm::vec2 foot(view.stage.light.x, view.stage.light.y);
-    return {std::move(mesh),
-            [=, &frame = view.frame, shadow = theatre::signedDistance(view.shadow), target = theatre::signedDistance(view.target),
-             hasTarget = view.target.count() > 0](const glm::vec3& place, const glm::vec3&) {
-                const glm::vec2 at(frame.pixelAt(place.x, place.y));
-                const float falloff = glm::distance(foot, glm::vec2(place)) / 6;
-                glm::vec3 colour = kCloth / (1 + falloff * falloff);
-                colour = glm::mix(colour, kShadow, glm::smoothstep(-0.5f, 0.5f, sampled(shadow, at)));
-                const float off = std::abs(sampled(target, at)) * pixel;
-                if (hasTarget) colour = glm::mix(kRed, colour, glm::smoothstep(half - 0.5f * pixel, half + 0.5f * pixel, off));
+    const std::vector<double> cuts = shown.cuts(leftTop.x, rightBottom.x);
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+        const glm::vec3 corner(shown.at(cuts[i], rightBottom.y));
+        addFace(mesh, corner, glm::vec3(shown.at(cuts[i + 1], rightBottom.y)) - corner,
+                glm::vec3(0, leftTop.y - rightBottom.y, 0));
+    }
+    std::vector<Lighting> lightings;
+    for (const std::size_t beam : shown.beams) lightings.emplace_back(view, beam);
+    return {std::move(mesh), [shown, lightings = std::move(lightings)](const glm::vec3& point, const glm::vec3&) {
+                const glm::dvec2 place = shown.unrolled(point);
+                glm::vec3 colour(0);
+                for (const Lighting& lighting : lightings)
+                    colour += lighting.colour(shown.screen, place) / static_cast<float>(lightings.size());
+                for (const Lighting& lighting : lightings) colour = glm::mix(colour, kRed, lighting.outline(place));
                 return glm::vec4(colour, 1);
             }};
 }
 
-// The screen's frame and its feet, and what the lamp stands on.
+// A box in a frame of its own, brought to the stage vertex by vertex.
+template <class ToStage>
+void addBox(TriangleMesh& mesh, const glm::vec3& least, const glm::vec3& most, ToStage toStage) {
+    const std::size_t first = mesh.vertices.size();
+    addBox(mesh, least, most);
+    for (std::size_t i = first; i < mesh.vertices.size(); ++i) mesh.vertices[i] = toStage(mesh.vertices[i]);
+}
+
+// The screens' frames and their feet, and what the lamps stand on.
 TriangleMesh standsOf(const StageView& view) {
     TriangleMesh mesh;
-    const Extent extent = extentOf(view.frame);
     const auto bar = static_cast<float>(kBar), foot = static_cast<float>(kFoot);
-    const float left = float(extent.leftTop.x), right = float(extent.rightBottom.x), top = float(extent.leftTop.y);
-    addBox(mesh, {left - bar, 0, -bar}, {left, top + bar, bar});
-    addBox(mesh, {right, 0, -bar}, {right + bar, top + bar, bar});
-    addBox(mesh, {left, top, -bar}, {right, top + bar, bar});
-    for (const float x : {left - bar, right}) addBox(mesh, {x, 0, -foot}, {x + bar, bar, foot});
-
-    const glm::vec3 light(view.stage.light);
+    for (const ShownScreen& shown : screensOf(view)) {
+        const auto toStage = [&](const glm::vec3& v) { return glm::vec3(shown.at(v.x, v.y, v.z)); };
+        const auto add = [&](const glm::vec3& least, const glm::vec3& most) { addBox(mesh, least, most, toStage); };
+        const float left = float(shown.extent.leftTop.x), right = float(shown.extent.rightBottom.x),
+                    top = float(shown.extent.leftTop.y);
+        add({left - bar, 0, -bar}, {left, top + bar, bar});
+        add({right, 0, -bar}, {right + bar, top + bar, bar});
+        const std::vector<double> cuts = shown.cuts(left, right);
+        for (std::size_t i = 0; i + 1 < cuts.size(); ++i) add({float(cuts[i]), top, -bar}, {float(cuts[i + 1]), top + bar, bar});
+        for (const float x : {left - bar, right}) add({x, 0, -foot}, {x + bar, bar, foot});
+    }
     const float lamp = static_cast<float>(kLamp);
-    addBox(mesh, light + glm::vec3(-1.5f * lamp, -1.5f * lamp, 1.2f * lamp),
-           light + glm::vec3(1.5f * lamp, 1.5f * lamp, 3.2f * lamp));
-    if (light.y > 3 * lamp) {
-        addBox(mesh, {light.x - 0.015f, 0, light.z + 2 * lamp}, {light.x + 0.015f, light.y, light.z + 2 * lamp + 0.03f});
+    for (std::size_t i = 0; i < view.stage.beams(); ++i) {
+        const theatre::Screen& screen = view.stage.screenOf(i);
+        const glm::vec3 light(view.stage.lightOnScreen(i));
+        const auto toStage = [&](const glm::vec3& v) { return glm::vec3(screen.stageFromScreen(v)); };
+        const auto add = [&](const glm::vec3& least, const glm::vec3& most) { addBox(mesh, least, most, toStage); };
+        add(light + glm::vec3(-1.5f * lamp, -1.5f * lamp, 1.2f * lamp), light + glm::vec3(1.5f * lamp, 1.5f * lamp, 3.2f * lamp));
+        if (light.y <= 3 * lamp) continue;
+        add({light.x - 0.015f, 0, light.z + 2 * lamp}, {light.x + 0.015f, light.y, light.z + 2 * lamp + 0.03f});
         const glm::vec3 below(light.x, 0, light.z + 2 * lamp);
-        addBox(mesh, below - glm::vec3(kBase, 0, kBase), below + glm::vec3(kBase, 0.02, kBase));
+        add(below - glm::vec3(kBase, 0, kBase), below + glm::vec3(kBase, 0.02, kBase));
     }
     return mesh;
 }
@@ -264,19 +361,22 @@ void addRay(TriangleMesh& mesh, const glm::vec3& from, const glm::vec3& to) {
     for (std::size_t i = 0; i < 3; ++i) addFace(mesh, from + around[i], to - from, around[(i + 1) % 3] - around[i]);
 }
 
-// The pyramid from the lamp to the box around the target: its sides, barely seen, and its edges.
-void addBeam(const StageView& view, std::vector<Surface>& surfaces) {
-    const Extent box = extentOfWhite(view.frame, view.target);
-    const glm::vec3 light(view.stage.light);
-    const std::array<glm::vec3, 4> corners{glm::vec3(box.leftTop), glm::vec3(box.rightBottom.x, box.leftTop.y, 0),
-                                           glm::vec3(box.rightBottom), glm::vec3(box.leftTop.x, box.rightBottom.y, 0)};
+// The pyramid from a lamp to the box around its target: its sides, barely seen, and its edges.
+void addBeam(const StageView& view, const ShownScreen& shown, std::size_t beam, std::vector<Surface>& surfaces) {
+    const Extent box = extentOfWhite(view.images[beam].frame, view.images[beam].target);
+    const glm::vec3 light(view.stage.beam(beam).light);
+    std::vector<glm::vec3> around;  // the box, clockwise from its left top
+    const std::vector<double> cuts = shown.cuts(box.leftTop.x, box.rightBottom.x);
+    for (const double x : cuts) around.emplace_back(shown.at(x, box.leftTop.y));
+    for (auto x = cuts.rbegin(); x != cuts.rend(); ++x) around.emplace_back(shown.at(*x, box.rightBottom.y));
     TriangleMesh sides, edges;
-    for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < around.size(); ++i) {
         const auto first = static_cast<unsigned>(sides.vertices.size());
-        for (const glm::vec3& place : {light, corners[i], corners[(i + 1) % 4]}) sides.vertices.push_back(place);
+        for (const glm::vec3& place : {light, around[i], around[(i + 1) % around.size()]}) sides.vertices.push_back(place);
         sides.triangles.push_back({first, first + 1, first + 2});
-        addRay(edges, light, corners[i] + glm::vec3(0, 0.006f, 0.002f));
     }
+    for (const double x : {box.leftTop.x, box.rightBottom.x})
+        for (const double y : {box.leftTop.y, box.rightBottom.y}) addRay(edges, light, glm::vec3(shown.at(x, y + 0.006, 0.002)));
     surfaces.push_back(glowing(std::move(sides), kGlow, 0.045f));
     surfaces.push_back(glowing(std::move(edges), kGlow, 0.5f));
 }
@@ -297,58 +397,80 @@ Surface haloOf(const glm::vec3& light, const glm::vec3& camera) {
 }
 
 // What a camera must see.
-std::vector<glm::dvec3> peopleAndScreen(const StageView& view) {
-    const Extent extent = extentOf(view.frame);
+std::vector<glm::dvec3> peopleAndScreens(const StageView& view) {
     std::vector<glm::dvec3> points;
-    for (const double x : {extent.leftTop.x, extent.rightBottom.x})
-        for (const double y : {extent.leftTop.y, extent.rightBottom.y}) points.emplace_back(x, y, 0);
-    for (const double x : {extent.leftTop.x - kBar, extent.rightBottom.x + kBar})
-        for (const double z : {-kFoot, kFoot}) points.emplace_back(x, 0, z);
+    for (const ShownScreen& shown : screensOf(view)) {
+        const Extent& extent = shown.extent;
+        for (const double x : shown.cuts(extent.leftTop.x, extent.rightBottom.x))
+            for (const double y : {extent.leftTop.y, extent.rightBottom.y}) points.push_back(shown.at(x, y));
+        for (const double x : {extent.leftTop.x - kBar, extent.rightBottom.x + kBar})
+            for (const double z : {-kFoot, kFoot}) points.push_back(shown.at(x, 0, z));
+    }
     for (const auto* things : {&view.actors, &view.props})
         for (const StageView::Actor& thing : *things)
             points.insert(points.end(), thing.mesh.vertices.begin(), thing.mesh.vertices.end());
     return points;
 }
 
-void addLamp(const StageView& view, std::vector<glm::dvec3>& points) {
-    points.push_back(view.stage.light);
-    for (const double x : {-kBase, kBase})
-        for (const double z : {-kBase, kBase}) points.emplace_back(view.stage.light.x + x, 0, view.stage.light.z + 2 * kLamp + z);
+void addLamps(const StageView& view, std::vector<glm::dvec3>& points) {
+    for (std::size_t i = 0; i < view.stage.beams(); ++i) {
+        const theatre::Screen& screen = view.stage.screenOf(i);
+        const glm::dvec3 light = view.stage.lightOnScreen(i);
+        points.push_back(view.stage.beam(i).light);
+        for (const double x : {-kBase, kBase})
+            for (const double z : {-kBase, kBase})
+                points.push_back(screen.stageFromScreen({light.x + x, 0, light.z + 2 * kLamp + z}));
+    }
+}
+
+// From the side from which more screens are seen from before.
+glm::dvec3 fromAbove(const StageView& view) {
+    const glm::dvec3 mirrored(-kFromAbove.x, kFromAbove.y, kFromAbove.z);
+    const auto seen = [&](const glm::dvec3& look) {
+        return std::count_if(view.stage.screens.begin(), view.stage.screens.end(),
+                             [&](const theatre::Screen& screen) { return screen.turnedFromStage(look).z < 0; });
+    };
+    return seen(mirrored) > seen(kFromAbove) ? mirrored : kFromAbove;
 }
 
 }  // namespace
 
 Camera StageView::overview(double aspect) const {
-    std::vector<glm::dvec3> points = peopleAndScreen(*this);
-    addLamp(*this, points);
-    return Camera::fitting(points, kFromAbove, kFieldOfView, aspect, kMargin);
+    std::vector<glm::dvec3> points = peopleAndScreens(*this);
+    addLamps(*this, points);
+    return Camera::fitting(points, fromAbove(*this), kFieldOfView, aspect, kMargin);
 }
 
 Camera StageView::closeUp(double aspect) const {
-    return Camera::fitting(peopleAndScreen(*this), kFromAbove, kFieldOfView, aspect, kMargin);
+    return Camera::fitting(peopleAndScreens(*this), fromAbove(*this), kFieldOfView, aspect, kMargin);
 }
 
 Camera StageView::fromTheSide(double aspect) const {
-    std::vector<glm::dvec3> points = peopleAndScreen(*this);
-    addLamp(*this, points);
+    std::vector<glm::dvec3> points = peopleAndScreens(*this);
+    addLamps(*this, points);
     return Camera::fitting(points, {-1, -0.1, -0.12}, kFieldOfView, aspect, kMargin);
 }
 
 RgbaImage StageView::draw(const Camera& camera, int width, int height) const {
-    FANTASCOPE_CHECK(shadow.width() == frame.width() && shadow.height() == frame.height() && target.width() == frame.width() &&
-                         target.height() == frame.height(),
-                     "shadow and target are masks of the frame's size");
-    const glm::vec3 eye(camera.position), light(stage.light);
+    FANTASCOPE_CHECK(images.size() == stage.beams(), "each beam of the stage has its image");
+    for (const auto& [frame, shadow, target] : images)
+        FANTASCOPE_CHECK(shadow.width() == frame.width() && shadow.height() == frame.height() &&
+                             target.width() == frame.width() && target.height() == frame.height(),
+                         "shadow and target are masks of the frame's size");
+    const glm::vec3 eye(camera.position);
     const ContactShade contact(*this);
     std::vector<Surface> surfaces;
     for (const Actor& actor : actors) surfaces.push_back(mattSurface(actor.mesh, linear(actor.colour), eye));
     for (const Actor& prop : props) surfaces.push_back(mattSurface(prop.mesh, linear(prop.colour), eye));
     surfaces.push_back(mattSurface(standsOf(*this), kMetal, eye));
-    surfaces.push_back(glowing(ball(light, static_cast<float>(kLamp)), {1, 0.95f, 0.8f}, 1));
-    surfaces.push_back(screenOf(*this));
+    for (std::size_t i = 0; i < stage.beams(); ++i)
+        surfaces.push_back(glowing(ball(glm::vec3(stage.beam(i).light), static_cast<float>(kLamp)), {1, 0.95f, 0.8f}, 1));
+    const std::vector<ShownScreen> screens = screensOf(*this);
+    for (const ShownScreen& shown : screens) surfaces.push_back(surfaceOf(*this, shown));
     surfaces.push_back(floorOf(*this, contact));
-    addBeam(*this, surfaces);
-    surfaces.push_back(haloOf(light, eye));
+    for (const ShownScreen& shown : screens)
+        for (const std::size_t beam : shown.beams) addBeam(*this, shown, beam, surfaces);
+    for (std::size_t i = 0; i < stage.beams(); ++i) surfaces.push_back(haloOf(glm::vec3(stage.beam(i).light), eye));
     return rendered(surfaces, camera, kBackground, width, height);
 }
 

@@ -13,8 +13,8 @@
 
 namespace fantascope::plot {
 
-// What an outsider would see on the stage of a shadow theatre: the lamp and its beam to the target, the actors on the floor, and behind
-// them the screen with their shadow and the target's outline in red. Metres, the stage's frame.
+// What an outsider would see on the stage of a shadow theatre: each lamp and its beam to the target, the actors on the floor, and behind
+// them the screens with their shadows and the targets' outlines in red. Metres, the stage's frame.
 struct StageView {
     struct Actor {
         TriangleMesh mesh;
@@ -22,13 +22,17 @@ struct StageView {
     };
 
     theatre::Stage stage;
-    theatre::ScreenFrame frame;
-    theatre::BitMask shadow, target;  // both of the frame's size
+    // What is on a beam's screen, as it looks there: unrolled.
+    struct Image {
+        theatre::ScreenFrame frame;
+        theatre::BitMask shadow, target;  // both of the frame's size
+    };
+    std::vector<Image> images;  // of each beam
     std::vector<Actor> actors;
     std::vector<Actor> props{};  // platforms and whatever else stands there
 
-    // Cameras for a picture of this aspect: from behind the lamp, from the right and above; the same, near, with people and screen, but
-    // not the lamp; and from the right, with all.
+    // Cameras for a picture of this aspect: from behind the first lamp, from above and the right, or the left if that shows more screens from
+    // before; the same, near, with people and screens, but not the lamps; and from the right, with all.
     Camera overview(double aspect) const;
     Camera closeUp(double aspect) const;
     Camera fromTheSide(double aspect) const;

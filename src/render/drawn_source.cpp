@@ -4,6 +4,7 @@
 #include "render/drawn_foliage.h"
 #include "render/drawn_mirror_ball.h"
 #include "render/drawn_picture.h"
+#include "render/drawn_shadow.h"
 #include "render/gpu/canvas_painter.h"
 
 #include <cmath>
@@ -72,6 +73,9 @@ Made makeDrawn(const VideoSource& source, const CanvasPlace& place, DrawingTools
 }
 Made makeDrawn(const CameraSource& source, const CanvasPlace& place, DrawingTools& tools) {
     return makeDrawnCamera(source, place, tools);
+}
+Made makeDrawn(const ShadowSource& source, const CanvasPlace& place, DrawingTools& tools) {
+    return makeDrawnShadow(source, place, tools);
 }
 
 }  // namespace

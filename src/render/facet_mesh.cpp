@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -35,6 +37,44 @@ bool isClosed(const TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+TriangleMesh cutUp(TriangleMesh mesh, double longest) {
+    for (bool cut = true; cut;) {
+        cut = false;
+        std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+        // The middle of an edge that is too long.
+        const auto middle = [&](std::uint32_t a, std::uint32_t b) -> std::optional<std::uint32_t> {
+            if (static_cast<double>(glm::distance(mesh.vertices[a], mesh.vertices[b])) <= longest) return std::nullopt;
+            const auto [place, isNew] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.vertices.size()));
+            if (isNew) mesh.vertices.push_back((mesh.vertices[a] + mesh.vertices[b]) / 2.0f);
+            return place->second;
+        };
+        std::vector<glm::uvec3> triangles;
+        for (glm::uvec3 t : mesh.triangles) {
+            std::array<std::optional<std::uint32_t>, 3> cuts = {middle(t.x, t.y), middle(t.y, t.z), middle(t.z, t.x)};
+            const auto count = std::count_if(cuts.begin(), cuts.end(), [](const auto& place) { return place.has_value(); });
+            cut |= count > 0;
+            // Turned round so that the edges that are cut come first: xy, then yz, then zx.
+            while (count > 0 && !(cuts[0] && (count == 1 || cuts[1]))) {
+                t = {t.y, t.z, t.x};
+                std::rotate(cuts.begin(), cuts.begin() + 1, cuts.end());
+            }
+            if (count == 0)
+                triangles.push_back(t);
+            else if (count == 1)
+                triangles.insert(triangles.end(), {{t.x, *cuts[0], t.z}, {*cuts[0], t.y, t.z}});
+            else if (count == 2)
+                triangles.insert(triangles.end(), {{*cuts[0], t.y, *cuts[1]}, {t.x, *cuts[0], *cuts[1]}, {t.x, *cuts[1], t.z}});
+            else
+                triangles.insert(triangles.end(), {{t.x, *cuts[0], *cuts[2]},
+                                                   {*cuts[0], t.y, *cuts[1]},
+                                                   {*cuts[2], *cuts[1], t.z},
+                                                   {*cuts[0], *cuts[1], *cuts[2]}});
+        }
+        mesh.triangles = std::move(triangles);
+    }
+    return mesh;
+}
 
 FacetMesh facetMesh(const TriangleMesh& mesh) {
     std::vector<glm::vec3> normals;

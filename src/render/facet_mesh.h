@@ -25,6 +25,9 @@ struct FacetMesh {
     bool closed = false;                 // the surface has an inside, so that facets turned away can never be seen
 };
 
+// The same surface with no edge longer than `longest`: long edges get a point in their middle, on both sides alike, until none is long.
+TriangleMesh cutUp(TriangleMesh mesh, double longest);
+
 // The same triangles with their facets' normals; those of a flat mesh (all facets parallel) are zero, since a paper shape has no
 // facets to tell apart.
 FacetMesh facetMesh(const TriangleMesh& mesh);

@@ -1,6 +1,9 @@
 #include "render/picture_source.h"
 
+#include "theatre/cast.h"
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace fantascope::render {
@@ -12,6 +15,44 @@ Time positionAt(const VideoSource& source, Time time) {
     const Time played(std::llround(static_cast<double>((time + kTolerance).count()) * source.speed));
     if (source.loop) return (played % length + length) % length;
     return std::clamp(played, Time{}, length - Time(1));
+}
+
+namespace {
+
+// A motion in frames, there and back where it plays so: it begins to move within a frame and comes to rest within one, at either end.
+double framesOf(const ShadowSource& source) {
+    const std::size_t count = source.cast->actors.front().poses.size();
+    const auto last = static_cast<double>(count - 1);
+    switch (source.play) {
+        case ShadowSource::Play::Once:
+            break;
+        case ShadowSource::Play::Loop:
+            return last > 0 ? last + 1 : 0;
+        case ShadowSource::Play::ToAndFro:
+            return last > 0 ? 2 * (last + 1) : 0;
+    }
+    return last;
+}
+
+}  // namespace
+
+double frameAt(const ShadowSource& source, Time time) {
+    const double whole = framesOf(source);
+    if (whole <= 0) return 0;
+    const double played =
+        std::max(0.0, std::chrono::duration<double>(time).count()) * source.speed * source.cast->framesPerSecond;
+    if (source.play == ShadowSource::Play::Once) return std::min(played, whole);
+    const double frame = std::fmod(played, whole);
+    if (source.play == ShadowSource::Play::Loop) return frame;
+    const double half = whole / 2, way = std::min(frame, whole - frame), left = half - way;
+    return way < 1 ? 0.5 * way * way : left < 1 ? half - 1 - 0.5 * left * left : way - 0.5;
+}
+
+Time lengthOf(const ShadowSource& source) {
+    const double frames = framesOf(source);
+    return frames > 0 ? std::chrono::duration_cast<Time>(
+                            std::chrono::duration<double>(frames / (source.cast->framesPerSecond * source.speed)))
+                      : Time{};
 }
 
 }  // namespace fantascope::render

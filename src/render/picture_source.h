@@ -16,6 +16,10 @@
 #include <variant>
 #include <vector>
 
+namespace fantascope::theatre {
+struct Cast;
+}
+
 namespace fantascope::render {
 
 // A light pattern; shared by the outputs that show it.
@@ -88,6 +92,35 @@ struct VideoSource {
 // The moment of the video that is seen at a layer's time `time`.
 Time positionAt(const VideoSource& source, Time time);
 
+// Shadow theatre: a cast's people between lamps and the screen, as they move. Lamps' light adds up.
+// Source: Won & Lee 2016; soft light and several lights are of its section 7.
+struct ShadowSource {
+    struct Lamp {
+        glm::dvec3 place{0};            // stage frame, metres
+        double size = 0;                // its diameter, facing the screen, metres; 0: a point
+        glm::vec3 light{1}, shadow{0};  // what the screen is where it shines, and where somebody keeps it off: linear light
+        std::vector<glm::vec3>
+            actors;  // the shadow of each actor, where he is the nearest to the lamp; empty: all throw `shadow`
+    };
+    enum class Play {
+        Once,  // then the last frame stays
+        Loop,  // after the last frame comes the first
+        ToAndFro
+    };
+    std::shared_ptr<const theatre::Cast> cast;
+    std::size_t beam = 0;     // of its stage, whose screen the canvas lies on
+    std::vector<Lamp> lamps;  // at least one
+    glm::dvec2 from{0},
+        to{1};         // the canvas's lower left and upper right corner on the screen, which is unrolled if it is curved; metres
+    int samples = 16;  // points of light in a lamp that has a size
+    Play play = Play::Once;
+    double speed = 1;  // positive
+};
+// The moment of the cast's motion that is seen at a layer's time `time`, in frames from the first.
+double frameAt(const ShadowSource& source, Time time);
+// How long the motion takes, there and back where it plays so; 0: a still.
+Time lengthOf(const ShadowSource& source);
+
 // What a camera sees; nothing before its first picture.
 struct CameraSource {
     std::shared_ptr<PictureFeed> feed;
@@ -95,6 +128,6 @@ struct CameraSource {
 
 // What a layer can show, in the order of Show::sources.
 using PictureSource = std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource, ImageSource,
-                                   VideoSource, CameraSource>;
+                                   VideoSource, CameraSource, ShadowSource>;
 
 }  // namespace fantascope::render

@@ -8,9 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 namespace fantascope::render {
@@ -19,45 +17,6 @@ namespace {
 // Where the light on the facets comes from, in the canvas's frame (x right, y down, z to the viewer): above, a little left, in
 // front.
 const glm::dvec3 kTowardsLight = glm::normalize(glm::dvec3(-0.4, -0.6, 0.7));
-
-// The same surface with no edge longer than `longest`: long edges get a point in their middle, on both sides alike, until none is long.
-TriangleMesh cutUp(TriangleMesh mesh, double longest) {
-    for (bool cut = true; cut;) {
-        cut = false;
-        std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
-        // The middle of an edge that is too long.
-        const auto middle = [&](std::uint32_t a, std::uint32_t b) -> std::optional<std::uint32_t> {
-            if (static_cast<double>(glm::distance(mesh.vertices[a], mesh.vertices[b])) <= longest) return std::nullopt;
-            const auto [place, isNew] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.vertices.size()));
-            if (isNew) mesh.vertices.push_back((mesh.vertices[a] + mesh.vertices[b]) / 2.0f);
-            return place->second;
-        };
-        std::vector<glm::uvec3> triangles;
-        for (glm::uvec3 t : mesh.triangles) {
-            std::array<std::optional<std::uint32_t>, 3> cuts = {middle(t.x, t.y), middle(t.y, t.z), middle(t.z, t.x)};
-            const auto count = std::count_if(cuts.begin(), cuts.end(), [](const auto& place) { return place.has_value(); });
-            cut |= count > 0;
-            // Turned round so that the edges that are cut come first: xy, then yz, then zx.
-            while (count > 0 && !(cuts[0] && (count == 1 || cuts[1]))) {
-                t = {t.y, t.z, t.x};
-                std::rotate(cuts.begin(), cuts.begin() + 1, cuts.end());
-            }
-            if (count == 0)
-                triangles.push_back(t);
-            else if (count == 1)
-                triangles.insert(triangles.end(), {{t.x, *cuts[0], t.z}, {*cuts[0], t.y, t.z}});
-            else if (count == 2)
-                triangles.insert(triangles.end(), {{*cuts[0], t.y, *cuts[1]}, {t.x, *cuts[0], *cuts[1]}, {t.x, *cuts[1], t.z}});
-            else
-                triangles.insert(triangles.end(), {{t.x, *cuts[0], *cuts[2]},
-                                                   {*cuts[0], t.y, *cuts[1]},
-                                                   {*cuts[2], *cuts[1], t.z},
-                                                   {*cuts[0], *cuts[1], *cuts[2]}});
-        }
-        mesh.triangles = std::move(triangles);
-    }
-    return mesh;
-}
 
 }  // namespace
 

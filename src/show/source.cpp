@@ -25,7 +25,10 @@ constexpr double kShortestWave = 1.0 / 20;   // canvas heights
 constexpr double kSteepestWave = 0.1;        // height to length
 constexpr double kSmallestFacet = 1.0 / 50;  // of the ball's radius
 constexpr double kLongestTurn = 3600;
-constexpr double kSlowest = 0.01, kFastest = 10;  // videos
+constexpr double kSlowest = 0.01, kFastest = 10;  // videos, casts
+constexpr double kWidestLamp = 2;                 // metres
+constexpr int kMostSamples = 128;
+constexpr std::size_t kMostLamps = 8, kMostActors = 50, kMostBeams = 8;
 
 Result<fs::path> readFile(const ConfigNode& node, std::string_view advice) {
     const fs::path file = TRY(node.path());
@@ -144,6 +147,69 @@ Result<CameraSource> readCamera(const ConfigNode& node) {
     return CameraSource{};
 }
 
+// What a lamp does to the screen; what else there is stays with `fields`.
+void declareLamp(ConfigFields& fields, ShadowSource::Lamp& lamp) {
+    fields.optional().number("size", lamp.size, 0, kWidestLamp, "m");
+    fields.optional().vector3("light", lamp.light, 0, 1);
+    fields.optional().vector3("shadow", lamp.shadow, 0, 1);
+    fields.optional().list(
+        "actors", lamp.actors, [](const ConfigNode& colour) { return colour.vector3(0, 1); }, 1, kMostActors);
+}
+
+Result<ShadowSource::Lamp> readLamp(const ConfigNode& node) {
+    ShadowSource::Lamp lamp;
+    ConfigFields fields(node);
+    fields.read("at", lamp.at, [](const ConfigNode& at) -> Result<std::optional<glm::dvec3>> {
+        const glm::dvec3 place = TRY(at.vector3(-kLargest, kLargest, "m"));
+        return std::optional(place);
+    });
+    declareLamp(fields, lamp);
+    TRY(fields.finish());
+    return lamp;
+}
+
+Result<glm::dvec2> readSide(const ConfigNode& node) {
+    const glm::dvec2 side = TRY(node.vector2(-kLargest, kLargest, "m"));
+    if (side.y - side.x < kSmallest) return node.error("from where to where: the smaller number comes first");
+    return side;
+}
+
+Result<std::optional<ShadowSource::Picture>> readScreenPart(const ConfigNode& node) {
+    ShadowSource::Picture picture;
+    ConfigFields fields(node);
+    fields.read("x", picture.x, readSide);
+    fields.read("y", picture.y, readSide);
+    TRY(fields.finish());
+    return std::optional(picture);
+}
+
+// A file, or a map with it.
+Result<ShadowSource> readShadow(const ConfigNode& node) {
+    const auto readCastFile = [](const ConfigNode& file) {
+        return readFile(file, "make it with 'fantascope pose SILHOUETTE.png' or 'fantascope adapt'");
+    };
+    ShadowSource shadow;
+    ShadowSource::Lamp first;
+    if (node.isMap()) {
+        ConfigFields fields(node);
+        fields.read("cast", shadow.cast, readCastFile);
+        declareLamp(fields, first);
+        fields.optional().integer("beam", shadow.beam, 1, kMostBeams);
+        fields.optional().list("lamps", shadow.lamps, readLamp, 0, kMostLamps - 1);
+        fields.optional().integer("samples", shadow.samples, 1, kMostSamples);
+        fields.optional().read("play", shadow.play, [](const ConfigNode& play) -> Result<std::optional<ShadowSource::Play>> {
+            return std::optional(static_cast<ShadowSource::Play>(TRY(play.choice({"once", "loop", "to_and_fro"}))));
+        });
+        fields.optional().number("speed", shadow.speed, kSlowest, kFastest);
+        fields.optional().read("picture", shadow.picture, readScreenPart);
+        TRY(fields.finish());
+    } else {
+        shadow.cast = TRY(readCastFile(node));
+    }
+    shadow.lamps.insert(shadow.lamps.begin(), std::move(first));
+    return shadow;
+}
+
 }  // namespace
 
 Result<Source> readSource(const std::string& name, const ConfigNode& node) {
@@ -167,11 +233,12 @@ Result<Source> readSource(const std::string& name, const ConfigNode& node) {
     });
     kind("video", readVideo);
     kind("camera", readCamera);
+    kind("shadow", readShadow);
     TRY(fields.finish());
     if (kinds != 1)
         return node.error(
-            "exactly one kind of source is needed: 'pattern', 'solid', 'foliage', 'caustics', 'mirror_ball', 'image', 'video' or "
-            "'camera'");
+            "exactly one kind of source is needed: 'pattern', 'solid', 'foliage', 'caustics', 'mirror_ball', 'image', 'video', "
+            "'camera' or 'shadow'");
     return source;
 }
 
@@ -179,6 +246,7 @@ std::vector<fs::path> filesOf(const Source& source) {
     if (const auto* pattern = std::get_if<PatternSource>(&source.picture)) return {pattern->file};
     if (const auto* image = std::get_if<ImageSource>(&source.picture)) return {image->file};
     if (const auto* video = std::get_if<VideoSource>(&source.picture)) return {video->file};
+    if (const auto* shadow = std::get_if<ShadowSource>(&source.picture)) return {shadow->cast};
     std::vector<fs::path> files;
     if (const auto* foliage = std::get_if<FoliageSource>(&source.picture))
         for (const FoliageSource::Layer& layer : foliage->layers) files.push_back(layer.pattern);

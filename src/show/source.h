@@ -67,10 +67,31 @@ struct VideoSource {
 // What the site's camera sees.
 struct CameraSource {};
 
+// Shadow theatre. The numbers are those of render::ShadowSource.
+struct ShadowSource {
+    struct Lamp {
+        std::optional<glm::dvec3> at;  // stage frame, metres; none: the beam's light
+        double size = 0;
+        glm::dvec3 light{1}, shadow{0};
+        std::vector<glm::dvec3> actors;
+    };
+    enum class Play { Once, Loop, ToAndFro };
+    struct Picture {
+        glm::dvec2 x{0}, y{0};  // from, to; metres on the screen
+    };
+    std::filesystem::path cast;  // a *.cast.yaml
+    int beam = 1;                // of the cast's stage, whose screen is seen
+    std::vector<Lamp> lamps;     // the beam's own first
+    int samples = 16;
+    std::optional<Play> play;  // none: a loop if the silhouette moves in one, else once
+    double speed = 1;
+    std::optional<Picture> picture;  // what the canvas is of the screen; none: the target's picture
+};
+
 struct Source {
     std::string name;
     std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource, ImageSource, VideoSource,
-                 CameraSource>
+                 CameraSource, ShadowSource>
         picture;
     ConfigNode at;  // for whoever has to refuse what is in its files
 };
@@ -78,7 +99,7 @@ struct Source {
 // One entry of a show's `sources`. Strict; the files that it names must exist. Error: place, key, advice.
 Result<Source> readSource(const std::string& name, const ConfigNode& node);
 
-// All files that a source names and that can be checked by themselves: patterns, images, videos.
+// All files that a source names and that can be checked by themselves: patterns, images, videos, casts.
 std::vector<std::filesystem::path> filesOf(const Source& source);
 
 }  // namespace fantascope::show

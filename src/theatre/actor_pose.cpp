@@ -11,12 +11,20 @@ ActorPose poseOf(const Body& body, std::span<const double> freedoms) {
     return pose;
 }
 
-std::vector<double> freedomsOf(const Body& body, const ActorPose& pose) {
-    std::vector<double> freedoms = body.restPose(pose.root, pose.turns[0]);
+void freedomsOf(const Body& body, const ActorPose& pose, std::vector<double>& freedoms) {
+    freedoms.resize(body.freedoms);
+    const glm::dvec3 turn = vectorOf(pose.turns[0]);
+    for (int i = 0; i < 3; ++i)
+        freedoms[static_cast<std::size_t>(i)] = pose.root[i], freedoms[static_cast<std::size_t>(i) + 3] = turn[i];
     for (std::size_t i = 1; i < body.joints.size(); ++i) {
         const JointMotion& motion = body.joints[i].motion;
         motion.numbers(pose.turns[i], std::span(freedoms).subspan(body.joints[i].first, motion.size()));
     }
+}
+
+std::vector<double> freedomsOf(const Body& body, const ActorPose& pose) {
+    std::vector<double> freedoms;
+    freedomsOf(body, pose, freedoms);
     return freedoms;
 }
 

@@ -19,5 +19,6 @@ struct ActorPose {
 ActorPose poseOf(const Body& body, std::span<const double> freedoms);
 // The freedoms nearest to a pose, within the joints' limits.
 std::vector<double> freedomsOf(const Body& body, const ActorPose& pose);
+void freedomsOf(const Body& body, const ActorPose& pose, std::vector<double>& freedoms);
 
 }  // namespace fantascope::theatre

@@ -11,15 +11,16 @@ namespace {
 
 constexpr double kBeside = 3;  // from an artefact, pixels of a target 256 high
 
-// The shadow of each joint's capsules.
-std::vector<BitMask> partShadows(const PoseProblem& problem, const SceneEnergy& energy, std::size_t actor) {
+// The shadow of each joint's capsules on a beam's screen.
+std::vector<BitMask> partShadows(const PoseProblem& problem, const SceneEnergy& energy, std::size_t actor, std::size_t beam) {
     const Body& body = problem.actors[actor];
-    const BitMask& mask = problem.target.mask;
+    const PoseTarget& target = problem.targetOf(beam);
+    const BitMask& mask = target.mask;
     std::vector<BitMask> shadows(body.joints.size(), BitMask(mask.width(), mask.height()));
     CapsuleShadow shadow;
     for (std::size_t i = 0; i < body.capsules.size(); ++i)
-        shadow.add(problem.target.frame, energy.posed(actor).capsule(i), shadows[body.capsules[i].joint]);
-    for (BitMask& part : shadows) cutToLit(problem.stage, problem.target.frame, part);
+        shadow.add(target.frame, energy.posed(actor).capsule(i), shadows[body.capsules[i].joint]);
+    for (BitMask& part : shadows) target.cut(problem.stage, part);
     return shadows;
 }
 
@@ -31,26 +32,42 @@ BitMask visibleArtefacts(const PoseTarget& target, const BitMask& shadow) {
     return middles.count() == 0 ? middles : deeperThan(signedDistance(middles), -radius);
 }
 
+std::vector<BitMask> visibleArtefacts(const SceneEnergy& energy) {
+    std::vector<BitMask> artefacts;
+    for (std::size_t i = 0; i < energy.beams(); ++i)
+        artefacts.push_back(visibleArtefacts(energy.beam(i).target(), energy.beam(i).shadow()));
+    return artefacts;
+}
+
 std::vector<Freedoms> occludedChains(const PoseProblem& problem, const SceneEnergy& energy) {
-    std::vector<std::vector<BitMask>> parts;
-    for (std::size_t a = 0; a < problem.actors.size(); ++a) parts.push_back(partShadows(problem, energy, a));
+    // What each part, and what props throw on each beam's screen.
+    struct OnScreen {
+        std::vector<std::vector<BitMask>> parts;  // of each actor
+        BitMask props;
+    };
+    std::vector<OnScreen> screens(energy.beams());
+    for (std::size_t i = 0; i < screens.size(); ++i) {
+        screens[i].props = energy.beam(i).propShadow();
+        for (std::size_t a = 0; a < problem.actors.size(); ++a) screens[i].parts.push_back(partShadows(problem, energy, a, i));
+    }
     std::vector<std::vector<char>> isFree;
-    for (const auto& actor : parts) isFree.emplace_back(actor.size(), 0);
-    const BitMask props = energy.propShadow();
+    for (const Body& body : problem.actors) isFree.emplace_back(body.joints.size(), 0);
 
     // Whether what is free of an actor is hidden by all that is not.
     const auto isHidden = [&](std::size_t actor) {
-        BitMask free(props.width(), props.height()), rest = props;
-        for (std::size_t a = 0; a < parts.size(); ++a)
-            for (std::size_t i = 0; i < parts[a].size(); ++i)
-                if (isFree[a][i] == 0)
-                    rest.add(parts[a][i]);
-                else if (a == actor)
-                    free.add(parts[a][i]);
-        return isWithin(free, rest);
+        return std::all_of(screens.begin(), screens.end(), [&](const OnScreen& screen) {
+            BitMask free(screen.props.width(), screen.props.height()), rest = screen.props;
+            for (std::size_t a = 0; a < screen.parts.size(); ++a)
+                for (std::size_t i = 0; i < screen.parts[a].size(); ++i)
+                    if (isFree[a][i] == 0)
+                        rest.add(screen.parts[a][i]);
+                    else if (a == actor)
+                        free.add(screen.parts[a][i]);
+            return isWithin(free, rest);
+        });
     };
     std::vector<Freedoms> chains;
-    for (std::size_t a = 0; a < parts.size(); ++a) {
+    for (std::size_t a = 0; a < problem.actors.size(); ++a) {
         const Body& body = problem.actors[a];
         std::vector<char> isEnd(body.joints.size(), 1);
         for (std::size_t i = 1; i < body.joints.size(); ++i) isEnd[body.joints[i].parent] = 0;
@@ -79,22 +96,24 @@ std::vector<Freedoms> occludedChains(const PoseProblem& problem, const SceneEner
     return chains;
 }
 
-Freedoms freedomsBeside(const PoseProblem& problem, const SceneEnergy& energy, const BitMask& artefacts) {
-    if (artefacts.count() == 0) return {};
-    const BitMask around = deeperThan(signedDistance(artefacts), -kBeside / problem.target.pixelsOf256);
+Freedoms freedomsBeside(const PoseProblem& problem, const SceneEnergy& energy, std::span<const BitMask> artefacts) {
     std::set<std::size_t> chosen;
-    for (std::size_t a = 0; a < problem.actors.size(); ++a) {
-        const Body& body = problem.actors[a];
-        const std::size_t first = problem.firstFreedom(a);
-        const auto choose = [&](std::size_t joint) {
-            const std::size_t count = joint == 0 ? Body::kRootFreedoms : body.joints[joint].motion.size();
-            for (std::size_t k = 0; k < count; ++k) chosen.insert(first + body.joints[joint].first + k);
-        };
-        const std::vector<BitMask> parts = partShadows(problem, energy, a);
-        for (std::size_t joint = 0; joint < parts.size(); ++joint) {
-            if (!meet(parts[joint], around)) continue;
-            choose(joint);
-            if (joint != 0 && body.joints[joint].parent != 0) choose(body.joints[joint].parent);
+    for (std::size_t beam = 0; beam < artefacts.size(); ++beam) {
+        if (artefacts[beam].count() == 0) continue;
+        const BitMask around = deeperThan(signedDistance(artefacts[beam]), -kBeside / problem.targetOf(beam).pixelsOf256);
+        for (std::size_t a = 0; a < problem.actors.size(); ++a) {
+            const Body& body = problem.actors[a];
+            const std::size_t first = problem.firstFreedom(a);
+            const auto choose = [&](std::size_t joint) {
+                const std::size_t count = joint == 0 ? Body::kRootFreedoms : body.joints[joint].motion.size();
+                for (std::size_t k = 0; k < count; ++k) chosen.insert(first + body.joints[joint].first + k);
+            };
+            const std::vector<BitMask> parts = partShadows(problem, energy, a, beam);
+            for (std::size_t joint = 0; joint < parts.size(); ++joint) {
+                if (!meet(parts[joint], around)) continue;
+                choose(joint);
+                if (joint != 0 && body.joints[joint].parent != 0) choose(body.joints[joint].parent);
+            }
         }
     }
     return {chosen.begin(), chosen.end()};

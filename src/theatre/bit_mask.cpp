@@ -67,6 +67,10 @@ void BitMask::keep(int left, int top, int right, int bottom) {
     }
 }
 
+void BitMask::keep(const BitMask& other) {
+    for (std::size_t i = 0; i < words_.size(); ++i) words_[i] &= other.words_[i];
+}
+
 std::int64_t BitMask::count() const {
     std::int64_t count = 0;
     for (const std::uint64_t word : words_) count += std::popcount(word);

@@ -48,6 +48,7 @@ public:
     void add(const BitMask& other);
     // Blackens all but the columns from `left` to before `right` of the rows from `top` to before `bottom`.
     void keep(int left, int top, int right, int bottom);
+    void keep(const BitMask& other);           // all that is not white in it, of the same size
     void noteRow(int y) { spread(y, y + 1); }  // words of this row were set through row()
     std::int64_t count() const;
     friend std::int64_t differing(const BitMask& a, const BitMask& b);
@@ -67,8 +68,8 @@ private:
 // which there are some; whether some are white in both; whether all that are white in one are in the other.
 std::int64_t differing(const BitMask& a, const BitMask& b);
 std::int64_t shared(const BitMask& a, const BitMask& b);
-double intersectionOverUnion(const BitMask& a, const BitMask& b);
 BitMask difference(const BitMask& a, const BitMask& b);
+double intersectionOverUnion(const BitMask& a, const BitMask& b);  // one of them has something white
 bool meet(const BitMask& a, const BitMask& b);
 bool isWithin(const BitMask& inner, const BitMask& outer);
 

@@ -129,9 +129,6 @@ struct UnitMeshes {
     }
 };
 
-// A rigid motion from the rest pose: the rotation's w, x, y, z, then the dual part's.
-using DualQuaternion = std::array<float, 8>;
-
 // Vertices are blended in groups, each part of the sum in a row, so that what follows goes four at a time.
 constexpr std::size_t kGroup = 64;
 struct Group {
@@ -179,26 +176,35 @@ std::vector<MeshEdge> edgesOf(const TriangleMesh& mesh) {
     return isClosed ? edges : std::vector<MeshEdge>();
 }
 
-void BodyMesh::skin(const Body& body, const PosedBody& posed, std::vector<glm::vec3>& vertices) const {
-    constexpr std::size_t kMostJoints = 64;
-    FANTASCOPE_CHECK(body.joints.size() <= kMostJoints, "a body has few joints");
-    std::array<DualQuaternion, kMostJoints> motions;
-    std::array<dvec3, kMostJoints> restPlaces;
+DualQuaternion motionOf(const glm::dquat& turn, const dvec3& shift) {
+    const glm::dquat dual = 0.5 * (glm::dquat(0, shift.x, shift.y, shift.z) * turn);
+    const double parts[] = {turn.w, turn.x, turn.y, turn.z, dual.w, dual.x, dual.y, dual.z};
+    DualQuaternion motion{};
+    std::transform(std::begin(parts), std::end(parts), motion.begin(), [](double part) { return static_cast<float>(part); });
+    return motion;
+}
+
+void jointMotions(const Body& body, const PosedBody& posed, std::span<DualQuaternion> motions) {
+    FANTASCOPE_CHECK(body.joints.size() <= BodyMesh::kMostJoints && motions.size() >= body.joints.size(),
+                     "a body has few joints");
+    std::array<dvec3, BodyMesh::kMostJoints> restPlaces;
     for (std::size_t j = 0; j < body.joints.size(); ++j) {
         const Body::Joint& joint = body.joints[j];
         restPlaces[j] = j == 0 ? joint.offset : restPlaces[joint.parent] + joint.offset;
         const glm::dquat& q = posed.turn(j);
-        const dvec3 shift = posed.place(j) - q * restPlaces[j];
-        const glm::dquat dual = 0.5 * (glm::dquat(0, shift.x, shift.y, shift.z) * q);
-        // Of the two quaternions of a motion that nearer to the parent's.
+        // Of the two quaternions of a turn that nearer to the parent's.
         double sign = 1;
         if (j > 0) {
             const DualQuaternion& p = motions[joint.parent];
             if (p[0] * q.w + p[1] * q.x + p[2] * q.y + p[3] * q.z < 0) sign = -1;
         }
-        const double parts[] = {q.w, q.x, q.y, q.z, dual.w, dual.x, dual.y, dual.z};
-        for (std::size_t i = 0; i < 8; ++i) motions[j][i] = static_cast<float>(sign * parts[i]);
+        motions[j] = motionOf(sign * q, posed.place(j) - q * restPlaces[j]);
     }
+}
+
+void BodyMesh::skin(const Body& body, const PosedBody& posed, std::vector<glm::vec3>& vertices) const {
+    std::array<DualQuaternion, kMostJoints> motions;
+    jointMotions(body, posed, motions);
     vertices.resize(atRest.vertices.size());
     Group group{};
     for (std::size_t first = 0; first < vertices.size(); first += kGroup) {

@@ -21,10 +21,16 @@ struct MeshEdge {
 // triangle on each side.
 std::vector<MeshEdge> edgesOf(const TriangleMesh& mesh);
 
+// A rigid motion from the rest pose as a unit dual quaternion: the rotation's w, x, y, z, then the dual part's.
+using DualQuaternion = std::array<float, 8>;
+DualQuaternion motionOf(const glm::dquat& turn, const glm::dvec3& shift);  // first turned, then shifted
+// Of each joint of a body in a pose, those of neighbours on one side of the double cover: what a skin is blended of. `motions`: as many as joints.
+void jointMotions(const Body& body, const PosedBody& posed, std::span<DualQuaternion> motions);
+
 // The skin of a body: a closed mesh that follows the joints (Theta of Won & Lee 2016, section 3) by dual quaternion blending
 // (Kavan et al. 2008): linear blending would flatten a knee bent by 140 degrees to a third of its girth.
 struct BodyMesh {
-    static constexpr std::size_t kInfluences = 4;
+    static constexpr std::size_t kInfluences = 4, kMostJoints = 64;
 
     TriangleMesh atRest;                                         // metres, in the stage's frame, of the body's rest pose
     std::vector<MeshEdge> edges;                                 // edgesOf(atRest)

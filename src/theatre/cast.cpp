@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kVersion = 1;
 constexpr std::size_t kMostActors = 50, kMostFrames = 100'000;
-constexpr double kFarthest = 100, kLeastStature = 0.5, kMostStature = 2.5;  // metres
-constexpr double kRounding = 1e-6, kLimitRounding = 1.7453e-5;              // of a quaternion's length; radians
+constexpr double kFarthest = 100, kLeastStature = 0.5, kMostStature = 2.5, kLeastHeight = 0.1, kMostHeight = 20;  // metres
+constexpr double kRounding = 1e-6, kLimitRounding = 1.7453e-5;  // of a quaternion's length; radians
 
 Result<glm::dquat> readTurn(const ConfigNode& node) {
     const auto parts = TRY(node.items(4, 4));
@@ -71,12 +71,22 @@ Result<Cast::Actor> readActor(const ConfigNode& node) {
     return actor;
 }
 
+Result<Cast::Target> readTarget(const ConfigNode& node) {
+    Cast::Target target;
+    ConfigFields fields(node);
+    fields.path("target", target.file);
+    fields.number("height", target.height, kLeastHeight, kMostHeight, "m");
+    fields.number("middle", target.middle, -kFarthest, kFarthest, "m");
+    TRY(fields.finish());
+    return target;
+}
+
 Result<Cast> castOf(const ConfigNode& root) {
     Cast cast;
     ConfigFields fields(root);
     fields.header("cast", kVersion);
     fields.path("target", cast.target);
-    fields.number("height", cast.height, 0.1, 20, "m");
+    fields.number("height", cast.height, kLeastHeight, kMostHeight, "m");
     bool hasLight = false;
     fields.optional().read("light", cast.stage.light, [&](const ConfigNode& node) {
         hasLight = true;
@@ -101,12 +111,16 @@ Result<Cast> castOf(const ConfigNode& root) {
         sequence.first = static_cast<std::size_t>(first - 1);
         return std::optional(sequence);
     });
+    fields.optional().list("further_targets", cast.further, readTarget);
     fields.integer("seed", cast.seed, 0, std::numeric_limits<std::int64_t>::max());
     ConfigNode actors;
     fields.read("actors", actors, [](const ConfigNode& at) -> Result<ConfigNode> { return at; });
     TRY(fields.finish());
     if (!hasLight && !cast.stageFile)
         return root.error("no light; say 'light: [x, y, z]' for a lamp, or 'stage:' with the name of a stage file");
+    if (cast.further.size() != cast.stage.further.size())
+        return root.error(fmt::format("{} further_targets, and the stage has {} further_beams; each beam has a target",
+                                      cast.further.size(), cast.stage.further.size()));
     for (const ConfigNode& node : TRY(actors.items(1, kMostActors))) {
         cast.actors.push_back(TRY(readActor(node)));
         if (cast.actors.back().poses.size() != cast.actors.front().poses.size())
@@ -136,6 +150,10 @@ Result<void> writeCast(const fs::path& file, const Cast& cast) {
         add("sequence: {{file: {}, representative: {}, first: {}}}\n",
             fantascope::quoted(TRY(relativeTo(file, cast.sequence->file))), cast.sequence->representative + 1,
             cast.sequence->first + 1);
+    if (!cast.further.empty()) add("further_targets:\n");
+    for (const Cast::Target& target : cast.further)
+        add("  - {{target: {}, height: {}, middle: {}}}\n", fantascope::quoted(TRY(relativeTo(file, target.file))), target.height,
+            target.middle);
     add("seed: {}\nactors:\n", cast.seed);
     for (const Cast::Actor& actor : cast.actors) {
         const Body body = humanBody(actor.stature);

@@ -32,10 +32,16 @@ struct Cast {
         std::size_t representative = 0, first = 0;
     };
     std::optional<Sequence> sequence{};
+    // The silhouettes on the screens of the stage's further beams, in their order.
+    struct Target {
+        std::filesystem::path file;
+        double height = 0, middle = 0;  // metres; TargetPlace::middle
+    };
+    std::vector<Target> further{};
 };
 
 // *.cast.yaml, docs/cast-format.md; a stage's file is read with it, and must be there when a cast that names it is written. A quaternion that is not of length 1, or outside a joint's limits by more than a thousandth of a degree, is
-// refused with its place. Written aside and renamed; the target must lie in the file's folder or below it.
+// refused with its place. Written aside and renamed; the targets must lie in the file's folder or below it.
 Result<Cast> readCast(const std::filesystem::path& file);
 Result<void> writeCast(const std::filesystem::path& file, const Cast& cast);
 

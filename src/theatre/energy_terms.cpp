@@ -26,9 +26,15 @@ void forPairs(const PosedBody& a, const PosedBody& b, Visit visit) {
                 if (areNear(one, other)) visit(penetration(one, other));
 }
 
+// The floor and the first screen count together, by the deeper; the others each.
 template <class Visit>
-void forStage(const PosedBody& posed, Visit visit) {
-    for (const auto& [centre, radius] : posed.spheres()) visit(radius - std::min(centre.y, centre.z));
+void forStage(const Stage& stage, const PosedBody& posed, Visit visit) {
+    glm::dvec3 outward;
+    const Screen& first = stage.screens[0];
+    for (const auto& [centre, radius] : posed.spheres())
+        visit(radius - std::min(centre.y, first.isCurved() ? first.distance(centre, outward) : centre.z));
+    for (std::size_t i = 1; i < stage.screens.size(); ++i)
+        for (const auto& [centre, radius] : posed.spheres()) visit(radius - stage.screens[i].distance(centre, outward));
 }
 
 }  // namespace
@@ -61,9 +67,9 @@ double depthInOther(const PosedBody& a, const PosedBody& b) {
     return sum;
 }
 
-double depthInStage(const PosedBody& posed) {
+double depthInStage(const Stage& stage, const PosedBody& posed) {
     double sum = 0;
-    forStage(posed, [&](double depth) { sum += squaredMillimetres(depth); });
+    forStage(stage, posed, [&](double depth) { sum += squaredMillimetres(depth); });
     return sum;
 }
 
@@ -79,9 +85,9 @@ double deepestInOther(const PosedBody& a, const PosedBody& b) {
     return most;
 }
 
-double deepestInStage(const PosedBody& posed) {
+double deepestInStage(const Stage& stage, const PosedBody& posed) {
     double most = 0;
-    forStage(posed, [&](double depth) { most = std::max(most, depth); });
+    forStage(stage, posed, [&](double depth) { most = std::max(most, depth); });
     return most;
 }
 

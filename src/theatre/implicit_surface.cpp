@@ -36,7 +36,7 @@ public:
         for (std::size_t z = 0; z + 1 < count_[2]; z += kBlock)
             for (std::size_t y = 0; y + 1 < count_[1]; y += kBlock)
                 for (std::size_t x = 0; x + 1 < count_[0]; x += kBlock) block({x, y, z});
-        return std::move(mesh_);
+        return std::move(surface_.mesh);
     }
 
 private:
@@ -70,35 +70,10 @@ private:
             inside += values[corner] < 0;
         }
         if (inside == 0 || inside == 8) return;
-        // The vertex where the surface crosses the edge between two corners.
-        const auto crossing = [&](unsigned a, unsigned b) {
-            if (a > b) std::swap(a, b);
-            const auto [found, isNew] =
-                crossings_.try_emplace(index(nodes[a]) * 8 + (b - a), static_cast<std::uint32_t>(mesh_.vertices.size()));
-            if (isNew)
-                mesh_.vertices.emplace_back(glm::mix(place(nodes[a]), place(nodes[b]), values[a] / (values[a] - values[b])));
-            return found->second;
-        };
-        for (const auto& corners : kTetrahedra) {
-            unsigned within = 0;
-            for (unsigned i = 0; i < 4; ++i) within |= static_cast<unsigned>(values[corners[i]] < 0) << i;
-            const auto add = [&](const std::array<unsigned, 4>& order, bool isTurned) {
-                const auto at = [&](unsigned a, unsigned b) { return crossing(corners[order[a]], corners[order[b]]); };
-                const std::uint32_t first = at(0, 1), second = at(0, 2), third = at(0, 3);
-                mesh_.triangles.push_back(isTurned ? glm::uvec3(first, third, second) : glm::uvec3(first, second, third));
-            };
-            for (unsigned i = 0; i < 4; ++i) {
-                if (within == 1u << i) add(kAroundOne[i], false);
-                if (within == (15u ^ 1u << i)) add(kAroundOne[i], true);
-            }
-            for (const auto& order : kAroundTwo) {
-                if (within != (1u << order[0] | 1u << order[1])) continue;
-                const auto at = [&](unsigned a, unsigned b) { return crossing(corners[order[a]], corners[order[b]]); };
-                const std::uint32_t first = at(0, 2), second = at(0, 3), third = at(1, 3), fourth = at(1, 2);
-                mesh_.triangles.emplace_back(first, second, third);
-                mesh_.triangles.emplace_back(first, third, fourth);
-            }
-        }
+        std::array<std::size_t, 8> indices;
+        std::array<glm::dvec3, 8> places;
+        for (std::size_t i = 0; i < 8; ++i) indices[i] = index(nodes[i]), places[i] = place(nodes[i]);
+        surface_.addCell(indices, places, values);
     }
 
     const std::function<double(const glm::dvec3&)>& field_;
@@ -106,11 +81,42 @@ private:
     double slack_;
     Node count_{};
     std::vector<double> values_;  // of the nodes; not a number: not asked for yet
-    std::unordered_map<std::size_t, std::uint32_t> crossings_;
-    TriangleMesh mesh_;
+    TetrahedraSurface surface_;
 };
 
 }  // namespace
+
+void TetrahedraSurface::addCell(const std::array<std::size_t, 8>& nodes, const std::array<glm::dvec3, 8>& places,
+                                const std::array<double, 8>& values) {
+    // The vertex where the surface crosses the edge between two corners.
+    const auto crossing = [&](unsigned a, unsigned b) {
+        if (a > b) std::swap(a, b);
+        const auto [found, isNew] =
+            crossings_.try_emplace(nodes[a] * 8 + (b - a), static_cast<std::uint32_t>(mesh.vertices.size()));
+        if (isNew) mesh.vertices.emplace_back(glm::mix(places[a], places[b], values[a] / (values[a] - values[b])));
+        return found->second;
+    };
+    for (const auto& corners : kTetrahedra) {
+        unsigned within = 0;
+        for (unsigned i = 0; i < 4; ++i) within |= static_cast<unsigned>(values[corners[i]] < 0) << i;
+        const auto add = [&](const std::array<unsigned, 4>& order, bool isTurned) {
+            const auto at = [&](unsigned a, unsigned b) { return crossing(corners[order[a]], corners[order[b]]); };
+            const std::uint32_t first = at(0, 1), second = at(0, 2), third = at(0, 3);
+            mesh.triangles.push_back(isTurned ? glm::uvec3(first, third, second) : glm::uvec3(first, second, third));
+        };
+        for (unsigned i = 0; i < 4; ++i) {
+            if (within == 1u << i) add(kAroundOne[i], false);
+            if (within == (15u ^ 1u << i)) add(kAroundOne[i], true);
+        }
+        for (const auto& order : kAroundTwo) {
+            if (within != (1u << order[0] | 1u << order[1])) continue;
+            const auto at = [&](unsigned a, unsigned b) { return crossing(corners[order[a]], corners[order[b]]); };
+            const std::uint32_t first = at(0, 2), second = at(0, 3), third = at(1, 3), fourth = at(1, 2);
+            mesh.triangles.emplace_back(first, second, third);
+            mesh.triangles.emplace_back(first, third, fourth);
+        }
+    }
+}
 
 TriangleMesh implicitSurface(const std::function<double(const glm::dvec3&)>& field, const GridPlanes& planes, double slack) {
     return Marcher(field, planes, slack).march();

@@ -20,15 +20,16 @@ bool MeshShadow::add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<c
     constexpr float kNearest = 1e-3f;
     const std::size_t count = vertices.size();
     x_.resize(count), y_.resize(count);
-    const glm::vec3 light(-frame.fromLight({0, 0, 0}).x, frame.fromLight({0, 0, 0}).y, frame.fromLight({0, 0, 0}).z);
+    const glm::vec3 light(frame.light()), across(frame.onStage({1, 0, 0}));
     const glm::vec2 foot = frame.foot();
     const auto focus = static_cast<float>(frame.focus());
     constexpr float kFar = std::numeric_limits<float>::max();
-    float nearest = light.z, left = kFar, right = -kFar, top = kFar, bottom = -kFar;
+    float nearest = kFar, left = kFar, right = -kFar, top = kFar, bottom = -kFar;
     for (std::size_t i = 0; i < count; ++i) {
-        const float z = light.z - vertices[i].z, scale = focus / z;
+        const float dx = vertices[i].x - light.x, dz = light.z - vertices[i].z;
+        const float z = across.x * dz + across.z * dx, scale = focus / z;
         nearest = std::min(nearest, z);
-        x_[i] = foot.x + scale * (vertices[i].x - light.x);
+        x_[i] = foot.x + scale * (across.x * dx - across.z * dz);
         y_[i] = foot.y + scale * (light.y - vertices[i].y);
         left = std::min(left, x_[i]), right = std::max(right, x_[i]);
         top = std::min(top, y_[i]), bottom = std::max(bottom, y_[i]);

@@ -83,8 +83,10 @@ private:
             return isBetter;
         };
         while (trial_.evaluations < options_.evaluations && goesOn(best)) {
-            const BitMask artefacts = visibleArtefacts(problem.target, energy.shadow());
-            if (best <= options_.residual && artefacts.count() == 0) {
+            const std::vector<BitMask> artefacts = visibleArtefacts(energy);
+            const bool areNone =
+                std::all_of(artefacts.begin(), artefacts.end(), [](const BitMask& mask) { return mask.count() == 0; });
+            if (best <= options_.residual && areNone) {
                 trial_.reason = PoseSearch::StopReason::Satisfied;
                 break;
             }

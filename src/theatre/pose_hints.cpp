@@ -70,7 +70,11 @@ Result<glm::dvec2> readPlace(const ConfigNode& node, const std::string& hint, co
             fmt::format("hint '{}' is at [{}, {}], outside the picture; both are shares of the picture, from 0 (left, top) "
                         "to 1 (right, bottom): divide the point's pixels by the picture's width and height",
                         hint, share.x, share.y));
-    const glm::dvec2 place = target.given.metresAt(share * glm::dvec2(target.given.width(), target.given.height()));
+    const auto flat = target.flatFromGiven(share * glm::dvec2(target.given.width(), target.given.height()));
+    if (!flat)
+        return node.error(
+            fmt::format("hint '{}' is where the light does not come on the curved screen; move it to the silhouette", hint));
+    const glm::dvec2 place = *flat;
     // Where the picture is larger than the mask all is black: as far as its edge is, and the way to it.
     const ScreenFrame& frame = target.frame;
     const glm::dvec2 pixel = frame.pixelAt(place.x, place.y);

@@ -19,7 +19,7 @@ struct PoseTarget;
 // there.
 struct PoseHint {
     std::string name;               // of the point, for messages
-    glm::dvec2 place{0};            // on the screen, metres
+    glm::dvec2 place{0};            // on the first beam's flat screen, metres
     std::vector<BodyPart> parts{};  // of any actor; whichever is nearest is drawn to the place
     // Instead of them a point of what somebody holds, from the part's point, in the axes of the T-pose, metres.
     struct Held {

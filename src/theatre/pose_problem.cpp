@@ -1,11 +1,14 @@
 #include "theatre/pose_problem.h"
 
 #include "theatre/distance_field.h"
+#include "theatre/surroundings.h"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace fantascope::theatre {
@@ -116,9 +119,104 @@ Result<void> checkIslands(const BitMask& mask, int rows) {
     return {};
 }
 
+// Whether a pixel is white, by 3 x 3 samples; `isWhite(dx, dy)`: so far into it.
+template <class IsWhite>
+bool isMostlyWhite(IsWhite isWhite) {
+    int white = 0;
+    for (int j = 0; j < 3; ++j)
+        for (int k = 0; k < 3; ++k) white += isWhite((k + 0.5) / 3, (j + 0.5) / 3);
+    return white > 4;
+}
+
+// The middle of a silhouette along the unrolled screen. Error: the light is beside a curved screen.
+Result<double> middleOf(const TargetPlace& place, const Stage& stage) {
+    if (place.middle) return *place.middle;
+    const glm::dvec3 light = stage.lightOnScreen(place.beam);
+    if (const auto middle = unrolledFromFlat(stage.screenOf(place.beam), light, glm::dvec2(light))) return middle->x;
+    return Error("its screen is curved, and the light stands beside it; move the light, or make the screen's radius larger");
+}
+
+// Error: somewhere in [left, right] x [0, top] of the unrolled screen the light does not come, for the screen's own curve or for another screen.
+Result<void> checkWay(const TargetPlace& place, const Stage& stage, double left, double right, double top) {
+    if (stage.screens.size() == 1 && !stage.screens[0].isCurved()) return {};
+    constexpr int kAlong = 64, kSteps = 64;
+    constexpr double kRounding = 1e-6;  // metres
+    const Screen& own = stage.screenOf(place.beam);
+    const glm::dvec3 light = stage.lightOnScreen(place.beam);
+    if (const double most = std::abs(own.radius) * Screen::kMostArc; own.isCurved() && std::max(-left, right) > most)
+        return Error(
+            fmt::format("its silhouette is to reach from {:.2f} m to {:.2f} m along a screen of which, with a radius of {} m, "
+                        "{:.2f} m to either side can be seen; make it less high, or the radius larger",
+                        left, right, own.radius, most));
+    for (int i = 0; i <= kAlong; ++i)
+        for (const double y : {0.0, top}) {
+            const double x = std::lerp(left, right, double(i) / kAlong);
+            if (!flatFromUnrolled(own, light, {x, y}))
+                return Error(
+                    fmt::format("its silhouette is to reach from {:.2f} m to {:.2f} m along its curved screen, and the light "
+                                "does not come to {:.2f} m; move it, make the silhouette less high, or the radius larger",
+                                left, right, x));
+            const glm::dvec3 from = stage.beam(place.beam).light, to = own.stageFromScreen(own.surface({x, y}));
+            glm::dvec3 outward;
+            for (std::size_t k = 0; k < stage.screens.size(); ++k)
+                for (int step = 0; step <= kSteps; ++step)
+                    if (stage.screens[k].distance(glm::mix(from, to, double(step) / kSteps), outward) < -kRounding)
+                        return Error(fmt::format(
+                            "its silhouette is to reach from {:.2f} m to {:.2f} m along its screen, and screen {} keeps "
+                            "the light from {:.2f} m; move that screen away, or make the silhouette less high",
+                            left, right, k + 1, x));
+        }
+    return {};
+}
+
+// A target that was laid on the unrolled screen, as it falls on the flat one. `isWhite(place)`: of the silhouette on the unrolled screen, metres;
+// it lies in [left, right] x [0, top].
+template <class IsWhite>
+PoseTarget onFlatScreen(PoseTarget&& laid, const Stage& stage, double left, double right, double top, IsWhite isWhite) {
+    const Screen& screen = stage.screenOf(laid.beam);
+    const glm::dvec3 light = stage.lightOnScreen(laid.beam);
+    // The box around it on the flat screen, but no less than from the floor up.
+    glm::dvec2 least(std::numeric_limits<double>::infinity()), most = -least;
+    constexpr int kAlong = 256;
+    for (int i = 0; i <= kAlong; ++i)
+        for (const double y : {0.0, top})
+            if (const auto at = flatFromUnrolled(screen, light, {std::lerp(left, right, double(i) / kAlong), y}))
+                least = glm::min(least, *at), most = glm::max(most, *at);
+    const double pixel = laid.frame.pixel();
+    const int rows = static_cast<int>(std::lround(256 / laid.pixelsOf256)),
+              margin = static_cast<int>(std::lround(kMargin * rows));
+    const int columns = static_cast<int>(std::ceil((most.x - least.x) / pixel));
+    const int width = columns + 2 * margin, below = static_cast<int>(std::ceil(std::max(0.0, -least.y) / pixel));
+    const int above = std::max(rows, static_cast<int>(std::ceil(most.y / pixel))) + margin, height = above + below;
+    const double first = 0.5 * (least.x + most.x) - 0.5 * width * pixel;
+    PoseTarget target{ScreenFrame(stage, first, above * pixel, pixel, width, height, laid.beam),
+                      BitMask(width, height),
+                      0,
+                      {},
+                      laid.pixelsOf256,
+                      laid.given,
+                      laid.beam,
+                      PoseTarget::Unrolled{screen, light, BitMask(width, height), laid.frame, std::move(laid.mask)}};
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const auto at = [&](double dx, double dy) {
+                const auto place = unrolledFromFlat(screen, light, target.frame.metresAt({x + dx, y + dy}));
+                return place && place->y >= 0 ? place : std::nullopt;
+            };
+            if (!at(0.5, 0.5)) continue;
+            target.unrolled->onScreen.fill(y, x, x + 1);
+            const auto isWhiteAt = [&](double dx, double dy) {
+                const auto place = at(dx, dy);
+                return place && isWhite(*place);
+            };
+            if (isMostlyWhite(isWhiteAt)) target.mask.fill(y, x, x + 1);
+        }
+    return target;
+}
+
 // Silhouettes of pictures of one size as targets in one frame on the screen, which is laid by one of them.
 Result<std::vector<PoseTarget>> laidOut(std::span<const Silhouette> silhouettes, std::size_t by, const Stage& stage,
-                                        double height, int rows) {
+                                        double height, int rows, const TargetPlace& place) {
     const Silhouette& measure = silhouettes[by];
     const auto nameOf = [&](std::size_t i) { return silhouettes.size() > 1 ? fmt::format("frame {}", i + 1) : std::string(); };
     int left = measure.left, right = measure.right, top = measure.top;
@@ -138,9 +236,10 @@ Result<std::vector<PoseTarget>> laidOut(std::span<const Silhouette> silhouettes,
     const double half = std::max(middle - left, right - middle) / step, high = (measure.bottom - top) / step;
     const int margin = static_cast<int>(std::lround(kMargin * rows)), columns = static_cast<int>(std::ceil(2 * half));
     const int width = columns + 2 * margin, above = std::max(rows, static_cast<int>(std::ceil(high - 1e-6))) + margin;
-    if (stage.lit) {
-        const double reach = half * pixel, top = high * pixel, x = stage.light.x;
-        const glm::dvec2 from = stage.lit->from, to = stage.lit->to;
+    const double x = TRY(middleOf(place, stage)), reach = half * pixel;
+    if (const auto lit = stage.beam(place.beam).lit) {
+        const double top = high * pixel;
+        const glm::dvec2 from = lit->from, to = lit->to;
         if (x - reach < from.x || x + reach > to.x || from.y > 0 || top > to.y)
             return Error(
                 fmt::format("its silhouette is to be x {:.2f} .. {:.2f} m and y 0 .. {:.2f} m on the screen, and the projector "
@@ -148,28 +247,31 @@ Result<std::vector<PoseTarget>> laidOut(std::span<const Silhouette> silhouettes,
                             "and y {:.2f} .. {:.2f} m only; make it less high, or the projector's picture larger",
                             x - reach, x + reach, top, from.x, to.x, from.y, to.y));
     }
+    TRY(checkWay(place, stage, x - reach, x + reach, high * pixel));
     std::vector<PoseTarget> targets;
     for (std::size_t i = 0; i < silhouettes.size(); ++i) {
         const BitMask& whole = silhouettes[i].mask;
         PoseTarget target{
-            ScreenFrame(stage, stage.light.x - 0.5 * width * pixel, above * pixel, pixel, width, above),
+            ScreenFrame(stage, x - 0.5 * width * pixel, above * pixel, pixel, width, above, place.beam),
             BitMask(width, above),
             0,
             {},
             256.0 / rows,
-            ScreenFrame(stage, stage.light.x - middle * given, measure.bottom * given, given, whole.width(), whole.height())};
+            ScreenFrame(stage, x - middle * given, measure.bottom * given, given, whole.width(), whole.height(), place.beam),
+            place.beam};
+        const auto isWhite = [&](double right, double up) {  // from the middle of the silhouette's foot, pixels of the mask
+            return whole.at(static_cast<int>(std::floor(middle + right * step)),
+                            static_cast<int>(std::floor(measure.bottom - up * step)));
+        };
         for (int y = 0; y < above; ++y)
-            for (int x = 0; x < width; ++x) {
-                // 3 x 3 samples a pixel, or the picture's own pixels where they are fewer.
-                int white = 0;
-                for (int j = 0; j < 3; ++j)
-                    for (int k = 0; k < 3; ++k)
-                        white += whole.at(static_cast<int>(std::floor(middle + (x + (k + 0.5) / 3 - 0.5 * width) * step)),
-                                          static_cast<int>(std::floor(measure.bottom - (above - y - (j + 0.5) / 3) * step)));
-                if (white > 4) target.mask.fill(y, x, x + 1);
-            }
+            for (int column = 0; column < width; ++column)
+                if (isMostlyWhite([&](double dx, double dy) { return isWhite(column + dx - 0.5 * width, above - y - dy); }))
+                    target.mask.fill(y, column, column + 1);
         auto checked = checkIslands(target.mask, rows);
         if (!checked) return silhouettes.size() > 1 ? checked.error().in(nameOf(i)) : checked.error();
+        if (stage.screenOf(place.beam).isCurved())
+            target = onFlatScreen(std::move(target), stage, x - reach, x + reach, high * pixel,
+                                  [&](const glm::dvec2& at) { return isWhite((at.x - x) / pixel, at.y / pixel); });
         sampleContour(target, std::max<std::size_t>(1, kContourPoints * static_cast<std::size_t>(rows) / 256));
         targets.push_back(std::move(target));
     }
@@ -184,9 +286,53 @@ Result<void> PoseTarget::checkSize(int width, int height) {
                              height, kMostSide));
 }
 
-Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage, double height, int rows) {
+TargetPlace TargetPlace::on(const Stage& stage, std::size_t beam) {
+    if (beam == 0) return {};
+    constexpr double kBefore = 1.8;  // the first screen, metres: the middle of where a search begins
+    glm::dvec3 people(stage.light.x, 0, std::min(kBefore, 0.5 * stage.light.z));
+    if (const auto& area = stage.standing) {
+        const glm::dvec2 floor = glm::clamp(glm::dvec2(people.x, people.z), area->from, area->to);
+        people.x = floor.x, people.z = floor.y;
+    }
+    const auto larger = [&](std::size_t i) {
+        const double light = stage.lightOnScreen(i).z;
+        return light / (light - stage.screenOf(i).screenFromStage(people).z);
+    };
+    const double scale = larger(beam);
+    if (!(scale > 0) || !std::isfinite(scale)) return {beam};  // they are behind the light
+    const glm::dvec3 light = stage.lightOnScreen(beam), at = stage.screenOf(beam).screenFromStage(people);
+    const auto middle = unrolledFromFlat(stage.screenOf(beam), light, {light.x + scale * (at.x - light.x), light.y});
+    if (!middle) return {beam};
+    return {beam, middle->x, scale / larger(0)};
+}
+
+Result<PoseTarget> PoseTarget::from(const GreyImage& picture, const Stage& stage, double height, int rows,
+                                    const TargetPlace& place) {
     const Silhouette silhouette = TRY(silhouetteOf(picture));
-    return std::move(TRY(laidOut({&silhouette, 1}, 0, stage, height, rows))[0]);
+    return std::move(TRY(laidOut({&silhouette, 1}, 0, stage, height, rows, place))[0]);
+}
+
+void PoseTarget::cut(const Stage& stage, BitMask& shadow) const {
+    cutToLit(stage, frame, shadow, beam);
+    if (unrolled && shadow.width() > 0) shadow.keep(unrolled->onScreen);
+}
+
+BitMask PoseTarget::asSeen(const BitMask& shadow) const {
+    if (!unrolled) return shadow;
+    BitMask seen(unrolled->mask.width(), unrolled->mask.height());
+    for (int y = 0; y < seen.height(); ++y)
+        for (int x = 0; x < seen.width(); ++x)
+            if (const auto flat =
+                    flatFromUnrolled(unrolled->screen, unrolled->light, unrolled->frame.metresAt({x + 0.5, y + 0.5}))) {
+                const glm::dvec2 pixel = glm::floor(frame.pixelAt(flat->x, flat->y));
+                if (shadow.at(static_cast<int>(pixel.x), static_cast<int>(pixel.y))) seen.fill(y, x, x + 1);
+            }
+    return seen;
+}
+
+std::optional<glm::dvec2> PoseTarget::flatFromGiven(glm::dvec2 pixel) const {
+    const glm::dvec2 place = given.metresAt(pixel);
+    return unrolled ? flatFromUnrolled(unrolled->screen, unrolled->light, place) : place;
 }
 
 Result<std::vector<PoseTarget>> PoseTarget::ofSequence(std::span<const GreyImage> pictures, std::size_t representative,
@@ -199,27 +345,35 @@ Result<std::vector<PoseTarget>> PoseTarget::ofSequence(std::span<const GreyImage
                                      pictures[i].width(), pictures[i].height(), pictures[0].width(), pictures[0].height()));
         silhouettes.push_back(TRY(silhouetteOf(pictures[i]).in(name)));
     }
-    return laidOut(silhouettes, representative, stage, height, rows);
+    return laidOut(silhouettes, representative, stage, height, rows, {});
 }
 
 PoseTarget PoseTarget::halved(const Stage& stage) const {
     const int width = (mask.width() + 1) / 2, height = (mask.height() + 1) / 2;
     const glm::dvec2 leftBottom = frame.metresAt({0, mask.height()});
     const double pixel = 2 * frame.pixel();
-    PoseTarget target{ScreenFrame(stage, leftBottom.x, leftBottom.y + height * pixel, pixel, width, height),
+    PoseTarget target{ScreenFrame(stage, leftBottom.x, leftBottom.y + height * pixel, pixel, width, height, beam),
                       BitMask(width, height),
                       0,
                       {},
                       2 * pixelsOf256,
-                      given};
+                      given,
+                      beam,
+                      unrolled};
     // From the floor up; a pixel is white if half of it is.
     const int cut = 2 * height - mask.height();
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            int white = 0;
-            for (int i = 0; i < 4; ++i) white += mask.at(2 * x + i % 2, 2 * y - cut + i / 2);
-            if (white >= 2) target.mask.fill(y, x, x + 1);
-        }
+    const auto halve = [&](const BitMask& from) {
+        BitMask to(width, height);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                int white = 0;
+                for (int i = 0; i < 4; ++i) white += from.at(2 * x + i % 2, 2 * y - cut + i / 2);
+                if (white >= 2) to.fill(y, x, x + 1);
+            }
+        return to;
+    };
+    target.mask = halve(mask);
+    if (unrolled) target.unrolled->onScreen = halve(unrolled->onScreen);
     sampleContour(target, contour.size() / 2);
     return target;
 }
@@ -242,8 +396,16 @@ void PoseProblem::dress() {
     }
 }
 
+namespace {
+
+void halve(PoseTarget& target, const Stage& stage) { target = target.halved(stage); }
+
+}  // namespace
+
 PoseProblem in256Rows(PoseProblem problem) {
-    while (problem.target.pixelsOf256 < 1) problem.target = problem.target.halved(problem.stage);
+    while (problem.target.pixelsOf256 < 1) halve(problem.target, problem.stage);
+    for (PoseTarget& target : problem.further)
+        while (target.pixelsOf256 < 1) halve(target, problem.stage);
     return problem;
 }
 
@@ -254,7 +416,8 @@ PoseProblem simpler(PoseProblem problem) {
 }
 
 PoseProblem forFirstLook(PoseProblem problem) {
-    problem.target = problem.target.halved(problem.stage);
+    halve(problem.target, problem.stage);
+    for (PoseTarget& target : problem.further) halve(target, problem.stage);
     problem.skins.clear();
     return problem;
 }

@@ -32,6 +32,35 @@ bool isWithinLimits(const Body& body, std::span<const double> freedoms) {
     return true;
 }
 
+// Moves a place on the floor before screens that stand elsewhere, with room for outstretched arms.
+void keepBeforeScreens(const Stage& stage, glm::dvec2& floor) {
+    constexpr double kRoom = 0.8;
+    glm::dvec3 outward;
+    for (std::size_t i = 1; i < stage.screens.size(); ++i)
+        if (const double away = stage.screens[i].distance({floor.x, 0, floor.y}, outward); away < kRoom)
+            floor += (kRoom - away) * glm::dvec2(outward.x, outward.z);
+}
+
+PoseSearch::Quality::Match matchOf(const BeamEnergy& beam, std::size_t actors) {
+    const PoseTarget& target = beam.target();
+    const BitMask& wanted = target.maskAsSeen();
+    BitMask people(target.mask.width(), target.mask.height());
+    for (std::size_t i = 0; i < actors; ++i) people.add(beam.shadow(i));
+    PoseSearch::Quality::Match match;
+    match.iou = intersectionOverUnion(target.asSeen(beam.shadow()), wanted);
+    match.flatIou = intersectionOverUnion(beam.shadow(), target.mask);
+    match.iouWithoutProps = intersectionOverUnion(target.asSeen(people), wanted);
+    match.propsCover =
+        static_cast<double>(shared(target.asSeen(beam.propShadow()), wanted)) / static_cast<double>(wanted.count());
+    for (std::size_t i = 0; i < target.contour.size(); ++i) {
+        const double off =
+            target.pixelsOf256 * glm::distance(glm::dvec2(target.contour[i].pixel), glm::dvec2(beam.nearest()[i].pixel));
+        match.contourMean += off / static_cast<double>(target.contour.size());
+        match.contourMost = std::max(match.contourMost, off);
+    }
+    return match;
+}
+
 }  // namespace
 
 std::string_view name(PoseSearch::Method method) { return method == PoseSearch::Method::Refined ? "refined" : "paper"; }
@@ -77,6 +106,7 @@ std::vector<double> PoseSearch::start(const PoseProblem& problem) {
         const double share = std::fmod(0.618034 * static_cast<double>(i), 1.0);
         glm::dvec2 floor(middle + apart * (static_cast<double>(i) - 0.5 * (count - 1)), 1 + 1.6 * share);
         if (const auto& area = problem.stage.standing) floor = glm::clamp(floor, area->from, area->to);
+        keepBeforeScreens(problem.stage, floor);
         const double ground = problem.stage.groundUnder({floor.x, std::numeric_limits<double>::infinity(), floor.y});
         const glm::dvec3 place(floor.x, ground + body.joints[0].offset.y, floor.y);
         const std::vector<double> pose = body.restPose(place, glm::dquat(0, 0, 1, 0));
@@ -103,17 +133,15 @@ PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<co
     Quality quality;
     quality.terms = energy.terms();
     quality.energy = quality.terms.total(problem.weights);
-    const BitMask& target = problem.target.mask;
-    BitMask people(target.width(), target.height());
-    for (std::size_t i = 0; i < problem.actors.size(); ++i) people.add(energy.shadow(i));
-    quality.iou = intersectionOverUnion(energy.shadow(), target);
-    quality.iouWithoutProps = intersectionOverUnion(people, target);
-    quality.propsCover = static_cast<double>(shared(energy.propShadow(), target)) / problem.target.area;
-    for (std::size_t i = 0; i < problem.target.contour.size(); ++i) {
-        const double off = problem.target.pixelsOf256 *
-                           glm::distance(glm::dvec2(problem.target.contour[i].pixel), glm::dvec2(energy.nearest()[i].pixel));
-        quality.contourMean += off / static_cast<double>(problem.target.contour.size());
-        quality.contourMost = std::max(quality.contourMost, off);
+    quality.iou = quality.iouWithoutProps = 1;
+    for (std::size_t i = 0; i < problem.beams(); ++i) {
+        const PoseSearch::Quality::Match match = matchOf(energy.beam(i), problem.actors.size());
+        quality.iou = std::min(quality.iou, match.iou);
+        quality.iouWithoutProps = std::min(quality.iouWithoutProps, match.iouWithoutProps);
+        quality.propsCover = std::max(quality.propsCover, match.propsCover);
+        quality.contourMean += match.contourMean / static_cast<double>(problem.beams());
+        quality.contourMost = std::max(quality.contourMost, match.contourMost);
+        quality.matches.push_back(match);
     }
     Contacts contacts;
     const bool isSkin = !problem.skins.empty();
@@ -125,10 +153,10 @@ PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<co
             findContacts(energy.skinAboveGround(i), problem.skins[i]->edges, contacts);
         else
             findContacts(energy.aboveGround(i), contacts);
-        Actor actor{
-            supportMargin(contacts, posed.massCentre()), contacts.touches, contacts.lowest,
-            std::max({deepestInItself(body, posed), deepestInStage(posed), deepest(energy.intrusions(i)), -contacts.lowest}),
-            isWithinLimits(body, freedoms.first(body.freedoms))};
+        Actor actor{supportMargin(contacts, posed.massCentre()), contacts.touches, contacts.lowest,
+                    std::max({deepestInItself(body, posed), deepestInStage(problem.stage, posed), deepest(energy.intrusions(i)),
+                              -contacts.lowest}),
+                    isWithinLimits(body, freedoms.first(body.freedoms))};
         for (std::size_t j = 0; j < problem.actors.size(); ++j)
             if (j != i) {
                 findIntrusions(body, posed, energy.held(j), intrusions);

@@ -46,7 +46,7 @@ public:
         double margin = 0;                   // of balance, metres
         bool touches = false;                // the floor, or a platform
         double lowest = 0;                   // height of the lowest point above what is under it, metres
-        double deepest = 0;                  // in the own body, another's, the floor, the screen, a platform or a prop, metres
+        double deepest = 0;                  // in the own body, another's, the floor, a screen, a platform or a prop, metres
         bool withinLimits = false;           // all joint angle measures between their bounds
         double outside = 0;                  // how far what bears is outside where people may stand, metres
         std::vector<glm::dvec2> contacts{};  // (x, z) of all that touches the floor or a platform, metres
@@ -58,10 +58,18 @@ public:
     struct Quality {
         double energy = 0;
         EnergyTerms terms;
-        double iou = 0;                           // of shadow and target, intersection over union
-        double iouWithoutProps = 0;               // of the people's shadow alone, without that of platforms and props
-        double propsCover = 0;                    // the share of the target that is in the shadow of platforms and props
-        double contourMean = 0, contourMost = 0;  // |p - p'|, pixels of a target 256 high
+        // Of a beam's shadow and target.
+        struct Match {
+            double iou = 0;                           // intersection over union, as seen on the screen
+            double flatIou = 0;                       // on the flat one, which is curved for the former
+            double iouWithoutProps = 0;               // of the people's shadow alone, without that of platforms and props
+            double propsCover = 0;                    // the share of the target that is in the shadow of platforms and props
+            double contourMean = 0, contourMost = 0;  // |p - p'|, pixels of a target 256 high
+        };
+        std::vector<Match> matches;               // of each beam
+        double iou = 0, iouWithoutProps = 0;      // the least of theirs
+        double propsCover = 0;                    // the most
+        double contourMean = 0, contourMost = 0;  // of all
         std::vector<Actor> actors;
 
         bool isValid() const;  // everyone is

@@ -56,30 +56,30 @@ std::size_t PoseSpline::next(std::size_t frame) const { return frame + 1 < frame
 
 std::size_t PoseSpline::before(std::size_t frame) const { return frame > 0 ? frame - 1 : loops_ ? frames_.size() - 1 : 0; }
 
-std::vector<double> PoseSpline::at(double frame) {
+const std::vector<double>& PoseSpline::at(double frame) {
     const auto count = static_cast<double>(frames_.size());
     frame = loops_ ? frame - count * std::floor(frame / count) : std::clamp(frame, 0.0, count - 1);
     const auto i = std::min(static_cast<std::size_t>(frame), frames_.size() - 1);
     const double t = frame - static_cast<double>(i);
     const std::size_t j = next(i);
     const ActorPose &here = frames_[i], &there = frames_[j];
-    ActorPose pose{{}, {}};
     const glm::dvec3 leaving = 0.5 * (there.root - frames_[before(i)].root), arriving = 0.5 * (frames_[next(j)].root - here.root);
     const double u = 1 - t;
-    pose.root = u * u * (1 + 2 * t) * here.root + t * t * (3 - 2 * t) * there.root + t * u * (u * leaving - t * arriving);
+    pose_.root = u * u * (1 + 2 * t) * here.root + t * t * (3 - 2 * t) * there.root + t * u * (u * leaving - t * arriving);
+    pose_.turns.clear();
     for (std::size_t k = 0; k < here.turns.size(); ++k) {
         const glm::dquat turn = near(there.turns[k], here.turns[k]);
         const glm::dquat inner = turn == there.turns[k] ? tangents_[j][k] : -tangents_[j][k];
-        pose.turns.push_back(arc(arc(here.turns[k], turn, t), arc(tangents_[i][k], inner, t), 2 * t * u));
+        pose_.turns.push_back(arc(arc(here.turns[k], turn, t), arc(tangents_[i][k], inner, t), 2 * t * u));
     }
-    std::vector<double> freedoms = freedomsOf(body_, pose);
-    std::vector<HeldContact> held;
+    freedomsOf(body_, pose_, freedoms_);
+    held_.clear();
     for (const HeldContact& from : bearing_[i])
         for (const HeldContact& to : bearing_[j])
             if (from.joint == to.joint && glm::distance(from.place, to.place) <= kOnePlace)
-                held.push_back({from.joint, glm::mix(from.place, to.place, t), arc(from.turn, near(to.turn, from.turn), t)});
-    if (t > 0) kinematics_.hold(freedoms, held);
-    return freedoms;
+                held_.push_back({from.joint, glm::mix(from.place, to.place, t), arc(from.turn, near(to.turn, from.turn), t)});
+    if (t > 0) kinematics_.hold(freedoms_, held_);
+    return freedoms_;
 }
 
 }  // namespace fantascope::theatre

@@ -17,8 +17,9 @@ public:
     // `frames`: one or more. `loops`: after the last comes the first. `body` and `stage` must live on.
     PoseSpline(const Body& body, const Stage& stage, std::vector<ActorPose> frames, bool loops);
 
-    // The freedoms at a moment, in frames from the first, which may lie between two; of a loop any moment, else the ends are held.
-    std::vector<double> at(double frame);
+    // The freedoms at a moment, in frames from the first, which may lie between two; of a loop any moment, else the ends are held. They are
+    // there until it is asked again. No allocation after the first.
+    const std::vector<double>& at(double frame);
 
 private:
     std::size_t next(std::size_t frame) const;
@@ -30,6 +31,9 @@ private:
     std::vector<std::vector<HeldContact>> bearing_;  // of each frame
     bool loops_;
     InverseKinematics kinematics_;
+    ActorPose pose_;
+    std::vector<double> freedoms_;
+    std::vector<HeldContact> held_;
 };
 
 }  // namespace fantascope::theatre

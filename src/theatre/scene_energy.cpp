@@ -2,26 +2,17 @@
 
 #include "theatre/energy_terms.h"
 
-#include <glm/geometric.hpp>
+#include "core/check.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 namespace fantascope::theatre {
 
-SceneEnergy::SceneEnergy(const PoseProblem& problem)
-    : problem_(problem), disc_(std::max(1.0, kDiscRadius / problem.target.pixelsOf256)), actors_(problem.actors.size()) {
-    const BitMask& mask = problem.target.mask;
-    shadow_ = shadowBefore_ = BitMask(mask.width(), mask.height());
-    for (Actor& actor : actors_) actor.shadow = shadow_;
+SceneEnergy::SceneEnergy(const PoseProblem& problem) : problem_(problem), actors_(problem.actors.size()) {
+    FANTASCOPE_CHECK(problem.beams() == problem.stage.beams(), "each beam of a stage has a target");
     placeStanding(problem.stage, standing_);
-    if (!standing_.empty() || !problem.stage.platforms.empty()) standingShadow_ = shadow_;
-    for (const Stage::Platform& platform : problem.stage.platforms)
-        addShadow(problem.target.frame, meshOf(platform), standingShadow_);
-    for (const PlacedProp& prop : standing_) addShadow(problem.target.frame, meshOf(prop), standingShadow_);
-    cutToLit(problem.stage, problem.target.frame, standingShadow_);
-    nearest_.resize(problem.target.contour.size());
-    owners_.resize(nearest_.size());
+    for (std::size_t i = 0; i < problem.beams(); ++i) beams_.emplace_back(problem, i, standing_);
     depthsInOthers_.resize(actors_.size() * actors_.size());
 }
 
@@ -37,34 +28,30 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     Actor& actor = actors_[index];
     actor.body.pose(body, freedoms);
     actor.hasMoved = true;
-    actor.shadow.clear();
     const Stage& stage = problem_.stage;
     const auto spheres = overFloor(stage, actor.body.spheres(), actor.aboveGround);
     if (problem_.skins.empty()) {
-        capsuleShadow_.add(problem_.target.frame, actor.body, actor.shadow);
         findBearings(spheres, problem_.weights.bearing, actor.contacts);
     } else {
         const BodyMesh& mesh = *problem_.skins[index];
         mesh.skin(body, actor.body, actor.skin);
-        meshShadow_.add(problem_.target.frame, mesh, actor.skin, actor.shadow);
         const auto vertices = overFloor(stage, actor.skin, actor.skinAboveGround);
         findBearings(vertices, mesh.edges, problem_.weights.bearing, actor.contacts);
     }
-    cutToLit(stage, problem_.target.frame, actor.shadow);
     actor.margin = supportMargin(actor.contacts, actor.body.massCentre());
-    const ScreenFrame& frame = problem_.target.frame;
-    const glm::dvec2 middle = frame.metresAt(0.5 * glm::dvec2(frame.width(), frame.height()));
     actor.own = {};
-    actor.own.visible = unseen(actor.body.point(body.head, body.eyes), actor.body.turn(body.head) * body.gaze, {middle, 0});
+    actor.own.visible = unseenScreen(body, actor.body);
     actor.own.floor = 1000 * std::max(0.0, actor.contacts.lowest);
     actor.own.supportArea = 1e4 * std::max(0.0, kAmpleArea - supportArea(actor.contacts));
     actor.own.margin = lackOfMargin(actor.margin);
     actor.own.people = depthInItself(body, actor.body);
     actor.outside = farthestOutside(stage, actor.contacts);
-    poseProps(index);
+    placeHeld(stage, index, body, actor.body, actor.held);
+    for (BeamEnergy& beam : beams_) beam.pose(index, actor.body, actor.skin, actor.held);
     findIntrusions(stage, standing_, body, actor.body, actor.held, actor.intrusions);
-    actor.own.surroundings = depthInStage(actor.body) + squaredDepths(actor.intrusions) + 1e6 * actor.outside * actor.outside;
-    matchHints(problem_.hints, frame, index, body, actor.body, actor.matches);
+    actor.own.surroundings =
+        depthInStage(stage, actor.body) + squaredDepths(actor.intrusions) + 1e6 * actor.outside * actor.outside;
+    matchHints(problem_.hints, problem_.target.frame, index, body, actor.body, actor.matches);
     if (problem_.continuity.empty()) return;
     const Continuity& others = problem_.continuity[index];
     for (const ActorPose& beside : others.neighbours) actor.own.smooth += poseDifference(body, freedoms, beside);
@@ -74,25 +61,24 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     actor.own.contactTurn = drift.turn;
 }
 
-void SceneEnergy::poseProps(std::size_t index) {
-    Actor& actor = actors_[index];
-    placeHeld(problem_.stage, index, problem_.actors[index], actor.body, actor.held);
-    if (actor.held.empty()) return;
-    if (actor.heldShadow.width() == 0) actor.heldShadow = BitMask(shadow_.width(), shadow_.height());
-    actor.heldShadow.clear();
-    for (const PlacedProp& prop : actor.held) addShadow(problem_.target.frame, meshOf(prop), actor.heldShadow);
-    cutToLit(problem_.stage, problem_.target.frame, actor.heldShadow);
+// Equation 5, of the screen that needs least of a turn of the head.
+double SceneEnergy::unseenScreen(const Body& body, const PosedBody& posed) const {
+    const glm::dvec3 eyes = posed.point(body.head, body.eyes), gaze = posed.turn(body.head) * body.gaze;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < beams_.size(); ++i) {
+        const ScreenFrame& frame = problem_.targetOf(i).frame;
+        const Screen& screen = problem_.stage.screenOf(i);
+        const glm::dvec2 middle = frame.metresAt(0.5 * glm::dvec2(frame.width(), frame.height()));
+        least = std::min(least, unseen(screen.screenFromStage(eyes), screen.turnedFromStage(gaze), {middle, 0}));
+    }
+    return least;
 }
 
 const EnergyTerms& SceneEnergy::terms() {
     terms_ = {};
     findDepthsInOthers();
-    std::swap(shadow_, shadowBefore_);
-    shadow_.clear();
-    if (standingShadow_.width() > 0) shadow_.add(standingShadow_);
     for (std::size_t i = 0; i < actors_.size(); ++i) {
         const Actor& actor = actors_[i];
-        shadow_.add(actor.shadow);
         terms_.visible += actor.own.visible;
         terms_.floor += actor.own.floor;
         terms_.supportArea += actor.own.supportArea;
@@ -105,18 +91,15 @@ const EnergyTerms& SceneEnergy::terms() {
         terms_.contactTurn += actor.own.contactTurn;
         for (std::size_t j = i + 1; j < actors_.size(); ++j) terms_.people += depthsInOthers_[i * actors_.size() + j];
         if (actor.held.empty()) continue;
-        shadow_.add(actor.heldShadow);
         for (std::size_t j = 0; j < actors_.size(); ++j) {
             if (j == i) continue;
             findIntrusions(problem_.actors[j], actors_[j].body, actor.held, inOthersProps_);
             terms_.surroundings += squaredDepths(inOthersProps_);
         }
     }
-    terms_.coverage = static_cast<double>(differing(shadow_, problem_.target.mask)) / problem_.target.area;
-    compareContours();
+    for (BeamEnergy& beam : beams_) beam.addTo(terms_);
     const double square256 = problem_.target.pixelsOf256 * problem_.target.pixelsOf256;
     for (std::size_t i = 0; i < problem_.hints.size(); ++i) terms_.hint += square256 * hintOwner(i).match.square;
-    terms_.coherence = ownerChanges(owners_);
     return terms_;
 }
 
@@ -126,14 +109,6 @@ void SceneEnergy::findDepthsInOthers() {
             if (actors_[i].hasMoved || actors_[j].hasMoved)
                 depthsInOthers_[i * actors_.size() + j] = depthInOther(actors_[i].body, actors_[j].body);
     for (Actor& actor : actors_) actor.hasMoved = false;
-}
-
-BitMask SceneEnergy::propShadow() const {
-    BitMask shadow(shadow_.width(), shadow_.height());
-    if (standingShadow_.width() > 0) shadow.add(standingShadow_);
-    for (const Actor& actor : actors_)
-        if (!actor.held.empty()) shadow.add(actor.heldShadow);
-    return shadow;
 }
 
 std::vector<SceneEnergy::Thing> SceneEnergy::things() const {
@@ -150,54 +125,6 @@ SceneEnergy::HintOwner SceneEnergy::hintOwner(std::size_t hint) const {
     for (std::size_t i = 1; i < actors_.size(); ++i)
         if (actors_[i].matches[hint].square < nearest.match.square) nearest = {i, actors_[i].matches[hint]};
     return nearest;
-}
-
-// Whether a target's point has the nearest point that it had: no contour pixel as near has come or gone, which takes a change of the pixel
-// or of a neighbour, and nothing by which the nearest is measured has changed.
-bool SceneEnergy::isAsBefore(std::size_t point) const {
-    if (!hasNearest_) return false;
-    if (!changes_.isAny()) return true;
-    const glm::ivec2 wanted = problem_.target.contour[point].pixel, got = nearest_[point].pixel;
-    const int away = static_cast<int>(std::ceil(glm::distance(glm::dvec2(wanted), glm::dvec2(got))));
-    return !changes_.mayReach(wanted, away + 1) && !changes_.mayReach(got, disc_.radius());
-}
-
-// Equation 2, from the target's contour to the nearest points of the shadow's. Whose (equation 4): the actor whose shadow holds that point; of
-// several the one whose the last point was, else the first; nobody if it is a prop's.
-void SceneEnergy::compareContours() {
-    const PoseTarget& target = problem_.target;
-    const double scale = target.pixelsOf256 * target.pixelsOf256, each = target.perPoint();
-    changes_.find(shadow_, shadowBefore_);
-    if (changes_.isAny() || !hasNearest_) contour_.find(shadow_);
-    int owner = 0;
-    std::optional<glm::ivec2> pixel;
-    for (std::size_t i = 0; i < target.contour.size(); ++i) {
-        const ContourPoint& wanted = target.contour[i];
-        if (isAsBefore(i)) {
-            pixel = nearest_[i].pixel;
-        } else if ((pixel = contour_.nearest(wanted.pixel, pixel))) {
-            nearest_[i] = disc_.at(shadow_, *pixel);
-        } else {
-            // No shadow at all: as far as the picture is wide.
-            terms_.contourPoint += each * scale * target.mask.width() * target.mask.width();
-            nearest_[i] = {};
-        }
-        if (pixel) {
-            const ContourPoint& got = nearest_[i];
-            const glm::dvec2 away = wanted.pixel - got.pixel, turned = wanted.normal - got.normal;
-            const double bent = wanted.curvature - got.curvature;
-            terms_.contourPoint += each * scale * glm::dot(away, away);
-            terms_.contourNormal += each * glm::dot(turned, turned);
-            terms_.contourCurvature += each * bent * bent;
-            if (owner == kNobody || !actors_[static_cast<std::size_t>(owner)].shadow.at(pixel->x, pixel->y)) {
-                const auto found = std::find_if(actors_.begin(), actors_.end(),
-                                                [&](const Actor& actor) { return actor.shadow.at(pixel->x, pixel->y); });
-                owner = found == actors_.end() ? kNobody : static_cast<int>(found - actors_.begin());
-            }
-        }
-        owners_[i] = owner;
-    }
-    hasNearest_ = pixel.has_value();
 }
 
 }  // namespace fantascope::theatre

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "theatre/balance.h"
-#include "theatre/capsule_shadow.h"
-#include "theatre/mesh_shadow.h"
+#include "theatre/beam_energy.h"
 #include "theatre/pose_problem.h"
 #include "theatre/surroundings.h"
 
@@ -12,8 +11,8 @@
 
 namespace fantascope::theatre {
 
-// The energy of the actors' poses (Won & Lee 2016, equation 1). What an actor alone decides (pose, shadow, balance, sight), and what two do,
-// is kept until one of them moves, and what the contour is like where the shadow is as it was; so one who moves costs no more than one.
+// The energy of the actors' poses (Won & Lee 2016, equation 1), with equations 2 to 4 summed over the beams. What an actor alone decides (pose,
+// shadows, balance, sight), and what two do, is kept until one of them moves; so one who moves costs no more than one.
 // Thread: thread-bound.
 class SceneEnergy {
 public:
@@ -28,9 +27,13 @@ public:
     double energy() { return terms().total(problem_.weights); }
     double lastEnergy() const { return terms_.total(problem_.weights); }  // of the terms last asked for
 
-    const BitMask& shadow() const { return shadow_; }  // of all; after terms()
-    const BitMask& shadow(std::size_t actor) const { return actors_[actor].shadow; }
-    BitMask propShadow() const;  // of platforms and props, in the poses last given
+    std::size_t beams() const { return beams_.size(); }
+    const BeamEnergy& beam(std::size_t index) const { return beams_[index]; }  // its sums after terms()
+    // Of the first beam.
+    const BitMask& shadow() const { return beams_[0].shadow(); }
+    const BitMask& shadow(std::size_t actor) const { return beams_[0].shadow(actor); }
+    std::span<const ContourPoint> nearest() const { return beams_[0].nearest(); }
+    std::span<const int> owners() const { return beams_[0].owners(); }
     // Platforms and props in those poses, metres, stage frame.
     struct Thing {
         std::string name;
@@ -43,10 +46,6 @@ public:
     // What bears, for the energy: findBearings() of the skin's vertices or else of the spheres.
     const Contacts& bearings(std::size_t actor) const { return actors_[actor].contacts; }
     double margin(std::size_t actor) const { return actors_[actor].margin; }  // on them, metres
-    const BitMask& contour() const { return contour_.pixels(); }              // of the shadow of all; after terms()
-    // Of each of the target's contour points: the nearest point of the shadow's contour and the actor whose it is, or kNobody; after terms().
-    std::span<const ContourPoint> nearest() const { return nearest_; }
-    std::span<const int> owners() const { return owners_; }
 
     // Of each hint: the actor whose candidate is nearest, and which that is.
     struct HintOwner {
@@ -70,7 +69,6 @@ private:
     struct Actor {
         PosedBody body;
         std::vector<glm::vec3> skin;
-        BitMask shadow;
         bool hasMoved = true;  // since terms() were last asked for
         Contacts contacts;
         double margin = 0;
@@ -80,29 +78,17 @@ private:
         std::vector<PlacedSphere> aboveGround;
         std::vector<glm::vec3> skinAboveGround;
         std::vector<PlacedProp> held;
-        BitMask heldShadow;
         std::vector<Intrusion> intrusions;
     };
-    void poseProps(std::size_t index);
+    double unseenScreen(const Body& body, const PosedBody& posed) const;
     void findDepthsInOthers();
-    void compareContours();
-    bool isAsBefore(std::size_t point) const;
 
     const PoseProblem& problem_;
-    ContourDisc disc_;
     std::vector<Actor> actors_;
-    CapsuleShadow capsuleShadow_;
-    MeshShadow meshShadow_;
     std::vector<PlacedProp> standing_;
-    BitMask standingShadow_;
+    std::vector<BeamEnergy> beams_;
     std::vector<Intrusion> inOthersProps_;
     std::vector<double> depthsInOthers_;  // of each actor in each that comes after him
-    BitMask shadow_, shadowBefore_;       // shadowBefore_: what nearest_ was found in
-    Changes changes_;                     // between the two
-    Contour contour_;
-    bool hasNearest_ = false;
-    std::vector<ContourPoint> nearest_;
-    std::vector<int> owners_;
     EnergyTerms terms_;
 };
 

@@ -98,10 +98,8 @@ private:
 
 }  // namespace
 
-SilhouetteFit::SilhouetteFit(const PoseProblem& problem)
-    : problem_(problem),
-      distance_(signedDistance(problem.target.mask)),
-      disc_(std::max(1.0, kDiscRadius / problem.target.pixelsOf256)) {
+SilhouetteFit::SilhouetteFit(const PoseProblem& problem) : problem_(problem) {
+    for (std::size_t i = 0; i < problem.beams(); ++i) distances_.push_back(signedDistance(problem.targetOf(i).mask));
     std::size_t first = 0;
     for (const Body& body : problem.actors) {
         equations_.emplace_back(body);
@@ -151,7 +149,7 @@ double SilhouetteFit::run(SceneEnergy& energy, std::span<double> freedoms, int s
 void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> freedoms) {
     for (std::size_t a = 0; a < equations_.size(); ++a)
         equations_[a].begin(energy.posed(a), freedoms.subspan(first_[a], problem_.actors[a].freedoms));
-    addContour(energy);
+    for (std::size_t i = 0; i < distances_.size(); ++i) addContour(energy.beam(i), energy, distances_[i]);
     addHints(energy);
     addPhysics(energy);
     if (!problem_.continuity.empty()) addContinuity(energy, freedoms);
@@ -159,9 +157,10 @@ void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> freed
 }
 
 // A point of the shadow's contour belongs to the capsule on whose outline it lies: of those whose shadow is nearest, the first.
-void SilhouetteFit::addContour(SceneEnergy& energy) {
-    const PoseTarget& target = problem_.target;
+void SilhouetteFit::addContour(const BeamEnergy& beam, const SceneEnergy& energy, const GreyImage& distance) {
+    const PoseTarget& target = beam.target();
     const ScreenFrame& frame = target.frame;
+    const ContourDisc disc(std::max(1.0, kDiscRadius / target.pixelsOf256));
     std::vector<Outlines> outlines;
     for (std::size_t a = 0; a < equations_.size(); ++a) outlines.emplace_back(frame, energy.posed(a));
     const PoseWeights& weights = problem_.weights;
@@ -172,7 +171,7 @@ void SilhouetteFit::addContour(SceneEnergy& energy) {
         Outlines::Nearest nearest;
         const glm::ivec2 whole(pixel);
         for (std::size_t a = 0; a < outlines.size(); ++a)
-            if (energy.shadow(a).at(whole.x, whole.y) && outlines[a].findNearer(pixel, nearest)) owner = a;
+            if (beam.shadow(a).at(whole.x, whole.y) && outlines[a].findNearer(pixel, nearest)) owner = a;
         if (!nearest.isFound) return;
         const PosedBody& body = energy.posed(owner);
         const PlacedCapsule& capsule = body.capsule(nearest.capsule);
@@ -182,18 +181,18 @@ void SilhouetteFit::addContour(SceneEnergy& energy) {
         const glm::dvec3 d = frame.fromLight(point);
         const double scale = frame.focus() / d.z, forward = (normal.x * d.x + normal.y * d.y) / d.z;
         equations_[owner].addPoint(problem_.actors[owner].capsules[nearest.capsule].joint, point,
-                                   scale * glm::dvec3(normal.x, -normal.y, forward), residual, weight);
+                                   frame.onStage(scale * glm::dvec3(normal, -forward)), residual, weight);
     };
 
     // Equation 2: the contour's points pull the nearest point of the shadow's contour.
-    const auto pulled = energy.nearest();
+    const auto pulled = beam.nearest();
     for (std::size_t i = 0; i < pulled.size(); ++i) {
         const glm::dvec2 away = target.contour[i].pixel - pulled[i].pixel;
         const double along = std::clamp(glm::dot(away, pulled[i].normal), -kFarthest, kFarthest);
         if (pulled[i].normal != glm::dvec2(0)) add(pulled[i].pixel, pulled[i].normal, -along, weights.w1 * squarePixel);
     }
     // Equation 3: so many pixels of the shadow's contour stand for all of them, each for as much area as it is off.
-    const BitMask& contour = energy.contour();
+    const BitMask& contour = beam.contour();
     const std::int64_t all = contour.count(), stride = std::max<std::int64_t>(1, all / kShadowPoints);
     const double charge = weights.w4 / target.area * static_cast<double>(stride);
     std::int64_t index = 0;
@@ -202,9 +201,9 @@ void SilhouetteFit::addContour(SceneEnergy& energy) {
             for (std::uint64_t bits = contour.row(y)[word]; bits != 0; bits &= bits - 1) {
                 if (index++ % stride != 0) continue;
                 const glm::ivec2 pixel(static_cast<int>(word) * BitMask::kBits + std::countr_zero(bits), y);
-                const double inside = std::clamp(double(distance_.at(pixel.x, pixel.y)), -kFarthest, kIntoHole);
+                const double inside = std::clamp(double(distance.at(pixel.x, pixel.y)), -kFarthest, kIntoHole);
                 if (std::abs(inside) <= 0.5) continue;
-                const ContourPoint point = disc_.at(energy.shadow(), pixel);
+                const ContourPoint point = disc.at(beam.shadow(), pixel);
                 if (point.normal != glm::dvec2(0))
                     add(pixel, point.normal, -inside, 0.5 * charge / std::max(kNearest, std::abs(inside)));
             }
@@ -220,8 +219,10 @@ void SilhouetteFit::addHints(const SceneEnergy& energy) {
         const glm::dvec3 point = energy.posed(actor).point(*match.point), d = frame.fromLight(point);
         // The derivative of foot + focus (x, y) / z.
         const double scale = frame.focus() / d.z;
-        equations_[actor].addPoint(match.point->joint, point, scale * glm::dvec3(1, 0, d.x / d.z), match.away.x, weight);
-        equations_[actor].addPoint(match.point->joint, point, scale * glm::dvec3(0, -1, d.y / d.z), match.away.y, weight);
+        equations_[actor].addPoint(match.point->joint, point, frame.onStage(scale * glm::dvec3(1, 0, -d.x / d.z)), match.away.x,
+                                   weight);
+        equations_[actor].addPoint(match.point->joint, point, frame.onStage(scale * glm::dvec3(0, 1, -d.y / d.z)), match.away.y,
+                                   weight);
     }
 }
 
@@ -305,12 +306,12 @@ void SilhouetteFit::addPhysics(SceneEnergy& energy) {
                 }
         for (std::size_t i = 0; i < posed.spheres().size(); ++i) {
             const auto& [centre, radius] = posed.spheres()[i];
-            for (const int axis : {1, 2})
-                if (const double depth = radius - centre[axis]; depth > 0) {
-                    glm::dvec3 direction(0);
-                    direction[axis] = -1000;
-                    equations.addPoint(body.spheres[i].joint, centre, direction, 1000 * depth, weights.w11);
-                }
+            glm::dvec3 outward(0, 1, 0);
+            const auto push = [&](double depth) {
+                if (depth > 0) equations.addPoint(body.spheres[i].joint, centre, -1000.0 * outward, 1000 * depth, weights.w11);
+            };
+            push(radius - centre.y);
+            for (const Screen& screen : problem_.stage.screens) push(radius - screen.distance(centre, outward));
         }
         addIntrusions(energy, a, weights.w11);
         // What bears is not let go of lightly: the margin would be another one then.

@@ -30,7 +30,7 @@ public:
 private:
     // Of `energy` posed by `freedoms`, its terms asked for.
     void linearise(SceneEnergy& energy, std::span<const double> freedoms);
-    void addContour(SceneEnergy& energy);
+    void addContour(const BeamEnergy& beam, const SceneEnergy& energy, const GreyImage& distance);
     void addHints(const SceneEnergy& energy);
     void addIntrusions(const SceneEnergy& energy, std::size_t actor, double weight);
     void addPhysics(SceneEnergy& energy);
@@ -38,8 +38,7 @@ private:
     void addBalance(const SceneEnergy& energy, std::size_t actor, const PoseWeights& weights);
 
     const PoseProblem& problem_;
-    GreyImage distance_;  // of the target, signedDistance()
-    ContourDisc disc_;
+    std::vector<GreyImage> distances_;      // of each beam's target, signedDistance()
     std::vector<PoseEquations> equations_;  // of each actor: a residual moves with his joints alone
     std::vector<InverseKinematics> kinematics_;
     std::vector<std::size_t> first_;  // freedom of each actor

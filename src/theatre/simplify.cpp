@@ -38,6 +38,7 @@ struct Quadric {
         xx += o.xx, xy += o.xy, xz += o.xz, yy += o.yy, yz += o.yz, zz += o.zz, b += o.b, c += o.c;
         return *this;
     }
+    double weight() const { return xx + yy + zz; }
     dvec3 times(const dvec3& p) const {
         return {xx * p.x + xy * p.y + xz * p.z, xy * p.x + yy * p.y + yz * p.z, xz * p.x + yz * p.y + zz * p.z};
     }
@@ -85,6 +86,24 @@ public:
             if (best.change != changes_[best.from] + changes_[best.to]) continue;  // made before one of them moved
             collapse(best.from, best.to);
         }
+    }
+
+    void reduceWithin(double tolerance, const std::function<bool(const glm::vec3&)>& mayGo) {
+        offersAreMade_ = false;
+        std::vector<char> isKept(places_.size(), 0);
+        for (std::size_t v = 0; v < places_.size(); ++v) isKept[v] = mayGo(glm::vec3(places_[v])) ? 0 : 1;
+        std::vector<std::uint32_t> near;
+        for (const double share : {0.1, 0.3, 1.0, 1.0})
+            for (std::uint32_t v = 0; v < places_.size(); ++v) {
+                if (isKept[v] != 0 || around_[v].empty()) continue;
+                findNeighbours(v, near);
+                for (const std::uint32_t other : near) {
+                    if (isKept[other] != 0 || around_[other].empty()) continue;
+                    const Quadric both = joined(v, other);
+                    if (both(target(v, other)) <= share * share * tolerance * tolerance * both.weight() && collapse(v, other))
+                        break;
+                }
+            }
     }
 
     TriangleMesh result() const {
@@ -160,9 +179,9 @@ private:
         return false;
     }
 
-    void collapse(std::uint32_t kept, std::uint32_t gone) {
+    bool collapse(std::uint32_t kept, std::uint32_t gone) {
         const dvec3 to = target(kept, gone);
-        if (!keepsTheSurface(kept, gone) || spoils(kept, gone, to) || spoils(gone, kept, to)) return;
+        if (!keepsTheSurface(kept, gone) || spoils(kept, gone, to) || spoils(gone, kept, to)) return false;
         for (const std::uint32_t t : around_[gone]) {
             glm::uvec3& corners = triangles_[t];
             if (has(corners, kept)) {
@@ -182,8 +201,10 @@ private:
         // Never to be equal again to what an offer has seen: both counts only grow, and the one that is gone is in no new offer.
         changes_[kept] += changes_[gone] + 1;
         changes_[gone] += changes_[kept] + 1;
+        if (!offersAreMade_) return true;
         findNeighbours(kept, nearA_);
         for (const std::uint32_t other : nearA_) offer(std::min(kept, other), std::max(kept, other));
+        return true;
     }
 
     std::vector<dvec3> places_;
@@ -193,6 +214,7 @@ private:
     std::vector<std::vector<std::uint32_t>> around_;  // the triangles at each vertex
     std::vector<std::uint32_t> changes_;              // how often each vertex moved
     std::priority_queue<Offer> offers_;
+    bool offersAreMade_ = true;
     std::vector<std::uint32_t> nearA_, nearB_, common_;  // scratch
 };
 
@@ -202,6 +224,12 @@ TriangleMesh simplified(const TriangleMesh& mesh, std::size_t triangles,
                         const std::function<double(const glm::vec3&)>& importance) {
     Simplifier simplifier(mesh, importance);
     simplifier.reduceTo(triangles);
+    return simplifier.result();
+}
+
+TriangleMesh simplifiedWithin(const TriangleMesh& mesh, double tolerance, const std::function<bool(const glm::vec3&)>& mayGo) {
+    Simplifier simplifier(mesh, [](const glm::vec3&) { return 1.0; });
+    simplifier.reduceWithin(tolerance, mayGo);
     return simplifier.result();
 }
 

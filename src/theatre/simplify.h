@@ -13,4 +13,8 @@ namespace fantascope::theatre {
 TriangleMesh simplified(const TriangleMesh& mesh, std::size_t triangles,
                         const std::function<double(const glm::vec3&)>& importance);
 
+// Takes vertices from a closed mesh wherever the form changes by no more than about `tolerance` by it, in the mesh's unit: edges as they
+// come, those that cost least in the first of a few rounds. `mayGo`: whether a vertex may be touched. Much faster for a mesh of millions.
+TriangleMesh simplifiedWithin(const TriangleMesh& mesh, double tolerance, const std::function<bool(const glm::vec3&)>& mayGo);
+
 }  // namespace fantascope::theatre

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +21,10 @@ glm::dvec3 inAxesOf(const Stage::Platform& platform, const glm::dvec3& point) {
 }
 
 }  // namespace
+
+glm::dvec3 Stage::Platform::point(const glm::dvec3& share) const {
+    return centre + glm::angleAxis(turn, glm::dvec3(0, 1, 0)) * (share * size);
+}
 
 bool Stage::Platform::isUnder(double x, double z) const {
     const glm::dvec3 local = inAxesOf(*this, {x, centre.y, z});
@@ -66,14 +71,31 @@ Result<void> Stage::checkHolders(std::size_t actors) const {
     return {};
 }
 
-ScreenFrame::ScreenFrame(const Stage& stage, double left, double top, double pixel, int width, int height)
-    : light_(stage.light),
+glm::dmat4 Stage::screenFromStage(std::size_t beam) const {
+    const Screen& screen = screenOf(beam);
+    const glm::dvec3 origin = screen.screenFromStage(glm::dvec3(0));
+    glm::dmat4 matrix(1);
+    for (glm::length_t i = 0; i < 3; ++i) {
+        glm::dvec3 axis(0);
+        axis[i] = 1;
+        matrix[i] = glm::dvec4(screen.screenFromStage(axis) - origin, 0);
+    }
+    matrix[3] = glm::dvec4(origin, 1);
+    return matrix;
+}
+
+ScreenFrame::ScreenFrame(const Stage& stage, double left, double top, double pixel, int width, int height, std::size_t beam)
+    : light_(stage.beam(beam).light),
+      cosine_(std::cos(stage.screenOf(beam).turn)),
+      sine_(std::sin(stage.screenOf(beam).turn)),
       left_(left),
       top_(top),
       pixel_(pixel),
       width_(width),
-      height_(height),
-      foot_(pixelAt(light_.x, light_.y)),
-      focus_(light_.z / pixel) {}
+      height_(height) {
+    const glm::dvec3 light = stage.lightOnScreen(beam);
+    foot_ = pixelAt(light.x, light.y);
+    focus_ = light.z / pixel;
+}
 
 }  // namespace fantascope::theatre

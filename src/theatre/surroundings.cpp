@@ -138,15 +138,16 @@ void findIntrusions(const Stage& stage, std::span<const PlacedProp> standing, co
                 joint, posed.capsule(i), prop.joint,
                 [&](const dvec3& point, dvec3& outward) { return distanceTo(prop, point, outward); }, intrusions);
         }
-        for (const int axis : {1, 2})  // floor and screen
+        addDeepestCorner(
+            prop,
+            [](const dvec3& point, dvec3& outward) {
+                outward = {0, 1, 0};
+                return point.y;
+            },
+            intrusions);
+        for (const Screen& screen : stage.screens)
             addDeepestCorner(
-                prop,
-                [&](const dvec3& point, dvec3& outward) {
-                    outward = dvec3(0);
-                    outward[axis] = 1;
-                    return point[axis];
-                },
-                intrusions);
+                prop, [&](const dvec3& point, dvec3& outward) { return screen.distance(point, outward); }, intrusions);
     }
 }
 
@@ -173,11 +174,10 @@ double deepest(std::span<const Intrusion> intrusions) {
 }
 
 TriangleMesh meshOf(const Stage::Platform& platform) {
-    const glm::dquat turn = glm::angleAxis(platform.turn, dvec3(0, 1, 0));
     TriangleMesh mesh;
     for (unsigned i = 0; i < 8; ++i) {
         const dvec3 side((i & 1U) != 0 ? 0.5 : -0.5, (i & 2U) != 0 ? 0.5 : -0.5, (i & 4U) != 0 ? 0.5 : -0.5);
-        mesh.vertices.emplace_back(platform.centre + turn * (side * platform.size));
+        mesh.vertices.emplace_back(platform.point(side));
     }
     for (const glm::uvec4& q : {glm::uvec4(0, 2, 3, 1), {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
         mesh.triangles.insert(mesh.triangles.end(), {{q.x, q.y, q.z}, {q.x, q.z, q.w}});
@@ -195,13 +195,13 @@ void addShadow(const ScreenFrame& frame, const TriangleMesh& mesh, BitMask& mask
     for (const glm::uvec3& triangle : mesh.triangles) shadow.add(triangle, mask);
 }
 
-void cutToLit(const Stage& stage, const ScreenFrame& frame, BitMask& mask) {
-    if (!stage.lit) return;
+void cutToLit(const Stage& stage, const ScreenFrame& frame, BitMask& mask, std::size_t beam) {
+    const auto lit = stage.beam(beam).lit;
+    if (!lit) return;
     const auto first = [](double edge, int most) {
         return static_cast<int>(std::ceil(std::clamp(edge, 0.0, double(most)) - 0.5));
     };
-    const glm::dvec2 leftTop = frame.pixelAt(stage.lit->from.x, stage.lit->to.y),
-                     rightBottom = frame.pixelAt(stage.lit->to.x, stage.lit->from.y);
+    const glm::dvec2 leftTop = frame.pixelAt(lit->from.x, lit->to.y), rightBottom = frame.pixelAt(lit->to.x, lit->from.y);
     mask.keep(first(leftTop.x, mask.width()), first(leftTop.y, mask.height()), first(rightBottom.x, mask.width()),
               first(rightBottom.y, mask.height()));
 }

@@ -46,7 +46,7 @@ struct Intrusion {
         otherJoint;  // what it intrudes on moves with this joint: of the same body, or of the prop's holder
 };
 // Of each of a body's capsules in each platform, standing prop and prop that it holds itself (but for the joint that holds it and its neighbours),
-// the deepest; and of each prop that it holds, in floor, screen and each platform.
+// the deepest; and of each prop that it holds, in floor, screens and each platform.
 void findIntrusions(const Stage& stage, std::span<const PlacedProp> standing, const Body& body, const PosedBody& posed,
                     std::span<const PlacedProp> held, std::vector<Intrusion>& intrusions);
 // Of each of a body's capsules in each prop that another holds.
@@ -61,7 +61,7 @@ TriangleMesh meshOf(const Stage::Platform& platform);
 TriangleMesh meshOf(const PlacedProp& prop);
 // Adds the shadow of such a mesh to a mask of the frame's size: of each of its faces that is nearer to the screen than the light.
 void addShadow(const ScreenFrame& frame, const TriangleMesh& mesh, BitMask& mask);
-// Blackens what a projector does not light: there is no shadow in the dark.
-void cutToLit(const Stage& stage, const ScreenFrame& frame, BitMask& mask);
+// Blackens what a beam's projector does not light: there is no shadow in the dark.
+void cutToLit(const Stage& stage, const ScreenFrame& frame, BitMask& mask, std::size_t beam = 0);
 
 }  // namespace fantascope::theatre

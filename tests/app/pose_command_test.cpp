@@ -30,6 +30,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::IsSupersetOf;
 using testing::StartsWith;
 using Arguments = std::vector<std::string>;
 
@@ -350,6 +351,76 @@ TEST_F(PoseCommand, a_stage_goes_with_the_cast_and_its_meshes) {
     EXPECT_EQ(cast->stage.platforms.size(), 1u);
     const Outcome drawn = run({"plot", "moved/c.cast.yaml", "-o", "moved/all.png"});
     EXPECT_THAT(drawn, exits(0));
+}
+
+// Two lights with a screen each, the first hollow: the same people throw a shadow on both.
+TEST_F(PoseCommand, one_set_of_poses_serves_several_screens) {
+    ASSERT_TRUE(writeFile(folder_ / "corner.stage.yaml",
+                          "fantascope: stage\nversion: 1\nlight: [0, 0, 7]\nscreen: {radius: 12}\n"
+                          "further_beams:\n  - {light: [-4, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: -90}}\n"));
+    ASSERT_TRUE(writePng(folder_ / "wall.png", pictureOf(80, 90, [](int x, int y) { return x > 9 && x < 70 && y > 9; })));
+    const Arguments corner = {"--stage", "corner.stage.yaml", "--further-target", "wall.png", "--actors", "2", "--trials", "2"};
+    std::vector<std::string> found;
+    for (const char* threads : {"1", "3"}) {
+        Arguments arguments = corner;
+        for (const char* more : {"--threads", threads, "--report", "out/r.json", "--image", "out/i.png", "--each", "out/e.png",
+                                 "--view", "out/v.png", "--solutions", "out/choice", "--meshes", "out/meshes"})
+            arguments.emplace_back(more);
+        const Outcome done = find(arguments);
+        ASSERT_THAT(done, exits(0));
+        EXPECT_THAT(done.out, HasSubstr(" on its screens)"));
+        found.push_back(text("out/c.cast.yaml"));
+    }
+    EXPECT_EQ(found[0], found[1]);
+    EXPECT_THAT(written(), IsSupersetOf({"c.cast.yaml", "c.target.png", "c.target-2.png"}));
+
+    const nlohmann::json beams = json("out/r.json")["beams"];
+    ASSERT_EQ(beams.size(), 2u);
+    EXPECT_EQ(json("out/r.json")["iou"], std::min(beams[0]["iou"].get<double>(), beams[1]["iou"].get<double>()));
+    EXPECT_NE(beams[0]["iou"], beams[0]["flat_iou"]) << "curved";
+    EXPECT_EQ(beams[1]["iou"], beams[1]["flat_iou"]) << "flat";
+    EXPECT_EQ(beams[1]["target"], "wall.png");
+    const nlohmann::json stage = json("out/meshes/stage.json");
+    EXPECT_EQ(stage["screen"]["radius"], 12);
+    // Upright, and as high as the picture on its screen.
+    const auto& down = stage["further_beams"][0]["screen"]["v"];
+    EXPECT_NEAR(down[1].get<double>(), -beams[1]["height"].get<double>() * 90 / 80, 1e-9);
+    EXPECT_NEAR(down[0].get<double>(), 0, 1e-9);
+
+    fs::rename(folder_ / "out", folder_ / "moved");
+    const auto cast = theatre::readCast(folder_ / "moved/c.cast.yaml");
+    ASSERT_TRUE(cast) << cast.error().message();
+    ASSERT_EQ(cast->further.size(), 1u);
+    EXPECT_EQ(readFile(cast->further[0].file).value(), text("wall.png"));
+    for (const char* figure : {"cast", "stage", "shadow", "side"})
+        EXPECT_THAT(run({"plot", "moved/c.cast.yaml", "--figure", figure, "-o", "moved/f.png"}), exits(0)) << figure;
+    // What follows a silhouette that moves knows one flat screen.
+    const Outcome adapted = run({"adapt", "moved/c.cast.yaml", ".", "-o", "moved/m.cast.yaml"});
+    EXPECT_THAT(adapted, exits(1));
+    EXPECT_THAT(adapted.errors, HasSubstr("its stage has further_beams"));
+}
+
+TEST_F(PoseCommand, says_how_many_further_targets_a_stage_wants) {
+    const std::string lamp = "fantascope: stage\nversion: 1\nlight: [0, 0, 7]\n";
+    ASSERT_TRUE(writeFile(folder_ / "one.stage.yaml", lamp));
+    ASSERT_TRUE(writeFile(folder_ / "two.stage.yaml", lamp + "further_beams: [{light: [3, 0, 6]}]\n"));
+    const auto refusal = [&](const Arguments& more) {
+        const Outcome outcome = find(more);
+        EXPECT_THAT(outcome, exits(1));
+        EXPECT_THAT(written(), IsEmpty());
+        return outcome.errors;
+    };
+    EXPECT_THAT(refusal({"--further-target", "hill.png"}), HasSubstr("the stage without a --stage has one light"));
+    EXPECT_THAT(refusal({"--stage", "one.stage.yaml", "--further-target", "hill.png"}),
+                AllOf(HasSubstr("one.stage.yaml has one light"), HasSubstr("further_beams")));
+    EXPECT_THAT(refusal({"--stage", "two.stage.yaml"}),
+                AllOf(HasSubstr("has 1 further beam and so 1 further target, 0 are given"), HasSubstr("name one for each")));
+    EXPECT_THAT(refusal({"--stage", "two.stage.yaml", "--further-target", "hill.png,hill.png"}), HasSubstr("2 are given"));
+    EXPECT_THAT(refusal({"--stage", "two.stage.yaml", "--further-target", "hill.png", "--further-height", "1,2"}),
+                HasSubstr("--further-height: 2 for 1 further target"));
+    EXPECT_THAT(refusal({"--stage", "two.stage.yaml", "--further-target", "none.png"}), HasSubstr("none.png"));
+    EXPECT_THAT(refusal({"--stage", "two.stage.yaml", "--further-target", "hill.png", "--image", "hill.png"}),
+                HasSubstr("would be overwritten"));
 }
 
 // The world refuses: one message, status 1, and nothing is written.

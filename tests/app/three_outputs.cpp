@@ -1,6 +1,8 @@
 #include "app/three_outputs.h"
 
 #include "render/scene.h"
+#include "theatre/cast.h"
+#include "theatre/surroundings.h"
 
 #include "core/check.h"
 #include "test_video.h"
@@ -62,6 +64,40 @@ std::shared_ptr<render::VideoStream> videoIn(const ScratchFolder& folder) {
     return std::move(stream).value();
 }
 
+// Somebody who turns on the spot, with a prop in his hand.
+render::ShadowSource turning() {
+    theatre::Cast cast;
+    cast.framesPerSecond = 12;
+    const theatre::Body body = theatre::humanBody(1.7);
+    cast.actors = {{body.stature, {}}};
+    for (int frame = 0; frame < 8; ++frame)
+        cast.actors[0].poses.push_back(
+            theatre::poseOf(body, body.restPose({0, body.joints[0].offset.y, 2}, theatre::rotationOf({0, 0.78 * frame, 0}))));
+    cast.stage.platforms.push_back({"step", {-1.2, 0.2, 1}, {0.6, 0.4, 0.6}, 0.4});
+    theatre::Stage::Platform box;
+    box.size = {0.3, 0.3, 0.3};
+    cast.stage.props.push_back({"box",
+                                {},
+                                std::make_shared<const theatre::Prop::Shape>(meshOf(box)),
+                                theatre::Prop::Holder{0, theatre::BodyPart::LeftHand}});
+    render::ShadowSource source;
+    source.lamps = {{cast.stage.light, 0, {1, 0.9f, 0.7f}, {0, 0, 0.05f}, {}}};
+    source.cast = std::make_shared<const theatre::Cast>(std::move(cast));
+    source.from = {-2, 0};
+    source.to = {2, 2.25};
+    source.play = render::ShadowSource::Play::Loop;
+    return source;
+}
+
+// The same in soft light from two sides.
+render::ShadowSource softly(render::ShadowSource source) {
+    source.samples = 3;
+    source.lamps[0].size = 0.1;
+    source.lamps[0].actors = {{0.4f, 0, 0}};
+    source.lamps.push_back({{-2, 1, 6}, 0, {0, 0, 0.5f}, {}, {}});
+    return source;
+}
+
 }  // namespace
 
 ThreeOutputs::ThreeOutputs(const std::array<std::string, 3>& displays)
@@ -84,7 +120,9 @@ ThreeOutputs::ThreeOutputs(const std::array<std::string, 3>& displays)
                render::MirrorBallSource{glm::vec3(3), {16.0 / 3, 3}, {0, 0.5, 2.2}, 0.25, 0.03, {2.6, 1.8, 1}, 0.05, 60},
                render::ImageSource{picture},
                render::VideoSource{videoIn(folder)},
-               render::CameraSource{camera}};
+               render::CameraSource{camera},
+               turning(),
+               softly(turning())};
 
     using show::Blend;
     constexpr Time kFade = std::chrono::milliseconds(40);

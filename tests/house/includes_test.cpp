@@ -35,7 +35,7 @@ const std::map<std::string_view, Names> kLibraries = {
     {"FreeType", {"ft2build.h", "freetype/"}},
     {"librsvg", {"librsvg/"}},
     {"FFTW", {"fftw3.h"}},
-    {"cairo", {"cairo.h", "cairo-svg.h"}},
+    {"cairo", {"cairo.h", "cairo-pdf.h", "cairo-svg.h"}},
     {"OpenGL", {"epoxy/gl.h"}},
     {"EGL", {"epoxy/egl.h"}},
     {"GLFW", {"GLFW/"}},

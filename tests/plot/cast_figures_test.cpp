@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace fantascope::plot {
 namespace {
@@ -197,17 +198,32 @@ TEST(CastPicture, shows_who_throws_what_and_says_who_cannot_stand) {
         freedoms.insert(freedoms.end(), rest.begin(), rest.end());
     }
     const CastPicture picture = castPicture(problem, freedoms);
-    ASSERT_THAT(picture.actors, SizeIs(2));
-    BitMask both = picture.actors[0].mask;
-    both.add(picture.actors[1].mask);
-    EXPECT_EQ(both, picture.view.shadow);
+    ASSERT_THAT(picture.images[0].actors, SizeIs(2));
+    BitMask both = picture.images[0].actors[0].mask;
+    both.add(picture.images[0].actors[1].mask);
+    EXPECT_EQ(both, picture.view.images[0].shadow);
     const glm::dvec2 chest = problem.target.frame.shadow({-0.5, 1.2, 1.5});
-    EXPECT_TRUE(picture.actors[0].mask.at(static_cast<int>(chest.x), static_cast<int>(chest.y)));
-    EXPECT_FALSE(picture.actors[1].mask.at(static_cast<int>(chest.x), static_cast<int>(chest.y)));
-    EXPECT_EQ(picture.actors[1].name, "actor 2, 1.50 m");
-    EXPECT_THAT(picture.actors[1].notes, Contains("does not touch the floor"));
-    EXPECT_THAT(picture.lines, Contains(HasSubstr("cannot stand so:")));
-    EXPECT_THAT(picture.lines, Contains(HasSubstr(" 2")));
+    EXPECT_TRUE(picture.images[0].actors[0].mask.at(static_cast<int>(chest.x), static_cast<int>(chest.y)));
+    EXPECT_FALSE(picture.images[0].actors[1].mask.at(static_cast<int>(chest.x), static_cast<int>(chest.y)));
+    EXPECT_EQ(picture.images[0].actors[1].name, "actor 2, 1.50 m");
+    EXPECT_THAT(picture.images[0].actors[1].notes, Contains("does not touch the floor"));
+    EXPECT_THAT(picture.images[0].lines, Contains(HasSubstr("cannot stand so:")));
+    EXPECT_THAT(picture.images[0].lines, Contains(HasSubstr(" 2")));
+
+    // On a second screen, to the side, is another shadow of the same people.
+    theatre::PoseProblem corner = problem;
+    corner.stage.screens.push_back({{2.5, 1.5}, -std::numbers::pi / 2});
+    corner.stage.further.push_back({{-5, 0, 1.5}, 1});
+    corner.further.push_back(theatre::PoseTarget::from(silhouette, corner.stage, 1.8, 128, {1}).value());
+    const CastPicture two = castPicture(corner, freedoms);
+    ASSERT_THAT(two.images, SizeIs(2));
+    EXPECT_EQ(two.images[0].actors[0].mask, picture.images[0].actors[0].mask);
+    const glm::dvec2 side = corner.further[0].frame.shadow({-0.5, 1.2, 1.5});
+    EXPECT_TRUE(two.images[1].actors[0].mask.at(static_cast<int>(side.x), static_cast<int>(side.y)));
+    EXPECT_THAT(two.images[1].lines, Contains("beam 2"));
+    EXPECT_THAT(picture.images[0].lines, testing::Not(Contains("beam 1")));
+    EXPECT_GT(two.shadows().height(), 1.5 * picture.shadows().height());
+    EXPECT_GT(two.each().height(), 1.5 * picture.each().height());
 
     // Each has his number in the view: a ring in his colour.
     const RgbaImage stageView = drawn(stageFigure(picture.view, picture.view.overview(kStageAspect)));

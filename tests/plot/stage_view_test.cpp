@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <numbers>
 
 namespace fantascope::plot {
 namespace {
@@ -13,9 +14,10 @@ constexpr int kWidth = 640, kHeight = 320;
 // A screen of 4 m x 2 m in pixels of 2 cm: the target is 1 m wide at its left, the shadow 1 m wide at its right, both 1 m high.
 StageView aView() {
     const theatre::Stage stage;
-    StageView view{
-        stage, theatre::ScreenFrame(stage, -2, 2, 0.02, 200, 100), theatre::BitMask(200, 100), theatre::BitMask(200, 100), {}};
-    for (int y = 50; y < 100; ++y) view.target.fill(y, 25, 75), view.shadow.fill(y, 125, 175);
+    StageView view{stage,
+                   {{theatre::ScreenFrame(stage, -2, 2, 0.02, 200, 100), theatre::BitMask(200, 100), theatre::BitMask(200, 100)}},
+                   {}};
+    for (int y = 50; y < 100; ++y) view.images[0].target.fill(y, 25, 75), view.images[0].shadow.fill(y, 125, 175);
     return view;
 }
 
@@ -60,6 +62,56 @@ TEST(StageView, shows_people_in_their_colours_the_nearer_before_the_farther) {
     EXPECT_TRUE(isBlue(at(picture, ahead, {0.8, 0.7, 1.2})));
     std::swap(view.actors[0], view.actors[1]);
     EXPECT_EQ(view.draw(ahead, kWidth, kHeight), picture);
+}
+
+// The second stands at the right and looks to the left, and has the same image the other way round.
+TEST(StageView, shows_every_screen_with_its_own_shadow) {
+    StageView view = aView();
+    view.stage.screens.push_back({{2.5, 3}, -std::numbers::pi / 2});
+    view.stage.further.push_back({{-4, 0, 3}, 1});
+    view.images.push_back(
+        {theatre::ScreenFrame(view.stage, -2, 2, 0.02, 200, 100, 1), view.images[0].target, view.images[0].shadow});
+    for (const Camera& camera : {view.overview(2), view.closeUp(2)}) {
+        const RgbaImage picture = view.draw(camera, kWidth, kHeight);
+        EXPECT_LT(brightness(at(picture, camera, {1, 0.8, 0})), 250);    // in the first's shadow
+        EXPECT_GT(brightness(at(picture, camera, {-1, 0.5, 0})), 550);   // beside it
+        EXPECT_LT(brightness(at(picture, camera, {2.5, 0.8, 2})), 250);  // 1 m to the left on the second
+        EXPECT_GT(brightness(at(picture, camera, {2.5, 0.5, 4})), 550);  // in its target
+        EXPECT_TRUE(isRed(at(picture, camera, {2.5, 1, 4})));
+    }
+}
+
+// Each light takes half of the light from where its shadow is.
+TEST(StageView, two_shadows_on_a_screen_are_twice_as_dark_where_they_meet) {
+    StageView view = aView();
+    view.stage.further.push_back({{0.1, 0, 7}, 0});
+    const theatre::BitMask shadow = view.images[0].shadow, none(200, 100);
+    view.images[0].target = none;
+    view.images.push_back({theatre::ScreenFrame(view.stage, -2, 2, 0.02, 200, 100, 1), none, none});
+    for (int y = 0; y < 100; ++y) view.images[1].shadow.fill(y, 100, 150);
+    const Camera camera{{0, 1, 12}, {0, 1, 0}, 0.5};
+    const RgbaImage picture = view.draw(camera, kWidth, kHeight);
+    const int bright = brightness(at(picture, camera, {-1, 1.5, 0})), first = brightness(at(picture, camera, {1.25, 0.5, 0})),
+              second = brightness(at(picture, camera, {0.5, 1.5, 0})), both = brightness(at(picture, camera, {0.75, 0.5, 0}));
+    EXPECT_GT(bright, first + 100);
+    EXPECT_GT(bright, second + 100);
+    EXPECT_GT(std::min(first, second), both + 100);
+}
+
+TEST(StageView, shows_a_curved_screen_where_it_is) {
+    for (const double radius : {3.0, -3.0}) {
+        StageView view = aView();
+        view.stage.screens[0].radius = radius;
+        const Camera camera{{0, 3, 9}, {0, 1, 0}, 0.5};
+        const RgbaImage picture = view.draw(camera, kWidth, kHeight);
+        const auto pixel = [&](const glm::dvec2& unrolled) {
+            return at(picture, camera, view.stage.screens[0].surface(unrolled));
+        };
+        EXPECT_LT(brightness(pixel({1.45, 0.5})), 250) << radius;  // in the shadow, near its edge
+        EXPECT_GT(brightness(pixel({1.55, 0.5})), 450) << radius;  // beside it
+        EXPECT_TRUE(isRed(pixel({-1.5, 0.5}))) << radius;
+        EXPECT_TRUE(isRed(pixel({-1, 1}))) << radius;
+    }
 }
 
 TEST(StageView, shows_props) {

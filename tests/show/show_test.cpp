@@ -141,7 +141,7 @@ TEST(ShowFile, a_source_is_of_exactly_one_kind) {
     const std::string_view kinds = "{solid: [0.1, 0.2, 0.3]}";
     const std::string answer =
         "show.yaml:6:8: sources.dim: exactly one kind of source is needed: 'pattern', 'solid', "
-        "'foliage', 'caustics', 'mirror_ball', 'image', 'video' or 'camera'";
+        "'foliage', 'caustics', 'mirror_ball', 'image', 'video', 'camera' or 'shadow'";
     EXPECT_EQ(refusalAfter(kinds, "{}"), answer);
     EXPECT_EQ(refusalAfter(kinds, "{solid: [0, 0, 0], pattern: patterns/leaves.pattern.yaml}"), answer);
     EXPECT_THAT(refusalAfter(kinds, "{solid: [0, 0]}"), HasSubstr("sources.dim.solid: a list of exactly 3 items is needed"));
@@ -204,6 +204,47 @@ TEST(ShowFile, water_and_mirrors_need_no_numbers) {
     EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {lamp: [0, 0.5, 2.2]}}"), HasSubstr("inside the ball"));
     EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {facet: 0.001}}"), HasSubstr("has mirrors of 0.005 m to 0.25 m"));
     EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {turn: 0}}"), HasSubstr("a turn takes a second at least"));
+}
+
+TEST(ShowFile, shadow_theatre_is_a_cast_with_its_lamps) {
+    const std::string_view solid = "{solid: [0.1, 0.2, 0.3]}";
+    const std::string file = "patterns/leaves.pattern.yaml";  // what is in it is not looked at here
+    const Loaded both(
+        replaced(std::string(kShow), "dim: {solid: [0.1, 0.2, 0.3]}",
+                 fmt::format("dim: {{shadow: {0}}}\n"
+                             "  soft: {{shadow: {{cast: {0}, light: [1, 0.5, 0], actors: [[0, 0, 1]], size: 0.2, samples: 4,\n"
+                             "    lamps: [{{at: [1, 2, 3], shadow: [0, 0, 0.1]}}], play: to_and_fro, speed: 2,\n"
+                             "    picture: {{x: [-1, 2], y: [0, 1.5]}}}}}}",
+                             file)));
+    ASSERT_TRUE(both.show) << both.show.error().message();
+    const auto& plain = std::get<ShadowSource>(both.show->sources[1].picture);
+    EXPECT_EQ(plain.cast, both.folder / file);
+    ASSERT_EQ(plain.lamps.size(), 1u);
+    EXPECT_FALSE(plain.lamps[0].at || plain.play || plain.picture);
+    EXPECT_EQ(plain.lamps[0].light, glm::dvec3(1));
+    EXPECT_THAT(filesOf(both.show->sources[1]), ElementsAre(both.folder / file));
+    const auto& soft = std::get<ShadowSource>(both.show->sources[2].picture);
+    ASSERT_EQ(soft.lamps.size(), 2u);
+    EXPECT_EQ(soft.lamps[0].light, glm::dvec3(1, 0.5, 0));
+    EXPECT_EQ(soft.lamps[0].size, 0.2);
+    EXPECT_THAT(soft.lamps[0].actors, ElementsAre(glm::dvec3(0, 0, 1)));
+    EXPECT_EQ(soft.lamps[1].at, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(soft.lamps[1].shadow, glm::dvec3(0, 0, 0.1));
+    EXPECT_EQ(soft.samples, 4);
+    EXPECT_EQ(soft.play, ShadowSource::Play::ToAndFro);
+    EXPECT_EQ(soft.speed, 2);
+    ASSERT_TRUE(soft.picture);
+    EXPECT_EQ(soft.picture->x, glm::dvec2(-1, 2));
+    EXPECT_THAT(refusalAfter(solid, "{shadow: nobody.cast.yaml}"), HasSubstr("make it with 'fantascope pose SILHOUETTE.png'"));
+    const auto with = [&](const std::string& key) {
+        return refusalAfter(solid, fmt::format("{{shadow: {{cast: {}, {}}}}}", file, key));
+    };
+    EXPECT_THAT(with("beam: 0"), HasSubstr("1 .. 8"));
+    EXPECT_THAT(with("lamps: [{size: 0.1}]"), HasSubstr("'at' is missing"));
+    EXPECT_THAT(with("picture: {x: [2, -1], y: [0, 1]}"), HasSubstr("the smaller number comes first"));
+    EXPECT_THAT(with("samples: 0"), HasSubstr("1 .. 128"));
+    EXPECT_THAT(with("play: twice"), HasSubstr("to_and_fro"));
+    EXPECT_THAT(with("shadows: 2"), HasSubstr("unknown key"));
 }
 
 TEST(ShowFile, pictures_and_videos_are_files_and_a_camera_is_none) {

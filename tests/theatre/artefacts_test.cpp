@@ -128,10 +128,10 @@ TEST(FreedomsBeside, AreOfThePartsThereAndOfWhatTheyHangOn) {
     const auto blotAt = [&](glm::dvec2 middle) {
         return drawn(360, 170, [&](int x, int y) { return glm::distance(glm::dvec2(x + 0.5, y + 0.5), middle) < 3; });
     };
-    EXPECT_THAT(freedomsBeside(scene.problem, scene.energy, blotAt(tip)),
+    EXPECT_THAT(freedomsBeside(scene.problem, scene.energy, std::vector{blotAt(tip)}),
                 ElementsAreArray(freedomsOf(problem, 1, {"left wrist", "left elbow"})));
-    EXPECT_THAT(freedomsBeside(scene.problem, scene.energy, blotAt(tip + 12.0 * beyond)), IsEmpty());
-    EXPECT_THAT(freedomsBeside(scene.problem, scene.energy, BitMask(360, 170)), IsEmpty());
+    EXPECT_THAT(freedomsBeside(scene.problem, scene.energy, std::vector{blotAt(tip + 12.0 * beyond)}), IsEmpty());
+    EXPECT_THAT(freedomsBeside(scene.problem, scene.energy, std::vector{BitMask(360, 170)}), IsEmpty());
 }
 
 }  // namespace

@@ -199,5 +199,14 @@ TEST(Changes, AreSeenWhereverTheyAre) {
     EXPECT_GT(unseen, 5 * wrong);
 }
 
+TEST(BitMask, keeps_what_another_has_and_says_how_much_they_share) {
+    BitMask left(130, 4), right(130, 4);
+    for (int y = 0; y < 4; ++y) left.fill(y, 0, 90), right.fill(y, 60, 130);
+    EXPECT_DOUBLE_EQ(intersectionOverUnion(left, right), 30.0 / 130);
+    left.keep(right);
+    EXPECT_EQ(left.count(), 4 * 30);
+    EXPECT_TRUE(left.at(60, 2) && left.at(89, 0) && !left.at(59, 1) && !left.at(90, 3));
+}
+
 }  // namespace
 }  // namespace fantascope::theatre

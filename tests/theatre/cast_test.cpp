@@ -136,5 +136,32 @@ TEST_F(CastFile, its_target_lies_beside_it) {
     EXPECT_THAT(written.error().message(), HasSubstr("copy it there first"));
 }
 
+// A cast for a stage with further beams, and what others want to read.
+TEST_F(CastFile, has_a_target_for_each_beam) {
+    const std::string stage = "fantascope: stage\nversion: 1\nlight: [0, 0, 7]\n";
+    const std::string further = "further_beams: [{light: [-6, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: -90}}]\n";
+    ASSERT_TRUE(writeFile(folder_ / "a.stage.yaml", stage + further));
+    Cast written = cast();
+    written.stageFile = folder_ / "a.stage.yaml";
+    written.further = {{folder_ / "other: one.png", 1.25, -0.375}};
+    ASSERT_TRUE(writeCast(folder_ / "a.cast.yaml", written));
+    const auto read = readCast(folder_ / "a.cast.yaml");
+    ASSERT_TRUE(read) << read.error().message();
+    ASSERT_EQ(read->further.size(), 1u);
+    EXPECT_EQ(read->further[0].file, written.further[0].file);
+    EXPECT_EQ(read->further[0].height, 1.25);
+    EXPECT_EQ(read->further[0].middle, -0.375);
+    EXPECT_EQ(read->stage.beams(), 2u);
+
+    written.further.clear();
+    const auto without = writeCast(folder_ / "b.cast.yaml", written);
+    ASSERT_FALSE(without);
+    EXPECT_THAT(without.error().message(), HasSubstr("0 further_targets, and the stage has 1 further_beams"));
+    ASSERT_TRUE(writeFile(folder_ / "a.stage.yaml", stage));
+    const auto alone = readCast(folder_ / "a.cast.yaml");
+    ASSERT_FALSE(alone);
+    EXPECT_THAT(alone.error().message(), HasSubstr("1 further_targets, and the stage has 0"));
+}
+
 }  // namespace
 }  // namespace fantascope::theatre

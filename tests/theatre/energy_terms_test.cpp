@@ -92,12 +92,20 @@ TEST(Depth, InOthersSumsSquares) {
 }
 
 TEST(Depth, InTheStageIsOfFloorAndScreen) {
-    EXPECT_NEAR(depthInStage(Balls({{0, 0.09, 1}}).posed), 100, 1e-6);
-    EXPECT_NEAR(depthInStage(Balls({{0, 1, 0.08}}).posed), 400, 1e-6);
-    EXPECT_NEAR(depthInStage(Balls({{0, -0.1, 1}}).posed), 40000, 1e-6);
-    EXPECT_NEAR(deepestInStage(Balls({{0, 1, 0.08}, {1, 0.06, 1}}).posed), 0.04, 1e-9);
-    EXPECT_EQ(depthInStage(Balls({{0, 0.1, 0.1}}).posed), 0);
-    EXPECT_EQ(deepestInStage(Balls({{0, 5, 5}}).posed), 0);
+    EXPECT_NEAR(depthInStage({}, Balls({{0, 0.09, 1}}).posed), 100, 1e-6);
+    EXPECT_NEAR(depthInStage({}, Balls({{0, 1, 0.08}}).posed), 400, 1e-6);
+    EXPECT_NEAR(depthInStage({}, Balls({{0, -0.1, 1}}).posed), 40000, 1e-6);
+    EXPECT_NEAR(deepestInStage({}, Balls({{0, 1, 0.08}, {1, 0.06, 1}}).posed), 0.04, 1e-9);
+    EXPECT_EQ(depthInStage({}, Balls({{0, 0.1, 0.1}}).posed), 0);
+    EXPECT_EQ(deepestInStage({}, Balls({{0, 5, 5}}).posed), 0);
+    // Each further screen counts by itself.
+    Stage stage;
+    stage.screens.push_back({{2, 0}, radians(-90)});
+    EXPECT_NEAR(depthInStage(stage, Balls({{1.92, 1, 1}}).posed), 400, 1e-6);
+    EXPECT_NEAR(depthInStage(stage, Balls({{1.92, 1, 0.09}}).posed), 500, 1e-6);
+    EXPECT_NEAR(deepestInStage(stage, Balls({{1.92, 1, 0.09}}).posed), 0.02, 1e-9);
+    stage.screens[0].radius = 5;
+    EXPECT_NEAR(depthInStage(stage, Balls({{-3 + 0.6 * 0.08, 1, 1 + 0.8 * 0.08}}).posed), 400, 1e-6);
 }
 
 TEST(OwnerChanges, CountAround) {

@@ -155,7 +155,7 @@ TEST(PoseSearch, the_papers_method_ends_when_nothing_is_to_be_seen) {
     PoseProblem problem = aScene({1.2});
     problem.stage.props.push_back(aBox({2.2, 2, 0.01}, {0, 1, 1.5}));
     setTarget(problem, drawn(360, 170, [](int x, int) { return x < 10; }));
-    setTarget(problem, SceneEnergy(problem).propShadow());
+    setTarget(problem, SceneEnergy(problem).beam(0).propShadow());
     PoseSearch::Options options = evaluations(6000);
     options.method = PoseSearch::Method::Paper;
     options.residual = 1e6;

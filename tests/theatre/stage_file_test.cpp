@@ -145,6 +145,67 @@ TEST_F(StageFile, is_refused_where_a_thing_cannot_be) {
                 HasSubstr("two things are called 'rock'"));
 }
 
+TEST_F(StageFile, says_all_of_further_beams_and_curved_screens) {
+    const auto stage = read(R"(light: [0, 0, 7]
+screen: {radius: 4}
+further_beams:
+  - {light: [-6, 0, 5], screen: {at: [2.5, 0, 5], turned: -90, radius: -5}}
+  - {light: [1, 0, 6.3]}
+  - projector: {lens: [-5, 0.3, 5], picture: {x: [-2, 2], y: [0, 3]}}
+    screen: {at: [2.5, 0, 5], turned: -90, radius: -5}
+)");
+    ASSERT_TRUE(stage) << stage.error().message();
+    EXPECT_EQ(stage->light, glm::dvec3(0, 0, 7));
+    ASSERT_EQ(stage->beams(), 4u);
+    ASSERT_EQ(stage->screens.size(), 2u) << "the same screen once";
+    EXPECT_EQ(stage->screens[0], (Screen{{0, 0}, 0, 4}));
+    EXPECT_EQ(stage->screens[1], (Screen{{2.5, 5}, radians(-90), -5}));
+    EXPECT_EQ(&stage->screenOf(2), &stage->screens[0]);
+    EXPECT_EQ(&stage->screenOf(3), &stage->screens[1]);
+    EXPECT_EQ(stage->beam(2).light, glm::dvec3(1, 0, 6.3));
+    ASSERT_TRUE(stage->beam(3).lit);
+    EXPECT_EQ(stage->beam(3).lit->to, glm::dvec2(2, 3));
+    EXPECT_FALSE(stage->beam(1).lit || stage->lit);
+}
+
+TEST_F(StageFile, is_refused_where_a_beam_cannot_be) {
+    const std::string light = "light: [0, 0, 7]\n";
+    const auto beam = [&](const std::string& rest) { return refusal(light + "further_beams:\n  - {" + rest + "}\n"); };
+    EXPECT_EQ(beam("light: [-6, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: -90}"), "read");
+    EXPECT_THAT(beam("light: [-6, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: 90}"),
+                AllOf(HasSubstr("a.stage.yaml:5:5: further_beams[0]"), HasSubstr("8.5 m behind its screen"), HasSubstr("180")));
+    EXPECT_THAT(beam("light: [2.2, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: -90}"),
+                AllOf(HasSubstr("0.3 m before its screen"), HasSubstr("0.5 m or farther")));
+    EXPECT_THAT(beam("light: [3, -1, 6]"), HasSubstr("1 m below the floor"));
+    EXPECT_THAT(beam("light: [3, 0, -6]"), HasSubstr("behind its screen"));
+    EXPECT_THAT(beam("light: [0, 0, 7]"), HasSubstr("beam 1 over again"));
+    EXPECT_THAT(beam("screen: {at: [2.5, 0, 1.5], turned: -90}"), HasSubstr("no light"));
+    EXPECT_THAT(beam("light: [-6, 0, 1.5], screen: {turned: -90}"), HasSubstr("at"));
+    EXPECT_THAT(beam("light: [-6, 0, 1.5], screen: {at: [2.5, 1, 1.5], turned: -90}"), HasSubstr("a y of 0"));
+    EXPECT_THAT(beam("light: [-6, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: -90, radius: 0.5}"),
+                AllOf(HasSubstr("radius"), HasSubstr("a pillar")));
+    EXPECT_THAT(beam("light: [-6, 0, 1.5], screen: {at: [-1, 0, 1.5], turned: -90}"),
+                HasSubstr("the light of beam 1 is behind screen 2"));
+    EXPECT_THAT(beam("light: [-6, 0, -3], screen: {at: [2.5, 0, 1.5], turned: -90}"),
+                HasSubstr("the light of beam 2 is behind the screen, which is at z = 0"));
+    EXPECT_THAT(refusal(light + "further_beams: []\n"), HasSubstr("further_beams"));
+    EXPECT_THAT(refusal(light + "screen: {radius: 0}\n"), AllOf(HasSubstr("screen.radius"), HasSubstr("leave 'radius' out")));
+    EXPECT_THAT(refusal(light + "screen: {at: [0, 0, 1]}\n"), HasSubstr("unknown key"));
+    EXPECT_THAT(refusal("light: [4, 0, 2]\nscreen: {radius: 3}\n"), HasSubstr("before its screen"));
+    const std::string corner = light + "further_beams: [{light: [-6, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: -90}}]\n";
+    EXPECT_THAT(refusal(corner + "platforms:\n  - {name: step, centre: [2.3, 0.2, 2], size: [1, 0.4, 1]}\n"),
+                HasSubstr("platform 'step' reaches 0.300 m through screen 2"));
+    EXPECT_THAT(refusal(corner + "props:\n  - {name: rock, mesh: cube.obj, at: [1, 0, 2]}\n"),
+                HasSubstr("prop 'rock' reaches 0.500 m through screen 2"));
+    EXPECT_THAT(refusal(corner + "platforms:\n  - {name: step, centre: [-6, 0.2, 1.5], size: [1, 0.4, 1]}\n"),
+                HasSubstr("the light of beam 2 is inside platform 'step'"));
+    // A bulge that reaches the platform's back, not its corners.
+    EXPECT_THAT(
+        refusal(
+            "light: [0, 0, 7]\nscreen: {radius: -2}\nplatforms:\n  - {name: step, centre: [0, 0.2, 0.3], size: [3, 0.4, 1]}\n"),
+        HasSubstr("through the screen"));
+}
+
 // What is bounded by a mesh: each edge has one face on either side, and all look outwards.
 bool isClosed(const TriangleMesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;

@@ -1,0 +1,68 @@
+#include "app/cast_scene.h"
+
+#include "theatre/silhouette_sequence.h"
+
+#include "core/image.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMaskRows = 512;  // of the target
+
+// The frame of a cast's poses, from 0, that are the principal ones.
+std::size_t principalOf(const theatre::Cast::Sequence& sequence, std::size_t frames, std::size_t all) {
+    const std::size_t own = (sequence.representative + all - sequence.first % all) % all;
+    return own < frames ? own : 0;
+}
+
+Result<theatre::PoseTarget> targetOf(const theatre::Cast& cast, std::optional<std::size_t>& frame, const fs::path& file) {
+    if (!cast.sequence) {
+        frame = frame.value_or(0);
+        const GreyImage silhouette = TRY(readGrey(cast.target).in(file.string() + ": target"));
+        return theatre::PoseTarget::from(silhouette, cast.stage, cast.height, kMaskRows).in(cast.target.string());
+    }
+    const theatre::SilhouetteSequence sequence = TRY(theatre::readSequence(cast.sequence->file));
+    const auto& [name, representative, first] = *cast.sequence;
+    if (representative >= sequence.pictures.size())
+        return Error(
+            fmt::format("{}: has no frame {}, which the poses of {} are of", name.string(), representative + 1, file.string()));
+    if (!frame) frame = principalOf(*cast.sequence, cast.actors[0].poses.size(), sequence.pictures.size());
+    std::vector<GreyImage> pictures;
+    for (const fs::path& picture : sequence.pictures) pictures.push_back(TRY(readGrey(picture)));
+    auto targets =
+        TRY(theatre::PoseTarget::ofSequence(pictures, representative, cast.stage, cast.height, kMaskRows).in(name.string()));
+    return std::move(targets[(first + *frame) % targets.size()]);
+}
+
+}  // namespace
+
+Result<CastScene> readCastScene(const fs::path& file, std::optional<std::size_t> frame) {
+    theatre::Cast cast = TRY(theatre::readCast(file));
+    const std::size_t frames = cast.actors[0].poses.size();
+    if (frame && *frame >= frames)
+        return Error(fmt::format("{}: --frame {} is beyond its last, {}", file.string(), *frame, frames - 1));
+    theatre::PoseTarget target = TRY(targetOf(cast, frame, file));
+    theatre::PoseProblem problem{cast.stage, std::move(target), {}, {}};
+    for (const auto& [picture, height, middle] : cast.further) {
+        const GreyImage silhouette = TRY(readGrey(picture).in(file.string() + ": further_targets"));
+        const theatre::TargetPlace place{1 + problem.further.size(), middle};
+        problem.further.push_back(
+            TRY(theatre::PoseTarget::from(silhouette, cast.stage, height, kMaskRows, place).in(picture.string())));
+    }
+    std::vector<double> freedoms;
+    for (const theatre::Cast::Actor& actor : cast.actors) {
+        problem.actors.push_back(theatre::humanBody(actor.stature));
+        const std::vector<double> his = theatre::freedomsOf(problem.actors.back(), actor.poses[*frame]);
+        freedoms.insert(freedoms.end(), his.begin(), his.end());
+    }
+    problem.dress();
+    return CastScene{std::move(cast), *frame, std::move(problem), std::move(freedoms)};
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,123 @@
+// A show with shadow theatre, from the drawing to the wall, as a person makes it.
+
+#include "theatre/cast.h"
+
+#include "core/file.h"
+#include "core/image.h"
+#include "pictures.h"
+#include "program.h"
+#include "scratch_folder.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace fantascope {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Arguments = std::vector<std::string>;
+
+constexpr std::string_view kShow = R"(fantascope: show
+version: 1
+title: Test
+sources:
+  still: {shadow: bar.cast.yaml}
+  moves: {shadow: {cast: moving.cast.yaml}}
+looks:
+  still: {outputs: {left: [{source: still}]}}
+  moves: {outputs: {left: [{source: moves}]}}
+cues: [{name: Still, look: still, fade: 0}, {name: Moves, look: moves, fade: 0}]
+)";
+constexpr glm::ivec2 kPicture{160, 140};
+
+class ShowWithShadows : public testing::Test {
+protected:
+    ShowWithShadows() {
+        fs::copy(prepared() / ".", folder_ / ".", fs::copy_options::recursive);
+        folder_.file("show.yaml", kShow);
+    }
+    // What every test begins with, made once.
+    static const ScratchFolder& prepared() {
+        static const ScratchFolder folder;
+        if (fs::exists(folder / "moving.cast.yaml")) return folder;
+        EXPECT_TRUE(writePng(folder / "bar.png",
+                             pictureOf(kPicture.x, kPicture.y, [](int x, int y) { return isIn(x, y, 60, 30, 30, 100); })));
+        EXPECT_THAT(runProgram({"pose", "bar.png", "-o", "bar.cast.yaml", "--actors", "1", "--trials", "1", "--evaluations",
+                                "2000", "--report", "report.json"},
+                               folder / "."),
+                    exits(0));
+        // Frames without a sequence, as somebody may write them: he leans.
+        theatre::Cast cast = theatre::readCast(folder / "bar.cast.yaml").value();
+        cast.framesPerSecond = 10;
+        for (int frame = 0; frame < 5; ++frame) {
+            theatre::ActorPose pose = cast.actors[0].poses.back();
+            pose.root.x += 0.05;
+            cast.actors[0].poses.push_back(pose);
+        }
+        EXPECT_TRUE(theatre::writeCast(folder / "moving.cast.yaml", cast));
+        return folder;
+    }
+    Outcome run(const Arguments& arguments) const { return runProgram(arguments, folder_ / "."); }
+    std::string refusal(const std::string& source) const {
+        folder_.file("show.yaml",
+                     fmt::format("fantascope: show\nversion: 1\ntitle: Test\nsources:\n  him: {{shadow: {}}}\n"
+                                 "looks:\n  a: {{outputs: {{left: [{{source: him}}]}}}}\ncues: [{{name: A, look: a, fade: 0}}]\n",
+                                 source));
+        const Outcome done = run({"rehearse", ".", "--seconds", "0.1", "--as-fast-as-possible"});
+        EXPECT_THAT(done, exits(1)) << source;
+        return done.errors;
+    }
+    const ScratchFolder folder_;
+};
+
+// What the wall shows is what the search found, down to the figure that it reported.
+TEST_F(ShowWithShadows, throws_the_shadow_that_was_found) {
+    constexpr int kFiner = 4;
+    const glm::ivec2 size = kFiner * kPicture;
+    const std::string sizeText = fmt::format("{}x{}", size.x, size.y);
+    ASSERT_THAT(run({"export", ".", "--output", "left", "--cue", "Still", "--canvas", "--size", sizeText, "--seconds", "0.03",
+                     "--fps", "30", "--alpha", "none", "-o", "frames"}),
+                exits(0));
+    const GreyImage seen = readGrey(folder_ / "frames" / "frame-000000.png").value();
+    const GreyImage target = readGrey(folder_ / "bar.png").value();
+    ASSERT_EQ(glm::ivec2(seen.width(), seen.height()), size);
+    int both = 0, either = 0;
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) {
+            const bool shadow = seen.at(x, y)<0.5f, wanted = target.at(x / kFiner, y / kFiner)> 0.5f;
+            both += shadow && wanted, either += shadow || wanted;
+        }
+    const double reported = nlohmann::json::parse(readFile(folder_ / "report.json").value())["iou"];
+    EXPECT_NEAR(static_cast<double>(both) / either, reported, 0.015);
+    EXPECT_GT(reported, 0.6) << "something was found at all";
+}
+
+TEST_F(ShowWithShadows, is_the_same_to_the_byte_as_fast_as_possible) {
+    for (const char* name : {"a", "b"})
+        ASSERT_THAT(run({"rehearse", ".", "--seconds", "1.5", "--from", "Moves", "--as-fast-as-possible", "--record", name}),
+                    exits(0));
+    EXPECT_EQ(readFile(folder_ / "a/left.mp4").value(), readFile(folder_ / "b/left.mp4").value());
+}
+
+// A cue alone lasts as long as its movement.
+TEST_F(ShowWithShadows, is_exported_from_its_first_frame_to_its_last) {
+    ASSERT_THAT(run({"export", ".", "--output", "left", "--cue", "Moves", "--fps", "20", "-o", "film"}), exits(0));
+    int frames = 0;
+    for ([[maybe_unused]] const auto& file : fs::directory_iterator(folder_ / "film")) ++frames;
+    EXPECT_EQ(frames, 10);
+    EXPECT_NE(readFile(folder_ / "film/frame-000000.png").value(), readFile(folder_ / "film/frame-000009.png").value());
+}
+
+TEST_F(ShowWithShadows, says_what_cannot_be_played) {
+    EXPECT_THAT(refusal("{cast: moving.cast.yaml, play: loop}"), HasSubstr("as a loop it would jump; take 'to_and_fro'"));
+    EXPECT_THAT(refusal("{cast: bar.cast.yaml, actors: [[1, 0, 0], [0, 1, 0]]}"), HasSubstr("2 colours of 'actors', and"));
+    folder_.file("broken.cast.yaml", "fantascope: cast\nversion: 1\n");
+    EXPECT_THAT(refusal("broken.cast.yaml"), HasSubstr("broken.cast.yaml"));
+    fs::remove(folder_ / "bar.png");
+    EXPECT_THAT(refusal("bar.cast.yaml"), HasSubstr("bar.png"));
+}
+
+}  // namespace
+}  // namespace fantascope

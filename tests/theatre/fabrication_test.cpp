@@ -1,0 +1,174 @@
+// Prints of people in T-poses, whose shadows and places are known.
+
+#include "theatre/fabrication.h"
+
+#include "theatre/a_scene.h"
+
+#include <glm/common.hpp>
+#include <gmock/gmock.h>
+
+#include <limits>
+
+namespace fantascope::theatre {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::Each;
+using testing::Field;
+using testing::Gt;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+// Small and coarse: what holds here holds for a finer one.
+constexpr Fabrication::Options kOptions{.height = 40, .plate = 3, .margin = 6, .wall = 1, .cell = 0.3};
+
+struct Scene {
+    PoseProblem problem;
+    std::vector<double> poses;
+};
+// Of 1.7 m each, at these x, their feet this high above the floor.
+Scene aScene(const std::vector<double>& x, const std::vector<double>& heights) {
+    Scene scene{theatre::aScene(std::vector<double>(x.size(), 1.7)), {}};
+    scene.problem.dress();
+    scene.poses = aRow(scene.problem, x, 2);
+    for (std::size_t i = 0; i < heights.size(); ++i) scene.poses[scene.problem.firstFreedom(i) + 1] += heights[i];
+    makeTarget(scene.problem, scene.poses);
+    return scene;
+}
+Fabrication print(const Scene& scene, const Fabrication::Options& options = kOptions) {
+    auto made = fabricate(scene.problem, scene.poses, options, {});
+    EXPECT_TRUE(made) << made.error().message();
+    return std::move(made).value();
+}
+std::string refusal(const Scene& scene, const Fabrication::Options& options, const FabricationWatch& watch = {}) {
+    const auto made = fabricate(scene.problem, scene.poses, options, watch);
+    return made ? "made" : made.error().message();
+}
+
+TEST(Fabrication, a_person_becomes_one_solid_with_the_same_shadow) {
+    const Fabrication made = print(aScene({0.2}, {}));
+    EXPECT_TRUE(made.check.isSound());
+    EXPECT_EQ(made.check.pieces, 1u);
+    glm::vec3 least(std::numeric_limits<float>::max()), most(-least);
+    for (const glm::vec3& v : made.mesh.vertices) least = glm::min(least, v), most = glm::max(most, v);
+    EXPECT_NEAR(least.z, -3, 0.1) << "the plate";
+    EXPECT_NEAR(most.z, 40, 0.3);
+    EXPECT_GT(made.shadowIou, 0.96) << "with hands of a millimetre, at four centimetres";
+    EXPECT_EQ(made.posesIou, 1);
+    EXPECT_THAT(made.rods, IsEmpty());
+    // The lamp, 7 m before the screen.
+    EXPECT_NEAR(made.screen - made.light.y, 7 * made.scale, 1e-9);
+    EXPECT_NEAR(made.light.z, 0.1 * made.scale, 1e-9);
+    // Both feet stand.
+    ASSERT_THAT(made.contacts, SizeIs(2));
+    EXPECT_NE(made.contacts[0].who, made.contacts[1].who);
+}
+
+TEST(Fabrication, a_larger_print_has_the_shadow_to_a_hundredth) {
+    Fabrication::Options options = kOptions;
+    options.height = 90;
+    EXPECT_GT(print(aScene({0.2}, {}), options).shadowIou, 0.99);
+}
+
+// The distance that poses are found to is not one that a print can leave open.
+TEST(Fabrication, feet_that_hover_a_little_are_joined_to_the_plate) {
+    const Fabrication made = print(aScene({0}, {0.02}));
+    EXPECT_EQ(made.check.pieces, 1u);
+    EXPECT_THAT(made.rods, IsEmpty());
+    EXPECT_THAT(made.warnings, IsEmpty());
+    ASSERT_THAT(made.contacts, SizeIs(2));
+    for (const auto& contact : made.contacts) EXPECT_NEAR(contact.gap, 0.02 * made.scale, 0.002 * made.scale);
+}
+
+TEST(Fabrication, who_stands_on_nothing_is_named_and_held) {
+    const Fabrication made = print(aScene({-0.9, 0.9}, {0, 0.5}));
+    EXPECT_TRUE(made.check.isSound());
+    EXPECT_EQ(made.check.pieces, 1u);
+    EXPECT_THAT(made.warnings, Contains(AllOf(HasSubstr("actor 2"), HasSubstr("stands on nothing"))));
+    ASSERT_THAT(made.rods, SizeIs(1));
+    EXPECT_EQ(made.rods[0].who, "actor 2");
+    EXPECT_GT(made.rods[0].length, 0.3 * made.scale * 0.1);
+}
+
+// Feet of this print are some 5 mm long; one that leans on a toe has less.
+TEST(Fabrication, a_small_contact_is_reinforced_and_the_shadow_stays) {
+    Scene scene = aScene({0}, {});
+    // Leaning forward, on the tips of the toes.
+    const glm::dquat lean = rotationOf({0, std::numbers::pi, 0}) * rotationOf({0.5, 0, 0});
+    const glm::dvec3 turn = vectorOf(lean);
+    for (int i = 0; i < 3; ++i) scene.poses[static_cast<std::size_t>(3 + i)] = turn[i];
+    SceneEnergy energy(scene.problem);
+    energy.pose(scene.poses);
+    double lowest = 1;
+    for (const glm::vec3& v : energy.skin(0)) lowest = std::min(lowest, double{v.y});
+    scene.poses[1] -= lowest;
+    makeTarget(scene.problem, scene.poses);
+    const Fabrication made = print(scene);
+    ASSERT_FALSE(made.contacts.empty());
+    EXPECT_THAT(made.contacts, Each(Field(&Fabrication::Contact::reinforcedBy, Gt(0.0))));
+    EXPECT_GT(made.shadowIou, 0.95);
+    // Close over the plate the print is wider than the toes alone: as much as bears it.
+    double area = 0;
+    for (const auto& contact : made.contacts) area += contact.area;
+    double around = 0;
+    for (const auto& contact : made.contacts) around = std::max(around, contact.reinforcedBy);
+    EXPECT_GT(around, 0.2);
+    EXPECT_LT(area, 20);
+}
+
+TEST(Fabrication, what_is_thinner_than_a_wall_becomes_as_thick) {
+    const Scene scene = aScene({0}, {});
+    const Fabrication made = print(scene);
+    EXPECT_THAT(made.thin, Contains(Field(&Fabrication::ThinPart::who, HasSubstr("wrist"))))
+        << "fingers are half a millimetre thick";
+    for (const auto& part : made.thin) {
+        EXPECT_LT(part.thickness, kOptions.wall) << part.who;
+        EXPECT_GT(part.height, kOptions.height) << part.who;
+    }
+    EXPECT_GT(made.leastWall, 0.7 * kOptions.wall);
+    Fabrication::Options fine = kOptions;
+    fine.wall = 0.25;
+    EXPECT_THAT(print(scene, fine).thin.size(), testing::Lt(made.thin.size() + 1));
+}
+
+TEST(Fabrication, platforms_and_props_are_printed_too) {
+    Scene scene = aScene({0}, {0.3});
+    scene.problem.stage.platforms.push_back({"step", {0, 0.15, 2}, {0.8, 0.3, 0.6}, 0.2});
+    Prop box = aBox({0.3, 0.4, 0.2}, {0.1, 1.4, 2.5});  // in the air, before the breast
+    scene.problem.stage.props.push_back(box);
+    makeTarget(scene.problem, scene.poses);
+    const Fabrication made = print(scene);
+    EXPECT_EQ(made.check.pieces, 1u);
+    EXPECT_THAT(made.contacts, Contains(Field(&Fabrication::Contact::who, "platform 'step'")));
+    EXPECT_THAT(made.warnings, Contains(HasSubstr("prop 'box' touches nothing that stands")));
+    EXPECT_GT(made.shadowIou, 0.96) << "the rod that holds it is hidden";
+}
+
+TEST(Fabrication, is_the_same_every_time) {
+    const Scene scene = aScene({0}, {});
+    const Fabrication one = print(scene), other = print(scene);
+    EXPECT_EQ(one.mesh.vertices, other.mesh.vertices);
+    EXPECT_EQ(one.mesh.triangles, other.mesh.triangles);
+}
+
+TEST(Fabrication, refuses_what_cannot_be_printed) {
+    const Scene scene = aScene({0}, {});
+    const auto with = [](auto change) {
+        Fabrication::Options options = kOptions;
+        change(options);
+        return options;
+    };
+    EXPECT_THAT(refusal(scene, with([](auto& o) { o.height = 5; })), HasSubstr("height = 5 must be 20 .. 1000 mm"));
+    EXPECT_THAT(refusal(scene, with([](auto& o) { o.wall = 0; })), HasSubstr("wall = 0 must be"));
+    EXPECT_THAT(refusal(scene, with([](auto& o) { o.cell = 2; })), HasSubstr("plate = 3 mm is too thin"));
+    EXPECT_THAT(refusal(scene, with([](auto& o) { o.height = 400, o.cell = 0.06; })), HasSubstr("coarser --detail"));
+    EXPECT_THAT(refusal(scene, kOptions, {{}, [] { return true; }}), HasSubstr("interrupted"));
+    Scene fallen = aScene({0}, {});
+    fallen.poses[1] -= 3;
+    EXPECT_THAT(refusal(fallen, kOptions), HasSubstr("nothing to print"));
+}
+
+}  // namespace
+}  // namespace fantascope::theatre
