@@ -40,9 +40,8 @@ using Quality = theatre::PoseSearch::Quality;
 
 constexpr int kRows = 512;     // of the targets
 constexpr int kLookRows = 96;  // of those that are compared to find the representative frame
-// Intersection over union: what may be the cast's target; what a picture and its triangles have at least; how much nearer to all others another frame
-// is than the one that the poses are of, for it to be told.
-constexpr double kAlike = 0.9, kCovered = 0.8, kNearer = 0.05;
+// Intersection over union: what may be the cast's target; what a picture and its triangles have at least.
+constexpr double kAlike = 0.9, kCovered = 0.8;
 constexpr std::size_t kMostTold = 3;  // warnings of a kind
 constexpr glm::ivec2 kVideo{960, 540}, kCell{480, 270};
 constexpr std::size_t kMostCells = 12;
@@ -288,8 +287,8 @@ void warn(const Adapted& adapted) {
                 i + 1, folded, motion.triangles.size(), motion.representative + 1));
     tell(std::exchange(warnings, {}));
     const std::vector<double> least = theatre::leastOverlaps(frames);
-    const auto middle = static_cast<std::size_t>(std::max_element(least.begin(), least.end()) - least.begin());
-    if (least[middle] > least[motion.representative] + kNearer)
+    const std::size_t middle = theatre::middleFrame(least);
+    if (theatre::isOffTheMiddle(motion.representative, least))
         fmt::print(stderr,
                    "adapt: frame {} is more like all the others than frame {}, which the poses are of; poses for it, 'fantascope "
                    "pose {}', are likely to follow better\n",

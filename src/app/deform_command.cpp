@@ -296,8 +296,8 @@ Result<void> write(const Deformed& deformed) {
     return checkWhole(made, wanted);
 }
 
-// The frame, from 1, that is most like all others.
-std::size_t middleFrame(const Deformed& deformed) {
+// Of each frame.
+std::vector<double> leastOverlaps(const Deformed& deformed) {
     const double scale = kLookRows / double(deformed.canvas.size.y);
     std::vector<theatre::BitMask> looks;
     for (DeformedFrame frame : deformed.frames) {
@@ -305,8 +305,7 @@ std::size_t middleFrame(const Deformed& deformed) {
         looks.push_back(theatre::filled(static_cast<int>(std::ceil(scale * deformed.canvas.size.x)), kLookRows,
                                         deformed.silhouette.rest.triangles, frame.vertices));
     }
-    const std::vector<double> least = theatre::leastOverlaps(looks);
-    return static_cast<std::size_t>(std::max_element(least.begin(), least.end()) - least.begin()) + 1;
+    return theatre::leastOverlaps(looks);
 }
 
 Report reportOf(const Deformed& deformed, const GreyImage& source, double seconds) {
@@ -339,7 +338,7 @@ Report reportOf(const Deformed& deformed, const GreyImage& source, double second
         rows.push_back({{"time", frame.time},
                         {"area", areaOf(frame.vertices) / areaAtRest},
                         {"folded", theatre::foldedTriangles(deformed.silhouette.rest, frame.vertices).size()}});
-    report["middle_frame"] = middleFrame(deformed);
+    report["middle_frame"] = theatre::middleFrame(leastOverlaps(deformed)) + 1;
     report["rows"] = std::move(rows);
     report["seconds"] = seconds;
     return report;
@@ -350,7 +349,9 @@ std::string brief(const Deformed& deformed) {
     std::string text = fmt::format("{}: {}, {} x {} pixels, {} triangles", deformed.options.output.string(),
                                    outcomeOf(deformed.schedule.frames, deformed.schedule.frames, deformed.schedule.frameRate),
                                    canvas.size.x, canvas.size.y, deformed.silhouette.rest.triangles.size());
-    text += fmt::format("; frame {} is most like all others: poses for it are the ones to begin with", middleFrame(deformed));
+    if (const std::vector<double> least = leastOverlaps(deformed); theatre::isOffTheMiddle(0, least))
+        text += fmt::format("; frame {} is more like all the others than the first is: poses for it are likely to follow better",
+                            theatre::middleFrame(least) + 1);
     if (canvas.isWider())
         text += fmt::format(
             "; all pictures are wider than the silhouette's by {} pixels on the left, {} at the top, {} on the right, {} at the "

@@ -13,6 +13,14 @@ std::vector<double> leastOverlaps(std::span<const BitMask> frames) {
     return least;
 }
 
+std::size_t middleFrame(std::span<const double> leastOverlaps) {
+    return static_cast<std::size_t>(std::max_element(leastOverlaps.begin(), leastOverlaps.end()) - leastOverlaps.begin());
+}
+
+bool isOffTheMiddle(std::size_t frame, std::span<const double> leastOverlaps) {
+    return leastOverlaps[middleFrame(leastOverlaps)] > leastOverlaps[frame] + kNearer;
+}
+
 std::vector<Jump> jumpsOf(std::span<const BitMask> frames, bool loops) {
     std::vector<Jump> jumps;
     for (std::size_t i = 0; i < frames.size(); ++i) {

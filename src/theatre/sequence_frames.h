@@ -16,6 +16,11 @@ namespace fantascope::theatre {
 std::vector<double> leastOverlaps(std::span<const BitMask> frames);
 constexpr std::size_t kLooks = 64;
 
+// Of those the frame with the greatest; and whether it is so much greater than that of `frame` that poses for it are likely to follow better.
+std::size_t middleFrame(std::span<const double> leastOverlaps);
+bool isOffTheMiddle(std::size_t frame, std::span<const double> leastOverlaps);
+constexpr double kNearer = 0.05;
+
 // From one frame to the next so little stays where it is that poses of the one say little of the other.
 struct Jump {
     std::size_t from = 0, to = 0;

@@ -22,6 +22,10 @@ TEST(SequenceFrames, the_middle_one_has_the_shortest_way_to_all) {
     // 8 of 12 columns in common are two thirds, 6 of 14 three sevenths, 4 of 16 a quarter.
     EXPECT_THAT(leastOverlaps(squares({20, 22, 24, 26})), ElementsAre(0.25, 3.0 / 7, 3.0 / 7, 0.25));
     EXPECT_THAT(leastOverlaps(squares({20})), ElementsAre(1));
+    const std::vector<double> least{0.4, 0.44, 0.46, 0.46};
+    EXPECT_EQ(middleFrame(least), 2u);
+    EXPECT_TRUE(isOffTheMiddle(0, least));
+    EXPECT_FALSE(isOffTheMiddle(1, least)) << "not by so much that it would be told";
     // Of very many only some are looked at, those at the ends among them.
     std::vector<int> columns(3 * kLooks, 24);
     columns.front() = 20;
