@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -392,8 +393,31 @@ private:
     // What was thinner than a wall, before.
     std::vector<VoxelSolid::Thin> thicken() {
         std::vector<VoxelSolid::Thin> thin = solid_->thinnerThan(options_.wall);
-        // Balls a cell apart leave dents between them.
-        for (const VoxelSolid::Thin& at : thin) solid_->addRod(at.middle, at.middle, 0.5 * options_.wall + 0.25 * made_.cell);
+        // A rod from each middle to the nearest few: balls alone would be beads. No farther than a wall: what is thickened would touch there.
+        constexpr std::size_t kNeighbours = 3;
+        const double reach = options_.wall, radius = 0.5 * options_.wall + 0.25 * made_.cell;
+        using Bucket = std::array<int, 3>;
+        const auto bucketOf = [&](const dvec3& p) {
+            const dvec3 q = glm::floor(p / reach);
+            return Bucket{static_cast<int>(q.x), static_cast<int>(q.y), static_cast<int>(q.z)};
+        };
+        std::map<Bucket, std::vector<dvec3>> buckets;
+        for (const VoxelSolid::Thin& at : thin) buckets[bucketOf(at.middle)].push_back(at.middle);
+        std::vector<std::pair<double, dvec3>> near;
+        for (const VoxelSolid::Thin& at : thin) {
+            near = {{0, at.middle}};
+            const Bucket own = bucketOf(at.middle);
+            for (int i = 0; i < 27; ++i) {
+                const auto bucket = buckets.find({own[0] + i % 3 - 1, own[1] + i / 3 % 3 - 1, own[2] + i / 9 - 1});
+                if (bucket == buckets.end()) continue;
+                for (const dvec3& other : bucket->second)
+                    if (const double distance = glm::distance(at.middle, other); distance > 0 && distance <= reach)
+                        near.emplace_back(distance, other);
+            }
+            std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+            for (std::size_t i = 0; i < std::min(near.size(), 1 + kNeighbours); ++i)
+                solid_->addRod(at.middle, near[i].second, radius);
+        }
         return thin;
     }
 
