@@ -135,7 +135,8 @@ Result<void> run(const Options& options) {
     for (const std::string& warning : made.warnings) fmt::print(stderr, "fantascope: {}\n", warning);
     if (made.shadowIou < kLeastIou)
         fmt::print(stderr,
-                   "fantascope: its shadow and the poses' agree to {:.3f} only; print it higher, or with a thinner --wall\n",
+                   "fantascope: its shadow and the poses' agree to {:.3f} only; print it higher, or with a thinner --wall, and "
+                   "let nothing hang in the air\n",
                    made.shadowIou);
     fmt::print(
         "{}: {:.0f} mm high at 1:{:.1f}, {:.1f} cm3, {} triangles, one closed piece; its shadow agrees with the poses' to {:.4f} "

@@ -11,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -149,23 +148,8 @@ private:
     void drawPlan() {
         picture(turned(filledView(print_.mesh, 0, 1, false, box_[0], box_[1], 3)), plan({box_[0].least, box_[1].least}), box_[1],
                 box_[0]);
-        // The plate's outline, round its corners.
         std::vector<dvec2> outline;
-        const std::size_t count = print_.plate.size();
-        for (std::size_t i = 0; i < count; ++i) {
-            const dvec2 a = print_.plate[(i + count - 1) % count], b = print_.plate[i], c = print_.plate[(i + 1) % count];
-            const auto outward = [](const dvec2& from, const dvec2& to) {
-                const dvec2 d = glm::normalize(to - from);
-                return std::atan2(-d.x, d.y);
-            };
-            const double first = outward(a, b);
-            double turn = outward(b, c) - first;
-            if (turn < 0) turn += 2 * std::numbers::pi;
-            for (int k = 0; k <= 8; ++k) {
-                const double angle = first + turn * k / 8;
-                outline.push_back(plan(b + print_.margin * dvec2(std::cos(angle), std::sin(angle))));
-            }
-        }
+        for (const dvec2& p : print_.plate) outline.push_back(plan(p));
         outline.push_back(outline.front());
         page_.line(outline, kEdge);
         for (const auto& mark : print_.marks) {

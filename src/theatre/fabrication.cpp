@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -33,6 +34,7 @@ constexpr double kFirm = 20;  // the area in square millimetres that bears a fig
 constexpr double kFigure = 100;
 constexpr double kLeastFlare = 0.8, kMostFlare = 5;  // of a figure of kFigure
 constexpr double kFlareSlope = 1.5;                  // its height, of its reach
+constexpr double kLine = 30;                         // that is engraved along the screen
 constexpr double kMark = 1, kMarkDepth = 0.6;        // of what is engraved
 constexpr double kLeastRod = 1;                      // its radius
 constexpr std::size_t kCrumb = 64;                   // nodes; what is smaller is lost
@@ -164,6 +166,7 @@ public:
         measureWalls();
         TRY(step(0.48, "plate"));
         addPlate();
+        solid_->cutBelow(-options_.plate);  // for the bed, what has sunk through it
         TRY(step(0.50, "what hangs together"));
         joinIslands();
         solid_->fillCavities();
@@ -316,20 +319,27 @@ private:
         hull_ = hullOf(points);
         // The arrow points at the lamp, from the middle to the edge.
         const dvec3 light = inSolid(problem_.stage.light);
-        const dvec2 middle = middleOf(hull_), toLamp = glm::normalize(dvec2(light.x, light.z) - middle);
+        const dvec2 centre = middleOf(hull_), toLamp = glm::normalize(dvec2(light.x, light.z) - centre);
+        dvec2 middle = centre;
         const double inset = options_.margin - 2 * kMark;
-        const auto arrow = partWithin(hull_, inset, middle, toLamp, 1e4);
+        const auto arrow = partWithin(hull_, inset, centre, toLamp, 1e4);
         const dvec2 tip = arrow[1], back = -0.8 * options_.margin * toLamp,
                     side = dvec2(-toLamp.y, toLamp.x) * 0.4 * options_.margin;
         marks_ = {{arrow[0], tip}, {tip + back + side, tip, tip + back - side}};
         // And a line along the screen: where the screen stands, or at the plate's edge towards it.
         const double screen = inSolid({0, 0, 0}).z;
         double nearest = std::numeric_limits<double>::infinity();
-        dvec2 at = middle;
         for (const dvec2& p : hull_)
-            if (p.y < nearest) nearest = p.y, at = p;
-        at.y = std::max(screen, nearest - inset + kMark);
-        if (auto line = partWithin(hull_, inset, at, {1, 0}, 1e4); line.size() == 2) marks_.push_back(line);
+            if (p.y < nearest) nearest = p.y, middle.x = p.x;
+        // .. or as far from it as makes the line long enough to lay a rule along.
+        std::vector<dvec2> line;
+        for (double y = std::max(screen, nearest - inset + kMark);; y += kMark) {
+            const double share = std::clamp((y - nearest) / std::max(centre.y - nearest, kMark), 0.0, 1.0);
+            const auto part = partWithin(hull_, inset, {std::lerp(middle.x, centre.x, share), y}, {1, 0}, 1e4);
+            if (part.size() == 2) line = part;
+            if (y >= centre.y || y == screen || (line.size() == 2 && glm::distance(line[0], line[1]) >= kLine)) break;
+        }
+        if (line.size() == 2) marks_.push_back(line);
     }
 
     Result<void> makeGrid() {
@@ -383,8 +393,31 @@ private:
     // What was thinner than a wall, before.
     std::vector<VoxelSolid::Thin> thicken() {
         std::vector<VoxelSolid::Thin> thin = solid_->thinnerThan(options_.wall);
-        // Balls a cell apart leave dents between them.
-        for (const VoxelSolid::Thin& at : thin) solid_->addRod(at.middle, at.middle, 0.5 * options_.wall + 0.25 * made_.cell);
+        // A rod from each middle to the nearest few: balls alone would be beads. No farther than a wall: what is thickened would touch there.
+        constexpr std::size_t kNeighbours = 3;
+        const double reach = options_.wall, radius = 0.5 * options_.wall + 0.25 * made_.cell;
+        using Bucket = std::array<int, 3>;
+        const auto bucketOf = [&](const dvec3& p) {
+            const dvec3 q = glm::floor(p / reach);
+            return Bucket{static_cast<int>(q.x), static_cast<int>(q.y), static_cast<int>(q.z)};
+        };
+        std::map<Bucket, std::vector<dvec3>> buckets;
+        for (const VoxelSolid::Thin& at : thin) buckets[bucketOf(at.middle)].push_back(at.middle);
+        std::vector<std::pair<double, dvec3>> near;
+        for (const VoxelSolid::Thin& at : thin) {
+            near = {{0, at.middle}};
+            const Bucket own = bucketOf(at.middle);
+            for (int i = 0; i < 27; ++i) {
+                const auto bucket = buckets.find({own[0] + i % 3 - 1, own[1] + i / 3 % 3 - 1, own[2] + i / 9 - 1});
+                if (bucket == buckets.end()) continue;
+                for (const dvec3& other : bucket->second)
+                    if (const double distance = glm::distance(at.middle, other); distance > 0 && distance <= reach)
+                        near.emplace_back(distance, other);
+            }
+            std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+            for (std::size_t i = 0; i < std::min(near.size(), 1 + kNeighbours); ++i)
+                solid_->addRod(at.middle, near[i].second, radius);
+        }
         return thin;
     }
 
@@ -426,14 +459,21 @@ private:
                         },
                         {{p.x - radius, into, p.z - radius}, {p.x + radius, p.y, p.z + radius}});
             Fabrication::Contact& contact = low.contact;
+            dvec2 least(std::numeric_limits<double>::infinity()), most = -least;
+            for (const dvec2& q : contact.outline) least = glm::min(least, q), most = glm::max(most, q);
+            // Things have few vertices.
+            if (!low.piece->actor && contact.gap > 0)
+                solid_->add(
+                    [&, top = ground + contact.gap + made_.cell](const dvec3& at) {
+                        return std::max({distanceTo(contact.outline, dvec2(at.x, at.z)) - radius, at.y - top, into - at.y});
+                    },
+                    {{least.x - radius, into, least.y - radius}, {most.x + radius, ground + contact.gap, most.y + radius}});
             if (contact.area >= firm) continue;
             // A foot of the print's own: as wide as makes the area firm, and the less the higher; hidden where it is not low.
             const double p = perimeterOf(contact.outline),
                          wanted = (-p + std::sqrt(p * p + 4 * std::numbers::pi * (firm - contact.area))) / (2 * std::numbers::pi);
             const double reach = contact.reinforcedBy = std::clamp(wanted, kLeastFlare * grow, kMostFlare * grow),
                          height = kFlareSlope * reach + std::max(0.0, contact.gap), lowest = s * kLow;
-            dvec2 least(std::numeric_limits<double>::infinity()), most = -least;
-            for (const dvec2& q : contact.outline) least = glm::min(least, q), most = glm::max(most, q);
             // The flank's slope and the shadow's edge make the field steeper than 1.
             constexpr double kSteep = 0.5;
             solid_->add(
@@ -580,9 +620,15 @@ private:
 
         made_.light = made_.fromStage(problem_.stage.light);
         made_.screen = made_.fromStage({0, 0, 0}).y;
-        for (const dvec2& p : hull_) made_.plate.push_back(inPrint(p));
-        std::reverse(made_.plate.begin(), made_.plate.end());
-        made_.margin = options_.margin, made_.thickness = options_.plate;
+        constexpr int kRound = 32;
+        std::vector<dvec2> outline;
+        for (const dvec2& p : hull_)
+            for (int i = 0; i < kRound; ++i) {
+                const double turn = 2 * std::numbers::pi * i / kRound;
+                outline.push_back(inPrint(p) + options_.margin * dvec2(std::cos(turn), std::sin(turn)));
+            }
+        made_.plate = hullOf(outline);
+        made_.thickness = options_.plate;
         for (const auto& line : marks_) {
             auto& mark = made_.marks.emplace_back();
             for (const dvec2& p : line) mark.push_back(inPrint(p));

@@ -59,8 +59,8 @@ struct Fabrication {
     glm::dvec3 stageOrigin{0};                   // where the print's origin is on the stage, metres
     glm::dvec3 light{0};                         // in the print's frame
     double screen = 0;                           // the y of the screen
-    std::vector<glm::dvec2> plate;               // its outline, without the round of `margin`: convex, anticlockwise
-    double margin = 0, thickness = 0;            // of the plate
+    std::vector<glm::dvec2> plate;               // its outline, anticlockwise
+    double thickness = 0;                        // of the plate
     std::vector<std::vector<glm::dvec2>> marks;  // lines engraved in it: the arrow to the lamp, and one along the screen
     std::vector<Contact> contacts;
     std::vector<ThinPart> thin;

@@ -254,6 +254,22 @@ void VoxelSolid::addRod(const dvec3& from, const dvec3& to, double radius) {
         {glm::min(from, to) - radius, glm::max(from, to) + radius});
 }
 
+void VoxelSolid::cutBelow(double height) {
+    for (int z = 0; z < count_[2]; ++z)
+        for (int y = 0; y < count_[1]; ++y) {
+            const double cut = height - place({0, y, z}).y;
+            if (cut <= -band_) break;
+            for (int x = 0; x < count_[0]; ++x) {
+                const Node node{x, y, z};
+                std::uint8_t& inside = inside_[index(node)];
+                if (inside == 0 && find(node) == nullptr) continue;
+                const double there = std::max(value(node), cut);
+                make(node) = static_cast<float>(there);
+                inside = there < 0 ? 1 : 0;
+            }
+        }
+}
+
 // Nodes hang together along the edges of the tetrahedra: a step along any of the axes, all of one sign.
 VoxelSolid::Runs VoxelSolid::runsOf(bool inside) const {
     Runs all;

@@ -35,6 +35,8 @@ public:
     void add(const Field& field, const Box& around);
     void addRod(const glm::dvec3& from, const glm::dvec3& to, double radius);
 
+    // Takes away what lies below a height.
+    void cutBelow(double height);
     // What nothing from outside reaches becomes solid.
     void fillCavities();
     // A piece that hangs together, apart from the others: some nodes next to its surface, not more than kSome.

@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
 
 namespace fantascope::theatre {
@@ -90,6 +91,31 @@ TEST(Fabrication, who_stands_on_nothing_is_named_and_held) {
     ASSERT_THAT(made.rods, SizeIs(1));
     EXPECT_EQ(made.rods[0].who, "actor 2");
     EXPECT_GT(made.rods[0].length, 0.3 * made.scale * 0.1);
+}
+
+// Example failure: a hand below the plate, and the print rocks on the bed.
+TEST(Fabrication, what_has_sunk_into_the_floor_does_not_come_out_below) {
+    const Fabrication made = print(aScene({0}, {-0.3}));
+    float least = 0;
+    for (const glm::vec3& v : made.mesh.vertices) least = std::min(least, v.z);
+    EXPECT_NEAR(least, -3, 0.1);
+    EXPECT_EQ(made.check.pieces, 1u);
+}
+
+// What stands is joined by all that it stands on.
+TEST(Fabrication, a_prop_that_hovers_a_little_is_joined) {
+    Scene scene = aScene({0}, {});
+    scene.problem.stage.props.push_back(aBox({0.6, 0.4, 0.4}, {1, 0.23, 2}));
+    makeTarget(scene.problem, scene.poses);
+    const Fabrication made = print(scene);
+    EXPECT_THAT(made.rods, IsEmpty());
+    double volume = 0;
+    for (const bool isThere : {true, false}) {
+        if (!isThere) scene.problem.stage.props.clear();
+        volume += (isThere ? 1 : -1) * print(scene).check.volume;
+    }
+    // Down to the floor: 0.43 of its 0.4 m; the plate reaches farther for it.
+    EXPECT_GT(volume, 0.6 * 0.425 * 0.4 * std::pow(made.scale, 3));
 }
 
 // Feet of this print are some 5 mm long; one that leans on a toe has less.

@@ -63,6 +63,16 @@ TEST(VoxelSolid, a_cavity_is_filled) {
     EXPECT_NEAR(volumeOf(solid), 8, 0.12);
 }
 
+TEST(VoxelSolid, what_lies_below_is_cut_off_flat) {
+    VoxelSolid solid = aGrid();
+    solid.add(aBox({0, 0, 0}, {2, 2, 2}, 0.3), 0);
+    solid.cutBelow(-0.25);
+    EXPECT_NEAR(volumeOf(solid), 5, 0.1);
+    float least = 1;
+    for (const glm::vec3& v : solid.surface().vertices) least = std::min(least, v.y);
+    EXPECT_NEAR(least, -0.25, 0.01);
+}
+
 TEST(VoxelSolid, pieces_are_told_apart_and_joined_by_a_rod) {
     VoxelSolid solid = aGrid();
     solid.add(aBox({-1.5, 0, 0}, {1, 1, 1}), 0), solid.add(aBox({1.5, 0, 0}, {1.2, 1, 1}), 0),
