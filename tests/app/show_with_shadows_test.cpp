@@ -1,6 +1,10 @@
 // A show with shadow theatre, from the drawing to the wall, as a person makes it.
 
+#include "app/cast_scene.h"
+
 #include "theatre/cast.h"
+#include "theatre/pose_search.h"
+#include "theatre/silhouette_sequence.h"
 
 #include "core/file.h"
 #include "core/image.h"
@@ -117,6 +121,30 @@ TEST_F(ShowWithShadows, says_what_cannot_be_played) {
     EXPECT_THAT(refusal("broken.cast.yaml"), HasSubstr("broken.cast.yaml"));
     fs::remove(folder_ / "bar.png");
     EXPECT_THAT(refusal("bar.cast.yaml"), HasSubstr("bar.png"));
+}
+
+// The menagerie's casts as they lie in its folder: people can hold every frame, it reads as the drawing, and nobody slides or leaps.
+TEST(Menagerie, is_played_by_people_who_can_do_it) {
+    const fs::path folder = FANTASCOPE_SOURCE_DIR "/shows/menagerie";
+    for (const char* name : {"rabbit", "elephant", "car"}) {
+        const fs::path file = folder / (std::string(name) + ".cast.yaml");
+        const auto cast = theatre::readCast(file);
+        ASSERT_TRUE(cast) << cast.error().message();
+        const std::size_t frames = cast->actors[0].poses.size();
+        ASSERT_TRUE(cast->sequence);
+        EXPECT_EQ(frames, theatre::readSequence(cast->sequence->file).value().pictures.size()) << name << " is not whole";
+        double mean = 0;
+        for (std::size_t frame = 0; frame < frames; ++frame) {
+            const auto scene = app::readCastScene(file, frame);
+            ASSERT_TRUE(scene) << scene.error().message();
+            const auto quality = theatre::PoseSearch::measure(scene->problem, scene->freedoms);
+            EXPECT_TRUE(quality.isValid()) << name << ", frame " << frame;
+            EXPECT_GE(quality.iou, 0.88) << name << ", frame " << frame;
+            mean += quality.iou / static_cast<double>(frames);
+        }
+        EXPECT_GE(mean, 0.92) << name;
+    }
+    EXPECT_THAT(runProgram({"check", folder.string(), "--site", FANTASCOPE_SOURCE_DIR "/config/simulated"}, folder), exits(0));
 }
 
 }  // namespace
