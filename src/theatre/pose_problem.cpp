@@ -163,7 +163,7 @@ Result<void> checkWay(const TargetPlace& place, const Stage& stage, double left,
                     if (stage.screens[k].distance(glm::mix(from, to, double(step) / kSteps), outward) < -kRounding)
                         return Error(fmt::format(
                             "its silhouette is to reach from {:.2f} m to {:.2f} m along its screen, and screen {} keeps "
-                            "the light from {:.2f} m; move that screen away, or make the silhouette less high",
+                            "the light from {:.2f} m; move either away from the other, or make the silhouette less high",
                             left, right, k + 1, x));
         }
     return {};
