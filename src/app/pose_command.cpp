@@ -501,7 +501,10 @@ Result<void> search(Found& found, std::span<const GreyImage> silhouettes, double
     std::vector<PoseTarget> further;
     for (std::size_t i = 1; i < silhouettes.size(); ++i) {
         const auto& [file, height, middle] = found.further[i - 1];
-        further.push_back(TRY(PoseTarget::from(silhouettes[i], stage, height, kRows, {i, middle}).in(file.string())));
+        auto laid = PoseTarget::from(silhouettes[i], stage, height, kRows, {i, middle}).in(file.string());
+        if (!laid && options.furtherMiddles.empty())
+            return Error(laid.error().message() + "; --further-middle and --further-height lay it elsewhere");
+        further.push_back(TRY(std::move(laid)));
     }
     const theatre::PoseWeights weights = TRY(weightsOf(options));
     std::vector<theatre::PoseHint> hints;

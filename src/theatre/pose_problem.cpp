@@ -163,7 +163,7 @@ Result<void> checkWay(const TargetPlace& place, const Stage& stage, double left,
                     if (stage.screens[k].distance(glm::mix(from, to, double(step) / kSteps), outward) < -kRounding)
                         return Error(fmt::format(
                             "its silhouette is to reach from {:.2f} m to {:.2f} m along its screen, and screen {} keeps "
-                            "the light from {:.2f} m; move that screen away, or make the silhouette less high",
+                            "the light from {:.2f} m; move either away from the other, or make the silhouette less high",
                             left, right, k + 1, x));
         }
     return {};
@@ -237,17 +237,24 @@ Result<std::vector<PoseTarget>> laidOut(std::span<const Silhouette> silhouettes,
     const int margin = static_cast<int>(std::lround(kMargin * rows)), columns = static_cast<int>(std::ceil(2 * half));
     const int width = columns + 2 * margin, above = std::max(rows, static_cast<int>(std::ceil(high - 1e-6))) + margin;
     const double x = TRY(middleOf(place, stage)), reach = half * pixel;
+    TRY(checkWay(place, stage, x - reach, x + reach, high * pixel));
     if (const auto lit = stage.beam(place.beam).lit) {
-        const double top = high * pixel;
+        // On the flat screen, which is what a projector's picture is measured on.
+        glm::dvec2 least(x - reach, 0), most(x + reach, high * pixel);
+        const glm::dvec3 light = stage.lightOnScreen(place.beam);
+        for (const double along : {x - reach, x, x + reach})
+            for (const double up : {0.0, high * pixel})
+                if (const auto flat = flatFromUnrolled(stage.screenOf(place.beam), light, {along, up}))
+                    least = glm::min(least, *flat), most = glm::max(most, *flat);
+        // Below the floor's line it is not to be lit.
         const glm::dvec2 from = lit->from, to = lit->to;
-        if (x - reach < from.x || x + reach > to.x || from.y > 0 || top > to.y)
+        if (least.x < from.x || most.x > to.x || from.y > 0 || most.y > to.y)
             return Error(
                 fmt::format("its silhouette is to be x {:.2f} .. {:.2f} m and y 0 .. {:.2f} m on the screen, and the projector "
                             "lights x {:.2f} .. {:.2f} m "
                             "and y {:.2f} .. {:.2f} m only; make it less high, or the projector's picture larger",
-                            x - reach, x + reach, top, from.x, to.x, from.y, to.y));
+                            least.x, most.x, most.y, from.x, to.x, from.y, to.y));
     }
-    TRY(checkWay(place, stage, x - reach, x + reach, high * pixel));
     std::vector<PoseTarget> targets;
     for (std::size_t i = 0; i < silhouettes.size(); ++i) {
         const BitMask& whole = silhouettes[i].mask;

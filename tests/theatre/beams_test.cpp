@@ -342,6 +342,11 @@ TEST(Beams, a_target_is_refused_where_the_light_does_not_come) {
     EXPECT_EQ(refusal(kTall, stage, TargetPlace::on(stage, 1)), "laid");
     EXPECT_THAT(refusal(kTall, stage, {0, 3.0}), HasSubstr("screen 2 keeps the light from"));
     EXPECT_THAT(refusal(kTall, stage, {1, -1.9}), HasSubstr("screen 1 keeps the light from"));
+    // 2 m to either side of a hollow screen are 2.09 m on the flat one.
+    Stage hall{{0, 0, 6}, Stage::Area{{-2.05, 0}, {2.05, 3}}};
+    EXPECT_EQ(refusal(kWide, hall, {}), "laid");
+    hall.screens[0].radius = 4;
+    EXPECT_THAT(refusal(kWide, hall, {}), HasSubstr("the projector lights x -2.05 .. 2.05 m"));
     stage.screens[0].radius = 1;
     EXPECT_THAT(refusal(kWide, stage, {}), HasSubstr("1.50 m to either side can be seen"));
     stage.screens[0].radius = -1.5;
