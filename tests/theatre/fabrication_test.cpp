@@ -48,6 +48,23 @@ std::string refusal(const Scene& scene, const Fabrication::Options& options, con
     return made ? "made" : made.error().message();
 }
 
+// The area of a section across z, by the segments in which the triangles cut it.
+double sectionOf(const TriangleMesh& mesh, float z) {
+    double twice = 0;
+    for (const glm::uvec3& t : mesh.triangles) {
+        std::vector<glm::dvec2> ends(2);
+        std::size_t cuts = 0;
+        for (int i = 0; i < 3; ++i) {
+            const glm::vec3 &a = mesh.vertices[t[i]], &b = mesh.vertices[t[(i + 1) % 3]];
+            if ((a.z < z) == (b.z < z)) continue;
+            ends[a.z < z ? 0 : 1] = glm::mix(glm::dvec2(a), glm::dvec2(b), double(z - a.z) / (b.z - a.z));
+            ++cuts;
+        }
+        if (cuts == 2) twice += ends[0].x * ends[1].y - ends[0].y * ends[1].x;
+    }
+    return 0.5 * std::abs(twice);
+}
+
 TEST(Fabrication, a_person_becomes_one_solid_with_the_same_shadow) {
     const Fabrication made = print(aScene({0.2}, {}));
     EXPECT_TRUE(made.check.isSound());
@@ -135,13 +152,10 @@ TEST(Fabrication, a_small_contact_is_reinforced_and_the_shadow_stays) {
     ASSERT_FALSE(made.contacts.empty());
     EXPECT_THAT(made.contacts, Each(Field(&Fabrication::Contact::reinforcedBy, Gt(0.0))));
     EXPECT_GT(made.shadowIou, 0.95);
-    // Close over the plate the print is wider than the toes alone: as much as bears it.
-    double area = 0;
-    for (const auto& contact : made.contacts) area += contact.area;
-    double around = 0;
-    for (const auto& contact : made.contacts) around = std::max(around, contact.reinforcedBy);
-    EXPECT_GT(around, 0.2);
-    EXPECT_LT(area, 20);
+    // Close over the plate the print is as wide as bears a figure of its height, not as the toes.
+    const double firm = 20 * 0.4 * 0.4;
+    for (const auto& contact : made.contacts) EXPECT_LT(contact.area, firm);
+    EXPECT_GT(sectionOf(made.mesh, 0.1f), 0.8 * firm * static_cast<double>(made.contacts.size()));
 }
 
 TEST(Fabrication, what_is_thinner_than_a_wall_becomes_as_thick) {
