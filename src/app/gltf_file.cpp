@@ -10,7 +10,9 @@
 #include <glm/mat4x4.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -22,6 +24,7 @@ using Json = nlohmann::ordered_json;
 
 // The numbers of the specification.
 constexpr int kUnsignedByte = 5121, kUnsignedInt = 5125, kFloat = 5126, kVertices = 34962, kIndices = 34963;
+constexpr std::uint32_t kCurvedColumns = 32;                  // of a curved screen
 constexpr double kLightPower = 1000;                        // candela: as bright a lamp as lights a stage
 constexpr double kScreenMargin = 4 / 3.0, kScreenWide = 2;  // its height, of the silhouette's; its width, of its height
 constexpr glm::dvec3 kThings{0.46, 0.33, 0.23}, kCloth{0.97, 0.95, 0.90};  // sRGB
@@ -222,15 +225,39 @@ private:
             const std::string name = fmt::format("platform {}", platform.name);
             roots.push_back(node({{"name", name}, {"mesh", mesh(name, primitive(theatre::meshOf(platform), things()))}}));
         }
-        const auto top = static_cast<float>(kScreenMargin * scene_.screenHeight),
-                   half = static_cast<float>(0.5 * kScreenWide) * top, middle = static_cast<float>(scene_.stage.light.x);
-        const TriangleMesh screen{
-            {{middle - half, 0, 0}, {middle + half, 0, 0}, {middle + half, top, 0}, {middle - half, top, 0}},
-            {{0, 1, 2}, {0, 2, 3}}};
-        roots.push_back(node({{"name", "screen"}, {"mesh", mesh("screen", primitive(screen, material("screen", kCloth)))}}));
-        roots.push_back(node({{"name", "light"},
-                              {"translation", listOf(scene_.stage.light)},
-                              {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
+        const theatre::Stage& stage = scene_.stage;
+        const std::size_t cloth = material("screen", kCloth);
+        std::vector<bool> hung(stage.screens.size());
+        for (std::size_t beam = 0; beam < stage.beams(); ++beam) {
+            const auto numbered = [&](const std::string& thing) { return beam == 0 ? thing : fmt::format("{} {}", thing, beam + 1); };
+            const std::size_t screen = stage.beam(beam).screen;
+            if (!hung[screen])
+                roots.push_back(node({{"name", numbered("screen")},
+                                      {"mesh", mesh(numbered("screen"), primitive(screenOf(beam), cloth))}}));
+            hung[screen] = true;
+            roots.push_back(node({{"name", numbered("light")},
+                                  {"translation", listOf(stage.beam(beam).light)},
+                                  {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
+        }
+    }
+
+    // As much of a beam's screen as is before its light.
+    TriangleMesh screenOf(std::size_t beam) const {
+        const theatre::Screen& screen = scene_.stage.screenOf(beam);
+        const double top = kScreenMargin * scene_.screenHeight, most = theatre::Screen::kMostArc * std::abs(screen.radius);
+        double from = scene_.stage.lightOnScreen(beam).x - 0.5 * kScreenWide * top, to = from + kScreenWide * top;
+        if (screen.isCurved()) from = std::clamp(from, -most, most), to = std::clamp(to, -most, most);
+        const std::uint32_t columns = screen.isCurved() ? kCurvedColumns : 1;
+        TriangleMesh mesh;
+        for (std::uint32_t i = 0; i <= columns; ++i) {
+            const double along = from + (to - from) * i / columns;
+            for (const double up : {0.0, top})
+                mesh.vertices.emplace_back(screen.stageFromScreen(screen.surface({along, up})));
+            if (i == columns) break;
+            const std::uint32_t low = 2 * i;
+            mesh.triangles.insert(mesh.triangles.end(), {{low, low + 2, low + 3}, {low, low + 3, low + 1}});
+        }
+        return mesh;
     }
 
     const MotionScene& scene_;

@@ -588,6 +588,23 @@ private:
         return {};
     }
 
+    // The sheet is drawn for one lamp and one flat screen.
+    void sayOfOtherScreens() {
+        const Stage& stage = problem_.stage;
+        if (const Screen& screen = stage.screenOf(0); screen.isCurved())
+            made_.warnings.push_back(fmt::format(
+                "the screen is curved: on a flat one the shadow is drawn out to the sides; bend it to a radius of {:.0f} mm, {}",
+                made_.scale * std::abs(screen.radius), screen.radius > 0 ? "hollow towards the lamp" : "bulging towards the lamp"));
+        for (std::size_t beam = 1; beam < stage.beams(); ++beam) {
+            const Screen& screen = stage.screenOf(beam);
+            const dvec3 light = made_.fromStage(stage.beam(beam).light), foot = made_.fromStage({screen.at.x, 0, screen.at.y});
+            made_.warnings.push_back(fmt::format(
+                "the sheet and the figures are of the first lamp; lamp {} stands {:.0f} mm to the right of the plate's middle, {:.0f} mm towards "
+                "the first screen and {:.0f} mm high, and its screen goes through {:.0f} mm, {:.0f} mm, turned by {:.0f} degrees",
+                beam + 1, light.x, light.y, light.z, foot.x, foot.y, screen.turn * 180 / std::numbers::pi));
+        }
+    }
+
     void measure() {
         const ScreenFrame& frame = problem_.target.frame;
         const double s = made_.scale;
@@ -620,6 +637,7 @@ private:
 
         made_.light = made_.fromStage(problem_.stage.light);
         made_.screen = made_.fromStage({0, 0, 0}).y;
+        sayOfOtherScreens();
         constexpr int kRound = 32;
         std::vector<dvec2> outline;
         for (const dvec2& p : hull_)

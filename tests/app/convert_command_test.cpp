@@ -178,6 +178,32 @@ TEST_F(ConvertCommand, props_platforms_lamp_and_screen_come_along) {
     }
 }
 
+// Every light and every screen once; a curved screen is a strip that bends.
+TEST_F(ConvertCommand, further_lights_and_screens_come_along) {
+    folder_.file("corner.stage.yaml",
+                 "fantascope: stage\nversion: 1\nlight: [0, 0.1, 7]\nscreen: {radius: -6}\nfurther_beams:\n"
+                 "  - {light: [-6, 0.2, 5], screen: {at: [4, 5], turned: -90}}\n  - {light: [1, 0.3, 6]}\n");
+    writeACast(folder_, "a.cast.yaml", 1, "corner.stage.yaml");
+    ASSERT_THAT(run({"convert", "a.cast.yaml", "-o", "a.glb"}), exits(0));
+    const Imported imported(folder_ / "a.glb");
+    EXPECT_EQ(imported.scene().mNumLights, 3u);
+    EXPECT_LT(glm::distance(imported.placeOf("light 2", 0), {-6, 0.2, 5}), 1e-5);
+    EXPECT_LT(glm::distance(imported.placeOf("light 3", 0), {1, 0.3, 6}), 1e-5);
+    EXPECT_EQ(imported.node("screen 3"), nullptr) << "it is the first again";
+    const auto pointsOf = [&](const char* name) {
+        std::vector<glm::dvec3> points;
+        const aiNode* const node = imported.node(name);
+        if (node == nullptr || node->mNumMeshes == 0) return points;
+        const aiMesh& mesh = *imported.scene().mMeshes[node->mMeshes[0]];
+        for (unsigned i = 0; i < mesh.mNumVertices; ++i) points.push_back(toGlm(mesh.mVertices[i]));
+        return points;
+    };
+    ASSERT_FALSE(pointsOf("screen").empty());
+    for (const glm::dvec3& point : pointsOf("screen")) EXPECT_NEAR(std::hypot(point.x, point.z + 6), 6, 1e-5);
+    ASSERT_EQ(pointsOf("screen 2").size(), 4u);
+    for (const glm::dvec3& point : pointsOf("screen 2")) EXPECT_NEAR(point.x, 4, 1e-5);
+}
+
 TEST_F(ConvertCommand, joints_in_a_bvh_are_where_the_poses_have_them) {
     const theatre::Cast cast = writeACast(folder_, "a.cast.yaml", 3);
     ASSERT_THAT(run({"convert", "a.cast.yaml", "-o", "a.bvh"}), exits(0));
