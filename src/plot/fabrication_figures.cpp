@@ -141,7 +141,10 @@ private:
         page_.text("lamp", side(print_.light.y, print_.light.z) + dvec2(0, -10), kText, Anchor::Middle);
         page_.text("screen", side(print_.screen, thereZ_.most) + dvec2(0, -8), kText, Anchor::Middle);
         const double row = sideFloor_ - thereZ_.least * mm_ + 22;
-        distance(print_.light.y, 0, row), distance(0, print_.screen, row);
+        Range plate;
+        for (const dvec2& p : print_.plate) plate.add(p.y);
+        distance(print_.light.y, plate.least, row), distance(plate.least, plate.most, row);
+        distance(plate.most, print_.screen, row);
         distance(print_.light.y, print_.screen, row + 18);
     }
 

@@ -307,6 +307,19 @@ private:
         }
     }
 
+    // So that the origin comes to the plate's middle.
+    void moveAll(const dvec2& shift) {
+        const dvec3 by(shift.x, 0, shift.y);
+        made_.stageOrigin -= by / made_.scale;
+        for (Piece& piece : pieces_)
+            for (glm::vec3& v : piece.mesh.vertices) v += glm::vec3(by);
+        for (Low& low : lows_) {
+            low.contact.place += shift;
+            for (dvec2& p : low.contact.outline) p += shift;
+            for (dvec3& p : low.bearing) p += by;
+        }
+    }
+
     // Around all that stands on the floor, and what is above it.
     void findPlate() {
         std::vector<dvec2> points;
@@ -316,6 +329,11 @@ private:
             const dvec3 centre = inSolid(scene_.posed(i).massCentre());
             points.emplace_back(centre.x, centre.z);
         }
+        dvec2 least(std::numeric_limits<double>::infinity()), most = -least;
+        for (const dvec2& p : points) least = glm::min(least, p), most = glm::max(most, p);
+        const dvec2 shift = -0.5 * (least + most);
+        moveAll(shift);
+        for (dvec2& p : points) p += shift;
         hull_ = hullOf(points);
         // The arrow points at the lamp, from the middle to the edge.
         const dvec3 light = inSolid(problem_.stage.light);

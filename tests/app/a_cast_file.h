@@ -19,10 +19,10 @@ namespace fantascope {
 // Two people side by side who raise their arms and walk aside, frame by frame; one frame is a still. `stage`: a stage's file in the folder.
 inline theatre::Cast writeACast(const ScratchFolder& folder, const std::string& name, std::size_t frames,
                                 const std::string& stage = "") {
-    EXPECT_TRUE(writePng(folder / "target.png", pictureOf(120, 100, [](int x, int y) { return isIn(x, y, 30, 10, 60, 90); })));
+    EXPECT_TRUE(writePng(folder / "target.png", pictureOf(120, 100, [](int x, int y) { return isIn(x, y, 5, 10, 110, 90); })));
     theatre::Cast cast;
     cast.target = folder / "target.png";
-    cast.height = 1.6;
+    cast.height = 2.4;
     cast.stage.light = {0.1, 0.05, 7};
     if (!stage.empty()) cast.stageFile = folder / stage;
     cast.framesPerSecond = frames > 1 ? 12.5 : 0;

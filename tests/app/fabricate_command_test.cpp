@@ -6,10 +6,12 @@
 #include "core/solid.h"
 #include "program.h"
 
+#include <glm/common.hpp>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -53,6 +55,48 @@ TEST_F(FabricateCommand, writes_one_solid_that_another_reader_finds_sound) {
     EXPECT_NEAR(report["scale"].get<double>() * 1000, 40 / 1.7, 4) << "the taller one is 1.7 m, arms raised or not";
     EXPECT_GT(fs::file_size(folder_ / "v.png"), 1000u);
     EXPECT_THAT(text("s.pdf"), AllOf(StartsWith("%PDF"), testing::Not(HasSubstr("CreationDate"))));
+}
+
+// The shadow cast again, from what is written alone: the STL, and the lamp's and the screen's places.
+TEST_F(FabricateCommand, lamp_and_screen_are_where_the_shadow_is_the_poses) {
+    const theatre::Cast cast = writeACast(folder_, "a.cast.yaml", 1);
+    ASSERT_THAT(fabricate({"--report", "r.json"}), exits(0));
+    const auto report = nlohmann::json::parse(text("r.json"));
+    const TriangleMesh print = readMesh(folder_ / "a.stl").value();
+    const glm::dvec3 lamp(report["lamp_mm"][0], report["lamp_mm"][1], report["lamp_mm"][2]);
+    const double screen = report["screen_mm"], mm = 1000 * report["scale"].get<double>();  // of the print, in a metre
+    // The picture's rectangle on the screen: 11/9 as wide as high, before the lamp, on the floor.
+    constexpr int kAcross = 500, kUp = 250;
+    const double pixel = cast.height * mm / 160;
+    const auto isTarget = [&](int x, int y) { return std::abs(x + 0.5 - kAcross / 2) * pixel < cast.height * mm * 11 / 18 && y < 160; };
+    std::vector<char> shadow(kAcross * kUp, 0);
+    for (const glm::uvec3& triangle : print.triangles) {
+        glm::dvec2 p[3];
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 v = print.vertices[triangle[i]];
+            const double along = (screen - lamp.y) / (v.y - lamp.y);
+            p[i] = {kAcross / 2 + along * (v.x - lamp.x) / pixel, (lamp.z + along * (v.z - lamp.z)) / pixel};
+        }
+        const auto side = [](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+            return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+        };
+        const glm::dvec2 low = glm::min(glm::min(p[0], p[1]), p[2]), high = glm::max(glm::max(p[0], p[1]), p[2]);
+        for (int y = std::max(0, static_cast<int>(low.y)); y < std::min<double>(kUp, high.y); ++y)
+            for (int x = std::max(0, static_cast<int>(low.x)); x < std::min<double>(kAcross, high.x); ++x) {
+                const glm::dvec2 c(x + 0.5, y + 0.5);
+                const double a = side(p[0], p[1], c), b = side(p[1], p[2], c), d = side(p[2], p[0], c);
+                if ((a >= 0 && b >= 0 && d >= 0) || (a <= 0 && b <= 0 && d <= 0))
+                    shadow[static_cast<std::size_t>(y * kAcross + x)] = 1;
+            }
+    }
+    double either = 0, both = 0;
+    for (int y = 0; y < kUp; ++y)
+        for (int x = 0; x < kAcross; ++x) {
+            const bool isDark = shadow[static_cast<std::size_t>(y * kAcross + x)] != 0;
+            either += isDark || isTarget(x, y), both += isDark && isTarget(x, y);
+        }
+    EXPECT_GT(both / either, 0.1);
+    EXPECT_NEAR(both / either, report["target_iou"].get<double>(), 0.01);
 }
 
 TEST_F(FabricateCommand, is_the_same_bytes_every_time) {

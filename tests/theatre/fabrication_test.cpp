@@ -5,6 +5,7 @@
 #include "theatre/a_scene.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -79,6 +80,15 @@ TEST(Fabrication, a_person_becomes_one_solid_with_the_same_shadow) {
     // The lamp, 7 m before the screen.
     EXPECT_NEAR(made.screen - made.light.y, 7 * made.scale, 1e-9);
     EXPECT_NEAR(made.light.z, 0.1 * made.scale, 1e-9);
+    // Its origin is in the plate's middle.
+    glm::dvec2 low(1e9), high(-1e9);
+    for (const glm::dvec2& p : made.plate) low = glm::min(low, p), high = glm::max(high, p);
+    EXPECT_NEAR(glm::length(low + high), 0, 1e-6);
+    for (const glm::vec3& v : made.mesh.vertices)
+        if (v.z < -1) {
+            EXPECT_GT(v.x, low.x - 0.2);
+            EXPECT_LT(v.y, high.y + 0.2);
+        }
     // Both feet stand.
     ASSERT_THAT(made.contacts, SizeIs(2));
     EXPECT_NE(made.contacts[0].who, made.contacts[1].who);
