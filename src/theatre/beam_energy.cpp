@@ -8,6 +8,40 @@
 #include <cmath>
 
 namespace fantascope::theatre {
+namespace {
+
+constexpr double kEnds = 0.25;  // of a capsule's width: what its round ends add to its length, beyond what lies in the next one's
+
+// Of a body's shadow what is beside or above the frame, pixels: of each capsule that is as long as its axis's shadow and as wide as its ends' on
+// average the part whose axis is outside, and more the farther it is.
+double areaBeyond(const ScreenFrame& frame, const PosedBody& body) {
+    const double width = frame.width();
+    double area = 0;
+    for (const PlacedCapsule& capsule : body.capsules()) {
+        const glm::dvec3 from = frame.fromLight(capsule.from), to = frame.fromLight(capsule.to);
+        if (from.z <= 0 || to.z <= 0) continue;  // no bounded shadow
+        const glm::dvec2 a = frame.foot() + frame.focus() / from.z * glm::dvec2(from),
+                         b = frame.foot() + frame.focus() / to.z * glm::dvec2(to);
+        // The part [first, last] of the axis that is inside.
+        double first = 0, last = 1, far = 0;
+        const auto cut = [&](double atFirst, double atLast) {  // distances inside an edge
+            far = std::max({far, -atFirst, -atLast});
+            if (atFirst < 0 && atLast < 0) last = first;
+            if (atFirst < 0 && atLast >= 0) first = std::max(first, atFirst / (atFirst - atLast));
+            if (atFirst >= 0 && atLast < 0) last = std::min(last, atFirst / (atFirst - atLast));
+        };
+        cut(a.x, b.x);
+        cut(width - a.x, width - b.x);
+        cut(a.y, b.y);
+        if (far <= 0) continue;
+        const double outside = 1 - std::max(0.0, last - first);
+        const double across = frame.focus() * (capsule.fromRadius / from.z + capsule.toRadius / to.z);
+        area += outside * across * (glm::distance(a, b) + kEnds * across) * (1 + far / width);
+    }
+    return area;
+}
+
+}  // namespace
 
 BeamEnergy::BeamEnergy(const PoseProblem& problem, std::size_t beam, std::span<const PlacedProp> standing)
     : problem_(problem),
@@ -33,6 +67,7 @@ void BeamEnergy::pose(std::size_t index, const PosedBody& body, std::span<const 
     else
         meshShadow_.add(target_.frame, *problem_.skins[index], skin, actor.shadow);
     target_.cut(problem_.stage, actor.shadow);
+    if (!problem_.stage.beam(target_.beam).lit) actor.beyond = areaBeyond(target_.frame, body);
     if (held.empty()) return;
     if (actor.held.width() == 0) actor.held = BitMask(shadow_.width(), shadow_.height());
     actor.held.clear();
@@ -48,9 +83,15 @@ void BeamEnergy::addTo(EnergyTerms& terms) {
         shadow_.add(actor.shadow);
         if (actor.held.width() > 0) shadow_.add(actor.held);
     }
-    terms.coverage += static_cast<double>(differing(shadow_, target_.mask)) / target_.area;
+    terms.coverage += (static_cast<double>(differing(shadow_, target_.mask)) + beyond()) / target_.area;
     compareContours(terms);
     terms.coherence += ownerChanges(owners_);
+}
+
+double BeamEnergy::beyond() const {
+    double sum = 0;
+    for (const Actor& actor : actors_) sum += actor.beyond;
+    return sum;
 }
 
 BitMask BeamEnergy::propShadow() const {

@@ -26,6 +26,8 @@ public:
     const PoseTarget& target() const { return target_; }
     const BitMask& shadow() const { return shadow_; }  // of all; after addTo()
     const BitMask& shadow(std::size_t actor) const { return actors_[actor].shadow; }
+    // How much of people's shadows falls beside the target's masks or above them, pixels, about; nothing where a projector's picture ends before.
+    double beyond() const;
     BitMask propShadow() const;                                   // of platforms and props, in the poses last given
     const BitMask& contour() const { return contour_.pixels(); }  // of the shadow of all; after addTo()
     // Of each of the target's contour points: the nearest point of the shadow's contour and the actor whose it is, or kNobody; after addTo().
@@ -35,6 +37,7 @@ public:
 private:
     struct Actor {
         BitMask shadow, held;  // held: of props, sized once he holds any
+        double beyond = 0;
     };
     void compareContours(EnergyTerms& terms);
     bool isAsBefore(std::size_t point) const;

@@ -47,9 +47,14 @@ PoseSearch::Quality::Match matchOf(const BeamEnergy& beam, std::size_t actors) {
     BitMask people(target.mask.width(), target.mask.height());
     for (std::size_t i = 0; i < actors; ++i) people.add(beam.shadow(i));
     PoseSearch::Quality::Match match;
-    match.iou = intersectionOverUnion(target.asSeen(beam.shadow()), wanted);
-    match.flatIou = intersectionOverUnion(beam.shadow(), target.mask);
-    match.iouWithoutProps = intersectionOverUnion(target.asSeen(people), wanted);
+    // What falls beside the masks is too much, too.
+    const auto iou = [&](const BitMask& shadow, const BitMask& silhouette) {
+        const auto both = static_cast<double>(shared(shadow, silhouette));
+        return both / (both + static_cast<double>(differing(shadow, silhouette)) + beam.beyond());
+    };
+    match.iou = iou(target.asSeen(beam.shadow()), wanted);
+    match.flatIou = iou(beam.shadow(), target.mask);
+    match.iouWithoutProps = iou(target.asSeen(people), wanted);
     match.propsCover =
         static_cast<double>(shared(target.asSeen(beam.propShadow()), wanted)) / static_cast<double>(wanted.count());
     for (std::size_t i = 0; i < target.contour.size(); ++i) {

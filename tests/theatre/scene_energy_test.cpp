@@ -132,6 +132,38 @@ TEST(SceneEnergy, CoherenceCountsWhoseTheContourIs) {
     EXPECT_EQ(energy.terms().coherence, 0);
 }
 
+// The masks end somewhere, and the wall does not: whoever steps out of the picture is as much too much as he was in it.
+// Example failure: an actor whom the silhouette does not need, and whose elbow is seen beside it.
+TEST(SceneEnergy, ShadowsBesideThePictureAreTooMuch) {
+    PoseProblem narrow = aScene({1.7, 1.7});
+    const std::vector<double> both = aRow(narrow, {-0.8, 0.8}, 2);
+    makeTarget(narrow, both);
+    PoseProblem wide = narrow;
+    const ScreenFrame& frame = narrow.target.frame;
+    const int more = 400;
+    const glm::dvec2 corner = frame.metresAt({-more, 0});
+    wide.target.frame = {narrow.stage, corner.x, corner.y, frame.pixel(), frame.width() + 2 * more, frame.height()};
+    wide.target.mask = BitMask(frame.width() + 2 * more, frame.height());
+    SceneEnergy seen(wide);
+    seen.pose(both);
+    seen.terms();
+    setTarget(wide, seen.shadow());
+    for (const double x : {0.8, 2.2, 3.1, 4.5}) {
+        std::vector<double> poses = aRow(narrow, {-0.8, x}, 2);
+        SceneEnergy in(narrow), all(wide);
+        in.pose(poses), all.pose(poses);
+        const double far = std::max(0.0, x - 3);
+        EXPECT_NEAR(in.terms().coverage, all.terms().coverage, 0.2 + 0.3 * far) << x;
+        EXPECT_GE(in.terms().coverage, 0.9 * all.terms().coverage) << x;
+        EXPECT_EQ(in.beam(0).beyond() > 0, x > 1) << x;
+    }
+    narrow.stage.lit = Stage::Area{{-3, 0}, {3, 3}};
+    SceneEnergy dark(narrow);
+    dark.pose(aRow(narrow, {-0.8, 4.5}, 2));
+    dark.terms();
+    EXPECT_EQ(dark.beam(0).beyond(), 0) << "a projector's picture ends before";
+}
+
 TEST(SceneEnergy, WithoutAShadowAllIsMissed) {
     PoseProblem problem = aScene({1.7});
     std::vector<double> pose = aRow(problem, {0}, 2);
@@ -140,7 +172,7 @@ TEST(SceneEnergy, WithoutAShadowAllIsMissed) {
     pose[0] = 500;
     energy.pose(pose);
     const EnergyTerms& terms = energy.terms();
-    EXPECT_EQ(terms.coverage, 1);
+    EXPECT_DOUBLE_EQ(terms.coverage, 1 + energy.beam(0).beyond() / problem.target.area) << "and he is too much where he is";
     const double width = problem.target.mask.width() * problem.target.pixelsOf256;
     EXPECT_NEAR(terms.contourPoint, kContourPoints * width * width, 1e-3);
     EXPECT_TRUE(std::isfinite(energy.energy()));
