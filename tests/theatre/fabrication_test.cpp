@@ -8,8 +8,11 @@
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <numbers>
 
 namespace fantascope::theatre {
 namespace {
@@ -145,12 +148,10 @@ TEST(Fabrication, a_prop_that_hovers_a_little_is_joined) {
     EXPECT_GT(volume, 0.6 * 0.425 * 0.4 * std::pow(made.scale, 3));
 }
 
-// Feet of this print are some 5 mm long; one that leans on a toe has less.
-TEST(Fabrication, a_small_contact_is_reinforced_and_the_shadow_stays) {
+// Leaning forward, on the tips of the toes.
+Scene onTiptoe() {
     Scene scene = aScene({0}, {});
-    // Leaning forward, on the tips of the toes.
-    const glm::dquat lean = rotationOf({0, std::numbers::pi, 0}) * rotationOf({0.5, 0, 0});
-    const glm::dvec3 turn = vectorOf(lean);
+    const glm::dvec3 turn = vectorOf(rotationOf({0, std::numbers::pi, 0}) * rotationOf({0.5, 0, 0}));
     for (int i = 0; i < 3; ++i) scene.poses[static_cast<std::size_t>(3 + i)] = turn[i];
     SceneEnergy energy(scene.problem);
     energy.pose(scene.poses);
@@ -158,6 +159,47 @@ TEST(Fabrication, a_small_contact_is_reinforced_and_the_shadow_stays) {
     for (const glm::vec3& v : energy.skin(0)) lowest = std::min(lowest, double{v.y});
     scene.poses[1] -= lowest;
     makeTarget(scene.problem, scene.poses);
+    return scene;
+}
+
+// A lamp on the floor sees all of the feet; in pixels of 4 mm.
+void seenFromTheFloor(Scene& scene) {
+    scene.problem.stage.light.y = 0;
+    scene.problem.target = {ScreenFrame(scene.problem.stage, -1.8, 2.8, 0.004, 1000, 720), BitMask(1000, 720), 0, {}, 2};
+    makeTarget(scene.problem, scene.poses);
+}
+
+// Of the print's shadow, in pixels: what is outside the poses' between two heights above the floor, metres on the screen.
+int beside(const Scene& scene, const Fabrication& made, double from, double to) {
+    const ScreenFrame& frame = scene.problem.target.frame;
+    int count = 0;
+    for (int y = static_cast<int>(frame.pixelAt(0, to).y); y < static_cast<int>(frame.pixelAt(0, from).y); ++y)
+        for (int x = 0; x < frame.width(); ++x) count += made.shadow.at(x, y) && !scene.problem.target.mask.at(x, y);
+    return count;
+}
+
+// A foot of the print's own is seen close over the plate, and higher only where the poses hide it. What stands on a point hides nothing.
+TEST(Fabrication, a_small_contact_is_reinforced_behind_the_poses) {
+    Scene scene = aScene({0}, {});
+    const TriangleMesh spike{{{0, 0, 0}, {-0.1f, 1, -0.1f}, {0.1f, 1, -0.1f}, {0.1f, 1, 0.1f}, {-0.1f, 1, 0.1f}},
+                             {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {1, 4, 3}, {1, 3, 2}}};
+    scene.problem.stage.props.push_back(
+        {"spike", {}, std::make_shared<const Prop::Shape>(spike), std::nullopt, {1.2, 0, 2}, {1, 0, 0, 0}});
+    seenFromTheFloor(scene);
+    Fabrication::Options options = kOptions;
+    options.height = 90, options.wall = 0.3;  // so that the spike itself stays as thin as it is
+    const Fabrication made = print(scene, options);
+    const auto contact =
+        std::find_if(made.contacts.begin(), made.contacts.end(), [](const auto& c) { return c.who == "prop 'spike'"; });
+    ASSERT_NE(contact, made.contacts.end());
+    EXPECT_GT(contact->reinforcedBy, 2) << "16 square millimetres around a point";
+    EXPECT_GT(beside(scene, made, 0.004, 0.014), 30);
+    EXPECT_LT(beside(scene, made, 0.02, 0.05), 25) << "58 pixels if it stood in the light";
+}
+
+// Feet of this print are some 5 mm long; one that leans on a toe has less.
+TEST(Fabrication, a_small_contact_is_reinforced_and_the_shadow_stays) {
+    const Scene scene = onTiptoe();
     const Fabrication made = print(scene);
     ASSERT_FALSE(made.contacts.empty());
     EXPECT_THAT(made.contacts, Each(Field(&Fabrication::Contact::reinforcedBy, Gt(0.0))));
