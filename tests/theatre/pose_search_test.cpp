@@ -140,8 +140,8 @@ TEST(PoseSearch, the_papers_method_refines_what_it_found_and_keeps_what_is_bette
     PoseSearch::Options options = evaluations(16'000);
     options.method = PoseSearch::Method::Paper;
     const auto before = PoseSearch::measure(problem, PoseSearch::start(problem));
-    bool anyIsBetter = false;  // a refinement may find nothing
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    bool anyIsBetter = false;  // of half of the trials the refinement finds nothing better
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const auto trial = PoseSearch::run(problem, seed, options);
         EXPECT_EQ(trial.reason, PoseSearch::StopReason::Evaluations);
         EXPECT_GE(trial.evaluations, 16'000);
