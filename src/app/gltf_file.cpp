@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 // The numbers of the specification.
 constexpr int kUnsignedByte = 5121, kUnsignedInt = 5125, kFloat = 5126, kVertices = 34962, kIndices = 34963;
-constexpr std::uint32_t kCurvedColumns = 32;                  // of a curved screen
+constexpr std::uint32_t kCurvedColumns = 32;                // of a curved screen
 constexpr double kLightPower = 1000;                        // candela: as bright a lamp as lights a stage
 constexpr double kScreenMargin = 4 / 3.0, kScreenWide = 2;  // its height, of the silhouette's; its width, of its height
 constexpr glm::dvec3 kThings{0.46, 0.33, 0.23}, kCloth{0.97, 0.95, 0.90};  // sRGB
@@ -56,8 +56,6 @@ public:
         addSurroundings(roots);
         Json file{{"asset", {{"version", "2.0"}, {"generator", "fantascope"}}},
                   {"extensionsUsed", {"KHR_lights_punctual"}},
-                  {"extensions",
-                   {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}, {"name", "light"}, {"intensity", kLightPower}}}}}}}},
                   {"scene", 0},
                   {"scenes", {{{"nodes", std::move(roots)}}}}};
         for (auto& [key, list] : file_.items()) file[key] = std::move(list);
@@ -227,17 +225,22 @@ private:
         }
         const theatre::Stage& stage = scene_.stage;
         const std::size_t cloth = material("screen", kCloth);
+        Json& lights = file_["extensions"]["KHR_lights_punctual"]["lights"];
         std::vector<bool> hung(stage.screens.size());
         for (std::size_t beam = 0; beam < stage.beams(); ++beam) {
-            const auto numbered = [&](const std::string& thing) { return beam == 0 ? thing : fmt::format("{} {}", thing, beam + 1); };
+            const auto numbered = [&](const std::string& thing) {
+                return beam == 0 ? thing : fmt::format("{} {}", thing, beam + 1);
+            };
             const std::size_t screen = stage.beam(beam).screen;
             if (!hung[screen])
-                roots.push_back(node({{"name", numbered("screen")},
-                                      {"mesh", mesh(numbered("screen"), primitive(screenOf(beam), cloth))}}));
+                roots.push_back(
+                    node({{"name", numbered("screen")}, {"mesh", mesh(numbered("screen"), primitive(screenOf(beam), cloth))}}));
             hung[screen] = true;
             roots.push_back(node({{"name", numbered("light")},
                                   {"translation", listOf(stage.beam(beam).light)},
-                                  {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
+                                  {"extensions", {{"KHR_lights_punctual", {{"light", lights.size()}}}}}}));
+            // Importers look for a light by its node's name.
+            lights.push_back({{"type", "point"}, {"name", numbered("light")}, {"intensity", kLightPower}});
         }
     }
 
@@ -251,8 +254,7 @@ private:
         TriangleMesh mesh;
         for (std::uint32_t i = 0; i <= columns; ++i) {
             const double along = from + (to - from) * i / columns;
-            for (const double up : {0.0, top})
-                mesh.vertices.emplace_back(screen.stageFromScreen(screen.surface({along, up})));
+            for (const double up : {0.0, top}) mesh.vertices.emplace_back(screen.stageFromScreen(screen.surface({along, up})));
             if (i == columns) break;
             const std::uint32_t low = 2 * i;
             mesh.triangles.insert(mesh.triangles.end(), {{low, low + 2, low + 3}, {low, low + 3, low + 1}});

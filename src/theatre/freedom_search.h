@@ -30,7 +30,8 @@ public:
     // `problem` must live on.
     explicit FreedomSearch(const PoseProblem& problem);
 
-    // Searches from `freedoms` over those with a number in `which` (ascending, of all actors' freedoms) and leaves the best candidate of
+    // Searches from `freedoms` over those with a number in `which` (ascending, of all actors' freedoms; of a joint all, since
+    // its limits are theirs together) and leaves the best candidate of
     // the last generation there; gives its energy. Candidates are brought within the limits, and what is held to where it is held, by
     // whatever freedoms it takes. `beforeGeneration` may change the
     // problem's weights; when it gives false the search ends.

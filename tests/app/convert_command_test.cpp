@@ -182,8 +182,11 @@ TEST_F(ConvertCommand, props_platforms_lamp_and_screen_come_along) {
 TEST_F(ConvertCommand, further_lights_and_screens_come_along) {
     folder_.file("corner.stage.yaml",
                  "fantascope: stage\nversion: 1\nlight: [0, 0.1, 7]\nscreen: {radius: -6}\nfurther_beams:\n"
-                 "  - {light: [-6, 0.2, 5], screen: {at: [4, 5], turned: -90}}\n  - {light: [1, 0.3, 6]}\n");
-    writeACast(folder_, "a.cast.yaml", 1, "corner.stage.yaml");
+                 "  - {light: [-6, 0.2, 5], screen: {at: [4, 0, 5], turned: -90}}\n  - {light: [1, 0.3, 6]}\n");
+    theatre::Cast cast = writeACast(folder_, "a.cast.yaml", 1);
+    cast.stageFile = folder_ / "corner.stage.yaml";
+    cast.further = {{cast.target, 1.6, 0}, {cast.target, 1.6, 0}};
+    ASSERT_TRUE(theatre::writeCast(folder_ / "a.cast.yaml", cast));
     ASSERT_THAT(run({"convert", "a.cast.yaml", "-o", "a.glb"}), exits(0));
     const Imported imported(folder_ / "a.glb");
     EXPECT_EQ(imported.scene().mNumLights, 3u);

@@ -78,7 +78,8 @@ std::string siteRefusal(const std::string& text) {
 
 // The files that the example of a show names; nobody looks into them here.
 void layFiles(const ScratchFolder& folder) {
-    for (const char* file : {"patterns/leaves.pattern.yaml", "pictures/poster.png", "clips/rain.mp4", "clips/opening.mov"})
+    for (const char* file : {"patterns/leaves.pattern.yaml", "pictures/poster.png", "clips/rain.mp4", "clips/opening.mov",
+                             "casts/trumpet.cast.yaml"})
         folder.file(file, "");
 }
 
