@@ -1,8 +1,7 @@
 #include "app/motion_scene.h"
 
 #include "theatre/cast.h"
-#include "theatre/pose_spline.h"
-#include "theatre/silhouette_sequence.h"
+#include "theatre/moving_cast.h"
 
 #include <fmt/format.h>
 
@@ -29,11 +28,7 @@ Result<MotionScene> readMotionScene(const fs::path& file, std::optional<double> 
     if (framesPerSecond && cast.framesPerSecond == 0)
         return Error(fmt::format("{}: --fps is for a cast that moves, and this is a still; leave it out", file.string()));
     const std::size_t frames = cast.actors[0].poses.size();
-    bool loops = false;
-    if (framesPerSecond && cast.sequence) {
-        const theatre::SilhouetteSequence sequence = TRY(theatre::readSequence(cast.sequence->file));
-        loops = sequence.loops && sequence.pictures.size() == frames;
-    }
+    const bool loops = framesPerSecond && TRY(theatre::loops(cast));
     MotionScene scene{cast.stage, cast.height, framesPerSecond.value_or(cast.framesPerSecond), {}};
     std::map<double, std::shared_ptr<const theatre::BodyMesh>> skins;
     for (const theatre::Cast::Actor& given : cast.actors) {

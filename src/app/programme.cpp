@@ -5,8 +5,8 @@
 #include "pattern/shape_pattern.h"
 #include "render/penumbra.h"
 #include "theatre/cast.h"
+#include "theatre/moving_cast.h"
 #include "theatre/pose_problem.h"
-#include "theatre/silhouette_sequence.h"
 
 #include "core/image.h"
 
@@ -104,17 +104,10 @@ Result<Picture> readPicture(const std::shared_ptr<render::PictureFeed>& camera) 
     return Picture{render::CameraSource{camera}, {}};
 }
 
-// Whether a cast's last frame comes before its first, as that of the whole of a silhouette that moves in a loop.
-Result<bool> closes(const theatre::Cast& cast) {
-    if (!cast.sequence) return false;
-    const theatre::SilhouetteSequence sequence = TRY(theatre::readSequence(cast.sequence->file));
-    return sequence.loops && sequence.pictures.size() == cast.actors.front().poses.size();
-}
-
 Result<render::ShadowSource::Play> playOf(const show::ShadowSource& source, const theatre::Cast& cast) {
     using Asked = show::ShadowSource::Play;
     using Play = render::ShadowSource::Play;
-    const bool loops = TRY(closes(cast));
+    const bool loops = TRY(theatre::loops(cast));
     if (!source.play) return loops ? Play::Loop : Play::Once;
     if (*source.play == Asked::Loop && !loops)
         return Error(

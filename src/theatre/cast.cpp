@@ -127,6 +127,9 @@ Result<Cast> castOf(const ConfigNode& root) {
             return node.error(fmt::format("{} poses, and the first actor has {}; each has one a frame",
                                           cast.actors.back().poses.size(), cast.actors.front().poses.size()));
     }
+    if (const std::size_t frames = cast.actors.front().poses.size(); frames > 1 && cast.framesPerSecond <= 0)
+        return root.error(
+            fmt::format("{} frames, and no 'frames_per_second', which says how fast they follow each other", frames));
     if (auto held = cast.stage.checkHolders(cast.actors.size()); !held) return root.error(held.error().message());
     return cast;
 }

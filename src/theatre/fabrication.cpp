@@ -123,11 +123,6 @@ std::vector<dvec2> partWithin(const std::vector<dvec2>& hull, double grown, cons
     return ends;
 }
 
-double iouOf(const BitMask& a, const BitMask& b) {
-    const auto apart = static_cast<double>(differing(a, b)), both = 0.5 * (static_cast<double>(a.count() + b.count()) - apart);
-    return both + apart > 0 ? both / (both + apart) : 1;
-}
-
 // --- The print as it grows
 
 // In the solid's frame: millimetres, the stage's axes, the floor at y = 0.
@@ -612,12 +607,14 @@ private:
         if (const Screen& screen = stage.screenOf(0); screen.isCurved())
             made_.warnings.push_back(fmt::format(
                 "the screen is curved: on a flat one the shadow is drawn out to the sides; bend it to a radius of {:.0f} mm, {}",
-                made_.scale * std::abs(screen.radius), screen.radius > 0 ? "hollow towards the lamp" : "bulging towards the lamp"));
+                made_.scale * std::abs(screen.radius),
+                screen.radius > 0 ? "hollow towards the lamp" : "bulging towards the lamp"));
         for (std::size_t beam = 1; beam < stage.beams(); ++beam) {
             const Screen& screen = stage.screenOf(beam);
             const dvec3 light = made_.fromStage(stage.beam(beam).light), foot = made_.fromStage({screen.at.x, 0, screen.at.y});
             made_.warnings.push_back(fmt::format(
-                "the sheet and the figures are of the first lamp; lamp {} stands {:.0f} mm to the right of the plate's middle, {:.0f} mm towards "
+                "the sheet and the figures are of the first lamp; lamp {} stands {:.0f} mm to the right of the plate's middle, "
+                "{:.0f} mm towards "
                 "the first screen and {:.0f} mm high, and its screen goes through {:.0f} mm, {:.0f} mm, turned by {:.0f} degrees",
                 beam + 1, light.x, light.y, light.z, foot.x, foot.y, screen.turn * 180 / std::numbers::pi));
         }
@@ -637,9 +634,9 @@ private:
             mask->keep(0, 0, frame.width(), std::clamp(floor, 0, frame.height()));
             cutToLit(problem_.stage, frame, *mask);
         }
-        made_.shadowIou = iouOf(made_.shadow, poses);
-        made_.targetIou = iouOf(made_.shadow, target);
-        made_.posesIou = iouOf(poses, target);
+        made_.shadowIou = intersectionOverUnion(made_.shadow, poses);
+        made_.targetIou = intersectionOverUnion(made_.shadow, target);
+        made_.posesIou = intersectionOverUnion(poses, target);
 
         const std::size_t every = made_.mesh.triangles.size() / kSamples + 1;
         const std::vector<double> walls = thicknesses(made_.mesh, every);

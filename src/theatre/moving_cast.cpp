@@ -1,6 +1,14 @@
 #include "theatre/moving_cast.h"
 
+#include "theatre/silhouette_sequence.h"
+
 namespace fantascope::theatre {
+
+Result<bool> loops(const Cast& cast) {
+    if (!cast.sequence) return false;
+    const SilhouetteSequence sequence = TRY(readSequence(cast.sequence->file));
+    return sequence.loops && sequence.pictures.size() == cast.actors.front().poses.size();
+}
 
 MovingCast::MovingCast(const Cast& cast, bool loops) : cast_(cast), posed_(cast.actors.size()), held_(cast.actors.size()) {
     for (const Cast::Actor& actor : cast.actors) bodies_.push_back(humanBody(actor.stature));

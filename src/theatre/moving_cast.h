@@ -9,6 +9,9 @@
 
 namespace fantascope::theatre {
 
+// Whether a cast's last frame leads to its first: it is the whole of a silhouette's motion that loops. Error: as readSequence().
+Result<bool> loops(const Cast& cast);
+
 // A cast's people as they move, at any moment between its frames: what a show plays live. Thread: thread-bound.
 class MovingCast {
 public:

@@ -119,6 +119,15 @@ TEST_F(CastFile, says_where_a_file_is_wrong) {
     EXPECT_THAT(refusal("target:", "target: ../target.png"), HasSubstr("target"));
 }
 
+// Example failure: a show that divides by nothing.
+TEST_F(CastFile, that_moves_says_how_fast) {
+    Cast timeless = cast();
+    timeless.framesPerSecond = 0;
+    const auto written = writeCast(folder_ / "a.cast.yaml", timeless);
+    ASSERT_FALSE(written);
+    EXPECT_THAT(written.error().message(), HasSubstr("no 'frames_per_second'"));
+}
+
 TEST_F(CastFile, frames_must_be_as_many_for_everyone) {
     Cast uneven = cast();
     uneven.actors[1].poses.pop_back();
