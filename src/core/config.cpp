@@ -3,6 +3,7 @@
 #include "core/clock.h"
 #include "core/file.h"
 #include "core/geometry.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -13,6 +14,7 @@
 #include <numbers>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <tuple>
 
 namespace fantascope {
@@ -28,16 +30,30 @@ struct ConfigNode::Impl {
         return ConfigNode(std::make_shared<Impl>(Impl{file, value, std::move(childPath)}));
     }
     std::string childPath(std::string_view key) const {
-        return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+        const std::string shown = printable(key);  // a path is for messages alone
+        return path.empty() ? shown : fmt::format("{}.{}", path, shown);
     }
     // What stands in the file, for a message.
     std::string seen() const {
-        if (node.IsScalar()) return fmt::format("'{}'", node.Scalar());
+        if (node.IsScalar()) return fmt::format("'{}'", printable(node.Scalar()));
         return node.IsMap() ? "a map" : node.IsSequence() ? "a list" : "nothing";
     }
 };
 
 namespace {
+
+// Names that a file's author chose are quoted in messages; no more than this of them.
+constexpr std::size_t kLongestMessage = 2000;
+
+// More than any name or path has.
+constexpr std::size_t kLongestName = 4096;
+
+// A name or a path. Numbers written as one text may be longer.
+Result<std::string> shortText(const ConfigNode& node) {
+    std::string text = TRY(node.text());
+    if (text.size() <= kLongestName) return text;
+    return node.error(fmt::format("'{}' is {} bytes long, {} are the most", printable(text), text.size(), kLongestName));
+}
 
 std::pair<int, int> lineAndColumn(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
 
@@ -58,16 +74,13 @@ bool parseNumber(const std::string& text, Number& value) {
 
 namespace {
 
-// The line of the first byte that is not UTF-8 (RFC 3629), if there is one.
-std::optional<int> lineOfNoUtf8(std::string_view text) {
-    int line = 1;
+// Line and column, in characters, of the first byte that is not UTF-8, if there is one.
+std::optional<std::pair<int, int>> placeOfNoUtf8(std::string_view text) {
+    std::pair place{1, 1};
     for (std::size_t at = 0; at < text.size();) {
-        const auto lead = static_cast<unsigned char>(text[at]);
-        const std::size_t length = lead < 0x80 ? 1 : lead < 0xc2 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : lead < 0xf5 ? 4 : 0;
-        if (length == 0 || at + length > text.size()) return line;
-        for (std::size_t next = 1; next < length; ++next)
-            if ((static_cast<unsigned char>(text[at + next]) & 0xc0) != 0x80) return line;
-        if (text[at] == '\n') ++line;
+        const std::size_t length = utf8Length(text, at);
+        if (length == 0) return place;
+        place = text[at] == '\n' ? std::pair(place.first + 1, 1) : std::pair(place.first, place.second + 1);
         at += length;
     }
     return std::nullopt;
@@ -75,19 +88,40 @@ std::optional<int> lineOfNoUtf8(std::string_view text) {
 
 }  // namespace
 
+namespace {
+
+// The line in which a document begins that is not the first: that of its '---', or its own.
+int beginningOf(const YAML::Node& document, const std::string& text) {
+    int line = 0, begin = 0;
+    std::istringstream lines(text);
+    for (std::string each; std::getline(lines, each) && line <= document.Mark().line;) {
+        ++line;
+        if (each.starts_with("---")) begin = line;
+    }
+    return std::max(begin, 1);
+}
+
+}  // namespace
+
 Result<ConfigNode> ConfigNode::load(const fs::path& path) { return parse(TRY(readFile(path)), path); }
 
 Result<ConfigNode> ConfigNode::parse(const std::string& text, const fs::path& name) {
-    if (const auto line = lineOfNoUtf8(text))
-        return Error(fmt::format("{}:{}: not UTF-8; save the file in that encoding", name.string(), *line));
+    if (const auto place = placeOfNoUtf8(text))
+        return Error(
+            fmt::format("{}:{}:{}: not UTF-8; save the file in that encoding", name.string(), place->first, place->second));
     try {
-        auto impl = std::make_shared<Impl>(Impl{std::make_shared<const fs::path>(name), YAML::Load(text), ""});
+        std::vector<YAML::Node> documents = YAML::LoadAll(text);
+        if (documents.empty()) documents.emplace_back();
+        auto impl = std::make_shared<Impl>(Impl{std::make_shared<const fs::path>(name), documents[0], ""});
+        if (documents.size() > 1)
+            return Error(fmt::format("{}:{}:1: a second document begins here; put it in a file of its own", name.string(),
+                                     beginningOf(documents[1], text)));
         if (!impl->node.IsMap())
             return Error(fmt::format("{}:1:1: a map of 'key: value' lines is needed, here is {}", name.string(), impl->seen()));
         return ConfigNode(std::move(impl));
     } catch (const YAML::ParserException& problem) {
-        return Error(
-            fmt::format("{}:{}:{}: not YAML: {}", name.string(), problem.mark.line + 1, problem.mark.column + 1, problem.msg));
+        return Error(fmt::format("{}:{}:{}: not YAML: {}", name.string(), problem.mark.line + 1, problem.mark.column + 1,
+                                 printable(problem.msg)));
     }
 }
 
@@ -98,8 +132,10 @@ std::string ConfigNode::place() const {
     return fmt::format("{}:{}:{}", impl_->file->string(), line, column);
 }
 
-Error ConfigNode::error(const std::string& message) const {
-    return Error(fmt::format("{}: {}{}{}", place(), impl_->path, impl_->path.empty() ? "" : ": ", message));
+Error ConfigNode::error(const std::string& message) const { return error(Error(printable(message, kLongestMessage))); }
+
+Error ConfigNode::error(const Error& cause) const {
+    return Error(fmt::format("{}: {}{}{}", place(), impl_->path, impl_->path.empty() ? "" : ": ", cause.message()));
 }
 
 bool ConfigNode::isMap() const { return impl_->node.IsMap(); }
@@ -110,7 +146,7 @@ Result<double> ConfigNode::number(double low, double high, std::string_view unit
     if (!impl_->node.IsScalar() || !parseNumber(impl_->node.Scalar(), value) || !std::isfinite(value))
         return error(fmt::format("a number in {} is needed, here is {}", range(low, high, unit), impl_->seen()));
     if (value < low || value > high)
-        return error(fmt::format("{} is out of range, {} is allowed", impl_->node.Scalar(), range(low, high, unit)));
+        return error(fmt::format("{} is out of range, {} is allowed", printable(impl_->node.Scalar()), range(low, high, unit)));
     return value;
 }
 
@@ -131,7 +167,10 @@ Result<bool> ConfigNode::boolean() const {
 Result<std::string> ConfigNode::text() const {
     if (!impl_->node.IsScalar() || impl_->node.Scalar().empty())
         return error(fmt::format("a text is needed, here is {}", impl_->seen()));
-    return impl_->node.Scalar();
+    const std::string& text = impl_->node.Scalar();
+    if (printable(text, text.size()) != text)  // these texts end up on terminals
+        return error(fmt::format("a text on one line without control characters is needed, here is {}", impl_->seen()));
+    return text;
 }
 
 Result<std::size_t> ConfigNode::choice(std::initializer_list<std::string_view> names) const {
@@ -148,7 +187,7 @@ Result<std::size_t> ConfigNode::choice(const std::vector<std::string>& names) co
 }
 
 Result<fs::path> ConfigNode::path() const {
-    const fs::path given = TRY(text());
+    const fs::path given = TRY(shortText(*this));
     if (given.is_absolute())
         return error(fmt::format("'{}' is absolute; name it relative to this file's folder, so that the whole folder can move",
                                  given.string()));
@@ -191,7 +230,7 @@ Result<std::vector<std::pair<std::string, ConfigNode>>> ConfigNode::entries() co
     for (const auto& entry : impl_->node) {
         const ConfigNode key = impl_->child(entry.first, impl_->path);
         if (!entry.first.IsScalar()) return key.error("a key must be a plain word");
-        const std::string name = entry.first.Scalar();
+        const std::string name = TRY(shortText(key));
         if (!names.insert(name).second) return key.error(fmt::format("'{}' is given twice", name));
         result.emplace_back(name, impl_->child(entry.second, impl_->childPath(name)));
     }
@@ -211,11 +250,15 @@ void ConfigFields::visit(std::string_view key, const std::function<Result<void>(
     if (!node_.isMap()) return;
     const YAML::Node value = node_.impl_->node[std::string(key)];
     if (!value.IsDefined()) {
-        if (!mayBeAbsent) fail({std::numeric_limits<int>::max(), 0}, node_.error(fmt::format("'{}' is missing", key)));
+        if (!mayBeAbsent) missing_.emplace_back(key);
         return;
     }
     const ConfigNode child = node_.impl_->child(value, node_.impl_->childPath(key));
     if (auto used = use(child); !used) fail(lineAndColumn(value.Mark()), used.error());
+}
+
+void ConfigFields::check(const ConfigNode& at, const Result<void>& checked) {
+    if (!checked) fail(lineAndColumn(at.impl_->node.Mark()), checked.error());
 }
 
 void ConfigFields::number(std::string_view key, double& target, double low, double high, std::string_view unit) {
@@ -237,9 +280,7 @@ void ConfigFields::boolean(std::string_view key, bool& target) {
     read(key, target, [](const ConfigNode& node) { return node.boolean(); });
 }
 
-void ConfigFields::text(std::string_view key, std::string& target) {
-    read(key, target, [](const ConfigNode& node) { return node.text(); });
-}
+void ConfigFields::text(std::string_view key, std::string& target) { read(key, target, shortText); }
 
 void ConfigFields::path(std::string_view key, fs::path& target) {
     read(key, target, [](const ConfigNode& node) { return node.path(); });
@@ -280,15 +321,25 @@ Result<void> ConfigFields::finish() {
                 const std::string advice =
                     nearest.empty() ? "known here: " + listed(known_) : fmt::format("did you mean '{}'?", nearest);
                 fail(place, at.error(fmt::format("unknown key ({})", advice)));
+                std::erase(missing_, nearest);  // it is there, misspelt
             } else if (!seen.insert(key).second) {
                 fail(place, at.error("this key is given twice"));
             }
         }
+        for (const std::string& key : missing_)
+            fail(lineAndColumn(node_.impl_->node.Mark()), node_.error(fmt::format("'{}' is missing", key)));
     }
-    const auto first =
-        std::min_element(failures_.begin(), failures_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    if (first != failures_.end()) return first->second;
-    return {};
+    std::stable_sort(failures_.begin(), failures_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    ConfigFaults faults;
+    for (const auto& [place, error] : failures_) faults.add(error);
+    return faults.result();
+}
+
+Result<void> ConfigFaults::result() const {
+    if (faults_.empty()) return {};
+    std::string lines;
+    for (const std::string& fault : faults_) lines += (lines.empty() ? "" : "\n") + fault;
+    return Error(lines);
 }
 
 std::string nearestName(std::string_view word, const std::vector<std::string>& known) {

@@ -2,6 +2,7 @@
 // Strict YAML. Every key of every file is declared in one place with its type, unit and range; anything else in the file is refused
 // with file, line, column, the key's path and advice:
 //   config/courtyard.yaml:14:7: outputs[1].keystome: unknown key (did you mean 'keystone'?)
+// A reader goes on after a fault, so that an error tells all faults of a file, a line for each, in the file's order.
 
 #include "core/result.h"
 
@@ -26,14 +27,15 @@ namespace fantascope {
 class ConfigNode {
 public:
     ConfigNode() = default;  // no node yet: only to be assigned to
-    // The file's root, a map. Error: unreadable, or not YAML: place and reason.
+    // The file's root, a map. Error: unreadable, not YAML, or more than one document: place and reason.
     static Result<ConfigNode> load(const std::filesystem::path& path);
     // The same from text; `name` stands for the file in messages, and relative paths start from its folder.
     static Result<ConfigNode> parse(const std::string& text, const std::filesystem::path& name);
 
     const std::filesystem::path& file() const;
     std::string place() const;                      // "file:line:column"
-    Error error(const std::string& message) const;  // "file:line:column: path.to.key: message"
+    Error error(const std::string& message) const;  // "file:line:column: path.to.key: message", control characters escaped
+    Error error(const Error& cause) const;          // the same of a file that this node names: the file's own error, as it is
     bool isMap() const;
     bool isList() const;
 
@@ -41,7 +43,7 @@ public:
     Result<double> number(double low, double high, std::string_view unit = "") const;  // finite, low <= value <= high
     Result<std::int64_t> integer(std::int64_t low, std::int64_t high) const;
     Result<bool> boolean() const;                                                     // true or false
-    Result<std::string> text() const;                                                 // not empty
+    Result<std::string> text() const;                                                 // not empty, without control characters
     Result<std::size_t> choice(std::initializer_list<std::string_view> names) const;  // the index of the name that stands here
     Result<std::size_t> choice(const std::vector<std::string>& names) const;
     // A path relative to the file's folder, returned joined to it. Error: absolute, or it leaves the folder by "..".
@@ -60,11 +62,31 @@ private:
     std::shared_ptr<const Impl> impl_;
 };
 
+// What is wrong with a file so far. Readers that go on after a fault collect here.
+class ConfigFaults {
+public:
+    void add(const Error& error) { faults_.push_back(error.message()); }
+    // Gives the value to `use`, or keeps the error.
+    template <class Value, class Use>
+    void take(Result<Value> result, Use use) {
+        if (result)
+            use(std::move(result).value());
+        else
+            add(result.error());
+    }
+    bool none() const { return faults_.empty(); }
+    // Error: all faults, a line for each.
+    Result<void> result() const;
+
+private:
+    std::vector<std::string> faults_;
+};
+
 // Reads the fields of one map: declare each with its key, target and range, then finish(). The declarations are the table of known keys.
 //     ConfigFields fields(node);
 //     fields.number("refresh", output.refreshHz, 1, 240, "Hz");          // required
 //     fields.optional().number("gamma", output.gamma, 1, 4);             // keeps the target's default when absent
-//     return fields.finish();                                            // the first thing wrong in the file's order, unknown keys included
+//     return fields.finish();                                            // all that is wrong in the file's order, unknown keys included
 // A target is written only when its value is good.
 class ConfigFields {
 public:
@@ -107,12 +129,19 @@ public:
               std::size_t most = std::numeric_limits<std::size_t>::max()) {
         read(key, target, [&](const ConfigNode& node) -> Result<std::vector<Element>> {
             std::vector<Element> elements;
-            for (const ConfigNode& item : TRY(node.items(least, most))) elements.push_back(TRY(parse(item)));
+            ConfigFaults faults;
+            for (const ConfigNode& item : TRY(node.items(least, most)))
+                faults.take(Result<Element>(parse(item)), [&](Element element) { elements.push_back(std::move(element)); });
+            TRY(faults.result());
             return elements;
         });
     }
     // The first two keys of every file: `fantascope: KIND` and `version: N`. Error: another kind of file, or a version of a newer program.
     void header(std::string_view kind, std::int64_t newestVersion);
+    // What else is wrong: `checked` is told at the place of `at`.
+    void check(const ConfigNode& at, const Result<void>& checked);
+    // Whether nothing is wrong so far. Unknown keys show in finish() alone.
+    bool right() const { return failures_.empty() && missing_.empty(); }
 
     Result<void> finish();
 
@@ -122,7 +151,7 @@ private:
 
     ConfigNode node_;
     bool nextOptional_ = false;
-    std::vector<std::string> known_;
+    std::vector<std::string> known_, missing_;
     std::vector<std::pair<std::pair<int, int>, Error>> failures_;  // by line and column
 };
 

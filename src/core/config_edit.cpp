@@ -147,29 +147,31 @@ bool differsOnlyAt(const YamlText& before, std::size_t begin, std::size_t end, c
     return at < newEnd && readsAs(now, at, *value) && now.after(at) == newEnd;
 }
 
+// What a step leads to from a node; kNone: nothing.
+std::size_t childOf(const YamlText& yaml, std::size_t node, const ConfigStep& step) {
+    const YamlEvent& event = yaml.events[node];
+    if (step.key() != nullptr) return event.kind == Map ? valueOf(yaml, node, *step.key()).value_or(kNone) : kNone;
+    if (event.kind != List || *step.index() >= countOf(yaml, node)) return kNone;
+    std::size_t item = node + 1;
+    for (std::size_t i = 0; i < *step.index(); ++i) item = yaml.after(item);
+    return item;
+}
+
 // Whether what the path leads to is the same in both, and the items of lists on the way are the same ones.
 bool sameAt(const YamlText& a, const YamlText& b, const ConfigPath& path) {
     const auto alike = [&](std::size_t i, std::size_t j) {
         return std::equal(a.events.begin() + i, a.events.begin() + a.after(i), b.events.begin() + j,
                           b.events.begin() + b.after(j), [](const YamlEvent& x, const YamlEvent& y) { return x.readsAs(y); });
     };
-    const auto child = [](const YamlText& yaml, std::size_t node, const ConfigStep& step) -> std::size_t {
-        const YamlEvent& event = yaml.events[node];
-        if (step.key() != nullptr) return event.kind == Map ? valueOf(yaml, node, *step.key()).value_or(kNone) : kNone;
-        if (event.kind != List || *step.index() >= countOf(yaml, node)) return kNone;
-        std::size_t item = node + 1;
-        for (std::size_t i = 0; i < *step.index(); ++i) item = yaml.after(item);
-        return item;
-    };
     std::size_t i = 0, j = 0;
     for (const ConfigStep& step : path) {
-        const std::size_t inA = child(a, i, step), inB = child(b, j, step);
+        const std::size_t inA = childOf(a, i, step), inB = childOf(b, j, step);
         // An item that is new has its place behind the others, whoever else added some there.
         if (inA == kNone || inB == kNone) return inA == inB && a.events[i].kind == b.events[j].kind;
         i = inA;
         j = inB;
         if (step.index() == nullptr) continue;
-        const std::size_t nameA = child(a, i, "name"), nameB = child(b, j, "name");
+        const std::size_t nameA = childOf(a, i, "name"), nameB = childOf(b, j, "name");
         if (nameA == kNone || nameB == kNone ? !alike(i, j) : !alike(nameA, nameB)) return false;
     }
     return alike(i, j);
@@ -182,6 +184,17 @@ Result<ConfigDocument> ConfigDocument::load(const fs::path& path) { return parse
 Result<ConfigDocument> ConfigDocument::parse(std::string text, const fs::path& path) {
     TRY(readYamlText(text, path));
     return ConfigDocument(path, std::move(text));
+}
+
+std::optional<std::size_t> ConfigDocument::itemNamed(const std::string& list, const std::string& name) const {
+    const auto yaml = readYamlText(text_, path_);
+    const std::size_t items = yaml ? childOf(*yaml, 0, list) : kNone;
+    if (items == kNone) return std::nullopt;
+    for (std::size_t i = 0; i < countOf(*yaml, items); ++i) {
+        const std::size_t its = childOf(*yaml, childOf(*yaml, items, i), "name");
+        if (its != kNone && yaml->events[its].kind == Scalar && yaml->events[its].text == name) return i;
+    }
+    return std::nullopt;
 }
 
 Result<void> ConfigDocument::set(const ConfigPath& path, const ConfigValue& value) { return apply({path, {value}}); }

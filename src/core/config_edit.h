@@ -11,6 +11,7 @@
 #include <concepts>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -56,6 +57,8 @@ public:
     Result<void> erase(const ConfigPath& path);
 
     const std::string& text() const { return text_; }
+    // The place of the item of the root's list `list` whose `name` is this; nothing: there is none.
+    std::optional<std::size_t> itemNamed(const std::string& list, const std::string& name) const;
 
     // Writes the file if anything was changed: see writeFile. A person's version is kept beside it, as FILE.previous: that which stood there
     // before the first save, and again before a save that finds the file changed by somebody else since.

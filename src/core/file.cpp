@@ -1,5 +1,6 @@
 #include "core/file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -8,69 +9,170 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <limits>
 
 namespace fantascope {
 
 namespace fs = std::filesystem;
 
-Result<std::string> readFile(const fs::path& path) { return readStart(path, std::numeric_limits<std::size_t>::max()); }
+namespace {
 
-Result<std::string> readStart(const fs::path& path, std::size_t bytes) {
-    std::error_code ignored;
-    if (fs::is_directory(path, ignored)) return Error(fmt::format("{}: is a folder, a file is needed", path.string()));
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) return Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+Error notRead(const fs::path& path, int reason) {
+    return Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(reason)));
+}
+
+Result<void> checkKind(const fs::path& path, const struct stat& found) {
+    if (S_ISREG(found.st_mode)) return {};
+    const char* const kind = S_ISDIR(found.st_mode)    ? "folder"
+                             : S_ISFIFO(found.st_mode) ? "pipe"
+                             : S_ISSOCK(found.st_mode) ? "socket"
+                                                       : "device";
+    return Error(fmt::format("{}: is a {}, a file is needed", path.string(), kind));
+}
+
+// At most `bytes` of a file that has at most `most`.
+Result<std::string> read(const fs::path& path, std::size_t bytes, std::uintmax_t most) {
+    TRY(checkRegular(path));
+    // It may be another one by now: a pipe is not waited for either.
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (descriptor < 0) return notRead(path, errno);
+    struct Closed {
+        int descriptor;
+        ~Closed() { ::close(descriptor); }
+    } const closed{descriptor};
+    struct stat found = {};
+    if (::fstat(descriptor, &found) != 0) return notRead(path, errno);
+    TRY(checkKind(path, found));
+    const auto tooLarge = [&](std::uintmax_t size) {
+        constexpr double kMebi = 1 << 20;
+        return Error(
+            fmt::format("{}: is too large, {:.1f} MiB: such a file has at most {:.0f} MiB; make it smaller, or name another",
+                        path.string(), static_cast<double>(size) / kMebi, static_cast<double>(most) / kMebi));
+    };
+    if (static_cast<std::uintmax_t>(found.st_size) > most) return tooLarge(static_cast<std::uintmax_t>(found.st_size));
     std::string content;
+    content.reserve(std::min(bytes, static_cast<std::size_t>(found.st_size)));
     std::array<char, 65536> part;
     while (content.size() < bytes) {
-        stream.read(part.data(), static_cast<std::streamsize>(std::min(part.size(), bytes - content.size())));
-        content.append(part.data(), static_cast<std::size_t>(stream.gcount()));
-        if (!stream) break;
+        const ssize_t count = ::read(descriptor, part.data(), std::min(part.size(), bytes - content.size()));
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return notRead(path, errno);
+        if (count == 0) break;
+        content.append(part.data(), static_cast<std::size_t>(count));
+        if (content.size() > most) return tooLarge(content.size());  // it grows
     }
-    if (stream.bad()) return Error(fmt::format("{}: reading failed: {}", path.string(), std::strerror(errno)));
     return content;
 }
 
-Result<void> writeFile(const fs::path& path, std::string_view bytes, const fs::path& like) {
-    const auto refused = [&](int reason) {
-        return Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(reason)));
-    };
+}  // namespace
+
+Result<std::string> readFile(const fs::path& path, std::uintmax_t most) {
+    return read(path, std::numeric_limits<std::size_t>::max(), most);
+}
+
+Result<std::string> readStart(const fs::path& path, std::size_t bytes) {
+    return read(path, bytes, std::numeric_limits<std::uintmax_t>::max());
+}
+
+Result<void> checkRegular(const fs::path& path) {
+    struct stat found = {};
+    return ::stat(path.c_str(), &found) == 0 ? checkKind(path, found) : Result<void>();
+}
+
+Result<NewFile> NewFile::open(const fs::path& path) {
+    NewFile file(path, path);
     std::error_code failure;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
-    if (failure) return refused(failure.value());
+    if (failure) return file.refused(failure.value());
 
     std::error_code ignored;
-    const fs::path target = fs::is_symlink(path, ignored) ? fs::canonical(path, failure) : path;
-    if (failure) return refused(failure.value());  // a link to nowhere
-    struct stat standing = {}, model = {};
-    const bool stands = ::stat(target.c_str(), &standing) == 0;
-    if (stands && ((standing.st_mode & 0222) == 0 || ::access(target.c_str(), W_OK) != 0)) return refused(EACCES);
-    const bool modelled = ::stat(like.empty() ? target.c_str() : like.c_str(), &model) == 0;
+    if (fs::is_symlink(path, ignored)) file.target_ = fs::canonical(path, failure);
+    if (failure) return file.refused(failure.value());  // a link to nowhere
+    struct stat standing = {};
+    if (::stat(file.target_.c_str(), &standing) == 0) {
+        if (!S_ISREG(standing.st_mode) && !S_ISDIR(standing.st_mode))
+            return Error(fmt::format("{}: cannot be written: it is a device or a pipe, a file is needed", path.string()));
+        if ((standing.st_mode & 0222) == 0 || ::access(file.target_.c_str(), W_OK) != 0) return file.refused(EACCES);
+    }
 
-    std::string aside = target.string() + ".XXXXXX";  // mkstemp(3) puts letters there that no file has yet
-    const int descriptor = ::mkstemp(aside.data());
-    if (descriptor < 0) return refused(errno);
-    const auto abandon = [&](int reason) {
-        ::close(descriptor);
-        ::unlink(aside.c_str());
-        return refused(reason);
-    };
+    const fs::path folder = file.target_.has_parent_path() ? file.target_.parent_path() : ".";
+    // A nameless file gets its name by way of /proc.
+    const bool hasProc = ::access("/proc/self/fd", X_OK) == 0;
+    if (hasProc) file.descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (!hasProc || (file.descriptor_ < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL))) {
+        std::string aside = file.target_.string() + ".XXXXXX";  // mkostemp(3) puts letters there that no file has yet
+        file.descriptor_ = ::mkostemp(aside.data(), O_CLOEXEC);
+        if (file.descriptor_ >= 0) file.aside_ = std::move(aside);
+    }
+    if (file.descriptor_ < 0) return file.refused(errno);
+    return file;
+}
+
+NewFile::NewFile(NewFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      target_(std::move(other.target_)),
+      aside_(std::exchange(other.aside_, {})),
+      descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+NewFile::~NewFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!aside_.empty()) ::unlink(aside_.c_str());
+}
+
+Error NewFile::refused(int reason) const {
+    return Error(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(reason)));
+}
+
+Result<void> NewFile::write(std::string_view bytes) {
     while (!bytes.empty()) {
-        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+        const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
         if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return abandon(errno);
+        if (written < 0) return refused(errno);
         bytes.remove_prefix(static_cast<std::size_t>(written));
     }
-    // Only root may give a file away, others may to a group of their own; where neither is allowed the file is the writer's.
-    [[maybe_unused]] const bool given = modelled && (::fchown(descriptor, model.st_uid, model.st_gid) == 0 ||
-                                                     ::fchown(descriptor, static_cast<uid_t>(-1), model.st_gid) == 0);
-    if (::fchmod(descriptor, modelled ? model.st_mode & 0777 : 0644) != 0 || ::fsync(descriptor) != 0) return abandon(errno);
-    if (::rename(aside.c_str(), target.c_str()) != 0) return abandon(errno);
-    ::close(descriptor);
     return {};
+}
+
+bool NewFile::giveName() {
+    if (aside_.empty()) {
+        const std::string nameless = fmt::format("/proc/self/fd/{}", descriptor_);
+        const auto link = [&](const std::string& name) {
+            return ::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+        };
+        if (link(target_)) return true;
+        if (errno != EEXIST) return false;
+        // A link takes no other's place, only a file with a name does. It has one for this moment.
+        std::string name;
+        for (int attempt = 0; aside_.empty(); ++attempt) {
+            name = fmt::format("{}.{}-{}", target_.string(), ::getpid(), attempt);
+            if (link(name))
+                aside_ = name;
+            else if (errno != EEXIST)
+                return false;
+        }
+    }
+    if (::rename(aside_.c_str(), target_.c_str()) != 0) return false;
+    aside_.clear();
+    return true;
+}
+
+Result<void> NewFile::finish(const fs::path& like) {
+    struct stat model = {};
+    const bool modelled = ::stat(like.empty() ? target_.c_str() : like.c_str(), &model) == 0;
+    // Only root may give a file away, others may to a group of their own; where neither is allowed the file is the writer's.
+    [[maybe_unused]] const bool given = modelled && (::fchown(descriptor_, model.st_uid, model.st_gid) == 0 ||
+                                                     ::fchown(descriptor_, static_cast<uid_t>(-1), model.st_gid) == 0);
+    if (::fchmod(descriptor_, modelled ? model.st_mode & 0777 : 0644) != 0 || ::fsync(descriptor_) != 0 || !giveName())
+        return refused(errno);
+    return {};
+}
+
+Result<void> writeFile(const fs::path& path, std::string_view bytes, const fs::path& like) {
+    NewFile file = TRY(NewFile::open(path));
+    TRY(file.write(bytes));
+    return file.finish(like);
 }
 
 Result<std::string> relativeTo(const std::filesystem::path& file, const std::filesystem::path& path) {

@@ -1,5 +1,7 @@
 #include "core/glyph.h"
 
+#include "core/file.h"
+
 #include <fmt/format.h>
 #include <freetype/freetype.h>
 #include <freetype/ftoutln.h>
@@ -62,8 +64,10 @@ Result<Outline> glyphOutline(char32_t character) {
     FT_Library library = nullptr;
     if (FT_Init_FreeType(&library) != 0) return Error("FreeType cannot be started");
     const Owned<FT_Library> ownedLibrary(library);
+    const auto font = readFile(kFont);
     FT_Face face = nullptr;
-    if (FT_New_Face(library, kFont, 0, &face) != 0)
+    if (!font || FT_New_Memory_Face(library, reinterpret_cast<const FT_Byte*>(font->data()), static_cast<FT_Long>(font->size()),
+                                    0, &face) != 0)
         return Error(fmt::format("{}: the font of the letters cannot be read; install fonts-dejavu-core", kFont));
     const Owned<FT_Face> ownedFace(face);
     if (FT_Get_Char_Index(face, character) == 0 || FT_Load_Char(face, character, FT_LOAD_NO_SCALE) != 0)

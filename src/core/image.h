@@ -63,12 +63,13 @@ using GreyImage = Image<float>;  // values 0..1; whether stored or linear is sai
 float linearFromSrgb(float stored);
 float srgbFromLinear(float linear);
 
-// Reads PNG, JPEG, TIFF or whatever else OpenCV reads. Grey: stored values / the type's maximum, colours weighted as Rec. 601 luma; an alpha
-// channel is laid over black. Error: names the file: missing, truncated, not a picture, or larger than 16384 in a dimension.
+// Reads PNG, JPEG, TIFF, BMP and WebP. Grey: stored values / the type's maximum, colours weighted as Rec. 601 luma; an alpha channel is laid
+// over black. Error: names the file: missing, no regular file, truncated, not a picture; or, before it is decoded, larger than 16384 in a
+// dimension or more than 2^26 pixels.
 Result<GreyImage> readGrey(const std::filesystem::path& path);
 Result<RgbaImage> readRgba(const std::filesystem::path& path);
-// Width and height of a PNG or a JPEG, from its head alone: a picture that is too large need not be decoded to be refused. Error: names the
-// file: missing, or neither of them.
+// Width and height of a picture, from its head alone: one that is too large need not be decoded to be refused. Error: names the file:
+// missing, or no such picture.
 Result<glm::ivec2> pictureSize(const std::filesystem::path& path);
 
 // PNG, 8 bits a channel where the picture has no more, written aside and renamed. Alpha is straight (not premultiplied). The same picture

@@ -1,7 +1,10 @@
 #include "core/log.h"
 
+#include "core/text.h"
+
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <map>
 #include <memory>
@@ -32,7 +35,7 @@ public:
         auto found = loggers_.find(category);
         if (found == loggers_.end()) {
             auto logger = std::make_unique<spdlog::logger>(std::string(category), sink_);
-            logger->set_pattern("%H:%M:%S.%e %^%l%$ %n: %v");
+            logger->set_pattern(wipe_ + std::string("%H:%M:%S.%e %^%l%$ %n: %v"));
             logger->set_level(level_);
             found = loggers_.emplace(std::string(category), std::move(logger)).first;
         }
@@ -47,6 +50,8 @@ public:
 private:
     std::mutex mutex_;
     spdlog::sink_ptr sink_ = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+    // On a terminal a status line may stand where this one comes; whoever drew it draws it again.
+    const char* const wipe_ = isatty(STDERR_FILENO) != 0 ? "\r\x1b[J" : "";
     spdlog::level::level_enum level_ = spdlog::level::info;
     std::map<std::string, std::unique_ptr<spdlog::logger>, std::less<>> loggers_;
 };
@@ -59,7 +64,7 @@ Loggers& loggers() {
 }  // namespace
 
 void write(Level level, std::string_view category, std::string_view message) {
-    loggers().of(category).log(spdlogLevel(level), "{}", message);
+    loggers().of(category).log(spdlogLevel(level), "{}", printableLines(message));
 }
 
 void setLevel(Level level) { loggers().setLevel(spdlogLevel(level)); }

@@ -2,6 +2,8 @@
 
 #include "core/file.h"
 
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -10,12 +12,64 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <iterator>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace fantascope {
 namespace {
+
+// What assimp opens: the file, and those that it names, such as a glTF's buffers. Each is read whole, and refused as readFile() does it.
+class Files : public Assimp::IOSystem {
+public:
+    std::optional<Error> refusal;  // of the first that was
+
+    bool Exists(const char* path) const override {
+        std::error_code ignored;
+        return std::filesystem::exists(path, ignored);
+    }
+    char getOsSeparator() const override { return '/'; }
+    Assimp::IOStream* Open(const char* path, const char* mode) override {
+        if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
+        auto bytes = readFile(path, kMaxFileBytes);
+        if (!bytes) {
+            if (!refusal) refusal = bytes.error();
+            return nullptr;
+        }
+        return new Stream(std::move(*bytes));
+    }
+    void Close(Assimp::IOStream* stream) override { delete stream; }
+
+private:
+    class Stream : public Assimp::IOStream {
+    public:
+        explicit Stream(std::string bytes) : bytes_(std::move(bytes)) {}
+        std::size_t Read(void* to, std::size_t size, std::size_t count) override {
+            if (size == 0) return 0;
+            const std::size_t whole = std::min(count, (bytes_.size() - at_) / size);
+            std::memcpy(to, bytes_.data() + at_, whole * size);
+            at_ += whole * size;
+            return whole;
+        }
+        std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+        aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+            const std::size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
+            if (from + offset > bytes_.size()) return aiReturn_FAILURE;  // backwards is a large number that wraps
+            at_ = from + offset;
+            return aiReturn_SUCCESS;
+        }
+        std::size_t Tell() const override { return at_; }
+        std::size_t FileSize() const override { return bytes_.size(); }
+        void Flush() override {}
+
+    private:
+        const std::string bytes_;
+        std::size_t at_ = 0;
+    };
+};
 
 // Appends what a node and its children show, in the scene's space; parts of points and lines show no surface.
 void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& sceneFromParent, TriangleMesh& mesh) {
@@ -60,14 +114,16 @@ bool isFinite(const glm::vec3& point) { return std::isfinite(point.x) && std::is
 }  // namespace
 
 Result<TriangleMesh> readMesh(const std::filesystem::path& path) {
-    // assimp's own message for a missing file does not say why; readFile's does.
-    if (auto readable = readFile(path); !readable) return readable.error();
+    TRY(readStart(path, 0));  // assimp's own message for a missing file does not say why
     const auto refused = [&](std::string_view why) { return Error(fmt::format("{}: {}", path.string(), why)); };
     Assimp::Importer importer;
+    auto* const files = new Files;
+    importer.SetIOHandler(files);  // which is the importer's from now on
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TEXCOORDS | aiComponent_COLORS |
                                                             aiComponent_TANGENTS_AND_BITANGENTS);
     const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_RemoveComponent |
                                                                 aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+    if (files->refusal) return *files->refusal;
     if (scene == nullptr)
         return refused(fmt::format("not a mesh that can be read: {}; export it as FBX, OBJ or glTF", importer.GetErrorString()));
     TriangleMesh mesh;

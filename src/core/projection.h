@@ -47,6 +47,7 @@ struct Projection {
     Warp warp = Warp::straight({1, 1});
     std::vector<Mask> masks{};
     ProjectorLight light{};
+    double canvasAspect = 0;  // width / height of the whole canvas where it falls; 0: that of each picture
 };
 
 // What a technician puts on the outputs instead of the show.

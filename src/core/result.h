@@ -70,7 +70,7 @@ private:
 }  // namespace fantascope
 
 // The value of a Result, or a return of its error from the enclosing function: auto image = TRY(readGrey(path));
-// Nothing that owns memory may come before it in its expression, as in f(name, TRY(...)) or {name, TRY(...)}: g++ would not destroy it.
+// Between braces that make a value it comes first, never as in {name, TRY(...)}: g++ would not destroy the name. tests/house holds this.
 #define TRY(expression)                                                      \
     ({                                                                       \
         auto tried_ = (expression);                                          \

@@ -106,6 +106,15 @@ Result<Warp> Warp::of(const WarpShape& shape) {
 
 Warp Warp::straight(glm::ivec2 size) { return of({.corners = rectangleCorners(size.x, size.y)}).value(); }
 
+Warp Warp::ofPictureOn(const CanvasPart& place) const {
+    const glm::dvec2 size = place.high - place.low;
+    WarpShape shape = shape_;
+    shape.part = {(shape.part.low - place.low) / size, (shape.part.high - place.low) / size};
+    return Warp(shape, keystoneFromPicture_, squareFromCanvas(shape.part, shape.orientation));
+}
+
+CanvasPart Warp::shown() const { return {glm::max(shape_.part.low, 0.0), glm::min(shape_.part.high, 1.0)}; }
+
 Warp::Warp(const WarpShape& shape, const Homography& keystoneFromPicture, const glm::dmat3& pictureFromCanvas)
     : shape_(shape),
       keystoneFromPicture_(keystoneFromPicture),

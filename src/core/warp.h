@@ -67,7 +67,13 @@ public:
     // The whole canvas, from edge to edge of a picture of `size` pixels.
     static Warp straight(glm::ivec2 size);
 
+    // The same for a picture that lies on a part of the canvas, perhaps beyond its edges: the picture is then the canvas, and what is shown of it
+    // may end before, or lie around, its edges.
+    Warp ofPictureOn(const CanvasPart& place) const;
+
     const WarpShape& shape() const { return shape_; }
+    // What is seen of the canvas: its part, which of a picture on it may reach over the edges.
+    CanvasPart shown() const;
     bool bends() const { return shape_.mesh.points.x > 0; }
     // The canvas by the keystone alone.
     const Homography& keystone() const { return keystone_; }

@@ -98,11 +98,6 @@ private:
     Result<void> take(const yaml_event_t& event) {
         const auto& data = event.data;
         switch (event.type) {
-            case YAML_DOCUMENT_START_EVENT:
-                if (!yaml_.events.empty())
-                    return Error(fmt::format("{}: a second document begins here; the program changes files of one document only",
-                                             yaml_.place(name_, byteOf(event.start_mark))));
-                break;
             case YAML_ALIAS_EVENT:
                 add(Alias, event, nullptr, nullptr).anchor = anchors_[reinterpret_cast<const char*>(data.alias.anchor)];
                 finish(yaml_.events.size() - 1);

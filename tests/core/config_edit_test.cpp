@@ -205,7 +205,7 @@ TEST(ConfigEdit, texts_that_cannot_be_changed_safely_are_refused) {
         const auto document = ConfigDocument::parse(text, "f");
         return document ? "accepted" : document.error().message();
     };
-    EXPECT_EQ(why("a: 1\n---\nb: 1\n"), "f:2:1: a second document begins here; the program changes files of one document only");
+    EXPECT_EQ(why("a: 1\n---\nb: 1\n"), "f:2:1: a second document begins here; put it in a file of its own");
     EXPECT_THAT(why("a: [1\n"), HasSubstr("not YAML"));
     EXPECT_THAT(why("- 1\n"), HasSubstr("a map of 'key: value' lines is needed"));
     EXPECT_THAT(why(""), HasSubstr("a map"));
@@ -213,7 +213,7 @@ TEST(ConfigEdit, texts_that_cannot_be_changed_safely_are_refused) {
                                 "a\0:\0 \0b\0",
                                 10)),
                 HasSubstr("UTF-16"));
-    EXPECT_THAT(why("a: \xFF\n"), HasSubstr("f:1: not UTF-8"));
+    EXPECT_THAT(why("a: \xFF\n"), HasSubstr("f:1:4: not UTF-8"));
 }
 
 // ---- Any document, any path, any value

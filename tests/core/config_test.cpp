@@ -61,8 +61,63 @@ TEST(Config, what_is_not_yaml_is_refused_with_its_place) {
     EXPECT_THAT(refusal(""), HasSubstr("a map"));
 }
 
-TEST(Config, of_several_mistakes_the_first_in_the_file_is_named) {
-    EXPECT_THAT(refusal("name: a\nblades: 1\nfocal: 0\n"), HasSubstr(":2:9: blades"));
+// Example failure: whoever mends a file starts the program once for each mistake.
+TEST(Config, all_mistakes_are_told_in_the_files_order) {
+    EXPECT_EQ(refusal("zoom: 2\nblades: 1\nfocal: 0\n"),
+              "folder/lens.yaml:1:1: zoom: unknown key (known here: name, focal, blades)\n"
+              "folder/lens.yaml:1:1: 'name' is missing\n"
+              "folder/lens.yaml:2:9: blades: 1 is out of range, 3 .. 20 is allowed\n"
+              "folder/lens.yaml:3:8: focal: 0 is out of range, 1 .. 1000 mm is allowed");
+}
+
+// A list goes on after an item that is wrong, and so does a map in it.
+TEST(Config, mistakes_in_several_items_are_all_told) {
+    const auto node = ConfigNode::parse("lenses:\n  - {a: 1, other: 2}\n  - {a: x}\n  - {a: 3}\n", "f");
+    std::vector<double> lenses;
+    ConfigFields fields(*node);
+    fields.list("lenses", lenses, [](const ConfigNode& item) -> Result<double> {
+        double a = 0;
+        ConfigFields own(item);
+        own.number("a", a, 0, 2);
+        TRY(own.finish());
+        return a;
+    });
+    EXPECT_EQ(fields.finish().error().message(),
+              "f:2:12: lenses[0].other: unknown key (known here: a)\n"
+              "f:3:9: lenses[1].a: a number in 0 .. 2 is needed, here is 'x'\n"
+              "f:4:9: lenses[2].a: 3 is out of range, 0 .. 2 is allowed");
+}
+
+// Example failure: "unknown key 'nme'" and "'name' is missing" send a reader to two places for one slip of the finger.
+TEST(Config, a_key_that_is_misspelt_is_not_missing_too) {
+    for (const char* slip : {"nme", "Name", "namee"})
+        EXPECT_EQ(refusal(std::string(slip) + ": Nikkor\n"),
+                  "folder/lens.yaml:1:1: " + std::string(slip) + ": unknown key (did you mean 'name'?)");
+}
+
+// Whoever pastes two files into one believes that both count.
+TEST(Config, a_second_document_is_refused_with_its_place) {
+    EXPECT_THAT(refusal("name: a\n---\nname: b\n"), StartsWith("folder/lens.yaml:2:1: a second document begins here"));
+    EXPECT_THAT(refusal("---\nname: a\n...\n---\nname: b\n"), StartsWith("folder/lens.yaml:4:1: a second document"));
+    EXPECT_EQ(refusal("---\nname: a\n...\n"), "accepted");
+    EXPECT_EQ(refusal("# first\n---\nname: a\n"), "accepted");
+}
+
+// A file from elsewhere must not steer the terminal that tells of it.
+// Example failure: "\x1b[2J" in a name clears the screen, and 70 KB of a value push everything out of it.
+TEST(Config, what_is_quoted_of_a_file_is_harmless_and_short) {
+    const std::string escape = "\"\\e[2J\"", longText(70'000, 'x');
+    for (const std::string& text :
+         {"name: a\nfocal: " + escape, "name: " + escape, "name: a\n" + escape + ": 1", "name: a\nfocal: " + longText,
+          "name: " + longText, "name: a\n" + longText.substr(0, 900) + ": 1"}) {
+        const std::string message = refusal(text + "\n");
+        EXPECT_NE(message, "accepted");
+        EXPECT_EQ(message.find('\x1b'), std::string::npos) << message;
+        EXPECT_LT(message.size(), 600u);
+    }
+    EXPECT_THAT(refusal("name: a\nfocal: " + escape + "\n"), HasSubstr("here is '\\x1b[2J'"));
+    EXPECT_THAT(refusal("name: a\nfocal: " + longText + "\n"), HasSubstr("xxx...'"));
+    EXPECT_THAT(refusal("name: |\n  two\n  lines\n"), HasSubstr("a text on one line without control characters is needed"));
 }
 
 TEST(Config, paths_stay_in_the_files_folder) {
@@ -93,15 +148,16 @@ TEST(Config, shortest_numbers_read_back_exactly) {
 }
 
 // An editor of another age, or a file that is none of ours.
-TEST(ConfigNode, refuses_what_is_not_utf8_with_its_line) {
+TEST(ConfigNode, refuses_what_is_not_utf8_with_its_place) {
     const auto refusal = [](const std::string& text) {
         const auto node = ConfigNode::parse(text, "a.yaml");
         return node ? "accepted" : node.error().message();
     };
     EXPECT_EQ(refusal("name: M\xc3\xbcller \xe2\x82\xac \xf0\x9f\x8c\x99\n"), "accepted");
-    EXPECT_EQ(refusal("a: 1\nname: M\xfcller\n"), "a.yaml:2: not UTF-8; save the file in that encoding");
+    EXPECT_EQ(refusal("a: 1\nname: M\xfcller\n"), "a.yaml:2:8: not UTF-8; save the file in that encoding");
+    EXPECT_EQ(refusal("n\xc3\xa4me: \xff\n"), "a.yaml:1:7: not UTF-8; save the file in that encoding") << "in characters";
     for (const char* broken : {"a: \xc3", "a: \xc3(", "a: \x80", "a: \xc0\xaf", "a: \xe2\x82", "a: \xf8\x88\x80\x80\x80"})
-        EXPECT_EQ(refusal(broken), "a.yaml:1: not UTF-8; save the file in that encoding") << broken;
+        EXPECT_EQ(refusal(broken), "a.yaml:1:4: not UTF-8; save the file in that encoding") << broken;
 }
 
 }  // namespace

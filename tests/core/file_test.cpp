@@ -2,12 +2,16 @@
 
 #include "scratch_folder.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <utility>
 
 namespace fantascope {
 namespace {
@@ -117,6 +121,71 @@ TEST(File, a_write_that_fails_half_way_leaves_the_old_bytes) {
     EXPECT_EQ(written.error().message(), (folder / "a").string() + ": cannot be written: File too large");
     EXPECT_EQ(*readFile(folder / "a"), "old");
     EXPECT_THAT(folder.names(), ElementsAre("a"));
+}
+
+// Example failures: a pipe is waited for without end; a device without an end is read until the memory is full.
+TEST(File, what_is_no_regular_file_is_refused_at_once) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    std::filesystem::create_symlink("pipe", folder / "link");
+    const int listening = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    (folder / "socket").string().copy(address.sun_path, sizeof address.sun_path - 1);
+    ASSERT_EQ(::bind(listening, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    const std::pair<std::filesystem::path, const char*> kinds[] = {{folder / "pipe", "pipe"},
+                                                                   {folder / "link", "pipe"},
+                                                                   {folder / "socket", "socket"},
+                                                                   {"/dev/zero", "device"},
+                                                                   {"/tmp", "folder"}};
+    for (const auto& [path, kind] : kinds) {
+        const std::string wanted = fmt::format("{}: is a {}, a file is needed", path.string(), kind);
+        EXPECT_EQ(readFile(path).error().message(), wanted);
+        EXPECT_EQ(readStart(path, 10).error().message(), wanted);
+        EXPECT_EQ(checkRegular(path).error().message(), wanted);
+    }
+    ::close(listening);
+    EXPECT_TRUE(checkRegular(folder / "none")) << "who opens it will say so";
+}
+
+TEST(File, that_is_too_large_is_refused_before_it_is_read) {
+    const ScratchFolder folder;
+    const auto file = folder.file("a", "");
+    std::filesystem::resize_file(file, 100'000);
+    EXPECT_EQ(readFile(file, 100'000)->size(), 100'000u);
+    std::filesystem::resize_file(file, std::uintmax_t{1} << 40);  // a terabyte of nothing
+    EXPECT_THAT(folder.relative(readFile(file).error().message()),
+                "a: is too large, 1048576.0 MiB: such a file has at most 32 MiB; make it smaller, or name another");
+    EXPECT_EQ(readStart(file, 5)->size(), 5u);
+}
+
+// A program that is ended in the middle leaves no half file, however it is ended. Example failure: NAME.part lies about.
+TEST(File, that_is_written_has_no_name_before_it_is_whole) {
+    const ScratchFolder folder;
+    for (const char* before : {"", "old"}) {
+        const std::string name = *before != '\0' ? "a" : "b";
+        if (*before != '\0') folder.file(name, before);
+        const auto names = folder.names();
+        {
+            auto file = NewFile::open(folder / name);
+            ASSERT_TRUE(file && file->write("new"));
+            EXPECT_EQ(folder.names(), names);
+        }
+        EXPECT_EQ(folder.names(), names) << "without finish() nothing was written";
+        auto file = NewFile::open(folder / name);
+        ASSERT_TRUE(file && file->write("new") && file->finish());
+        EXPECT_EQ(*readFile(folder / name), "new");
+    }
+    EXPECT_THAT(folder.names(), ElementsAre("a", "b"));
+}
+
+// Example failure: a report that is to be thrown away replaces /dev/null, for every program of the machine.
+TEST(File, a_device_is_not_replaced) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    EXPECT_EQ(folder.relative(writeFile(folder / "pipe", "x").error().message()),
+              "pipe: cannot be written: it is a device or a pipe, a file is needed");
+    EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
 }
 
 // The rename fails, at the very end: what was there stays, and nothing written aside is left lying about.

@@ -7,10 +7,13 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -177,6 +180,57 @@ TEST_F(ImageTest, a_pictures_size_stands_in_its_head) {
     EXPECT_EQ(size(jpeg.substr(0, 2) + segment + jpeg.substr(2)).value(), glm::ivec2(300, 20));
     EXPECT_THAT(size("no picture").error().message(), HasSubstr("picture: not a PNG or JPEG picture"));
     EXPECT_THAT(pictureSize(folder_ / "absent").error().message(), HasSubstr("absent: cannot be read"));
+}
+
+// So many pixels from so few bytes: a head alone, of every kind, and what a decoder would have to make room for.
+// Example failure: a file of two megabytes takes three gigabytes before it is refused.
+TEST_F(ImageTest, too_many_pixels_are_refused_before_they_are_decoded) {
+    const auto number = [](std::uint32_t value, bool isBig) {
+        std::string bytes;
+        for (int i = 0; i < 4; ++i) bytes += static_cast<char>(value >> 8 * (isBig ? 3 - i : i));
+        return bytes;
+    };
+    const auto little = [&](std::uint32_t value) { return number(value, false); };
+    const auto big = [&](std::uint32_t value) { return number(value, true); };
+    const auto half = [](std::uint32_t value) { return std::string{char(value), char(value >> 8)}; };
+    const auto tiff = [&](std::uint32_t width, std::uint32_t height) {
+        return std::string("II*\0", 4) + little(8) + half(2) + half(256) + half(4) + little(1) + little(width) + half(257) +
+               half(4) + little(1) + little(height);
+    };
+    const auto png = [&](std::uint32_t width, std::uint32_t height) {
+        return std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) + big(width) + big(height) + std::string("\x08\0\0\0\0IEND", 9);
+    };
+    const std::string kPixels = "30000 x 30000 pixels: a picture may not be larger than 16384";
+    const std::string heads[] = {
+        png(30000, 30000), tiff(30000, 30000),
+        "BM" + std::string(12, '\0') + little(40) + little(30000) + little(static_cast<std::uint32_t>(-30000)),
+        std::string("RIFF\x20\0\0\0WEBPVP8X\x0a\0\0\0\0\0\0\0\x2f\x75\0\x2f\x75\0", 30),
+        std::string("\xff\xd8\xff\xff\xc0\0\x11\x08\x75\x30\x75\x30\x03", 13) + std::string(9, '\0') + "\xff\xd9"};
+    for (const std::string& head : heads) EXPECT_THAT(refusal(head), HasSubstr(kPixels)) << head.substr(0, 4);
+    EXPECT_THAT(refusal(png(16384, 4097)), HasSubstr("16384 x 4097 pixels")) << "each dimension is small enough, all is not";
+    EXPECT_THAT(refusal(png(0xffffffff, 0xffffffff)), HasSubstr("4294967295 x 4294967295 pixels"));
+}
+
+// What the head says is what comes out.
+TEST_F(ImageTest, every_kind_of_picture_is_read) {
+    const cv::Mat picture = gradient(33, 20);
+    for (const char* ending : {".png", ".jpg", ".tiff", ".bmp", ".webp"}) {
+        const GreyImage read = grey(encoded(ending, picture));
+        EXPECT_EQ(glm::ivec2(read.width(), read.height()), glm::ivec2(33, 20)) << ending;
+        EXPECT_EQ(pictureSize(folder_.file("a", encoded(ending, picture))).value(), glm::ivec2(33, 20)) << ending;
+    }
+}
+
+TEST_F(ImageTest, what_is_no_regular_file_is_refused_at_once) {
+    ASSERT_EQ(::mkfifo((folder_ / "pipe.png").c_str(), 0600), 0);
+    EXPECT_THAT(readGrey(folder_ / "pipe.png").error().message(), HasSubstr("is a pipe, a file is needed"));
+    EXPECT_THAT(readRgba("/dev/zero").error().message(), HasSubstr("is a device, a file is needed"));
+    const auto huge = folder_.file("huge.png", "");
+    std::filesystem::resize_file(huge, std::uintmax_t{1} << 40);
+    EXPECT_THAT(readRgba(huge).error().message(), HasSubstr("not a picture")) << "nothing is read of what is none";
+    folder_.file("huge.png", encoded(".png", gradient(4, 4)));
+    std::filesystem::resize_file(huge, std::uintmax_t{1} << 40);
+    EXPECT_THAT(readRgba(huge).error().message(), HasSubstr("is too large"));
 }
 
 // Example failure: red for blue on every key of the pad.

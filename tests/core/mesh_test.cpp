@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <array>
 #include <cstdint>
@@ -254,6 +255,19 @@ TEST_F(MeshTest, what_is_no_mesh_is_refused_with_its_name_and_advice) {
     EXPECT_THAT(refusal("more.glb", glb({0, 0, 0, 4, 0, 0, 0, 3, 1}, "300000000")), HasSubstr("more.glb: not a mesh"));
     EXPECT_THAT(readMesh(folder_ / "none.obj").error().message(), HasSubstr("none.obj: cannot be read: No such file"));
     EXPECT_THAT(readMesh(folder_ / "").error().message(), HasSubstr("is a folder"));
+}
+
+// Example failure: the check of a file waits without end for what another one names.
+TEST(Mesh, what_is_no_regular_file_is_refused_wherever_it_is_named) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe.obj").c_str(), 0600), 0);
+    EXPECT_EQ(folder.relative(readMesh(folder / "pipe.obj").error().message()), "pipe.obj: is a pipe, a file is needed");
+    const auto file =
+        folder.file("a.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+      "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"uri": "pipe.obj", "byteLength": 36}]})");
+    EXPECT_EQ(folder.relative(readMesh(file).error().message()), "pipe.obj: is a pipe, a file is needed");
 }
 
 }  // namespace
