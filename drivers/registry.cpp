@@ -28,41 +28,43 @@
 namespace fantascope::drivers {
 namespace {
 
-// A driver's own open() takes what the port's open function below takes.
-template <class Open>
+// A driver reads what the port's read function below takes.
+template <class Read>
 struct Driver {
     std::string_view name;
-    Open* open;
+    Read* read;
 };
 
 // Every driver of the project.
-constexpr Driver<decltype(openDisplay)> kDisplays[] = {{"headless", &HeadlessDisplay::open}, {"glfw", &GlfwDisplay::open}};
-constexpr Driver<decltype(openDmxPort)> kDmxPorts[] = {{"artnet", &ArtnetPort::open},
-                                                       {"sacn", &SacnPort::open},
-                                                       {"enttec_pro", &EnttecProPort::open},
-                                                       {"open_dmx", &OpenDmxPort::open},
-                                                       {"simulated", &SimulatedDmxPort::open}};
-constexpr Driver<decltype(openDmxSource)> kDmxSources[] = {{"artnet", &ArtnetSource::open},
-                                                           {"sacn", &SacnSource::open},
-                                                           {"enttec_pro", &EnttecProSource::open},
-                                                           {"simulated", &SimulatedDmxSource::open}};
-constexpr Driver<decltype(openRelayBank)> kRelayBanks[] = {{"simulated", &SimulatedRelayBank::open},
-                                                           {"modbus_tcp", &ModbusRelayBank::openTcp},
-                                                           {"modbus_rtu", &ModbusRelayBank::openRtu}};
-constexpr Driver<decltype(openInputBank)> kInputBanks[] = {{"simulated", &SimulatedInputBank::open},
-                                                           {"modbus_tcp", &ModbusInputBank::openTcp},
-                                                           {"modbus_rtu", &ModbusInputBank::openRtu}};
-constexpr Driver<decltype(openCueController)> kCueControllers[] = {{"simulated", &SimulatedCueController::open},
-                                                                   {"usb_hid", &UsbHidController::open}};
-constexpr Driver<decltype(openCamera)> kCameras[] = {{"simulated", &SimulatedCamera::open}, {"v4l2", &V4l2Camera::open}};
+constexpr Driver<decltype(readDisplay)> kDisplays[] = {{"headless", &HeadlessDisplay::fromConfig},
+                                                       {"glfw", &GlfwDisplay::fromConfig}};
+constexpr Driver<decltype(readDmxPort)> kDmxPorts[] = {{"artnet", &ArtnetPort::fromConfig},
+                                                       {"sacn", &SacnPort::fromConfig},
+                                                       {"enttec_pro", &EnttecProPort::fromConfig},
+                                                       {"open_dmx", &OpenDmxPort::fromConfig},
+                                                       {"simulated", &SimulatedDmxPort::fromConfig}};
+constexpr Driver<decltype(readDmxSource)> kDmxSources[] = {{"artnet", &ArtnetSource::fromConfig},
+                                                           {"sacn", &SacnSource::fromConfig},
+                                                           {"enttec_pro", &EnttecProSource::fromConfig},
+                                                           {"simulated", &SimulatedDmxSource::fromConfig}};
+constexpr Driver<decltype(readRelayBank)> kRelayBanks[] = {{"simulated", &SimulatedRelayBank::fromConfig},
+                                                           {"modbus_tcp", &ModbusRelayBank::readTcp},
+                                                           {"modbus_rtu", &ModbusRelayBank::readRtu}};
+constexpr Driver<decltype(readInputBank)> kInputBanks[] = {{"simulated", &SimulatedInputBank::fromConfig},
+                                                           {"modbus_tcp", &ModbusInputBank::readTcp},
+                                                           {"modbus_rtu", &ModbusInputBank::readRtu}};
+constexpr Driver<decltype(readCueController)> kCueControllers[] = {{"simulated", &SimulatedCueController::fromConfig},
+                                                                   {"usb_hid", &UsbHidController::fromConfig}};
+constexpr Driver<decltype(readCamera)> kCameras[] = {{"simulated", &SimulatedCamera::fromConfig},
+                                                     {"v4l2", &V4l2Camera::fromConfig}};
 
-// What opens the driver that the map's `driver` key names.
-template <class Open, std::size_t kCount>
-Result<Open*> chosenFrom(const Driver<Open> (&table)[kCount], const ConfigNode& options) {
+// What reads for the driver that the map's `driver` key names.
+template <class Read, std::size_t kCount>
+Result<Read*> chosenFrom(const Driver<Read> (&table)[kCount], const ConfigNode& options) {
     std::vector<std::string> names;
     for (const auto& driver : table) names.emplace_back(driver.name);
     for (const auto& [key, node] : TRY(options.entries()))
-        if (key == "driver") return table[TRY(node.choice(names))].open;
+        if (key == "driver") return table[TRY(node.choice(names))].read;
     return options.error(fmt::format("'driver' is missing, one of {} is needed", fmt::join(names, ", ")));
 }
 
@@ -73,35 +75,76 @@ constexpr Find kFinds[] = {&findMonitors,    &findWidgets,     [] { return findD
 
 }  // namespace
 
+Result<Opening<DisplaySink>> readDisplay(const ConfigNode& options, const DisplayRequest& request) {
+    return TRY(chosenFrom(kDisplays, options))(options, request);
+}
+
+Result<Opening<DmxPort>> readDmxPort(const ConfigNode& options, int universe) {
+    return TRY(chosenFrom(kDmxPorts, options))(options, universe);
+}
+
+Result<Opening<DmxSource>> readDmxSource(const ConfigNode& options, int universe) {
+    return TRY(chosenFrom(kDmxSources, options))(options, universe);
+}
+
+Result<Opening<RelayBank>> readRelayBank(const ConfigNode& options, const std::string& name,
+                                         const std::vector<bool>& safeStates) {
+    return TRY(chosenFrom(kRelayBanks, options))(options, name, safeStates);
+}
+
+Result<Opening<InputBank>> readInputBank(const ConfigNode& options, const std::string& name, std::size_t size) {
+    return TRY(chosenFrom(kInputBanks, options))(options, name, size);
+}
+
+Result<Opening<CueController>> readCueController(const ConfigNode& options) {
+    return TRY(chosenFrom(kCueControllers, options))(options);
+}
+
+Result<Opening<CameraSource>> readCamera(const ConfigNode& options) { return TRY(chosenFrom(kCameras, options))(options); }
+
+Result<void> SharedUses::add(const ConfigNode& options, const std::vector<Use>& uses) {
+    for (const Use& use : uses) {
+        const auto [user, isFirst] = users_.try_emplace(use.what, User{use.how, options.place()});
+        if (isFirst || (!use.how.empty() && use.how == user->second.how)) continue;
+        if (use.how.empty() || user->second.how.empty())
+            return options.error(
+                fmt::format("{} is taken by the device at {}; each needs its own", use.what, user->second.place));
+        return options.error(
+            fmt::format("{} is used here with {}, and by the device at {} with {}; all on one line need the same", use.what,
+                        use.how, user->second.place, user->second.how));
+    }
+    return {};
+}
+
 Result<std::unique_ptr<DisplaySink>> openDisplay(const ConfigNode& options, const DisplayRequest& request,
                                                  const Surroundings& around) {
-    return TRY(chosenFrom(kDisplays, options))(options, request, around);
+    return TRY(readDisplay(options, request)).open(around);
 }
 
 Result<std::unique_ptr<DmxPort>> openDmxPort(const ConfigNode& options, int universe, const Surroundings& around) {
-    return TRY(chosenFrom(kDmxPorts, options))(options, universe, around);
+    return TRY(readDmxPort(options, universe)).open(around);
 }
 
 Result<std::unique_ptr<DmxSource>> openDmxSource(const ConfigNode& options, int universe, const Surroundings& around) {
-    return TRY(chosenFrom(kDmxSources, options))(options, universe, around);
+    return TRY(readDmxSource(options, universe)).open(around);
 }
 
 Result<std::unique_ptr<RelayBank>> openRelayBank(const ConfigNode& options, const std::string& name,
                                                  const std::vector<bool>& safeStates, const Surroundings& around) {
-    return TRY(chosenFrom(kRelayBanks, options))(options, name, safeStates, around);
+    return TRY(readRelayBank(options, name, safeStates)).open(around);
 }
 
 Result<std::unique_ptr<InputBank>> openInputBank(const ConfigNode& options, const std::string& name, std::size_t size,
                                                  const Surroundings& around) {
-    return TRY(chosenFrom(kInputBanks, options))(options, name, size, around);
+    return TRY(readInputBank(options, name, size)).open(around);
 }
 
 Result<std::unique_ptr<CueController>> openCueController(const ConfigNode& options, const Surroundings& around) {
-    return TRY(chosenFrom(kCueControllers, options))(options, around);
+    return TRY(readCueController(options)).open(around);
 }
 
 Result<std::unique_ptr<CameraSource>> openCamera(const ConfigNode& options, const Surroundings& around) {
-    return TRY(chosenFrom(kCameras, options))(options, around);
+    return TRY(readCamera(options)).open(around);
 }
 
 Result<std::vector<DeviceStatus>> lookForDisplays(const std::vector<DisplayQuestion>& questions) {
@@ -109,8 +152,8 @@ Result<std::vector<DeviceStatus>> lookForDisplays(const std::vector<DisplayQuest
     std::vector<MonitorClaim> claims;
     std::vector<std::size_t> claimants;
     for (const auto& [options, request] : questions) {
-        const auto open = TRY(chosenFrom(kDisplays, options));
-        const bool onMonitor = open == &GlfwDisplay::open;
+        const auto read = TRY(chosenFrom(kDisplays, options));
+        const bool onMonitor = read == &GlfwDisplay::fromConfig;
         statuses.push_back({request.name, onMonitor ? "glfw" : "headless", DeviceState::Running, LossAction::Dark, "", 0});
         if (!onMonitor) continue;
         if (auto claim = TRY(GlfwDisplay::claimOf(options, request))) {

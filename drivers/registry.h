@@ -13,21 +13,44 @@
 
 #include "core/config.h"
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace fantascope::drivers {
 
-// Opens a device by its driver's name. `options` is the driver's own map in the site file, its `driver:` key included; each driver's
-// folder has a README of its keys. A device that is not there opens all the same and is Absent. Error, with its place in the file: a name
-// that is not in the registry (the known ones are listed), a wrong key or value, or a simulated driver without a simulated site.
+// Reads a device's options by its driver's name and touches no device: whatever it gives can be opened. `options` is the driver's own map in
+// the site file, its `driver:` key included; each driver's folder has a README of its keys. Error, with its place in the file: a name that
+// is not in the registry (the known ones are listed), or all that is wrong with keys and values.
+Result<Opening<DisplaySink>> readDisplay(const ConfigNode& options, const DisplayRequest& request);
+Result<Opening<DmxPort>> readDmxPort(const ConfigNode& options, int universe);
+Result<Opening<DmxSource>> readDmxSource(const ConfigNode& options, int universe);
+// `name`: the bank's, which no other device of the site has. `safeStates`: one for each relay, true is energised; their number is the
+// bank's size.
+Result<Opening<RelayBank>> readRelayBank(const ConfigNode& options, const std::string& name, const std::vector<bool>& safeStates);
+Result<Opening<InputBank>> readInputBank(const ConfigNode& options, const std::string& name, std::size_t size);
+Result<Opening<CueController>> readCueController(const ConfigNode& options);
+Result<Opening<CameraSource>> readCamera(const ConfigNode& options);
+
+// Whether the devices of one site can be used together.
+class SharedUses {
+public:
+    // Error: another device uses one of these otherwise; its place and `options`' own.
+    Result<void> add(const ConfigNode& options, const std::vector<Use>& uses);
+
+private:
+    struct User {
+        std::string how, place;
+    };
+    std::map<std::string, User> users_;
+};
+
+// The same, opened. A device that is not there opens all the same and is Absent. Error: as above, or as Opening::open.
 Result<std::unique_ptr<DisplaySink>> openDisplay(const ConfigNode& options, const DisplayRequest& request,
                                                  const Surroundings& around);
 Result<std::unique_ptr<DmxPort>> openDmxPort(const ConfigNode& options, int universe, const Surroundings& around);
 Result<std::unique_ptr<DmxSource>> openDmxSource(const ConfigNode& options, int universe, const Surroundings& around);
-// `name`: the bank's, which no other device of the site has. `safeStates`: one for each relay, true is energised; their number is the
-// bank's size.
 Result<std::unique_ptr<RelayBank>> openRelayBank(const ConfigNode& options, const std::string& name,
                                                  const std::vector<bool>& safeStates, const Surroundings& around);
 Result<std::unique_ptr<InputBank>> openInputBank(const ConfigNode& options, const std::string& name, std::size_t size,

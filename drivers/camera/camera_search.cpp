@@ -1,5 +1,6 @@
 #include "drivers/camera/camera_search.h"
 
+#include "drivers/common/claim.h"
 #include "drivers/common/usb_identity.h"
 
 #include "core/config.h"
@@ -56,6 +57,31 @@ bool mayBe(const Listed& node, const CameraIdentity& wanted) {
     return (wanted.serial.empty() || node.usb.serial == wanted.serial) && (wanted.usb.empty() || node.usb.path == wanted.usb);
 }
 
+// The cameras that fit.
+struct Fitting {
+    struct Refused {
+        fs::path file;
+        int error;  // errno
+    };
+    std::vector<OpenCamera> open;
+    std::vector<Refused> refused;  // in use, or not ours to open
+};
+Fitting camerasThatFit(const CameraIdentity& wanted) {
+    Fitting fitting;
+    for (const Listed& one : listedNodes()) {
+        if (!mayBe(one, wanted)) continue;
+        int error = 0;
+        auto node = VideoNode::open(one.file, error);
+        if (error == ENOTSUP || error == ENOENT || error == ENODEV || error == ENXIO) continue;
+        if (!wanted.card.empty() && (node ? node->card() : one.name) != wanted.card) continue;
+        if (node)
+            fitting.open.push_back({one.file, std::move(*node)});
+        else
+            fitting.refused.push_back({one.file, error});
+    }
+    return fitting;
+}
+
 std::string described(const CameraIdentity& wanted) {
     std::string words = "camera";
     if (!wanted.card.empty()) words += fmt::format(" '{}'", wanted.card);
@@ -103,35 +129,38 @@ Outage whyNotUsed(const fs::path& file, const std::string& what, int error) {
 }
 
 std::variant<OpenCamera, Outage> openCameraThatIs(const CameraIdentity& wanted) {
-    int error = 0;
     if (!wanted.device.empty()) {
+        int error = 0;
         if (auto node = VideoNode::open(wanted.device, error)) return OpenCamera{wanted.device, std::move(*node)};
         return whyNotUsed(wanted.device, "opening it", error);
     }
-    std::optional<OpenCamera> found;
-    std::optional<Outage> refusal;
-    std::string fitting;
-    int count = 0;
-    for (const Listed& one : listedNodes()) {
-        if (!mayBe(one, wanted)) continue;
-        auto node = VideoNode::open(one.file, error);
-        if (error == ENOTSUP || error == ENOENT || error == ENODEV || error == ENXIO) continue;
-        const std::string& card = node ? node->card() : one.name;
-        if (!wanted.card.empty() && card != wanted.card) continue;
-        if (!node) {
-            refusal = whyNotUsed(one.file, "opening it", error);
-            continue;
-        }
-        fitting += fmt::format("{}{} '{}'", count++ > 0 ? ", " : "", one.file.string(), card);
-        if (!found) found = OpenCamera{one.file, std::move(*node)};
+    auto [open, refused] = camerasThatFit(wanted);
+    if (open.size() == 1) return std::move(open.front());
+    if (open.size() > 1) {
+        std::vector<std::string> names;
+        names.reserve(open.size());
+        for (const OpenCamera& one : open) names.push_back(fmt::format("{} '{}'", one.file.string(), one.node.card()));
+        return Outage{DeviceState::Faulted,
+                      fmt::format("more than one {} is there ({}): say which by serial, usb, card or device", described(wanted),
+                                  fmt::join(names, ", "))};
     }
-    if (count == 1) return std::move(*found);
-    if (count > 1)
-        return Outage{
-            DeviceState::Faulted,
-            fmt::format("more than one {} is there ({}): say which by serial, usb, card or device", described(wanted), fitting)};
-    if (refusal) return std::move(*refusal);
+    if (!refused.empty()) return whyNotUsed(refused.back().file, "opening it", refused.back().error);
     return Outage{DeviceState::Absent, fmt::format("no {} is plugged in", described(wanted))};
+}
+
+std::string claimOf(const CameraIdentity& wanted) {
+    constexpr const char* kKind = "camera";
+    if (!wanted.device.empty()) return claimOfFile(kKind, wanted.device);
+    const auto [open, refused] = camerasThatFit(wanted);
+    if (open.size() == 1) return claimOfFile(kKind, open.front().file);
+    if (open.empty() && refused.size() == 1) return claimOfFile(kKind, refused.front().file);
+    return described(wanted);
+}
+
+std::string listedFormats(const std::vector<std::string>& names) {
+    constexpr std::size_t kNamed = 8;
+    if (names.size() <= kNamed) return listed(names);
+    return fmt::format("{} and {} more", listed({names.begin(), names.begin() + kNamed}), names.size() - kNamed);
 }
 
 std::vector<FoundDevice> findCameras() {
@@ -155,9 +184,10 @@ std::vector<FoundDevice> findCameras() {
             std::vector<std::string> names;
             for (const FrameCoding coding : offer.codings) names.emplace_back(nameOf(coding));
             if (open->isTaken()) camera.why = whyNotUsed(node.file, "", EBUSY).why;
-            if (names.empty()) camera.why = fmt::format("it offers {} alone, which cannot be decoded here", listed(offer.others));
+            if (names.empty())
+                camera.why = fmt::format("it offers {} alone, which cannot be decoded here", listedFormats(offer.others));
             names.insert(names.end(), offer.others.begin(), offer.others.end());
-            if (!names.empty()) camera.what += fmt::format(" ({})", listed(names));
+            if (!names.empty()) camera.what += fmt::format(" ({})", listedFormats(names));
         } else {
             camera.why = whyNotUsed(node.file, "opening it", error).why;
         }

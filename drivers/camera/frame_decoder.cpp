@@ -1,6 +1,7 @@
 #include "drivers/camera/frame_decoder.h"
 
 #include "core/check.h"
+#include "core/padded_rows.h"
 
 #include <fmt/format.h>
 
@@ -107,6 +108,7 @@ struct FrameDecoder::Impl {
     std::array<std::uint8_t, 256> greys{};
     std::unique_ptr<SwsContext, ScalerDeleter> toRgba;
     AVPixelFormat from = AV_PIX_FMT_NONE;  // that toRgba converts
+    PaddedRows<Rgba8> rows;                // for libswscale
     std::unique_ptr<AVCodecContext, CodecDeleter> jpeg;
     std::unique_ptr<AVPacket, PacketDeleter> packet;
     std::unique_ptr<AVFrame, FrameDeleter> decoded;
@@ -122,9 +124,9 @@ struct FrameDecoder::Impl {
             const bool full = format.fullRange || (av_pix_fmt_desc_get(pixels)->flags & AV_PIX_FMT_FLAG_RGB) != 0;
             sws_setColorspaceDetails(toRgba.get(), matrix, full ? kFull : 0, matrix, kFull, 0, kOne, kOne);
         }
-        auto* rows = reinterpret_cast<std::uint8_t*>(picture.pixels().data());
-        const int stride = picture.width() * static_cast<int>(sizeof(Rgba8));
-        sws_scale(toRgba.get(), planes, strides, 0, format.size.y, &rows, &stride);
+        rows.fill(picture, [&](std::uint8_t* to, int stride) {
+            sws_scale(toRgba.get(), planes, strides, 0, format.size.y, &to, &stride);
+        });
     }
 
     void convertGrey(const std::uint8_t* luma, int stride, RgbaImage& picture) const {

@@ -5,6 +5,7 @@
 
 #include <glm/vec2.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -48,8 +49,11 @@ public:
     explicit FrameDecoder(const FrameFormat& format);
     ~FrameDecoder();
 
-    // Writes stored values into `picture`, which has format.size; alpha 255. Error: the frame is too short, or damaged, or a JPEG of another
-    // size; `picture` is then worth nothing.
+    // Bytes after a frame that may be read: libswscale reads whole blocks.
+    static constexpr std::size_t kPadding = 256;
+
+    // Writes stored values into `picture`, which has format.size; alpha 255. `frame` is followed by kPadding bytes of any value. Error: the
+    // frame is too short, or damaged, or a JPEG of another size; `picture` is then worth nothing.
     Result<void> decode(std::span<const std::uint8_t> frame, RgbaImage& picture);
 
 private:

@@ -2,9 +2,9 @@
 
 namespace fantascope::drivers {
 
-Result<std::unique_ptr<CameraSource>> SimulatedCamera::open(const ConfigNode& options, const Surroundings& around) {
-    auto plug = TRY(site::Plug::open(options, around, "camera", LossAction::Dark));
-    return std::unique_ptr<CameraSource>(new SimulatedCamera(std::move(plug)));
+Result<Opening<CameraSource>> SimulatedCamera::fromConfig(const ConfigNode& options) {
+    return site::Plug::fromConfig<CameraSource>(options, "camera", LossAction::Dark,
+                                                [](site::Plug plug) { return new SimulatedCamera(std::move(plug)); });
 }
 
 }  // namespace fantascope::drivers

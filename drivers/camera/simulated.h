@@ -1,7 +1,6 @@
 #pragma once
 
 #include "drivers/site/plug.h"
-#include "drivers/surroundings.h"
 
 #include "device/camera_source.h"
 
@@ -12,7 +11,7 @@ namespace fantascope::drivers {
 // The camera of the simulated site; what it sees comes from site::SimulatedSite through the world. Plug: "camera".
 class SimulatedCamera final : public CameraSource {
 public:
-    static Result<std::unique_ptr<CameraSource>> open(const ConfigNode& options, const Surroundings& around);
+    static Result<Opening<CameraSource>> fromConfig(const ConfigNode& options);
 
     DeviceStatus status() const override { return plug_.status(); }
     std::shared_ptr<const CameraFrame> newest() override { return plug_.world().takeFromCamera(); }

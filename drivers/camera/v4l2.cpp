@@ -19,7 +19,6 @@ namespace {
 constexpr Time kFirstPatience = std::chrono::seconds(3), kLeastPatience = std::chrono::seconds(1);
 constexpr int kPatientPeriods = 5;
 constexpr Time kOldest = std::chrono::seconds(10);  // a stamp that lies further back is none
-constexpr std::size_t kPadding = 64;                // libswscale reads in strides, past the end too
 
 // What a clock shows when the kernel's shows 0: the reading least disturbed of several.
 Time kernelEpoch(const Clock& clock) {
@@ -49,7 +48,7 @@ Result<std::optional<std::int64_t>> controlFrom(const ConfigNode& node) {
 
 }  // namespace
 
-Result<std::unique_ptr<CameraSource>> V4l2Camera::open(const ConfigNode& node, const Surroundings& around) {
+Result<Opening<CameraSource>> V4l2Camera::fromConfig(const ConfigNode& node) {
     std::string driver;
     Options options;
     ConfigFields fields(node);
@@ -87,7 +86,10 @@ Result<std::unique_ptr<CameraSource>> V4l2Camera::open(const ConfigNode& node, c
     const CameraIdentity& identity = options.identity;
     if (!identity.device.empty() && !(identity.serial + identity.usb + identity.card).empty())
         return node.error("'device' says it all; leave out 'serial', 'usb' and 'card', or say only those");
-    return std::unique_ptr<CameraSource>(new V4l2Camera(std::move(options), around));
+    const auto open = [options](const Surroundings& around) -> Result<std::unique_ptr<CameraSource>> {
+        return std::unique_ptr<CameraSource>(new V4l2Camera(options, around));
+    };
+    return Opening<CameraSource>{.open = open, .claim = [identity] { return claimOf(identity); }};
 }
 
 V4l2Camera::V4l2Camera(Options options, const Surroundings& around)
@@ -149,7 +151,7 @@ std::optional<Outage> V4l2Camera::negotiate(Life& life) const {
     const VideoNode::Offer offer = life.node.offer();
     if (offer.codings.empty())
         return Outage{DeviceState::Faulted, fmt::format("{}: it offers {}, which cannot be decoded here", life.file.string(),
-                                                        offer.others.empty() ? "nothing" : listed(offer.others))};
+                                                        offer.others.empty() ? "nothing" : listedFormats(offer.others))};
     std::optional<FrameCoding> best;
     std::tuple<bool, int, double> bestScore;
     const auto ask = [&](FrameCoding coding) { return life.node.ask(coding, options_.size, options_.rate, life.grant); };
@@ -268,7 +270,7 @@ int V4l2Camera::take(Life& life) {
         } else {
             if (outcome == 0) countMissed(1);  // one that is overtaken
             life.buffer = buffer;
-            life.coded.resize(buffer.bytes.size() + kPadding);
+            life.coded.resize(buffer.bytes.size() + FrameDecoder::kPadding);
             std::ranges::copy(buffer.bytes, life.coded.begin());
             life.sequence = sequence_;
             outcome = 0;

@@ -21,12 +21,12 @@ namespace fantascope::drivers {
 // A camera behind the kernel's V4L2, as USB cameras are: README.md has its keys. Frames are decoded on the driver's own thread.
 class V4l2Camera final : public CameraSource {
 public:
-    static Result<std::unique_ptr<CameraSource>> open(const ConfigNode& options, const Surroundings& around);
+    static Result<Opening<CameraSource>> fromConfig(const ConfigNode& options);
 
     DeviceStatus status() const override { return service_.status(); }
     std::shared_ptr<const CameraFrame> newest() override;
 
-    // Frames since open(). Thread: any.
+    // Frames since the opening. Thread: any.
     struct Tally {
         std::uint64_t good = 0;
         std::uint64_t damaged = 0;  // flagged by the kernel's driver, too short, or no JPEG that can be decoded; never shown

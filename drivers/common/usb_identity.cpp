@@ -1,5 +1,7 @@
 #include "drivers/common/usb_identity.h"
 
+#include "core/text.h"
+
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
@@ -17,7 +19,7 @@ std::string attribute(const fs::path& folder, const char* name) {
     std::string line;
     std::getline(file, line);
     while (!line.empty() && (line.back() == ' ' || line.back() == '\r')) line.pop_back();
-    return line;
+    return printable(line);  // it ends up in messages
 }
 
 // Of a USB device's folder.

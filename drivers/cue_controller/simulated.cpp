@@ -2,9 +2,9 @@
 
 namespace fantascope::drivers {
 
-Result<std::unique_ptr<CueController>> SimulatedCueController::open(const ConfigNode& options, const Surroundings& around) {
-    auto plug = TRY(site::Plug::open(options, around, "cue controller", LossAction::Hold));
-    return std::unique_ptr<CueController>(new SimulatedCueController(std::move(plug)));
+Result<Opening<CueController>> SimulatedCueController::fromConfig(const ConfigNode& options) {
+    return site::Plug::fromConfig<CueController>(options, "cue controller", LossAction::Hold,
+                                                 [](site::Plug plug) { return new SimulatedCueController(std::move(plug)); });
 }
 
 SimulatedCueController::~SimulatedCueController() {

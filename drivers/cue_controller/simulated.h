@@ -1,7 +1,6 @@
 #pragma once
 
 #include "drivers/site/plug.h"
-#include "drivers/surroundings.h"
 
 #include "device/cue_controller.h"
 
@@ -14,7 +13,7 @@ namespace fantascope::drivers {
 // The hand controller of the simulated site, pressed by World::press(). Plug: "cue controller".
 class SimulatedCueController final : public CueController {
 public:
-    static Result<std::unique_ptr<CueController>> open(const ConfigNode& options, const Surroundings& around);
+    static Result<Opening<CueController>> fromConfig(const ConfigNode& options);
     ~SimulatedCueController() override;
 
     DeviceStatus status() const override { return plug_.status(); }

@@ -31,6 +31,13 @@ std::uint16_t hexadecimal(const std::string& digits) {
 
 const HidProfile* profileOf(const UsbIdentity& usb) { return hidProfileOf(hexadecimal(usb.vendor), hexadecimal(usb.product)); }
 
+// libusb for a look at what is there; null where this machine has no USB.
+using UsbContext = std::unique_ptr<libusb_context, decltype(&libusb_exit)>;
+UsbContext listingContext() {
+    libusb_context* opened = nullptr;
+    return {libusb_init(&opened) == 0 ? opened : nullptr, &libusb_exit};
+}
+
 Result<std::string> fourDigits(const ConfigNode& node) {
     std::string text = TRY(node.text());
     std::transform(text.begin(), text.end(), text.begin(), [](unsigned char letter) { return std::tolower(letter); });
@@ -48,16 +55,28 @@ bool UsbHidController::Options::fits(const UsbIdentity& usb) const {
     return isThat(vendor, usb.vendor) && isThat(product, usb.product) && isThat(serial, usb.serial) && isThat(path, usb.path);
 }
 
-std::string UsbHidController::Options::wanted() const {
+std::string UsbHidController::Options::words() const {
     std::string words = vendor.empty() && product.empty()
                             ? ""
                             : fmt::format(" {}:{}", vendor.empty() ? "*" : vendor, product.empty() ? "*" : product);
     if (!serial.empty()) words += " with serial " + serial;
     if (!path.empty()) words += " at " + path;
-    return words.empty() ? "no controller that has a profile" : "no USB controller" + words;
+    return words;
 }
 
-Result<std::unique_ptr<CueController>> UsbHidController::open(const ConfigNode& options, const Surroundings& around) {
+std::string UsbHidController::Options::wanted() const {
+    const std::string said = words();
+    return said.empty() ? "no controller that has a profile" : "no USB controller" + said;
+}
+
+std::string UsbHidController::Options::claim() const {
+    if (const UsbContext context = listingContext())
+        for (const ListedDevice& device : hidDevices(context.get()))
+            if (fits(device.usb)) return "cue controller at the USB port " + device.usb.path;
+    return "cue controller" + words();
+}
+
+Result<Opening<CueController>> UsbHidController::fromConfig(const ConfigNode& options) {
     std::string driver;
     Options wanted;
     ConfigFields fields(options);
@@ -75,7 +94,10 @@ Result<std::unique_ptr<CueController>> UsbHidController::open(const ConfigNode& 
     fields.optional().boolean("ask_state", wanted.asksState);
     fields.optional().number("brightness", wanted.brightness, 0, 1);
     TRY(fields.finish());
-    return std::unique_ptr<CueController>(new UsbHidController(std::move(wanted), around.clock));
+    const auto open = [wanted](const Surroundings& around) -> Result<std::unique_ptr<CueController>> {
+        return std::unique_ptr<CueController>(new UsbHidController(wanted, around.clock));
+    };
+    return Opening<CueController>{.open = open, .claim = [wanted] { return wanted.claim(); }};
 }
 
 UsbHidController::UsbHidController(Options options, Clock& clock)
@@ -136,9 +158,8 @@ Outage UsbHidController::attend(Service& service) {
 }
 
 std::vector<FoundDevice> findControllers() {
-    libusb_context* opened = nullptr;
-    if (libusb_init(&opened) != 0) return {};
-    const std::unique_ptr<libusb_context, decltype(&libusb_exit)> context(opened, &libusb_exit);
+    const UsbContext context = listingContext();
+    if (!context) return {};
     std::vector<FoundDevice> found;
     for (const ListedDevice& device : hidDevices(context.get())) {
         const UsbIdentity& usb = device.usb;

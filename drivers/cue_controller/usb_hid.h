@@ -34,10 +34,12 @@ public:
         double brightness = 0.5;  // of its lamps, 0..1
 
         bool fits(const UsbIdentity& usb) const;
-        std::string wanted() const;  // "046d:c52d, serial 1"
+        std::string words() const;   // " 046d:c52d with serial 1"; "": nothing is said
+        std::string wanted() const;  // "no USB controller 046d:c52d with serial 1"
+        std::string claim() const;   // Opening::claim: the device that it would try first
     };
 
-    static Result<std::unique_ptr<CueController>> open(const ConfigNode& options, const Surroundings& around);
+    static Result<Opening<CueController>> fromConfig(const ConfigNode& options);
     ~UsbHidController() override;
 
     DeviceStatus status() const override { return service_.status(); }

@@ -54,6 +54,7 @@ UsbHidDevice::UsbHidDevice(const Around& around, const ListedDevice& device, con
 }
 
 UsbHidDevice::~UsbHidDevice() {
+    isEnding_ = true;
     for (const Transfer& transfer : transfers_) libusb_cancel_transfer(transfer.get());
     if (isSending_) libusb_cancel_transfer(outTransfer_.get());
     while (inFlight_ > 0) around_.bus.wait(1s);  // each comes back, cancelled or not
@@ -160,6 +161,7 @@ void UsbHidDevice::take(int interface, std::span<const std::uint8_t> report) {
 }
 
 void UsbHidDevice::submit(libusb_transfer* transfer) {
+    if (isEnding_) return;  // a report that came just before its transfer was cancelled completes it
     const int error = libusb_submit_transfer(transfer);
     if (error == 0)
         ++inFlight_;

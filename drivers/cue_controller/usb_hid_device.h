@@ -84,7 +84,7 @@ private:
     std::vector<Transfer> transfers_;
     std::vector<libusb_transfer*> stopped_;
     int inFlight_ = 0, errors_ = 0;
-    bool isSettled_ = false;
+    bool isSettled_ = false, isEnding_ = false;
 
     const double brightness_;
     std::unique_ptr<HidLamps> lamps_;    // null: it has none, or takes nothing

@@ -1,6 +1,7 @@
 #include "drivers/display/glfw.h"
 
 #include "drivers/display/srgb_framebuffer.h"
+#include "drivers/display/x_screen.h"
 
 #include <epoxy/gl.h>
 
@@ -19,6 +20,8 @@ namespace {
 
 constexpr const char* kDriver = "glfw";
 constexpr const char* kClosed = "its window was closed; start Fantascope again to show it";
+constexpr const char* kEnded = "the X server has ended or closed the connection; the picture is back once the X server is";
+constexpr const char* kDestroyed = "another program has destroyed its window; it is made again";
 constexpr Time kRetry = std::chrono::seconds(1);
 // Where swaps wait, one that takes more than this part of a period waited for a refresh; one that takes less had room in a queue.
 constexpr double kWaitOfSwap = 0.25;
@@ -84,12 +87,22 @@ Result<std::optional<MonitorClaim>> GlfwDisplay::claimOf(const ConfigNode& optio
     return std::optional(MonitorClaim{request.name, *monitor, request.size, request.refreshRate, position});
 }
 
-Result<std::unique_ptr<DisplaySink>> GlfwDisplay::open(const ConfigNode& options, const DisplayRequest& request,
-                                                       const Surroundings& around) {
-    std::optional<MonitorClaim> wanted = TRY(claimOf(options, request));
-    std::unique_ptr<GlfwDisplay> sink(new GlfwDisplay(request, around, std::move(wanted)));
-    (void)sink->poll();  // a missing device is no error: its status tells of it
-    return std::unique_ptr<DisplaySink>(std::move(sink));
+Result<Opening<DisplaySink>> GlfwDisplay::fromConfig(const ConfigNode& options, const DisplayRequest& request) {
+    const std::optional<MonitorClaim> wanted = TRY(claimOf(options, request));
+    Opening<DisplaySink> opening{[=](const Surroundings& around) -> Result<std::unique_ptr<DisplaySink>> {
+        std::unique_ptr<GlfwDisplay> sink(new GlfwDisplay(request, around, wanted));
+        (void)sink->poll();  // a missing device is no error: its status tells of it
+        return std::unique_ptr<DisplaySink>(std::move(sink));
+    }};
+    // Several monitors of one make are told apart by who asks first; one connector or serial number is one monitor.
+    if (wanted && !(wanted->monitor.connector + wanted->monitor.serial).empty())
+        opening.uses.push_back({"the monitor " + wanted->monitor.text(), ""});
+    // By the words of the site file: that the X server answers is not to be waited for before a show begins.
+    if (wanted)
+        opening.claim = [monitor = wanted->monitor.text()] {
+            return fmt::format("the monitor {} of the X server {}", monitor, XScreen::serverName());
+        };
+    return opening;
 }
 
 GlfwDisplay::GlfwDisplay(const DisplayRequest& request, const Surroundings& around, std::optional<MonitorClaim> wanted)
@@ -120,10 +133,7 @@ std::int64_t GlfwDisplay::nextRefresh() const { return refreshes_.running(clock_
 Result<void> GlfwDisplay::appear() {
     if (!glfw_) glfw_ = TRY(GlfwLibrary::shared());
     if (window_ == nullptr) TRY(makeWindow());  // also without its monitor, so that less is to be done when that comes
-    if (!wanted_) {
-        tryWhetherSwapsWait();
-        return {};
-    }
+    if (!wanted_) return tryWhetherSwapsWait();
     if (monitor_) {
         monitor_->tryAgain();
     } else {
@@ -134,30 +144,17 @@ Result<void> GlfwDisplay::appear() {
 }
 
 Result<void> GlfwDisplay::makeWindow() {
-    glfwDefaultWindowHints();
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    // As in the headless display: contexts of one kind can take turns on a thread.
-    glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
-    glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
     // Frames are drawn straight into the window, which spares a copy of each; they need nothing but colours there.
-    glfwWindowHint(GLFW_SRGB_CAPABLE, GLFW_TRUE);
-    glfwWindowHint(GLFW_DEPTH_BITS, 0);
-    glfwWindowHint(GLFW_STENCIL_BITS, 0);
-    if (wanted_) glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
-    window_ = glfwCreateWindow(request_.size.x, request_.size.y, request_.name.c_str(), nullptr, nullptr);
-    if (window_ == nullptr)
-        return Error(
-            fmt::format("no window with OpenGL 4.5: {}; update the graphics driver (in software: Debian's package "
-                        "libgl1-mesa-dri)",
-                        whyGlfwFailed()));
+    window_ = TRY(glfw_->makeWindow(request_.name, request_.size,
+                                    {{GLFW_RESIZABLE, GLFW_FALSE},
+                                     {GLFW_SRGB_CAPABLE, GLFW_TRUE},
+                                     {GLFW_DEPTH_BITS, 0},
+                                     {GLFW_STENCIL_BITS, 0},
+                                     {GLFW_VISIBLE, wanted_ ? GLFW_FALSE : GLFW_TRUE}}));
     if (wanted_)
         takeFromWindowManager(window_);
     else
         glfw_->placeWindow(window_);
-
-    glfwMakeContextCurrent(window_);
     if (!windowStoresSrgb()) {
         const auto framebuffer = makeSrgbFramebuffer(request_.size);
         if (!framebuffer) {
@@ -166,6 +163,7 @@ Result<void> GlfwDisplay::makeWindow() {
         }
         framebuffer_ = *framebuffer;
     }
+    context_ = ++contexts_;
     listen();
     return {};
 }
@@ -191,29 +189,30 @@ void GlfwDisplay::listen() {
 
 Result<void> GlfwDisplay::moveToMonitor() {
     if (!seat_.absence.empty()) return Error(seat_.absence);
+    if (!glfw_->pollEvents()) return Error(kEnded);
     showAt(window_, seat_.area.corner.x, seat_.area.corner.y);
     if (seat_.hertz > 0 && seat_.hertz != refreshes_.hertz()) refreshes_.runAt(seat_.hertz, clock_.now());
-    tryWhetherSwapsWait();
-    return {};
+    return tryWhetherSwapsWait();
 }
 
-void GlfwDisplay::tryWhetherSwapsWait() {
-    if (glfw_->swapsWait) return;
+Result<void> GlfwDisplay::tryWhetherSwapsWait() {
+    if (glfw_->swapsWait) return {};
     constexpr int kSwaps = 4;
     glfwMakeContextCurrent(window_);
-    const auto timeOf = [&](int refreshes) {
+    const auto timeOf = [&](int refreshes) -> Result<Time> {
         Time took{};
         for (int number = 0; number <= kSwaps; ++number) {
             const GLfloat black[] = {0, 0, 0, 1};
             glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
             glClearBufferfv(GL_COLOR, 0, black);
-            const Time one = swap(refreshes).took;
+            const Time one = TRY(swap(refreshes)).took;
             if (number > 0) took += one;  // the first waits for what was before
         }
         return took;
     };
-    const Time atOnce = timeOf(0), waiting = timeOf(1);
+    const Time atOnce = TRY(timeOf(0)), waiting = TRY(timeOf(1));
     glfw_->swapsWait = seconds(waiting - atOnce) * refreshes_.hertz() > 0.5 * kSwaps;
+    return {};
 }
 
 void GlfwDisplay::setAbsence(const std::string& why) {
@@ -222,27 +221,53 @@ void GlfwDisplay::setAbsence(const std::string& why) {
     absence_ = why;
 }
 
+std::optional<std::string> GlfwDisplay::whyLost() const {
+    if (glfw_ && glfw_->lost()) return kEnded;
+    if (window_ != nullptr && glfw_->destroyed(window_)) return kDestroyed;
+    return std::nullopt;
+}
+
+void GlfwDisplay::clearUp() {
+    if (window_ != nullptr) glfwDestroyWindow(std::exchange(window_, nullptr));
+    framebuffer_ = 0;
+    swapInterval_ = -1;
+    if (glfw_->lost()) glfw_.reset();
+}
+
 bool GlfwDisplay::poll() {
+    if (glfw_) glfw_->pollEvents();
+    if (const auto lost = whyLost()) {
+        if (std::exchange(context_, 0) == 0) clearUp();  // at the second call: until then somebody may read what was mapped
+        setAbsence(closed_ ? kClosed : *lost);
+        retryAt_ = clock_.now() + kRetry;
+        return false;
+    }
+    return takePlace();
+}
+
+bool GlfwDisplay::takePlace() {
     const Time now = clock_.now();
+    const bool moved = monitor_ && seat_ != monitor_->seat();
+    if (moved) seat_ = monitor_->seat();
     if (window_ != nullptr && glfwWindowShouldClose(window_)) {
-        if (absence_ != kClosed) glfwHideWindow(window_);
+        if (!std::exchange(closed_, true)) glfwHideWindow(window_);
         setAbsence(kClosed);
-    } else if (monitor_ && seat_ != monitor_->seat()) {
-        seat_ = monitor_->seat();
-        const auto moved = moveToMonitor();
-        if (!moved) glfwHideWindow(window_);
-        setAbsence(moved ? "" : moved.error().message());
+    } else if (window_ != nullptr && moved) {
+        const auto done = moveToMonitor();
+        if (!done) glfwHideWindow(window_);
+        setAbsence(done ? "" : done.error().message());
         retryAt_ = now + kRetry;
-    } else if (!absence_.empty() && now >= retryAt_) {
+    } else if (!absence_.empty() && !closed_ && now >= retryAt_) {
         retryAt_ = now + kRetry;
         const auto appeared = appear();
-        setAbsence(appeared ? "" : appeared.error().message());
+        const bool ended = !glfw_ && contexts_ > 0;  // for whoever is told, that is news no second time
+        setAbsence(appeared ? "" : ended ? kEnded : appeared.error().message());
     }
     return absence_.empty() && cable_.in();
 }
 
 Result<void> GlfwDisplay::makeCurrent() {
-    if (window_ == nullptr) return Error(fmt::format("{} has no OpenGL context yet: {}", request_.name, absence_));
+    if (context_ == 0) return Error(fmt::format("{} has no OpenGL context: {}", request_.name, absence_));
     glfwGetError(nullptr);  // forgets older ones
     glfwMakeContextCurrent(window_);
     const char* why = nullptr;
@@ -253,7 +278,8 @@ Result<void> GlfwDisplay::makeCurrent() {
 
 Result<void> GlfwDisplay::beThere() {
     TRY(cable_.check());
-    if (!poll()) return Error(fmt::format("{} is absent: {}", request_.name, absence_));
+    if (const auto lost = whyLost()) return Error(fmt::format("{} is absent: {}", request_.name, *lost));
+    if (!takePlace()) return Error(fmt::format("{} is absent: {}", request_.name, absence_));
     return makeCurrent();
 }
 
@@ -271,14 +297,20 @@ Result<void> GlfwDisplay::finish() {
     return {};
 }
 
-GlfwDisplay::Swap GlfwDisplay::swap(int refreshes) {
+Result<GlfwDisplay::Swap> GlfwDisplay::swap(int refreshes) {
+    const auto check = [&]() -> Result<void> {
+        glfw_->pollEvents();
+        if (const auto lost = whyLost()) return Error(fmt::format("{} is absent: {}", request_.name, *lost));
+        return {};
+    };
+    TRY(check());
     const Time before = clock_.now();
     if (std::exchange(swapInterval_, refreshes) != refreshes) glfwSwapInterval(refreshes);
     glfwSwapBuffers(window_);
     glFinish();
     const Time after = clock_.now();
-    glfwPollEvents();
-    return {after, after - before};
+    TRY(check());
+    return Swap{after, after - before};
 }
 
 Result<Shown> GlfwDisplay::present() {
@@ -286,10 +318,10 @@ Result<Shown> GlfwDisplay::present() {
     std::int64_t refresh = nextRefresh();
     if (!*glfw_->swapsWait) {
         clock_.sleepUntil(refreshTime(refresh));  // the followers' clock too, so that all swap at one time
-        const Swap swapped = swap(0);
+        const Swap swapped = TRY(swap(0));
         return Shown{refresh, refreshTime(refresh), swapped.done, swapped.took};
     }
-    Swap swapped = swap(1);
+    Swap swapped = TRY(swap(1));
     if (seconds(swapped.took) * refreshes_.hertz() > kWaitOfSwap) {
         refresh = refreshes_.seen(swapped.done);
         swapped.took = std::max(Time{}, swapped.took - tickTime(1, refreshes_.hertz()));
@@ -303,7 +335,7 @@ Result<Shown> GlfwDisplay::presentWith(Time leading) {
     TRY(beThere());
     clock_.sleepUntil(leading);
     const std::int64_t refresh = refreshes_.running(clock_.now());
-    const Swap swapped = swap(0);
+    const Swap swapped = TRY(swap(0));
     return Shown{refresh, refreshTime(refresh), swapped.done, swapped.took};
 }
 

@@ -1,5 +1,9 @@
 #include "drivers/display/glfw_library.h"
 
+#include "drivers/display/lost_x_connection.h"
+
+#include "core/log.h"
+
 #define GLFW_INCLUDE_NONE
 #define GLFW_EXPOSE_NATIVE_X11
 #include <GLFW/glfw3.h>
@@ -7,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace fantascope::drivers {
 
@@ -16,18 +21,95 @@ std::string whyGlfwFailed() {
     return why != nullptr ? why : "unknown reason";
 }
 
-Result<std::shared_ptr<GlfwLibrary>> GlfwLibrary::shared() {
+namespace {
+
+std::weak_ptr<GlfwLibrary>& theOne() {
     static std::weak_ptr<GlfwLibrary> open;
-    if (auto library = open.lock()) return library;
-    if (!glfwInit()) return Error(fmt::format("{}; set DISPLAY, or start an X server", whyGlfwFailed()));
+    return open;
+}
+
+}  // namespace
+
+// In place of Xlib's own handler, which ends the program.
+struct GlfwLibrary::RefusedRequest {
+    static int take(Display* connection, XErrorEvent* error) {
+        const auto library = theOne().lock();
+        if (!library) return 0;
+        if (library->destroyed_.contains(error->resourceid)) return 0;  // it is said already
+        if (!library->logged_.emplace(error->error_code, error->request_code).second) return 0;
+        std::array<char, 128> text{};
+        XGetErrorText(connection, error->error_code, text.data(), static_cast<int>(text.size()));
+        log::warning("display", fmt::format("the X server refuses request {} for resource {:#x}: {}", int{error->request_code},
+                                            error->resourceid, text.data()));
+        return 0;
+    }
+};
+
+Result<std::shared_ptr<GlfwLibrary>> GlfwLibrary::shared() {
+    if (auto library = theOne().lock()) {
+        if (library->lost()) return Error("the X server has ended");
+        return library;
+    }
+    int opened = GLFW_FALSE;
+    if (_XDisplay* const connection = lostDuring([](void* result) { *static_cast<int*>(result) = glfwInit(); }, &opened)) {
+        bool lost = false;
+        surviveLoss(connection, lost);
+        XCloseDisplay(connection);
+        return Error("the X server has ended");
+    }
+    if (opened != GLFW_TRUE) return Error(fmt::format("{}; set DISPLAY, or start an X server", whyGlfwFailed()));
+    std::shared_ptr<GlfwLibrary> library(new GlfwLibrary);
+    surviveLoss(glfwGetX11Display(), library->lost_);
+    XSetErrorHandler(RefusedRequest::take);
     // GLFW would ask the X server for every monitor at each change, in the middle of a frame, and does not bear one that vanishes meanwhile.
     XRRSelectInput(glfwGetX11Display(), DefaultRootWindow(glfwGetX11Display()), 0);
-    std::shared_ptr<GlfwLibrary> library(new GlfwLibrary);
-    open = library;
+    theOne() = library;
     return library;
 }
 
 GlfwLibrary::~GlfwLibrary() { glfwTerminate(); }
+
+Result<GLFWwindow*> GlfwLibrary::makeWindow(const std::string& title, glm::ivec2 size,
+                                            std::initializer_list<std::pair<int, int>> hints) {
+    glfwDefaultWindowHints();
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    // As in the headless display: contexts of one kind can take turns on a thread.
+    glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
+    for (const auto& [hint, value] : hints) glfwWindowHint(hint, value);
+    struct Wanted {
+        glm::ivec2 size;
+        const char* title;
+        GLFWwindow* window;
+    } wanted{size, title.c_str(), nullptr};
+    const auto make = [](void* data) {
+        Wanted& made = *static_cast<Wanted*>(data);
+        made.window = glfwCreateWindow(made.size.x, made.size.y, made.title, nullptr, nullptr);
+    };
+    lost_ = !pollEvents() || lostDuring(make, &wanted) != nullptr;
+    XSetErrorHandler(RefusedRequest::take);  // GLFW 3.3 puts Xlib's own back
+    if (lost_) return Error("the X server has ended");
+    GLFWwindow* const window = wanted.window;
+    if (window == nullptr)
+        return Error(
+            fmt::format("no window with OpenGL 4.5: {}; update the graphics driver (in software: Debian's package "
+                        "libgl1-mesa-dri)",
+                        whyGlfwFailed()));
+    destroyed_.erase(glfwGetX11Window(window));  // X gives a name again
+    glfwMakeContextCurrent(window);
+    return window;
+}
+
+bool GlfwLibrary::pollEvents() {
+    // GLFW does not tell of it.
+    for (XEvent event; !lost_ && XCheckTypedEvent(glfwGetX11Display(), DestroyNotify, &event) != 0;)
+        destroyed_.insert(event.xdestroywindow.window);
+    if (!lost_) glfwPollEvents();
+    return !lost_;
+}
+
+bool GlfwLibrary::destroyed(GLFWwindow* window) const { return destroyed_.contains(glfwGetX11Window(window)); }
 
 void GlfwLibrary::placeWindow(GLFWwindow* window) {
     Display* const display = glfwGetX11Display();

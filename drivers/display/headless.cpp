@@ -75,13 +75,16 @@ Result<EGLDisplay> connection() {
 
 }  // namespace
 
-Result<std::unique_ptr<DisplaySink>> HeadlessDisplay::open(const ConfigNode& options, const DisplayRequest& request,
-                                                           const Surroundings& around) {
+Result<Opening<DisplaySink>> HeadlessDisplay::fromConfig(const ConfigNode& options, const DisplayRequest& request) {
     std::string driver;
     ConfigFields fields(options);
     fields.text("driver", driver);
     TRY(fields.finish());
+    return Opening<DisplaySink>{[=](const Surroundings& around) { return open(options, request, around); }};
+}
 
+Result<std::unique_ptr<DisplaySink>> HeadlessDisplay::open(const ConfigNode& options, const DisplayRequest& request,
+                                                           const Surroundings& around) {
     const EGLDisplay egl = TRY(connection().in(options.error("display").message()));
     const EGLContext context = TRY(makeContext(egl));
     std::unique_ptr<HeadlessDisplay> sink(new HeadlessDisplay(request, around, egl, context));

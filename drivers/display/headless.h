@@ -16,12 +16,11 @@ namespace fantascope::drivers {
 // clock: number k takes place at tickTime(k, rate). It can be unplugged where a simulated site has its plug.
 //
 // One finished frame is held until its refresh comes, as a graphics card's swap chain does.
-// The context and what is in it outlive a loss.
+// The context lives as long as the object.
 class HeadlessDisplay final : public DisplaySink {
 public:
-    // Keys: none of its own. Error: a wrong key; no OpenGL 4.5 here (names the Debian packages that bring one).
-    static Result<std::unique_ptr<DisplaySink>> open(const ConfigNode& options, const DisplayRequest& request,
-                                                     const Surroundings& around);
+    // Keys: none of its own. Error: a wrong key; at the opening: no OpenGL 4.5 here (names the Debian packages that bring one).
+    static Result<Opening<DisplaySink>> fromConfig(const ConfigNode& options, const DisplayRequest& request);
     ~HeadlessDisplay() override;
 
     DeviceStatus status() const override;
@@ -30,6 +29,7 @@ public:
     std::int64_t nextRefresh() const override;
     Time refreshTime(std::int64_t number) const override;
     bool poll() override { return cable_.in(); }
+    int context() const override { return 1; }
     Result<void> makeCurrent() override;
     unsigned framebuffer() const override { return framebuffer_; }
     Result<void> finish() override;
@@ -37,6 +37,8 @@ public:
     Result<Shown> presentWith(Time leading) override;
 
 private:
+    static Result<std::unique_ptr<DisplaySink>> open(const ConfigNode& options, const DisplayRequest& request,
+                                                     const Surroundings& around);
     Shown heldUntil(std::int64_t refresh);
     HeadlessDisplay(const DisplayRequest& request, const Surroundings& around, void* egl, void* context);
 

@@ -103,25 +103,47 @@ void MonitorWatch::deny(const std::string& why, Whom whom) {
     looked_.notify_all();
 }
 
-void MonitorWatch::run() {
-    for (bool asked = true, gone = false;;) {
-        {
-            const std::lock_guard lock(mutex_);
-            if (ending_) return;
-        }
+bool MonitorWatch::ending() {
+    const std::lock_guard lock(mutex_);
+    return ending_;
+}
+
+bool MonitorWatch::wait(int file, int milliseconds) {
+    std::array<pollfd, 2> ready = {{{wake_, POLLIN, 0}, {file, POLLIN, 0}}};
+    (void)::poll(ready.data(), ready.size(), milliseconds);
+    eventfd_t wakes = 0;
+    return ::eventfd_read(wake_, &wakes) == 0;
+}
+
+std::string MonitorWatch::follow() {
+    for (bool asked = true; !ending();) {
         const auto changed = screen_->changed();
-        if (!changed) {
-            gone = true;
-            deny(changed.error().message(), Whom::All);
-        } else if (*changed || asked) {
-            asked = false;
-            settle();
-            continue;  // its answers may have brought events along
+        if (!changed) return changed.error().message();
+        if (!*changed && !asked) {
+            asked = wait(screen_->fileDescriptor(), -1);
+            continue;
         }
-        std::array<pollfd, 2> ready = {{{wake_, POLLIN, 0}, {gone ? -1 : screen_->fileDescriptor(), POLLIN, 0}}};
-        (void)::poll(ready.data(), ready.size(), -1);
-        eventfd_t wakes = 0;
-        asked = ::eventfd_read(wake_, &wakes) == 0;
+        asked = false;
+        settle();  // its answers may have brought events along
+    }
+    return {};
+}
+
+void MonitorWatch::run() {
+    constexpr int kRetry = 1000;  // ms
+    while (!ending()) {
+        if (!screen_) {
+            if (auto opened = XScreen::open())
+                screen_ = std::move(opened).value();
+            else
+                deny(opened.error().message(), Whom::All);
+        } else if (const std::string gone = follow(); !gone.empty()) {
+            deny(gone, Whom::All);
+            screen_.reset();
+            const std::lock_guard lock(mutex_);
+            placement_.restart();
+        }
+        if (!screen_) wait(-1, kRetry);
     }
 }
 

@@ -19,7 +19,8 @@ namespace fantascope::drivers {
 
 // Keeps each claimed monitor on and in its place (see Placement), and knows where it is. All that waits for the X server happens on a
 // thread of its own, which the X server wakes when anything changes, so that no frame has to wait for a monitor that comes or goes.
-// It lives as long as somebody has a claim; meanwhile the screen is not blanked. Thread: thread-safe.
+// It lives as long as somebody has a claim; meanwhile the screen is not blanked. An X server that ends takes all seats along; once a second
+// it is tried whether there is one again. Thread: thread-safe.
 class MonitorWatch : public std::enable_shared_from_this<MonitorWatch> {
 public:
     // The process's one. Error: there is no X server with RandR.
@@ -51,13 +52,18 @@ public:
 private:
     MonitorWatch(std::unique_ptr<XScreen> screen, int wake);
     void run();
+    // Follows the monitors until this X server ends or this object does. Why the X server ended.
+    std::string follow();
     void settle();
     enum class Whom { NewClaims, All };
     void deny(const std::string& why, Whom whom);
     void publish();  // with the mutex
     void wake();
+    // Sleeps until it is woken, `file` can be read (-1: none), or so many milliseconds are over (-1: never). Whether it was woken.
+    bool wait(int file, int milliseconds);
+    bool ending();
 
-    std::unique_ptr<XScreen> screen_;  // the thread's
+    std::unique_ptr<XScreen> screen_;  // the thread's; null: the X server is gone
     int wake_;                         // a file descriptor (eventfd) that the thread waits for besides the X server's
 
     std::mutex mutex_;

@@ -16,20 +16,12 @@ namespace fantascope::drivers {
 
 Result<std::unique_ptr<PictureWindow>> PictureWindow::open(const std::string& title, glm::ivec2 size) {
     auto library = TRY(GlfwLibrary::shared());
-    glfwDefaultWindowHints();
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
-    GLFWwindow* const window = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
-    if (window == nullptr)
-        return Error(fmt::format("no window with OpenGL 4.5: {}; update the graphics driver", whyGlfwFailed()));
+    GLFWwindow* const window = TRY(library->makeWindow(title, size));
     return std::unique_ptr<PictureWindow>(new PictureWindow(std::move(library), window));
 }
 
 PictureWindow::PictureWindow(std::shared_ptr<GlfwLibrary> library, GLFWwindow* window)
     : library_(std::move(library)), window_(window) {
-    glfwMakeContextCurrent(window_);
     glfwSwapInterval(0);
     glfwSetWindowUserPointer(window_, this);
     glfwSetCharCallback(window_, [](GLFWwindow* which, unsigned letter) {
@@ -48,6 +40,7 @@ PictureWindow::~PictureWindow() {
 }
 
 void PictureWindow::show(const GreyImage& picture) {
+    if (!library_->pollEvents()) return;
     glfwMakeContextCurrent(window_);
     const glm::ivec2 size(picture.width(), picture.height());
     if (size != textureSize_) {
@@ -74,12 +67,13 @@ void PictureWindow::show(const GreyImage& picture) {
     // Row 0 is the picture's top and OpenGL's bottom.
     glBlitNamedFramebuffer(framebuffer_, 0, 0, 0, size.x, size.y, corner.x, corner.y + shown.y, corner.x + shown.x, corner.y,
                            GL_COLOR_BUFFER_BIT, GL_LINEAR);
-    glfwSwapBuffers(window_);
+    if (library_->pollEvents()) glfwSwapBuffers(window_);
 }
 
 std::optional<char> PictureWindow::pollKey() {
-    glfwPollEvents();
-    if (glfwWindowShouldClose(window_) && !std::exchange(closed_, true)) keys_.push_back('\x1b');
+    if ((!library_->pollEvents() || library_->destroyed(window_) || glfwWindowShouldClose(window_)) &&
+        !std::exchange(closed_, true))
+        keys_.push_back('\x1b');
     if (keys_.empty()) return std::nullopt;
     const char key = keys_.front();
     keys_.pop_front();

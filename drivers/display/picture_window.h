@@ -28,7 +28,7 @@ public:
 
     // Stored values.
     void show(const GreyImage& picture);
-    // The next key that was pressed: ' ', '\x1b' for escape, which closing the window means too, or a letter. Never waits.
+    // The next key that was pressed: ' ', '\x1b' for escape, which a window that was closed or lost means too, or a letter. Never waits.
     std::optional<char> pollKey();
 
 private:

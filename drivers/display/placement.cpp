@@ -89,6 +89,13 @@ void Placement::retry() {
     for (Holder& holder : holders_) holder.tried.reset();
 }
 
+void Placement::restart() {
+    for (Holder& holder : holders_) {
+        holder.life = Life::Away;
+        holder.tried.reset();
+    }
+}
+
 // Its monitor by identity, and the mode there.
 void Placement::find(Holder& holder, const std::vector<Monitor>& monitors) {
     const MonitorClaim& claim = holder.claim;

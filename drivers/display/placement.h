@@ -58,6 +58,8 @@ public:
     void refused(int claim, const std::string& why);
     // Changes that did not succeed are asked for again by the next look().
     void retry();
+    // The X server is gone, and a new one has switched on what it likes. The places stay.
+    void restart();
     // By the claims' numbers.
     std::map<int, Seat> seats() const;
 

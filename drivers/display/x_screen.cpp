@@ -32,7 +32,7 @@ Owned<Reply> answer(xcb_connection_t* connection, Reply* (*take)(xcb_connection_
     return reply;
 }
 
-Error gone() { return Error("the X server does not answer; start it, then Fantascope"); }
+Error gone() { return Error("the X server has ended or closed the connection; the picture is back once the X server is"); }
 
 Monitor::Mode modeOf(const xcb_randr_mode_info_t& info) {
     const bool interlaced = info.mode_flags & XCB_RANDR_MODE_FLAG_INTERLACE;
@@ -82,6 +82,14 @@ Result<std::unique_ptr<XScreen>> XScreen::open() {
                                XCB_RANDR_NOTIFY_MASK_OUTPUT_CHANGE | XCB_RANDR_NOTIFY_MASK_OUTPUT_PROPERTY);
     screen->lookAtConnectors();  // nobody minds before the show
     return screen;
+}
+
+std::string XScreen::serverName() {
+    char* named = nullptr;
+    int display = 0;
+    if (xcb_parse_display(nullptr, &named, &display, nullptr) == 0) return "";
+    const Owned<char> host(named);
+    return fmt::format("{}:{}", host.get(), display);
 }
 
 XScreen::XScreen(xcb_connection_t* connection, std::uint32_t root) : connection_(connection), root_(root) {}

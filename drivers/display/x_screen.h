@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <set>
+#include <string>
 #include <vector>
 
 struct xcb_connection_t;
@@ -23,6 +24,8 @@ class XScreen {
 public:
     // Error: there is no X server, or it has no RandR.
     static Result<std::unique_ptr<XScreen>> open();
+    // The X server that open() would ask, by its address, ":0"; "" where none is named. Asks nobody.
+    static std::string serverName();
     // Gives the screen saver and the power saving their settings back.
     ~XScreen();
     XScreen(const XScreen&) = delete;

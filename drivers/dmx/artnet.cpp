@@ -194,7 +194,7 @@ Result<int> portAddressOf(const Keys& keys, int universe, const ConfigNode& opti
 
 }  // namespace
 
-Result<std::unique_ptr<DmxPort>> ArtnetPort::open(const ConfigNode& options, int universe, const Surroundings& around) {
+Result<Opening<DmxPort>> ArtnetPort::fromConfig(const ConfigNode& options, int universe) {
     Keys keys;
     std::optional<Ipv4> node;
     bool sync = false, poll = true;
@@ -210,18 +210,31 @@ Result<std::unique_ptr<DmxPort>> ArtnetPort::open(const ConfigNode& options, int
     if (node) settings.to = {*node};
     settings.polled = node && poll;
     settings.sync = sync;
-    return std::unique_ptr<DmxPort>(std::make_unique<NetworkDmxPort>(fmt::format("universe {}", universe), keys.driver,
-                                                                     std::move(settings), networkFor(keys.interface, around)));
+    const Use sent{fmt::format("Art-Net port-address {} towards {}{}", settings.universe,
+                               keys.interface.empty() ? "the network" : keys.interface, node ? ", node " + textOf(*node) : ""),
+                   ""};
+    const auto open = [keys, settings, universe](const Surroundings& around) -> Result<std::unique_ptr<DmxPort>> {
+        return std::unique_ptr<DmxPort>(std::make_unique<NetworkDmxPort>(fmt::format("universe {}", universe), keys.driver,
+                                                                         settings, networkFor(keys.interface, around)));
+    };
+    const auto claim = [=] {
+        return fmt::format("Art-Net port-address {}{}{}", settings.universe, node ? " of " + textOf(*node) : "",
+                           onWhichInterface(keys.interface));
+    };
+    return Opening<DmxPort>{.open = open, .uses = {sent}, .claim = claim};
 }
 
-Result<std::unique_ptr<DmxSource>> ArtnetSource::open(const ConfigNode& options, int universe, const Surroundings& around) {
+Result<Opening<DmxSource>> ArtnetSource::fromConfig(const ConfigNode& options, int universe) {
     Keys keys;
     ConfigFields fields(options);
     declare(fields, keys);
     TRY(fields.finish());
     const int portAddress = TRY(portAddressOf(keys, universe, options));
-    return std::unique_ptr<DmxSource>(std::make_unique<NetworkDmxSource>(fmt::format("desk {}", universe), keys.driver,
-                                                                         portAddress, networkFor(keys.interface, around)));
+    const auto open = [keys, portAddress, universe](const Surroundings& around) -> Result<std::unique_ptr<DmxSource>> {
+        return std::unique_ptr<DmxSource>(std::make_unique<NetworkDmxSource>(fmt::format("desk {}", universe), keys.driver,
+                                                                             portAddress, networkFor(keys.interface, around)));
+    };
+    return Opening<DmxSource>{open};
 }
 
 }  // namespace fantascope::drivers

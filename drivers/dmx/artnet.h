@@ -1,6 +1,5 @@
 #pragma once
 
-#include "drivers/common/found_device.h"
 #include "drivers/surroundings.h"
 
 #include "device/dmx_port.h"
@@ -8,16 +7,14 @@
 
 #include "core/config.h"
 
-#include <memory>
-
 namespace fantascope::drivers {
 
 // Art-Net 4 (Artistic Licence). README.md has the keys and what goes over the network.
 struct ArtnetPort {
-    static Result<std::unique_ptr<DmxPort>> open(const ConfigNode& options, int universe, const Surroundings& around);
+    static Result<Opening<DmxPort>> fromConfig(const ConfigNode& options, int universe);
 };
 struct ArtnetSource {
-    static Result<std::unique_ptr<DmxSource>> open(const ConfigNode& options, int universe, const Surroundings& around);
+    static Result<Opening<DmxSource>> fromConfig(const ConfigNode& options, int universe);
 };
 
 }  // namespace fantascope::drivers

@@ -72,17 +72,29 @@ void Outgoing::hand(std::span<const std::uint8_t, kDmxSlots> slots) {
     fresh_ = true;
 }
 
+bool Outgoing::takeChange() {
+    if (!fresh_.exchange(false) || !wanted_.update() || (speaks && wanted_.value() == slots)) return false;
+    slots = wanted_.value();
+    speaks = true;
+    repeats_ = DmxNetwork::kRepeats;
+    return true;
+}
+
 bool Outgoing::isDue(Time now) {
-    if (fresh_.exchange(false) && wanted_.update() && (!speaks || wanted_.value() != slots)) {
-        slots = wanted_.value();
-        speaks = true;
-        repeats_ = DmxNetwork::kRepeats;
+    if (takeChange()) {
         sent_ = now;
         return true;
     }
     if (!speaks || now < *nextDue()) return false;
     repeats_ = std::max(repeats_ - 1, 0);
     sent_ = now;
+    return true;
+}
+
+bool Outgoing::isOwed() {
+    if (takeChange()) return true;
+    if (!speaks || repeats_ == 0) return false;
+    --repeats_;
     return true;
 }
 
@@ -187,6 +199,11 @@ void DmxNetwork::add(Incoming& in) {
 
 void DmxNetwork::remove(Outgoing& out) {
     const std::lock_guard lock(mutex_);
+    // Receivers ignore the levels of a goodbye (ANSI E1.31, section 6.2.6), and Art-Net knows none.
+    while (there_ && out.isOwed()) {
+        protocol_->send(wire_, out);
+        protocol_->afterTick(wire_);
+    }
     if (there_ && out.speaks) protocol_->sayGoodbye(wire_, out);
     std::erase(wire_.outgoing, &out);
 }

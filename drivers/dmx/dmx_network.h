@@ -69,6 +69,8 @@ public:
     bool isFresh() const { return fresh_; }
     // Whether there is something to send at a tick: new levels, one of the three repeats after them, or the keep-alive.
     bool isDue(Time now);
+    // Whether the newest levels, or one of their repeats, are still to be sent; each call counts as sending one.
+    bool isOwed();
     // When there is something to send next, unless new levels come.
     std::optional<Time> nextDue() const;
     // What was handed over so far is not sent any more.
@@ -79,6 +81,8 @@ public:
     bool speaks = false;  // slots were handed over since the device came
 
 private:
+    bool takeChange();  // new levels into `slots`
+
     LatestValue<DmxSlots> wanted_;
     std::atomic<bool> fresh_ = false;
     int repeats_ = 0;
@@ -177,7 +181,7 @@ public:
 
     void add(Outgoing& out);
     void add(Incoming& in);
-    // Goodbyes are said before these return.
+    // What is owed to a universe is sent, and goodbyes are said, before these return.
     void remove(Outgoing& out);
     void remove(Incoming& in);
     // There are new levels.

@@ -13,7 +13,7 @@ namespace {
 constexpr int kMostRate = 40;
 
 // How long a frame that was just handed over may take to leave at the end.
-constexpr Time kFarewell = std::chrono::milliseconds(50);
+constexpr Time kFarewell = std::chrono::milliseconds(250);
 
 // How often the end is looked for while nothing comes in.
 constexpr Time kLookAgain = std::chrono::milliseconds(50);
@@ -60,7 +60,9 @@ Outage EnttecPro::attend(Service& service, const Work& work) {
 }
 
 Result<EnttecPro::Met> EnttecPro::meet(EnttecWidget& widget) {
-    Met met{TRY(widget.meet()), TRY(widget.number())};
+    Met met;
+    met.parameters = TRY(widget.meet());
+    met.number = TRY(widget.number());
     const std::string& wanted = options_.which.number;
     if (!wanted.empty() && met.number != wanted)
         return Error(fmt::format("it is the widget {}, not {}", met.number.empty() ? "without a number" : met.number, wanted));
@@ -73,7 +75,7 @@ Result<EnttecPro::Met> EnttecPro::meet(EnttecWidget& widget) {
     return met;
 }
 
-Result<std::unique_ptr<DmxPort>> EnttecProPort::open(const ConfigNode& options, int universe, const Surroundings& around) {
+Result<Opening<DmxPort>> EnttecProPort::fromConfig(const ConfigNode& options, int universe) {
     EnttecPro::Options wanted;
     ConfigFields fields(options);
     readWhich(fields, wanted.which);
@@ -83,7 +85,11 @@ Result<std::unique_ptr<DmxPort>> EnttecProPort::open(const ConfigNode& options, 
         return std::optional(static_cast<int>(TRY(node.integer(1, kMostRate))));
     });
     TRY(fields.finish());
-    return std::unique_ptr<DmxPort>(new EnttecProPort(fmt::format("universe {}", universe), std::move(wanted), around.clock));
+    const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<DmxPort>> {
+        return std::unique_ptr<DmxPort>(new EnttecProPort(fmt::format("universe {}", universe), wanted, around.clock));
+    };
+    return Opening<DmxPort>{
+        .open = open, .uses = {useOf(wanted.which)}, .claim = [which = wanted.which] { return claimOf(which); }};
 }
 
 EnttecProPort::EnttecProPort(const std::string& name, EnttecPro::Options options, Clock& clock)
@@ -114,24 +120,31 @@ Result<void> EnttecProPort::repeat(Service& service, EnttecWidget& widget, doubl
     service.running();
     const Time period = fromSeconds(1 / rate);
     const auto hearNothing = [](const WidgetMessage&) {};
+    const auto finishSaying = [&]() -> Result<void> {
+        for (const Time end = clock_.now() + kFarewell; !widget.idle() && clock_.now() < end;)
+            TRY(widget.work(clock_.now() + std::chrono::milliseconds(1), hearNothing));
+        return {};
+    };
     for (Time tick = clock_.now();;) {
         const bool last = service.ending();
+        if (last) TRY(finishSaying());  // the newest frame goes out, even where an older one is on its way
         if (const auto packet = newest(); packet && widget.idle()) widget.say(WidgetLabel::Send, *packet);
-        if (last) break;
+        if (last) return finishSaying();
         tick = std::max(tick + period, clock_.now());
         TRY(widget.work(tick, hearNothing));
     }
-    for (const Time end = clock_.now() + kFarewell; !widget.idle() && clock_.now() < end;)
-        TRY(widget.work(clock_.now() + std::chrono::milliseconds(1), hearNothing));
-    return {};
 }
 
-Result<std::unique_ptr<DmxSource>> EnttecProSource::open(const ConfigNode& options, int universe, const Surroundings& around) {
+Result<Opening<DmxSource>> EnttecProSource::fromConfig(const ConfigNode& options, int universe) {
     EnttecPro::Options wanted;
     ConfigFields fields(options);
     readWhich(fields, wanted.which);
     TRY(fields.finish());
-    return std::unique_ptr<DmxSource>(new EnttecProSource(fmt::format("desk {}", universe), std::move(wanted), around.clock));
+    const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<DmxSource>> {
+        return std::unique_ptr<DmxSource>(new EnttecProSource(fmt::format("desk {}", universe), wanted, around.clock));
+    };
+    return Opening<DmxSource>{
+        .open = open, .uses = {useOf(wanted.which)}, .claim = [which = wanted.which] { return claimOf(which); }};
 }
 
 EnttecProSource::EnttecProSource(const std::string& name, EnttecPro::Options options, Clock& clock)

@@ -48,7 +48,7 @@ private:
 // A universe going out by a DMX USB Pro.
 class EnttecProPort final : public DmxPort {
 public:
-    static Result<std::unique_ptr<DmxPort>> open(const ConfigNode& options, int universe, const Surroundings& around);
+    static Result<Opening<DmxPort>> fromConfig(const ConfigNode& options, int universe);
 
     DeviceStatus status() const override { return service_.status(); }
     Result<void> send(std::span<const std::uint8_t, kDmxSlots> slots) override;
@@ -67,7 +67,7 @@ private:
 // A universe coming in by a DMX USB Pro. The sender is the widget's own serial number.
 class EnttecProSource final : public DmxSource {
 public:
-    static Result<std::unique_ptr<DmxSource>> open(const ConfigNode& options, int universe, const Surroundings& around);
+    static Result<Opening<DmxSource>> fromConfig(const ConfigNode& options, int universe);
 
     DeviceStatus status() const override { return service_.status(); }
     std::optional<DmxInput> receive() override;

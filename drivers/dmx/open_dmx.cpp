@@ -27,7 +27,7 @@ constexpr int kMeasured = 1000;
 
 }  // namespace
 
-Result<std::unique_ptr<DmxPort>> OpenDmxPort::open(const ConfigNode& options, int universe, const Surroundings& around) {
+Result<Opening<DmxPort>> OpenDmxPort::fromConfig(const ConfigNode& options, int universe) {
     using std::chrono::microseconds;
     Options wanted{.which = {}, .breakTime = microseconds(176), .markAfterBreak = microseconds(16), .rate = 30};
     const auto readTime = [](double least, double most) {
@@ -43,7 +43,11 @@ Result<std::unique_ptr<DmxPort>> OpenDmxPort::open(const ConfigNode& options, in
     TRY(fields.finish());
     if (wanted.which.line.file.empty() && wanted.which.line.serial.empty())
         return options.error("'serial' or 'port' is wanted: nothing tells an Open DMX from another adapter");
-    return std::unique_ptr<DmxPort>(new OpenDmxPort(fmt::format("universe {}", universe), wanted, around.clock));
+    const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<DmxPort>> {
+        return std::unique_ptr<DmxPort>(new OpenDmxPort(fmt::format("universe {}", universe), wanted, around.clock));
+    };
+    return Opening<DmxPort>{
+        .open = open, .uses = {useOf(wanted.which)}, .claim = [which = wanted.which] { return claimOf(which); }};
 }
 
 OpenDmxPort::OpenDmxPort(const std::string& name, const Options& options, Clock& clock)

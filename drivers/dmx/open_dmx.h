@@ -20,7 +20,7 @@ namespace fantascope::drivers {
 // A universe going out by an Enttec Open DMX USB or another bare serial adapter: this program makes every break and every byte itself.
 class OpenDmxPort final : public DmxPort {
 public:
-    static Result<std::unique_ptr<DmxPort>> open(const ConfigNode& options, int universe, const Surroundings& around);
+    static Result<Opening<DmxPort>> fromConfig(const ConfigNode& options, int universe);
 
     DeviceStatus status() const override { return service_.status(); }
     Result<void> send(std::span<const std::uint8_t, kDmxSlots> slots) override;

@@ -5,6 +5,7 @@
 #include "drivers/dmx/sacn_packet.h"
 
 #include "core/file.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -176,7 +177,7 @@ private:
         DmxSender* const sender = in.met(data.cid, now, kSilence);
         if (sender == nullptr) return;
         if (familiar == nullptr)
-            *sender = {data.name.empty() ? textOf(data.cid) : fmt::format("{} {}", data.name, textOf(data.cid)), 0, {}, {}};
+            *sender = {data.name.empty() ? textOf(data.cid) : fmt::format("{} {}", printable(data.name), textOf(data.cid)), 0, {}, {}};
         sender->sequence = data.sequence;
         sender->heard = now;
         frame.source = sender->source;
@@ -224,7 +225,7 @@ std::shared_ptr<DmxNetwork> networkFor(const ConfigNode& options, const std::str
 
 }  // namespace
 
-Result<std::unique_ptr<DmxPort>> SacnPort::open(const ConfigNode& options, int universe, const Surroundings& around) {
+Result<Opening<DmxPort>> SacnPort::fromConfig(const ConfigNode& options, int universe) {
     std::string driver, interface;
     OutgoingSettings settings;
     settings.universe = universe;
@@ -243,11 +244,15 @@ Result<std::unique_ptr<DmxPort>> SacnPort::open(const ConfigNode& options, int u
         return options.error(fmt::format("'name' is {} bytes long, {} are the most", settings.name.size(), kNameSize - 1));
     if (universe < 1 || universe > kLastUniverse)
         return options.error(fmt::format("sACN has the universes 1 to {}, not {}", kLastUniverse, universe));
-    return std::unique_ptr<DmxPort>(std::make_unique<NetworkDmxPort>(
-        fmt::format("universe {}", universe), driver, std::move(settings), networkFor(options, interface, around)));
+    const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<DmxPort>> {
+        return std::unique_ptr<DmxPort>(std::make_unique<NetworkDmxPort>(fmt::format("universe {}", universe), driver, settings,
+                                                                         networkFor(options, interface, around)));
+    };
+    const auto claim = [=] { return fmt::format("sACN universe {}{}", universe, onWhichInterface(interface)); };
+    return Opening<DmxPort>{.open = open, .claim = claim};
 }
 
-Result<std::unique_ptr<DmxSource>> SacnSource::open(const ConfigNode& options, int universe, const Surroundings& around) {
+Result<Opening<DmxSource>> SacnSource::fromConfig(const ConfigNode& options, int universe) {
     std::string driver, interface;
     ConfigFields fields(options);
     fields.text("driver", driver);
@@ -255,8 +260,11 @@ Result<std::unique_ptr<DmxSource>> SacnSource::open(const ConfigNode& options, i
     TRY(fields.finish());
     if (universe < 1 || universe > kLastUniverse)
         return options.error(fmt::format("sACN has the universes 1 to {}, not {}", kLastUniverse, universe));
-    return std::unique_ptr<DmxSource>(std::make_unique<NetworkDmxSource>(fmt::format("desk {}", universe), driver, universe,
-                                                                         networkFor(options, interface, around)));
+    const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<DmxSource>> {
+        return std::unique_ptr<DmxSource>(std::make_unique<NetworkDmxSource>(fmt::format("desk {}", universe), driver, universe,
+                                                                             networkFor(options, interface, around)));
+    };
+    return Opening<DmxSource>{open};
 }
 
 }  // namespace fantascope::drivers

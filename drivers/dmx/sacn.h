@@ -11,10 +11,10 @@ namespace fantascope::drivers {
 
 // Streaming ACN (ANSI E1.31-2018). README.md has the keys and what goes over the network.
 struct SacnPort {
-    static Result<std::unique_ptr<DmxPort>> open(const ConfigNode& options, int universe, const Surroundings& around);
+    static Result<Opening<DmxPort>> fromConfig(const ConfigNode& options, int universe);
 };
 struct SacnSource {
-    static Result<std::unique_ptr<DmxSource>> open(const ConfigNode& options, int universe, const Surroundings& around);
+    static Result<Opening<DmxSource>> fromConfig(const ConfigNode& options, int universe);
 };
 
 }  // namespace fantascope::drivers

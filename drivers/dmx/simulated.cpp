@@ -4,9 +4,10 @@
 
 namespace fantascope::drivers {
 
-Result<std::unique_ptr<DmxPort>> SimulatedDmxPort::open(const ConfigNode& options, int universe, const Surroundings& around) {
-    auto plug = TRY(site::Plug::open(options, around, fmt::format("universe {}", universe), LossAction::Hold));
-    return std::unique_ptr<DmxPort>(new SimulatedDmxPort(std::move(plug), universe));
+Result<Opening<DmxPort>> SimulatedDmxPort::fromConfig(const ConfigNode& options, int universe) {
+    return site::Plug::fromConfig<DmxPort>(
+        options, fmt::format("universe {}", universe), LossAction::Hold,
+        [universe](site::Plug plug) { return new SimulatedDmxPort(std::move(plug), universe); });
 }
 
 Result<void> SimulatedDmxPort::send(std::span<const std::uint8_t, kDmxSlots> slots) {
@@ -14,9 +15,10 @@ Result<void> SimulatedDmxPort::send(std::span<const std::uint8_t, kDmxSlots> slo
     return {};
 }
 
-Result<std::unique_ptr<DmxSource>> SimulatedDmxSource::open(const ConfigNode& options, int universe, const Surroundings& around) {
-    auto plug = TRY(site::Plug::open(options, around, fmt::format("desk {}", universe), LossAction::Hold));
-    return std::unique_ptr<DmxSource>(new SimulatedDmxSource(std::move(plug), universe));
+Result<Opening<DmxSource>> SimulatedDmxSource::fromConfig(const ConfigNode& options, int universe) {
+    return site::Plug::fromConfig<DmxSource>(
+        options, fmt::format("desk {}", universe), LossAction::Hold,
+        [universe](site::Plug plug) { return new SimulatedDmxSource(std::move(plug), universe); });
 }
 
 }  // namespace fantascope::drivers

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "drivers/site/plug.h"
-#include "drivers/surroundings.h"
 
 #include "device/dmx_port.h"
 #include "device/dmx_source.h"
@@ -13,7 +12,7 @@ namespace fantascope::drivers {
 // One universe of the simulated site's lamps. Plug: "universe N".
 class SimulatedDmxPort final : public DmxPort {
 public:
-    static Result<std::unique_ptr<DmxPort>> open(const ConfigNode& options, int universe, const Surroundings& around);
+    static Result<Opening<DmxPort>> fromConfig(const ConfigNode& options, int universe);
 
     DeviceStatus status() const override { return plug_.status(); }
     Result<void> send(std::span<const std::uint8_t, kDmxSlots> slots) override;
@@ -27,7 +26,7 @@ private:
 // Somebody else's desk at the simulated site. Plug: "desk N".
 class SimulatedDmxSource final : public DmxSource {
 public:
-    static Result<std::unique_ptr<DmxSource>> open(const ConfigNode& options, int universe, const Surroundings& around);
+    static Result<Opening<DmxSource>> fromConfig(const ConfigNode& options, int universe);
 
     DeviceStatus status() const override { return plug_.status(); }
     std::optional<DmxInput> receive() override { return plug_.world().takeFromDesk(universe_); }

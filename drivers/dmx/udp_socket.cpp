@@ -124,6 +124,13 @@ std::optional<Outage> whyNoInterface(std::string_view wanted, NetworkInterface& 
     return Outage{DeviceState::Absent, fmt::format("{} has no link: is its cable in?", found.name)};
 }
 
+std::string onWhichInterface(const std::string& wanted) {
+    NetworkInterface found;
+    (void)whyNoInterface(wanted, found);
+    const std::string& name = found.name.empty() ? wanted : found.name;
+    return name.empty() ? "" : " on " + name;
+}
+
 Result<UdpSocket> UdpSocket::open(const NetworkInterface& interface, std::uint16_t port) {
     UdpSocket socket = TRY(sharable().in(interface.name));
     const int file = socket.file();

@@ -45,6 +45,8 @@ std::vector<NetworkInterface> networkInterfaces();
 // Finds the interface that a site file means by its name or its address; by "" it means the only one that there is besides the loopback.
 // Why it cannot be used, or nothing and `found` is set.
 std::optional<Outage> whyNoInterface(std::string_view wanted, NetworkInterface& found);
+// What a claim adds for the interface: " on eth0". While none is found: what the site file says.
+std::string onWhichInterface(const std::string& wanted);
 
 // A UDP socket on one interface: it hears and speaks there and nowhere else. It shares its port with other programs that share theirs.
 // No call ever waits. Thread: thread-bound.

@@ -1,5 +1,6 @@
 #include "drivers/dmx/widget_search.h"
 
+#include "drivers/common/claim.h"
 #include "drivers/dmx/enttec_widget.h"
 
 #include <fmt/format.h>
@@ -31,6 +32,10 @@ Result<std::filesystem::path> onlyWidget() {
     std::vector<std::string> serials;
     for (const UsbFile& line : lines) serials.push_back(line.usb.serial);
     return Error(fmt::format("several DMX widgets are plugged in, say which by 'serial': {}", fmt::join(serials, ", ")));
+}
+
+bool isByNumber(const WidgetChoice& choice) {
+    return choice.line.file.empty() && choice.line.serial.empty() && !choice.number.empty();
 }
 
 std::string optionsFor(const char* driver, const UsbFile& line) {
@@ -85,9 +90,21 @@ void readWidgetNumber(ConfigFields& fields, std::string& number) {
     });
 }
 
+Use useOf(const WidgetChoice& choice) {
+    if (!choice.line.file.empty()) return {choice.line.file.string(), ""};
+    if (!choice.line.serial.empty()) return {"the USB adapter serial " + choice.line.serial, ""};
+    return {choice.number.empty() ? "the only DMX widget" : "the DMX widget " + choice.number, ""};
+}
+
+std::string claimOf(const WidgetChoice& choice) {
+    if (isByNumber(choice)) return useOf(choice).what;
+    const auto file = widgetFinder(choice)();
+    return file ? claimOfFile(kSerialLine, *file) : useOf(choice).what;
+}
+
 SerialStream::Find widgetFinder(const WidgetChoice& choice) {
     if (!choice.line.file.empty() || !choice.line.serial.empty()) return [line = choice.line] { return findSerialLine(line); };
-    if (choice.number.empty()) return onlyWidget;
+    if (!isByNumber(choice)) return onlyWidget;
     return [number = choice.number, next = std::size_t{0}]() mutable -> Result<std::filesystem::path> {
         const std::vector<UsbFile> lines = serialLines({.file = {}, .vendor = kFtdi, .product = {}, .serial = {}});
         if (lines.empty()) return Error(fmt::format("no adapter is plugged in that could be the widget {}", number));

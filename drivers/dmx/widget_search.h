@@ -2,6 +2,7 @@
 
 #include "drivers/byte_stream/serial.h"
 #include "drivers/common/found_device.h"
+#include "drivers/surroundings.h"
 
 #include "core/config.h"
 
@@ -17,6 +18,11 @@ struct WidgetChoice {
 };
 void readWidgetLine(ConfigFields& fields, SerialIdentity& line);
 void readWidgetNumber(ConfigFields& fields, std::string& number);
+// The line or widget that a choice takes for itself.
+Use useOf(const WidgetChoice& choice);
+// What a program claims of it (Opening::claim): the line that the search would take now, else what is searched for. By
+// its number alone a widget is found by asking it, which a claim does not: only the line's own lock holds that one.
+std::string claimOf(const WidgetChoice& choice);
 
 // Where to look for it. Without port and serial that is the one adapter that calls itself a DMX widget; with a number alone each adapter
 // by FTDI in turn.

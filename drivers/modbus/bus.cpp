@@ -130,7 +130,14 @@ ModbusUnit::Turned ModbusUnit::take(ModbusLine& line, Call* call) {
 
 void ModbusUnit::settle(const Turned& turned, Call* call) {
     const Time now = bus_->clock_.now();
-    if (const auto* failure = std::get_if<ModbusFailure>(&turned)) {
+    const auto* const failure = std::get_if<ModbusFailure>(&turned);
+    if (failure != nullptr && failure->isRefusal && call != nullptr) {
+        call->answer = Result<void>(Error(fmt::format("{}: {}", status_.name, failure->outage.why)));
+        call_ = nullptr;
+        due_ = now;
+        return;
+    }
+    if (failure != nullptr) {
         lose(failure->outage);
         due_ = now + backOff_.failed(now);
         return;

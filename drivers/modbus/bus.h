@@ -1,5 +1,6 @@
 #pragma once
 
+#include "drivers/common/back_off.h"
 #include "drivers/common/service.h"
 #include "drivers/modbus/line.h"
 #include "drivers/modbus/values.h"
@@ -75,7 +76,8 @@ public:
     bool isRunning() const { return status().state == DeviceState::Running; }
 
     // Does a job on the bus's thread at once, but for the requests that are under way or due before, and waits for it. The job's own requests
-    // must end by `deadline`; what has not begun by then never begins. Error: not Running, no time, or the job failed: then the unit is lost.
+    // must end by `deadline`; what has not begun by then never begins. Error: not Running, no time, or the job failed: then the unit is lost,
+    // unless it answered that it will not.
     Result<void> run(const Job& job, Time deadline);
 
 private:

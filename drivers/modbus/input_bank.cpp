@@ -12,19 +12,16 @@ constexpr std::size_t kMostWaiting = 1024;
 
 }  // namespace
 
-Result<std::unique_ptr<InputBank>> ModbusInputBank::openTcp(const ConfigNode& options, const std::string& name, std::size_t size,
-                                                            const Surroundings& around) {
-    return open("modbus_tcp", {ModbusTcp()}, 50, options, name, size, around);
+Result<Opening<InputBank>> ModbusInputBank::readTcp(const ConfigNode& options, const std::string& name, std::size_t size) {
+    return fromConfig("modbus_tcp", {ModbusTcp()}, 50, options, name, size);
 }
 
-Result<std::unique_ptr<InputBank>> ModbusInputBank::openRtu(const ConfigNode& options, const std::string& name, std::size_t size,
-                                                            const Surroundings& around) {
-    return open("modbus_rtu", {ModbusRtu()}, 20, options, name, size, around);
+Result<Opening<InputBank>> ModbusInputBank::readRtu(const ConfigNode& options, const std::string& name, std::size_t size) {
+    return fromConfig("modbus_rtu", {ModbusRtu()}, 20, options, name, size);
 }
 
-Result<std::unique_ptr<InputBank>> ModbusInputBank::open(const char* driver, ModbusLineOptions line, double rate,
-                                                         const ConfigNode& node, const std::string& name, std::size_t size,
-                                                         const Surroundings& around) {
+Result<Opening<InputBank>> ModbusInputBank::fromConfig(const char* driver, ModbusLineOptions line, double rate,
+                                                       const ConfigNode& node, const std::string& name, std::size_t size) {
     Options options;
     options.line = std::move(line);
     options.rate = rate;
@@ -58,8 +55,15 @@ Result<std::unique_ptr<InputBank>> ModbusInputBank::open(const char* driver, Mod
             fmt::format("'hysteresis' must be below 'threshold', which is {}: else no contact ever opens", contact.threshold));
     options.contacts.assign(size, contact);
     for (const std::size_t number : normallyClosed) options.contacts[number].normallyClosed = true;
-    auto bus = TRY(ModbusBus::of(node, options.line, around.clock));
-    return std::unique_ptr<InputBank>(new ModbusInputBank(name, driver, std::move(options), std::move(bus)));
+    const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<InputBank>> {
+        auto bus = TRY(ModbusBus::of(node, options.line, around.clock));
+        return std::unique_ptr<InputBank>(new ModbusInputBank(name, driver, options, std::move(bus)));
+    };
+    const auto claim = [line = options.line] {
+        const ModbusRtu* serial = std::get_if<ModbusRtu>(&line.wire);
+        return serial == nullptr ? "" : claimOf(*serial);  // any number of programs may ask a module on the network
+    };
+    return Opening<InputBank>{.open = open, .uses = {useOf(options.line)}, .claim = claim};
 }
 
 ModbusInputBank::ModbusInputBank(std::string name, const char* driver, Options options, std::shared_ptr<ModbusBus> bus)

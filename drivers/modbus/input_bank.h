@@ -18,10 +18,8 @@ namespace fantascope::drivers {
 // Contacts that are the discrete inputs, coils or registers of a Modbus unit.
 class ModbusInputBank final : public InputBank {
 public:
-    static Result<std::unique_ptr<InputBank>> openTcp(const ConfigNode& options, const std::string& name, std::size_t size,
-                                                      const Surroundings& around);
-    static Result<std::unique_ptr<InputBank>> openRtu(const ConfigNode& options, const std::string& name, std::size_t size,
-                                                      const Surroundings& around);
+    static Result<Opening<InputBank>> readTcp(const ConfigNode& options, const std::string& name, std::size_t size);
+    static Result<Opening<InputBank>> readRtu(const ConfigNode& options, const std::string& name, std::size_t size);
 
     DeviceStatus status() const override { return unit_.status(); }
     std::size_t size() const override { return contacts_.size(); }
@@ -34,9 +32,8 @@ private:
         std::vector<ContactOptions> contacts;
         double rate = 50;  // Hz
     };
-    static Result<std::unique_ptr<InputBank>> open(const char* driver, ModbusLineOptions line, double rate,
-                                                   const ConfigNode& node, const std::string& name, std::size_t size,
-                                                   const Surroundings& around);
+    static Result<Opening<InputBank>> fromConfig(const char* driver, ModbusLineOptions line, double rate, const ConfigNode& node,
+                                                 const std::string& name, std::size_t size);
     ModbusInputBank(std::string name, const char* driver, Options options, std::shared_ptr<ModbusBus> bus);
     ModbusUnit::Turned turn(ModbusLine& line);  // on the bus's thread
 

@@ -1,5 +1,6 @@
 #include "drivers/modbus/line.h"
 
+#include "drivers/common/claim.h"
 #include "drivers/modbus/values.h"
 
 #include <arpa/inet.h>
@@ -135,6 +136,20 @@ std::string nameOf(const ModbusLineOptions& options) {
     return name;
 }
 
+Use useOf(const ModbusLineOptions& options) {
+    std::string how = fmt::format("response_timeout {:g}", seconds(options.responseTimeout));
+    if (const ModbusRtu* serial = std::get_if<ModbusRtu>(&options.wire))
+        how += fmt::format(", baud {}, parity {}, stop_bits {}, rs485 {}", serial->baud,
+                           std::array{"even", "odd", "none"}[static_cast<std::size_t>(serial->parity)], serial->stopBits,
+                           serial->rs485);
+    return {nameOf(options), how};
+}
+
+std::string claimOf(const ModbusRtu& wire) {
+    const auto file = fileOf(wire);
+    return file ? claimOfFile(kSerialLine, *file) : nameOf(ModbusLineOptions{wire});
+}
+
 bool isOn(const ModbusRtu& wire, const UsbIdentity& usb) {
     const auto fits = [](const std::string& wanted, const std::string& is) { return wanted.empty() || wanted == is; };
     return fits(wire.usbVendor, usb.vendor) && fits(wire.usbProduct, usb.product) && fits(wire.usbSerial, usb.serial);
@@ -222,8 +237,11 @@ ModbusOutcome ModbusLine::exchangeOnce(const ModbusPlace& place, std::size_t cou
     if (request(context_.get()) >= 0) return std::nullopt;
 
     const int error = errno;
-    if (isException(error))
-        return ModbusFailure{{DeviceState::Faulted, exceptionInWords(error - MODBUS_ENOBASE, place, count, writing)}};
+    if (isException(error)) {
+        ModbusFailure refusal{{DeviceState::Faulted, exceptionInWords(error - MODBUS_ENOBASE, place, count, writing)}};
+        refusal.isRefusal = error != EMBXGPATH && error != EMBXGTAR;  // those are a gateway's words
+        return refusal;
+    }
     const bool serial = std::holds_alternative<ModbusRtu>(options_.wire);
     // A module that hangs up may have been without power: that its relays fell must not go unnoticed behind a new connection.
     if (error != ETIMEDOUT && !isLibrarys(error)) return lost(error);

@@ -2,6 +2,7 @@
 
 #include "drivers/common/file_handle.h"
 #include "drivers/common/usb_identity.h"
+#include "drivers/surroundings.h"
 
 #include "core/clock.h"
 #include "core/config.h"
@@ -60,6 +61,11 @@ void declareUnit(ConfigFields& fields, const ModbusLineOptions& line, ModbusPlac
 Result<void> checkPlace(const ConfigNode& node, const ModbusPlace& place, std::size_t count, bool writing);
 // "10.0.0.5:502", "/dev/ttyUSB0", "the USB adapter 0403:6001 serial A5".
 std::string nameOf(const ModbusLineOptions& options);
+// Devices share a line that they use with the same settings.
+Use useOf(const ModbusLineOptions& options);
+// What a program claims of a serial line (Opening::claim): the file that it would open now, else the adapter that it
+// waits for.
+std::string claimOf(const ModbusRtu& wire);
 
 // Whether a line that was asked for by its USB adapter may be the one on this.
 bool isOn(const ModbusRtu& wire, const UsbIdentity& usb);
@@ -69,6 +75,7 @@ struct ModbusFailure {
     Outage outage;
     bool ofLine = false;
     bool mayAskAgain = false;  // no answer, or not its own
+    bool isRefusal = false;    // the unit's own word: it is there and will not do it
 };
 using ModbusOutcome = std::optional<ModbusFailure>;  // nothing: it succeeded
 

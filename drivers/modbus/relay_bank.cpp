@@ -14,14 +14,14 @@ std::string shown(const std::vector<std::uint16_t>& values) { return fmt::format
 
 }  // namespace
 
-Result<std::unique_ptr<RelayBank>> ModbusRelayBank::openTcp(const ConfigNode& options, const std::string& name,
-                                                            const std::vector<bool>& safeStates, const Surroundings& around) {
-    return open("modbus_tcp", {ModbusTcp()}, options, name, safeStates, around);
+Result<Opening<RelayBank>> ModbusRelayBank::readTcp(const ConfigNode& options, const std::string& name,
+                                                    const std::vector<bool>& safeStates) {
+    return fromConfig("modbus_tcp", {ModbusTcp()}, options, name, safeStates);
 }
 
-Result<std::unique_ptr<RelayBank>> ModbusRelayBank::openRtu(const ConfigNode& options, const std::string& name,
-                                                            const std::vector<bool>& safeStates, const Surroundings& around) {
-    return open("modbus_rtu", {ModbusRtu()}, options, name, safeStates, around);
+Result<Opening<RelayBank>> ModbusRelayBank::readRtu(const ConfigNode& options, const std::string& name,
+                                                    const std::vector<bool>& safeStates) {
+    return fromConfig("modbus_rtu", {ModbusRtu()}, options, name, safeStates);
 }
 
 Result<ModbusRelayBank::Watchdog> ModbusRelayBank::watchdogOf(const ConfigNode& node) {
@@ -37,9 +37,8 @@ Result<ModbusRelayBank::Watchdog> ModbusRelayBank::watchdogOf(const ConfigNode& 
     return watchdog;
 }
 
-Result<std::unique_ptr<RelayBank>> ModbusRelayBank::open(const char* driver, ModbusLineOptions line, const ConfigNode& node,
-                                                         const std::string& name, const std::vector<bool>& safeStates,
-                                                         const Surroundings& around) {
+Result<Opening<RelayBank>> ModbusRelayBank::fromConfig(const char* driver, ModbusLineOptions line, const ConfigNode& node,
+                                                       const std::string& name, const std::vector<bool>& safeStates) {
     Options options;
     options.line = std::move(line);
     std::string named;
@@ -69,8 +68,15 @@ Result<std::unique_ptr<RelayBank>> ModbusRelayBank::open(const char* driver, Mod
     if (options.timeout < 3 * options.line.responseTimeout)
         return node.error(fmt::format("'timeout' is {:g} s, three times 'response_timeout' is needed: {:g} s",
                                       seconds(options.timeout), seconds(3 * options.line.responseTimeout)));
-    auto bus = TRY(ModbusBus::of(node, options.line, around.clock));
-    return std::unique_ptr<RelayBank>(new ModbusRelayBank(name, driver, std::move(options), std::move(bus), safeStates));
+    const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<RelayBank>> {
+        auto bus = TRY(ModbusBus::of(node, options.line, around.clock));
+        return std::unique_ptr<RelayBank>(new ModbusRelayBank(name, driver, options, std::move(bus), safeStates));
+    };
+    const auto claim = [line = options.line, unit = options.place.unit] {
+        if (const ModbusRtu* serial = std::get_if<ModbusRtu>(&line.wire)) return claimOf(*serial);
+        return fmt::format("Modbus module {} unit {}", nameOf(line), unit);  // two shows may share a gateway
+    };
+    return Opening<RelayBank>{.open = open, .uses = {useOf(options.line)}, .claim = claim};
 }
 
 ModbusRelayBank::ModbusRelayBank(std::string name, const char* driver, Options options, std::shared_ptr<ModbusBus> bus,
@@ -82,11 +88,12 @@ ModbusRelayBank::ModbusRelayBank(std::string name, const char* driver, Options o
             [this](ModbusLine& line) { return turn(line); }) {}
 
 ModbusRelayBank::~ModbusRelayBank() {
-    (void)write(safeStates_);  // what is lost has its own watchdog, or nobody
+    if (used_) (void)write(safeStates_);  // what is lost has its own watchdog and the run's guard
 }
 
 Result<void> ModbusRelayBank::write(const std::vector<bool>& states) {
     FANTASCOPE_CHECK(states.size() == size(), "one state for each relay");
+    used_ = true;
     const Time deadline = clock_.now() + options_.timeout;
     std::vector<std::uint16_t> wanted, is(size());
     for (const bool on : states) wanted.push_back(on ? options_.on : options_.off);

@@ -17,10 +17,10 @@ namespace fantascope::drivers {
 // Relays that are the coils of a Modbus unit, or holding registers with a value for on and one for off.
 class ModbusRelayBank final : public RelayBank {
 public:
-    static Result<std::unique_ptr<RelayBank>> openTcp(const ConfigNode& options, const std::string& name,
-                                                      const std::vector<bool>& safeStates, const Surroundings& around);
-    static Result<std::unique_ptr<RelayBank>> openRtu(const ConfigNode& options, const std::string& name,
-                                                      const std::vector<bool>& safeStates, const Surroundings& around);
+    static Result<Opening<RelayBank>> readTcp(const ConfigNode& options, const std::string& name,
+                                              const std::vector<bool>& safeStates);
+    static Result<Opening<RelayBank>> readRtu(const ConfigNode& options, const std::string& name,
+                                              const std::vector<bool>& safeStates);
     ~ModbusRelayBank() override;
 
     DeviceStatus status() const override { return unit_.status(); }
@@ -44,12 +44,13 @@ private:
         double rate = 4;                         // Hz; how often it is looked whether the module is there
         std::optional<Watchdog> watchdog;
     };
-    static Result<std::unique_ptr<RelayBank>> open(const char* driver, ModbusLineOptions line, const ConfigNode& node,
-                                                   const std::string& name, const std::vector<bool>& safeStates,
-                                                   const Surroundings& around);
+    static Result<Opening<RelayBank>> fromConfig(const char* driver, ModbusLineOptions line, const ConfigNode& node,
+                                                 const std::string& name, const std::vector<bool>& safeStates);
     static Result<Watchdog> watchdogOf(const ConfigNode& node);
     ModbusRelayBank(std::string name, const char* driver, Options options, std::shared_ptr<ModbusBus> bus,
                     const std::vector<bool>& safeStates);
+
+    bool used_ = false;  // somebody asked for a write
 
     // On the bus's thread.
     ModbusUnit::Turned turn(ModbusLine& line);

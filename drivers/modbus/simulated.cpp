@@ -6,17 +6,21 @@
 
 namespace fantascope::drivers {
 
-Result<std::unique_ptr<RelayBank>> SimulatedRelayBank::open(const ConfigNode& options, const std::string& name,
-                                                            const std::vector<bool>& safeStates, const Surroundings& around) {
-    auto plug = TRY(site::Plug::open(options, around, name, LossAction::SafeState));
-    plug.world().installRelays(name, safeStates);
-    return std::unique_ptr<RelayBank>(new SimulatedRelayBank(std::move(plug), safeStates));
+Result<Opening<RelayBank>> SimulatedRelayBank::fromConfig(const ConfigNode& options, const std::string& name,
+                                                          const std::vector<bool>& safeStates) {
+    return site::Plug::fromConfig<RelayBank>(options, name, LossAction::SafeState, [name, safeStates](site::Plug plug) {
+        plug.world().installRelays(name, safeStates);
+        return new SimulatedRelayBank(std::move(plug), safeStates);
+    });
 }
 
-SimulatedRelayBank::~SimulatedRelayBank() { plug_.world().setRelays(plug_.device(), safeStates_); }
+SimulatedRelayBank::~SimulatedRelayBank() {
+    if (used_) plug_.world().setRelays(plug_.device(), safeStates_);
+}
 
 Result<void> SimulatedRelayBank::write(const std::vector<bool>& states) {
     FANTASCOPE_CHECK(states.size() == size(), "one state for each relay");
+    used_ = true;
     if (!plug_.world().setRelays(plug_.device(), states)) return plug_.absent();
     return {};
 }
@@ -26,10 +30,9 @@ Result<std::vector<bool>> SimulatedRelayBank::read() {
     return plug_.world().relays(plug_.device());
 }
 
-Result<std::unique_ptr<InputBank>> SimulatedInputBank::open(const ConfigNode& options, const std::string& name, std::size_t size,
-                                                            const Surroundings& around) {
-    auto plug = TRY(site::Plug::open(options, around, name, LossAction::Hold));
-    return std::unique_ptr<InputBank>(new SimulatedInputBank(std::move(plug), size));
+Result<Opening<InputBank>> SimulatedInputBank::fromConfig(const ConfigNode& options, const std::string& name, std::size_t size) {
+    return site::Plug::fromConfig<InputBank>(options, name, LossAction::Hold,
+                                             [size](site::Plug plug) { return new SimulatedInputBank(std::move(plug), size); });
 }
 
 std::optional<ContactChange> SimulatedInputBank::poll() {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "drivers/site/plug.h"
-#include "drivers/surroundings.h"
 
 #include "device/input_bank.h"
 #include "device/relay_bank.h"
@@ -18,8 +17,8 @@ namespace fantascope::drivers {
 // A bank of the simulated site's relays; its watchdog knows at once that its line is dead. Plug: the bank's name.
 class SimulatedRelayBank final : public RelayBank {
 public:
-    static Result<std::unique_ptr<RelayBank>> open(const ConfigNode& options, const std::string& name,
-                                                   const std::vector<bool>& safeStates, const Surroundings& around);
+    static Result<Opening<RelayBank>> fromConfig(const ConfigNode& options, const std::string& name,
+                                                 const std::vector<bool>& safeStates);
     ~SimulatedRelayBank() override;
 
     DeviceStatus status() const override { return plug_.status(); }
@@ -32,13 +31,13 @@ private:
         : plug_(std::move(plug)), safeStates_(std::move(safeStates)) {}
     site::Plug plug_;
     std::vector<bool> safeStates_;
+    bool used_ = false;  // somebody asked for a write
 };
 
 // A bank of the simulated site's contacts. Plug: the bank's name.
 class SimulatedInputBank final : public InputBank {
 public:
-    static Result<std::unique_ptr<InputBank>> open(const ConfigNode& options, const std::string& name, std::size_t size,
-                                                   const Surroundings& around);
+    static Result<Opening<InputBank>> fromConfig(const ConfigNode& options, const std::string& name, std::size_t size);
 
     DeviceStatus status() const override { return plug_.status(); }
     std::size_t size() const override { return reported_.size(); }

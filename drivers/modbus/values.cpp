@@ -82,11 +82,4 @@ std::optional<Contact::Change> Contact::take(std::uint16_t value, Time now) {
     return Change{closed, witnessed_};
 }
 
-Time BackOff::failed(Time now) {
-    const bool lived = began_ && now - *began_ >= kLatest;
-    began_.reset();
-    pause_ = lived || pause_ == Time::zero() ? kSoonest : std::min(2 * pause_, kLatest);
-    return pause_;
-}
-
 }  // namespace fantascope::drivers

@@ -50,19 +50,4 @@ private:
     bool witnessed_ = true;          // what is seen since then
 };
 
-// The pauses between the attempts at a unit: the first soon, then ever longer. One that is lost again and again counts as never found.
-class BackOff {
-public:
-    // So short that a unit which is there again and whose first answer got lost is still found within 2 s, so long that a dead one leaves more
-    // than half of the line to the others.
-    static constexpr Time kSoonest = std::chrono::milliseconds(50), kLatest = std::chrono::milliseconds(400);
-
-    void began(Time now) { began_ = now; }
-    Time failed(Time now);  // the pause until the next attempt
-
-private:
-    std::optional<Time> began_;  // since when it runs
-    Time pause_{};
-};
-
 }  // namespace fantascope::drivers

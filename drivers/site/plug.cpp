@@ -14,15 +14,16 @@ constexpr const char* kAdvice = "unplugged in the simulated site; plug it in aga
 Plug::Plug(World& world, std::string device, LossAction onLoss)
     : world_(world), device_(std::move(device)), onLoss_(onLoss), before_(world.losses(device_)), noticed_(before_) {}
 
-Result<Plug> Plug::open(const ConfigNode& options, const drivers::Surroundings& around, std::string device, LossAction onLoss) {
+Result<void> Plug::checkKeys(const ConfigNode& options) {
     std::string driver;
     ConfigFields fields(options);
     fields.text("driver", driver);
-    TRY(fields.finish());
-    if (around.world == nullptr)
-        return options.error(fmt::format(
-            "{}: driver '{}' needs a simulated site and here is none; rehearse, or name a real driver", device, driver));
-    return Plug(*around.world, std::move(device), onLoss);
+    return fields.finish();
+}
+
+Error Plug::noWorld(const ConfigNode& options, const std::string& device) {
+    return options.error(
+        fmt::format("{}: driver 'simulated' needs a simulated site and here is none; rehearse, or name a real driver", device));
 }
 
 DeviceStatus Plug::status() const {

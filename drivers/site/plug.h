@@ -8,6 +8,7 @@
 #include "core/config.h"
 #include "core/result.h"
 
+#include <memory>
 #include <string>
 
 namespace fantascope::site {
@@ -19,10 +20,19 @@ class Plug {
 public:
     // `device` is its name in the world. Losses count from now.
     Plug(World& world, std::string device, LossAction onLoss);
-    // The same for a driver that is opened from the site file and has no key there but `driver`.
-    // Error: another key, or no world, each with its place in the file.
-    static Result<Plug> open(const ConfigNode& options, const drivers::Surroundings& around, std::string device,
-                             LossAction onLoss);
+    // The same for a driver of the site file, which has no key there but `driver`: make(Plug) gives the device. Error: another key, with its
+    // place in the file; at the opening: there is no world.
+    template <class Port, class Make>
+    static Result<drivers::Opening<Port>> fromConfig(const ConfigNode& options, std::string device, LossAction onLoss,
+                                                     Make make) {
+        TRY(checkKeys(options));
+        const auto open = [=](const drivers::Surroundings& around) -> Result<std::unique_ptr<Port>> {
+            if (around.world == nullptr) return noWorld(options, device);
+            return std::unique_ptr<Port>(make(Plug(*around.world, device, onLoss)));
+        };
+        return drivers::Opening<Port>{open, {}, true};
+    }
+    static Error noWorld(const ConfigNode& options, const std::string& device);
 
     World& world() const { return world_; }
     const std::string& device() const { return device_; }
@@ -34,6 +44,8 @@ public:
     bool lostAgain();
 
 private:
+    static Result<void> checkKeys(const ConfigNode& options);
+
     World& world_;
     std::string device_;
     LossAction onLoss_;

@@ -140,18 +140,20 @@ std::vector<std::string> namesOf(const std::vector<Named>& things) {
 template <class Parse, class Use>
 Result<void> readNamed(const ConfigNode& node, const std::vector<std::string>& names, std::string_view kind, Parse parse,
                        Use use) {
+    ConfigFaults faults;
     for (const auto& [name, value] : TRY(node.entries())) {
         const auto found = std::find(names.begin(), names.end(), name);
         if (found == names.end()) {
             const std::string nearest = nearestName(name, names);
-            return value.error(fmt::format("this site has no {} '{}' ({})", kind, name,
-                                           !nearest.empty() ? fmt::format("did you mean '{}'?", nearest)
-                                           : names.empty()  ? fmt::format("it declares no {}", kind)
-                                                            : fmt::format("known here: {}", fmt::join(names, ", "))));
+            faults.add(value.error(fmt::format("this site has no {} '{}' ({})", kind, name,
+                                               !nearest.empty() ? fmt::format("did you mean '{}'?", nearest)
+                                               : names.empty()  ? fmt::format("it declares no {}", kind)
+                                                                : fmt::format("known here: {}", fmt::join(names, ", ")))));
+            continue;
         }
-        use(static_cast<std::size_t>(found - names.begin()), TRY(parse(value)));
+        faults.take(parse(value), [&](auto read) { use(static_cast<std::size_t>(found - names.begin()), std::move(read)); });
     }
-    return {};
+    return faults.result();
 }
 
 Result<std::vector<SimulatedProjector>> readProjectors(const ConfigNode& node, const NominalSite& nominal) {
@@ -266,11 +268,12 @@ Result<Simulation> readSimulation(const ConfigNode& node, const NominalSite& nom
     fields.optional().list("contacts", simulation.closings,
                            [&](const ConfigNode& value) { return readClosing(value, namesOf(nominal.contacts)); });
     fields.optional().list("faults", simulation.faults, [&](const ConfigNode& value) { return readFault(value, nominal); });
-    TRY(fields.finish());
     for (const NominalSite::Output& output : nominal.outputs)
         if (const glm::ivec2 size = output.projector.size; std::min(size.x, size.y) < ProjectedLight::kLeastSide)
-            return node.error(fmt::format("output '{}' of {} x {} pixels cannot be simulated, {} each way is the least",
-                                          output.name, size.x, size.y, ProjectedLight::kLeastSide));
+            fields.check(node,
+                         node.error(fmt::format("output '{}' of {} x {} pixels cannot be simulated, {} each way is the least",
+                                                output.name, size.x, size.y, ProjectedLight::kLeastSide)));
+    TRY(fields.finish());
     return simulation;
 }
 

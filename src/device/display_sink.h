@@ -31,8 +31,12 @@ struct Shown {
 // A display may hold one finished frame until its refresh comes, so that the next one can be drawn meanwhile: a moment in which the
 // machine is busy elsewhere then does not show.
 //
-// The context comes with the first success of makeCurrent(), on most machines before the display itself is there, and lives as long as the
-// object: what is in it outlives a loss, and can be made ready for a display that is to come. Objects in it are destroyed while it is current.
+// The context comes with the first success of makeCurrent(), on most machines before the display itself is there. It outlives a display that
+// is unplugged, with everything in it, and can be made ready for a display that is to come. Objects in it are destroyed while it is current.
+//
+// A context is lost only with what it was made on, such as the X server. Then poll() returns false, context() changes, and everything in the
+// context is lost: forget it without OpenGL calls before the next poll(). Until then memory that was mapped from it can be read. A new context
+// comes when the display does, and has a number of its own.
 // Thread: all methods but status() and pollEvent() are bound to the render thread, the context with them.
 class DisplaySink : public Device {
 public:
@@ -47,11 +51,14 @@ public:
 
     // Takes in what happened to the display meanwhile, and brings it back where that is due: whether it is Running. Waits for nobody.
     virtual bool poll() = 0;
-    // Makes this surface's context current, Running or not. Error: there is none yet.
+    // The number of the context that makeCurrent() makes current, 1 or more; 0: there is none. No two contexts of a display have the same
+    // number. Changes in poll() and makeCurrent() alone.
+    virtual int context() const = 0;
+    // Makes this surface's context current, Running or not. Error: there is none.
     virtual Result<void> makeCurrent() = 0;
     // The GL name of the framebuffer to draw into; its colours are stored sRGB values, row 0 of GL at the bottom of the picture.
     virtual unsigned framebuffer() const = 0;
-    // Waits until what was drawn is complete and only remains to be shown; its context is current afterwards. Error: there is none yet.
+    // Waits until what was drawn is complete and only remains to be shown; its context is current afterwards. Error: there is none.
     virtual Result<void> finish() = 0;
     // Shows what was finished; its context is current afterwards. Error: not Running: the frame is dropped. Loss: the projector shows nothing.
     // A leading frame is shown at nextRefresh(), and the call returns once another may be drawn: at that refresh, or up to one period

@@ -23,7 +23,7 @@ public:
     // Sets all relays; states.size() == size(). Success means that the device has confirmed it. Error: not Running or not
     // confirmed: some, all or none may have changed; write again once it is Running. Loss: when the device notices that we are
     // gone (its own watchdog), every relay takes its safe state and keeps it, after the return too, until the next write(). The
-    // destructor of every driver writes the safe states if it still can.
+    // destructor of every driver writes the safe states if it still can; that of a bank which was never written to writes nothing.
     virtual Result<void> write(const std::vector<bool>& states) = 0;
     // What the device says its relays are now; size() values. Error: as write().
     virtual Result<std::vector<bool>> read() = 0;

@@ -25,6 +25,9 @@ public:
     virtual ManualClock& manualClock() = 0;
     // Another output of the same kind on the same thread.
     virtual DisplaySink& otherOutput() = 0;
+    // Takes away what its context was made on, which a new one can be made on after kRetry. False: nothing can.
+    static constexpr Time kRetry = std::chrono::seconds(1);
+    virtual bool loseContext() { return false; }
 };
 
 // Fills the picture with a grey of linear light; the display's context is current.
@@ -223,13 +226,43 @@ inline Suite<DisplaySinkRig> displaySinkSuite() {
                  CONTRACT_SUCCEEDS(rig.port().makeCurrent());
                  GLuint buffer = 0;
                  glCreateBuffers(1, &buffer);
+                 const int context = rig.port().context();
                  for (const bool lost : {true, false}) {
                      lost ? rig.lose() : rig.giveBack();
+                     CONTRACT_REQUIRE(rig.port().context() == context, "context {} has become {}", context, rig.port().context());
                      CONTRACT_SUCCEEDS(rig.otherOutput().makeCurrent());
                      CONTRACT_SUCCEEDS(rig.port().makeCurrent());
                      CONTRACT_REQUIRE(glIsBuffer(buffer), "after the {} it is gone", lost ? "loss" : "return");
                  }
                  return "";
+             }},
+            {"a context that is lost is told by poll(), and another one follows",
+             [serves](DisplaySinkRig& rig) -> std::string {
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 GLuint buffer = 0;
+                 glCreateBuffers(1, &buffer);
+                 const int context = rig.port().context();
+                 CONTRACT_REQUIRE(context > 0, "its context has the number {}", context);
+                 if (!rig.loseContext()) return "";
+                 CONTRACT_REQUIRE(!rig.port().present(), "present() claims success");
+                 CONTRACT_REQUIRE(rig.port().context() == context, "present() tells of it, and only poll() may");
+                 for (int time = 0; time < 2; ++time) {
+                     CONTRACT_REQUIRE(!rig.port().poll(), "poll() does not find it");
+                     CONTRACT_REQUIRE(rig.port().context() == 0, "without a context it has number {}", rig.port().context());
+                     CONTRACT_REQUIRE(!rig.port().makeCurrent(), "the lost context is current");
+                     CONTRACT_REQUIRE(!rig.port().presentWith(rig.clock().now()), "presentWith() claims success");
+                     if (auto wrong = misreports(rig.port(), false); !wrong.empty()) return wrong;
+                 }
+                 CONTRACT_REQUIRE(rig.port().status().losses == 1, "{} losses", rig.port().status().losses);
+                 (void)rig.otherOutput().poll();
+                 (void)rig.otherOutput().poll();  // the other one lets go too
+                 rig.manualClock().advance(DisplaySinkRig::kRetry);
+                 CONTRACT_REQUIRE(rig.port().poll(), "it does not come back: {}", rig.port().status().detail);
+                 CONTRACT_REQUIRE(rig.port().context() > context, "the next context has number {} after {}", rig.port().context(),
+                                  context);
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 CONTRACT_REQUIRE(!glIsBuffer(buffer), "it is the same context");
+                 return serves(rig);
              }},
             // So that what it will show is made before people watch.
             {"a display that is missing at the start has its context all the same",

@@ -13,7 +13,7 @@ using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
 // A display of the named driver as an output of a simulated site.
-class DrivenDisplayRig final : public SimulatedRig<DisplaySinkRig> {
+class DrivenDisplayRig : public SimulatedRig<DisplaySinkRig> {
 public:
     explicit DrivenDisplayRig(const std::string& driver, Wrap<DisplaySink> wrap = {}) : SimulatedRig("left", std::move(wrap)) {
         options_ = ConfigNode::parse("driver: " + driver + "\n", "site.yaml").value();
@@ -36,6 +36,21 @@ private:
     std::unique_ptr<DisplaySink> other_;
 };
 
+// A window, which somebody can force its program to let go of.
+class WindowRig final : public DrivenDisplayRig {
+public:
+    explicit WindowRig(const XServer& server, Wrap<DisplaySink> wrap = {})
+        : DrivenDisplayRig("glfw", std::move(wrap)), server_(server) {}
+    bool loseContext() override {
+        server_.killProgramOf("left");
+        return true;
+    }
+
+private:
+    const XServer& server_;
+    const BrokenPipesIgnored ignored_;
+};
+
 template <class Broken>
 std::vector<std::string> brokenBy() {
     return clausesOf(violations(displaySinkSuite(),
@@ -49,7 +64,7 @@ TEST(DisplaySinkContract, is_kept_by_the_headless_display) {
 TEST(DisplaySinkContract, is_kept_by_the_glfw_display) {
     const auto server = XServer::start();
     ASSERT_TRUE(server) << server.error().message();
-    EXPECT_THAT(violations(displaySinkSuite(), [] { return std::make_unique<DrivenDisplayRig>("glfw"); }), IsEmpty());
+    EXPECT_THAT(violations(displaySinkSuite(), [&] { return std::make_unique<WindowRig>(**server); }), IsEmpty());
 }
 
 class AlmostGood : public Between<DisplaySink> {
@@ -59,12 +74,26 @@ class AlmostGood : public Between<DisplaySink> {
     std::int64_t nextRefresh() const override { return good_->nextRefresh(); }
     Time refreshTime(std::int64_t number) const override { return good_->refreshTime(number); }
     bool poll() override { return good_->poll(); }
+    int context() const override { return good_->context(); }
     Result<void> makeCurrent() override { return good_->makeCurrent(); }
     unsigned framebuffer() const override { return good_->framebuffer(); }
     Result<void> finish() override { return good_->finish(); }
     Result<Shown> present() override { return good_->present(); }
     Result<Shown> presentWith(Time leading) override { return good_->presentWith(leading); }
 };
+
+// Whoever drew with it would go on with names of another context.
+class KeepsQuietAboutItsContext : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    int context() const override { return 1; }
+};
+TEST(DisplaySinkContract, finds_a_lost_context_that_nobody_is_told_of) {
+    const auto server = XServer::start();
+    ASSERT_TRUE(server) << server.error().message();
+    const auto rig = [&] { return std::make_unique<WindowRig>(**server, wrappedIn<KeepsQuietAboutItsContext, DisplaySink>); };
+    EXPECT_THAT(clausesOf(violations(displaySinkSuite(), rig)),
+                ElementsAre("a context that is lost is told by poll(), and another one follows"));
+}
 
 class OfAnotherSize : public AlmostGood {
     using AlmostGood::AlmostGood;

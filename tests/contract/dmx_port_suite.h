@@ -15,6 +15,8 @@ class DmxPortRig : public Rig<DmxPort> {
 public:
     // What the line says over and over now; nothing while it is silent.
     virtual std::optional<DmxFrame> line() = 0;
+    // The last frame that reached the lamps, from before reopen() too.
+    virtual std::optional<DmxFrame> lastFrame() = 0;
 };
 
 // A frame in which every slot differs from its neighbours, and any two of which differ in every slot.
@@ -56,6 +58,15 @@ inline Suite<DmxPortRig> dmxPortSuite() {
                                        CONTRACT_SUCCEEDS(rig.port().send(dmxFrame(1)));
                                        for (int time = 0; time < 5; ++time)
                                            if (auto wrong = lineDiffers(rig, dmxFrame(1)); !wrong.empty()) return wrong;
+                                       return "";
+                                   }},
+                                  {"the newest frame goes out before the port closes",
+                                   [](DmxPortRig& rig) -> std::string {
+                                       CONTRACT_SUCCEEDS(rig.port().send(dmxFrame(1)));
+                                       rig.letTimePass();
+                                       CONTRACT_SUCCEEDS(rig.port().send(dmxFrame(2)));
+                                       rig.reopen();
+                                       CONTRACT_REQUIRE(rig.lastFrame() == dmxFrame(2), "the lamps keep an older one");
                                        return "";
                                    }},
                                   {"a lost line is silent",

@@ -3,6 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <optional>
+#include <utility>
+
 namespace fantascope::contract {
 namespace {
 
@@ -17,6 +21,7 @@ public:
         if (!world_.plugged("universe 1")) return std::nullopt;
         return world_.slots(1);
     }
+    std::optional<DmxFrame> lastFrame() override { return world_.slots(1); }
 
 private:
     std::unique_ptr<DmxPort> open() override { return drivers::openDmxPort(options_, 1, around_).value(); }
@@ -43,6 +48,26 @@ class KeepsTheUnsentFrame : public Between<DmxPort> {
 };
 TEST(DmxPortContract, finds_a_port_that_keeps_an_unsent_frame) {
     EXPECT_THAT(brokenBy<KeepsTheUnsentFrame>(), ElementsAre("a newer frame replaces an unsent one"));
+}
+
+class ClosesWithAnOlderFrame : public Between<DmxPort> {
+    using Between::Between;
+
+public:
+    ~ClosesWithAnOlderFrame() override {
+        if (before_) (void)good_->send(*before_);
+    }
+    Result<void> send(std::span<const std::uint8_t, kDmxSlots> slots) override {
+        before_ = std::exchange(last_, DmxFrame{});
+        std::ranges::copy(slots, last_->begin());
+        return good_->send(slots);
+    }
+
+private:
+    std::optional<DmxFrame> before_, last_;
+};
+TEST(DmxPortContract, finds_a_port_that_closes_before_its_newest_frame_is_out) {
+    EXPECT_THAT(brokenBy<ClosesWithAnOlderFrame>(), ElementsAre("the newest frame goes out before the port closes"));
 }
 
 class HidesItsLoss : public Between<DmxPort> {

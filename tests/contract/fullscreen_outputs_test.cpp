@@ -2,6 +2,7 @@
 // cables, changes them over and switches projectors off.
 
 #include "drivers/display/glfw.h"
+#include "drivers/registry.h"
 
 #include "contract/projectors.h"
 #include "core/check.h"
@@ -57,8 +58,8 @@ protected:
     }
 
     Output& open(const std::string& name, const std::string& keys, glm::ivec2 size = kSize, double hertz = 60) {
-        auto sink = drivers::GlfwDisplay::open(*ConfigNode::parse("{driver: glfw, " + keys + "}", "site.yaml"),
-                                               {name, size, hertz}, {clock_});
+        auto sink =
+            drivers::openDisplay(*ConfigNode::parse("{driver: glfw, " + keys + "}", "site.yaml"), {name, size, hertz}, {clock_});
         FANTASCOPE_CHECK(sink.has_value(), sink.error().message());
         Output& output = outputs_.emplace_back();
         output.sink = std::move(sink).value();
@@ -387,8 +388,7 @@ TEST_F(FullscreenOutputs, are_known_by_the_whole_of_what_the_site_says) {
 TEST(MonitorKeys, are_read_strictly) {
     ManualClock clock;
     const auto refused = [&](const std::string& keys) {
-        const auto sink =
-            drivers::GlfwDisplay::open(*ConfigNode::parse("{driver: glfw, " + keys + "}", "site.yaml"), {}, {clock});
+        const auto sink = drivers::openDisplay(*ConfigNode::parse("{driver: glfw, " + keys + "}", "site.yaml"), {}, {clock});
         return sink ? "taken" : sink.error().message();
     };
     EXPECT_THAT(refused("monitor: {serail: X}"), HasSubstr("did you mean 'serial'"));

@@ -1,15 +1,31 @@
 // What a window adds to the promises of every display.
 
 #include "drivers/display/glfw.h"
+#include "drivers/registry.h"
 
+#include "contract/eventually.h"
 #include "contract/x_server.h"
 #include "core/check.h"
 
 #include <epoxy/gl.h>
 #include <gmock/gmock.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <cstddef>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
 namespace fantascope::contract {
 namespace {
@@ -19,7 +35,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::unique_ptr<DisplaySink> open(const std::string& options, glm::ivec2 size, Clock& clock) {
-    auto sink = drivers::GlfwDisplay::open(*ConfigNode::parse(options, "site.yaml"), {"left", size, 30}, {clock});
+    auto sink = drivers::openDisplay(*ConfigNode::parse(options, "site.yaml"), {"left", size, 30}, {clock});
     FANTASCOPE_CHECK(sink.has_value(), sink.error().message());
     return std::move(sink).value();
 }
@@ -32,6 +48,7 @@ protected:
         server_ = std::move(server).value();
     }
 
+    const BrokenPipesIgnored ignored_;
     std::unique_ptr<XServer> server_;
     ManualClock clock_;
 };
@@ -153,8 +170,231 @@ TEST_F(GlfwDisplay, waits_for_an_x_server_and_tries_once_a_second) {
     EXPECT_EQ(sink->status().losses, 0) << "what was never there was not lost";
 }
 
+// What a program holds of the system.
+std::size_t entriesIn(const char* folder) {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+// Fills the display with a stored red, and shows it.
+testing::AssertionResult shows(DisplaySink& sink, int red) {
+    if (const auto current = sink.makeCurrent(); !current) return testing::AssertionFailure() << current.error().message();
+    const GLfloat colour[] = {static_cast<float>(red) / 255, 0, 0, 1};
+    glBindFramebuffer(GL_FRAMEBUFFER, sink.framebuffer());
+    glDisable(GL_FRAMEBUFFER_SRGB);
+    glClearBufferfv(GL_COLOR, 0, colour);
+    if (const auto finished = sink.finish(); !finished) return testing::AssertionFailure() << finished.error().message();
+    if (const auto shown = sink.present(); !shown) return testing::AssertionFailure() << shown.error().message();
+    return testing::AssertionSuccess();
+}
+
+// Polls until it runs; somebody else's thread may have to find out first.
+void comesBack(DisplaySink& sink, ManualClock& clock) {
+    eventually("the display comes back", [&] {
+        clock.advance(std::chrono::seconds(1));
+        return sink.poll();
+    });
+}
+
+// Example failure: Xlib ends the program; or a display, a window and a thread more are left each time.
+TEST_F(GlfwDisplay, outlives_twenty_x_servers_and_leaves_nothing_of_them) {
+    const auto window = open("{driver: glfw}", {64, 36}, clock_),
+               monitor = open("{driver: glfw, monitor: screen}", {1280, 720}, clock_);
+    std::size_t files = 0, threads = 0;
+    for (int server = 1; server <= 20; ++server) {
+        ASSERT_TRUE(window->poll() && monitor->poll());
+        ASSERT_TRUE(shows(*window, 50));
+        ASSERT_TRUE(shows(*monitor, server));
+        EXPECT_EQ(server_->row(700)[0][0], server);
+        if (server == 2) files = entriesIn("/proc/self/fd"), threads = entriesIn("/proc/self/task");
+        server_->crash();
+        if (server % 2 == 0) {
+            EXPECT_FALSE(shows(*monitor, 0));  // in the middle of a frame
+        }
+        for (int time = 0; time < 2; ++time)
+            for (DisplaySink* const sink : {window.get(), monitor.get()}) {
+                EXPECT_FALSE(sink->poll());
+                EXPECT_EQ(sink->status().state, DeviceState::Absent);
+                EXPECT_THAT(sink->status().detail, HasSubstr("the X server has ended"));
+            }
+        clock_.advance(std::chrono::seconds(1));
+        EXPECT_FALSE(window->poll()) << "there is none";
+        server_->startAgain();
+        comesBack(*window, clock_);
+        comesBack(*monitor, clock_);
+    }
+    ASSERT_TRUE(shows(*monitor, 21));
+    EXPECT_EQ(monitor->status().losses, 20);
+    EXPECT_EQ(entriesIn("/proc/self/fd"), files);
+    EXPECT_EQ(entriesIn("/proc/self/task"), threads);
+}
+
+// Example failure: BadWindow, for which Xlib ends the program; or the picture is away and its status says Running.
+TEST_F(GlfwDisplay, makes_its_window_again_that_another_program_has_destroyed) {
+    const auto sink = open("{driver: glfw}", {64, 36}, clock_);
+    ASSERT_TRUE(shows(*sink, 1));
+    const int context = sink->context();
+    server_->destroyWindow("left");
+    eventually("the X server has told", [&] { return !sink->poll() || !shows(*sink, 2); });
+    EXPECT_FALSE(sink->poll());
+    EXPECT_THAT(sink->status().detail, HasSubstr("destroyed its window"));
+    comesBack(*sink, clock_);
+    EXPECT_GT(sink->context(), context);
+    ASSERT_TRUE(shows(*sink, 3));
+    EXPECT_TRUE(server_->hasWindow("left"));
+    EXPECT_EQ(sink->status().losses, 1);
+}
+
+TEST_F(GlfwDisplay, stays_closed_on_the_next_x_server) {
+    const auto sink = open("{driver: glfw}", {64, 36}, clock_);
+    ASSERT_TRUE(sink->present());
+    server_->closeWindow("left");
+    eventually("the window is closed", [&] { return !sink->poll(); });
+    server_->crash();
+    server_->startAgain();
+    for (int second = 0; second < 4; ++second) {
+        EXPECT_FALSE(sink->poll());
+        clock_.advance(std::chrono::seconds(1));
+    }
+    EXPECT_THAT(sink->status().detail, HasSubstr("start Fantascope again"));
+    const auto other = open("{driver: glfw}", {64, 36}, clock_);
+    EXPECT_TRUE(other->poll()) << "the closed one keeps nothing that others need: " << other->status().detail;
+}
+
+// A hung graphics card. Example failure: who asks for the status waits for the render thread, which waits for the X server.
+TEST_F(GlfwDisplay, tells_its_status_while_the_x_server_hangs_and_goes_on_with_it) {
+    const auto sink = open("{driver: glfw}", {64, 36}, clock_);
+    ASSERT_TRUE(shows(*sink, 1));
+    server_->hang();
+    std::jthread console([&] {
+        for (int asked = 0; asked < 1000; ++asked) {
+            (void)sink->status();
+            (void)sink->pollEvent();
+        }
+        server_->goOn();
+    });
+    for (int frame = 0; frame < 50; ++frame) EXPECT_TRUE(shows(*sink, 2));  // the first of them wait
+    EXPECT_EQ(sink->status().losses, 0);
+}
+
+// An X server that ends after so many bytes of what it is asked: while GLFW starts, while a window is made, in a frame, anywhere.
+class MortalXServer {
+public:
+    explicit MortalXServer(const std::string& real) {
+        // A number that no server has; where a client looks for it.
+        for (int number = 200; listening_ < 0; ++number) {
+            display_ = ":" + std::to_string(number);
+            listening_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+            if (::bind(listening_, address(display_).first, address(display_).second) != 0)
+                ::close(std::exchange(listening_, -1));
+        }
+        ::listen(listening_, 8);
+        const auto [where, length] = address(real);
+        std::memcpy(&real_, where, length);
+        realLength_ = length;
+        thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
+    }
+    ~MortalXServer() {
+        thread_.request_stop();
+        thread_.join();
+        ::close(listening_);
+    }
+    const std::string& display() const { return display_; }
+    // Of all connections together, from now on.
+    void endAfter(std::int64_t bytes) { left_ = bytes; }
+    std::int64_t left() const { return left_; }
+
+private:
+    // In Linux's abstract namespace, where Xlib and XCB look first.
+    static std::pair<const sockaddr*, socklen_t> address(const std::string& display) {
+        static thread_local sockaddr_un name;
+        name = {};
+        name.sun_family = AF_UNIX;
+        const std::string path = "/tmp/.X11-unix/X" + display.substr(1);
+        std::memcpy(name.sun_path + 1, path.data(), path.size());
+        return {reinterpret_cast<const sockaddr*>(&name),
+                static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + path.size())};
+    }
+    void serve(const std::stop_token& stop) {
+        std::vector<std::pair<int, int>> pairs;  // of a client, and of the real server
+        std::array<char, 4096> bytes;
+        const auto endAll = [&] {
+            for (const auto& [client, server] : pairs) ::close(client), ::close(server);
+            pairs.clear();
+        };
+        while (!stop.stop_requested()) {
+            std::vector<pollfd> ready{{listening_, POLLIN, 0}};
+            for (const auto& [client, server] : pairs) ready.push_back({client, POLLIN, 0}), ready.push_back({server, POLLIN, 0});
+            (void)::poll(ready.data(), ready.size(), 20);
+            if (left_ <= 0) endAll();
+            for (std::size_t i = 0; i < pairs.size(); ++i) {
+                const auto [client, server] = pairs[i];
+                const auto pass = [&](int from, int to) {
+                    const ssize_t count = ::recv(from, bytes.data(), bytes.size(), MSG_DONTWAIT);
+                    if (count == 0) return false;
+                    if (count > 0) (void)::send(to, bytes.data(), static_cast<std::size_t>(count), MSG_NOSIGNAL);
+                    if (count > 0 && from == client) left_ -= count;
+                    return true;
+                };
+                if (pass(client, server) && pass(server, client) && left_ > 0) continue;
+                ::close(client), ::close(server);
+                pairs.erase(pairs.begin() + static_cast<std::ptrdiff_t>(i--));
+            }
+            if ((ready[0].revents & POLLIN) == 0) continue;
+            const int client = ::accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC);
+            const int server = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+            if (left_ > 0 && ::connect(server, reinterpret_cast<const sockaddr*>(&real_), realLength_) == 0)
+                pairs.emplace_back(client, server);
+            else
+                ::close(client), ::close(server);
+        }
+        endAll();
+    }
+
+    std::string display_;
+    int listening_ = -1;
+    sockaddr_un real_{};
+    socklen_t realLength_ = 0;
+    std::atomic<std::int64_t> left_ = std::numeric_limits<std::int64_t>::max();
+    std::jthread thread_;
+};
+
+// Example failure: Xlib ends the program, since nobody has told it otherwise so early.
+TEST_F(GlfwDisplay, outlives_an_x_server_that_ends_at_any_byte_of_its_greeting) {
+    MortalXServer server(server_->display());
+    ::setenv("DISPLAY", server.display().c_str(), 1);
+    constexpr std::int64_t kPlenty = 1 << 30;
+    server.endAfter(kPlenty);
+    ASSERT_TRUE(drivers::GlfwLibrary::shared());
+    const std::int64_t whole = kPlenty - server.left();
+    ASSERT_GT(whole, 1'000);
+    constexpr int kLives = 30;
+    int refused = 0;
+    for (int life = 0; life < kLives; ++life) {
+        server.endAfter(1 + whole * life / kLives);
+        refused += drivers::GlfwLibrary::shared() ? 0 : 1;
+    }
+    EXPECT_GT(refused, kLives / 2);
+    server.endAfter(kPlenty);
+    EXPECT_TRUE(open("{driver: glfw}", {16, 9}, clock_)->poll()) << "and the next one is as good as the first";
+}
+
+// Example failure: Xlib writes a request where there is no room for one, and crashes.
+TEST_F(GlfwDisplay, outlives_an_x_server_that_ends_at_any_byte_of_a_frame) {
+    MortalXServer server(server_->display());
+    ::setenv("DISPLAY", server.display().c_str(), 1);
+    const auto sink = open("{driver: glfw}", {16, 9}, clock_);
+    for (int life = 0; life < 20; ++life) {
+        server.endAfter(1 << 30);
+        comesBack(*sink, clock_);
+        server.endAfter(1 + 30 * life);
+        eventually("it is lost", [&] { return !shows(*sink, life); });
+        EXPECT_FALSE(sink->poll());
+        EXPECT_EQ(sink->status().losses, life + 1);
+    }
+}
+
 TEST_F(GlfwDisplay, refuses_a_wrong_key) {
-    const auto sink = drivers::GlfwDisplay::open(*ConfigNode::parse("{driver: glfw, monitr: a}", "site.yaml"), {}, {clock_});
+    const auto sink = drivers::openDisplay(*ConfigNode::parse("{driver: glfw, monitr: a}", "site.yaml"), {}, {clock_});
     ASSERT_FALSE(sink);
     EXPECT_THAT(sink.error().message(), HasSubstr("monitor"));
 }

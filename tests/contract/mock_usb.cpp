@@ -18,6 +18,7 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -69,12 +70,12 @@ struct Answer {
     Urb urb;
     int status = 0;
     Bytes bytes;
-    bool isReport = false;
 };
 
 struct Endpoint {
     std::deque<Urb> waiting;
-    std::deque<Bytes> reports;  // that nobody has asked for yet
+    std::deque<Bytes> reports;      // that nobody has asked for yet
+    std::optional<Bytes> atCancel;  // comes when a transfer is to be cancelled
 };
 
 }  // namespace
@@ -136,10 +137,10 @@ public:
             const std::lock_guard lock(mutex_);
             isGone_ = true;
             for (Endpoint& endpoint : endpoints_) {
-                for (const Urb& urb : endpoint.waiting) answers_.push_back({urb, -ESHUTDOWN, {}, false});
+                for (const Urb& urb : endpoint.waiting) answers_.push_back({urb, -ESHUTDOWN, {}});
                 endpoint = {};
             }
-            for (const Urb& urb : std::exchange(offered_, {})) answers_.push_back({urb, -ESHUTDOWN, {}, false});
+            for (const Urb& urb : std::exchange(offered_, {})) answers_.push_back({urb, -ESHUTDOWN, {}});
             showAnswers();
         }
         umockdev_testbed_uevent(bed_, folder_.c_str(), "remove");
@@ -156,12 +157,17 @@ public:
         hear();
     }
 
+    void reportAtCancel(int interface, const Bytes& bytes) {
+        const std::lock_guard lock(mutex_);
+        endpoints_.at(static_cast<std::size_t>(interface)).atCancel = bytes;
+    }
+
     void fail(int interface, int status) {
         const std::lock_guard lock(mutex_);
         Endpoint& endpoint = endpoints_.at(static_cast<std::size_t>(interface));
         if (endpoint.waiting.empty()) return;
         ++owed_;
-        answers_.push_back({endpoint.waiting.front(), status, {}, true});
+        answers_.push_back({endpoint.waiting.front(), status, {}});
         endpoint.waiting.pop_front();
         showAnswers();
     }
@@ -306,14 +312,14 @@ private:
         return urb.buffer->data[0] == 0x21 && urb.buffer->data[1] == 0x09;  // SET_REPORT
     }
     Answer taken(const Urb& urb) {
-        if (taking_ == Taking::Stalls) return {urb, -EPIPE, {}, false};
+        if (taking_ == Taking::Stalls) return {urb, -EPIPE, {}};
         const std::uint8_t* const data = urb.buffer->data;
         const std::uint8_t* const end = data + urb.of().buffer_length;
         if (urb.of().type == USBDEVFS_URB_TYPE_CONTROL)
             sent_.push_back({data[4], data[3] == 3, false, data[2], Bytes(data + 8, end)});
         else
             sent_.push_back({urb.of().endpoint - 1, false, true, 0, Bytes(data, end)});
-        return {urb, 0, Bytes(sent_.back().bytes), false};
+        return {urb, 0, Bytes(sent_.back().bytes)};
     }
 
     // USB 2.0, section 9.4, and HID 1.11, section 7.2.
@@ -321,7 +327,7 @@ private:
         const std::uint8_t* const setup = urb.buffer->data;
         const auto interface = static_cast<std::size_t>(setup[4] | setup[5] << 8);
         const auto wanted = static_cast<std::size_t>(setup[6] | setup[7] << 8);
-        Answer answer{urb, 0, {}, false};
+        Answer answer{urb, 0, {}};
         const bool isHid = interface < device_.reportDescriptors.size();
         if (isHid && setup[0] == 0x81 && setup[1] == 6 && setup[3] == 0x22) {
             answer.bytes = device_.reportDescriptors[interface];
@@ -339,7 +345,7 @@ private:
         for (Endpoint& endpoint : endpoints_)
             while (!endpoint.reports.empty() && !endpoint.waiting.empty()) {
                 ++owed_;
-                answers_.push_back({endpoint.waiting.front(), 0, endpoint.reports.front(), true});
+                answers_.push_back({endpoint.waiting.front(), 0, endpoint.reports.front()});
                 endpoint.waiting.pop_front();
                 endpoint.reports.pop_front();
             }
@@ -352,14 +358,15 @@ private:
         for (Endpoint& endpoint : endpoints_)
             for (auto urb = endpoint.waiting.begin(); urb != endpoint.waiting.end(); ++urb)
                 if (urb->request->client_addr == address) {
-                    answers_.push_back({*urb, -ENOENT, {}, false});
+                    const bool isLate = endpoint.atCancel.has_value();
+                    answers_.push_back({*urb, isLate ? 0 : -ENOENT, std::exchange(endpoint.atCancel, {}).value_or(Bytes{})});
                     endpoint.waiting.erase(urb);
                     showAnswers();
-                    return true;
+                    return !isLate;
                 }
         for (auto urb = offered_.begin(); urb != offered_.end(); ++urb)
             if (urb->request->client_addr == address) {
-                answers_.push_back({*urb, -ENOENT, {}, false});
+                answers_.push_back({*urb, -ENOENT, {}});
                 offered_.erase(urb);
                 showAnswers();
                 return true;
@@ -459,6 +466,9 @@ void MockUsb::report(const std::string& path, int interface, const Bytes& bytes)
     if (Plugged* const plugged = at(path)) plugged->report(interface, bytes);
 }
 
+void MockUsb::reportAtCancel(const std::string& path, int interface, const Bytes& bytes) {
+    at(path)->reportAtCancel(interface, bytes);
+}
 void MockUsb::setState(const std::string& path, int interface, const Bytes& bytes) { bed_->states[path][interface] = bytes; }
 
 void MockUsb::stall(const std::string& path, int interface) { at(path)->fail(interface, -EPIPE); }

@@ -45,6 +45,8 @@ public:
 
     // The device has a report to tell; it waits for who listens. Nothing where nothing is plugged in.
     void report(const std::string& path, int interface, const std::vector<std::uint8_t>& bytes);
+    // The same, in the moment in which the next transfer that waits for one is cancelled: too late for that.
+    void reportAtCancel(const std::string& path, int interface, const std::vector<std::uint8_t>& bytes);
     // What GET_REPORT answers from now on, also after it is plugged in again; with its id, if it has one.
     void setState(const std::string& path, int interface, const std::vector<std::uint8_t>& bytes);
     // The next reports of the interface stall its endpoint, or come with an error.

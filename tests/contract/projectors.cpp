@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace fantascope {
@@ -100,13 +101,26 @@ Result<std::unique_ptr<Projectors>> Projectors::start() {
                         why));
     }
     projectors->server_ = std::move(server).value();
-    projectors->connection_ = xcb_connect(nullptr, nullptr);
-    FANTASCOPE_CHECK(xcb_connection_has_error(projectors->connection_) == 0, "the X server is gone");
-    projectors->root_ = xcb_setup_roots_iterator(xcb_get_setup(projectors->connection_)).data->root;
-    (void)answer(projectors->connection_, xcb_randr_query_version_reply, xcb_randr_query_version(projectors->connection_, 1, 5));
-    (void)answer(projectors->connection_, xcb_xfixes_query_version_reply,
-                 xcb_xfixes_query_version(projectors->connection_, 5, 0));
+    projectors->connect();
     return projectors;
+}
+
+void Projectors::connect() {
+    connection_ = xcb_connect(nullptr, nullptr);
+    FANTASCOPE_CHECK(xcb_connection_has_error(connection_) == 0, "the X server is gone");
+    root_ = xcb_setup_roots_iterator(xcb_get_setup(connection_)).data->root;
+    (void)answer(connection_, xcb_randr_query_version_reply, xcb_randr_query_version(connection_, 1, 5));
+    (void)answer(connection_, xcb_xfixes_query_version_reply, xcb_xfixes_query_version(connection_, 5, 0));
+}
+
+void Projectors::crash() {
+    xcb_disconnect(std::exchange(connection_, nullptr));
+    server_->crash();
+}
+
+void Projectors::startAgain() {
+    server_->startAgain();
+    connect();
 }
 
 Projectors::~Projectors() {

@@ -30,6 +30,9 @@ public:
     ~Projectors();
 
     XServer& server() { return *server_; }
+    // The X server crashes, and another one starts on the same display: as at the start.
+    void crash();
+    void startAgain();
     // Puts a projector with such an EDID on a connector that was on before, or, without bytes, one that tells nothing.
     void plug(const std::string& connector, std::span<const std::uint8_t> edid);
     enum class Looks { Before, AndAfter };  // when it makes the X server look at its connectors, as the command `xrandr` does
@@ -51,8 +54,10 @@ public:
 
 private:
     Projectors() = default;
+    void connect();
     std::uint32_t output(const std::string& connector) const;
 
+    const BrokenPipesIgnored ignored_;
     ScratchFolder folder_;
     std::unique_ptr<XServer> server_;
     xcb_connection_t* connection_ = nullptr;

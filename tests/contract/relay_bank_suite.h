@@ -117,6 +117,13 @@ inline Suite<RelayBankRig> relayBankSuite() {
                  rig.close();
                  return relaysDiffer(rig, RelayBankRig::kSafe);
              }},
+            {"closing a bank that was only looked at switches nothing",
+             [](RelayBankRig& rig) -> std::string {
+                 rig.handSwitches(kUnsafe);
+                 (void)rig.port().read();
+                 rig.close();
+                 return relaysDiffer(rig, kUnsafe);
+             }},
         });
 }
 

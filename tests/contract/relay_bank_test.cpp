@@ -87,6 +87,19 @@ TEST(RelayBankContract, finds_a_bank_that_leaves_the_lights_as_they_are) {
     EXPECT_THAT(brokenBy<LeavesTheLightsAsTheyAre>(), ElementsAre("closing leaves the relays safe"));
 }
 
+// Whoever asks in the middle of a show how the relays are switches them.
+class MakesSafeWhatItLookedAt : public AlmostGood {
+public:
+    using AlmostGood::AlmostGood;
+    ~MakesSafeWhatItLookedAt() override {
+        good_.reset();
+        around_.world->setRelays("road", RelayBankRig::kSafe);
+    }
+};
+TEST(RelayBankContract, finds_a_bank_that_switches_what_it_only_looked_at) {
+    EXPECT_THAT(brokenBy<MakesSafeWhatItLookedAt>(), ElementsAre("closing a bank that was only looked at switches nothing"));
+}
+
 constexpr const char* kFoundOtherwise =
     "relays that are found other than written are a loss, counted once, and stay so until they are written";
 

@@ -71,6 +71,7 @@ public:
         return *neighbour_;
     }
     std::optional<DmxFrame> line() override { return socket_->in() ? socket_->farEnd().out() : std::nullopt; }
+    std::optional<DmxFrame> lastFrame() override { return socket_->farEnd().out(); }
 
 private:
     std::unique_ptr<DmxPort> open(const AnySocket& socket, int universe) {

@@ -253,6 +253,26 @@ protected:
     MockUsb usb_{machine_};
 };
 
+// Two sites may name one controller by other words.
+TEST_F(UsbHidTest, is_claimed_by_where_it_is_plugged_in) {
+    const auto claim = [](const std::string& keys) {
+        return drivers::readCueController(ConfigNode::parse("{driver: usb_hid" + keys + "}\n", "site.yaml").value())
+            .value()
+            .claim();
+    };
+    EXPECT_EQ(claim(", serial: P"), "cue controller with serial P");
+    usb_.plug(eightButtons("1-1", "P"));
+    usb_.plug(eightButtons("1-2", "Q"));
+    for (const char* keys : {", serial: P", ", path: 1-1", ", vendor: 16c0"})
+        EXPECT_EQ(claim(keys), "cue controller at the USB port 1-1") << keys;
+    EXPECT_EQ(claim(", serial: Q"), "cue controller at the USB port 1-2");
+    const auto controller = open(", serial: P");
+    ASSERT_TRUE(eventually([&] { return isRunning(*controller); })) << controller->status().detail;
+    EXPECT_EQ(claim(", serial: P"), "cue controller at the USB port 1-1") << "and it goes on";
+    usb_.report("1-1", 0, {0x01});
+    EXPECT_EQ(given(*controller), "+1");
+}
+
 // The operator's keys reach nobody else while the show has them, and everybody again when it ends.
 TEST_F(UsbHidTest, takes_every_interface_from_the_kernel_and_gives_it_back) {
     MockUsbDevice presenter = eightButtons("1-1", "P");
@@ -286,6 +306,17 @@ TEST_F(UsbHidTest, a_report_from_before_is_no_press) {
     usb_.report("1-1", 0, {0x00});
     usb_.report("1-1", 0, {0x03});
     EXPECT_EQ(given(*controller), "+1+2");
+}
+
+// Example failure: somebody presses a button as the show ends, and the program never does.
+TEST_F(UsbHidTest, ends_though_a_report_comes_just_before_its_transfer_is_cancelled) {
+    usb_.plug(eightButtons("1-1", "P"));
+    auto controller = open(", serial: P");
+    ASSERT_TRUE(eventually([&] { return isRunning(*controller); })) << controller->status().detail;
+    usb_.reportAtCancel("1-1", 0, {0x01});
+    controller.reset();
+    EXPECT_TRUE(usb_.kernelHas("1-1", 0));
+    EXPECT_EQ(usb_.waiting("1-1", 0), 0u);
 }
 
 TEST_F(UsbHidTest, thousands_of_reports_come_in_their_order_and_none_is_lost) {

@@ -11,7 +11,9 @@
 
 #include <gmock/gmock.h>
 #include <sys/ioctl.h>
+#include <sys/syscall.h>
 #include <umockdev.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <deque>
@@ -25,6 +27,7 @@ namespace fantascope::contract {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::chrono_literals;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -46,6 +49,12 @@ struct Answering {
     int file = -1;
 };
 
+// Asks the kernel past umockdev, which may take the number of this file for that of a line that a driver has just closed, and then passes the
+// question to the very thread that asks.
+int askKernel(int file, unsigned long request, void* argument) {
+    return static_cast<int>(syscall(SYS_ioctl, file, request, argument));
+}
+
 // What a program asks of a line's file passes through umockdev, on a thread of its own, also once the line has gone. In the manner of a
 // GLib signal.
 gboolean passOn(UMockdevIoctlBase*, UMockdevIoctlClient* client, void* answering) {
@@ -56,11 +65,11 @@ gboolean passOn(UMockdevIoctlBase*, UMockdevIoctlClient* client, void* answering
     int result = -1;
     errno = ENOTTY;  // a pseudo-terminal knows nothing of adapters
     if (request == TIOCEXCL || request == TIOCNXCL || request == TCFLSH) {
-        result = ioctl(file, request, *reinterpret_cast<const long*>(argument->data));
+        result = askKernel(file, request, *reinterpret_cast<void* const*>(argument->data));
     } else if (const unsigned size = _IOC_SIZE(request); size > 0) {  // the settings
         UMockdevIoctlData* const pointed = umockdev_ioctl_data_resolve(argument, 0, size, nullptr);
         std::vector<std::uint8_t> settings(pointed->data, pointed->data + size);
-        result = ioctl(file, request, settings.data());
+        result = askKernel(file, request, settings.data());
         umockdev_ioctl_data_update(pointed, 0, settings.data(), static_cast<gint>(size));
         umockdev_ioctl_data_unref(pointed);
     }
@@ -82,7 +91,8 @@ public:
         while (!answers_.empty()) hush(answers_.begin()->first);
     }
 
-    Widget& plugIn(const Adapter& adapter, const std::string& file) {
+    // As the kernel lists it; its file is not there. Its folders.
+    std::vector<std::string> list(const Adapter& adapter, const std::string& file) {
         const std::string device = "/devices/pci0000:00/0000:00:14.0/usb1/" + adapter.port;
         const std::string interface = device + "/" + adapter.port + ":1.0";
         add(
@@ -91,8 +101,12 @@ public:
                         device, adapter.name, adapter.serial));
         add(fmt::format("P: {}\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_interface\nA: bInterfaceNumber=00\n", interface));
         add(fmt::format("P: {0}/{1}/tty/{1}\nE: SUBSYSTEM=tty\nE: DEVNAME=/dev/{1}\n", interface, file));
+        return {fmt::format("/sys{0}/{1}/tty/{1}", interface, file), "/sys" + interface, "/sys" + device};
+    }
+
+    Widget& plugIn(const Adapter& adapter, const std::string& file) {
         Plugged& plugged = plugged_[file];
-        plugged.folders = {fmt::format("/sys{0}/{1}/tty/{1}", interface, file), "/sys" + interface, "/sys" + device};
+        plugged.folders = list(adapter, file);
         plugged.widget = std::make_unique<Widget>(plugged.line.far(), adapter.number);
         plugged.answering = &answering_.emplace_back();
         plugged.answering->file = plugged.line.near();
@@ -149,10 +163,15 @@ protected:
         return drivers::openDmxPort(node, universe, around_).value();
     }
     static void await(const Device& device, DeviceState state, const std::string& detail) {
-        eventually(nameOf(state), [&] {
-            const DeviceStatus status = device.status();
+        DeviceStatus status;
+        const auto isSo = [&] {
+            status = device.status();
             return status.state == state && status.detail.find(detail) != std::string::npos;
-        });
+        };
+        SteadyClock clock;
+        while (!isSo() && clock.now() < 30s) clock.sleepUntil(clock.now() + 1ms);
+        ASSERT_TRUE(isSo()) << nameOf(state) << ": " << detail << " is wanted; it is " << nameOf(status.state) << ": "
+                            << status.detail;
     }
     static void expectOn(Widget& widget, DmxPort& port, int number) {
         await(port, DeviceState::Running, "");
@@ -249,6 +268,26 @@ TEST_F(UsbWidgets, hang_on_lines_that_are_found_by_any_part_of_an_identity) {
     EXPECT_THAT(error({.file = {}, .vendor = "1a86", .product = {}, .serial = {}}),
                 HasSubstr("there is /dev/ttyUSB0 (ENTTEC DMX USB PRO, serial EN100001)"));
     EXPECT_EQ(drivers::findSerialLine({.file = "/dev/ttyS9", .vendor = {}, .product = {}, .serial = {}}).value(), "/dev/ttyS9");
+}
+
+std::string claimOfRelaysOn(const std::string& usb) {
+    const auto node = ConfigNode::parse("driver: modbus_rtu\nusb: {" + usb + "}\n", "site.yaml").value();
+    return drivers::readRelayBank(node, "relays", {true}).value().claim();
+}
+
+// Example failure: with several fitting adapters nothing was claimed, and a second run took the first one's relays.
+TEST_F(UsbWidgets, are_claimed_as_the_lines_that_their_drivers_take) {
+    const auto claim = [](const std::string& keys) {
+        return drivers::readDmxPort(ConfigNode::parse(keys, "site.yaml").value(), 1).value().claim();
+    };
+    const std::string left = "serial line /dev/ttyUSB0", right = "serial line /dev/ttyUSB1";
+    machine_.list(kLeft, "ttyUSB0");  // without a file: umockdev follows no link that leaves its machine
+    EXPECT_EQ(claim("{driver: enttec_pro}"), left);
+    machine_.list(kRight, "ttyUSB1");
+    EXPECT_EQ(claimOfRelaysOn("vendor: '0403'"), left) << "of several the first one";
+    EXPECT_EQ(claimOfRelaysOn("serial: EN100002"), right);
+    EXPECT_EQ(claim("{driver: open_dmx, serial: EN100002}"), right);
+    EXPECT_EQ(claim("{driver: enttec_pro}"), "the only DMX widget") << "of several none";
 }
 
 }  // namespace

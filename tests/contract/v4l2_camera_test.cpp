@@ -73,7 +73,7 @@ public:
 private:
     std::unique_ptr<CameraSource> open(const std::string& serial) {
         const std::string text = fmt::format("driver: v4l2\nserial: {}\nsize: [64, 48]\nrate: .1\n", serial);
-        return drivers::V4l2Camera::open(ConfigNode::parse(text, "site.yaml").value(), around_).value();
+        return drivers::V4l2Camera::fromConfig(ConfigNode::parse(text, "site.yaml").value()).value().open(around_).value();
     }
     MockCameraKind kindOf(const std::string& serial, const std::string& usb) const {
         // It says that a frame takes ten seconds, so that its silence between two exposures is none, however slow the machine.

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <utility>
 
 namespace fantascope {
 namespace {
@@ -55,15 +56,13 @@ Window windowTitled(Display* display, const std::string& title) {
     return found;
 }
 
-}  // namespace
+struct Child {
+    pid_t process;
+    std::string display;
+};
 
-Result<std::unique_ptr<XServer>> XServer::start() {
-    auto server = start({"Xvfb", "-screen", "0", "1280x720x24", "-nolisten", "tcp"});
-    if (!server) return Error("Xvfb does not start; install Debian's package xvfb: apt-get install xvfb");
-    return server;
-}
-
-Result<std::unique_ptr<XServer>> XServer::start(std::vector<std::string> command) {
+// Error: it does not start.
+Result<Child> launched(std::vector<std::string> command) {
     int ends[2];
     FANTASCOPE_CHECK(::pipe(ends) == 0, "no pipe");
     // By itself it starts afresh when its last client leaves, and turns away whoever comes meanwhile.
@@ -86,13 +85,27 @@ Result<std::unique_ptr<XServer>> XServer::start(std::vector<std::string> command
     char letter = 0;
     while (::read(ends[0], &letter, 1) == 1 && letter != '\n') number += letter;
     ::close(ends[0]);
-    if (letter == '\n') return std::unique_ptr<XServer>(new XServer(child, ":" + number));
+    if (letter == '\n') return Child{child, ":" + number};
     ::kill(child, SIGTERM);
     ::waitpid(child, nullptr, 0);
     return Error(command[0] + " does not start");
 }
 
-XServer::XServer(pid_t child, const std::string& display) : child_(child), display_(display) {
+}  // namespace
+
+Result<std::unique_ptr<XServer>> XServer::start() {
+    auto server = start({"Xvfb", "-screen", "0", "1280x720x24", "-nolisten", "tcp"});
+    if (!server) return Error("Xvfb does not start; install Debian's package xvfb: apt-get install xvfb");
+    return server;
+}
+
+Result<std::unique_ptr<XServer>> XServer::start(std::vector<std::string> command) {
+    const Child child = TRY(launched(command));
+    return std::unique_ptr<XServer>(new XServer(std::move(command), child.process, child.display));
+}
+
+XServer::XServer(std::vector<std::string> command, pid_t child, const std::string& display)
+    : command_(std::move(command)), child_(child), display_(display) {
     if (const char* before = std::getenv("DISPLAY")) displayBefore_ = before;
     ::setenv("DISPLAY", display_.c_str(), 1);
 }
@@ -102,9 +115,26 @@ XServer::~XServer() {
         ::setenv("DISPLAY", displayBefore_->c_str(), 1);
     else
         ::unsetenv("DISPLAY");
+    if (child_ == 0) return;
     ::kill(child_, SIGTERM);
     ::waitpid(child_, nullptr, 0);
 }
+
+void XServer::crash() {
+    ::kill(child_, SIGKILL);
+    ::waitpid(std::exchange(child_, 0), nullptr, 0);
+}
+
+void XServer::startAgain() {
+    std::vector<std::string> command = command_;
+    command.insert(command.begin() + 1, display_);
+    const auto child = launched(command);
+    FANTASCOPE_CHECK(child.has_value() && child->display == display_, "the X server does not start again on " + display_);
+    child_ = child->process;
+}
+
+void XServer::hang() const { ::kill(child_, SIGSTOP); }
+void XServer::goOn() const { ::kill(child_, SIGCONT); }
 
 std::vector<std::array<std::uint8_t, 3>> XServer::row(int y) const {
     const Connection connection = connectionTo(display_);
@@ -146,6 +176,18 @@ void XServer::closeWindow(const std::string& title) const {
     event.xclient.format = 32;
     event.xclient.data.l[0] = static_cast<long>(XInternAtom(connection.get(), "WM_DELETE_WINDOW", False));
     XSendEvent(connection.get(), event.xclient.window, False, NoEventMask, &event);
+    XSync(connection.get(), False);
+}
+
+void XServer::destroyWindow(const std::string& title) const {
+    const Connection connection = connectionTo(display_);
+    XDestroyWindow(connection.get(), windowTitled(connection.get(), title));
+    XSync(connection.get(), False);
+}
+
+void XServer::killProgramOf(const std::string& title) const {
+    const Connection connection = connectionTo(display_);
+    XKillClient(connection.get(), windowTitled(connection.get(), title));
     XSync(connection.get(), False);
 }
 

@@ -6,6 +6,7 @@
 #include <sys/types.h>
 
 #include <array>
+#include <csignal>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -25,6 +26,7 @@ public:
     XServer(const XServer&) = delete;
     XServer& operator=(const XServer&) = delete;
 
+    const std::string& display() const { return display_; }  // ":99"
     // What the screen shows in its row `y` from the top: pixels of red, green, blue as they are stored.
     std::vector<std::array<std::uint8_t, 3>> row(int y) const;
     std::vector<std::vector<std::array<std::uint8_t, 3>>> rows() const;  // all of them
@@ -33,13 +35,36 @@ public:
     void pressKey(const std::string& title, const std::string& key) const;
     // Asks the window to close, as its close button does.
     void closeWindow(const std::string& title) const;
+    // Destroys the window, as no program of good manners does.
+    void destroyWindow(const std::string& title) const;
+    // Ends the connection of the program that the window belongs to, as `xkill` does.
+    void killProgramOf(const std::string& title) const;
+
+    // What becomes of the server itself: it crashes, and a new one starts on the same display; it hangs, and goes on.
+    void crash();
+    void startAgain();
+    void hang() const;
+    void goOn() const;
 
 private:
-    XServer(pid_t child, const std::string& display);
+    XServer(std::vector<std::string> command, pid_t child, const std::string& display);
 
+    const std::vector<std::string> command_;
     pid_t child_;
     std::string display_;
     std::optional<std::string> displayBefore_;
+};
+
+// While one lives, a connection that the X server has ended does not end the program.
+class BrokenPipesIgnored {
+public:
+    BrokenPipesIgnored() = default;
+    ~BrokenPipesIgnored() { std::signal(SIGPIPE, before_); }
+    BrokenPipesIgnored(const BrokenPipesIgnored&) = delete;
+    BrokenPipesIgnored& operator=(const BrokenPipesIgnored&) = delete;
+
+private:
+    void (*const before_)(int) = std::signal(SIGPIPE, SIG_IGN);
 };
 
 }  // namespace fantascope

@@ -90,6 +90,7 @@ Bytes coded(const FrameFormat& format) {
     Bytes frame;
     for (int y = 0; y < format.size.y; ++y) frame.insert(frame.end(), luma.begin(), luma.end());
     for (int y = 0; y < format.size.y / 2; ++y) frame.insert(frame.end(), colour.begin(), colour.end());
+    frame.reserve(frame.size() + FrameDecoder::kPadding);
     return frame;
 }
 

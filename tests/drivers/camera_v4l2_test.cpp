@@ -55,7 +55,7 @@ protected:
     }
     void open(const std::string& options = "") {
         camera_.reset();
-        camera_ = V4l2Camera::open(optionsFrom("size: [64, 48]\n" + options), around_).value();
+        camera_ = V4l2Camera::fromConfig(optionsFrom("size: [64, 48]\n" + options)).value().open(around_).value();
     }
     static ConfigNode optionsFrom(const std::string& options) {
         return ConfigNode::parse("driver: v4l2\n" + options, "site.yaml").value();
@@ -128,6 +128,23 @@ TEST_F(V4l2Cameras, that_are_not_there_are_absent_and_say_who_is_missed) {
     EXPECT_THAT(camera_->status().detail, HasSubstr("/dev/video9 is not there"));
 }
 
+// Example failure: two sites named one camera by other words, and two runs took it from each other.
+TEST_F(V4l2Cameras, are_claimed_by_their_file_whatever_a_site_says_of_them) {
+    plugIn({.card = "Left Eye", .serial = "A1", .usb = "1-1"}, 0);
+    MockCamera& right = plugIn({.card = "Right Eye", .serial = "B2", .usb = "1-2"}, 2);
+    const auto claim = [](const char* options) { return V4l2Camera::fromConfig(optionsFrom(options)).value().claim(); };
+    const std::string file = claim("device: /dev/video2\n");
+    EXPECT_THAT(file, testing::EndsWith("/dev/video2"));
+    for (const bool busy : {false, true}) {
+        right.setBusy(busy);
+        for (const char* wanted : {"serial: B2\n", "usb: 1-2\n", "card: Right Eye\n"}) EXPECT_EQ(claim(wanted), file) << wanted;
+    }
+    right.setBusy(false);
+    EXPECT_EQ(claim(""), "camera") << "of several none";
+    EXPECT_EQ(claim("serial: C3\n"), "camera with the serial number C3");
+    EXPECT_EQ(right.streams(), 0);
+}
+
 // Most USB cameras have a second node, which gives no pictures.
 TEST_F(V4l2Cameras, have_nodes_of_metadata_that_are_left_alone) {
     plugIn({.serial = "A1", .usb = "1-1", .captures = false}, 0);
@@ -157,10 +174,19 @@ TEST_F(V4l2Cameras, are_found_with_what_a_site_file_would_say_of_them) {
     EXPECT_TRUE(comesTo(DeviceState::Running)) << camera_->status().detail;
 }
 
+// As the kernel's vivid and many a grabber do. Example failure: one camera fills the screen.
+TEST_F(V4l2Cameras, that_offer_eighty_formats_are_told_in_a_line) {
+    std::vector<std::string> formats = {"YUYV"};
+    for (int number = 0; number < 79; ++number) formats.push_back(fmt::format("X{:03}", number));
+    plugIn({.card = "vivid", .usb = "1-1", .formats = formats}, 0);
+    EXPECT_THAT(findCameras(),
+                ElementsAre(Field(&FoundDevice::what, "vivid (YUYV, X000, X001, X002, X003, X004, X005, X006 and 72 more)")));
+}
+
 TEST_F(V4l2Cameras, have_options_that_are_read_strictly) {
     for (const char* wrong : {"colour: true", "size: [0, 480]", "rate: 0", "format: H264", "range: some", "exposure: long",
                               "gain: 1.5", "device: video0", "device: /dev/video0\nserial: A1"})
-        EXPECT_FALSE(V4l2Camera::open(optionsFrom(std::string(wrong) + "\n"), around_)) << wrong;
+        EXPECT_FALSE(V4l2Camera::fromConfig(optionsFrom(std::string(wrong) + "\n"))) << wrong;
 }
 
 // --- What it gives

@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 Result<std::unique_ptr<DisplaySink>> open(const std::string& options, Clock& clock, glm::ivec2 size = {64, 36}) {
-    return HeadlessDisplay::open(*ConfigNode::parse(options, "site.yaml"), {"left", size, 30}, {clock});
+    return TRY(HeadlessDisplay::fromConfig(*ConfigNode::parse(options, "site.yaml"), {"left", size, 30})).open({clock});
 }
 
 TEST(HeadlessDisplay, refuses_an_unknown_key_and_a_picture_that_is_too_large) {

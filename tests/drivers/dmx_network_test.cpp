@@ -67,6 +67,24 @@ TEST_F(OutgoingUniverse, takes_the_same_levels_for_no_change) {
     EXPECT_THAT(ticks, ElementsAre(0, 1, 2, 3, 43));
 }
 
+// The port closes. Example failure: a lamp that went dark in the last moment stays lit.
+TEST_F(OutgoingUniverse, owes_the_newest_levels_and_what_is_left_of_their_repeats) {
+    const auto owed = [&] {
+        int times = 0;
+        while (out_.isOwed()) ++times;
+        return times;
+    };
+    EXPECT_EQ(owed(), 0);
+    out_.hand(filled(1));
+    out_.isDue(tick(1));
+    out_.isDue(tick(2));
+    EXPECT_EQ(owed(), 2);
+    out_.hand(filled(0));
+    EXPECT_EQ(owed(), 4);
+    EXPECT_EQ(out_.slots, filled(0));
+    EXPECT_EQ(owed(), 0);
+}
+
 TEST_F(OutgoingUniverse, keeps_to_the_ticks_when_one_is_late) {
     out_.hand(filled(1));
     ASSERT_TRUE(out_.isDue(tick(5) + 20ms)) << "made up for at once";

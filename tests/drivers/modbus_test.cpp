@@ -1,3 +1,4 @@
+#include "drivers/common/back_off.h"
 #include "drivers/common/usb_identity.h"
 #include "drivers/modbus/find.h"
 #include "drivers/modbus/input_bank.h"
@@ -94,16 +95,18 @@ TEST(ModbusExceptions, are_told_in_words) {
     EXPECT_THAT(exceptionInWords(99, coils, 4, false), HasSubstr("exception 99"));
 }
 
-// Opening makes no attempt that could fail: what is refused is refused by its text.
+// What is refused is refused by its text, before anything opens.
 class ModbusKeys : public testing::Test {
 protected:
     std::string relays(const std::string& text, std::size_t count = 3, bool tcp = true) {
-        const auto opened = (tcp ? ModbusRelayBank::openTcp : ModbusRelayBank::openRtu)(parsed(text), "relays",
-                                                                                        std::vector<bool>(count), around_);
-        return opened ? "" : opened.error().message();
+        const auto read = (tcp ? ModbusRelayBank::readTcp : ModbusRelayBank::readRtu)(parsed(text), "relays",
+                                                                                                  std::vector<bool>(count));
+        return read ? "" : read.error().message();
     }
     std::string contacts(const std::string& text, std::size_t count = 3) {
-        const auto opened = ModbusInputBank::openTcp(parsed(text), "contacts", count, around_);
+        const auto read = ModbusInputBank::readTcp(parsed(text), "contacts", count);
+        if (!read) return read.error().message();
+        const auto opened = read->open(around_);
         return opened ? "" : opened.error().message();
     }
     SteadyClock clock_;
@@ -157,7 +160,7 @@ TEST_F(ModbusKeys, what_has_no_room_in_the_addresses_or_in_one_request_is_refuse
 }
 
 TEST_F(ModbusKeys, of_one_line_must_be_the_same_for_all_on_it) {
-    const auto first = ModbusRelayBank::openTcp(parsed(tcp_), "relays", {false}, around_).value();
+    const auto first = ModbusRelayBank::readTcp(parsed(tcp_), "relays", {false}).value().open(around_).value();
     EXPECT_THAT(contacts(tcp_ + "response_timeout: 0.2\n"), HasSubstr("another device has 127.0.0.1:1 with other settings"));
     EXPECT_EQ(contacts(tcp_ + "unit: 2\n"), "");
 }
@@ -171,7 +174,7 @@ TEST(ModbusLines, that_are_found_say_how_to_use_them) {
         EXPECT_EQ(line.where, "/dev/null");
         EXPECT_THAT(line.identity, StartsWith("USB 0403:6001"));
         EXPECT_EQ(line.why, "");
-        EXPECT_TRUE(ModbusRelayBank::openRtu(parsed(line.options), "relays", {false}, {clock})) << line.options;
+        EXPECT_TRUE(ModbusRelayBank::readRtu(parsed(line.options), "relays", {false}).value().open({clock})) << line.options;
     }
     EXPECT_THAT(modbusLineOn({"/dev/none", {}}).why, HasSubstr("/dev/none is not there"));
 }

@@ -1,0 +1,57 @@
+#include "drivers/display/lost_x_connection.h"
+
+#include <X11/Xlib.h>
+#include <X11/Xlibint.h>  // the buffer of requests; its macros come last
+
+#include <csetjmp>
+#include <utility>
+
+namespace fantascope::drivers {
+namespace {
+
+// Where work goes on that lost its connection, and which it was.
+struct Work {
+    std::jmp_buf abandoned;
+    Display* connection = nullptr;
+};
+Work* running = nullptr;
+
+// In place of Xlib's own, which tells the terminal of the loss. What comes after it is the connection's own matter.
+int onLoss(Display* connection) {
+    if (Work* const work = std::exchange(running, nullptr)) {
+        work->connection = connection;
+        std::longjmp(work->abandoned, 1);
+    }
+    return 0;
+}
+
+// Of a lost connection Xlib gives no room for a request where another library such as EGL used it last, and writes the request all the same.
+void makeRoomForRequests(Display* connection) {
+    constexpr int kRoom = 2048;  // bytes: the least that Xlib has (BUFSIZE)
+    connection->bufptr = connection->buffer;
+    connection->bufmax = connection->buffer + kRoom;
+}
+
+}  // namespace
+
+void surviveLoss(_XDisplay* connection, bool& lost) {
+    XSetIOErrorHandler(onLoss);
+    XSetIOErrorExitHandler(
+        connection,
+        [](Display* ended, void* flag) {
+            *static_cast<bool*>(flag) = true;
+            makeRoomForRequests(ended);
+        },
+        &lost);
+}
+
+_XDisplay* lostDuring(void (*work)(void* data), void* data) {
+    XSetIOErrorHandler(onLoss);
+    Work now;
+    running = &now;
+    if (setjmp(now.abandoned) == 0) work(data);
+    running = nullptr;
+    return now.connection;
+}
+
+}  // namespace fantascope::drivers
