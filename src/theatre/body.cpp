@@ -48,6 +48,7 @@ public:
         const std::uint32_t first = sphere(joint, from.place, from.radius);
         body_.capsules.push_back({joint, first, sphere(joint, to.place, to.radius)});
     }
+    // Of the skin's volume what is nearest to the joint's capsules.
     void mass(std::uint32_t joint, double share, dvec3 centre) {
         // Body mass index 22: the middle of what the World Health Organization calls normal.
         body_.joints[joint].mass = share * 22 * stature_ * stature_;
@@ -112,9 +113,9 @@ void addLeg(Builder& b, std::uint32_t pelvis, double side) {
     // The corner of a knee or elbow that is bent by a right angle: halfway between the two limbs.
     b.part(isLeft ? BodyPart::LeftKnee : BodyPart::RightKnee, hip, ofKnee, kZ - kY);
     b.part(isLeft ? BodyPart::LeftFoot : BodyPart::RightFoot, ankle, bigToe, kZ);
-    b.mass(hip, 0.1447, at(0.052, 0.530 - 0.245 * 0.385, 0));
-    b.mass(knee, 0.0457, at(0.052, 0.285 - 0.246 * 0.443, 0));
-    b.mass(ankle, 0.0133, at(0.052, 0.019, -0.041 + 0.152 * 0.42));
+    b.mass(hip, 0.1014, at(0.0557, 0.4147, 0.0018));
+    b.mass(knee, 0.0480, at(0.0520, 0.1789, -0.0006));
+    b.mass(ankle, 0.0162, at(0.0538, 0.0177, 0.0309));
 }
 
 void addArm(Builder& b, std::uint32_t thorax, double side) {
@@ -143,9 +144,10 @@ void addArm(Builder& b, std::uint32_t thorax, double side) {
     b.part(isLeft ? BodyPart::LeftShoulder : BodyPart::RightShoulder, clavicle, ofShoulder, along + kY);
     b.part(isLeft ? BodyPart::LeftElbow : BodyPart::RightElbow, shoulder, ofElbow, along - kZ);
     b.part(isLeft ? BodyPart::LeftHand : BodyPart::RightHand, wrist, fingers, along);
-    b.mass(shoulder, 0.0263, at(0.108 + 0.186 * 0.576, 0.812, 0));
-    b.mass(elbow, 0.0150, at(0.294 + 0.146 * 0.457, 0.812, 0));
-    b.mass(wrist, 0.0058, at(0.440 + 0.038, 0.812, 0));
+    b.mass(clavicle, 0.0415, at(0.0561, 0.8105, -0.0041));
+    b.mass(shoulder, 0.0437, at(0.1917, 0.8120, 0));
+    b.mass(elbow, 0.0179, at(0.3616, 0.8121, 0));
+    b.mass(wrist, 0.0053, at(0.4750, 0.8111, 0.0034));
 }
 
 std::vector<std::array<std::uint32_t, 2>> pairsApart(const Body& body) {
@@ -187,10 +189,10 @@ Body humanBody(double stature) {
     b.part(BodyPart::Neck, neck, {{0, 0.855, -0.002}, 0.033}, -kZ);
     b.part(BodyPart::Chest, thorax, {{0, 0.745, -0.001}, 0.0616}, kZ);
     b.part(BodyPart::Pelvis, pelvis, {{0, 0.545, -0.007}, 0.064}, -kZ);
-    b.mass(neck, 0.0681, {0, 0.922, 0.004});
-    b.mass(thorax, 0.1571, {0, 0.790, 0});
-    b.mass(lumbar, 0.1549, {0, 0.665, 0});
-    b.mass(pelvis, 0.1182, {0, 0.560, 0});
+    b.mass(neck, 0.0688, {0, 0.9209, 0.0051});
+    b.mass(thorax, 0.1621, {0, 0.7264, 0.0007});
+    b.mass(lumbar, 0.0343, {0, 0.6489, 0.0010});
+    b.mass(pelvis, 0.1868, {0, 0.5621, -0.0087});
     for (const double side : {1.0, -1.0}) addArm(b, thorax, side);
     for (const double side : {1.0, -1.0}) addLeg(b, pelvis, side);
 

@@ -64,7 +64,7 @@ struct Body {
     std::array<Point, kBodyParts> parts{};
 
     double mass() const;
-    // Error: none has this name.
+    // Must be the name of one of the joints: another ends the program.
     std::uint32_t joint(std::string_view name) const;
     // The numbers of the rest pose, its root at a place; joints whose limits exclude it are as near to it as they can.
     std::vector<double> restPose(glm::dvec3 rootPosition, const glm::dquat& rootOrientation) const;
@@ -72,9 +72,9 @@ struct Body {
     void limit(std::span<double> freedoms) const;
 };
 
-// A person of this stature, metres. Lengths of segments: Drillis & Contini 1966 (after Winter 2009, figure 4.1); masses and their centres:
-// de Leva 1996, means of women and men; girths: mean circumferences of adults, as shares of the stature; limits: ranges of motion of the
-// American Academy of Orthopaedic Surgeons 1965 (after Norkin & White 2016), put into cones and balls.
+// A person of this stature, metres. Lengths of segments: Drillis & Contini 1966 (after Winter 2009, figure 4.1); masses and their centres: the
+// volume of humanMesh(), docs/decisions/0038-a-body-weighs-what-its-skin-holds.md; girths: mean circumferences of adults, as shares of the stature; limits:
+// ranges of motion of the American Academy of Orthopaedic Surgeons 1965 (after Norkin & White 2016), put into cones and balls.
 Body humanBody(double stature);
 
 }  // namespace fantascope::theatre

@@ -95,7 +95,9 @@ Result<Cast> castOf(const ConfigNode& root) {
     fields.optional().read("stage", cast.stageFile, [&](const ConfigNode& node) -> Result<std::optional<fs::path>> {
         if (hasLight) return node.error("there is a 'light' too, and the stage has its own; take either away");
         const fs::path file = TRY(node.path());
-        cast.stage = TRY(readStage(file));
+        auto stage = readStage(file);
+        if (!stage) return node.error(stage.error());
+        cast.stage = std::move(*stage);
         return std::optional(file);
     });
     fields.optional().number("frames_per_second", cast.framesPerSecond, 0, 1000);

@@ -19,24 +19,38 @@ double distanceTo(const dvec2& a, const dvec2& b, const dvec2& p) {
     return glm::distance(p, a + (length2 > 0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0.0) * along);
 }
 
-std::vector<dvec2> hullOf(std::vector<dvec2> points) {
-    std::sort(points.begin(), points.end(),
-              [](const dvec2& a, const dvec2& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    if (points.size() < 3) return points;
-    std::vector<dvec2> hull;
-    const auto add = [&](const dvec2& p, std::size_t keep) {
-        while (hull.size() >= keep + 2) {
-            const dvec2 a = hull[hull.size() - 2], b = hull.back();
-            if ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) > 0) break;
-            hull.pop_back();
+void findHull(std::span<const dvec2> points, std::vector<std::uint32_t>& corners) {
+    // The points from left to right come first, the hull is laid behind them.
+    corners.resize(points.size());
+    std::iota(corners.begin(), corners.end(), 0u);
+    std::sort(corners.begin(), corners.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::tie(points[a].x, points[a].y, a) < std::tie(points[b].x, points[b].y, b);
+    });
+    corners.erase(
+        std::unique(corners.begin(), corners.end(), [&](std::uint32_t a, std::uint32_t b) { return points[a] == points[b]; }),
+        corners.end());
+    const std::size_t count = corners.size();
+    if (count < 3) return;
+    const auto add = [&](std::uint32_t next, std::size_t keep) {
+        while (corners.size() >= keep + 2) {
+            const dvec2 a = points[corners[corners.size() - 2]], b = points[corners.back()], p = points[next];
+            if ((b.x - a.x) * (p.y - b.y) - (b.y - a.y) * (p.x - b.x) > 0) break;
+            corners.pop_back();
         }
-        hull.push_back(p);
+        corners.push_back(next);
     };
-    for (const dvec2& p : points) add(p, 0);
-    const std::size_t lower = hull.size() - 1;
-    for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
-    hull.pop_back();
+    for (std::size_t i = 0; i < count; ++i) add(corners[i], count);
+    const std::size_t lower = corners.size() - 1;
+    for (std::size_t i = count - 1; i-- > 0;) add(corners[i], lower);
+    corners.pop_back();
+    corners.erase(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+std::vector<dvec2> hullOf(std::span<const dvec2> points) {
+    std::vector<std::uint32_t> corners;
+    findHull(points, corners);
+    std::vector<dvec2> hull;
+    for (const std::uint32_t corner : corners) hull.push_back(points[corner]);
     return hull;
 }
 

@@ -2,6 +2,8 @@
 
 #include <glm/vec2.hpp>
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace fantascope::theatre {
@@ -9,7 +11,9 @@ namespace fantascope::theatre {
 // Convex outlines in the plane: their corners anticlockwise. Any unit of length. Thread: reentrant.
 
 // Of points (Andrew 1979); fewer than three corners if they lie on a line.
-std::vector<glm::dvec2> hullOf(std::vector<glm::dvec2> points);
+std::vector<glm::dvec2> hullOf(std::span<const glm::dvec2> points);
+// The same as indices of the points: `corners` is overwritten and keeps its memory.
+void findHull(std::span<const glm::dvec2> points, std::vector<std::uint32_t>& corners);
 double areaOf(const std::vector<glm::dvec2>& hull);
 double perimeterOf(const std::vector<glm::dvec2>& hull);
 // Of a point from the segment between two.

@@ -158,7 +158,7 @@ PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<co
             findContacts(energy.skinAboveGround(i), problem.skins[i]->edges, contacts);
         else
             findContacts(energy.aboveGround(i), contacts);
-        Actor actor{supportMargin(contacts, posed.massCentre()), contacts.touches, contacts.lowest,
+        Actor actor{contacts.support.margin(posed.massCentre()), contacts.touches, contacts.lowest,
                     std::max({deepestInItself(body, posed), deepestInStage(problem.stage, posed), deepest(energy.intrusions(i)),
                               -contacts.lowest}),
                     isWithinLimits(body, freedoms.first(body.freedoms))};

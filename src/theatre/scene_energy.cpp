@@ -38,11 +38,11 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
         const auto vertices = overFloor(stage, actor.skin, actor.skinAboveGround);
         findBearings(vertices, mesh.edges, problem_.weights.bearing, actor.contacts);
     }
-    actor.margin = supportMargin(actor.contacts, actor.body.massCentre());
+    actor.margin = actor.contacts.support.margin(actor.body.massCentre());
     actor.own = {};
     actor.own.visible = unseenScreen(body, actor.body);
     actor.own.floor = 1000 * std::max(0.0, actor.contacts.lowest);
-    actor.own.supportArea = 1e4 * std::max(0.0, kAmpleArea - supportArea(actor.contacts));
+    actor.own.supportArea = 1e4 * std::max(0.0, kAmpleArea - actor.contacts.support.area());
     actor.own.margin = lackOfMargin(actor.margin);
     actor.own.people = depthInItself(body, actor.body);
     actor.outside = farthestOutside(stage, actor.contacts);

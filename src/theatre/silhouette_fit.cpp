@@ -24,7 +24,7 @@ constexpr double kIntoHole = 6;
 // Residuals nearer to nothing than this are weighted as if they were this: pixels, centimetres; millimetres
 // of height.
 constexpr double kNearest = 0.7;
-constexpr double kNarrow = 0.01;  // metres; sides whose margins differ by less are all asked for more
+constexpr double kNarrow = 0.01;  // metres; sides whose margins differ by less are all asked for more: of a narrow support both
 constexpr double kHold = 0.002;   // how much a bearing point resists, in w9 a squared millimetre
 constexpr double kFirstDamping = 0.1, kMostDamping = 1e5;
 
@@ -326,7 +326,7 @@ void SilhouetteFit::addPhysics(SceneEnergy& energy) {
     }
 }
 
-// The height above the floor, and the margin by what decides it: how the contact on the nearest tangent moves against the mass centre.
+// The height above the floor; and the margin: how the contacts on the nearest tangents move against the mass centre.
 void SilhouetteFit::addBalance(const SceneEnergy& energy, std::size_t index, const PoseWeights& weights) {
     PoseEquations& equations = equations_[index];
     const Body& body = problem_.actors[index];
@@ -356,23 +356,26 @@ void SilhouetteFit::addBalance(const SceneEnergy& energy, std::size_t index, con
     if (const double height = 1000 * contacts.lowest; height > 0)
         equations.addPoint(lowestJoint, lowest, {0, 1000, 0}, height, 0.5 * weights.w7 / std::max(kNearest, height));
 
-    findSupportTangents(contacts, posed.massCentre(), kNarrow, tangents_);
+    contacts.support.findTangents(posed.massCentre(), kNarrow, tangents_);
     for (const SupportTangent& tangent : tangents_) {
         const double lacking = lackOfMargin(tangent.margin);
         if (lacking <= 0) continue;
         const double centimetre = tangent.margin < kSureMargin ? 100 * kUnsure : 100;  // what a metre counts
         const glm::dvec3 outward(tangent.outward.x, 0, tangent.outward.y), up(0, 1, 0);
-        const Contact& contact = *tangent.contact;
-        // Raised against the lowest point a contact moves inwards: a fading one to the lowest point, the cut of an edge along it.
-        double inwards = 0;
-        if (contact.share < 1)
-            inwards = (glm::dot(outward, contact.point - lowest) + contact.radius / contact.share) / problem_.weights.bearing;
-        else if (contact.along.y != 0)
-            inwards = glm::dot(outward, contact.along) / contact.along.y;
         Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(body.freedoms));
-        equations.addMotion(row, jointOf(contact.source), contact.point + groundUnder(contact.source) * up,
-                            -centimetre * (contact.share * outward - inwards * up));
-        equations.addMotion(row, lowestJoint, lowest, -centimetre * ((1 - contact.share) * outward + inwards * up));
+        for (const SupportTangent::Touch& touch : tangent.touches) {
+            const Contact& contact = contacts.discs[touch.contact];
+            // Raised against the lowest point a contact moves inwards: a fading one to the lowest point, the cut of an edge along it.
+            double inwards = 0;
+            if (contact.share < 1)
+                inwards = (glm::dot(outward, contact.point - lowest) + contact.radius / contact.share) / problem_.weights.bearing;
+            else if (contact.along.y != 0)
+                inwards = glm::dot(outward, contact.along) / contact.along.y;
+            const double metre = touch.share * centimetre;
+            equations.addMotion(row, jointOf(contact.source), contact.point + groundUnder(contact.source) * up,
+                                -metre * (contact.share * outward - inwards * up));
+            equations.addMotion(row, lowestJoint, lowest, -metre * ((1 - contact.share) * outward + inwards * up));
+        }
         const double mass = body.mass();
         for (std::size_t i = 0; i < body.joints.size(); ++i)
             equations.addMotion(row, i, posed.point(i, body.joints[i].massCentre),

@@ -78,6 +78,12 @@ TEST_P(BodyOfStature, WeighsTwentyTwoTimesItsSquaredStature) {
     EXPECT_DOUBLE_EQ(body.mass(), sum);
 }
 
+TEST(Body, AJointThatItHasNotEndsTheProgram) {
+    const Body body = humanBody(1.7);
+    EXPECT_EQ(body.joints[body.joint("neck")].name, "neck");
+    EXPECT_DEATH(static_cast<void>(body.joint("tail")), "a joint is named that the body has");
+}
+
 // In places, masses, girths, and in how its joints may turn.
 TEST_P(BodyOfStature, RightMirrorsLeft) {
     const PosedBody posed = atRest(body);

@@ -120,7 +120,9 @@ TEST(Fabrication, who_stands_on_nothing_is_named_and_held) {
     EXPECT_THAT(made.warnings, Contains(AllOf(HasSubstr("actor 2"), HasSubstr("stands on nothing"))));
     ASSERT_THAT(made.rods, SizeIs(1));
     EXPECT_EQ(made.rods[0].who, "actor 2");
-    EXPECT_GT(made.rods[0].length, 0.3 * made.scale * 0.1);
+    // From 50 cm above the plate, and from the other's hand: no shorter than that, and hardly longer.
+    EXPECT_GT(made.rods[0].length, 0.5 * made.scale - 2 * made.cell);
+    EXPECT_LT(made.rods[0].length, 0.6 * made.scale);
 }
 
 // Example failure: a hand below the plate, and the print rocks on the bed.
@@ -219,10 +221,12 @@ TEST(Fabrication, what_is_thinner_than_a_wall_becomes_as_thick) {
         EXPECT_LT(part.thickness, kOptions.wall) << part.who;
         EXPECT_GT(part.height, kOptions.height) << part.who;
     }
-    EXPECT_GT(made.leastWall, 0.7 * kOptions.wall);
+    EXPECT_GT(made.leastWall, 0.9 * kOptions.wall);
     Fabrication::Options fine = kOptions;
     fine.wall = 0.25;
-    EXPECT_THAT(print(scene, fine).thin.size(), testing::Lt(made.thin.size() + 1));
+    const Fabrication thinWalled = print(scene, fine);
+    EXPECT_THAT(thinWalled.thin, IsEmpty()) << "fingers are twice as thick";
+    EXPECT_EQ(thinWalled.leastWall, 0.25);
 }
 
 TEST(Fabrication, platforms_and_props_are_printed_too) {

@@ -1,0 +1,85 @@
+// What is said of a body's balance, against what its skin says by itself.
+
+#include "theatre/skin_stance.h"
+
+#include "theatre/cast.h"
+
+#include "core/geometry.h"
+#include "core/random.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+namespace fantascope::theatre {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A box of 40 x 100 x 20 cm whose middle is 2 cm from the long side of what it stands on.
+TEST(SkinStance, OfABoxIsByHand) {
+    std::vector<glm::vec3> vertices;
+    for (const float y : {0.0f, 1.0f})
+        for (const auto& [x, z] : {std::pair(0.0f, 0.0f), {0.4f, 0.0f}, {0.4f, 0.2f}, {0.0f, 0.2f}})
+            vertices.emplace_back(x, y, z);
+    const std::vector<glm::uvec3> triangles{{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}, {0, 5, 1}, {0, 4, 5},
+                                            {1, 6, 2}, {1, 5, 6}, {2, 7, 3}, {2, 6, 7}, {3, 4, 0}, {3, 7, 4}};
+    EXPECT_LT(glm::distance(centreOfVolume(vertices, triangles), {0.2, 0.5, 0.1}), 1e-6);
+    EXPECT_NEAR(marginOfMesh(vertices, triangles), 0.1, 1e-6);
+    for (std::size_t i = 4; i < 8; ++i) vertices[i].z += 0.16f;  // it leans by 8 cm
+    EXPECT_NEAR(marginOfMesh(vertices, triangles), 0.02, 1e-6);
+    for (std::size_t i = 4; i < 8; ++i) vertices[i].z += 0.08f;
+    EXPECT_NEAR(marginOfMesh(vertices, triangles), -0.02, 1e-6);
+}
+
+// Example failure: a thigh that weighs with its buttock, which the skin leaves with the pelvis: 2 cm in somebody who sits.
+TEST(SkinStance, ABodyWeighsWhereItsSkinDoes) {
+    const Body body = humanBody(1.75);
+    const BodyMesh mesh = humanMesh(body);
+    PosedBody posed;
+    std::vector<glm::vec3> skin;
+    Rng rng(1);
+    double squares = 0;
+    constexpr int kPoses = 200;
+    for (int i = 0; i < kPoses; ++i) {
+        std::vector<double> pose = body.restPose({0, 1, 2}, rotationOf({0, 1, 0}));
+        for (std::size_t k = Body::kRootFreedoms; k < pose.size(); ++k) pose[k] += rng.uniform(-1.5, 1.5);
+        body.limit(pose);
+        posed.pose(body, pose);
+        mesh.skin(body, posed, skin);
+        const double apart = glm::distance(posed.massCentre(), centreOfVolume(skin, mesh.atRest.triangles));
+        EXPECT_LT(apart, 0.009) << i;
+        squares += apart * apart;
+    }
+    EXPECT_LT(std::sqrt(squares / kPoses), 0.005);
+}
+
+// Everybody in every frame of every cast of the repository stands, by the skins alone.
+TEST(SkinStance, EverybodyOfTheRepositorysCastsStands) {
+    int people = 0;
+    for (const char* folder : {"shows", "assets"})
+        for (const auto& entry : fs::recursive_directory_iterator(fs::path(FANTASCOPE_SOURCE_DIR) / folder)) {
+            if (!entry.path().string().ends_with(".cast.yaml")) continue;
+            const auto cast = readCast(entry.path());
+            ASSERT_TRUE(cast) << cast.error().message();
+            ASSERT_TRUE(cast.value().stage.platforms.empty()) << "the floor is what all stand on here";
+            for (std::size_t a = 0; a < cast.value().actors.size(); ++a) {
+                const Cast::Actor& actor = cast.value().actors[a];
+                const Body body = humanBody(actor.stature);
+                const BodyMesh mesh = humanMesh(body);
+                PosedBody posed;
+                std::vector<glm::vec3> skin;
+                for (std::size_t frame = 0; frame < actor.poses.size(); ++frame, ++people) {
+                    posed.pose(body, freedomsOf(body, actor.poses[frame]));
+                    mesh.skin(body, posed, skin);
+                    EXPECT_GT(marginOfMesh(skin, mesh.atRest.triangles), 0)
+                        << fmt::format("{}: actor {}, frame {}", entry.path().filename().string(), a + 1, frame + 1);
+                }
+            }
+        }
+    EXPECT_GT(people, 300);
+}
+
+}  // namespace
+}  // namespace fantascope::theatre
