@@ -112,15 +112,19 @@ Page trajectoriesFigure(const pattern::ShapePattern& pattern) {
 
 Page spectrumFigure(const pattern::ShapePattern& pattern) {
     struct Panel {
-        const char* title;
+        std::string title;
         const pattern::AxisMotion& axis;
         std::uint64_t seed;
     };
     const pattern::MotionSettings& motion = pattern.motion;
     const std::uint64_t id = pattern.instances.empty() ? 0 : pattern.instances[0].id;
+    const std::uint64_t group = pattern.instances.empty() ? 0 : pattern.instances[0].group;
+    // Movement is drawn by seed and number: patterns that share those and the settings move alike, so the figure names them.
     const std::array<Panel, 2> panels{
-        {{"groups, major direction", motion.groupMajor, streamSeed(pattern.seed, {pattern::Stream::GroupMotion, 0, 0})},
-         {"local translation", motion.localTranslation, streamSeed(pattern.seed, {pattern::Stream::InstanceMotion, id, 0})}}};
+        {{fmt::format("seed {}, group {}, major direction", pattern.seed, group), motion.groupMajor,
+          streamSeed(pattern.seed, {pattern::Stream::GroupMotion, group, 0})},
+         {fmt::format("seed {}, instance {}, local translation", pattern.seed, id), motion.localTranslation,
+          streamSeed(pattern.seed, {pattern::Stream::InstanceMotion, id, 0})}}};
     constexpr Stroke kForce{kColours[0], 1}, kMovement{kColours[1], 1.4}, kModel{{0, 0, 0}, 1.4, 1, true},
         kNatural{{0.5, 0.5, 0.5}, 1, 1, true};
 

@@ -1,5 +1,7 @@
 #include "render/canvas_warp.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +19,14 @@ glm::dmat3 clipFromPicture(const CanvasPlace& place) {
     double least = INFINITY;
     for (const glm::dvec2 corner : rectangleCorners(1, 1)) least = std::min(least, (warp * glm::dvec3(corner, 1)).z);
     return warp / least;
+}
+
+CanvasPart shownInPicture(const CanvasPlace& place) {
+    const CanvasPart shown = place.warp.shown();
+    if (shown == place.warp.shape().part) return {};
+    const Homography& pictureFromCanvas = place.warp.pictureFromCanvas();
+    const glm::dvec2 a = pictureFromCanvas(shown.low), b = pictureFromCanvas(shown.high);
+    return {glm::min(a, b), glm::max(a, b)};
 }
 
 glm::dmat3 clipFromCanvas(double aspect, const CanvasPlace& place) {

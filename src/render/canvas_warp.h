@@ -20,4 +20,7 @@ glm::dmat3 clipFromCanvas(double aspect, const CanvasPlace& place);
 // The same of the picture's own square, 0 .. 1 from its top left.
 glm::dmat3 clipFromPicture(const CanvasPlace& place);
 
+// What is seen of the canvas, in the picture's own square: all of that, unless the canvas ends before the picture does.
+CanvasPart shownInPicture(const CanvasPlace& place);
+
 }  // namespace fantascope::render

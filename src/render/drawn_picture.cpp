@@ -61,12 +61,8 @@ private:
 
 class DrawnVideo : public DrawnSource {
 public:
-    DrawnVideo(const VideoSource& source, PictureOnCanvas frame, Stopwatch& uploads)
-        : source_(source),
-          reader_(source.stream),
-          frame_(std::move(frame)),
-          uploader_(frame_.texture.size()),
-          uploads_(uploads) {}
+    DrawnVideo(const VideoSource& source, PictureOnCanvas frame, gpu::PictureUploader uploader, Stopwatch& uploads)
+        : source_(source), reader_(source.stream), frame_(std::move(frame)), uploader_(std::move(uploader)), uploads_(uploads) {}
 
     void paint(const Moment& moment, gpu::LayerPicture& picture) override {
         reader_.at(positionAt(source_, moment.ofLayer),
@@ -85,11 +81,11 @@ private:
 
 class DrawnCamera : public DrawnSource {
 public:
-    DrawnCamera(const CameraSource& source, PictureOnCanvas frame, Stopwatch& uploads)
+    DrawnCamera(const CameraSource& source, PictureOnCanvas frame, gpu::PictureUploader uploader, Stopwatch& uploads)
         : source_(source),
           newest_(source_.feed->addReader()),
           frame_(std::move(frame)),
-          uploader_(frame_.texture.size()),
+          uploader_(std::move(uploader)),
           uploads_(uploads) {}
 
     void paint(const Moment&, gpu::LayerPicture& picture) override {
@@ -130,13 +126,15 @@ Made makeDrawnCard(const ImageSource& source, glm::ivec2 size, DrawingTools& too
 Made makeDrawnVideo(const VideoSource& source, const CanvasPlace& place, DrawingTools& tools) {
     FANTASCOPE_CHECK(source.stream != nullptr, "a video source has a stream");
     auto frame = TRY(PictureOnCanvas::create(source.stream->content().size, place, tools.bend, tools));
-    return std::unique_ptr<DrawnSource>(new DrawnVideo(source, std::move(frame), tools.uploads));
+    auto uploader = TRY(gpu::PictureUploader::create(frame.texture.size()));
+    return std::unique_ptr<DrawnSource>(new DrawnVideo(source, std::move(frame), std::move(uploader), tools.uploads));
 }
 
 Made makeDrawnCamera(const CameraSource& source, const CanvasPlace& place, DrawingTools& tools) {
     FANTASCOPE_CHECK(source.feed != nullptr, "a camera source has a feed");
     auto frame = TRY(PictureOnCanvas::create(source.feed->size(), place, tools.bend, tools));
-    return std::unique_ptr<DrawnSource>(new DrawnCamera(source, std::move(frame), tools.uploads));
+    auto uploader = TRY(gpu::PictureUploader::create(frame.texture.size()));
+    return std::unique_ptr<DrawnSource>(new DrawnCamera(source, std::move(frame), std::move(uploader), tools.uploads));
 }
 
 }  // namespace fantascope::render

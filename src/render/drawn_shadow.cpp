@@ -110,7 +110,7 @@ public:
         for (Shining& lamp : lamps_)
             for (ShadowCaster::Light& light : lamp.points) light.clipFromScreen = glm::mat3(clip * canvasFromScreen);
         // A line e of the canvas, dot(e, (x, y, 1)) = 0, is the line inverse(H)^T e of its image.
-        const CanvasPart& part = place.warp.shape().part;
+        const CanvasPart part = place.warp.shown();
         const glm::dmat3 clipFromEdge = glm::transpose(glm::inverse(clip));
         glm::dvec2 low = part.low, high = part.high;
         if (beam_.lit && !onto_.isCurved()) {

@@ -26,20 +26,40 @@ const ShownFrame* FrameReader::take(const CapturedFrame& frame) {
     return &own_;
 }
 
-const ShownFrame* FrameQueue::next(Time now) {
-    CapturedFrame* const* const oldest = waiting_.front();
-    if (oldest == nullptr || (*oldest)->shown.at > now) return nullptr;
-    const ShownFrame* const taken = take(**oldest);
-    waiting_.drop();
+CapturedFrame* FrameQueue::oldest(Time now) const {
+    const std::size_t taken = taken_.load(std::memory_order_relaxed);
+    if (taken == given_.load(std::memory_order_acquire)) return nullptr;
+    CapturedFrame* const frame = waiting_[taken % waiting_.size()];
+    return frame->shown.at > now ? nullptr : frame;
+}
+
+std::optional<Time> FrameQueue::nextAt(Time now) {
+    const std::lock_guard lock(taking_);
+    const CapturedFrame* const frame = oldest(now);
+    return frame != nullptr ? std::optional(frame->shown.at) : std::nullopt;
+}
+
+const ShownFrame* FrameQueue::newer(Time now) {
+    const CapturedFrame* const frame = oldest(now);
+    if (frame == nullptr) return nullptr;
+    const ShownFrame* const taken = take(*frame);
+    taken_.fetch_add(1, std::memory_order_release);
     return taken;
 }
 
+void FrameQueue::forget() {
+    const std::size_t given = given_;
+    missed_ += static_cast<std::int64_t>(given - taken_.exchange(given));
+    released_ = given;  // the frames themselves are gone
+}
+
 void FrameQueue::give(CapturedFrame& frame) {
-    CapturedFrame** const place = waiting_.space();
-    if (place == nullptr) return;
-    release(*place);
-    *place = hold(&frame);
-    waiting_.push();
+    for (const std::size_t taken = taken_.load(std::memory_order_acquire); released_ != taken; ++released_)
+        release(waiting_[released_ % waiting_.size()]);
+    const std::size_t given = given_.load(std::memory_order_relaxed);
+    if (given - released_ == waiting_.size()) return miss();
+    waiting_[given % waiting_.size()] = hold(&frame);
+    given_.store(given + 1, std::memory_order_release);
 }
 
 NewestFrame::NewestFrame(const ShownFrame& blank, double rate) : FrameReader(blank) {
@@ -50,7 +70,7 @@ NewestFrame::NewestFrame(const ShownFrame& blank, double rate) : FrameReader(bla
         due_ = Time::max();
 }
 
-const ShownFrame* NewestFrame::next(Time now) {
+const ShownFrame* NewestFrame::newer(Time now) {
     slot_.update();
     for (const CapturedFrame* const frame : {slot_.value().frame, slot_.value().before}) {
         if (frame == nullptr || frame->shown.at > now) continue;
@@ -67,6 +87,15 @@ void NewestFrame::promised(Time showTime) {
     if (showTime >= due_ && interval_ > Time{}) due_ = showTime + interval_;
     // Unless the reader has asked for another one meanwhile.
     if (Time::rep asked = asked_; showTime.count() >= asked) asked_.compare_exchange_strong(asked, kNothing);
+}
+
+void NewestFrame::forget() {
+    for (int buffer = 0; buffer < 3; ++buffer) {  // give() releases what it overwrites
+        slot_.writable() = {};
+        slot_.publish();
+        slot_.update();
+    }
+    given_ = nullptr;
 }
 
 void NewestFrame::give(CapturedFrame& frame) {
@@ -88,28 +117,59 @@ Reader& FrameTap::add(Arguments... arguments) {
     return added;
 }
 
-FrameQueue& FrameTap::addQueue() { return add<FrameQueue>(); }
+FrameQueue& FrameTap::addQueue(std::size_t depth) { return add<FrameQueue>(depth); }
 NewestFrame& FrameTap::addNewest(double rate) { return add<NewestFrame>(rate); }
 
-void FrameTap::prepare() {
-    while (frames_.size() < readers_.size() * kMostHeld + kMostUnderWay)
-        frames_.emplace_back(glm::ivec2(blank_.image.width(), blank_.image.height()));
+std::size_t FrameTap::mostHeld() const {
+    std::size_t most = kMostUnderWay;
+    for (const auto& reader : readers_) most += reader->mostHeld();
+    return most;
 }
 
-CapturedFrame& FrameTap::unused() {
+Result<void> FrameTap::addFrame() {
+    frames_.emplace_back(TRY(gpu::PixelReader::create({blank_.image.width(), blank_.image.height()})));
+    return {};
+}
+
+Result<void> FrameTap::prepare() {
+    while (frames_.size() < mostHeld()) TRY(addFrame());
+    return {};
+}
+
+void FrameTap::forget() {
+    const gpu::Forgetting forgetting;
+    for (const auto& reader : readers_) {
+        const std::lock_guard lock(reader->taking_);
+        reader->forget();
+    }
+    for (CapturedFrame** lost = underWay_.front(); lost != nullptr; lost = underWay_.front()) {
+        for (std::size_t i = 0; i < readers_.size(); ++i)
+            if ((*lost)->wanted >> i & 1) readers_[i]->miss();
+        underWay_.drop();
+    }
+    captured_ = nullptr;
+    frames_.clear();
+}
+
+CapturedFrame* FrameTap::unused() {
     const auto unused = std::ranges::find(frames_, 0, &CapturedFrame::holders);
-    if (unused != frames_.end()) return *unused;
-    FANTASCOPE_CHECK(frames_.size() < readers_.size() * kMostHeld + kMostUnderWay, "no reader holds more than its share");
-    return frames_.emplace_back(glm::ivec2(blank_.image.width(), blank_.image.height()));
+    if (unused != frames_.end()) return &*unused;
+    FANTASCOPE_CHECK(frames_.size() < mostHeld(), "no reader holds more than its share");
+    return addFrame() ? &frames_.back() : nullptr;
 }
 
 void FrameTap::capture(unsigned framebuffer, Time showTime) {
     captured_ = nullptr;
+    missing_ = 0;
     std::uint32_t wanted = 0;
     for (std::size_t i = 0; i < readers_.size(); ++i)
         if (readers_[i]->wants(showTime)) wanted |= std::uint32_t{1} << i;
-    if (wanted == 0 || underWay_.space() == nullptr) return;
-    captured_ = &unused();
+    if (wanted == 0) return;
+    if (underWay_.space() != nullptr) captured_ = unused();
+    if (captured_ == nullptr) {
+        missing_ = wanted;
+        return;
+    }
     captured_->number = captures_++;
     captured_->showTime = showTime;
     captured_->wanted = wanted;
@@ -123,6 +183,9 @@ void FrameTap::publish(const Shown& shown) {
             if (captured_->wanted >> i & 1) readers_[i]->promised(captured_->showTime);
         underWay_.push(hold(std::exchange(captured_, nullptr)));
     }
+    for (std::size_t i = 0; i < readers_.size(); ++i)
+        if (missing_ >> i & 1) readers_[i]->miss();
+    missing_ = 0;
     while (CapturedFrame** const oldest = underWay_.front()) {
         if (!(*oldest)->pixels.finished()) break;
         handOut(**oldest);

@@ -7,6 +7,15 @@
 #include <utility>
 
 namespace fantascope::render {
+namespace {
+
+// Of a picture that lies on a part of the canvas.
+CanvasPlace placeOn(const CanvasPlace& canvas, const CanvasPart& part) {
+    return {canvas.size, part == CanvasPart() ? canvas.warp : canvas.warp.ofPictureOn(part)};
+}
+
+}  // namespace
+
 Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& options, std::span<const PictureSource> sources) {
     const CanvasPlace place{options.projection.size, options.projection.warp};
     auto painter = TRY(gpu::ShapePainter::create(options.shaders));
@@ -19,15 +28,18 @@ Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& op
     renderer->size_ = place.size;
     renderer->overlay_ = TRY(gpu::Overlay::create(place.size, renderer->tools_.programs));
     TRY(renderer->composer_->follow(options.projection.light, options.blend));
-    for (const PictureSource& source : sources)
-        renderer->sources_.push_back(TRY(makeDrawnSource(source, place, renderer->tools_)));
+    for (const PictureSource& source : sources) {
+        const CanvasPart on = placeOf(source, options.projection.canvasAspect);
+        renderer->places_.push_back(on);
+        renderer->sources_.push_back(TRY(makeDrawnSource(source, placeOn(place, on), renderer->tools_)));
+    }
     return renderer;
 }
 
 Result<void> OutputRenderer::follow(const Projection& projection, const std::shared_ptr<const BlendMap>& blend) {
     const CanvasPlace place{projection.size, projection.warp};
     tools_.bend.follow(place);
-    for (const auto& source : sources_) source->follow(place);
+    for (std::size_t i = 0; i < sources_.size(); ++i) sources_[i]->follow(placeOn(place, places_[i]));
     return composer_->follow(projection.light, blend);
 }
 
@@ -38,10 +50,11 @@ Result<void> OutputRenderer::setUp(const RgbaImage* overlay, const RgbaImage* ca
     return {};
 }
 
-void OutputRenderer::warmUp(unsigned framebuffer) {
+Result<void> OutputRenderer::warmUp(unsigned framebuffer) {
     composer_->begin();
     for (const auto& source : sources_) source->paint(Moment{}, composer_->nextPicture());
     composer_->warmUp(framebuffer);
+    return gpu::checkMemory();
 }
 
 void OutputRenderer::draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer) {

@@ -23,7 +23,7 @@
 
 namespace fantascope::render {
 
-// Draws one output's picture. What reaches the projector is the canvas, bent by the output's warp, and black around it: shapes
+// Draws one output's picture. A source of another shape than the canvas lies on it as its `fit` says. What reaches the projector is the canvas, bent by the output's warp, and black around it: shapes
 // that sway over the canvas's edge are cut there.
 //
 // Layers blend in linear light. Within a layer the shapes are opaque to each other, the later instance of the pattern on top, and a fading
@@ -51,8 +51,9 @@ public:
     // warp; null: the show. `overlay`: in the projector's own pixels over all of that, stored values, colours multiplied by alpha; null:
     // none. Both are copied. Error: a shader does not compile; more pixels than this OpenGL has.
     Result<void> setUp(const RgbaImage* overlay, const RgbaImage* card);
-    // Draws every source once and every way in which layers may come together, so that nothing is compiled while people watch.
-    void warmUp(unsigned framebuffer);
+    // Draws every source once and every way in which layers may come together, so that nothing is compiled while people watch. Error: OpenGL
+    // has no memory left.
+    Result<void> warmUp(unsigned framebuffer);
     // Draws what the show shows on this output at show time `time`, in the wind of then, into `framebuffer`, the display's. Layers
     // name sources by their index in create()'s. No allocation once every source has been shown.
     void draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer);
@@ -65,6 +66,7 @@ private:
     DrawingTools tools_;
     std::optional<gpu::Composer> composer_;
     std::vector<std::unique_ptr<DrawnSource>> sources_;
+    std::vector<CanvasPart> places_;  // of the sources on the canvas
     glm::ivec2 size_{0};
     std::optional<gpu::Overlay> overlay_;
     std::unique_ptr<DrawnSource> card_;  // null: the show

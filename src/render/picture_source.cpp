@@ -55,4 +55,49 @@ Time lengthOf(const ShadowSource& source) {
                       : Time{};
 }
 
+namespace {
+
+double ratio(glm::dvec2 size) { return size.x / size.y; }
+
+std::optional<double> shapeOf(const SolidSource&) { return std::nullopt; }
+std::optional<double> shapeOf(const PatternSource& source) { return source.pattern->aspect(); }
+std::optional<double> shapeOf(const FoliageSource& source) { return source.layers.front().leaves.pattern->aspect(); }
+std::optional<double> shapeOf(const CausticsSource& source) { return ratio(source.size); }
+std::optional<double> shapeOf(const MirrorBallSource& source) { return ratio(source.size); }
+std::optional<double> shapeOf(const ImageSource& source) {
+    return ratio(glm::dvec2(source.picture->width(), source.picture->height()));
+}
+std::optional<double> shapeOf(const VideoSource& source) { return ratio(source.stream->content().size); }
+std::optional<double> shapeOf(const CameraSource& source) { return ratio(source.feed->size()); }
+std::optional<double> shapeOf(const ShadowSource& source) { return ratio(source.to - source.from); }
+
+}  // namespace
+
+std::optional<double> aspectOf(const PictureSource& source) {
+    return std::visit([](const auto& kind) { return shapeOf(kind); }, source);
+}
+
+CanvasPart placeOf(const PictureSource& source, double canvasAspect) {
+    const auto aspect = aspectOf(source);
+    if (!aspect || canvasAspect <= 0) return {};
+    const Fit fit = std::visit(
+        [](const auto& kind) {
+            if constexpr (requires { kind.fit; })
+                return kind.fit;
+            else
+                return Fit::Stretch;
+        },
+        source);
+    return placeOnCanvas(*aspect, canvasAspect, fit);
+}
+
+PictureSource fitted(PictureSource source, Fit fit) {
+    std::visit(
+        [&](auto& kind) {
+            if constexpr (requires { kind.fit; }) kind.fit = fit;
+        },
+        source);
+    return source;
+}
+
 }  // namespace fantascope::render

@@ -6,6 +6,7 @@
 #include "render/video_stream.h"
 
 #include "core/clock.h"
+#include "core/fit.h"
 #include "core/image.h"
 
 #include <glm/vec2.hpp>
@@ -13,6 +14,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -26,6 +28,7 @@ namespace fantascope::render {
 struct PatternSource {
     std::shared_ptr<const pattern::ShapePattern> pattern;
     std::shared_ptr<const pattern::PatternMotion> motion;  // null: the shapes rest
+    Fit fit = Fit::Contain;
 };
 
 // The whole canvas in one colour.
@@ -53,6 +56,7 @@ struct FoliageSource {
     glm::vec3 light{1};               // where nothing keeps it off: linear light, may exceed 1 where holes make little of it
     glm::vec3 shadow{0};              // what is left in full shadow
     std::vector<ShadowLayer> layers;  // at least one; all patterns of one aspect; holes are blurred
+    Fit fit = Fit::Contain;           // of all layers together
 };
 
 // Sunlight on the floor of wavy water, as the waves gather and scatter it.
@@ -63,6 +67,7 @@ struct CausticsSource {
     double waveLength = 1;  // metres, on average
     double waveHeight = 0;  // metres, root mean square
     std::uint64_t seed = 1;
+    Fit fit = Fit::Contain;
 };
 
 // The spots of a mirror ball that turns in a lamp's beam, on a wall. Places are metres from the canvas's middle: right, up, out of the
@@ -76,11 +81,13 @@ struct MirrorBallSource {
     glm::dvec3 lamp{0};     // outside the ball, before the wall
     double lampRadius = 0;  // metres
     double turn = 1;        // seconds for one turn; below 0 the other way round
+    Fit fit = Fit::Contain;
 };
 
-// A picture that stands still. Its corners, as those of a video and a camera's picture, lie on the canvas's.
+// A picture that stands still.
 struct ImageSource {
     std::shared_ptr<const RgbaImage> picture;  // stored sRGB values, straight alpha
+    Fit fit = Fit::Contain;
 };
 
 // A video; its stream is shared by the outputs that show it. Once it is over, its last frame stays.
@@ -88,6 +95,7 @@ struct VideoSource {
     std::shared_ptr<VideoStream> stream;
     bool loop = true;
     double speed = 1;  // positive
+    Fit fit = Fit::Contain;
 };
 // The moment of the video that is seen at a layer's time `time`.
 Time positionAt(const VideoSource& source, Time time);
@@ -115,6 +123,7 @@ struct ShadowSource {
     int samples = 16;  // points of light in a lamp that has a size
     Play play = Play::Once;
     double speed = 1;  // positive
+    Fit fit = Fit::Contain;
 };
 // The moment of the cast's motion that is seen at a layer's time `time`, in frames from the first.
 double frameAt(const ShadowSource& source, Time time);
@@ -124,10 +133,20 @@ Time lengthOf(const ShadowSource& source);
 // What a camera sees; nothing before its first picture.
 struct CameraSource {
     std::shared_ptr<PictureFeed> feed;
+    Fit fit = Fit::Contain;
 };
 
 // What a layer can show, in the order of Show::sources.
 using PictureSource = std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource, ImageSource,
                                    VideoSource, CameraSource, ShadowSource>;
+
+// Width / height of a source's own picture; nothing where it has no shape.
+std::optional<double> aspectOf(const PictureSource& source);
+
+// Where on a canvas (width / height; 0: the source's own shape) a source lies.
+CanvasPart placeOf(const PictureSource& source, double canvasAspect);
+
+// A source that fits otherwise. What has no shape stays as it is.
+PictureSource fitted(PictureSource source, Fit fit);
 
 }  // namespace fantascope::render

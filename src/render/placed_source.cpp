@@ -36,7 +36,8 @@ void PlacedSource::follow(const CanvasPlace& place) {
     clipFromCanvas_ = clipFromCanvas(source_.pattern->aspect(), place);
     // A line e of the picture's square, dot(e, (x, y, 1)) = 0, is the line inverse(H)^T e of its image.
     const glm::dmat3 clipFromEdge = glm::transpose(glm::inverse(clipFromPicture(place)));
-    const std::array<glm::dvec3, 4> edges = {{{1, 0, 0}, {-1, 0, 1}, {0, 1, 0}, {0, -1, 1}}};
+    const auto [low, high] = shownInPicture(place);
+    const std::array<glm::dvec3, 4> edges = {{{1, 0, -low.x}, {-1, 0, high.x}, {0, 1, -low.y}, {0, -1, high.y}}};
     std::transform(edges.begin(), edges.end(), canvasEdges_.begin(),
                    [&](glm::dvec3 edge) { return glm::vec3(clipFromEdge * edge); });
 }

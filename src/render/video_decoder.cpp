@@ -3,12 +3,16 @@
 #include "render/premultiply.h"
 
 #include "core/check.h"
+#include "core/file.h"
+#include "core/padded_rows.h"
 #include "core/parallel.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -26,8 +30,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t kMostPixels = std::int64_t{8192} * 4320;  // of a frame: 8K
-constexpr double kMostMissing = 1;                               // seconds that a file may be shorter than it says
+constexpr int kLargestSide = 8192;
+constexpr std::int64_t kMostPixels = std::int64_t{kLargestSide} * 4320;  // of a frame: 8K, upright too
+constexpr double kMostMissing = 1;                                       // seconds that a file may be shorter than it says
 constexpr AVRational kNanoseconds{1, 1'000'000'000};
 constexpr std::string_view kExportAgain = "export it again, as MP4 or MOV with H.264, HEVC or ProRes";
 
@@ -64,13 +69,33 @@ struct Opened {
     AVStream* stream = nullptr;
 };
 
+// libav's names of all formats but those that are lists of other files.
+const std::string& formatsOfOneFile() {
+    static const std::string formats = [] {
+        constexpr std::string_view kLists[] = {"concat", "dash", "hls", "image2", "imf", "rtsp", "sdp"};
+        std::string names;
+        void* place = nullptr;
+        while (const AVInputFormat* const format = av_demuxer_iterate(&place))
+            if (std::ranges::find(kLists, std::string_view(format->name)) == std::end(kLists))
+                names += std::string(format->name) + ",";
+        return names;
+    }();
+    return formats;
+}
+
 Result<Opened> openFile(const fs::path& file) {
     av_log_set_level(AV_LOG_FATAL);  // what is wrong with a file is said once, by us
+    TRY(checkRegular(file));
     AVFormatContext* context = avformat_alloc_context();
     context->flags |= AVFMT_FLAG_GENPTS;
-    // A file may name others, on the network too; nothing but itself is read.
+    // A file may name others, pipes and the network too; nothing but itself is read.
     AVDictionary* options = nullptr;
     av_dict_set(&options, "protocol_whitelist", "file", 0);
+    av_dict_set(&options, "format_whitelist", formatsOfOneFile().c_str(), 0);
+    static const auto openAny = context->io_open;
+    context->io_open = [](AVFormatContext* opening, AVIOContext** io, const char* url, int flags, AVDictionary** with) {
+        return opening->pb == nullptr ? openAny(opening, io, url, flags, with) : AVERROR(EPERM);
+    };
     const int code = avformat_open_input(&context, ("file:" + file.string()).c_str(), nullptr, &options);
     av_dict_free(&options);
     if (code < 0)
@@ -94,6 +119,7 @@ Result<Codec> openCodec(const fs::path& file, const AVStream& stream) {
     Codec context(avcodec_alloc_context3(codec));
     avcodec_parameters_to_context(context.get(), stream.codecpar);
     context->pkt_timebase = stream.time_base;
+    context->max_pixels = kMostPixels;  // of any frame, whatever the file says beforehand
     context->thread_count = std::min(hardwareThreads(), VideoDecoder::kThreads);
     // Decoding begins only where it may, which a decoder does not know: after some keyframes it would keep good frames back.
     context->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
@@ -106,8 +132,9 @@ Result<Codec> openCodec(const fs::path& file, const AVStream& stream) {
 Result<void> checkPicture(const fs::path& file, const AVStream& stream) {
     const AVCodecParameters& picture = *stream.codecpar;
     if (picture.width < 1 || picture.height < 1) return refusal(file, "its video has no size", kExportAgain);
-    if (std::int64_t{picture.width} * picture.height > kMostPixels)
-        return refusal(file, fmt::format("{} x {} pixels are too many", picture.width, picture.height), "at most 8192 x 4320");
+    if (std::max(picture.width, picture.height) > kLargestSide || std::int64_t{picture.width} * picture.height > kMostPixels)
+        return refusal(file, fmt::format("{} x {} pixels are too many", picture.width, picture.height),
+                       "at most 8192 x 4320, or 4320 x 8192");
     if (picture.color_trc == AVCOL_TRC_SMPTE2084 || picture.color_trc == AVCOL_TRC_ARIB_STD_B67)
         return refusal(file, "a video of high dynamic range, which no projector shows", "export it again in SDR, Rec. 709");
     if (const auto* matrix =
@@ -237,6 +264,7 @@ struct VideoDecoder::Impl {
     Frame frame{av_frame_alloc()};
     SwsContext* toRgba = nullptr;
     Coding coding;            // that toRgba converts
+    PaddedRows<Rgba8> rows;   // for libswscale
     std::uint32_t least = 0;  // the frame that next() may give at the earliest
     bool waiting = false;     // `packet` is still to be decoded
     bool drained = false;     // the decoder has been told that nothing more comes
@@ -389,9 +417,9 @@ void VideoDecoder::picture(RgbaImage& picture) {
         const int* const matrix = sws_getCoefficients(coding.matrix);
         sws_setColorspaceDetails(impl.toRgba, matrix, coding.fullRange ? kFull : 0, matrix, kFull, 0, kOne, kOne);
     }
-    auto* rows = reinterpret_cast<std::uint8_t*>(picture.pixels().data());
-    const int stride = picture.width() * static_cast<int>(sizeof(Rgba8));
-    sws_scale(impl.toRgba, frame.data, frame.linesize, 0, frame.height, &rows, &stride);
+    impl.rows.fill(picture, [&](std::uint8_t* rows, int stride) {
+        sws_scale(impl.toRgba, frame.data, frame.linesize, 0, frame.height, &rows, &stride);
+    });
     if (impl.coding.has(AV_PIX_FMT_FLAG_ALPHA)) premultiply(picture.pixels());
 }
 

@@ -36,7 +36,7 @@ struct Cell {
 
 // All cells that the camera sees whole, by rows; the strongest gain is 1.
 std::vector<Cell> cellsInSight(const NominalView& view, glm::ivec2 grid) {
-    const CanvasPart& part = view.warp.shape().part;
+    const CanvasPart part = view.warp.shown();
     std::vector<Cell> cells;
     double strongest = 0;
     for (int row = 0; row < grid.y; ++row)
@@ -131,8 +131,8 @@ GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wante
     auto tables = std::make_shared<Tables>();
     tables->frameSize = view.camera.size;
     tables->grid = {std::max(1, static_cast<int>(std::lround(kRows * view.canvasAspect))), kRows};
-    const glm::dvec2 part = view.warp.shape().part.high - view.warp.shape().part.low;
-    tables->shown = part.x * part.y;
+    const CanvasPart part = view.warp.shown();
+    tables->shown = (part.high.x - part.low.x) * (part.high.y - part.low.y);
     tables->cells = cellsInSight(view, tables->grid);
     const auto count = static_cast<int>(tables->cells.size());
     tables_ = tables;

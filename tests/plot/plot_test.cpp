@@ -134,6 +134,26 @@ TEST(PowerSpectrum, of_an_excitation_falls_by_two_beta) {
     EXPECT_NEAR(std::log(power[900] / power[9]) / std::log(100), -2, 1e-6);
 }
 
+// Two patterns of one seed and settings move alike, and their figures say so by seed, group and instance.
+// Example failure: the figures of two patterns are the same bytes, and nobody can tell which is whose.
+TEST(Figures, a_spectrum_names_what_it_is_of) {
+    const ScratchFolder folder;
+    const auto drawnAs = [&](std::uint64_t seed, std::uint32_t id, std::uint32_t group) {
+        pattern::ShapePattern pattern = leftHalf();
+        pattern.seed = seed;
+        pattern.instances[0].id = id;
+        pattern.instances[0].group = group;
+        pattern.groups = 3;
+        EXPECT_TRUE(spectrumFigure(pattern).write(folder / "s.png"));
+        return readFile(folder / "s.png").value();
+    };
+    const std::string one = drawnAs(1, 0, 0);
+    EXPECT_EQ(drawnAs(1, 0, 0), one);
+    EXPECT_NE(drawnAs(2, 0, 0), one);
+    EXPECT_NE(drawnAs(1, 7, 0), one);
+    EXPECT_NE(drawnAs(1, 0, 2), one);
+}
+
 TEST(Figures, of_any_pattern_and_search_can_be_drawn) {
     const ScratchFolder folder;
     pattern::ShapePattern none = leftHalf();

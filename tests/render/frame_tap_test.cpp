@@ -189,6 +189,22 @@ TEST_F(TapTest, goes_on_without_readers_that_do_not_read) {
     EXPECT_THAT(all(asleep), ElementsAre(19));
 }
 
+// Example failure: a video with gaps that nobody is told of.
+TEST_F(TapTest, a_queue_counts_every_frame_that_it_leaves_out) {
+    FrameQueue& queue = tap_.addQueue(10);
+    ASSERT_TRUE(tap_.prepare());
+    for (int number = 1; number <= 25; ++number) frame(number);
+    EXPECT_THAT(all(queue), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10));
+    EXPECT_EQ(queue.missed(), 15);
+    for (int number = 26; number <= 60; ++number) {
+        frame(number);
+        EXPECT_EQ(queue.nextAt(Time::max()), tickTime(number, 30));
+        EXPECT_THAT(all(queue), ElementsAre(number));
+    }
+    EXPECT_EQ(queue.nextAt(Time::max()), std::nullopt);
+    EXPECT_EQ(queue.missed(), 15);
+}
+
 TEST_F(TapTest, a_frame_is_read_back_once_however_many_want_it_and_not_at_all_for_nobody) {
     for (int number = 1; number <= 5; ++number) frame(number);
     EXPECT_EQ(readbacks, 0) << "no reader";
@@ -272,7 +288,7 @@ GLenum slowClientWaitSync(GLsync sync, GLbitfield flags, GLuint64 timeout) {
 TEST_F(TapTest, a_copy_that_is_not_done_is_handed_out_with_a_later_frame) {
     clientWaitSync = epoxy_glClientWaitSync;
     const Replaced<PFNGLCLIENTWAITSYNCPROC> slow(epoxy_glClientWaitSync, slowClientWaitSync);
-    FrameReader& queue = tap_.addQueue();
+    FrameQueue& queue = tap_.addQueue();
     FrameReader& newest = tap_.addNewest(kEveryFrame);
     frame(1);
     isBehind = true;
@@ -291,6 +307,7 @@ TEST_F(TapTest, a_copy_that_is_not_done_is_handed_out_with_a_later_frame) {
     isBehind = false;
     tap_.finish();
     EXPECT_THAT(all(queue), ElementsAre(5, 6, 7)) << "a card that does not keep up does not pile up copies";
+    EXPECT_EQ(queue.missed(), 13);
     frame(21);
     EXPECT_THAT(all(queue), ElementsAre(21));
 }
@@ -300,7 +317,7 @@ TEST_F(TapTest, allocates_nothing_on_the_render_thread_once_it_is_prepared) {
     FrameReader& newest = tap_.addNewest(kEveryFrame);
     NewestFrame& asks = tap_.addNewest(kOnlyAsked);
     FrameReader& sleeps = tap_.addNewest(12);
-    tap_.prepare();
+    ASSERT_TRUE(tap_.prepare());
     std::int64_t allocated = 0;
     std::size_t read = 0;
     for (int number = 1; number <= 60; ++number) {

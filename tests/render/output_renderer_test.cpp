@@ -279,7 +279,7 @@ TEST(OutputRenderer, shows_the_pattern_in_the_wind_that_it_is_given) {
 TEST(OutputRenderer, allocates_nothing_once_it_runs) {
     DrawnOutput output(kSize, keystone(kSize), {moving(smallPattern()), moving(smallPattern()), SolidSource{}});
     FrameReader& reader = output.tap().addQueue();
-    output.tap().prepare();
+    ASSERT_TRUE(output.tap().prepare());
     const show::OutputState look{{{0, 0.5f}, {1, 0.5f}, {2, 0.1f}}};
     for (int frame = 0; frame < 3; ++frame) output.frame(look, tickTime(frame, 30));
     int read = 0;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -257,6 +258,68 @@ TEST_F(Videos, keep_their_alpha) {
     }
 }
 
+// One colour, lighter and darker from pixel to pixel: what a conversion makes of it is known to a step or two, in every format.
+RgbaImage shaded(glm::ivec2 size) {
+    RgbaImage picture(size.x, size.y);
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) {
+            const int light = 60 + (37 * x + 53 * y) % 90;
+            const auto channel = [&](int more) { return static_cast<std::uint8_t>(light + more); };
+            picture.at(x, y) = {channel(50), channel(0), channel(-30), 255};
+        }
+    return picture;
+}
+
+// The greatest difference in any channel, and where. Memory behind the decoded picture may not be touched.
+struct Difference {
+    int most = 0;
+    glm::ivec2 at{0};
+};
+Difference differenceOfFirstFrame(const std::filesystem::path& file, const RgbaImage& wanted) {
+    const auto decoder = valueOf(VideoDecoder::open(valueOf(VideoDecoder::examine(file))));
+    RgbaImage seen;
+    {
+        const FencedAllocations fence;
+        seen = RgbaImage(wanted.width(), wanted.height(), {1, 2, 3, 4});
+    }
+    FANTASCOPE_CHECK(decoder->next() == 0u, "the first frame");
+    decoder->picture(seen);
+    Difference difference;
+    for (int y = 0; y < wanted.height(); ++y)
+        for (int x = 0; x < wanted.width(); ++x) {
+            const Rgba8 a = seen.at(x, y), b = wanted.at(x, y);
+            const int most = std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b), std::abs(a.a - b.a)});
+            if (most > difference.most) difference = {most, {x, y}};
+        }
+    return difference;
+}
+
+// Example failures: the heap is overwritten behind the picture; the last columns stay as they were.
+TEST_F(Videos, of_every_width_are_right_to_the_last_pixel_and_nothing_is_written_behind_it) {
+    constexpr int kRows = 4;
+    for (const char* pixels : {"yuv420p", "yuv422p", "yuv444p", "yuva420p", "yuv420p10le", "bgra"})
+        for (int width = 1; width <= 130; ++width) {
+            const RgbaImage wanted = shaded({width, kRows});
+            writeVideo(folder_ / "a.mkv", {.encoder = "ffv1", .pixels = pixels, .size = {width, kRows}}, 1,
+                       [&](int) { return wanted; });
+            const Difference difference = differenceOfFirstFrame(folder_ / "a.mkv", wanted);
+            EXPECT_LE(difference.most, 3) << pixels << ", " << width << " wide, at " << difference.at.x << "," << difference.at.y;
+        }
+}
+
+TEST_F(Videos, of_real_sizes_are_right_to_the_last_pixel) {
+    constexpr glm::ivec2 kSizes[] = {{128, 96},  {176, 144}, {160, 120}, {192, 144}, {200, 120},  {240, 160},
+                                     {256, 144}, {270, 480}, {300, 300}, {320, 180}, {320, 240},  {352, 288},
+                                     {360, 640}, {400, 240}, {416, 234}, {424, 240}, {426, 240},  {480, 270},
+                                     {480, 360}, {568, 320}, {640, 360}, {854, 480}, {1366, 768}, {1080, 1920}};
+    for (const glm::ivec2 size : kSizes) {
+        const RgbaImage wanted = shaded(size);
+        writeVideo(folder_ / "a.mkv", {.encoder = "ffv1", .size = size}, 1, [&](int) { return wanted; });
+        const Difference difference = differenceOfFirstFrame(folder_ / "a.mkv", wanted);
+        EXPECT_LE(difference.most, 3) << size.x << " x " << size.y << ", at " << difference.at.x << "," << difference.at.y;
+    }
+}
+
 TEST_F(Videos, that_are_broken_are_refused_with_advice) {
     EXPECT_THAT(refusal(folder_ / "absent.mp4"), HasSubstr("absent.mp4: not a video that can be read"));
     EXPECT_THAT(refusal(folder_.file("text.mp4", "no video at all, only words\n")),
@@ -277,6 +340,19 @@ TEST_F(Videos, that_are_broken_are_refused_with_advice) {
     writeVideo(folder_ / "large.mov", {.encoder = "qtrle", .pixels = "gray", .size = {8200, 4400}}, 1,
                [](int) { return RgbaImage(); });
     EXPECT_THAT(refusal(folder_ / "large.mov"), HasSubstr("large.mov: 8200 x 4400 pixels are too many; at most 8192 x 4320"));
+    for (const glm::ivec2 size : {glm::ivec2(8194, 64), {64, 8194}}) {
+        writeVideo(folder_ / "long.mkv", {.encoder = "ffv1", .pixels = "gray", .size = size}, 1, [](int) { return RgbaImage(); });
+        EXPECT_THAT(refusal(folder_ / "long.mkv"),
+                    HasSubstr(fmt::format("long.mkv: {} x {} pixels are too many", size.x, size.y)));
+    }
+
+    ASSERT_EQ(::mkfifo((folder_ / "pipe.mp4").c_str(), 0600), 0);
+    EXPECT_EQ(refusal(folder_ / "pipe.mp4"), "pipe.mp4: is a pipe, a file is needed");
+    EXPECT_EQ(refusal("/dev/zero"), "/dev/zero: is a device, a file is needed");
+    // A list of other files is none.
+    make("part.mp4", {}, 5);
+    for (const char* list : {"ffconcat version 1.0\nfile part.mp4\n", "#EXTM3U\n#EXTINF:1,\npart.mp4\n#EXT-X-ENDLIST\n"})
+        EXPECT_THAT(refusal(folder_.file("list.mp4", list)), HasSubstr("list.mp4: ")) << list;
 }
 
 // Overwrites the coded frames of a video between two shares of the file.

@@ -23,7 +23,7 @@ Result<CanvasSurface> CanvasSurface::create(const std::string& fragmentShader, c
 
 void CanvasSurface::follow(const CanvasPlace& place) {
     clipFromCanvas_ = clipFromCanvas(1, place);
-    const CanvasPart& part = place.warp.shape().part;
+    const CanvasPart part = place.warp.shown();
     part_ = glm::vec4(part.low, part.high - part.low);
 }
 

@@ -42,9 +42,9 @@ void filterBetween(GLuint texture) {
 }  // namespace
 
 Result<Composer> Composer::create(glm::ivec2 size, int samples, ProgramCache& programs) {
-    std::array<LayerPicture, kTogether> pictures = {TRY(LayerPicture::create(size, samples)),
-                                                    TRY(LayerPicture::create(size, samples))};
-    return Composer(size, std::move(pictures), programs);
+    static_assert(kTogether == 2);
+    LayerPicture first = TRY(LayerPicture::create(size, samples)), second = TRY(LayerPicture::create(size, samples));
+    return Composer(size, {std::move(first), std::move(second)}, programs);
 }
 
 Composer::Carried::Carried(glm::ivec2 size) {

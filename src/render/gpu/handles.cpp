@@ -14,6 +14,8 @@ unsigned created(Create create) {
 
 }  // namespace
 
+thread_local bool Forgetting::on_ = false;
+
 unsigned BufferKind::create() { return created(glCreateBuffers); }
 void BufferKind::destroy(unsigned name) { glDeleteBuffers(1, &name); }
 unsigned VertexArrayKind::create() { return created(glCreateVertexArrays); }
@@ -37,6 +39,16 @@ void FramebufferKind::destroy(unsigned name) { glDeleteFramebuffers(1, &name); }
 unsigned ProgramKind::create() { return glCreateProgram(); }
 void ProgramKind::destroy(unsigned name) { glDeleteProgram(name); }
 
+Result<void> checkMemory() {
+    constexpr int kMaxErrors = 8;  // that OpenGL remembers, a kind each
+    for (int errors = 0; errors < kMaxErrors; ++errors) {
+        const GLenum error = glGetError();
+        if (error == GL_NO_ERROR) return {};
+        if (error == GL_OUT_OF_MEMORY) break;
+    }
+    return Error("OpenGL has no memory left; make the output or its pictures smaller, or close other programs");
+}
+
 void Fence::set() {
     clear();
     sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -56,7 +68,8 @@ void Fence::wait() {
 }
 
 void Fence::clear() {
-    if (sync_ != nullptr) glDeleteSync(static_cast<GLsync>(std::exchange(sync_, nullptr)));
+    void* const sync = std::exchange(sync_, nullptr);
+    if (sync != nullptr && !Forgetting::on()) glDeleteSync(static_cast<GLsync>(sync));
 }
 
 }  // namespace fantascope::render::gpu

@@ -1,8 +1,24 @@
 #pragma once
 
+#include "core/result.h"
+
 #include <utility>
 
 namespace fantascope::render::gpu {
+
+// While it lives, handles and fences on this thread are destroyed without OpenGL calls: their context is lost, and they with it.
+class Forgetting {
+public:
+    Forgetting() : before_(std::exchange(on_, true)) {}
+    ~Forgetting() { on_ = before_; }
+    Forgetting(const Forgetting&) = delete;
+    Forgetting& operator=(const Forgetting&) = delete;
+    static bool on() { return on_; }
+
+private:
+    static thread_local bool on_;
+    bool before_;
+};
 
 // Owns one OpenGL object; typed, so that a buffer cannot pass for a framebuffer. Made and destroyed while its context is current;
 // it dies with the context at the latest. Thread: the context's.
@@ -11,7 +27,7 @@ class Handle {
 public:
     Handle() : name_(Kind::create()) {}
     ~Handle() {
-        if (name_ != 0) Kind::destroy(name_);
+        if (name_ != 0 && !Forgetting::on()) Kind::destroy(name_);
     }
     Handle(Handle&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
     Handle& operator=(Handle&& other) noexcept {
@@ -65,6 +81,9 @@ using Texture3 = Handle<Texture3Kind>;
 using MultisampleTexture = Handle<MultisampleTextureKind>;
 using Framebuffer = Handle<FramebufferKind>;
 using Program = Handle<ProgramKind>;
+
+// Error: OpenGL ran out of memory since the last call, and what was made since may have none.
+Result<void> checkMemory();
 
 // A point in the stream of commands that can be waited for. Empty until set().
 class Fence {

@@ -37,12 +37,15 @@ void PictureTexture::setFrom(const void* pixels) {
     if (mipmaps_ == Mipmaps::All) glGenerateTextureMipmap(pixels_.name());
 }
 
-PictureUploader::PictureUploader(glm::ivec2 size)
-    : bytes_(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * sizeof(Rgba8)) {
-    const auto bytes = static_cast<GLsizeiptr>(kInFlight * bytes_);
+Result<PictureUploader> PictureUploader::create(glm::ivec2 size) {
+    PictureUploader uploader(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * sizeof(Rgba8));
+    const auto bytes = static_cast<GLsizeiptr>(kInFlight * uploader.bytes_);
     constexpr GLbitfield kAccess = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-    glNamedBufferStorage(pixels_.name(), bytes, nullptr, kAccess | GL_CLIENT_STORAGE_BIT);
-    mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(pixels_.name(), 0, bytes, kAccess));
+    glNamedBufferStorage(uploader.pixels_.name(), bytes, nullptr, kAccess | GL_CLIENT_STORAGE_BIT);
+    uploader.mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(uploader.pixels_.name(), 0, bytes, kAccess));
+    if (uploader.mapped_ == nullptr)
+        return Error(fmt::format("OpenGL has no memory for {} x {} pixels on their way", size.x, size.y));
+    return uploader;
 }
 
 void PictureUploader::upload(const RgbaImage& picture, PictureTexture& texture) {

@@ -41,7 +41,8 @@ private:
 // the context's.
 class PictureUploader {
 public:
-    explicit PictureUploader(glm::ivec2 size);
+    // Error: OpenGL has no memory left.
+    static Result<PictureUploader> create(glm::ivec2 size);
 
     // Queues it; `picture` is not needed any longer afterwards. Both have the uploader's size. May wait for the upload of three pictures
     // ago.
@@ -49,10 +50,11 @@ public:
 
 private:
     static constexpr std::size_t kInFlight = 3;
+    explicit PictureUploader(std::size_t bytes) : bytes_(bytes) {}
 
     std::size_t bytes_;
     Buffer pixels_;
-    std::byte* mapped_;  // kInFlight pictures
+    std::byte* mapped_ = nullptr;  // kInFlight pictures
     std::array<Fence, kInFlight> copied_;
     std::size_t turn_ = 0;
 };

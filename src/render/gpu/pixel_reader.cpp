@@ -3,6 +3,7 @@
 #include "core/check.h"
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <span>
@@ -11,11 +12,14 @@ namespace fantascope::render::gpu {
 
 static_assert(sizeof(Rgba8) == 4, "OpenGL packs its pixels");
 
-PixelReader::PixelReader(glm::ivec2 size) : size_(size) {
+Result<PixelReader> PixelReader::create(glm::ivec2 size) {
+    PixelReader reader(size);
     const GLsizeiptr bytes = static_cast<GLsizeiptr>(size.x) * size.y * static_cast<GLsizeiptr>(sizeof(Rgba8));
     constexpr GLbitfield kAccess = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-    glNamedBufferStorage(pixels_.name(), bytes, nullptr, kAccess | GL_CLIENT_STORAGE_BIT);
-    mapped_ = static_cast<const Rgba8*>(glMapNamedBufferRange(pixels_.name(), 0, bytes, kAccess));
+    glNamedBufferStorage(reader.pixels_.name(), bytes, nullptr, kAccess | GL_CLIENT_STORAGE_BIT);
+    reader.mapped_ = static_cast<const Rgba8*>(glMapNamedBufferRange(reader.pixels_.name(), 0, bytes, kAccess));
+    if (reader.mapped_ == nullptr) return Error(fmt::format("OpenGL has no memory for a copy of {} x {} pixels", size.x, size.y));
+    return reader;
 }
 
 void PixelReader::start(unsigned framebuffer) {

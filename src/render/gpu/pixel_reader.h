@@ -3,6 +3,7 @@
 #include "render/gpu/handles.h"
 
 #include "core/image.h"
+#include "core/result.h"
 
 #include <glm/vec2.hpp>
 
@@ -12,7 +13,8 @@ namespace fantascope::render::gpu {
 // long as the reader lives, so that whoever wants the pixels takes them without the context. Thread: the context's, but for copyTo().
 class PixelReader {
 public:
-    explicit PixelReader(glm::ivec2 size);
+    // Error: OpenGL has no memory left.
+    static Result<PixelReader> create(glm::ivec2 size);
 
     // Queues a copy of `framebuffer`'s stored values as they are after all drawing so far. It takes the place of the one before.
     void start(unsigned framebuffer);
@@ -24,9 +26,11 @@ public:
     void copyTo(RgbaImage& image) const;
 
 private:
+    explicit PixelReader(glm::ivec2 size) : size_(size) {}
+
     glm::ivec2 size_;
     Buffer pixels_;
-    const Rgba8* mapped_;  // GL's row order: the bottom row first
+    const Rgba8* mapped_ = nullptr;  // GL's row order: the bottom row first
     Fence copied_;
 };
 

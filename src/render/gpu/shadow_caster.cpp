@@ -28,9 +28,10 @@ static_assert(sizeof(ShadowCaster::Vertex) == 8 * sizeof(float), "the shader rea
 Result<ShadowCaster> ShadowCaster::create(std::span<const Piece> pieces, bool curved, const Bend& bend, ProgramCache& programs) {
     ShadowCaster caster(curved, bend);
     const auto made = [&](const std::string& definitions) -> Result<Programs> {
-        return Programs{
-            TRY(programs.drawing("shadow.vert", "shadow.frag", definitions)),
-            TRY(programs.drawing("shadow.vert", "shadow.frag", definitions + TRY(Bend::definitions(programs.folder()))))};
+        const std::string bent = definitions + TRY(Bend::definitions(programs.folder()));
+        const auto straight = TRY(programs.drawing("shadow.vert", "shadow.frag", definitions));
+        const auto bending = TRY(programs.drawing("shadow.vert", "shadow.frag", bent));
+        return Programs{straight, bending};
     };
     caster.skin_ = TRY(programs.compute("skin.comp", fmt::format("#define JOINTS {}\n", kMostJoints)));
     const std::string screen = curved ? "#define CURVED\n" : "";
