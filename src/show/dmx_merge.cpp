@@ -43,7 +43,10 @@ void DmxMerge::receive(const DmxFrame& frame) {
 }
 
 void DmxMerge::mergeAt(Time now, std::span<const std::uint8_t, 512> own, std::span<std::uint8_t, 512> out) {
-    setSlots(own_, own, now);
+    if (claims_)
+        setSlots(own_, own, now);
+    else
+        std::copy(own.begin(), own.end(), own_.slots.begin());
     // Somebody silent keeps its place until it has settled.
     const auto isOver = [&](const Source& source) { return now - source.arrived > source.silence + settings_.settling; };
     for (std::size_t i = 0; i < count_;) {

@@ -55,6 +55,8 @@ public:
 
     // Frames in the order of their arrival.
     void receive(const DmxFrame& frame);
+    // From now on our own changes claim no slot (Rule::Latest): a desk keeps what it changed last.
+    void claimNothing() { claims_ = false; }
     // What the universe carries at `now`, no earlier than all that was received. `own` and `out` may be the same.
     void mergeAt(Time now, std::span<const std::uint8_t, 512> own, std::span<std::uint8_t, 512> out);
     // Who was in charge then: our own levels first, then the desks in the order of their coming. Good until the next call of any method.
@@ -72,6 +74,7 @@ private:
     bool isLive(const Source& source, Time now) const { return now - source.arrived <= source.silence; }
 
     Settings settings_;
+    bool claims_ = true;
     Source own_;
     std::vector<Source> sources_;  // the first count_ are there, in the order of their coming
     std::size_t count_ = 0;

@@ -21,6 +21,16 @@ void slotsOf(const Site& site, const Look& look, int universe, std::span<std::ui
     }
 }
 
+std::vector<float> endLevels(const Site& site) {
+    std::vector<float> levels;
+    for (const Fixture& fixture : site.fixtures) {
+        std::vector<float> own = fixture.end;
+        own.resize(fixture.channels.size());
+        levels.insert(levels.end(), own.begin(), own.end());
+    }
+    return levels;
+}
+
 std::vector<bool> coilsOf(const Site& site, const Look& look, std::size_t bank) {
     FANTASCOPE_CHECK(look.relays.size() == site.relays.size(), "the look is for this site");
     std::vector<bool> states(site.coilCount(bank), false);

@@ -195,9 +195,16 @@ void Playback::enter(int cue, Time at) {
     }
 }
 
-bool Playback::fadesAt(Time time) const {
+Time Playback::fadeLeftAt(Time time) const {
     const Entry* entry = lastBy(time, entries_);
-    return entry && time - entry->at < list_.cues[static_cast<std::size_t>(entry->cue)].fade;
+    return entry ? std::max(Time{}, entry->at + list_.cues[static_cast<std::size_t>(entry->cue)].fade - time) : Time{};
+}
+
+std::optional<Time> Playback::untilFollowAt(Time time) const {
+    if (entries_.empty() || entries_.back().at <= time) return std::nullopt;
+    const auto next =
+        std::upper_bound(entries_.begin(), entries_.end(), time, [](Time t, const Entry& entry) { return t < entry.at; });
+    return next->at - time;
 }
 
 void Playback::stateAt(Time time, ShowState& out) const {

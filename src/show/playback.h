@@ -7,6 +7,7 @@
 #include "core/clock.h"
 
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -58,8 +59,11 @@ public:
     // its forerunner takes effect at its forerunner's time. It changes what is seen from then on and nothing before.
     Outcome apply(Input input);
 
-    // Whether the cue of that time is still on its way from what was seen before it.
-    bool fadesAt(Time time) const;
+    // How much of its fade the cue of that time has still before it; 0 once its look is whole, and before the first cue.
+    Time fadeLeftAt(Time time) const;
+    bool fadesAt(Time time) const { return fadeLeftAt(time) > Time{}; }
+    // How long after that time the next cue comes by itself; nothing if it waits for an input.
+    std::optional<Time> untilFollowAt(Time time) const;
 
     // What is seen at `time`, which may be any. Binary searches and one mix; it allocates only when it sees `out` the first time.
     void stateAt(Time time, ShowState& out) const;

@@ -109,10 +109,10 @@ Result<bool> readSwitch(const ConfigNode& node) { return TRY(node.choice({"off",
 template <class Wish, class Read>
 Result<std::vector<Named<Wish>>> readNamed(const ConfigNode& node, Read read) {
     std::vector<Named<Wish>> wishes;
-    for (const auto& [name, value] : TRY(node.entries())) {
-        Wish wish = TRY(read(value));
-        wishes.push_back({name, value, std::move(wish)});
-    }
+    ConfigFaults faults;
+    for (const auto& [name, value] : TRY(node.entries()))
+        faults.take(Result<Wish>(read(value)), [&](Wish wish) { wishes.push_back({name, value, std::move(wish)}); });
+    TRY(faults.result());
     return wishes;
 }
 
@@ -152,13 +152,15 @@ Result<Cue> readCue(const ConfigNode& node, const std::vector<std::string>& look
 Result<std::vector<Cue>> readCues(const ConfigNode& node, const std::vector<std::string>& looks) {
     std::vector<Cue> cues;
     const auto items = TRY(node.items(1));
-    for (const ConfigNode& item : items) {
-        Cue cue = TRY(readCue(item, looks));
-        const auto same = [&](const Cue& other) { return other.name == cue.name; };
-        if (std::any_of(cues.begin(), cues.end(), same))
-            return item.error(fmt::format("another cue is called '{}'; each needs its own name", cue.name));
-        cues.push_back(std::move(cue));
-    }
+    ConfigFaults faults;
+    for (const ConfigNode& item : items)
+        faults.take(readCue(item, looks), [&](Cue cue) {
+            const auto same = [&](const Cue& other) { return other.name == cue.name; };
+            if (std::any_of(cues.begin(), cues.end(), same))
+                faults.add(item.error(fmt::format("another cue is called '{}'; each needs its own name", cue.name)));
+            cues.push_back(std::move(cue));
+        });
+    TRY(faults.result());
     if (cues.back().follow) return items.back().error("no cue comes after this one; take its 'follow' away");
     return cues;
 }
@@ -194,26 +196,33 @@ Look darkLook(const Site& site) {
     return look;
 }
 
-Result<Look> bindLook(const NamedLook& named, const Site& site) {
+// What the site does not have goes to `faults`.
+Look bindLook(const NamedLook& named, const Site& site, ConfigFaults& faults) {
     Look look = darkLook(site);
     // An output's own layers go before those of its canvas.
     for (const bool own : {false, true})
         for (const auto& output : named.outputs)
-            for (const std::size_t index : TRY(outputsOf(output, site)))
-                if ((site.outputs[index].name == output.name) == own) look.outputs[index] = output.wish.layers;
-    for (const auto& relay : named.relays) look.relays[TRY(indexOf(relay, namesOf(site.relays), "relay", site))] = relay.wish;
-    for (const auto& fixture : named.fixtures) {
-        const std::size_t index = TRY(indexOf(fixture, namesOf(site.fixtures), "fixture", site));
-        const std::vector<std::string>& channels = site.fixtures[index].channels;
-        const std::span<float> levels = std::span(look.levels).subspan(site.firstLevel(index), channels.size());
-        if (const float* all = std::get_if<float>(&fixture.wish)) {
-            std::fill(levels.begin(), levels.end(), *all);
-        } else {
+            if (const auto outputs = outputsOf(output, site)) {
+                for (const std::size_t index : *outputs)
+                    if ((site.outputs[index].name == output.name) == own) look.outputs[index] = output.wish.layers;
+            } else if (own) {
+                faults.add(outputs.error());
+            }
+    for (const auto& relay : named.relays)
+        faults.take(indexOf(relay, namesOf(site.relays), "relay", site),
+                    [&](std::size_t index) { look.relays[index] = relay.wish; });
+    for (const auto& fixture : named.fixtures)
+        faults.take(indexOf(fixture, namesOf(site.fixtures), "fixture", site), [&](std::size_t index) {
+            const std::vector<std::string>& channels = site.fixtures[index].channels;
+            const std::span<float> levels = std::span(look.levels).subspan(site.firstLevel(index), channels.size());
+            if (const float* all = std::get_if<float>(&fixture.wish)) {
+                std::fill(levels.begin(), levels.end(), *all);
+                return;
+            }
             const std::string what = fmt::format("channel of '{}'", fixture.name);
             for (const Named<float>& channel : std::get<NamedLook::ChannelLevels>(fixture.wish))
-                levels[TRY(indexOf(channel, channels, what, site))] = channel.wish;
-        }
-    }
+                faults.take(indexOf(channel, channels, what, site), [&](std::size_t slot) { levels[slot] = channel.wish; });
+        });
     return look;
 }
 
@@ -243,24 +252,37 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder) {
     fields.optional().time("go_interval", show.goInterval, 0, kLongestGoInterval);
     fields.optional().time("blackout_fade", show.blackoutFade, 0, kLongestBlackoutFade);
     fields.optional().integer("seed", show.seed, 0, std::numeric_limits<std::int64_t>::max());
-    fields.read("sources", show.sources, [](const ConfigNode& node) -> Result<std::vector<Source>> {
+    std::vector<std::string> sourceNames, lookNames;  // also of those that are wrong: they are no fault of who names them
+    fields.read("sources", show.sources, [&](const ConfigNode& node) -> Result<std::vector<Source>> {
         std::vector<Source> sources;
-        for (const auto& [name, source] : TRY(node.entries())) sources.push_back(TRY(readSource(name, source)));
+        ConfigFaults faults;
+        for (const auto& [name, source] : TRY(node.entries())) {
+            sourceNames.push_back(name);
+            faults.take(readSource(name, source), [&](Source read) { sources.push_back(std::move(read)); });
+        }
+        TRY(faults.result());
         return sources;
     });
     fields.read("looks", show.looks, [&](const ConfigNode& node) -> Result<std::vector<NamedLook>> {
         std::vector<NamedLook> looks;
-        for (const auto& [name, look] : TRY(node.entries())) looks.push_back(TRY(readLook(name, look, namesOf(show.sources))));
+        ConfigFaults faults;
+        for (const auto& [name, look] : TRY(node.entries())) {
+            lookNames.push_back(name);
+            faults.take(readLook(name, look, sourceNames), [&](NamedLook read) { looks.push_back(std::move(read)); });
+        }
+        TRY(faults.result());
         return looks;
     });
-    fields.read("cues", show.cues, [&](const ConfigNode& node) { return readCues(node, namesOf(show.looks)); });
+    fields.read("cues", show.cues, [&](const ConfigNode& node) { return readCues(node, lookNames); });
     TRY(fields.finish());
     return show;
 }
 
 Result<CueList> Show::bind(const Site& site) const {
     std::vector<Look> bound;
-    for (const NamedLook& look : looks) bound.push_back(TRY(bindLook(look, site)));
+    ConfigFaults faults;
+    for (const NamedLook& look : looks) bound.push_back(bindLook(look, site, faults));
+    TRY(faults.result());
 
     CueList list;
     for (const Cue& cue : cues) list.cues.push_back({bound[cue.look], cue.fade, cue.follow, bindWinds(looks[cue.look], site)});

@@ -1,5 +1,7 @@
 #include "show/site.h"
 
+#include "core/check.h"
+
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -9,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <utility>
 
 namespace fantascope::show {
 
@@ -22,9 +25,17 @@ constexpr double kFarthestCorner = 32768;  // pixels: a corner may lie outside i
 constexpr double kFarthest = 1000;         // metres
 constexpr int kLastUniverse = 63999;       // ANSI E1.31
 constexpr int kLastSlot = 512;             // ANSI E1.11
+constexpr double kLongestEndFade = 60;     // seconds
 constexpr int kLastCoil = 1967;            // one Modbus request writes 1968 coils at most (Modbus 1.1b3, section 6.11)
 constexpr int kLastInput = 1999;           // one Modbus request reads 2000 inputs at most (section 6.2)
 constexpr int kLastButton = 255;           // more than any hand-held device has
+
+constexpr std::pair<std::string_view, Button> kButtonKeys[] = {
+    {"go", Button::Go},         {"back", Button::Back},  {"blackout", Button::Blackout},
+    {"edit", Button::Edit},     {"left", Button::Left},  {"right", Button::Right},
+    {"up", Button::Up},         {"down", Button::Down},  {"next", Button::Next},
+    {"output", Button::Output}, {"tool", Button::Tool},  {"picture", Button::Picture},
+    {"undo", Button::Undo},     {"write", Button::Write}};
 
 // A reader of values that may stand only once among all that share `taken`.
 template <class Value, class Read>
@@ -58,6 +69,25 @@ Result<DeviceConfig> readDevice(const ConfigNode& node) {
     return node.error("'driver' is missing: the name of the device's driver");
 }
 
+// What the drivers say of the devices. It is told beside what else is wrong, so that one mistake in a device does not hide others.
+class DriversWord {
+public:
+    explicit DriversWord(DeviceReader* reader) : reader_(reader) {}
+
+    // Asks the drivers, if there are any, of the device at `at`: ask(reader).
+    template <class Ask>
+    void ask(const ConfigNode& at, Ask ask) {
+        if (reader_ != nullptr) said_.emplace_back(at, ask(*reader_));
+    }
+    void tell(ConfigFields& fields) const {
+        for (const auto& [at, word] : said_) fields.check(at, word);
+    }
+
+private:
+    DeviceReader* reader_;
+    std::vector<std::pair<ConfigNode, Result<void>>> said_;
+};
+
 Result<glm::ivec2> readSize(const ConfigNode& node) {
     const auto sides = TRY(node.items(2, 2));
     return glm::ivec2(TRY(sides[0].integer(1, kMostPixels)), TRY(sides[1].integer(1, kMostPixels)));
@@ -75,8 +105,9 @@ Result<std::array<glm::dvec2, 4>> readCorners(const ConfigNode& node) {
 
 Result<CanvasPart> readPart(const ConfigNode& node) {
     const auto sides = TRY(node.items(4, 4));
-    CanvasPart part{{TRY(sides[0].number(0, 1)), TRY(sides[1].number(0, 1))},
-                    {TRY(sides[2].number(0, 1)), TRY(sides[3].number(0, 1))}};
+    CanvasPart part;
+    part.low = glm::dvec2(TRY(sides[0].number(0, 1)), TRY(sides[1].number(0, 1)));
+    part.high = glm::dvec2(TRY(sides[2].number(0, 1)), TRY(sides[3].number(0, 1)));
     if (part.low.x >= part.high.x || part.low.y >= part.high.y)
         return node.error("left comes before right and top before bottom: [left, top, right, bottom]");
     return part;
@@ -172,16 +203,20 @@ Result<Surface> readSurface(const ConfigNode& node) {
     return surface;
 }
 
-Result<Output> readOutput(const ConfigNode& node, std::set<std::string>& names) {
+Result<Output> readOutput(const ConfigNode& node, std::set<std::string>& names, DriversWord& drivers) {
     Output output;
     Projection& projection = output.projection;
     WarpShape warp;
     std::optional<std::array<glm::dvec2, 4>> corners;
     ConfigFields fields(node);
     fields.read("name", output.name, onceNamed(names, "output"));
-    fields.read("display", output.display, readDevice);
     fields.read("size", projection.size, readSize);
     fields.number("refresh_rate", output.refreshRate, 1, 240, "Hz");
+    fields.read("display", output.display, [&](const ConfigNode& device) -> Result<DeviceConfig> {
+        output.display = TRY(readDevice(device));
+        drivers.ask(device, [&](DeviceReader& reader) { return reader.display(output); });
+        return output.display;
+    });
     fields.optional().read("canvas", output.canvas, readName);
     fields.optional().read("part", warp.part, readPart);
     fields.optional().choice("flip", warp.orientation.flip, {"none", "horizontal", "vertical"});
@@ -208,10 +243,14 @@ Result<Output> readOutput(const ConfigNode& node, std::set<std::string>& names) 
     return output;
 }
 
-Result<Desk> readDesk(const ConfigNode& node) {
+Result<Desk> readDesk(const ConfigNode& node, int universe, DriversWord& drivers) {
     Desk desk;
     ConfigFields fields(node);
-    fields.read("device", desk.device, readDevice);
+    fields.read("device", desk.device, [&](const ConfigNode& value) -> Result<DeviceConfig> {
+        DeviceConfig device = TRY(readDevice(value));
+        drivers.ask(value, [&](DeviceReader& reader) { return reader.desk(device, universe); });
+        return device;
+    });
     fields.optional().choice("merge", desk.merge.rule, {"htp", "ltp"});
     fields.optional().integer("own_priority", desk.merge.ownPriority, 0, 200);  // ANSI E1.31
     fields.optional().time("settling", desk.merge.settling, 0, 60);
@@ -219,18 +258,46 @@ Result<Desk> readDesk(const ConfigNode& node) {
     return desk;
 }
 
-Result<Universe> readUniverse(const ConfigNode& node, std::set<int>& numbers) {
+// The universes that fixtures may be on.
+struct Universes {
+    std::set<int> numbers;
+    bool areAllKnown = true;  // false: a number could not be read
+};
+
+Result<Universe> readUniverse(const ConfigNode& node, Universes& universes, DriversWord& drivers) {
     Universe universe;
     ConfigFields fields(node);
-    fields.read("number", universe.number, onceNumbered(numbers, "universe", 1, kLastUniverse));
-    fields.read("port", universe.port, readDevice);
-    fields.optional().read("desk", universe.desk, readDesk);
+    fields.read("number", universe.number, onceNumbered(universes.numbers, "universe", 1, kLastUniverse));
+    universes.areAllKnown = universes.areAllKnown && fields.right();
+    fields.read("port", universe.port, [&](const ConfigNode& value) -> Result<DeviceConfig> {
+        DeviceConfig device = TRY(readDevice(value));
+        drivers.ask(value, [&](DeviceReader& reader) { return reader.port(device, universe.number); });
+        return device;
+    });
+    fields.optional().read("desk", universe.desk, [&](const ConfigNode& desk) -> Result<std::optional<Desk>> {
+        return std::optional(TRY(readDesk(desk, universe.number, drivers)));
+    });
     TRY(fields.finish());
     return universe;
 }
 
+// One level for all channels, or a map with the levels of some; the others are dark.
+Result<std::vector<float>> readEndLevels(const ConfigNode& node, const Fixture& fixture) {
+    const std::vector<std::string>& channels = fixture.channels;
+    if (!node.isMap()) return std::vector<float>(channels.size(), static_cast<float>(TRY(node.number(0, 1))));
+    std::vector<float> levels(channels.size());
+    for (const auto& [channel, level] : TRY(node.entries())) {
+        const auto found = std::ranges::find(channels, channel);
+        if (found == channels.end())
+            return level.error(
+                fmt::format("'{}' has no channel '{}'; it has {}", fixture.name, channel, fmt::join(channels, ", ")));
+        levels[static_cast<std::size_t>(found - channels.begin())] = static_cast<float>(TRY(level.number(0, 1)));
+    }
+    return levels;
+}
+
 // `owners`: which fixture has the slot (universe, address) so far.
-Result<Fixture> readFixture(const ConfigNode& node, std::set<std::string>& names, const std::set<int>& universes,
+Result<Fixture> readFixture(const ConfigNode& node, std::set<std::string>& names, const Universes& universes,
                             std::map<std::pair<int, int>, std::string>& owners) {
     Fixture fixture;
     std::set<std::string> channels;
@@ -238,12 +305,13 @@ Result<Fixture> readFixture(const ConfigNode& node, std::set<std::string>& names
     fields.read("name", fixture.name, onceNamed(names, "fixture"));
     fields.read("universe", fixture.universe, [&](const ConfigNode& value) -> Result<int> {
         const int number = static_cast<int>(TRY(value.integer(1, kLastUniverse)));
-        if (!universes.contains(number))
+        if (!universes.numbers.contains(number) && universes.areAllKnown)
             return value.error(fmt::format("universe {} is not declared; add it under 'universes'", number));
         return number;
     });
     fields.integer("address", fixture.address, 1, kLastSlot);
     fields.list("channels", fixture.channels, onceNamed(channels, "channel of this fixture"), 1, kLastSlot);
+    fields.optional().read("end", fixture.end, [&](const ConfigNode& value) { return readEndLevels(value, fixture); });
     TRY(fields.finish());
 
     const int last = fixture.address + static_cast<int>(fixture.channels.size()) - 1;
@@ -270,9 +338,11 @@ public:
         ConfigFields fields(node);
         fields.read("name", bank.name, onceNamed(deviceNames, "device"));
         fields.read("device", bank.device, readDevice);
-        TRY(fields.finish());
+        banks_.push_back(bank);  // what is wrong with it is no fault of its relays or contacts
         nodes_.push_back(node);
         names_.push_back(bank.name);
+        areAllKnown_ = areAllKnown_ && !bank.name.empty();
+        TRY(fields.finish());
         return bank;
     }
     // Declares the keys that say where a relay or contact is. Who has one bank need not call it by its name.
@@ -282,28 +352,44 @@ public:
         if (names_.size() == 1) known = 0;
         if (names_.size() <= 1) fields.optional();
         fields.read("bank", known, [this](const ConfigNode& node) -> Result<std::optional<std::size_t>> {
-            return std::optional(TRY(node.choice(names_)));
+            auto chosen = node.choice(names_);
+            if (!chosen && !areAllKnown_) return std::optional<std::size_t>();
+            return std::optional(TRY(std::move(chosen)));
         });
         fields.read(placeKey, place, [&](const ConfigNode& node) -> Result<int> {
-            if (names_.empty()) return node.error(fmt::format("there is no bank; add it under '{}'", key_));
+            if (names_.empty() && !std::exchange(toldOfNone_, true))
+                return node.error(fmt::format("there is no bank; add it under '{}'", key_));
             if (!known) return 0;  // whether the place is free nobody can say
             bank = *known;
             return onceNumbered(taken_[bank], owner, 0, last)(node);
         });
+        areAllPlaced_ = areAllPlaced_ && fields.right();
     }
     // Once all relays or contacts are read.
-    Result<void> check() const {
-        for (std::size_t bank = 0; bank < nodes_.size(); ++bank)
+    void check(ConfigFields& fields) const {
+        for (std::size_t bank = 0; bank < nodes_.size() && areAllKnown_ && areAllPlaced_; ++bank)
             if (!taken_.contains(bank))
-                return nodes_[bank].error(
-                    fmt::format("nothing is in the bank '{}'; say what under '{}', or take it away", names_[bank], membersKey_));
-        return {};
+                fields.check(nodes_[bank],
+                             nodes_[bank].error(fmt::format("nothing is in the bank '{}'; say what under '{}', or take it away",
+                                                            names_[bank], membersKey_)));
+    }
+
+    // ask(bank, how many places it has) of every bank whose device is named.
+    template <class Ask>
+    void each(Ask ask) const {
+        for (std::size_t bank = 0; bank < banks_.size(); ++bank)
+            if (const auto taken = taken_.find(bank); taken != taken_.end() && !banks_[bank].device.driver.empty())
+                ask(banks_[bank], static_cast<std::size_t>(*taken->second.rbegin()) + 1);
     }
 
 private:
     const std::string_view key_, membersKey_;
+    std::vector<Bank> banks_;
     std::vector<ConfigNode> nodes_;
-    std::vector<std::string> names_;
+    std::vector<std::string> names_;  // empty where one could not be read
+    bool areAllKnown_ = true;         // the names
+    bool areAllPlaced_ = true;        // nothing is wrong with what is in the banks
+    bool toldOfNone_ = false;
     std::map<std::size_t, std::set<int>> taken_;  // places in each
 };
 
@@ -334,16 +420,10 @@ Result<Contact> readContact(const ConfigNode& node, std::set<std::string>& names
 }
 
 Result<std::vector<std::pair<int, Button>>> readButtons(const ConfigNode& node) {
-    constexpr std::pair<std::string_view, Button> kKeys[] = {
-        {"go", Button::Go},         {"back", Button::Back},  {"blackout", Button::Blackout},
-        {"edit", Button::Edit},     {"left", Button::Left},  {"right", Button::Right},
-        {"up", Button::Up},         {"down", Button::Down},  {"next", Button::Next},
-        {"output", Button::Output}, {"tool", Button::Tool},  {"picture", Button::Picture},
-        {"undo", Button::Undo},     {"write", Button::Write}};
     std::vector<std::pair<int, Button>> buttons;
     std::set<int> numbers;
     ConfigFields fields(node);
-    for (const auto& [key, button] : kKeys) {
+    for (const auto& [key, button] : kButtonKeys) {
         if (button != Button::Go) fields.optional();
         std::optional<int> number;
         fields.read(key, number, onceNumbered(numbers, "button", 1, kLastButton));
@@ -354,6 +434,12 @@ Result<std::vector<std::pair<int, Button>>> readButtons(const ConfigNode& node) 
 }
 
 }  // namespace
+
+std::string_view nameOf(Button button) {
+    for (const auto& [key, known] : kButtonKeys)
+        if (known == button) return key;
+    FANTASCOPE_CHECK(false, "every button has a key");
+}
 
 Site Site::scaled(glm::dvec2 factor) const {
     Site result = *this;
@@ -398,8 +484,9 @@ std::size_t Site::inputCount(std::size_t bank) const {
     return count;
 }
 
-Result<Site> readSite(const std::filesystem::path& file) {
+Result<Site> readSite(const std::filesystem::path& file, DeviceReader* devices) {
     const ConfigNode root = TRY(ConfigNode::load(file));
+    DriversWord drivers(devices);
     // As long as there was one bank of each kind.
     for (const auto& [key, value] : TRY(root.entries()))
         for (const auto& [old, members] : {std::pair("relay_bank", "relays"), std::pair("contact_bank", "contacts")})
@@ -418,25 +505,27 @@ Result<Site> readSite(const std::filesystem::path& file) {
     fields.list(
         "outputs", site.outputs,
         [&](const ConfigNode& node) -> Result<Output> {
-            Output output = TRY(readOutput(node, outputNames));
+            Output output = TRY(readOutput(node, outputNames, drivers));
             canvasNodes.emplace_back(output.canvas, node);
             if (output.canvas.empty()) output.canvas = output.name;
             return output;
         },
         1);
 
-    std::set<int> universeNumbers;
+    Universes universes;
     fields.optional().list("universes", site.universes,
-                           [&](const ConfigNode& node) { return readUniverse(node, universeNumbers); });
+                           [&](const ConfigNode& node) { return readUniverse(node, universes, drivers); });
     std::set<std::string> fixtureNames;
     std::map<std::pair<int, int>, std::string> slotOwners;
     fields.optional().list("fixtures", site.fixtures,
-                           [&](const ConfigNode& node) { return readFixture(node, fixtureNames, universeNumbers, slotOwners); });
+                           [&](const ConfigNode& node) { return readFixture(node, fixtureNames, universes, slotOwners); });
+
+    fields.optional().time("end_fade", site.endFade, 0, kLongestEndFade);
 
     // What any other device is called, in its status and in a fault script.
     std::set<std::string> deviceNames(outputNames);
     deviceNames.insert({"cue controller", "camera"});
-    for (const int number : universeNumbers)
+    for (const int number : universes.numbers)
         deviceNames.insert({fmt::format("universe {}", number), fmt::format("desk {}", number)});
     Banks relayBanks("relay_banks", "relays"), contactBanks("contact_banks", "contacts");
     std::set<std::string> relayNames, contactNames;
@@ -453,6 +542,8 @@ Result<Site> readSite(const std::filesystem::path& file) {
         DeviceConfig device;
         ConfigFields controller(node);
         controller.read("device", device, readDevice);
+        if (!device.driver.empty())
+            drivers.ask(device.options, [&](DeviceReader& reader) { return reader.cueController(device); });
         controller.read("buttons", site.buttons, readButtons);
         TRY(controller.finish());
         return device;
@@ -464,6 +555,7 @@ Result<Site> readSite(const std::filesystem::path& file) {
         Aim aim;
         ConfigFields keys(node);
         keys.read("device", device, readDevice);
+        if (!device.driver.empty()) drivers.ask(device.options, [&](DeviceReader& reader) { return reader.camera(device); });
         keys.read("size", camera.size, readSize);
         keys.angle("field_of_view", camera.fieldOfView, 1, 179);
         aim.declare(keys);
@@ -476,13 +568,23 @@ Result<Site> readSite(const std::filesystem::path& file) {
     });
 
     fields.optional().read("simulation", site.simulation, [](const ConfigNode& node) -> Result<ConfigNode> { return node; });
-    TRY(fields.finish());
-    TRY(relayBanks.check());
-    TRY(contactBanks.check());
+    relayBanks.check(fields);
+    contactBanks.check(fields);
     // A look calls outputs and canvases alike.
     for (const auto& [canvas, node] : canvasNodes)
         if (outputNames.contains(canvas))
-            return node.error(fmt::format("'{}' is the name of an output; give the canvas another", canvas));
+            fields.check(node, node.error(fmt::format("'{}' is the name of an output; give the canvas another", canvas)));
+
+    relayBanks.each([&](const Bank& bank, std::size_t size) {
+        drivers.ask(bank.device.options, [&](DeviceReader& reader) { return reader.relayBank(bank, size); });
+    });
+    contactBanks.each([&](const Bank& bank, std::size_t size) {
+        drivers.ask(bank.device.options, [&](DeviceReader& reader) { return reader.contactBank(bank, size); });
+    });
+    if (site.simulation && fields.right())
+        drivers.ask(*site.simulation, [&](DeviceReader& reader) { return reader.simulation(site); });
+    drivers.tell(fields);
+    TRY(fields.finish());
     return site;
 }
 

@@ -2,6 +2,7 @@
 
 #include "show/dmx_merge.h"
 
+#include "core/clock.h"
 #include "core/config.h"
 #include "core/geometry.h"
 #include "core/projection.h"
@@ -78,6 +79,7 @@ struct Fixture {
     int universe = 1;
     int address = 1;                    // 1 .. 512, of the first channel
     std::vector<std::string> channels;  // "intensity", "red", ...
+    std::vector<float> end{};           // 0..1, of each channel when the show is over; channels beyond the last one are dark
 };
 
 // A module with relays, or one with contacts.
@@ -96,6 +98,8 @@ struct Relay {
 // From Edit on they set the outputs up (SiteEditor).
 enum class Button { Go, Back, Blackout, Edit, Left, Right, Up, Down, Next, Output, Tool, Picture, Undo, Write };
 
+std::string_view nameOf(Button button);  // its key in the site file: "go"
+
 // What a contact that moves asks for: a door may be a GO, an emergency button the dark.
 enum class ContactAction { Go, Back, Blackout, Dark, Light };
 
@@ -112,7 +116,8 @@ struct Site {
     std::vector<Output> outputs;
     std::vector<Universe> universes;
     std::vector<Fixture> fixtures;
-    std::vector<Bank> relayBanks;  // each with at least one relay
+    Time endFade = std::chrono::seconds(1);  // in which lamps go to Fixture::end when the show is over
+    std::vector<Bank> relayBanks;            // each with at least one relay
     std::vector<Relay> relays;
     std::optional<DeviceConfig> cueController;
     std::vector<std::pair<int, Button>> buttons;  // controller button -> what it does; each number once
@@ -132,9 +137,25 @@ struct Site {
     std::size_t inputCount(std::size_t bank) const;     // a contact bank's highest input + 1: its size
 };
 
+// Reads the keys of a site file that are a driver's own: show knows no driver. Nothing is opened. Each call gives all that is wrong with them.
+class DeviceReader {
+public:
+    virtual ~DeviceReader() = default;
+    virtual Result<void> display(const Output& output) = 0;
+    virtual Result<void> port(const DeviceConfig& device, int universe) = 0;
+    virtual Result<void> desk(const DeviceConfig& device, int universe) = 0;
+    virtual Result<void> relayBank(const Bank& bank, std::size_t size) = 0;
+    virtual Result<void> contactBank(const Bank& bank, std::size_t size) = 0;
+    virtual Result<void> cueController(const DeviceConfig& device) = 0;
+    virtual Result<void> camera(const DeviceConfig& device) = 0;
+    // Of a site with a `simulation` section, when all other sections are right.
+    virtual Result<void> simulation(const Site& site) = 0;
+};
+
 // Strict. Besides types, ranges and unknown keys it refuses two things of one name, coil or button; fixtures on top of each other, beyond
 // slot 512 or on no universe; a bank without a relay or contact, and those of no bank; a contact that asks for nothing; folded corners; a
-// surface turned from its projector. Error: file, line, column, key, advice.
-Result<Site> readSite(const std::filesystem::path& file);
+// surface turned from its projector. `devices` reads what the drivers need; null: nobody does. Error: all that is wrong, a line for each with
+// file, line, column, key, advice.
+Result<Site> readSite(const std::filesystem::path& file, DeviceReader* devices = nullptr);
 
 }  // namespace fantascope::show

@@ -45,7 +45,9 @@ Result<FoliageSource::Layer> readLeaves(const ConfigNode& node, const FoliageSou
     FoliageSource::Layer layer;
     std::optional<fs::path> leaves, holes;
     ConfigFields fields(node);
-    fields.optional().read("leaves", leaves, readPatternFile);
+    fields.optional().read("leaves", leaves, [](const ConfigNode& file) {
+        return readFile(file, "make it with 'fantascope pattern GUIDE -o LEAVES.pattern.yaml --shadows'");
+    });
     fields.optional().read("holes", holes, readPatternFile);
     fields.number("distance", layer.distance, 0, kLargest, "m");
     fields.optional().read("filter", layer.filter, [](const ConfigNode& file) {
@@ -75,7 +77,10 @@ Result<FoliageSource> readFoliage(const ConfigNode& node) {
     fields.optional().angle("sun", foliage.sun, 0, 60);
     fields.read("layers", layers, [](const ConfigNode& list) { return list.items(1, kMostLayers); });
     TRY(fields.finish());
-    for (const ConfigNode& layer : layers) foliage.layers.push_back(TRY(readLeaves(layer, foliage)));
+    ConfigFaults faults;
+    for (const ConfigNode& layer : layers)
+        faults.take(readLeaves(layer, foliage), [&](FoliageSource::Layer read) { foliage.layers.push_back(std::move(read)); });
+    TRY(faults.result());
     return foliage;
 }
 
@@ -234,6 +239,7 @@ Result<Source> readSource(const std::string& name, const ConfigNode& node) {
     kind("video", readVideo);
     kind("camera", readCamera);
     kind("shadow", readShadow);
+    fields.optional().choice("fit", source.fit, {"contain", "cover", "stretch"});
     TRY(fields.finish());
     if (kinds != 1)
         return node.error(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/config.h"
+#include "core/fit.h"
 #include "core/result.h"
 
 #include <glm/vec2.hpp>
@@ -94,6 +95,7 @@ struct Source {
                  CameraSource, ShadowSource>
         picture;
     ConfigNode at;  // for whoever has to refuse what is in its files
+    Fit fit = Fit::Contain;
 };
 
 // One entry of a show's `sources`. Strict; the files that it names must exist. Error: place, key, advice.

@@ -33,6 +33,8 @@ public:
     }
     void leaves(const std::string& sender, Time when) { merge_.receive({levels(0), sender, 100, when, 2500ms, true}); }
 
+    void claimNothing() { merge_.claimNothing(); }
+
     // The first two slots.
     std::pair<int, int> at(Time now) {
         DmxSlots out;
@@ -106,6 +108,20 @@ TEST(DmxMerge, by_the_other_rule_the_level_that_changed_last_wins) {
     EXPECT_EQ(universe.at(3s), Slots(11, 20));
     universe.sends("a", levels(4, 20), 4s);
     EXPECT_EQ(universe.at(4s), Slots(11, 20)) << "a repeated frame changes nothing";
+}
+
+// The show ends and fades its lamps: those that a desk moved last are the desk's.
+TEST(DmxMerge, by_that_rule_own_levels_that_claim_nothing_take_no_slot_from_a_desk) {
+    Universe universe({.rule = DmxMerge::Rule::Latest});
+    universe.own(10, 20);
+    universe.at(0s);
+    universe.sends("a", levels(5, 0), 1s);
+    EXPECT_EQ(universe.at(1s), Slots(5, 20));
+    universe.claimNothing();
+    universe.own(1, 2);
+    EXPECT_EQ(universe.at(2s), Slots(5, 2));
+    universe.leaves("a", 3s);
+    EXPECT_EQ(universe.at(3s), Slots(1, 2));
 }
 
 TEST(DmxMerge, by_that_rule_a_desk_that_went_leaves_its_slots_to_the_one_before) {

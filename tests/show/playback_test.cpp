@@ -104,13 +104,25 @@ TEST(Playback, go_fades_linearly_to_the_next_look_and_stays_there) {
     EXPECT_EQ(lookOf(playback, 3600s), threeCues().cues[0].look);
 }
 
-// A source on both sides moves from its one opacity to its other. Example failure: it dips, since each look is faded as a whole.
 TEST(Playback, a_cue_fades_until_its_look_is_whole) {
     const Playback playback = after(followingCues(), {go(10s)});
     for (const Time time : {10s, 11s, 13s, 16s}) EXPECT_TRUE(playback.fadesAt(time)) << seconds(time);
     for (const Time time : {9s, 12s, 17s, 18s, 30s}) EXPECT_FALSE(playback.fadesAt(time)) << seconds(time);
 }
 
+TEST(Playback, says_how_long_a_cue_fades_and_when_the_next_one_comes_by_itself) {
+    const Playback playback = after(followingCues(), {go(10s)});
+    EXPECT_EQ(playback.fadeLeftAt(9s), 0s);
+    EXPECT_EQ(playback.fadeLeftAt(10500ms), 1500ms);
+    EXPECT_EQ(playback.fadeLeftAt(14s), 3s) << "the second fades in four";
+    EXPECT_EQ(playback.fadeLeftAt(17500ms), 0s);
+    EXPECT_EQ(playback.untilFollowAt(10500ms), 2500ms);
+    EXPECT_EQ(playback.untilFollowAt(13s), 5s);
+    EXPECT_EQ(playback.untilFollowAt(18s), std::nullopt) << "nothing follows the third";
+    EXPECT_EQ(after(threeCues(), {go(10s)}).untilFollowAt(11s), std::nullopt);
+}
+
+// A source on both sides moves from its one opacity to its other. Example failure: it dips, since each look is faded as a whole.
 TEST(Playback, crossfade_matches_layers_by_their_source) {
     const Playback playback = after(threeCues(), {go(0s), go(10s)});
     EXPECT_THAT(lookOf(playback, 11s).outputs[0].layers, ElementsAre(LayerState{0, 0.875f}, LayerState{1, 0.25f}));

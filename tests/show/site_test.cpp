@@ -1,5 +1,6 @@
 #include "show/site.h"
 
+#include "show/patch.h"
 #include "show/replaced.h"
 
 #include "scratch_folder.h"
@@ -36,8 +37,8 @@ universes:
   - {number: 7, port: {driver: artnet, address: 10.0.0.7}}
 fixtures:
   - {name: sculpture, universe: 1, address: 1, channels: [intensity]}
-  - {name: fountain, universe: 1, address: 510, channels: [red, green, blue]}
-  - {name: lawn, universe: 7, address: 1, channels: [warm, cold]}
+  - {name: fountain, universe: 1, address: 510, channels: [red, green, blue], end: {blue: 0.5}}
+  - {name: lawn, universe: 7, address: 1, channels: [warm, cold], end: 0.25}
 relay_banks: [{name: street, device: {driver: simulated}}, {name: stage, device: {driver: modbus_tcp, host: 10.0.0.8}}]
 relays: [{name: road-north, bank: street, coil: 4, safe: on}, {name: fog, bank: stage, coil: 4, safe: off},
          {name: road-south, bank: street, coil: 0, safe: on}]
@@ -56,6 +57,7 @@ camera:
   look_at: [0, 1, 0]
   k1: -0.05
 simulation: {seed: 3}
+end_fade: 2.5
 )";
 
 // What readSite says of the text, led by the file's name.
@@ -93,6 +95,8 @@ TEST(Site, reads_everything_that_the_file_says) {
     EXPECT_EQ(site->universes[0].desk->merge.settling, std::chrono::seconds(2));
     EXPECT_THAT(site->fixtures[1].channels, ElementsAre("red", "green", "blue"));
     EXPECT_EQ(site->channelCount(), 6u);
+    EXPECT_THAT(endLevels(*site), ElementsAre(0, 0, 0, 0.5, 0.25, 0.25)) << "dark where nothing else is said";
+    EXPECT_EQ(site->endFade, std::chrono::milliseconds(2500));
     EXPECT_EQ(site->relayBanks[1].name, "stage");
     EXPECT_EQ(site->relayBanks[1].device.driver, "modbus_tcp");
     EXPECT_EQ(site->relays[0].bank, 0u);
@@ -151,6 +155,8 @@ TEST(Site, mistakes_are_refused_with_place_and_advice) {
               "site.yaml:11:28: outputs[1].display: 'driver' is missing: the name of the device's driver");
     EXPECT_EQ(refusalAfter("safe: off", "safe: open"),
               "site.yaml:20:103: relays[1].safe: one of off, on is needed, here is 'open'");
+    EXPECT_EQ(refusalAfter("end: {blue: 0.5}", "end: {bleu: 0.5}"),
+              "site.yaml:17:91: fixtures[1].end.bleu: 'fountain' has no channel 'bleu'; it has red, green, blue");
     EXPECT_EQ(refusalAfter(", closes: go", ""),
               "site.yaml:27:5: contacts[0]: 'gate' asks for nothing; say what it does when it 'closes' or 'opens'");
     EXPECT_EQ(refusalAfter("look_at: [0, 1, 0], throw", "look_at: [0, 4, 9], throw"),
