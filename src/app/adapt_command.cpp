@@ -64,8 +64,7 @@ void declare(CLI::App& command, Options& options) {
                     "The silhouette that moves: a folder that 'fantascope deform' wrote, or one with a picture a frame, in the "
                     "order of their names")
         ->required();
-    command
-        .add_option("-o,--output", options.output, "The motion to write, M.cast.yaml; one that was interrupted is gone on with")
+    addOutOption(command, options.output, "The motion to write, M.cast.yaml. An interrupted one is resumed")
         ->required()
         ->check(onlyYaml("M.cast.yaml"));
     command

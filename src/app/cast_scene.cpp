@@ -3,6 +3,7 @@
 #include "theatre/silhouette_sequence.h"
 
 #include "core/image.h"
+#include "core/naming.h"
 
 #include <fmt/format.h>
 
@@ -24,8 +25,9 @@ std::size_t principalOf(const theatre::Cast::Sequence& sequence, std::size_t fra
 Result<theatre::PoseTarget> targetOf(const theatre::Cast& cast, std::optional<std::size_t>& frame, const fs::path& file) {
     if (!cast.sequence) {
         frame = frame.value_or(0);
-        const GreyImage silhouette = TRY(readGrey(cast.target).in(file.string() + ": target"));
-        return theatre::PoseTarget::from(silhouette, cast.stage, cast.height, kMaskRows).in(cast.target.string());
+        const auto silhouette = readGrey(cast.target);
+        if (!silhouette) return namedIn(file, cast.target, silhouette.error());
+        return theatre::PoseTarget::from(*silhouette, cast.stage, cast.height, kMaskRows).in(cast.target.string());
     }
     const theatre::SilhouetteSequence sequence = TRY(theatre::readSequence(cast.sequence->file));
     const auto& [name, representative, first] = *cast.sequence;
@@ -50,10 +52,11 @@ Result<CastScene> readCastScene(const fs::path& file, std::optional<std::size_t>
     theatre::PoseTarget target = TRY(targetOf(cast, frame, file));
     theatre::PoseProblem problem{cast.stage, std::move(target), {}, {}};
     for (const auto& [picture, height, middle] : cast.further) {
-        const GreyImage silhouette = TRY(readGrey(picture).in(file.string() + ": further_targets"));
+        const auto silhouette = readGrey(picture);
+        if (!silhouette) return namedIn(file, picture, silhouette.error());
         const theatre::TargetPlace place{1 + problem.further.size(), middle};
         problem.further.push_back(
-            TRY(theatre::PoseTarget::from(silhouette, cast.stage, height, kMaskRows, place).in(picture.string())));
+            TRY(theatre::PoseTarget::from(*silhouette, cast.stage, height, kMaskRows, place).in(picture.string())));
     }
     std::vector<double> freedoms;
     for (const theatre::Cast::Actor& actor : cast.actors) {

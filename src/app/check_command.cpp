@@ -1,6 +1,9 @@
 #include "app/check_command.h"
 
+#include "app/drawing.h"
+#include "app/programme.h"
 #include "app/silhouette_file.h"
+#include "app/site_file.h"
 
 #include "pattern/elemental_shape.h"
 #include "pattern/pattern_settings.h"
@@ -19,11 +22,15 @@
 #include "core/config.h"
 #include "core/file.h"
 #include "core/image.h"
+#include "core/naming.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deque>
 #include <iostream>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -37,7 +44,8 @@ namespace fs = std::filesystem;
 // What is known of a file that is right.
 struct Finding {
     std::string summary;
-    std::vector<fs::path> names;  // the files that it names
+    std::vector<fs::path> names{};        // the files that it names
+    std::vector<std::string> oddities{};  // what is no fault, but perhaps not what was meant; each with its place
 };
 
 // "1 cue", "6 cues".
@@ -45,29 +53,119 @@ std::string counted(std::size_t count, std::string_view thing) {
     return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
+// "1.78 : 1"
+std::string shape(double aspect) { return fmt::format("{:.2f} : 1", aspect); }
+
+// What becomes of a source's picture on a canvas of another shape.
+std::string fitAdvice(const show::Source& source, double aspect, const show::Output& output) {
+    constexpr std::string_view kWhat[] = {"all of it is seen, with dark beside it (fit: contain)",
+                                          "what hangs over the canvas is cut off (fit: cover)",
+                                          "it is stretched, circles become ellipses (fit: stretch)"};
+    return source.at
+        .error(fmt::format("its picture is {}, and the canvas '{}' is {}: {}", shape(aspect), output.canvas,
+                           shape(output.projection.canvasAspect), kWhat[static_cast<std::size_t>(source.fit)]))
+        .message();
+}
+
+// Of every source and every canvas that it is shown on.
+void noteShapes(const show::Show& show, const show::CueList& cues, const std::vector<std::optional<double>>& aspects,
+                const show::Site& site, std::vector<std::string>& oddities) {
+    std::set<std::pair<std::size_t, std::string>> told;
+    for (const auto& cue : cues.cues)
+        for (std::size_t i = 0; i < site.outputs.size(); ++i)
+            for (const show::LayerState& layer : cue.look.outputs[i].layers) {
+                const show::Output& output = site.outputs[i];
+                const auto aspect = aspects[layer.source];
+                if (!aspect || isSameShape(*aspect, output.projection.canvasAspect)) continue;
+                if (told.insert({layer.source, output.canvas}).second)
+                    oddities.push_back(fitAdvice(show.sources[layer.source], *aspect, output));
+            }
+}
+
+// Shapes that were made as light stand where the drawing is white; as leaves their shadows would show its negative.
+void noteNegatives(const show::Source& source, std::vector<std::string>& oddities) {
+    const auto* foliage = std::get_if<show::FoliageSource>(&source.picture);
+    if (foliage == nullptr) return;
+    for (const show::FoliageSource::Layer& layer : foliage->layers) {
+        const auto pattern = pattern::readPattern(layer.pattern);
+        if (!pattern) continue;  // its own line says why
+        const bool madeForShadows = pattern->guide.filename().string().ends_with(".shadows.png");
+        if (madeForShadows != layer.holes) continue;
+        const std::string file = layer.pattern.filename().string();
+        oddities.push_back(
+            source.at
+                .error(layer.holes
+                           ? fmt::format("the holes of {} stand where the drawing is dark, so that its negative is seen; make "
+                                         "them without --shadows: 'fantascope pattern GUIDE -o {}'",
+                                         file, file)
+                           : fmt::format("the leaves of {} stand where the drawing is white, so that its negative is seen; make "
+                                         "them with 'fantascope pattern GUIDE -o {} --shadows'",
+                                         file, file))
+                .message());
+    }
+}
+
+Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>& site);
+
 Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>& site) {
     const show::Show show = TRY(show::Show::load(path));
     Finding finding{fmt::format("show, {}, {}, {}", counted(show.cues.size(), "cue"), counted(show.looks.size(), "look"),
-                                counted(show.sources.size(), "source")),
-                    {}};
+                                counted(show.sources.size(), "source"))};
+    ConfigFaults faults;
+    show::CueList cues;
+    if (site) faults.take(show.bind(*site), [&](show::CueList bound) { cues = std::move(bound); });
+    std::shared_ptr<render::PictureFeed> camera;
+    if (site && site->nominalCamera) camera = std::make_shared<render::PictureFeed>(site->nominalCamera->size);
+    std::vector<std::optional<double>> aspects;
+    for (const show::Source& source : show.sources) {
+        noteNegatives(source, finding.oddities);
+        const std::vector<fs::path> files = show::filesOf(source);
+        finding.names.insert(finding.names.end(), files.begin(), files.end());
+        aspects.emplace_back();
+        if (std::holds_alternative<show::CameraSource>(source.picture) && !camera) {
+            if (site) faults.add(source.at.error(fmt::format("{} has no camera", site->file.string())));
+            continue;
+        }
+        const auto read = readPictureSource(source, render::VideoStream::Pace::Exact, camera);
+        if (read)
+            aspects.back() = render::aspectOf(*read);
+        else if (std::all_of(files.begin(), files.end(), [&](const fs::path& file) { return checkFile(file, site).has_value(); }))
+            faults.add(read.error());  // each file is right, and they do not go together
+    }
+    TRY(faults.result());
     if (site) {
-        TRY(show.bind(*site));
-        for (const show::Source& source : show.sources)
-            if (std::holds_alternative<show::CameraSource>(source.picture) && !site->camera)
-                return source.at.error(fmt::format("{} has no camera", site->file.string()));
+        noteShapes(show, cues, aspects, *site, finding.oddities);
         finding.summary += fmt::format(", plays on {}", site->file.string());
     }
-    for (const show::Source& source : show.sources)
-        for (const fs::path& file : show::filesOf(source)) finding.names.push_back(file);
     return finding;
 }
 
+// A site of simulated devices is rehearsed, one of real ones is run; of a mixture `run` refuses the simulated ones.
+void noteSimulated(const show::Site& site, std::vector<std::string>& oddities) {
+    std::vector<const show::DeviceConfig*> devices;
+    for (const show::Universe& universe : site.universes) {
+        devices.push_back(&universe.port);
+        if (universe.desk) devices.push_back(&universe.desk->device);
+    }
+    for (const auto* banks : {&site.relayBanks, &site.contactBanks})
+        for (const show::Bank& bank : *banks) devices.push_back(&bank.device);
+    for (const auto* device : {&site.cueController, &site.camera})
+        if (*device) devices.push_back(&**device);
+    const auto isReal = [](const show::DeviceConfig* device) { return device->driver != "simulated"; };
+    if (std::none_of(devices.begin(), devices.end(), isReal)) return;
+    for (const show::DeviceConfig* device : devices)
+        if (!isReal(device))
+            oddities.push_back(
+                device->options.error("is simulated beside real devices: it can be rehearsed, and 'run' refuses it").message());
+}
+
 Result<Finding> checkSite(const fs::path& path, const std::optional<show::Site>&) {
-    const show::Site site = TRY(show::readSite(path));
-    return Finding{
-        fmt::format("site, {}, {}, {}{}", counted(site.outputs.size(), "output"), counted(site.fixtures.size(), "fixture"),
-                    counted(site.relays.size(), "relay"), site.camera ? ", camera" : ""),
-        {}};
+    const show::Site site = TRY(readSite(path));
+    Finding finding{fmt::format("site, {}, {}, {}{}", counted(site.outputs.size(), "output"),
+                                counted(site.fixtures.size(), "fixture"), counted(site.relays.size(), "relay"),
+                                site.camera ? ", camera" : "")};
+    noteSimulated(site, finding.oddities);
+    return finding;
 }
 
 Result<Finding> checkPattern(const fs::path& path, const std::optional<show::Site>&) {
@@ -163,7 +261,11 @@ Result<Finding> checkWeights(const fs::path& path, const std::optional<show::Sit
 
 Result<Finding> checkGuide(const fs::path& path) {
     const GreyImage guide = TRY(readGrey(path));
-    return Finding{fmt::format("guide, {} x {} px", guide.width(), guide.height()), {}};
+    Finding finding{fmt::format("guide, {} x {} px", guide.width(), guide.height())};
+    if (isInkOnPaper(guide))
+        finding.oddities.push_back(
+            fmt::format("{}: looks like dark ink on white paper; as a guide or silhouette it needs --invert", path.string()));
+    return finding;
 }
 
 Result<Finding> checkVideo(const fs::path& path) {
@@ -208,6 +310,15 @@ Result<Finding> checkYaml(const fs::path& path, const std::optional<show::Site>&
     return root.error(fmt::format("'fantascope' is missing: the kind of file, one of {}", fmt::join(names, ", ")));
 }
 
+// The file that a folder stands for, or the file itself.
+fs::path fileOf(const fs::path& path) {
+    std::error_code ignored;
+    if (!fs::is_directory(path, ignored)) return path;
+    for (const char* name : {"sequence.yaml", "site.yaml"})
+        if (fs::exists(path / name, ignored)) return path / name;
+    return path / "show.yaml";
+}
+
 Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>& site) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) {
@@ -242,20 +353,29 @@ Result<void> checkFiles(const CheckOptions& options, std::ostream& out) {
     std::optional<show::Site> site;
     if (options.site) {
         waiting.push_front(*options.site);
-        const fs::path file = fs::is_directory(*options.site) ? fs::path(*options.site) / "site.yaml" : fs::path(*options.site);
-        if (auto read = show::readSite(file)) site = std::move(read).value();  // what is wrong with it is said in its turn
+        if (auto read = readSite(*options.site)) site = std::move(read).value();  // what is wrong with it is said in its turn
     }
     std::set<fs::path> seen;
+    std::map<fs::path, fs::path> namedBy;
     std::size_t refused = 0;
     for (; !waiting.empty(); waiting.pop_front()) {
         const fs::path path = waiting.front();
         if (!seen.insert(path.lexically_normal()).second) continue;
-        if (const auto finding = checkFile(path, site)) {
-            out << fmt::format("ok {}: {}\n", path.string(), finding->summary);
-            waiting.insert(waiting.end(), finding->names.begin(), finding->names.end());
-        } else {
-            out << finding.error().message() << "\n";
+        const auto finding = checkFile(path, site);
+        if (!finding) {
+            const auto by = namedBy.find(path);
+            out << printableLines((by == namedBy.end() ? finding.error() : namedIn(by->second, path, finding.error())).message())
+                << "\n";
             ++refused;
+            continue;
+        }
+        out << printableLines(fmt::format("ok {}: {}\n", path.string(), finding->summary));
+        const bool isGiven = !namedBy.contains(path);  // what a show names may be dark on white for good reason
+        for (const std::string& oddity : isGiven ? finding->oddities : std::vector<std::string>())
+            out << printableLines("   note: " + oddity) << "\n";
+        for (const fs::path& name : finding->names) {
+            waiting.push_back(name);
+            namedBy.try_emplace(name, fileOf(path));
         }
     }
     if (refused > 0) return Error(fmt::format("{} of {} refused", refused, counted(seen.size(), "file")));

@@ -7,6 +7,8 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace fantascope::app {
 
@@ -27,6 +29,37 @@ void addCommand(CLI::App& program, Action& action, const std::string& name, cons
     auto options = std::make_shared<Options>();
     declare(*command, *options);
     command->callback([options, run, &action] { action = [options, run] { return run(*options); }; });
+}
+
+// An option whose value is one of some names, in the order in which --help lists them.
+template <class Value, class Field>
+CLI::Option* addChoice(CLI::App& command, const std::string& name, Field& field,
+                       const std::vector<std::pair<std::string, Value>>& choices, const std::string& description) {
+    std::vector<std::string> names;
+    for (const auto& choice : choices) names.push_back(choice.first);
+    const std::string all = "{" + CLI::detail::join(names) + "}";
+    const auto valueOf = [choices, all](std::string& given) {
+        for (const auto& [choice, value] : choices)
+            if (choice == given) {
+                given = std::to_string(static_cast<int>(value));  // as the option reads an enumeration
+                return std::string();
+            }
+        return "'" + given + "' is none of " + all;
+    };
+    return command.add_option(name, field, description)->transform(CLI::Validator(valueOf, ""))->type_name(all);
+}
+
+// `--output NAME`: the projector that is meant, by its name in the site. It refuses what is a file's name.
+CLI::Option* addProjectorOption(CLI::App& command, std::string& projector, const std::string& description);
+
+// Lets a command that knows no projector tell whoever writes `--output FILE` what was meant.
+void refuseProjectorOption(CLI::App& command);
+
+// `-o, --out`: the file or folder that a command writes. After addProjectorOption, where the command has that.
+template <class File>
+CLI::Option* addOutOption(CLI::App& command, File& file, const std::string& description) {
+    if (command.get_option_no_throw("--output") == nullptr) refuseProjectorOption(command);
+    return command.add_option("-o,--out", file, description);
 }
 
 }  // namespace fantascope::app

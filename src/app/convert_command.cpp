@@ -25,11 +25,10 @@ struct Options {
 
 void declare(CLI::App& command, Options& options) {
     command.add_option("CAST", options.cast, "The poses or their motion, *.cast.yaml")->required();
-    command
-        .add_option(
-            "-o,--output", options.output,
-            "What to write: .glb or .gltf (all actors with their skins, props, light and screen) or .bvh (one actor's skeleton "
-            "and motion)")
+    addOutOption(
+        command, options.output,
+        "What to write: .glb or .gltf (all actors with their skins, props, light and screen) or .bvh (one actor's skeleton "
+        "and motion)")
         ->required()
         ->check(CLI::Validator(
             [](const std::string& file) {

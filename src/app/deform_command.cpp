@@ -47,6 +47,7 @@ struct Options {
     std::optional<double> frameRate;
     std::optional<int> frames;
     int vertices = TriangulatedSilhouette::kVertices;
+    bool invert = false;
     std::optional<fs::path> sheet, video, report;
 };
 
@@ -54,11 +55,11 @@ void declare(CLI::App& command, Options& options) {
     command.add_option("SILHOUETTE", options.silhouette, "What is to move, white on black: PNG or JPEG")->required();
     command.add_option("--motion", options.motion, "Its handles and how they move, *.motion.yaml (docs/motion-format.md)")
         ->required();
-    command
-        .add_option("-o,--output", options.output,
-                    "The folder to write: a picture a frame, and sequence.yaml (docs/sequence-format.md); a sequence that is "
-                    "there already is replaced")
+    addOutOption(command, options.output,
+                 "The folder to write: a picture a frame, and sequence.yaml (docs/sequence-format.md). A sequence that is "
+                 "there already is replaced")
         ->required();
+    command.add_flag("--invert", options.invert, "The silhouette is black ink on white paper");
     command.add_option("--fps", options.frameRate, "Frames a second (default: the motion's)")
         ->check(CLI::Range(HandleMotion::kLeastFramesPerSecond, HandleMotion::kMostFramesPerSecond));
     command
@@ -364,7 +365,7 @@ Result<void> run(const Options& options) {
     const SteadyClock clock;
     const Time start = clock.now();
     TRY(checkOutputs(options));
-    const GreyImage picture = TRY(readSilhouette(options.silhouette));
+    const GreyImage picture = TRY(readDrawnSilhouette(options.silhouette, options.invert));
     TriangulatedSilhouette silhouette =
         TRY(TriangulatedSilhouette::of(picture, options.vertices).in(options.silhouette.string()));
     HandleMotion motion = TRY(theatre::readMotion(options.motion, silhouette));

@@ -23,6 +23,14 @@ std::string shown(const std::vector<bool>& states) {
     return text;
 }
 
+// "sculpture intensity (slot 1)", "slot 1". People count slots from 1, and coils and inputs from 0 as the site file does.
+std::string called(const DeviceTrial::Names& names, std::size_t place, std::string_view kind, std::size_t number) {
+    const std::string plain = fmt::format("{} {}", kind, number);
+    const auto found = names.find(place);
+    return found == names.end() ? plain : fmt::format("{} ({})", found->second, plain);
+}
+std::string slotCalled(const DeviceTrial::Names& names, std::size_t slot) { return called(names, slot, "slot", slot + 1); }
+
 // The mean of a picture's stored values, 0..1.
 double brightnessOf(const RgbaImage& image) {
     double sum = 0;
@@ -53,14 +61,14 @@ Result<void> DeviceTrial::every(Time period, const Device& device, const std::fu
     return {};
 }
 
-Result<void> DeviceTrial::chase(DmxPort& port, const std::vector<std::size_t>& slots) {
+Result<void> DeviceTrial::chase(DmxPort& port, const std::vector<std::size_t>& slots, const Names& names) {
     std::array<std::uint8_t, kDmxSlots> frame{};
     std::size_t next = 0;
     const auto tried = every(kToBeSeen, port, [&]() -> Result<void> {
         const std::size_t slot = slots[next++ % slots.size()];
         frame.fill(0);
         frame[slot] = 255;
-        out_ << fmt::format("slot {} is at full", slot + 1) << std::endl;
+        out_ << fmt::format("{} is at full", slotCalled(names, slot)) << std::endl;
         (void)port.send(frame);  // lost in this moment: the next round tells
         return {};
     });
@@ -69,11 +77,14 @@ Result<void> DeviceTrial::chase(DmxPort& port, const std::vector<std::size_t>& s
     return tried;
 }
 
-Result<void> DeviceTrial::click(RelayBank& bank, const std::vector<bool>& safeStates) {
+Result<void> DeviceTrial::click(RelayBank& bank, const std::vector<bool>& safeStates, const Names& names) {
+    std::vector<std::size_t> relays;
+    for (std::size_t coil = 0; coil < safeStates.size(); ++coil)
+        if (names.empty() || names.contains(coil)) relays.push_back(coil);
     std::size_t next = 0;
     const auto tried = every(kToBeSeen, bank, [&]() -> Result<void> {
         std::vector<bool> states = safeStates;
-        const std::size_t relay = next / 2 % states.size();
+        const std::size_t relay = relays[next / 2 % relays.size()];
         if (next++ % 2 == 0) states[relay] = !states[relay];
         if (const auto written = bank.write(states); !written) {
             out_ << written.error().message() << std::endl;
@@ -81,34 +92,43 @@ Result<void> DeviceTrial::click(RelayBank& bank, const std::vector<bool>& safeSt
         }
         const auto read = bank.read();
         if (!read) return {};
-        out_ << fmt::format("coil {} is {}; the bank says{}", relay, states[relay] ? "on" : "off", shown(*read)) << std::endl;
-        if (*read != states)
-            return Error(fmt::format("{} was told{} and says{}", bank.status().name, shown(states), shown(*read)));
-        return {};
+        out_ << fmt::format("{} is {}; the bank says{}", called(names, relay, "coil", relay), states[relay] ? "on" : "off",
+                            shown(*read))
+             << std::endl;
+        if (*read == states) return {};
+        std::string wrong;
+        for (const std::size_t coil : relays)
+            if ((*read)[coil] != states[coil]) wrong += (wrong.empty() ? ": look at " : ", ") + called(names, coil, "coil", coil);
+        return Error(fmt::format("{} was told{} and says{}{}", bank.status().name, shown(states), shown(*read),
+                                 names.empty() ? "" : wrong));
     });
     (void)bank.write(safeStates);
     return tried;
 }
 
-Result<void> DeviceTrial::tellPresses(CueController& controller) {
+Result<void> DeviceTrial::tellPresses(CueController& controller, const Names& names) {
     return every(kAtOnce, controller, [&]() -> Result<void> {
         while (const auto event = controller.poll())
-            out_ << fmt::format("button {} {}", event->button, event->pressed ? "down" : "up") << std::endl;
-        return {};
-    });
-}
-
-Result<void> DeviceTrial::tellContacts(InputBank& bank) {
-    return every(kAtOnce, bank, [&]() -> Result<void> {
-        while (const auto change = bank.poll())
-            out_ << fmt::format("input {} {}{}", change->contact, change->closed ? "closed" : "open",
-                                change->witnessed ? "" : ", as it was found")
+            out_ << fmt::format(
+                        "{} {}",
+                        called(names, static_cast<std::size_t>(event->button), "button", static_cast<std::size_t>(event->button)),
+                        event->pressed ? "down" : "up")
                  << std::endl;
         return {};
     });
 }
 
-Result<void> DeviceTrial::tellDesk(DmxSource& source) {
+Result<void> DeviceTrial::tellContacts(InputBank& bank, const Names& names) {
+    return every(kAtOnce, bank, [&]() -> Result<void> {
+        while (const auto change = bank.poll())
+            out_ << fmt::format("{} {}{}", called(names, change->contact, "input", change->contact),
+                                change->closed ? "closed" : "open", change->witnessed ? "" : ", as it was found")
+                 << std::endl;
+        return {};
+    });
+}
+
+Result<void> DeviceTrial::tellDesk(DmxSource& source, const Names& names) {
     std::map<std::string, DmxInput> last;
     return every(kAtOnce, source, [&]() -> Result<void> {
         while (const auto frame = source.receive()) {
@@ -116,7 +136,8 @@ Result<void> DeviceTrial::tellDesk(DmxSource& source) {
             if (isNew) out_ << fmt::format("'{}' sends with priority {}", frame->source, frame->priority) << std::endl;
             for (std::size_t slot = 0; slot < kDmxSlots; ++slot)
                 if (isNew ? frame->slots[slot] != 0 : frame->slots[slot] != known->second.slots[slot])
-                    out_ << fmt::format("'{}': slot {} is {}", frame->source, slot + 1, frame->slots[slot]) << std::endl;
+                    out_ << fmt::format("'{}': {} is {}", frame->source, slotCalled(names, slot), frame->slots[slot])
+                         << std::endl;
             known->second = *frame;
         }
         return {};

@@ -14,7 +14,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <ostream>
+#include <string>
 #include <vector>
 
 namespace fantascope::app {
@@ -24,19 +26,23 @@ namespace fantascope::app {
 // told to do. Thread: the one that the port is bound to.
 class DeviceTrial {
 public:
+    // What the site calls a slot, a coil, a button or an input; what it does not name goes by its number.
+    using Names = std::map<std::size_t, std::string>;
+
     // All outlive it. It ends after `length`, or when interrupted. `out` is told what is to be seen, a line each.
     DeviceTrial(Clock& clock, Time length, const Interrupt* interrupt, std::ostream& out)
         : clock_(clock), end_(clock.now() + length), interrupt_(interrupt), out_(out) {}
 
     // Lights one of these slots (0 .. 511) after the other, the others dark, over and over; dark at the end.
-    Result<void> chase(DmxPort& port, const std::vector<std::size_t>& slots);
+    Result<void> chase(DmxPort& port, const std::vector<std::size_t>& slots, const Names& names = {});
     // Switches each relay to its unsafe state and back, one after the other, and asks the bank each time what it did; safe at the end.
-    Result<void> click(RelayBank& bank, const std::vector<bool>& safeStates);
+    // With names only the relays that have one.
+    Result<void> click(RelayBank& bank, const std::vector<bool>& safeStates, const Names& names = {});
     // Tells of every button that goes down or up, and of every contact.
-    Result<void> tellPresses(CueController& controller);
-    Result<void> tellContacts(InputBank& bank);
+    Result<void> tellPresses(CueController& controller, const Names& names = {});
+    Result<void> tellContacts(InputBank& bank, const Names& names = {});
     // Tells who sends, and which slots change.
-    Result<void> tellDesk(DmxSource& source);
+    Result<void> tellDesk(DmxSource& source, const Names& names = {});
     // Leaves the first picture in a PNG file and tells its size, brightness and how many come a second.
     Result<void> snapshot(CameraSource& camera, const std::filesystem::path& file);
 

@@ -28,38 +28,65 @@ Result<ConfigNode> displayOptions(const show::DeviceConfig& declared, Backends b
 }  // namespace
 
 Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::Surroundings& around) {
-    Devices devices;
+    // All are read before the first opens, so that what is wrong with any is told at once and nothing has lit up.
+    ConfigFaults faults;
+    const auto read = [&](auto opening, const ConfigNode& options, auto& all) {
+        faults.take(std::move(opening), [&](auto good) {
+            if (good.simulated && around.world == nullptr)
+                faults.add(
+                    options.error("driver 'simulated' needs a simulated site and here is none; rehearse, or name a real driver"));
+            all.push_back(std::move(good));
+        });
+    };
+    std::vector<drivers::Opening<DisplaySink>> displays;
     for (const show::Output& output : site.outputs) {
         const ConfigNode options = TRY(displayOptions(output.display, backends));
-        devices.displays.push_back(TRY(drivers::openDisplay(options, {output.name, output.size(), output.refreshRate}, around)));
+        read(drivers::readDisplay(options, {output.name, output.size(), output.refreshRate}), options, displays);
     }
+    std::vector<drivers::Opening<DmxPort>> ports;
+    std::vector<drivers::Opening<DmxSource>> desks;
     for (const show::Universe& universe : site.universes) {
         const ConfigNode options = TRY(optionsOf(universe.port, backends));
-        Devices::Line line{universe.number, TRY(drivers::openDmxPort(options, universe.number, around)), nullptr};
-        if (universe.desk) {
-            const ConfigNode desk = TRY(optionsOf(universe.desk->device, backends));
-            line.desk = TRY(drivers::openDmxSource(desk, universe.number, around));
-        }
-        devices.lines.push_back(std::move(line));
+        read(drivers::readDmxPort(options, universe.number), options, ports);
+        if (!universe.desk) continue;
+        const ConfigNode desk = TRY(optionsOf(universe.desk->device, backends));
+        read(drivers::readDmxSource(desk, universe.number), desk, desks);
     }
+    std::vector<drivers::Opening<RelayBank>> relayBanks;
     for (std::size_t bank = 0; bank < site.relayBanks.size(); ++bank) {
         const ConfigNode options = TRY(optionsOf(site.relayBanks[bank].device, backends));
-        devices.relayBanks.push_back(
-            TRY(drivers::openRelayBank(options, site.relayBanks[bank].name, show::safeCoils(site, bank), around)));
+        read(drivers::readRelayBank(options, site.relayBanks[bank].name, show::safeCoils(site, bank)), options, relayBanks);
     }
+    std::vector<drivers::Opening<CueController>> controllers;
     if (site.cueController) {
         const ConfigNode options = TRY(optionsOf(*site.cueController, backends));
-        devices.cueController = TRY(drivers::openCueController(options, around));
+        read(drivers::readCueController(options), options, controllers);
     }
+    std::vector<drivers::Opening<InputBank>> contactBanks;
     for (std::size_t bank = 0; bank < site.contactBanks.size(); ++bank) {
         const ConfigNode options = TRY(optionsOf(site.contactBanks[bank].device, backends));
-        devices.contactBanks.push_back(
-            TRY(drivers::openInputBank(options, site.contactBanks[bank].name, site.inputCount(bank), around)));
+        read(drivers::readInputBank(options, site.contactBanks[bank].name, site.inputCount(bank)), options, contactBanks);
     }
+    std::vector<drivers::Opening<CameraSource>> cameras;
     if (site.camera) {
         const ConfigNode options = TRY(optionsOf(*site.camera, backends));
-        devices.camera = TRY(drivers::openCamera(options, around));
+        read(drivers::readCamera(options), options, cameras);
     }
+    TRY(faults.result());
+
+    Devices devices;
+    for (const auto& display : displays) devices.displays.push_back(TRY(display.open(around)));
+    auto desk = desks.begin();
+    for (std::size_t i = 0; i < site.universes.size(); ++i) {
+        auto port = TRY(ports[i].open(around));
+        Devices::Line line{site.universes[i].number, std::move(port), nullptr};
+        if (site.universes[i].desk) line.desk = TRY((desk++)->open(around));
+        devices.lines.push_back(std::move(line));
+    }
+    for (const auto& bank : relayBanks) devices.relayBanks.push_back(TRY(bank.open(around)));
+    for (const auto& controller : controllers) devices.cueController = TRY(controller.open(around));
+    for (const auto& bank : contactBanks) devices.contactBanks.push_back(TRY(bank.open(around)));
+    for (const auto& camera : cameras) devices.camera = TRY(camera.open(around));
     return devices;
 }
 

@@ -3,12 +3,17 @@
 #include "app/device_trial.h"
 #include "app/devices.h"
 #include "app/interrupt.h"
+#include "app/site_claims.h"
+#include "app/site_file.h"
 #include "drivers/registry.h"
 
 #include "show/patch.h"
 #include "show/site.h"
 
+#include "core/text.h"
+
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <iostream>
@@ -25,6 +30,7 @@ struct Options {
     std::filesystem::path site, picture = "camera.png";
     bool watch = false;
     std::string test;
+    bool yes = false;
     std::optional<double> length;  // seconds
 };
 
@@ -37,13 +43,13 @@ std::string lineOf(const drivers::FoundDevice& device) {
         if (!part.empty()) line += ", " + part;
     if (!device.why.empty()) line += fmt::format("\n{:15} cannot be used: {}", "", device.why);
     if (!device.options.empty()) line += fmt::format("\n{:15} {}", "", device.options);
-    return line;
+    return printableLines(line);  // devices choose their names
 }
 
 std::string lineOf(const DeviceStatus& status) {
     std::string line = fmt::format("{:15} {}, {}", status.name, status.driver, nameOf(status.state));
     if (!status.detail.empty()) line += ": " + status.detail;
-    return line;
+    return printableLines(line);
 }
 
 // The outputs' projectors, by their identity.
@@ -54,11 +60,77 @@ Result<std::vector<DeviceStatus>> projectorsOf(const show::Site& site) {
     return drivers::lookForDisplays(questions);
 }
 
-// Everything of a site but its outputs: those would cover the screen that this is read on.
-Result<Devices> openAllButOutputs(show::Site site, Clock& clock) {
-    site.outputs.clear();
-    return openDevices(site, Backends::AsDeclared, {clock});
+// Takes the banks of these names, and what hangs on them, out of a site.
+template <class Member>
+void removeBanks(std::vector<show::Bank>& banks, std::vector<Member>& members, const std::set<std::string>& names) {
+    for (std::size_t bank = banks.size(); bank-- > 0;) {
+        if (!names.contains(banks[bank].name)) continue;
+        banks.erase(banks.begin() + static_cast<std::ptrdiff_t>(bank));
+        std::erase_if(members, [&](const Member& member) { return member.bank == bank; });
+        for (Member& member : members)
+            if (member.bank > bank) --member.bank;
+    }
 }
+
+// The site without those of its devices, and without its outputs: they would cover the screen that this is read on.
+show::Site without(const std::set<std::string>& names, show::Site site) {
+    site.outputs.clear();
+    std::erase_if(site.universes, [&](show::Universe& universe) {
+        if (names.contains(fmt::format("desk {}", universe.number))) universe.desk.reset();
+        return names.contains(fmt::format("universe {}", universe.number));
+    });
+    removeBanks(site.relayBanks, site.relays, names);
+    removeBanks(site.contactBanks, site.contacts, names);
+    if (names.contains("cue controller")) site.cueController.reset();
+    if (names.contains("camera")) site.camera.reset();
+    return site;
+}
+
+// The devices of a site as they are looked at: what another program has is not touched, the rest is opened and never written to.
+class Look {
+public:
+    Look(show::Site site, std::vector<DeclaredDevice> declared, Clock& clock)
+        : site_(std::move(site)), declared_(std::move(declared)), clock_(clock) {}
+    // Opens what has become free, gives back what another program has claimed.
+    Result<void> refresh() {
+        std::set<std::string> held;
+        for (const DeclaredDevice& device : declared_)
+            if (isClaimed(site_, device)) held.insert(device.name);
+        if (opened_ && held == held_) return {};
+        held_ = std::move(held);
+        devices_ = {};
+        devices_ = TRY(openDevices(without(held_, site_), Backends::AsDeclared, {clock_}));
+        lines_.clear();
+        for (const DeclaredDevice& device : declared_)
+            if (held_.contains(device.name))
+                if (const auto holder = holderOf(site_, device))
+                    lines_[device.name] = fmt::format("{:15} {}, in use by {}", device.name, device.driver, holder->words());
+        opened_ = true;
+        return {};
+    }
+    const Devices& devices() const { return devices_; }
+    // A line for each device, by its name.
+    std::map<std::string, std::string> lines() const {
+        std::map<std::string, std::string> lines = lines_;
+        for (const DeviceStatus& status : devices_.statuses()) lines[status.name] = lineOf(status);
+        return lines;
+    }
+    // In the site's order.
+    std::vector<std::string> names() const {
+        std::vector<std::string> names;
+        for (const DeclaredDevice& device : declared_) names.push_back(device.name);
+        return names;
+    }
+
+private:
+    const show::Site site_;
+    const std::vector<DeclaredDevice> declared_;
+    Clock& clock_;
+    bool opened_ = false;
+    std::set<std::string> held_;
+    Devices devices_;
+    std::map<std::string, std::string> lines_;  // of what another program has
+};
 
 // Until every device has been looked for once.
 void waitForFirstLook(const Devices& devices, Clock& clock, const Interrupt& interrupt) {
@@ -80,10 +152,12 @@ Result<void> list(const std::optional<show::Site>& site) {
         fmt::print("no device was found: nothing on USB, no serial line, no camera, no monitor, no node on the network\n");
     if (!site) return {};
     fmt::print("\n{}:\n", site->file.string());
-    const Devices devices = TRY(openAllButOutputs(*site, clock));
-    waitForFirstLook(devices, clock, interrupt);
+    Look look(*site, TRY(declaredDevices(*site)), clock);
+    TRY(look.refresh());
+    waitForFirstLook(look.devices(), clock, interrupt);
     for (const DeviceStatus& status : TRY(projectorsOf(*site))) fmt::print("{}\n", lineOf(status));
-    for (const DeviceStatus& status : devices.statuses()) fmt::print("{}\n", lineOf(status));
+    auto lines = look.lines();
+    for (const std::string& name : look.names()) fmt::print("{}\n", lines[name]);
     return {};
 }
 
@@ -91,8 +165,8 @@ Result<void> list(const std::optional<show::Site>& site) {
 Result<void> watch(const std::optional<show::Site>& site, Time length) {
     SteadyClock clock;
     const Interrupt interrupt;
-    Devices devices;
-    if (site) devices = TRY(openAllButOutputs(*site, clock));
+    std::optional<Look> look;
+    if (site) look.emplace(*site, TRY(declaredDevices(*site)), clock);
     std::set<std::string> there;
     std::map<std::string, std::string> said;
     fmt::print("what comes and goes; Ctrl-C ends\n");
@@ -105,29 +179,70 @@ Result<void> watch(const std::optional<show::Site>& site, Time length) {
         for (const std::string& line : there)
             if (!now.contains(line)) fmt::print("- {}\n", line.substr(0, line.find('\n')));
         there = std::move(now);
-        std::vector<DeviceStatus> statuses = devices.statuses();
-        if (site)
-            for (DeviceStatus& status : TRY(projectorsOf(*site))) statuses.push_back(std::move(status));
-        for (const DeviceStatus& status : statuses)
-            if (std::string line = lineOf(status); said[status.name] != line)
-                fmt::print("  {}\n", said[status.name] = std::move(line));
+        std::map<std::string, std::string> lines;
+        if (site) {
+            TRY(look->refresh());
+            lines = look->lines();
+            for (const DeviceStatus& status : TRY(projectorsOf(*site))) lines[status.name] = lineOf(status);
+        }
+        for (auto& [name, line] : lines)
+            if (said[name] != line) fmt::print("  {}\n", said[name] = std::move(line));
         std::fflush(stdout);
     }
     return {};
 }
 
-std::vector<std::size_t> slotsOf(const show::Site& site, int universe) {
-    std::vector<std::size_t> slots;
+// "sculpture intensity" for each slot that has a fixture.
+DeviceTrial::Names slotNames(const show::Site& site, int universe) {
+    DeviceTrial::Names names;
     for (const show::Fixture& fixture : site.fixtures)
         for (std::size_t channel = 0; channel < fixture.channels.size(); ++channel)
-            if (fixture.universe == universe) slots.push_back(static_cast<std::size_t>(fixture.address) - 1 + channel);
-    return slots;
+            if (fixture.universe == universe)
+                names[static_cast<std::size_t>(fixture.address) - 1 + channel] = fixture.name + " " + fixture.channels[channel];
+    return names;
+}
+
+DeviceTrial::Names relayNames(const show::Site& site, std::size_t bank) {
+    DeviceTrial::Names names;
+    for (const show::Relay& relay : site.relays)
+        if (relay.bank == bank) names[static_cast<std::size_t>(relay.coil)] = relay.name;
+    return names;
+}
+
+DeviceTrial::Names contactNames(const show::Site& site, std::size_t bank) {
+    DeviceTrial::Names names;
+    for (const show::Contact& contact : site.contacts)
+        if (contact.bank == bank) names[static_cast<std::size_t>(contact.input)] = contact.name;
+    return names;
+}
+
+DeviceTrial::Names buttonNames(const show::Site& site) {
+    DeviceTrial::Names names;
+    for (const auto& [number, button] : site.buttons) names[static_cast<std::size_t>(number)] = show::nameOf(button);
+    return names;
 }
 
 std::vector<std::size_t> firstSlots() {
     std::vector<std::size_t> slots(kSlotsWithoutFixtures);
     std::iota(slots.begin(), slots.end(), std::size_t{0});
     return slots;
+}
+
+// What is tried is this program's alone, or the test would fight with a show. Error: another program has it.
+Result<std::optional<drivers::Claim>> claimForTest(const std::string& name, const std::string& claim) {
+    if (claim.empty()) return std::optional<drivers::Claim>();
+    auto taken = drivers::Claim::take(claim);
+    if (taken) return taken;
+    const auto holder = drivers::holderOf(claim);
+    return inUse(name, holder.value_or(drivers::ClaimHolder()));
+}
+Result<std::optional<drivers::Claim>> claimForTest(const std::string& name, const show::Site& site) {
+    for (const DeclaredDevice& device : TRY(declaredDevices(site))) {
+        if (device.name != name) continue;
+        if (const auto holder = holderOf(site, device)) return inUse(name, *holder);
+        return claimForTest(name, device.claim());
+    }
+    return std::optional<drivers::Claim>();
 }
 
 // A device of the site, by the name that its status has.
@@ -141,22 +256,26 @@ Result<void> testDeclared(const Options& options, const show::Site& site, Device
     for (const show::Universe& universe : site.universes)
         if (isIt(fmt::format("universe {}", universe.number))) {
             const auto port = TRY(drivers::openDmxPort(universe.port.options, universe.number, around));
-            const auto slots = slotsOf(site, universe.number);
-            return trial.chase(*port, slots.empty() ? firstSlots() : slots);
+            const auto names = slotNames(site, universe.number);
+            std::vector<std::size_t> slots;
+            for (const auto& [slot, name] : names) slots.push_back(slot);
+            return trial.chase(*port, slots.empty() ? firstSlots() : slots, names);
         }
     for (const show::Universe& universe : site.universes)
         if (universe.desk && isIt(fmt::format("desk {}", universe.number)))
-            return trial.tellDesk(*TRY(drivers::openDmxSource(universe.desk->device.options, universe.number, around)));
+            return trial.tellDesk(*TRY(drivers::openDmxSource(universe.desk->device.options, universe.number, around)),
+                                  slotNames(site, universe.number));
     for (std::size_t bank = 0; bank < site.relayBanks.size(); ++bank)
         if (const auto& [name, device] = site.relayBanks[bank]; isIt(name)) {
             const auto safe = show::safeCoils(site, bank);
-            return trial.click(*TRY(drivers::openRelayBank(device.options, name, safe, around)), safe);
+            return trial.click(*TRY(drivers::openRelayBank(device.options, name, safe, around)), safe, relayNames(site, bank));
         }
     if (site.cueController && isIt("cue controller"))
-        return trial.tellPresses(*TRY(drivers::openCueController(site.cueController->options, around)));
+        return trial.tellPresses(*TRY(drivers::openCueController(site.cueController->options, around)), buttonNames(site));
     for (std::size_t bank = 0; bank < site.contactBanks.size(); ++bank)
         if (const auto& [name, device] = site.contactBanks[bank]; isIt(name))
-            return trial.tellContacts(*TRY(drivers::openInputBank(device.options, name, site.inputCount(bank), around)));
+            return trial.tellContacts(*TRY(drivers::openInputBank(device.options, name, site.inputCount(bank), around)),
+                                      contactNames(site, bank));
     if (site.camera && isIt("camera"))
         return trial.snapshot(*TRY(drivers::openCamera(site.camera->options, around)), options.picture);
     for (const show::Output& output : site.outputs)
@@ -179,22 +298,49 @@ Result<void> testFound(const Options& options, DeviceTrial& trial, Clock& clock)
         if (!names(device.where) && !names(device.identity) && !names(device.what)) continue;
         if (!device.why.empty()) return Error(device.why);
         const ConfigNode node = TRY(ConfigNode::parse(device.options, "the device that was found"));
-        if (device.family == "dmx") return trial.chase(*TRY(drivers::openDmxPort(node, 1, around)), firstSlots());
-        if (device.family == "cue_controller") return trial.tellPresses(*TRY(drivers::openCueController(node, around)));
-        if (device.family == "camera") return trial.snapshot(*TRY(drivers::openCamera(node, around)), options.picture);
+        const auto alone = [&](const auto& opening, const auto& tryIt) -> Result<void> {
+            const auto claim = TRY(claimForTest(device.what, opening.claim()));
+            return tryIt(*TRY(opening.open(around)));
+        };
+        if (device.family == "dmx")
+            return alone(TRY(drivers::readDmxPort(node, 1)), [&](DmxPort& port) { return trial.chase(port, firstSlots()); });
+        if (device.family == "cue_controller")
+            return alone(TRY(drivers::readCueController(node)),
+                         [&](CueController& controller) { return trial.tellPresses(controller); });
+        if (device.family == "camera")
+            return alone(TRY(drivers::readCamera(node)),
+                         [&](CameraSource& camera) { return trial.snapshot(camera, options.picture); });
         return Error(fmt::format("how a device of the family {} is used stands in a site file: add --site", device.family));
     }
     return Error(fmt::format("no device '{}' was found; there is {}", options.test, names.empty() ? "none" : listed(names)));
 }
 
+// A trial of relays switches what hangs on them: only on somebody's word.
+Result<void> askBeforeClicking(const Options& options, const show::Site& site) {
+    std::vector<std::string> relays;
+    for (const show::Relay& relay : site.relays)
+        if (site.relayBanks[relay.bank].name == options.test) relays.push_back(relay.name);
+    if (relays.empty() || options.yes) return {};
+    const std::string what = fmt::format("this test switches {}, one after the other", listed(relays));
+    if (isatty(STDIN_FILENO) == 0) return Error(what + ": add --yes to allow it");
+    fmt::print("{}. Begin? y and Enter: ", what);
+    std::fflush(stdout);
+    std::string answer;
+    std::getline(std::cin, answer);
+    if (answer != "y") return Error("no relay was switched");
+    return {};
+}
+
 Result<void> devices(const Options& options) {
     std::optional<show::Site> site;
-    if (!options.site.empty()) {
-        const bool isFolder = std::filesystem::is_directory(options.site);
-        site = TRY(show::readSite(isFolder ? options.site / "site.yaml" : options.site));
-    }
+    if (!options.site.empty()) site = TRY(readSite(options.site));
     constexpr double kTrial = 10, kForever = 1e8;
     if (!options.test.empty()) {
+        std::optional<drivers::Claim> claim;
+        if (site) {
+            claim = TRY(claimForTest(options.test, *site));
+            TRY(askBeforeClicking(options, *site));
+        }
         SteadyClock clock;
         const Interrupt interrupt;
         DeviceTrial trial(clock, fromSeconds(options.length.value_or(kTrial)), &interrupt, std::cout);
@@ -213,8 +359,9 @@ void declare(CLI::App& command, Options& options) {
             "try one device: of the site by its name ('universe 1', 'desk 1', 'cue controller', 'camera', or a bank's own), "
             "or one that was found by a part of its line. Lamps chase, relays click, presses are told, a camera leaves a picture")
         ->excludes(watches);
+    command.add_flag("--yes", options.yes, "a test of relays switches them without asking");
     command.add_option("--seconds", options.length, "how long (default: a test 10 s)")->check(CLI::Range(0.1, 1e6));
-    command.add_option("-o,--output", options.picture, "where a camera's picture goes")->capture_default_str();
+    addOutOption(command, options.picture, "where a camera's picture goes")->capture_default_str();
 }
 
 }  // namespace

@@ -8,8 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <map>
-
 namespace fantascope::app {
 namespace {
 
@@ -24,11 +22,10 @@ struct Options {
 void declare(CLI::App& command, Options& options) {
     FilmRequest& film = options.film;
     command.add_option("SHOW", film.what, "A show's folder, or a single P.pattern.yaml")->required();
-    command
-        .add_option("-o", options.file,
-                    "What to write: a folder of PNG pictures, FILE.mp4, FILE.mov (ProRes 4444) or FILE.mkv (FFV1)")
-        ->required();
     declareFilmOptions(command, film);
+    addOutOption(command, options.file,
+                 "What to write: a folder of PNG pictures, FILE.mp4, FILE.mov (ProRes 4444) or FILE.mkv (FFV1)")
+        ->required();
     command
         .add_option("--seconds", film.seconds,
                     "How much show time (default: a minute; a pattern or a single cue: one loop of the movement)")
@@ -36,13 +33,10 @@ void declare(CLI::App& command, Options& options) {
     command.add_option("--fps", film.frameRate, "Frames a second of show time (default: the output's; a pattern: 30)")
         ->check(CLI::Range(1.0, 1000.0));
     addSizeOption(command, "--size", film.size, "Of a frame (default: the output's; a pattern or a canvas: 1080 rows)");
-    command
-        .add_option(
-            "--alpha", options.alpha,
-            "Black becomes clear, for programs that composite in stored or in linear values; none: the frame as the projector "
-            "gets it (default: stored; none in an .mp4, which has no alpha)")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, Alpha>{{"none", Alpha::None}, {"stored", Alpha::Stored}, {"linear", Alpha::Linear}}));
+    addChoice<Alpha>(
+        command, "--alpha", options.alpha, {{"none", Alpha::None}, {"stored", Alpha::Stored}, {"linear", Alpha::Linear}},
+        "Black becomes clear, for programs that composite in stored or in linear values; none: the frame as the projector "
+        "gets it (default: stored; none in an .mp4, which has no alpha)");
     command.add_flag("--canvas", film.canvas, "The picture before the output's keystone, as a light mask wants it");
     command.add_option("--report", options.report, "Also write figures, as JSON (docs/report.md)");
     command.footer("Meanwhile the space bar pauses and goes on; escape, q and Ctrl-C end it with the frames so far.");

@@ -40,7 +40,7 @@ void declare(CLI::App& command, Options& options) {
     const Fabrication::Options& print = options.print;
     command.add_option("CAST", options.cast, "The poses, *.cast.yaml, as 'fantascope pose' or 'fantascope adapt' left them")
         ->required();
-    command.add_option("-o,--output", options.output, "The solid to write, binary STL: millimetres, z up")
+    addOutOption(command, options.output, "The solid to write, binary STL: millimetres, z up")
         ->required()
         ->check(onlyEnding(".stl", "STL"));
     command.add_option("--frame", options.frame, "of a cast that moves, from 0 (default: the frame of the principal poses)");

@@ -1,5 +1,6 @@
 #include "app/film.h"
 
+#include "app/command.h"
 #include "app/data_folder.h"
 #include "app/hand.h"
 #include "app/programme.h"
@@ -50,24 +51,10 @@ double loopOf(const std::vector<render::PictureSource>& sources) {
     return longest;
 }
 
-// Width / height of a picture's canvas, where it has one of its own.
-std::optional<double> aspectOf(const render::PictureSource& source) {
-    const auto ratio = [](glm::ivec2 size) { return static_cast<double>(size.x) / size.y; };
-    if (const auto* video = std::get_if<render::VideoSource>(&source)) return ratio(video->stream->content().size);
-    if (const auto* image = std::get_if<render::ImageSource>(&source))
-        return ratio({image->picture->width(), image->picture->height()});
-    if (const auto* shadow = std::get_if<render::ShadowSource>(&source)) {
-        const glm::dvec2 screen = shadow->to - shadow->from;
-        return screen.x / screen.y;
-    }
-    const auto patterns = patternsIn(source);
-    return patterns.empty() ? std::nullopt : std::optional(patterns[0]->pattern->aspect());
-}
-
 // Of the first canvas that has one.
 std::optional<double> aspectOf(const std::vector<render::PictureSource>& sources) {
     for (const render::PictureSource& source : sources)
-        if (const auto aspect = aspectOf(source)) return aspect;
+        if (const auto aspect = render::aspectOf(source)) return aspect;
     return std::nullopt;
 }
 
@@ -111,7 +98,7 @@ bool isPattern(const fs::path& path) {
 }  // namespace
 
 void declareFilmOptions(CLI::App& command, FilmRequest& request) {
-    command.add_option("--output", request.output, "For a show: the output of the site whose picture is wanted");
+    addProjectorOption(command, request.output, "For a show: the projector whose picture is wanted");
     command.add_option("--site", request.site, "For a show: the site that it plays on (default: config/simulated)");
     CLI::Option* const cue =
         command.add_option("--cue", request.cue, "For a show: this cue alone, faded in, the movement from its beginning");
@@ -147,7 +134,7 @@ Result<Film> Film::ofShow(const FilmRequest& request) {
             fmt::format("{}: a show needs --output NAME, the output of the site whose picture is wanted", request.what.string()));
     RunOptions run;
     run.show = request.what;
-    run.site = request.site.empty() ? dataFolder() / "config/simulated" : request.site;
+    run.site = request.site.empty() ? TRY(dataFolder()) / "config/simulated" : request.site;
     run.asFastAsPossible = true;  // nobody watches: a frame may wait for its video
     run.fromCue = request.cue.empty() ? request.from : request.cue;
     Programme programme = TRY(readProgramme(run));

@@ -2,6 +2,8 @@
 
 #include "app/site_models.h"
 
+#include "render/gpu/handles.h"
+
 #include "core/log.h"
 
 #include <algorithm>
@@ -18,12 +20,13 @@ FrameLoop::FrameLoop(const show::Site& site, const show::CueList& cues, std::vec
         outputs_.push_back({site.outputs[i], *devices.displays[i], blendOf(site, i)});
         outputs_.back().report.name = site.outputs[i].name;
     }
+    faults_.resize(outputs_.size());
 }
 
 FrameLoop::~FrameLoop() {
-    // What belongs to a context goes while it is current; a context that is lost has taken it along.
+    // What belongs to a context goes while it is current.
     for (Output& output : outputs_) {
-        if (!output.display.makeCurrent()) continue;
+        if (output.display.context() != output.context || !output.display.makeCurrent()) forget(output);
         output.tap.reset();
         output.renderer.reset();
     }
@@ -35,8 +38,44 @@ render::FrameTap& FrameLoop::tap(std::size_t output) {
     return *tap;
 }
 
+void FrameLoop::forget(Output& output) {
+    const render::gpu::Forgetting forgetting;
+    output.renderer.reset();
+    if (output.tap) output.tap->forget();
+}
+
+void FrameLoop::inHand(const Output& output) { inHand_ = static_cast<std::size_t>(&output - outputs_.data()); }
+
 void FrameLoop::look() {
-    for (Output& output : outputs_) output.running = output.display.poll();
+    for (Output& output : outputs_) {
+        inHand(output);
+        output.running = output.display.poll();
+        if (output.display.context() == output.context) continue;
+        forget(output);
+        output.context = output.display.context();
+        output.retryAt = Time{};  // another context is another chance
+    }
+}
+
+void FrameLoop::tell(const Output& output, const std::string& fault) {
+    const std::lock_guard lock(faultsMutex_);
+    faults_[static_cast<std::size_t>(&output - outputs_.data())] = fault;
+}
+
+std::vector<DeviceStatus> FrameLoop::withFaults(std::vector<DeviceStatus> statuses) const {
+    const std::lock_guard lock(faultsMutex_);
+    for (std::size_t i = 0; i < faults_.size(); ++i) {
+        DeviceStatus& display = statuses[i];  // Devices lists them first
+        if (display.state != DeviceState::Running) continue;
+        const bool hangs = i == inHand_ && clock_.now().count() > hangsFrom_;
+        if (!hangs && faults_[i].empty()) continue;
+        display.state = DeviceState::Faulted;
+        display.detail =
+            hangs ? "the X server or the graphics driver does not answer; every picture stands still, lights and relays go on. "
+                    "Restart the X server if that lasts"
+                  : faults_[i];
+    }
+    return statuses;
 }
 
 std::vector<OutputReport> FrameLoop::outputs() const {
@@ -46,7 +85,8 @@ std::vector<OutputReport> FrameLoop::outputs() const {
 }
 
 FrameLoop::Output* FrameLoop::leader() {
-    const auto first = std::find_if(outputs_.begin(), outputs_.end(), [](const Output& output) { return output.running; });
+    const auto first =
+        std::find_if(outputs_.begin(), outputs_.end(), [](const Output& output) { return output.running && !output.faulted; });
     return first == outputs_.end() ? nullptr : &*first;
 }
 
@@ -54,29 +94,53 @@ Result<void> FrameLoop::makeRenderer(Output& output, const Projection& projectio
                                      const std::shared_ptr<const render::BlendMap>& blend) {
     const render::OutputRenderer::Options options{
         .projection = projection, .blend = blend, .shaders = assets_ / "shaders", .clock = &clock_};
-    output.renderer = TRY(render::OutputRenderer::create(options, sources_));
+    auto renderer = TRY(render::OutputRenderer::create(options, sources_));
+    TRY(renderer->warmUp(output.display.framebuffer()));
+    renderer->draw({}, Wind{}, Time{}, output.display.framebuffer());
+    output.renderer = std::move(renderer);
     output.bends = projection.warp.bends();
-    output.renderer->warmUp(output.display.framebuffer());
-    output.renderer->draw({}, Wind{}, Time{}, output.display.framebuffer());
     return {};
 }
 
 Result<void> FrameLoop::beReady(Output& output) {
+    TRY(output.display.makeCurrent());
     if (output.renderer) return {};
-    TRY(makeRenderer(output, output.site.projection, output.blend).in("output '" + output.site.name + "'"));
-    if (output.tap) output.tap->prepare();
+    if (output.tap) TRY(output.tap->prepare());
+    TRY(makeRenderer(output, output.site.projection, output.blend));
+    output.fresh = true;
     return {};
+}
+
+bool FrameLoop::ready(Output& output, Time now) {
+    if (output.faulted && now < output.retryAt) return false;
+    const auto made = beReady(output);
+    if (made) {
+        if (std::exchange(output.faulted, false)) tell(output, "");
+        output.pause = Time{};
+        return true;
+    }
+    output.faulted = true;
+    tell(output, "its picture cannot be drawn: " + made.error().message());
+    output.pause = std::clamp(2 * output.pause, kSoonestRetry, kLatestRetry);
+    output.retryAt = clock_.now() + output.pause;
+    return false;
 }
 
 Result<void> FrameLoop::prepare() {
-    for (Output& output : outputs_)
-        if (output.display.makeCurrent()) TRY(beReady(output));
     look();
-    return {};
+    const Output *drawn = nullptr, *faulted = nullptr;
+    for (Output& output : outputs_) {
+        if (output.context == 0) continue;
+        (ready(output, clock_.now()) ? drawn : faulted) = &output;
+    }
+    if (faulted == nullptr || drawn != nullptr) return {};
+    return Error("output '" + faulted->site.name + "': " + faults_[static_cast<std::size_t>(faulted - outputs_.data())]);
 }
 
 void FrameLoop::followSettings(Output& output) {
-    if (!output.settings->update()) return;
+    if (!output.settings->update() && !output.fresh) return;
+    output.fresh = false;
+    if (!output.settings->value()) return;  // as the site file says
     const OutputSettings& wanted = *output.settings->value();
     const auto followed = [&]() -> Result<void> {
         // Only a renderer that was made for a mesh bends exactly.
@@ -95,13 +159,13 @@ void FrameLoop::spend(Output& output, FramePart part, Time time) {
     spent_[index] += time;
 }
 
-Result<void> FrameLoop::draw(Output& output, const show::OutputState& state, const Wind& wind, Time showTime) {
+void FrameLoop::draw(Output& output, const show::OutputState& state, const Wind& wind, Time showTime) {
     output.drawn = false;
     output.spent = {};
-    if (!output.running) return {};  // its status says why, and it comes back by itself
+    if (!output.running) return;  // its status says why, and it comes back by itself
+    inHand(output);
     const Time began = clock_.now();
-    if (!output.display.makeCurrent()) return {};
-    TRY(beReady(output));
+    if (!ready(output, began)) return;
     followSettings(output);
     output.renderer->draw(state, wind, showTime, output.display.framebuffer());
     if (output.tap) output.tap->capture(output.display.framebuffer(), showTime);
@@ -109,11 +173,11 @@ Result<void> FrameLoop::draw(Output& output, const show::OutputState& state, con
     spend(output, FramePart::Upload, uploading);
     spend(output, FramePart::Render, clock_.now() - began - uploading);
     output.drawn = true;
-    return {};
 }
 
 void FrameLoop::finish(Output& output) {
     if (!output.drawn) return;
+    inHand(output);
     const Time began = clock_.now();
     output.drawn = output.display.finish().has_value();
     spend(output, FramePart::Render, clock_.now() - began);
@@ -132,6 +196,7 @@ Time FrameLoop::refreshFrom(Time moment) {
 
 void FrameLoop::begin(Time start) {
     start_ = start;
+    hangsFrom_ = (start + kHangs).count();
     for (Output& output : outputs_) output.shown = Shown{.at = start};  // every refresh after it is one to be met
 }
 
@@ -145,6 +210,7 @@ void FrameLoop::countLate(Output& output, std::int64_t refreshes) {
 }
 
 void FrameLoop::finish(Time end) {
+    hangsFrom_ = kNotYet;
     // A refresh right at the end belongs to the show, and a display tells its moments to a part of a period only.
     constexpr double kTolerance = 0.1;
     for (Output& output : outputs_) {
@@ -160,6 +226,7 @@ Time FrameLoop::nextDue() { return refreshFrom(Time{}); }
 void FrameLoop::show(Output& output, const Presenting& present) {
     const std::optional<Shown> before = std::exchange(output.shown, std::nullopt);
     if (!output.drawn) return;
+    inHand(output);
     const Result<Shown> shown = present(output.display);
     if (!shown) return;
     output.shown = *shown;
@@ -191,17 +258,18 @@ void FrameLoop::measureSkew() {
     if (swaps > 1) swapSkew_.add(last - first);
 }
 
-Result<void> FrameLoop::step() {
+void FrameLoop::step() {
     look();
     Output* const leads = leader();
     // A display that takes the lead may hold no frame yet for a refresh that the others have theirs for.
     if (nextDue() <= newest_) clock_.sleepUntil(newest_);
     const Time due = newest_ = nextDue();
+    hangsFrom_ = (due + kHangs).count();
     const Time showTime = due - start_;
 
     Time oldestInput = Time::max();
     replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput = std::min(oldestInput, input.at); });
-    for (std::size_t i = 0; i < outputs_.size(); ++i) TRY(draw(outputs_[i], state_.outputs[i], state_.winds[i], showTime));
+    for (std::size_t i = 0; i < outputs_.size(); ++i) draw(outputs_[i], state_.outputs[i], state_.winds[i], showTime);
     for (Output& output : outputs_) finish(output);
 
     // The leader waits as its refreshes ask, the others show with it.
@@ -221,7 +289,6 @@ Result<void> FrameLoop::step() {
         stateSlot_->writable() = state_;
         stateSlot_->publish();
     }
-    return {};
 }
 
 }  // namespace fantascope::app

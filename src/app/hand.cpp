@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <string_view>
+#include <utility>
 
 namespace fantascope::app {
 namespace {
@@ -48,6 +49,8 @@ void Hand::tick(Time moment) {
                 give(*input);
     playback_.stateAt(moment - start_, state_);
     light(moment - start_);
+    if (std::exchange(blackout_, state_.blackout) != state_.blackout)
+        tell(state_.blackout ? "blackout: pictures and lamps are dark" : "light: the blackout is over");
     if (state_.cue == cue_) return;
     cue_ = state_.cue;
     const std::string& name = show_.cues[static_cast<std::size_t>(cue_)].name;
@@ -87,11 +90,15 @@ void Hand::light(Time showTime) {
     }
 }
 
-bool GoSchedule::due(Time showTime) {
-    if (ended()) return false;
+Time GoSchedule::next() const {
+    if (ended()) return Time::max();
     constexpr double kDarkness = 1.0 / 6;  // of a cue's share
     const double share = seconds(length_) / (static_cast<double>(presses_) + (cueIsOn_ ? 1 : 0));
-    if (showTime < fromSeconds(share * (static_cast<double>(pressed_) + (cueIsOn_ ? 1 : kDarkness)))) return false;
+    return fromSeconds(share * (static_cast<double>(pressed_) + (cueIsOn_ ? 1 : kDarkness)));
+}
+
+bool GoSchedule::due(Time showTime) {
+    if (showTime < next()) return false;
     ++pressed_;
     return true;
 }

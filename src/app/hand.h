@@ -56,6 +56,7 @@ private:
     std::vector<CueReport> entered_;
     std::vector<ButtonLight> lights_;  // of Site::buttons, as the controller was told
     int cue_ = -1;
+    bool blackout_ = false;
 };
 
 // When a rehearsal without hands presses GO, so that it reaches every cue in an equal share of its length: one press for each cue that is
@@ -65,6 +66,8 @@ public:
     GoSchedule(std::size_t presses, bool cueIsOn, Time length) : presses_(presses), cueIsOn_(cueIsOn), length_(length) {}
     // Whether the next press is due; each is so once.
     bool due(Time showTime);
+    // The show time of the next press; Time::max() if none is to come.
+    Time next() const;
     void end() { pressed_ = presses_; }  // the operator has taken over
     bool ended() const { return pressed_ == presses_; }
 

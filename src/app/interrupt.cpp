@@ -1,32 +1,78 @@
 #include "app/interrupt.h"
 
-#include <signal.h>
+#include "core/check.h"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
 
 namespace fantascope::app {
 namespace {
 
-constexpr int kSignals[] = {SIGINT, SIGTERM};
-std::atomic<bool> raised = false;  // lock-free, so a signal handler may write it
+constexpr int kAlways[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE};
+constexpr int kOfShows[] = {SIGPWR, SIGUSR1, SIGUSR2};
 
-void handle(void (*handler)(int), int flags) {
-    struct sigaction action {};
-    action.sa_handler = handler;
-    action.sa_flags = flags;
-    for (const int signal : kSignals) ::sigaction(signal, &action, nullptr);
+// Lock-free, so a signal handler may write them.
+std::atomic<int> signals = 0, first = 0, bell = -1;
+std::atomic<bool> isShow = false;
+
+// Whether somebody can still read what the program prints. Safe in a signal handler.
+bool isRead() {
+    pollfd printed[] = {{STDOUT_FILENO, 0, 0}, {STDERR_FILENO, 0, 0}};
+    return poll(printed, 2, 0) <= 0 || ((printed[0].revents | printed[1].revents) & (POLLERR | POLLHUP)) == 0;
+}
+
+void note(int signal, siginfo_t* info, void*) {
+    const int error = errno;
+    // A write of our own to somebody who is gone, such as an X server or a module, asks for nothing. That a show is not read any more the
+    // Supervisor sees without a write.
+    if (signal == SIGPIPE && info->si_pid == getpid() && (isShow || isRead())) {
+        errno = error;
+        return;
+    }
+    if (signals++ == 0) first = signal;
+    const std::uint64_t once = 1;
+    [[maybe_unused]] const ssize_t written = write(bell, &once, sizeof once);
+    errno = error;
 }
 
 }  // namespace
 
-Interrupt::Interrupt() {
-    raised = false;
-    // Reset on the first: the second of its kind meets the system's default, which ends the program.
-    handle([](int) { raised = true; }, SA_RESTART | static_cast<int>(SA_RESETHAND));
+Interrupt::Interrupt(Second second) {
+    signals = first = 0;
+    bell = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+    FANTASCOPE_CHECK(bell >= 0, "a program has room for one more file");
+    const bool counts = isShow = second == Second::IsCounted;
+    const auto replace = [&](int signal) {
+        struct sigaction before {
+        }, action{};
+        action.sa_sigaction = note;
+        action.sa_flags = SA_SIGINFO | SA_RESTART | (counts || signal == SIGPIPE ? 0 : static_cast<int>(SA_RESETHAND));
+        sigaction(signal, nullptr, &before);
+        const bool ignored = (before.sa_flags & SA_SIGINFO) == 0 && before.sa_handler == SIG_IGN;
+        if (ignored && (signal == SIGHUP || signal == SIGPIPE)) return;
+        sigaction(signal, &action, nullptr);
+        replaced_.push_back({signal, before});
+    };
+    for (const int signal : kAlways) replace(signal);
+    if (counts)
+        for (const int signal : kOfShows) replace(signal);
 }
 
-Interrupt::~Interrupt() { handle(SIG_DFL, 0); }
+Interrupt::~Interrupt() {
+    for (const Replaced& replaced : replaced_) sigaction(replaced.signal, &replaced.before, nullptr);
+    close(bell.exchange(-1));
+}
 
-bool Interrupt::requested() const { return raised; }
+int Interrupt::count() const { return signals; }
+
+std::string Interrupt::name() const { return requested() ? std::string("SIG") + sigabbrev_np(first) : ""; }
+
+int Interrupt::file() const { return bell; }
 
 }  // namespace fantascope::app

@@ -1,18 +1,38 @@
 #pragma once
 
+#include <csignal>
+#include <string>
+#include <vector>
+
 namespace fantascope::app {
 
-// While one lives, the first Ctrl-C (SIGINT) and the first SIGTERM only raise a flag, so that the best so far is kept and lamps
-// come back; the second of the same kind ends the program at once. At most one lives at a time. Thread: requested() is
-// thread-safe.
+// While one lives, the signals that ask a program to end only raise a flag: SIGINT (Ctrl-C), SIGTERM, SIGHUP (the terminal was closed),
+// SIGQUIT, SIGPIPE (nobody reads what it prints). SIGHUP and SIGPIPE have no effect where they had none at the start, as under nohup.
+// At most one lives at a time. Thread: const methods are thread-safe.
 class Interrupt {
 public:
-    Interrupt();
-    ~Interrupt();
+    enum class Second {
+        EndsProgram,  // the second signal of a kind ends the program at once
+        IsCounted     // a show: nothing ends it at once. SIGPWR, SIGUSR1 and SIGUSR2 ask for the end too
+    };
+    explicit Interrupt(Second second = Second::EndsProgram);
+    ~Interrupt();  // the signals do again what they did before
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;
 
-    bool requested() const;
+    bool requested() const { return count() > 0; }
+    int count() const;  // of signals so far
+    // The first signal's name: "SIGTERM"; "" while there was none.
+    std::string name() const;
+    // Can be read once an end was requested: for poll().
+    int file() const;
+
+private:
+    struct Replaced {
+        int signal;
+        struct sigaction before;
+    };
+    std::vector<Replaced> replaced_;
 };
 
 }  // namespace fantascope::app

@@ -2,23 +2,36 @@
 
 #include "show/patch.h"
 
+#include "core/config.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
+#include <utility>
 
 namespace fantascope::app {
 namespace {
 
 constexpr double kRelayRate = 20;  // Hz; a relay clicks in tens of milliseconds
+constexpr const char* kUnanswered = "it has not answered yet";
 
 }  // namespace
 
 Lighting::Lighting(const show::Site& site, const show::CueList& cues, Devices& devices, const Clock& clock, Time start,
-                   Recording* recording)
-    : site_(site), devices_(devices), clock_(clock), start_(start), recording_(recording), replica_(cues) {
-    for (std::size_t bank = 0; bank < site.relayBanks.size(); ++bank) banks_.emplace_back(show::safeCoils(site, bank));
+                   Recording* recording, FaultLog* faults)
+    : site_(site),
+      devices_(devices),
+      clock_(clock),
+      start_(start),
+      recording_(recording),
+      faults_(faults),
+      replica_(cues),
+      banks_(site.relayBanks.size()),
+      endLevels_(show::endLevels(site)) {
+    for (Bank& bank : banks_) bank.whyUnsafe = kUnanswered;
     for (const show::Universe& universe : site.universes) {
         shared_.emplace_back();
         if (universe.desk) shared_.back().emplace(Shared{show::DmxMerge(universe.desk->merge)});
@@ -26,6 +39,7 @@ Lighting::Lighting(const show::Site& site, const show::CueList& cues, Devices& d
 }
 
 void Lighting::mergeWithDesk(Devices::Line& line, Shared& shared, Time now, std::span<std::uint8_t, kDmxSlots> slots) {
+    if (endsAt_.load() != Time::max()) shared.merge.claimNothing();
     while (const auto frame = line.desk->receive())
         shared.merge.receive({frame->slots, frame->source, frame->priority, frame->arrived, frame->silence, frame->ended});
     shared.merge.mergeAt(now, slots, slots);
@@ -35,12 +49,21 @@ void Lighting::mergeWithDesk(Devices::Line& line, Shared& shared, Time now, std:
     for (const show::DmxMerge::Charge& charge : charges) shared.inCharge.emplace_back(charge.sender);
     std::vector<std::string> names;
     for (const std::string& sender : shared.inCharge) names.push_back(sender.empty() ? "the show" : "'" + sender + "'");
-    tell(fmt::format("universe {} is now sent by {}", line.universe, fmt::join(names, " and ")));
+    const std::string news = fmt::format("universe {} is now sent by {}", line.universe, fmt::join(names, " and "));
+    const std::string device = fmt::format("universe {}", line.universe);
+    const bool isTaken = shared.inCharge.front() != "";
+    if (isTaken && faults_ != nullptr) {
+        faults_->raise(now - start_, device, FaultLog::Topic::Desk, news);
+        return;
+    }
+    if (faults_ != nullptr) faults_->clear(now - start_, device, FaultLog::Topic::Desk, "");
+    tell(news);
 }
 
 void Lighting::tick(Time moment) {
-    const Time showTime = moment - start_;
-    replica_.stateAt(showTime, state_);
+    const Time showTime = moment - start_, endsAt = endsAt_.load();
+    replica_.stateAt(std::min(moment, endsAt) - start_, state_);
+    if (moment >= endsAt) fadeToEnd(moment - endsAt);
     for (std::size_t i = 0; i < devices_.lines.size(); ++i) {
         Devices::Line& line = devices_.lines[i];
         std::array<std::uint8_t, kDmxSlots> slots;
@@ -49,6 +72,7 @@ void Lighting::tick(Time moment) {
         // A line that is not there says so in its status and comes back by itself; the newest levels go out at the next tick.
         if (line.port->send(slots) && recording_ != nullptr) recording_->lighting(showTime, line.universe, slots);
     }
+    lampsEnded_ = moment >= endsAt && moment - endsAt >= site_.endFade;
     const Time now = clock_.now();
     if (lastTick_) dmxInterval_.add(now - *lastTick_);
     lastTick_ = now;
@@ -68,19 +92,113 @@ std::vector<Part> Lighting::relayParts() {
 
 void Lighting::relayTick(std::size_t number, Time moment) {
     Bank& bank = banks_[number];
-    RelayBank& device = *devices_.relayBanks[number];
     bank.wanted.update();
-    const int losses = device.status().losses;
-    if (losses != bank.losses)
-        bank.written.clear();  // who knows what they are now: where the bank was gone, in their safe states
-    bank.losses = losses;
-    if (bank.wanted.value() == bank.written) return;
-    if (!device.write(bank.wanted.value())) {
-        bank.written.clear();
-        return;
+    const Time now = clock_.now();
+    const bool ending = now >= endsAt_.load();
+    const Coils wanted = ending ? show::safeCoils(site_, number) : bank.wanted.value();
+    if (wanted.empty()) return;
+    const bool beginsToEnd = ending && !std::exchange(bank.ending, ending);
+    const int losses = devices_.relayBanks[number]->status().losses;
+    if (std::exchange(bank.losses, losses) != losses && !bank.written.empty()) takeLoss(number, moment);
+    if (beginsToEnd && bank.written == wanted) confirm(number);
+    if (bank.written == wanted && bank.isFaulty && now - bank.confirmed >= kLatestRelays) reportRecovery(number, moment);
+    const bool mayTry = ending || bank.tried != wanted || now >= bank.nextTry;
+    if (bank.written != wanted && !mayTry) return;
+    const Result<void> brought = bringTo(wanted, number, moment);
+    if (!ending) return;
+    const std::lock_guard lock(bank.mutex);
+    bank.whyUnsafe = brought ? "" : brought.error().message();
+}
+
+void Lighting::confirm(std::size_t number) {
+    Bank& bank = banks_[number];
+    const auto now = devices_.relayBanks[number]->read();
+    if (!now || *now != bank.written) bank.written.clear();
+}
+
+Result<void> Lighting::bringTo(const Coils& wanted, std::size_t number, Time moment) {
+    Bank& bank = banks_[number];
+    RelayBank& device = *devices_.relayBanks[number];
+    if (wanted == bank.written) return {};
+    bank.written.clear();
+    const bool isThere = device.status().state == DeviceState::Running;
+    const Result<void> written = device.write(wanted);
+    bank.tried = wanted;
+    if (!written) {
+        // One that is not there is tried at every tick, which costs nothing, so that it has its states as soon as it is back.
+        if (isThere) bank.nextTry = clock_.now() + bank.backOff.failed(clock_.now());
+        if (!bank.ending && device.status().state == DeviceState::Running) reportRefusal(number, written.error(), moment);
+        return written;
     }
-    bank.written = bank.wanted.value();
+    bank.written = wanted;
+    bank.backOff.began(clock_.now());
+    bank.confirmed = clock_.now();
     if (recording_ != nullptr) recording_->relays(moment - start_, site_.relayBanks[number].name, bank.written);
+    return {};
+}
+
+// Who knows what they are now: where the bank was gone, in their safe states.
+void Lighting::takeLoss(std::size_t number, Time moment) {
+    Bank& bank = banks_[number];
+    const std::string moved = bank.ending ? "" : differing(number, bank.written);  // safe states wait for no question
+    bank.written.clear();
+    bank.nextTry = clock_.now() + bank.backOff.failed(clock_.now());
+    if (moved.empty()) return;
+    reportFault(number, moment,
+                fmt::format("{} of '{}' switched without the show: by hand, by another program, or without power. The show "
+                            "switches back",
+                            moved, site_.relayBanks[number].name));
+}
+
+void Lighting::reportRefusal(std::size_t number, const Error& error, Time moment) {
+    const std::string stuck = differing(number, banks_[number].tried);
+    reportFault(number, moment,
+                fmt::format("{} of '{}' did not switch ({}). The show tries again; look at the module",
+                            stuck.empty() ? "relays" : stuck, site_.relayBanks[number].name, error.message()));
+}
+
+void Lighting::reportFault(std::size_t number, Time moment, const std::string& what) {
+    banks_[number].isFaulty = true;
+    if (faults_ != nullptr) faults_->raise(moment - start_, site_.relayBanks[number].name, FaultLog::Topic::Relays, what);
+}
+
+void Lighting::reportRecovery(std::size_t number, Time moment) {
+    banks_[number].isFaulty = false;
+    const std::string& name = site_.relayBanks[number].name;
+    if (faults_ != nullptr)
+        faults_->clear(moment - start_, name, FaultLog::Topic::Relays, "the relays of '" + name + "' are as they should be");
+}
+
+std::string Lighting::differing(std::size_t number, const Coils& wanted) {
+    const auto states = devices_.relayBanks[number]->read();
+    std::vector<std::string> names;
+    for (const show::Relay& relay : site_.relays)
+        if (const auto coil = static_cast<std::size_t>(relay.coil);
+            states && relay.bank == number && (*states)[coil] != wanted[coil])
+            names.push_back(relay.name);
+    return listed(names);
+}
+
+void Lighting::fadeToEnd(Time since) {
+    const double share = since < site_.endFade ? seconds(since) / seconds(site_.endFade) : 1;
+    for (std::size_t i = 0; i < endLevels_.size(); ++i)
+        state_.levels[i] = std::lerp(state_.levels[i], endLevels_[i], static_cast<float>(share));
+}
+
+void Lighting::end(Time moment) {
+    Time never = Time::max();
+    endsAt_.compare_exchange_strong(never, moment);
+}
+
+bool Lighting::ended() const { return lampsEnded_ && unsafeBanks().empty(); }
+
+std::vector<UnsafeBank> Lighting::unsafeBanks() const {
+    std::vector<UnsafeBank> unsafe;
+    for (std::size_t number = 0; number < banks_.size(); ++number) {
+        const std::lock_guard lock(banks_[number].mutex);
+        if (!banks_[number].whyUnsafe.empty()) unsafe.push_back({site_.relayBanks[number].name, banks_[number].whyUnsafe});
+    }
+    return unsafe;
 }
 
 }  // namespace fantascope::app

@@ -6,6 +6,7 @@
 #include "app/devices_command.h"
 #include "app/export_command.h"
 #include "app/fabricate_command.h"
+#include "app/guard_command.h"
 #include "app/pattern_command.h"
 #include "app/plot_command.h"
 #include "app/pose_command.h"
@@ -13,7 +14,11 @@
 #include "app/rehearse_command.h"
 #include "app/template_command.h"
 
+#include "core/text.h"
+
 #include <fmt/format.h>
+
+#include <cstdio>
 
 namespace fantascope::app {
 namespace {
@@ -22,7 +27,7 @@ namespace {
 constexpr AddCommand kCommands[] = {addPatternCommand,   addPoseCommand,     addDeformCommand,   addAdaptCommand,
                                     addFabricateCommand, addConvertCommand,  addRehearseCommand, addRunCommand,
                                     addExportCommand,    addTemplateCommand, addPreviewCommand,  addPlotCommand,
-                                    addCheckCommand,     addDevicesCommand};
+                                    addCheckCommand,     addDevicesCommand,  addGuardCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 
@@ -33,7 +38,7 @@ int run(int argc, char** argv) {
     program.failure_message([](const CLI::App* app, const CLI::Error& error) {
         const auto chosen = app->get_subcommands();
         const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
-        return fmt::format("fantascope: error: {}\nSee 'fantascope{} --help'.\n", error.what(), command);
+        return fmt::format("fantascope: error: {}\nSee 'fantascope{} --help'.\n", printableLines(error.what()), command);
     });
     Action action;
     for (const AddCommand add : kCommands) add(program, action);
@@ -43,7 +48,8 @@ int run(int argc, char** argv) {
         return program.exit(error) == 0 ? Done : WrongUsage;
     }
     if (const auto done = action(); !done) {
-        fmt::print(stderr, "fantascope: error: {}\n", done.error().message());
+        // Whether or not it is read.
+        std::fputs(fmt::format("fantascope: error: {}\n", printableLines(done.error().message())).c_str(), stderr);
         return Refused;
     }
     return Done;

@@ -13,6 +13,7 @@ namespace fantascope::app {
 Result<std::unique_ptr<OffScreen>> OffScreen::open(glm::ivec2 size, const std::vector<render::PictureSource>& sources) {
     Projection straight{size, Warp::straight(size)};
     straight.light.dither = false;
+    straight.canvasAspect = static_cast<double>(size.x) / size.y;
     return open(straight, nullptr, sources);
 }
 
@@ -24,8 +25,9 @@ Result<std::unique_ptr<OffScreen>> OffScreen::open(const Projection& projection,
     const ConfigNode options = TRY(ConfigNode::parse("driver: headless\n", "off screen"));
     screen->display_ = TRY(drivers::openDisplay(options, {"picture", size, 1.0}, {screen->clock_}));
     TRY(screen->display_->makeCurrent());
-    screen->renderer_ = TRY(render::OutputRenderer::create(
-        {.projection = projection, .blend = blend, .shaders = dataFolder() / "assets/shaders"}, sources));
+    const std::filesystem::path shaders = TRY(dataFolder()) / "assets/shaders";
+    screen->renderer_ =
+        TRY(render::OutputRenderer::create({.projection = projection, .blend = blend, .shaders = shaders}, sources));
     screen->tap_ = std::make_unique<render::FrameTap>(0, size);
     screen->frames_ = &screen->tap_->addNewest(std::numeric_limits<double>::infinity());
     return screen;

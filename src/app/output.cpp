@@ -45,7 +45,7 @@ Material materialFor(const fs::path& output, const fs::path& source, const std::
 
 Result<void> copyTo(const fs::path& folder, const Material& material) {
     if (!material.copied) return {};
-    const std::string content = TRY(readFile(material.source));
+    const std::string content = TRY(readFile(material.source, kMaxFileBytes));
     return writeFile(folder / material.name, content);
 }
 

@@ -23,26 +23,37 @@ void setThreadRank(Rank rank) {
 
 PartThreads::PartThreads(Clock& clock, std::vector<Part> parts) {
     for (Part& part : parts) {
-        threads_.emplace_back([&clock, part = std::move(part)](const std::stop_token& stop) {
-            setThreadRank(part.rank);  // a new thread has that of the one that made it
-            for (std::int64_t next = 0; !stop.stop_requested();) {
-                clock.sleepUntil(part.phase + tickTime(next, part.rate));
-                next = std::max(next, tickAt(clock.now() - part.phase, part.rate));
-                if (stop.stop_requested()) break;
-                part.work(part.phase + tickTime(next, part.rate));
-                ++next;
-            }
-        });
+        const Rank rank = part.rank;
+        threads_.push_back({rank, std::jthread([&clock, part = std::move(part)](const std::stop_token& stop) {
+                                setThreadRank(part.rank);  // a new thread has that of the one that made it
+                                for (std::int64_t next = 0; !stop.stop_requested();) {
+                                    clock.sleepUntil(part.phase + tickTime(next, part.rate));
+                                    next = std::max(next, tickAt(clock.now() - part.phase, part.rate));
+                                    if (stop.stop_requested()) break;
+                                    part.work(part.phase + tickTime(next, part.rate));
+                                    ++next;
+                                }
+                            })});
     }
 }
 
 PartThreads::~PartThreads() {
-    for (std::jthread& thread : threads_) thread.request_stop();
+    for (Running& running : threads_) running.thread.request_stop();
+}
+
+void PartThreads::endAllBut(Rank rank) {
+    for (Running& running : threads_)
+        if (running.rank != rank) running.thread.request_stop();
+    std::erase_if(threads_, [&](const Running& running) { return running.rank != rank; });
 }
 
 void SteppedClock::setParts(std::vector<Part> parts) {
     parts_.clear();
     for (Part& part : parts) parts_.push_back({std::move(part)});
+}
+
+void SteppedClock::endAllBut(Rank rank) {
+    std::erase_if(parts_, [&](const Scheduled& scheduled) { return scheduled.part.rank != rank; });
 }
 
 void SteppedClock::sleepUntil(Time time) {

@@ -32,9 +32,15 @@ class PartThreads {
 public:
     PartThreads(Clock& clock, std::vector<Part> parts);
     ~PartThreads();  // returns when the work that is under way is done
+    // Ends the parts of all other ranks; returns when the work that they have under way is done.
+    void endAllBut(Rank rank);
 
 private:
-    std::vector<std::jthread> threads_;
+    struct Running {
+        Rank rank;
+        std::jthread thread;
+    };
+    std::vector<Running> threads_;
 };
 
 // A clock for a rehearsal as fast as possible: whoever sleeps on it lets the parts do what is due until then, at their exact moments and in
@@ -44,6 +50,7 @@ public:
     Time now() const override { return manual_.now(); }
     void sleepUntil(Time time) override;
     void setParts(std::vector<Part> parts);
+    void endAllBut(Rank rank);  // as PartThreads'
 
 private:
     struct Scheduled {

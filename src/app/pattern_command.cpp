@@ -1,6 +1,7 @@
 #include "app/pattern_command.h"
 
 #include "app/attendance.h"
+#include "app/drawing.h"
 #include "app/output.h"
 #include "app/progress.h"
 #include "app/report.h"
@@ -15,6 +16,7 @@
 
 #include "core/clock.h"
 #include "core/file.h"
+#include "core/log.h"
 #include "core/parallel.h"
 
 #include <fmt/format.h>
@@ -24,7 +26,6 @@
 #include <filesystem>
 #include <iostream>
 #include <limits>
-#include <map>
 #include <optional>
 #include <set>
 #include <vector>
@@ -47,7 +48,7 @@ struct Options {
     std::optional<std::uint32_t> instances;
     std::optional<double> seconds, targetZ;
     std::optional<int> iterations;
-    bool shadows = false;
+    bool shadows = false, invert = false;
     std::uint64_t seed = 1;
     int threads = hardwareThreads();
     PatternSearch::Method method = PatternSearch::Method::Refined;
@@ -56,9 +57,7 @@ struct Options {
 
 void declare(CLI::App& command, Options& options) {
     command.add_option("GUIDE", options.guide, "The grey drawing: PNG, JPEG or TIFF")->required();
-    command.add_option("-o,--output", options.output, "The pattern to write, P.pattern.yaml")
-        ->required()
-        ->check(onlyYaml("P.pattern.yaml"));
+    addOutOption(command, options.output, "The pattern to write, P.pattern.yaml")->required()->check(onlyYaml("P.pattern.yaml"));
     command
         .add_option(
             "--shapes", options.shapes,
@@ -77,11 +76,9 @@ void declare(CLI::App& command, Options& options) {
         ->check(CLI::Range(0, std::numeric_limits<int>::max()));
     command.add_option("--target-z", options.targetZ, "Stop once the mean difference from the guide is below this")
         ->check(CLI::Range(0.0, 1.0));
-    command
-        .add_option("--method", options.method,
-                    "refined: one exact move at a time; paper: Ji et al. 2015, section 4.1, as written")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, PatternSearch::Method>{
-            {"refined", PatternSearch::Method::Refined}, {"paper", PatternSearch::Method::Paper}}))
+    addChoice<PatternSearch::Method>(command, "--method", options.method,
+                                     {{"refined", PatternSearch::Method::Refined}, {"paper", PatternSearch::Method::Paper}},
+                                     "refined: one exact move at a time; paper: Ji et al. 2015, section 4.1, as written")
         ->default_str("refined");
     auto* start = command.add_option("--start", options.start,
                                      "Go on from this pattern, with its shapes, seed and movement; the refined method");
@@ -95,6 +92,7 @@ void declare(CLI::App& command, Options& options) {
     command.add_option("--image", options.image, "Also write the pattern white on black, in the guide's size, as PNG");
     command.add_flag("--shadows", options.shadows,
                      "The shapes are dark and stand where the drawing is dark, as leaves do in a show's foliage");
+    command.add_flag("--invert", options.invert, "The drawing is dark ink on white paper: what is dark is wanted light");
     command.add_option("--seed", options.seed, "Another seed, another pattern; the same seed, the same pattern")
         ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
         ->capture_default_str();
@@ -105,8 +103,8 @@ void declare(CLI::App& command, Options& options) {
     command.footer("While it searches, the space bar pauses and goes on; escape, q and Ctrl-C end it with the best so far.");
 }
 
-// The drawing of the shadows that shapes are to fill: what `guide` leaves dark, in the 8 bits of the file that it becomes.
-GreyImage shadowsOf(GreyImage guide) {
+// The drawing turned over, in the 8 bits of the file that it becomes: of the shadows that shapes are to fill, or of ink that is to be light.
+GreyImage turnedOver(GreyImage guide) {
     guide = inverted(std::move(guide));
     for (float& value : guide.pixels()) value = std::round(value * 255) / 255;
     return guide;
@@ -255,7 +253,14 @@ Result<void> run(const Options& options) {
     for (const auto& file : {options.image, options.report})
         if (file) TRY(checkWritable(*file));
     GreyImage guide = TRY(readGrey(options.guide));
-    if (options.shadows) guide = shadowsOf(std::move(guide));
+    TRY(checkDrawn(guide, options.guide));
+    if (isInkOnPaper(guide) && !options.invert)
+        log::warning("pattern",
+                     fmt::format("{}: looks like dark ink on white paper, and white is what becomes light; with --invert "
+                                 "the ink does",
+                                 options.guide.string()));
+    const bool isTurnedOver = options.shadows != options.invert;
+    if (isTurnedOver) guide = turnedOver(std::move(guide));
     pattern::PatternSettings settings;
     if (options.settings) settings = TRY(pattern::readPatternSettings(*options.settings));
     settings.search.method = options.method;
@@ -275,8 +280,11 @@ Result<void> run(const Options& options) {
     std::vector<pattern::ShapeSettings> shapes = TRY(chosenShapes(options, settings, start));
     std::vector<Material> shapeFiles;
     TRY(placeShapes(options.output, shapes, shapeFiles));
-    const Material guideFile = options.shadows
-                                   ? Material{{}, options.output.stem().stem().string() + ".shadows.png", false}
+    // Its name tells `check` what the shapes are for: shapes that were made as light are no leaves.
+    const std::string stem = options.output.stem().stem().string();
+    const Material guideFile = options.shadows ? Material{{}, stem + ".shadows.png", false}
+                               : options.invert
+                                   ? Material{{}, stem + ".inverted.png", false}
                                    : materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
 
     ShapePattern pattern;
@@ -301,7 +309,7 @@ Result<void> run(const Options& options) {
 
     // What the pattern names first, so that it never names what is not there.
     const fs::path folder = fs::absolute(options.output).parent_path();
-    if (options.shadows) TRY(writePng(folder / guideFile.name, guide));
+    if (options.shadows || options.invert) TRY(writePng(folder / guideFile.name, guide));
     TRY(copyTo(folder, guideFile));
     for (const Material& file : shapeFiles) TRY(copyTo(folder, file));
     found.pattern.guide = folder / guideFile.name;

@@ -27,6 +27,9 @@ public:
         stateAt(time, state, [](const show::Input&) {});
     }
 
+    // With the inputs that the last stateAt() took.
+    const show::Playback& playback() const { return playback_; }
+
 private:
     static constexpr std::size_t kMostWaiting = 256;  // inputs; a hand gives a few a second, an owner looks many times a second
     show::Playback playback_;

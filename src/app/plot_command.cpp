@@ -6,6 +6,7 @@
 #include "pattern/shape_pattern.h"
 
 #include "core/file.h"
+#include "core/naming.h"
 #include "plot/cast_figures.h"
 #include "plot/cast_picture.h"
 #include "plot/figures.h"
@@ -15,7 +16,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
-#include <map>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -65,18 +65,16 @@ void declare(CLI::App& command, Options& options) {
     command
         .add_option("INPUT", options.input, "A pattern, *.pattern.yaml, the report of its search, *.json, or a cast, *.cast.yaml")
         ->required();
-    command.add_option("-o,--output", options.output, "The picture to write, PNG or SVG")
+    addOutOption(command, options.output, "The picture to write, PNG or SVG")
         ->required()
         ->check(CLI::Validator(onlyPlot, "PNG|SVG"));
-    std::map<std::string, Figure> figures;
-    for (const Entry& entry : kFigures) figures.emplace(entry.name, entry.figure);
-    command
-        .add_option(
-            "--figure", options.figure,
-            "of a pattern: difference (from its guide, the default), trajectories or spectrum (of its movement); of a report: "
-            "search (z over the iterations); of a cast: stage (seen from behind the lamp), side (seen from there), shadow (who "
-            "throws what), actors (each one's shadow), or cast (stage, shadow and actors, the default)")
-        ->transform(CLI::CheckedTransformer(figures));
+    std::vector<std::pair<std::string, Figure>> figures;
+    for (const Entry& entry : kFigures) figures.emplace_back(entry.name, entry.figure);
+    addChoice<Figure>(
+        command, "--figure", options.figure, figures,
+        "of a pattern: difference (from its guide, the default), trajectories or spectrum (of its movement); of a report: "
+        "search (z over the iterations); of a cast: stage (seen from behind the lamp), side (seen from there), shadow (who "
+        "throws what), actors (each one's shadow), or cast (stage, shadow and actors, the default)");
     command.add_option("--frame", options.frame, "of a cast that moves, from 0")->capture_default_str();
 }
 
@@ -100,8 +98,9 @@ Result<plot::SearchHistory> readHistory(const fs::path& file) {
 Result<plot::Page> drawPattern(const fs::path& file, Figure figure) {
     const pattern::ShapePattern pattern = TRY(pattern::readPattern(file));
     if (figure == Figure::Difference) {
-        const GreyImage guide = TRY(readGrey(pattern.guide).in(file.string() + ": guide"));
-        return plot::differenceFigure(pattern, guide);
+        const auto guide = readGrey(pattern.guide);
+        if (!guide) return namedIn(file, pattern.guide, guide.error());
+        return plot::differenceFigure(pattern, *guide);
     }
     return figure == Figure::Trajectories ? plot::trajectoriesFigure(pattern) : plot::spectrumFigure(pattern);
 }

@@ -1,6 +1,7 @@
 #include "app/pose_command.h"
 
 #include "app/data_folder.h"
+#include "app/drawing.h"
 #include "app/output.h"
 #include "app/pose_trials.h"
 #include "app/progress.h"
@@ -29,7 +30,6 @@
 #include <filesystem>
 #include <iostream>
 #include <limits>
-#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -61,6 +61,7 @@ struct Options {
     int threads = hardwareThreads();
     PoseSearch::Options search;
     std::optional<fs::path> hints, stage;
+    bool invert = false;
     std::vector<fs::path> furtherTargets;
     std::vector<double> furtherHeights, furtherMiddles;
     std::optional<std::string> weights;  // a preset's name, or a file
@@ -76,9 +77,7 @@ std::string onlyPicture(const std::string& file) {
 
 void declare(CLI::App& command, Options& options) {
     command.add_option("TARGET", options.target, "The silhouette, white on black: PNG or JPEG")->required();
-    command.add_option("-o,--output", options.output, "The poses to write, C.cast.yaml")
-        ->required()
-        ->check(onlyYaml("C.cast.yaml"));
+    addOutOption(command, options.output, "The poses to write, C.cast.yaml")->required()->check(onlyYaml("C.cast.yaml"));
     command
         .add_option_function<std::string>(
             "--actors",
@@ -102,6 +101,7 @@ void declare(CLI::App& command, Options& options) {
         ->allow_extra_args(false)
         ->check(CLI::Range(0.9, 2.1))
         ->capture_default_str();
+    command.add_flag("--invert", options.invert, "The silhouettes are black ink on white paper");
     command.add_option("--hints", options.hints,
                        "Which body parts may come to which points of the target, *.hints.yaml (docs/hints-format.md)");
     command.add_option("--weights", options.weights,
@@ -139,13 +139,10 @@ void declare(CLI::App& command, Options& options) {
                        fmt::format("Of the energy, in a trial (default {}, and {} for more than {} actors or targets than one; "
                                    "fewer where the time is short)",
                                    kEvaluationsOfFew, kEvaluationsOfMany, kFewActors));
-    command
-        .add_option("--method", options.search.method,
-                    "refined, or paper: CMA-ES as Won & Lee 2016 have it, with their refinement")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, PoseSearch::Method>{{"refined", PoseSearch::Method::Refined},
-                                                                                      {"paper", PoseSearch::Method::Paper}}))
-        ->default_str("refined")
-        ->type_name("refined|paper");
+    addChoice<PoseSearch::Method>(command, "--method", options.search.method,
+                                  {{"refined", PoseSearch::Method::Refined}, {"paper", PoseSearch::Method::Paper}},
+                                  "refined, or paper: CMA-ES as Won & Lee 2016 have it, with their refinement")
+        ->default_str("refined");
     command
         .add_option("--residual", options.search.residual,
                     "The paper's method: the energy that needs no refinement unless artefacts are seen")
@@ -425,7 +422,8 @@ std::string brief(const Found& found) {
     if (finished > 0)
         text += fmt::format(", the best of {} trial{}", finished, finished == 1 ? "" : "s");
     else
-        text += "; no trial was finished: take more --seconds, or fewer --evaluations";
+        text += fmt::format(", reached in an unfinished search after {:.0f} s; more --seconds may improve it",
+                            found.trials().seconds);
     if (best.quality.propsCover > 0)
         text += fmt::format("; the people's shadow alone {:.3f}, and platforms and props cover {:.0f} % of the target",
                             best.quality.iouWithoutProps, 100 * best.quality.propsCover);
@@ -437,7 +435,7 @@ std::string brief(const Found& found) {
 Result<theatre::PoseWeights> weightsOf(const Options& options) {
     if (!options.weights) return theatre::PoseWeights{};
     if (fs::path(*options.weights).extension() == ".yaml") return theatre::readWeights(*options.weights);
-    return theatre::readWeights(dataFolder() / "assets/silhouettes/weights.yaml", *options.weights);
+    return theatre::readWeights(TRY(dataFolder()) / "assets/silhouettes/weights.yaml", *options.weights);
 }
 
 // As many evaluations of a trial as a thread finishes within the time, but no more than a trial needs. What is found so stands in the report, and
@@ -565,14 +563,18 @@ theatre::Cast::Target furtherTarget(const Options& options, const theatre::Stage
     return target;
 }
 
-Result<void> run(const Options& options) {
+Result<void> run(const Options& given) {
+    Options options = given;
     SteadyClock clock;
     const Time start = clock.now();
     // Whatever can be refused is refused before the search begins.
     TRY(checkOutputs(options));
     std::vector<GreyImage> silhouettes;
-    for (std::size_t i = 0; i <= options.furtherTargets.size(); ++i)
-        silhouettes.push_back(TRY(readSilhouette(options.targetOf(i))));
+    for (std::size_t i = 0; i <= options.furtherTargets.size(); ++i) {
+        silhouettes.push_back(TRY(readDrawnSilhouette(options.targetOf(i), options.invert)));
+        fs::path& target = i == 0 ? options.target : options.furtherTargets[i - 1];
+        if (options.invert) target = TRY(writeInverted(target, options.output));  // what the cast names
+    }
     std::optional<theatre::Stage> stage;
     if (options.stage) {
         stage = TRY(theatre::readStage(*options.stage));

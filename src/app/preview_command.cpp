@@ -35,8 +35,8 @@ void declare(CLI::App& command, Options& options) {
                     "A *.pattern.yaml; a picture, such as the guide itself; or a show's folder, with --output and --cue")
         ->required();
     command.add_option("--scene", options.scene, "The mesh that it falls on: FBX, OBJ, glTF, PLY or STL")->required();
-    command.add_option("-o", options.file, "The picture to write, PNG, or a film of the sway, FILE.mp4")->required();
     declareFilmOptions(command, options.mask);
+    addOutOption(command, options.file, "The picture to write, PNG, or a film of the sway, FILE.mp4")->required();
     command
         .add_option("--seconds", options.seconds,
                     fmt::format("The moment of the sway that is shown; of a film, where it ends (default: 0; {})", kFilmSeconds))
@@ -70,8 +70,10 @@ struct Mask {
     std::shared_ptr<const RgbaImage> picture;  // of which the mask consists then
 
     static Result<Mask> open(const FilmRequest& request) {
-        if (fs::is_regular_file(request.what) && request.what.extension() != ".yaml")
-            return Mask{std::nullopt, std::make_shared<const RgbaImage>(TRY(readRgba(request.what)))};
+        if (fs::is_regular_file(request.what) && request.what.extension() != ".yaml") {
+            auto picture = std::make_shared<const RgbaImage>(TRY(readRgba(request.what)));
+            return Mask{std::nullopt, std::move(picture)};
+        }
         if (!request.output.empty() && request.cue.empty())
             return Error(fmt::format("{}: which cue? Add --cue NAME", request.what.string()));
         return Mask{TRY(Film::open(request)), nullptr};

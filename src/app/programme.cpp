@@ -1,5 +1,6 @@
 #include "app/programme.h"
 
+#include "app/site_file.h"
 #include "app/site_models.h"
 
 #include "pattern/shape_pattern.h"
@@ -9,6 +10,7 @@
 #include "theatre/pose_problem.h"
 
 #include "core/image.h"
+#include "core/naming.h"
 
 #include <fmt/format.h>
 
@@ -26,7 +28,8 @@ namespace fs = std::filesystem;
 struct Pictures {
     struct Guide {
         GreyImage drawing;  // stored values, as the pattern was compared with them
-        double canvasAspect = 1;
+        double aspect = 1;  // width / height of the source's picture
+        Fit fit = Fit::Contain;
     };
     std::vector<render::PictureSource> sources;
     std::vector<std::optional<Guide>> guides;
@@ -38,12 +41,15 @@ struct Picture {
 };
 
 Result<Pictures::Guide> readGuide(const pattern::ShapePattern& pattern, const fs::path& file) {
-    return Pictures::Guide{TRY(readGrey(pattern.guide).in(file.string() + ": guide")), pattern.aspect()};
+    auto drawing = readGrey(pattern.guide);
+    if (!drawing) return namedIn(file, pattern.guide, drawing.error());
+    return Pictures::Guide{std::move(*drawing), pattern.aspect()};
 }
 
-Result<Picture> readPicture(const show::PatternSource& source) {
-    const render::PatternSource pattern = TRY(readPatternSource(source.file));
-    return Picture{pattern, TRY(readGuide(*pattern.pattern, source.file))};
+Result<Picture> readPicture(const show::PatternSource& source, bool isWatched) {
+    Picture picture{TRY(readPatternSource(source.file)), {}};
+    if (isWatched) picture.guide = TRY(readGuide(*std::get<render::PatternSource>(picture.source).pattern, source.file));
+    return picture;
 }
 
 Result<Picture> readPicture(const show::SolidSource& source) { return Picture{render::SolidSource{source.colour}, {}}; }
@@ -57,7 +63,7 @@ Result<std::shared_ptr<const GreyImage>> readFilter(const fs::path& file) {
     return std::make_shared<const GreyImage>(std::move(picture));
 }
 
-Result<Picture> readPicture(const show::FoliageSource& source) {
+Result<Picture> readPicture(const show::FoliageSource& source, bool isWatched) {
     render::FoliageSource foliage{source.light, source.shadow, {}};
     std::optional<Pictures::Guide> guide;
     for (const show::FoliageSource::Layer& layer : source.layers) {
@@ -66,15 +72,16 @@ Result<Picture> readPicture(const show::FoliageSource& source) {
         shadow.holes = layer.holes;
         shadow.filter.width = render::penumbraWidth(layer.distance, source.sun) / source.height;
         if (layer.filter) shadow.filter.picture = TRY(readFilter(*layer.filter));
-        if (!guide) {
+        if (isWatched && !guide) {
             guide = TRY(readGuide(*shadow.leaves.pattern, layer.pattern));
             if (!layer.holes) guide->drawing = inverted(std::move(guide->drawing));
         }
-        if (std::abs(shadow.leaves.pattern->aspect() - guide->canvasAspect) > 1e-6)
-            return Error(fmt::format(
-                "{}: its picture is {:.4f} times as wide as high, and {} is {:.4f} times; the layers of one "
-                "foliage need drawings of one shape",
-                layer.pattern.string(), shadow.leaves.pattern->aspect(), source.layers[0].pattern.string(), guide->canvasAspect));
+        const double aspect = (foliage.layers.empty() ? shadow : foliage.layers[0]).leaves.pattern->aspect();
+        if (std::abs(shadow.leaves.pattern->aspect() - aspect) > 1e-6)
+            return Error(
+                fmt::format("{}: its picture is {:.4f} times as wide as high, and {} is {:.4f} times; the layers of one "
+                            "foliage need drawings of one shape",
+                            layer.pattern.string(), shadow.leaves.pattern->aspect(), source.layers[0].pattern.string(), aspect));
         foliage.layers.push_back(std::move(shadow));
     }
     return Picture{std::move(foliage), std::move(guide)};
@@ -153,7 +160,9 @@ Result<Picture> readPicture(const show::ShadowSource& source) {
         &wanted = shadow.beam == 0 ? own : cast->further[shadow.beam - 1];
     theatre::TargetPlace where;
     if (shadow.beam > 0) where = {shadow.beam, wanted.middle};
-    GreyImage drawing = TRY(readGrey(wanted.file));
+    auto read = readGrey(wanted.file);
+    if (!read) return namedIn(source.cast, wanted.file, read.error());
+    GreyImage drawing = std::move(*read);
     auto target = theatre::PoseTarget::from(drawing, cast->stage, wanted.height, kRows, where);
     if (!target) return target.error().in(wanted.file.string());
     const theatre::ScreenFrame& given = target->given;
@@ -166,26 +175,37 @@ Result<Picture> readPicture(const show::ShadowSource& source) {
     return Picture{std::move(shadow), std::move(guide)};
 }
 
-// `camera`: null if the site has none.
+// `camera`: null if the site has none. `isWatched`: somebody compares what is seen with the drawings.
+Result<Picture> readSource(const show::Source& source, render::VideoStream::Pace pace,
+                           const std::shared_ptr<render::PictureFeed>& camera, bool isWatched) {
+    const auto read = [&](const auto& kind) -> Result<Picture> {
+        using Kind = std::decay_t<decltype(kind)>;
+        if constexpr (std::is_same_v<Kind, show::VideoSource>)
+            return readPicture(kind, pace);
+        else if constexpr (std::is_same_v<Kind, show::CameraSource>)
+            return readPicture(camera);
+        else if constexpr (std::is_same_v<Kind, show::PatternSource> || std::is_same_v<Kind, show::FoliageSource>)
+            return readPicture(kind, isWatched);
+        else
+            return readPicture(kind);
+    };
+    auto made = std::visit(read, source.picture);
+    if (!made) return source.at.error(made.error());
+    made->source = render::fitted(std::move(made->source), source.fit);
+    if (made->guide) made->guide->fit = source.fit;
+    return made;
+}
+
 Result<Pictures> readPictures(const show::Show& show, render::VideoStream::Pace pace,
-                              const std::shared_ptr<render::PictureFeed>& camera) {
+                              const std::shared_ptr<render::PictureFeed>& camera, bool isWatched) {
     Pictures pictures;
-    for (const show::Source& source : show.sources) {
-        const auto read = [&](const auto& kind) -> Result<Picture> {
-            using Kind = std::decay_t<decltype(kind)>;
-            if constexpr (std::is_same_v<Kind, show::VideoSource>)
-                return readPicture(kind, pace);
-            else if constexpr (std::is_same_v<Kind, show::CameraSource>)
-                return readPicture(camera);
-            else
-                return readPicture(kind);
-        };
-        auto made = std::visit(read, source.picture);
-        if (!made) return source.at.error(made.error().message());
-        Picture picture = std::move(*made);
-        pictures.sources.push_back(std::move(picture.source));
-        pictures.guides.push_back(std::move(picture.guide));
-    }
+    ConfigFaults faults;
+    for (const show::Source& source : show.sources)
+        faults.take(readSource(source, pace, camera, isWatched), [&](Picture picture) {
+            pictures.sources.push_back(std::move(picture.source));
+            pictures.guides.push_back(std::move(picture.guide));
+        });
+    TRY(faults.result());
     return pictures;
 }
 
@@ -195,7 +215,7 @@ Result<std::vector<Watch::Comparisons>> compareWith(const std::vector<std::optio
     for (std::size_t output = 0; output < site.outputs.size(); ++output)
         for (const auto& guide : guides) {
             std::optional<vision::NominalView> view;
-            if (guide) view = TRY(nominalViewOf(site, output, guide->canvasAspect));
+            if (guide) view = TRY(nominalViewOf(site, output, guide->aspect, guide->fit));
             comparisons[output].push_back(view ? std::make_shared<const vision::GuideComparison>(*view, guide->drawing)
                                                : nullptr);
         }
@@ -210,10 +230,15 @@ Result<render::PatternSource> readPatternSource(const fs::path& file) {
     return render::PatternSource{std::move(pattern), std::move(motion)};
 }
 
+Result<render::PictureSource> readPictureSource(const show::Source& source, render::VideoStream::Pace pace,
+                                                const std::shared_ptr<render::PictureFeed>& camera) {
+    return TRY(readSource(source, pace, camera, false)).source;
+}
+
 Result<Programme> readProgramme(const RunOptions& options) {
     Programme programme;
     programme.show = TRY(show::Show::load(options.show));
-    programme.site = TRY(show::readSite(fs::is_directory(options.site) ? options.site / "site.yaml" : options.site));
+    programme.site = TRY(readSite(options.site));
     programme.cues = TRY(programme.show.bind(programme.site));
     if (!options.fromCue.empty()) {
         const std::size_t cue = TRY(programme.show.cueNamed(options.fromCue));
@@ -222,7 +247,11 @@ Result<Programme> readProgramme(const RunOptions& options) {
     if (programme.site.nominalCamera)
         programme.camera = std::make_shared<render::PictureFeed>(programme.site.nominalCamera->size);
     using Pace = render::VideoStream::Pace;
-    Pictures pictures = TRY(readPictures(programme.show, options.asFastAsPossible ? Pace::Exact : Pace::Live, programme.camera));
+    const bool isWatched =
+        programme.site.camera && std::any_of(programme.site.outputs.begin(), programme.site.outputs.end(),
+                                             [](const auto& output) { return output.projector && output.surface; });
+    Pictures pictures =
+        TRY(readPictures(programme.show, options.asFastAsPossible ? Pace::Exact : Pace::Live, programme.camera, isWatched));
     programme.sources = std::move(pictures.sources);
     programme.comparisons = TRY(compareWith(pictures.guides, programme.site));
     return programme;

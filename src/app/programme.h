@@ -32,7 +32,12 @@ struct Programme {
 // A pattern with its movement, ready to be drawn. Error: as pattern::readPattern.
 Result<render::PatternSource> readPatternSource(const std::filesystem::path& file);
 
-// Error: the first file that cannot be used, with its place and what to do.
+// A show's source, ready to be drawn. `camera`: what a camera's source shows; null if the site has none. Error: the source's place, and that of
+// whatever is wrong in its files.
+Result<render::PictureSource> readPictureSource(const show::Source& source, render::VideoStream::Pace pace,
+                                                const std::shared_ptr<render::PictureFeed>& camera);
+
+// Error: all sources that cannot be used, with their places and what to do.
 Result<Programme> readProgramme(const RunOptions& options);
 
 }  // namespace fantascope::app

@@ -1,7 +1,10 @@
 #pragma once
 
+#include "app/terminal_line.h"
+
 #include "core/clock.h"
 
+#include <functional>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -9,16 +12,14 @@
 
 namespace fantascope::app {
 
-// How far a long run has come, for the person who waits: on a terminal one line that is drawn over and over, with a bar, the
-// current value and the time left; elsewhere a plain line every two seconds. Thread: one at a time.
+// How far a long computation has come, for the person who waits: on a terminal one line that is drawn over and over, with a bar where there is
+// room, the current value and the time left; elsewhere a plain line every two seconds. It goes to standard error, so that standard output
+// stays clean. Thread: one at a time.
 class Progress {
 public:
-    // `out` and `clock` outlive it.
-    Progress(std::string label, const Clock& clock, std::ostream& out, bool terminal);
-    // Leaves the last line standing.
-    ~Progress();
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
+    // `out` and `clock` outlive it; `columns`: of the terminal, where it is one.
+    Progress(std::string label, const Clock& clock, std::ostream& out, bool terminal,
+             std::function<int()> columns = standardErrorColumns);
 
     // `done` is the share of the run behind us, 0..1, or nothing where the run has no end; `value` what is worth seeing, as "z
     // 0.0312". Cheap to call often: draws at most ten times a second.
@@ -30,12 +31,9 @@ private:
     const std::string label_;
     const Clock& clock_;
     std::ostream& out_;
-    const bool terminal_;
+    std::optional<TerminalLine> terminal_;
     const Time start_;
     std::optional<Time> drawn_;  // when the last line was
 };
-
-// Whether standard error is a terminal; progress goes there, so that standard output stays clean.
-bool standardErrorIsTerminal();
 
 }  // namespace fantascope::app

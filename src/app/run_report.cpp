@@ -37,12 +37,15 @@ std::string lateFramesByCause(const std::vector<OutputReport>& outputs) {
     return text;
 }
 
+std::string sentenceOf(const std::vector<UnsafeBank>& unsafe) {
+    std::string banks;
+    for (const auto& [bank, why] : unsafe) banks += fmt::format("{}'{}' ({})", banks.empty() ? "" : ", ", bank, why);
+    return fmt::format("RELAYS MAY BE UNSAFE: {} did not confirm the safe states. Switch them at the module", banks);
+}
+
 Report jsonOf(const RunReport& report) {
     Report json, frameMs = Report::object(), late = Report::object(), lateBy = Report::object(), framesBy = Report::object();
-    std::int64_t frames = 0, lateFrames = 0;
     for (const OutputReport& output : report.outputs) {
-        frames += output.frames;
-        lateFrames += output.lateFrames();
         framesBy[output.name] = output.frames;
         late[output.name] = output.lateFrames();
         for (std::size_t part = 0; part < kFrameParts; ++part) {
@@ -50,12 +53,18 @@ Report jsonOf(const RunReport& report) {
             frameMs[output.name][kPartNames[part]] = jsonOf(output.took[part]);
         }
         lateBy[output.name][kMachine] = output.lateByMachine;
+        if (!output.recorded) continue;
+        json["recorded"][output.name] = *output.recorded;
+        json["not_recorded"][output.name] = output.frames - *output.recorded;
     }
     json["seconds"] = seconds(report.length);
     json["seed"] = report.seed;
     json["stop_reason"] = report.stopReason;
-    json["frames"] = frames;
-    json["late_frames"] = lateFrames;
+    if (!report.hung.empty()) json["hung"] = report.hung;
+    json["unsafe_relays"] = Report::array();
+    for (const auto& [bank, why] : report.unsafe) json["unsafe_relays"].push_back({{"bank", bank}, {"why", why}});
+    json["frames"] = report.frames;
+    json["late_frames"] = report.lateFrames;
     json["frames_by_output"] = framesBy;
     json["late_frames_by_output"] = late;
     json["late_frames_by_cause"] = lateBy;
@@ -69,7 +78,12 @@ Report jsonOf(const RunReport& report) {
     json["cues"] = Report::array();
     for (const CueReport& cue : report.cues) json["cues"].push_back({{"name", cue.name}, {"entered", seconds(cue.entered)}});
     json["faults"] = Report::array();
-    for (const FaultReport& fault : report.faults) json["faults"].push_back({{"at", seconds(fault.at)}, {"what", fault.what}});
+    for (const FaultReport& fault : report.faults) {
+        Report entry = {{"at", seconds(fault.at)}, {"what", fault.what}};
+        if (!fault.device.empty()) entry["device"] = fault.device;
+        if (fault.until) entry["until"] = seconds(*fault.until);
+        json["faults"].push_back(std::move(entry));
+    }
     json["z_camera"] = Report::object();
     for (const auto& [output, series] : report.zCamera) {
         json["z_camera"][output] = Report::array();

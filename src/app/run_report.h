@@ -37,6 +37,7 @@ struct OutputReport {
     std::array<std::int64_t, kFrameParts> lateBy{};  // refreshes without a frame of their own, by the part that made them so
     std::int64_t lateByMachine = 0;                  // and by none
     std::array<Durations, kFrameParts> took{};       // of each frame shown
+    std::optional<std::int64_t> recorded{};          // of the frames shown; nothing where no recording is made
 
     std::int64_t lateFrames() const { return std::accumulate(lateBy.begin(), lateBy.end(), lateByMachine); }
 };
@@ -49,12 +50,22 @@ struct CueReport {
 struct FaultReport {
     Time at{};
     std::string what;
+    std::string device{};         // by its name in the site file; empty: none
+    std::optional<Time> until{};  // nothing: to the end, or it has no length
 };
+
+// A bank of relays whose safe states are not confirmed.
+struct UnsafeBank {
+    std::string name, why;
+};
+// What to tell the operator of relays that were not made safe: which, why, and what to do.
+std::string sentenceOf(const std::vector<UnsafeBank>& unsafe);
 
 // What a run has to say of itself. Every figure is a measurement of that run; times are show time.
 struct RunReport {
     Time length{};
     std::uint64_t seed = 0;
+    std::int64_t frames = 0, lateFrames = 0;  // on all outputs
     std::vector<OutputReport> outputs;
     Durations swapSkew;      // between the first and the last output's swap of one frame
     Durations inputToFrame;  // from a button's arrival to the first refresh that shows its effect
@@ -65,7 +76,9 @@ struct RunReport {
     std::vector<FaultReport> faults;
     std::map<std::string, std::vector<std::pair<Time, double>>> zCamera;  // per output
     std::map<std::string, std::int64_t> lateVideoFrames;                  // per source that is a video
+    std::vector<UnsafeBank> unsafe;
     std::string stopReason;
+    std::string hung;  // why the program did not wait for the render thread; empty: it came back
 };
 
 // All late frames by what made them so: "3 render, 1 machine"; empty where none was late.

@@ -163,12 +163,24 @@ void SettingUp::run(const show::EditCommand& command) {
     moved_ |= std::holds_alternative<edit::Move>(command) || std::holds_alternative<edit::MoveTo>(command);
 }
 
+Result<ConfigPath> SettingUp::inFile(const ConfigPath& path) const {
+    const show::Site& site = editor_.site();
+    const std::string& name = site.outputs[*path[1].index()].name;
+    const auto place = document_->itemNamed("outputs", name);
+    if (!place) return Error(fmt::format("{}: there is no output '{}' any more", site.file.string(), name));
+    ConfigPath there{"outputs", *place};
+    there.insert(there.end(), path.begin() + 2, path.end());
+    return there;
+}
+
 void SettingUp::save() {
     const std::filesystem::path& file = editor_.site().file;
     const auto written = [&]() -> Result<void> {
         if (!document_) document_ = TRY(ConfigDocument::load(file));
-        for (const show::SiteEditor::Change& change : editor_.unsaved())
-            TRY(change.value ? document_->set(change.path, *change.value) : document_->erase(change.path));
+        for (const show::SiteEditor::Change& change : editor_.unsaved()) {
+            const ConfigPath path = TRY(inFile(change.path));
+            TRY(change.value ? document_->set(path, *change.value) : document_->erase(path));
+        }
         return document_->save();
     }();
     if (written) {
@@ -180,21 +192,6 @@ void SettingUp::save() {
         message_ = written.error().message();
         tell_("not written: " + message_);
     }
-}
-
-double SettingUp::aspectOf(const std::string& canvas) const {
-    double sum = 0;
-    const std::vector<std::size_t> outputs = editor_.site().outputsOn(canvas);
-    for (const std::size_t output : outputs) {
-        const WarpShape& warp = editor_.site().outputs[output].projection.warp.shape();
-        const auto& c = warp.corners;
-        glm::dvec2 size(glm::distance(c[0], c[1]) + glm::distance(c[3], c[2]),
-                        glm::distance(c[0], c[3]) + glm::distance(c[1], c[2]));
-        if (warp.orientation.quarterTurns % 2 != 0) std::swap(size.x, size.y);
-        size /= warp.part.high - warp.part.low;
-        sum += size.x / size.y;
-    }
-    return sum / static_cast<double>(outputs.size());
 }
 
 void SettingUp::show() {
@@ -234,7 +231,7 @@ void SettingUp::show() {
                     if (all[handle].at) handles.push_back({*all[handle].at, all[handle].label, handle == now.handle});
             }
             const plot::EditView view{.projection = projection,
-                                      .aspect = aspectOf(site.outputs[i].canvas),
+                                      .aspect = canvasAspectInPixels(site, site.outputs[i].canvas),
                                       .name = site.outputs[i].name,
                                       .number = static_cast<int>(i) + 1,
                                       .picture = now.picture,

@@ -68,9 +68,9 @@ private:
     void take(const ScreenEvent& event, std::size_t output);
     void run(const show::EditCommand& command);
     void save();
+    // Where a change of the site as it was read belongs in the file as it stands. Error: its output is gone.
+    Result<ConfigPath> inFile(const ConfigPath& path) const;
     void repeatHeld(Time moment);
-    // Width / height of a canvas as the pixels of its outputs have it.
-    double aspectOf(const std::string& canvas) const;
     void show();
 
     FrameLoop& frames_;

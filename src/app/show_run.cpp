@@ -2,27 +2,34 @@
 
 #include "app/data_folder.h"
 #include "app/edit_keys.h"
+#include "app/fault_log.h"
 #include "app/frame_loop.h"
+#include "app/frame_recorder.h"
 #include "app/hand.h"
 #include "app/lighting.h"
 #include "app/part.h"
 #include "app/programme.h"
 #include "app/recording.h"
+#include "app/relay_guard.h"
+#include "app/run_keys.h"
 #include "app/screenshots.h"
 #include "app/setting_up.h"
+#include "app/site_claims.h"
 #include "app/site_models.h"
+#include "app/supervisor.h"
 #include "app/terminal_keys.h"
 #include "app/watch.h"
 #include "drivers/site/simulated_site.h"
 
 #include "core/bounded_queue.h"
 #include "core/check.h"
+#include "core/config.h"
 #include "core/log.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
+#include <cstdio>
 #include <limits>
 #include <mutex>
 #include <type_traits>
@@ -33,6 +40,7 @@ namespace {
 
 constexpr double kSiteRate = 120;                          // Hz; a camera frame is exposed at most a tick late
 constexpr double kProgressRate = 2;                        // Hz
+constexpr Time kLookAgain = std::chrono::milliseconds(5);  // at the lights, whether they are there
 constexpr Time kStartUp = std::chrono::milliseconds(100);  // for the parts to be made and their threads to be there
 
 // News for the operator, from the input thread to the progress line.
@@ -41,6 +49,10 @@ public:
     void add(const std::string& sentence) {
         const std::lock_guard lock(mutex_);
         text_ += (text_.empty() ? "" : "; ") + sentence;
+    }
+    bool isThere() {
+        const std::lock_guard lock(mutex_);
+        return !text_.empty();
     }
     std::string take() {
         const std::lock_guard lock(mutex_);
@@ -77,30 +89,40 @@ struct Surrounding {
 // A show while it runs: its parts, and what they pass to each other. Each part is declared in one function below.
 class ShowRun {
 public:
-    ShowRun(const RunOptions& options, const Programme& programme, Surrounding& surrounding, Recording* recording, Clock& clock)
+    // All outlive it; `recording` and `guard` may be null.
+    ShowRun(const RunOptions& options, const Programme& programme, Surrounding& surrounding, Recording* recording, Clock& clock,
+            const std::filesystem::path& assets, Supervisor& supervisor, RelayGuard* guard, News& news)
         : options_(options),
           programme_(programme),
           surrounding_(surrounding),
-          recording_(recording),
           clock_(clock),
-          frames_(programme.site, programme.cues, programme.sources, dataFolder() / "assets", surrounding.devices, clock),
+          supervisor_(supervisor),
+          guard_(guard),
+          news_(news),
+          faults_([this](const std::string& sentence) { news_.add(sentence); }),
+          frames_(programme.site, programme.cues, programme.sources, assets, surrounding.devices, clock),
           keys_(options.asFastAsPossible ? nullptr : std::make_unique<TerminalKeys>()),
           wall_(readers(surrounding.simulation != nullptr,
                         [](render::FrameTap& tap) { return &tap.addNewest(std::numeric_limits<double>::infinity()); })),
-          recorded_{readers(recording != nullptr, [](render::FrameTap& tap) { return &tap.addQueue(); }), {}},
+          recorder_(recorderOf(recording)),
           pictured_(readers(keys_ && keys_->listens(), [](render::FrameTap& tap) { return &tap.addNewest(0); })),
           prepared_(frames_.prepare()),
           start_(frames_.refreshFrom(clock.now() + kStartUp)),
-          lighting_(programme.site, programme.cues, surrounding.devices, clock, start_, recording),
+          deviceWatch_(faults_, bankNames()),
+          lighting_(programme.site, programme.cues, surrounding.devices, clock, start_, recording, &faults_),
           hand_(programme.show, programme.cues, programme.site, surrounding.devices, start_),
           watch_(programme.show, outputNames(), programme.comparisons, surrounding.devices.camera.get(), programme.camera.get(),
                  start_, recording),
           settingUp_(programme.site, frames_, surrounding.devices, [this](const std::string& sentence) { news_.add(sentence); }),
-          schedule_(scheduleOf(options, programme)) {
+          schedule_(scheduleOf(options, programme)),
+          quitKey_(options.backends == Backends::AsDeclared),
+          told_(programme.cues) {
         frames_.begin(start_);
+        if (recorder_) recorder_->begin(start_);
         frames_.publishStateTo(watch_.shown());
         hand_.feed(frames_.replica());
         hand_.feed(lighting_.replica());
+        hand_.feed(told_);
         hand_.edit = [this](show::Button button, bool pressed) { settingUp_.button(button, pressed); };
         hand_.editing = [this] { return settingUp_.on(); };
         lighting_.tell = [this](const std::string& sentence) { news_.add(sentence); };
@@ -113,17 +135,29 @@ public:
         if (programme.firstInput) hand_.give(*programme.firstInput);
     }
 
-    std::vector<Part> parts(const std::function<void(const RunStatus&)>& progress) {
+    ~ShowRun() {
+        supervisor_.release();
+        supervisor_.step("closing the devices: look at the X server");
+    }
+
+    // What goes on until lamps and relays are closed: nothing that waits for a display, a file or a terminal.
+    std::vector<Part> lightParts() {
         std::vector<Part> parts;
         parts.push_back({"input", Hand::kRate, start_, [this](Time moment) { takeInput(moment); }, Rank::Input});
         parts.push_back({"lighting", Lighting::kRate, start_, [this](Time moment) { lighting_.tick(moment); }, Rank::Lighting});
         for (Part& relays : lighting_.relayParts()) parts.push_back(std::move(relays));
+        return parts;
+    }
+    std::vector<Part> otherParts(const std::function<void(const RunStatus&)>& progress) {
+        std::vector<Part> parts;
         if (surrounding_.simulation) parts.push_back(simulatedSite());
         parts.push_back({"watch", Watch::kRate, start_, [this](Time moment) { watch_.tick(moment); }, Rank::Watch});
-        if (recording_ != nullptr) parts.push_back(recorder());
+        if (recorder_ && !options_.asFastAsPossible)
+            for (Part& video : recorder_->parts()) parts.push_back(std::move(video));
         if (screenshots_)
             parts.push_back(
                 {"pictures", Screenshots::kRate, start_, [this](Time moment) { screenshots_->tick(moment); }, Rank::Watch});
+        parts.push_back({"devices", DeviceWatch::kRate, start_, [this](Time moment) { watchDevices(moment); }, Rank::Input});
         parts.push_back(
             {"progress", kProgressRate, start_, [this, progress](Time moment) { progress(statusAt(moment)); }, Rank::Input});
         if (!options_.asFastAsPossible) {
@@ -135,37 +169,82 @@ public:
         return parts;
     }
 
-    // The render thread's life.
-    Result<void> draw(const Interrupt& interrupt) {
+    // The lights' parts, on threads that end with closeLights(); the stepped clock has them otherwise.
+    void startLights() { lights_.emplace(clock_, lightParts()); }
+
+    // The render thread's life. The end has begun when it returns.
+    Result<void> draw() {
         TRY(std::move(prepared_));
         clock_.sleepUntil(start_);
         const Time end = options_.length ? start_ + *options_.length : Time::max();
-        const auto stopped = [&] { return interrupt.requested() || quit_; };
-        while (!stopped() && frames_.nextDue() <= end) TRY(frames_.step());
+        const auto stopped = [&] { return supervisor_.ending(); };
+        while (!stopped() && frames_.nextDue() <= end) {
+            frames_.step();
+            if (recorder_ && options_.asFastAsPossible) recorder_->record(clock_.now());
+        }
         if (!stopped()) clock_.sleepUntil(end);  // the last frame is seen
+        const bool inTime = !stopped();
         length_ = clock_.now() - start_;
-        frames_.finish(stopped() ? clock_.now() : end);
+        endLights();
+        frames_.finish(inTime ? end : clock_.now());
         return {};
     }
 
+    // Relays to their safe states, lamps to their end levels, from now on. Never waits. Thread: any.
+    void endLights() {
+        lighting_.end(clock_.now());
+        supervisor_.requestEnd();
+    }
+    // What the supervisor needs to end it while the render thread hangs.
+    Supervisor::Run supervised() {
+        return {[this] { endLights(); }, [this] { return lighting_.ended(); }, [this] { closeLights(); },
+                [this](const std::string& why) { tellHung(why); }};
+    }
+    // Waits until lamps and relays are where they are to be at the end, for as long as that may take.
+    void awaitLights() {
+        const Time latest = clock_.now() + programme_.site.endFade + Supervisor::kSafeWithin;
+        while (!lighting_.ended() && clock_.now() < latest) clock_.sleepUntil(clock_.now() + kLookAgain);
+    }
+    // Ends what works on lamps and relays and closes both. Where all relays are safe the guard may go. Thread: any.
+    void closeLights() {
+        const std::lock_guard lock(closing_);
+        if (std::exchange(closed_, true)) return;
+        lights_.reset();
+        keys_.reset();  // the terminal is as it was
+        unsafe_ = lighting_.unsafeBanks();
+        surrounding_.devices.lines.clear();
+        surrounding_.devices.relayBanks.clear();
+        if (guard_ != nullptr && unsafe_.empty()) guard_->dismiss();
+    }
+    // Tells which relays are not safe, and whatever else nobody was told yet. Once the lights are closed.
+    void tellTheRest(const std::function<void(const RunStatus&)>& progress) {
+        for (const auto& [bank, why] : unsafe_) {
+            std::vector<std::string> relays;
+            for (const show::Relay& relay : programme_.site.relays)
+                if (programme_.site.relayBanks[relay.bank].name == bank)
+                    relays.push_back(relay.name + (relay.safe ? " on" : " off"));
+            faults_.raise(
+                length_, bank, FaultLog::Topic::SafeStates,
+                fmt::format("'{}' has not confirmed its safe states: {}. Look yourself: {}", bank, why, listed(relays)));
+        }
+        if (news_.isThere()) progress(statusAt(start_ + length_));
+    }
+
     // Once all parts have ended.
-    Result<RunReport> report() {
-        record(Time::max());  // the last frame's moment came with the end of the parts
-        TRY(std::move(recorded_.written).in("recording"));
+    RunReport report() {
+        std::vector<OutputReport> outputs = frames_.outputs();
+        if (recorder_) recorder_->finish(length_, outputs);
         if (settingUp_.unsaved())
             log::warning("app",
                          "how the outputs were set up was not written to " + programme_.site.file.string() + " and is lost");
-        RunReport report;
+        RunReport report = reportOfLights();
         report.length = length_;
         report.stopReason = options_.length && report.length >= *options_.length ? "length" : "interrupted";
-        report.seed = options_.seed;
-        report.outputs = frames_.outputs();
+        report.outputs = std::move(outputs);
         report.swapSkew = frames_.swapSkew();
         report.inputToFrame = frames_.inputToFrame();
-        report.dmxInterval = lighting_.dmxInterval();
         report.yardstickTicks = yardstickTicks_;
         report.yardstickLate = yardstickLate_;
-        report.cues = hand_.cues();
         report.zCamera = watch_.series();
         for (std::size_t i = 0; i < programme_.sources.size(); ++i)
             if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources[i]))
@@ -173,10 +252,37 @@ public:
         if (surrounding_.simulation)
             for (const site::Happening& happening : surrounding_.simulation->happenings())
                 report.faults.push_back({happening.at, happening.text});
+        std::ranges::stable_sort(report.faults, {}, &FaultReport::at);
         return report;
     }
 
+    const std::vector<UnsafeBank>& unsafe() const { return unsafe_; }  // once the lights are closed
+
 private:
+    // What is known once the lights are closed, whatever the render thread does.
+    RunReport reportOfLights() const {
+        RunReport report;
+        report.length = clock_.now() - start_;
+        report.seed = options_.seed;
+        report.frames = frames_.framesShown();
+        report.lateFrames = frames_.framesLate();
+        report.dmxInterval = lighting_.dmxInterval();
+        report.cues = hand_.cues();
+        report.faults = faults_.faults();
+        report.unsafe = unsafe_;
+        return report;
+    }
+    void tellHung(const std::string& why) {
+        RunReport report = reportOfLights();
+        report.stopReason = "hung";
+        report.hung = why;
+        std::string words = fmt::format("the show was to end, but {}. Its lamps and relays were closed first: {}", why,
+                                        unsafe_.empty() ? "all relays are safe" : sentenceOf(unsafe_));
+        if (!options_.report.empty())
+            if (const auto written = writeReport(options_.report, jsonOf(report)); !written)
+                words += fmt::format(". No report: {}", written.error().message());
+        std::fputs(("\nfantascope: error: " + words + "\n").c_str(), stderr);
+    }
     static GoSchedule scheduleOf(const RunOptions& options, const Programme& programme) {
         if (!options.handsOff || !options.length) return {0, false, {}};
         const bool cueIsOn = programme.firstInput.has_value();
@@ -188,7 +294,18 @@ private:
         for (const show::Output& output : programme_.site.outputs) names.push_back(output.name);
         return names;
     }
+    std::vector<std::string> bankNames() const {
+        std::vector<std::string> names;
+        for (const show::Bank& bank : programme_.site.relayBanks) names.push_back(bank.name);
+        return names;
+    }
     double frameRate() const { return programme_.site.outputs[0].refreshRate; }
+    std::unique_ptr<FrameRecorder> recorderOf(Recording* recording) {
+        if (recording == nullptr) return nullptr;
+        // What is not written yet at the end may take longer than a step's patience.
+        return std::make_unique<FrameRecorder>(*recording, programme_.site, frames_, clock_, faults_,
+                                               [this] { supervisor_.advance(); });
+    }
     // A reader of each output's frames, where somebody reads.
     template <class Add>
     std::vector<std::invoke_result_t<Add, render::FrameTap&>> readers(bool wanted, const Add& add) {
@@ -204,21 +321,39 @@ private:
         if (const auto key = terminal_.pause(moment)) pressKey(*key, moment);
         while (const auto key = screenKeys_.pop()) pressKey(*key, moment);
         if (schedule_.due(moment - start_)) pressGo(moment);
+        nextGo_ = schedule_.next();
         hand_.tick(moment);
     }
     // The terminal's keys act as a hand controller; whoever presses one has taken over from the schedule.
     void pressKey(const Key& pressed, Time moment) {
         if (settingUp_.key(pressed)) return;
-        const char key = pressed.letter;
-        if (key == 'q') quit_ = true;
-        if (key == 's' && screenshots_) screenshots_->take();
-        for (const auto& [name, kind] :
-             {std::pair{' ', show::Input::Kind::Go}, {'b', show::Input::Kind::Back}, {'0', show::Input::Kind::Blackout}}) {
-            if (key != name) continue;
-            if (!schedule_.ended()) news_.add("you have the controller");
-            schedule_.end();
-            hand_.give({moment - start_, kind});
+        const auto action = actionOf(pressed.letter);
+        if (!action) return;
+        switch (*action) {
+            case RunKey::Action::Go:
+                return takeOver({moment - start_, show::Input::Kind::Go});
+            case RunKey::Action::Back:
+                return takeOver({moment - start_, show::Input::Kind::Back});
+            case RunKey::Action::Blackout:
+                return takeOver({moment - start_, show::Input::Kind::Blackout});
+            case RunKey::Action::Pictures:
+                if (screenshots_) screenshots_->take();
+                return;
+            case RunKey::Action::Quit:
+                if (quitKey_.press(moment))
+                    endLights();
+                else
+                    news_.add(fmt::format("the show goes on; {} again within {:.0f} s ends it", keyFor(*action),
+                                          seconds(QuitKey::kPatience)));
+                return;
+            case RunKey::Action::SetUp:
+                return;  // taken by settingUp_
         }
+    }
+    void takeOver(const show::Input& input) {
+        if (!schedule_.ended()) news_.add("you have the controller");
+        schedule_.end();
+        hand_.give(input);
     }
     // A press of the simulated hand, through its device; straight to the show where the site has no controller.
     void pressGo(Time moment) {
@@ -246,19 +381,6 @@ private:
                 Rank::Watch};
     }
 
-    Part recorder() {
-        // Half a refresh after the frames became visible.
-        return {"recording", frameRate(), start_ + tickTime(1, 2 * frameRate()), [this](Time moment) { record(moment); },
-                Rank::Watch};
-    }
-    // What became visible until a moment and was not recorded yet.
-    void record(Time moment) {
-        for (render::FrameQueue* reader : recorded_.readers)
-            while (const render::ShownFrame* frame = reader->next(moment))
-                if (recorded_.written)
-                    recorded_.written = recording_->frame(frame->output, frame->image, frame->shown.refresh, frame->showTime);
-    }
-
     // What the machine itself misses: a thread of the render thread's rank that does nothing, at the leading output's rate.
     Part yardstick() {
         return {"yardstick", frameRate(), start_,
@@ -271,29 +393,39 @@ private:
                 Rank::Render};
     }
 
-    // Tells of every device that goes, or was not there from the beginning, of what else is wrong with it then, and of every one that comes
-    // back.
-    void tellOfDevices() {
-        const std::vector<DeviceStatus> statuses = surrounding_.devices.statuses();
-        missing_.resize(statuses.size());
-        for (std::size_t i = 0; i < statuses.size(); ++i) {
-            const DeviceStatus& device = statuses[i];
-            std::optional<std::string> why;
-            if (device.state == DeviceState::Absent || device.state == DeviceState::Faulted) why = device.detail;
-            if (why == missing_[i]) continue;
-            news_.add(why ? fmt::format("{} ({}) is missing: {}", device.name, device.driver, *why)
-                          : fmt::format("{} ({}) is back", device.name, device.driver));
-            missing_[i] = std::move(why);
-        }
+    void watchDevices(Time moment) {
+        const std::lock_guard lock(closing_);
+        if (!closed_) deviceWatch_.look(moment - start_, frames_.withFaults(surrounding_.devices.statuses()));
+    }
+
+    // What is on, what comes, and when.
+    void tellOfCues(RunStatus& status) {
+        const Time time = status.showTime;
+        told_.stateAt(time, toldState_);
+        const auto& cues = programme_.show.cues;
+        const auto next = static_cast<std::size_t>(toldState_.cue + 1);
+        status.cue = toldState_.cue;
+        status.cues = static_cast<int>(cues.size());
+        if (next > 0) status.cueName = cues[next - 1].name;
+        if (next < cues.size()) status.nextName = cues[next].name;
+        status.fadeLeft = told_.playback().fadeLeftAt(time);
+        status.untilNext = told_.playback().untilFollowAt(time);
+        if (const Time go = nextGo_; go != Time::max())
+            status.untilNext = std::min(status.untilNext.value_or(Time::max()), std::max(Time{}, go - time));
+        if (options_.length) status.left = std::max(Time{}, *options_.length - time);
+        status.blackout = toldState_.blackout;
+        status.settingUp = settingUp_.on();
+        status.keys = keys_ && keys_->listens();
     }
 
     RunStatus statusAt(Time moment) {
-        tellOfDevices();
         RunStatus status;
         status.showTime = moment - start_;
+        tellOfCues(status);
         status.said = news_.take();
         const std::int64_t shown = frames_.framesShown();
-        status.framesPerSecond = static_cast<double>(shown - std::exchange(framesBefore_, shown)) * kProgressRate;
+        const std::int64_t before = std::exchange(framesBefore_, shown);
+        if (status.showTime > Time{}) status.framesPerSecond = static_cast<double>(shown - before) * kProgressRate;
         status.lateFrames = frames_.framesLate();
         const auto scores = watch_.newestScores();
         for (std::size_t output = 0; output < scores.size(); ++output)
@@ -304,32 +436,44 @@ private:
     const RunOptions& options_;
     const Programme& programme_;
     Surrounding& surrounding_;
-    Recording* recording_;
     Clock& clock_;
+    Supervisor& supervisor_;
+    RelayGuard* guard_;
+    News& news_;
+    FaultLog faults_;
     FrameLoop frames_;
-    std::unique_ptr<TerminalKeys> keys_;      // null: as fast as possible, there is nobody to press one
-    std::vector<render::NewestFrame*> wall_;  // what simulated projectors throw; none where they are real
-    struct Recorded {
-        std::vector<render::FrameQueue*> readers;  // none where nothing is recorded
-        Result<void> written;
-    } recorded_;
+    std::unique_ptr<TerminalKeys> keys_;          // null: as fast as possible, there is nobody to press one
+    std::vector<render::NewestFrame*> wall_;      // what simulated projectors throw; none where they are real
+    std::unique_ptr<FrameRecorder> recorder_;     // null: nothing is recorded
     std::vector<render::NewestFrame*> pictured_;  // none where no terminal listens
     Result<void> prepared_;
-    const Time start_;  // after everything slow; a refresh
+    const Time start_;         // after everything slow; a refresh
+    DeviceWatch deviceWatch_;  // the devices part's
     Lighting lighting_;
     Hand hand_;
     Watch watch_;
     SettingUp settingUp_;
     GoSchedule schedule_;
+    QuitKey quitKey_;
+    std::atomic<Time> nextGo_ = Time::max();  // show time of the schedule's next press
+    PlaybackReplica told_;                    // the progress part's
+    show::ShowState toldState_;
     std::optional<Screenshots> screenshots_;
     TerminalKeyParser terminal_;
     BoundedQueue<Key, 16> screenKeys_;  // pressed at a display, from the part that polls it
-    News news_;
-    std::atomic<bool> quit_ = false;
     Time length_{};
-    std::vector<std::optional<std::string>> missing_;  // and why; of Devices::statuses(), the progress part's
+    std::mutex closing_;  // of:
+    bool closed_ = false;
+    std::vector<UnsafeBank> unsafe_;
     std::int64_t framesBefore_ = 0, yardstickTicks_ = 0, yardstickLate_ = 0;
+    std::optional<PartThreads> lights_;  // last, so that none works on what has gone
 };
+
+// A guard where relays are real.
+Result<std::unique_ptr<RelayGuard>> guardOf(const RunOptions& options, const show::Site& site, const SiteClaims& claims) {
+    if (options.backends != Backends::AsDeclared || site.relayBanks.empty()) return std::unique_ptr<RelayGuard>();
+    return RelayGuard::start(site.file, claims.files());
+}
 
 }  // namespace
 
@@ -337,10 +481,17 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
                           const std::function<void(const RunStatus&)>& progress) {
     FANTASCOPE_CHECK(options.length || !options.asFastAsPossible, "as fast as possible needs an end");
     const Programme programme = TRY(readProgramme(options));
+    const std::filesystem::path assets = TRY(dataFolder()) / "assets";
 
     SteadyClock steadyClock;
     SteppedClock steppedClock;
     Clock& clock = options.asFastAsPossible ? static_cast<Clock&>(steppedClock) : steadyClock;
+    SiteClaims claims;  // what is simulated takes nothing from anybody
+    if (options.backends == Backends::AsDeclared) claims = TRY(SiteClaims::take(programme.site, interrupt));
+    const std::unique_ptr<RelayGuard> guard = TRY(guardOf(options, programme.site, claims));
+    News news;
+    Supervisor supervisor(interrupt, guard.get(), [&](const std::string& sentence) { news.add(sentence); });
+    supervisor.step("opening the devices");
     if (!options.asFastAsPossible) setThreadRank(Rank::Render);  // before the displays make threads of their own
     const auto surrounding = TRY(Surrounding::open(options, programme.site, clock));
     std::unique_ptr<Recording> recording;
@@ -351,20 +502,40 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
         recording = TRY(Recording::open(options.recordTo, std::move(outputs)));
     }
 
-    ShowRun run(options, programme, *surrounding, recording.get(), clock);
+    ShowRun run(options, programme, *surrounding, recording.get(), clock, assets, supervisor, guard.get(), news);
+    if (guard) guard->arm();
+    supervisor.attend(run.supervised());
+    supervisor.step("showing the pictures: look at the X server and the graphics card");
     Result<void> drawn;
     if (options.asFastAsPossible) {
-        steppedClock.setParts(run.parts(progress));
-        drawn = run.draw(interrupt);
-        steppedClock.setParts({});
+        auto parts = run.lightParts();
+        for (Part& part : run.otherParts(progress)) parts.push_back(std::move(part));
+        steppedClock.setParts(std::move(parts));
+        drawn = run.draw();
+        steppedClock.endAllBut(Rank::Lighting);
     } else {
-        const PartThreads threads(clock, run.parts(progress));
-        drawn = run.draw(interrupt);
+        run.startLights();
+        const PartThreads others(clock, run.otherParts(progress));
+        drawn = run.draw();
+        supervisor.step("ending the show's parts");
     }
-    TRY(std::move(drawn));
-    RunReport report = TRY(run.report());
-    if (recording) TRY(recording->finish());
-    return report;
+    run.endLights();
+    supervisor.step("making the relays safe", Supervisor::kSafeWithin + programme.site.endFade + 2 * Supervisor::kPatience);
+    run.awaitLights();
+    steppedClock.setParts({});
+    run.closeLights();
+    run.tellTheRest(progress);
+    auto reported = [&]() -> Result<RunReport> {
+        TRY(std::move(drawn));
+        supervisor.step("finishing the recording", 3 * Supervisor::kPatience);
+        RunReport report = run.report();
+        run.tellTheRest(progress);
+        supervisor.step("writing the report");
+        if (!options.report.empty()) TRY(writeReport(options.report, jsonOf(report)));
+        return report;
+    }();
+    if (!reported && !run.unsafe().empty()) return Error(reported.error().message() + "; " + sentenceOf(run.unsafe()));
+    return reported;
 }
 
 }  // namespace fantascope::app

@@ -1,6 +1,10 @@
 #include "app/silhouette_file.h"
 
+#include "app/drawing.h"
+
 #include "theatre/pose_problem.h"
+
+#include "core/log.h"
 
 #include <fmt/format.h>
 
@@ -30,6 +34,20 @@ Result<GreyImage> readSilhouette(const std::filesystem::path& file) {
         return Error(fmt::format("{}: is a picture in colours; draw it white on black: white is where the shadow is to be",
                                  file.string()));
     return readGrey(file);
+}
+
+Result<GreyImage> readDrawnSilhouette(const std::filesystem::path& file, bool invert) {
+    GreyImage silhouette = TRY(readSilhouette(file));
+    TRY(checkDrawn(silhouette, file));
+    if (isInkOnPaper(silhouette) && !invert)
+        log::warning("silhouette",
+                     fmt::format("{}: looks like black ink on white paper, and white is where the shadow is to be; with "
+                                 "--invert the ink is",
+                                 file.string()));
+    if (invert) silhouette = inverted(std::move(silhouette));
+    if (const std::string odd = oddHolesIn(silhouette); !odd.empty())
+        log::warning("silhouette", fmt::format("{}: {}", file.string(), odd));
+    return silhouette;
 }
 
 }  // namespace fantascope::app

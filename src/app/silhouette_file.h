@@ -11,4 +11,8 @@ namespace fantascope::app {
 // large. Error: names the file: missing, no PNG or JPEG, too large, or in colours, of which nobody could say which are shadow.
 Result<GreyImage> readSilhouette(const std::filesystem::path& file);
 
+// The same of a drawing that work begins with. Warns of what looks like a mistake. `invert`: it is black ink on white, and turned over here.
+// Error: also nothing is drawn.
+Result<GreyImage> readDrawnSilhouette(const std::filesystem::path& file, bool invert);
+
 }  // namespace fantascope::app

@@ -1,11 +1,16 @@
 #include "app/site_models.h"
 
+#include "app/guide_template.h"
+
 #include "core/config.h"
 #include "core/parallel.h"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace fantascope::app {
 namespace {
@@ -74,14 +79,47 @@ Result<site::NominalSite> simulationOf(const show::Site& site) {
     return nominal;
 }
 
-Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site, std::size_t output, double canvasAspect) {
+double canvasAspectInPixels(const show::Site& site, const std::string& canvas) {
+    double sum = 0;
+    const std::vector<std::size_t> outputs = site.outputsOn(canvas);
+    for (const std::size_t output : outputs) {
+        const WarpShape& warp = site.outputs[output].projection.warp.shape();
+        const auto& c = warp.corners;
+        glm::dvec2 size(glm::distance(c[0], c[1]) + glm::distance(c[3], c[2]),
+                        glm::distance(c[0], c[3]) + glm::distance(c[1], c[2]));
+        if (warp.orientation.quarterTurns % 2 != 0) std::swap(size.x, size.y);
+        size /= warp.part.high - warp.part.low;
+        sum += size.x / size.y;
+    }
+    return sum / static_cast<double>(outputs.size());
+}
+
+double canvasAspectOf(const show::Site& site, const std::string& canvas) {
+    double sum = 0;
+    const std::vector<std::size_t> outputs = site.outputsOn(canvas);
+    const std::vector<site::SceneObject> nothing;
+    for (const std::size_t index : outputs) {
+        const show::Output& output = site.outputs[index];
+        if (!output.projector || !output.surface) return canvasAspectInPixels(site, canvas);
+        const vision::Plane surface{output.surface->point, output.surface->normal};
+        const auto size = CanvasView{output.name, projectorOf(output), surface, output.projection.warp, nothing}.sizeOnSurface();
+        if (!size) return canvasAspectInPixels(site, canvas);
+        sum += size->x / size->y;
+    }
+    return sum / static_cast<double>(outputs.size());
+}
+
+Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site, std::size_t output, double pictureAspect,
+                                                         Fit fit) {
     const show::Output& from = site.outputs[output];
     if (!from.projector || !from.surface || !site.nominalCamera) return std::optional<vision::NominalView>();
     vision::NominalView view;
     view.camera = TRY(cameraOf(site));
     view.projector = projectorOf(from);
-    view.canvasAspect = canvasAspect;
+    view.canvasAspect = pictureAspect;
     view.warp = from.projection.warp;
+    if (const double canvas = from.projection.canvasAspect; canvas > 0)
+        view.warp = view.warp.ofPictureOn(placeOnCanvas(pictureAspect, canvas, fit));
     view.surface = {from.surface->point, from.surface->normal};
     return std::optional(view);
 }

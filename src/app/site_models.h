@@ -7,6 +7,7 @@
 #include "show/site.h"
 #include "vision/guide_comparison.h"
 
+#include "core/fit.h"
 #include "core/result.h"
 
 namespace fantascope::app {
@@ -20,8 +21,14 @@ std::shared_ptr<const render::BlendMap> blendOf(const show::Site& site, std::siz
 // Error: the site lacks a projector's place, the camera or a usable optic; names what to add to the site file.
 Result<site::NominalSite> simulationOf(const show::Site& site);
 
-// What the comparison may know of one output for a canvas of this aspect. Nothing where the site does not say where the projector, its
+// Width / height of a canvas, the mean of what its outputs make of it: by the corners that their pixels have.
+double canvasAspectInPixels(const show::Site& site, const std::string& canvas);
+// The same where it falls: in metres if the site says where all its projectors and their surfaces are, else in pixels.
+double canvasAspectOf(const show::Site& site, const std::string& canvas);
+
+// What the comparison may know of one output for a picture of this aspect (width / height), which lies on the canvas as `fit` says. Nothing where the site does not say where the projector, its
 // surface or the camera are: then the output is not scored.
-Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site, std::size_t output, double canvasAspect);
+Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site, std::size_t output, double pictureAspect,
+                                                         Fit fit);
 
 }  // namespace fantascope::app

@@ -19,7 +19,10 @@ Result<fs::path> placeStage(const fs::path& source, const theatre::Stage& stage,
     if (!material.copied) return own;
     std::vector<fs::path> files{fs::absolute(source)};
     for (const theatre::Prop& prop : stage.props) files.push_back(fs::absolute(prop.file));
-    for (const fs::path& file : files) TRY(copyTo(own, {file, TRY(relativeTo(files.front(), file)), true}));
+    for (const fs::path& file : files) {
+        const std::string name = TRY(relativeTo(files.front(), file));
+        TRY(copyTo(own, {file, name, true}));
+    }
     return own / source.filename();
 }
 

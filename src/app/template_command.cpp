@@ -3,6 +3,7 @@
 #include "app/data_folder.h"
 #include "app/geometry_options.h"
 #include "app/guide_template.h"
+#include "app/site_file.h"
 #include "app/site_models.h"
 #include "drivers/site/simulation.h"
 
@@ -30,8 +31,8 @@ struct Options {
 
 void declare(CLI::App& command, Options& options) {
     command.add_option("SITE", options.site, "A site's folder, or a site.yaml")->required();
-    command.add_option("--output", options.output, "Whose canvas")->required();
-    command.add_option("-o", options.file, "The picture to write, PNG")->required();
+    addProjectorOption(command, options.output, "The projector whose canvas it is")->required();
+    addOutOption(command, options.file, "The picture to write, PNG")->required();
     addSizeOption(
         command, "--size", options.size,
         fmt::format("Of the picture, and the guide's to be (default: {} rows, as wide as the canvas on its surface asks)",
@@ -51,8 +52,7 @@ double handyStep(double length, double parts) {
 }
 
 Result<void> run(const Options& options) {
-    const fs::path file = fs::is_directory(options.site) ? options.site / "site.yaml" : options.site;
-    const show::Site site = TRY(show::readSite(file));
+    const show::Site site = TRY(readSite(options.site));
     const std::size_t index = TRY(outputNamed(site, options.output));
     if (!site.simulation)
         return Error(

@@ -1,11 +1,16 @@
 #include "app/video_writer.h"
 
 #include "core/check.h"
+#include "core/file.h"
+#include "core/padded_rows.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -53,10 +58,28 @@ std::string reason(int code) {
     return text;
 }
 
+// libav writes by way of these, so that it writes to a file without a name. `file`: its descriptor.
+int writeTo(void* file, std::uint8_t* bytes, int size) {
+    for (int left = size; left > 0;) {
+        const ssize_t written = ::write(*static_cast<int*>(file), bytes + (size - left), static_cast<std::size_t>(left));
+        if (written < 0 && errno != EINTR) return AVERROR(errno);
+        left -= static_cast<int>(std::max<ssize_t>(written, 0));
+    }
+    return size;
+}
+std::int64_t seekIn(void* file, std::int64_t offset, int whence) {
+    if (whence == AVSEEK_SIZE) return AVERROR(ENOSYS);
+    const off_t place = ::lseek(*static_cast<int*>(file), offset, whence & ~AVSEEK_FORCE);
+    return place < 0 ? AVERROR(errno) : place;
+}
+
 }  // namespace
 
 struct VideoWriter::Impl {
-    fs::path file, aside;
+    fs::path file;
+    std::optional<NewFile> target;
+    int descriptor = -1;  // the target's
+    int ticks = 1;        // a frame
     glm::ivec2 pictureSize{0};
     AVFormatContext* container = nullptr;
     AVCodecContext* encoder = nullptr;
@@ -65,18 +88,18 @@ struct VideoWriter::Impl {
     AVPacket* packet = nullptr;
     SwsContext* fromPicture = nullptr;
     AVPixelFormat pictureFormat = AV_PIX_FMT_NONE;  // that fromPicture converts
+    PaddedRows<Rgba8> rows;                         // for libswscale
+    PaddedRows<Rgba16> wideRows;
 
     ~Impl() {
         sws_freeContext(fromPicture);
         av_packet_free(&packet);
         av_frame_free(&frame);
         avcodec_free_context(&encoder);
-        if (container != nullptr) {
-            avio_closep(&container->pb);
-            avformat_free_context(container);
-        }
-        std::error_code ignored;
-        fs::remove(aside, ignored);  // renamed already if finish() succeeded
+        if (container == nullptr) return;
+        if (container->pb != nullptr) av_freep(&container->pb->buffer);
+        avio_context_free(&container->pb);
+        avformat_free_context(container);
     }
 
     Error error(std::string_view what, int code) const {
@@ -90,7 +113,7 @@ struct VideoWriter::Impl {
         while ((code = avcodec_receive_packet(encoder, packet)) >= 0) {
             // Each frame's time on the screen is the distance to the next one, but nothing follows the last: without a duration of its own
             // it would be shown for no time at all, and players drop it.
-            packet->duration = 1;
+            packet->duration = ticks;
             av_packet_rescale_ts(packet, encoder->time_base, stream->time_base);
             packet->stream_index = stream->index;
             if (code = av_interleaved_write_frame(container, packet); code < 0) return error("cannot be written", code);
@@ -112,11 +135,13 @@ struct VideoWriter::Impl {
         sws_setColorspaceDetails(fromPicture, bt709, kFull, bt709, holdsRgb() ? kFull : 0, 0, kOne, kOne);
     }
 
-    Result<void> write(const void* pixels, int stride, AVPixelFormat format, std::int64_t number) {
+    template <class Pixel>
+    Result<void> write(const Image<Pixel>& picture, PaddedRows<Pixel>& padded, AVPixelFormat format, std::int64_t number) {
         if (const int code = av_frame_make_writable(frame); code < 0) return error("no memory for a frame", code);
         convertFrom(format);
-        const auto* rows = static_cast<const std::uint8_t*>(pixels);
-        sws_scale(fromPicture, &rows, &stride, 0, encoder->height, frame->data, frame->linesize);
+        padded.lend(picture, [&](const std::uint8_t* pixels, int stride) {
+            sws_scale(fromPicture, &pixels, &stride, 0, encoder->height, frame->data, frame->linesize);
+        });
         frame->pts = number;
         return encode(frame);
     }
@@ -125,15 +150,14 @@ struct VideoWriter::Impl {
 VideoWriter::VideoWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 VideoWriter::~VideoWriter() = default;
 
-Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, glm::ivec2 size, double frameRate, VideoKind kind) {
+Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, glm::ivec2 size, double frameRate, VideoKind kind,
+                                                       int ticks) {
     FANTASCOPE_CHECK(size.x >= 2 && size.y >= 2 && frameRate >= 1 && frameRate <= 1000, "a video has a size and a frame rate");
     av_log_set_level(AV_LOG_ERROR);
     auto impl = std::make_unique<Impl>();
     impl->file = file;
-    impl->aside = file.string() + ".part";
     impl->pictureSize = size;
-    std::error_code failure;
-    if (file.has_parent_path()) fs::create_directories(file.parent_path(), failure);
+    impl->ticks = ticks;
 
     const Coding coding = codingOf(kind);
     const AVCodec* codec = avcodec_find_encoder_by_name(coding.encoder);
@@ -153,8 +177,8 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, glm
     encoder.color_trc = AVCOL_TRC_IEC61966_2_1;
     encoder.colorspace = impl->holdsRgb() ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
     encoder.color_range = impl->holdsRgb() ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
-    encoder.time_base = av_d2q(1 / frameRate, 1'000'000);
-    encoder.framerate = av_inv_q(encoder.time_base);
+    encoder.time_base = av_d2q(1 / (frameRate * ticks), 1'000'000);
+    encoder.framerate = av_mul_q(av_inv_q(encoder.time_base), {1, ticks});
     encoder.thread_count = 1;
     encoder.flags |= AV_CODEC_FLAG_BITEXACT;
     if (impl->container->oformat->flags & AVFMT_GLOBALHEADER) encoder.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
@@ -166,8 +190,11 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, glm
     impl->stream->time_base = encoder.time_base;
     impl->stream->avg_frame_rate = encoder.framerate;
     avcodec_parameters_from_context(impl->stream->codecpar, &encoder);
-    if (const int code = avio_open(&impl->container->pb, impl->aside.c_str(), AVIO_FLAG_WRITE); code < 0)
-        return impl->error("cannot be written", code);
+    impl->target.emplace(TRY(NewFile::open(file)));
+    impl->descriptor = impl->target->descriptor();
+    constexpr int kBuffer = 1 << 16, kWrites = 1;
+    impl->container->pb = avio_alloc_context(static_cast<unsigned char*>(av_malloc(kBuffer)), kBuffer, kWrites, &impl->descriptor,
+                                             nullptr, writeTo, seekIn);
     if (const int code = avformat_write_header(impl->container, nullptr); code < 0) return impl->error("cannot be written", code);
 
     impl->packet = av_packet_alloc();
@@ -194,24 +221,20 @@ Result<void> VideoWriter::write(const RgbaImage& picture, std::int64_t number) {
         });
         return write(wide, number);
     }
-    return impl_->write(picture.pixels().data(), picture.width() * static_cast<int>(sizeof(Rgba8)), kFrom8Bit, number);
+    return impl_->write(picture, impl_->rows, kFrom8Bit, number);
 }
 
 Result<void> VideoWriter::write(const Rgba16Image& picture, std::int64_t number) {
     FANTASCOPE_CHECK(glm::ivec2(picture.width(), picture.height()) == impl_->pictureSize, "a picture of another size");
-    return impl_->write(picture.pixels().data(), picture.width() * static_cast<int>(sizeof(Rgba16)), kFrom16Bit, number);
+    return impl_->write(picture, impl_->wideRows, kFrom16Bit, number);
 }
 
 Result<void> VideoWriter::finish() {
     TRY(impl_->encode(nullptr));
     if (const int code = av_write_trailer(impl_->container); code < 0) return impl_->error("cannot be ended", code);
-    avio_closep(&impl_->container->pb);
-    std::error_code failure;
-    fs::rename(impl_->aside, impl_->file, failure);
-    if (failure)
-        return Error(
-            fmt::format("{}: cannot be renamed from {}: {}", impl_->file.string(), impl_->aside.string(), failure.message()));
-    return {};
+    avio_flush(impl_->container->pb);
+    if (const int code = impl_->container->pb->error; code < 0) return impl_->error("cannot be written", code);
+    return impl_->target->finish();
 }
 
 }  // namespace fantascope::app

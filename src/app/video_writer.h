@@ -19,14 +19,15 @@ enum class VideoKind {
     Lossless     // FFV1 in Matroska, with alpha, 16 bits a channel
 };
 
-// A video file, written aside and renamed by finish(). The same pictures give the same bytes: it encodes on the calling thread. Colours are
+// A video file, which has no name before finish() (core/file.h, NewFile). The same pictures give the same bytes: it encodes on the calling thread. Colours are
 // sRGB, and labelled so. Thread: thread-bound.
 class VideoWriter {
 public:
-    // `size` in pixels; H.264 leaves an odd last column or row out, since its colour format has none. `frameRate` in Hz, 1..1000.
-    // Error: names the file: cannot be made, or an encoder that is missing.
+    // `size` in pixels; H.264 leaves an odd last column or row out, since its colour format has none. `frameRate` in Hz, 1..1000. `ticks`: how
+    // many numbers there are a frame; with several a picture can begin between two. Error: names the file: cannot be made, or an encoder that
+    // is missing.
     static Result<std::unique_ptr<VideoWriter>> open(const std::filesystem::path& file, glm::ivec2 size, double frameRate,
-                                                     VideoKind kind = VideoKind::Recording);
+                                                     VideoKind kind = VideoKind::Recording, int ticks = 1);
     ~VideoWriter();
 
     // Shows `picture` (of the size given to open) from frame `number` on; numbers rise, a gap keeps the picture before it, and the last

@@ -106,7 +106,7 @@ TEST(Check, a_show_is_checked_with_the_patterns_and_guides_that_it_names) {
               "ok leaves.png: guide, 64 x 36 px\n");
     std::filesystem::remove(guide);
     const Checked checked = check(folder, {{show}, std::nullopt});
-    EXPECT_THAT(checked.lines, HasSubstr("\nleaves.png: "));
+    EXPECT_THAT(checked.lines, HasSubstr("\nleaves.pattern.yaml:3:8: guide: leaves.png: "));
     EXPECT_EQ(checked.refusal, "1 of 3 files refused");
 }
 
@@ -126,7 +126,8 @@ TEST(Check, a_show_is_checked_with_its_images_and_videos) {
     const std::string bytes = readFile(video).value();
     folder.file("rain.mp4", bytes.substr(0, bytes.size() / 2));
     const Checked checked = check(folder, {{show}, std::nullopt});
-    EXPECT_THAT(checked.lines, HasSubstr("\nrain.mp4: not a video that can be read, or a truncated one"));
+    EXPECT_THAT(checked.lines,
+                HasSubstr("\nshow.yaml:4:24: sources.dim.video: rain.mp4: not a video that can be read, or a truncated one"));
     EXPECT_EQ(checked.refusal, "1 of 3 files refused");
 
     const auto site = folder.file("site.yaml", kSite);
@@ -191,6 +192,61 @@ TEST(Check, what_the_theatre_reads_is_checked_as_it_would_be_read) {
     EXPECT_THAT(bad.lines, HasSubstr("bar.stage.yaml:5:23: props[0].mesh:"));
     EXPECT_THAT(bad.lines, HasSubstr("w.yaml:3:10: common.w17: unknown key"));
     EXPECT_EQ(bad.refusal, "4 of 4 files refused");
+}
+
+// Example failure: an animal comes out 1.8 times too wide, and nobody was told.
+TEST(Check, a_source_of_another_shape_than_its_canvas_is_noted_with_both_shapes_and_its_fit) {
+    const ScratchFolder folder;
+    ASSERT_TRUE(writePng(folder / "square.png", RgbaImage(64, 64)));
+    ASSERT_TRUE(writePng(folder / "wide.png", RgbaImage(64, 36)));
+    const auto site = folder.file("site.yaml", kSite);
+    const auto noted = [&](const std::string& sources) {
+        const auto show = folder.file("show.yaml", replaced(std::string(kShow), "dim: {solid: [0.1, 0.1, 0.1]}", sources));
+        return check(folder, {{show}, site}).lines;
+    };
+    EXPECT_THAT(
+        noted("dim: {image: square.png}"),
+        HasSubstr(
+            "note: show.yaml:4:16: sources.dim: its picture is 1.00 : 1, and the canvas 'left' is 1.78 : 1: all of it is seen, "
+            "with dark beside it (fit: contain)\n"));
+    EXPECT_THAT(noted("dim: {image: square.png, fit: cover}"), HasSubstr("what hangs over the canvas is cut off (fit: cover)"));
+    EXPECT_THAT(noted("dim: {image: square.png, fit: stretch}"), HasSubstr("circles become ellipses (fit: stretch)"));
+    for (const char* fine :
+         {"dim: {image: wide.png}", "dim: {solid: [0, 0, 0]}", "dim: {image: wide.png}, other: {image: square.png}"})
+        EXPECT_THAT(noted(fine), testing::Not(HasSubstr("note:"))) << fine;
+    EXPECT_THAT(noted("dim: {image: wide.png, fit: fill}"),
+                HasSubstr("sources.dim.fit: one of contain, cover, stretch is needed"));
+}
+
+// Leaves that were made as light shade what is to be light. Example failure: a deer of light on a dark wall becomes a dark deer.
+TEST(Check, leaves_that_show_the_drawings_negative_are_noted_with_what_makes_them_right) {
+    const ScratchFolder folder;
+    pattern::ShapePattern pattern;
+    pattern.width = 64;
+    pattern.height = 36;
+    pattern.shapes = {pattern::loadShape("triangle").value()};
+    pattern.instances = {{.id = 0, .centre = {0.5, 0.5}, .size = 0.1}};
+    const auto noted = [&](const char* guide, const char* layer) {
+        pattern.guide = folder / guide;
+        FANTASCOPE_CHECK(writePng(pattern.guide, GreyImage(64, 36)).has_value(), "the guide is there");
+        FANTASCOPE_CHECK(pattern::writePattern(folder / "deer.pattern.yaml", pattern).has_value(), "the pattern is there");
+        const auto show = folder.file("show.yaml", replaced(std::string(kShow), "solid: [0.1, 0.1, 0.1]",
+                                                            "foliage: {height: 3, layers: [{" + std::string(layer) +
+                                                                ": deer.pattern.yaml, distance: 1}]}"));
+        return check(folder, {{show}, std::nullopt}).lines;
+    };
+    EXPECT_THAT(noted("deer.png", "leaves"), HasSubstr("'fantascope pattern GUIDE -o deer.pattern.yaml --shadows'"));
+    EXPECT_THAT(noted("deer.shadows.png", "holes"), HasSubstr("make them without --shadows"));
+    EXPECT_THAT(noted("deer.shadows.png", "leaves"), testing::Not(HasSubstr("note:")));
+    EXPECT_THAT(noted("deer.png", "holes"), testing::Not(HasSubstr("note:")));
+}
+
+TEST(Check, a_drawing_in_ink_on_paper_is_noted) {
+    const ScratchFolder folder;
+    GreyImage drawing(64, 36, 1.0f);
+    for (int x = 20; x < 40; ++x) drawing.at(x, 18) = 0;
+    ASSERT_TRUE(writePng(folder / "ink.png", drawing));
+    EXPECT_THAT(check(folder, {{folder / "ink.png"}, std::nullopt}).lines, HasSubstr("looks like dark ink on white paper"));
 }
 
 // With what it names: a cast's target, its stage, and the silhouette that it follows.

@@ -241,7 +241,7 @@ TEST_F(DeformCommand, bad_input_is_refused_with_one_message_and_leaves_nothing) 
     EXPECT_THAT(with("nowhere.png"), HasSubstr("nowhere.png: cannot be read"));
     EXPECT_THAT(refusal({"deform", "bar.png", "--motion", "no.yaml", "-o", "out"}), HasSubstr("no.yaml"));
     ASSERT_TRUE(writePng(folder_ / "black.png", GreyImage(50, 50)));
-    EXPECT_THAT(with("black.png"), HasSubstr("black.png: nothing in it is white"));
+    EXPECT_THAT(with("black.png"), HasSubstr("black.png: nothing is drawn, it is black all over"));
     RgbaImage red(50, 50, {0, 0, 0});
     for (int y = 10; y < 40; ++y)
         for (int x = 10; x < 40; ++x) red.at(x, y) = {255, 60, 40};

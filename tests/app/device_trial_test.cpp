@@ -80,6 +80,24 @@ TEST_F(TrialOfADevice, relays_click_one_after_the_other_and_are_safe_at_the_end)
     EXPECT_EQ(world_.relays("road"), safe);
 }
 
+// Example failure: on the ladder nobody knows what slot 10 is.
+TEST_F(TrialOfADevice, calls_things_by_the_names_that_the_site_has_for_them) {
+    const auto port = opened(drivers::openDmxPort(simulated_, 1, around_));
+    EXPECT_TRUE(trial_.chase(*port, {9}, {{9, "fountain red"}}));
+    EXPECT_EQ(told()[1], "fountain red (slot 10) is at full");
+}
+
+// A coil that the site does not name may hold anything.
+TEST_F(TrialOfADevice, switches_the_relays_that_have_a_name_and_no_others) {
+    const std::vector<bool> safe = {true, false, true};
+    const auto bank = opened(drivers::openRelayBank(simulated_, "road", safe, around_));
+    std::set<std::vector<bool>> seen;
+    clock_.setParts({{"relays", 10, 50ms, [&](Time) { seen.insert(world_.relays("road")); }}});
+    EXPECT_TRUE(trial_.click(*bank, safe, {{1, "fog"}}));
+    EXPECT_THAT(seen, ElementsAre(safe, std::vector<bool>{true, true, true}));
+    EXPECT_EQ(told()[1], "fog (coil 1) is on; the bank says on on on");
+}
+
 // A bank that says something else than it was told.
 class Welded : public RelayBank {
 public:
@@ -101,6 +119,8 @@ TEST_F(TrialOfADevice, a_relay_that_sticks_is_found) {
     const auto tried = trial_.click(bank, {false, false});
     ASSERT_FALSE(tried);
     EXPECT_EQ(tried.error().message(), "road was told on off and says on on");
+    EXPECT_EQ(trial_.click(bank, {false, false}, {{0, "path"}, {1, "fog"}}).error().message(),
+              "road was told on off and says on on: look at fog (coil 1)");
 }
 
 TEST_F(TrialOfADevice, presses_and_contacts_are_told_as_they_come) {
@@ -191,6 +211,27 @@ outputs: [{name: left, display: {driver: headless}, size: [640, 360], refresh_ra
     EXPECT_THAT(output.errors, HasSubstr("docs/setting-up.md"));
     EXPECT_THAT(ran({"--watch", "--test", "x"}), exits(2));
     EXPECT_THAT(ran({"--watch", "--seconds", "0.2"}), exits(0));
+}
+
+// Example failure: a word too few, and the street goes dark.
+TEST(DevicesCommand, switches_relays_only_on_somebodys_word) {
+    const ScratchFolder folder;
+    const std::string site = folder.file("site.yaml", R"(fantascope: site
+version: 1
+outputs: [{name: left, display: {driver: headless}, size: [640, 360], refresh_rate: 30}]
+relay_banks: [{name: road, device: {driver: modbus_tcp, host: 127.0.0.1, port: 1}}]
+relays: [{name: road-north, coil: 0, safe: on}, {name: road-south, coil: 1, safe: on}]
+)");
+    const std::vector<std::string> arguments = {"devices", "--site", site, "--test", "road", "--seconds", "0.3"};
+    const Outcome unasked = runProgram(arguments, folder.path());
+    EXPECT_THAT(unasked, exits(1));
+    EXPECT_THAT(unasked.errors, HasSubstr("this test switches road-north, road-south, one after the other: add --yes"));
+    EXPECT_EQ(typeAtProgram(arguments, folder.path(), {{"y and Enter: ", 1, 'n'}, {"n", 1, '\n'}}), 1);
+    std::vector<std::string> allowed = arguments;
+    allowed.emplace_back("--yes");
+    const Outcome tried = runProgram(allowed, folder.path());
+    EXPECT_THAT(tried, exits(1));
+    EXPECT_THAT(tried.errors, HasSubstr("road was not there")) << "it was tried";
 }
 
 }  // namespace

@@ -47,6 +47,9 @@ TEST_F(HandPart, a_press_reaches_every_part_of_the_show_and_the_operator) {
     run_.clock.advance(2s);
     press(show::Button::Blackout);
     EXPECT_TRUE(stateOfLamps().blackout);
+    EXPECT_THAT(told_, Contains("blackout: pictures and lamps are dark"));
+    press(show::Button::Blackout);
+    EXPECT_EQ(told_.back(), "light: the blackout is over");
     ASSERT_EQ(hand_.cues().size(), 1u);
     EXPECT_EQ(hand_.cues()[0].name, "Dusk");
     EXPECT_EQ(hand_.cues()[0].entered, 2s);
@@ -188,6 +191,15 @@ TEST(GoSchedule, reaches_every_cue_in_an_equal_share_of_the_length) {
     EXPECT_THAT(pressesOf({3, false, 60s}), ElementsAre(3340ms, 23340ms, 43340ms)) << "after a moment of darkness";
     EXPECT_THAT(pressesOf({2, true, 60s}), ElementsAre(20s, 40s)) << "the cue that is on has its share first";
     EXPECT_THAT(pressesOf({0, true, 60s}), ElementsAre());
+}
+
+TEST(GoSchedule, says_when_the_next_press_is) {
+    GoSchedule schedule(2, true, 60s);
+    EXPECT_EQ(schedule.next(), 20s);
+    EXPECT_TRUE(schedule.due(20s));
+    EXPECT_EQ(schedule.next(), 40s);
+    EXPECT_TRUE(schedule.due(40s));
+    EXPECT_EQ(schedule.next(), Time::max());
 }
 
 TEST(GoSchedule, ends_when_the_operator_takes_over) {

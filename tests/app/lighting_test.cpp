@@ -13,6 +13,28 @@ namespace {
 using namespace std::chrono_literals;
 using testing::Each;
 
+// A bank that keeps what it is told.
+class Noting final : public RelayBank {
+public:
+    Noting(std::unique_ptr<RelayBank> bank, std::vector<std::vector<bool>>& written)
+        : bank_(std::move(bank)), written_(written) {}
+    DeviceStatus status() const override { return bank_->status(); }
+    std::size_t size() const override { return bank_->size(); }
+    Result<void> write(const std::vector<bool>& states) override {
+        written_.push_back(states);
+        return bank_->write(states);
+    }
+    Result<std::vector<bool>> read() override {
+        if (read_) return *read_;
+        return bank_->read();
+    }
+    std::optional<std::vector<bool>> read_;  // what it says instead of the truth
+
+private:
+    std::unique_ptr<RelayBank> bank_;
+    std::vector<std::vector<bool>>& written_;
+};
+
 class LightingPart : public testing::Test {
 protected:
     // All parts, as often as they would work in `time`.
@@ -83,6 +105,188 @@ TEST_F(LightingPart, a_lost_line_stops_neither_itself_nor_the_relays) {
     run_.world.setPlugged("universe 1", true);
     run(1s);
     EXPECT_EQ(sculpture(), 255);
+}
+
+// Example failure: the street is switched off and on at the start of a show that begins in a dark cue.
+TEST_F(LightingPart, writes_no_relay_before_the_show_has_decided) {
+    ASSERT_TRUE(lighting_.replica().give(run_.jumpTo("Full")));
+    std::vector<std::vector<bool>> written;
+    run_.devices.relayBanks[0] = std::make_unique<Noting>(std::move(run_.devices.relayBanks[0]), written);
+    for (const Part& part : relays_) part.work(run_.clock.now());
+    EXPECT_TRUE(written.empty()) << "the lighting part has not worked yet";
+    run(1s);
+    EXPECT_THAT(written, testing::ElementsAre(std::vector<bool>{false, false}));
+}
+
+// Example failure: the sculpture stays at full all night, because the last frame stays in the dimmer.
+TEST_F(LightingPart, fades_the_lamps_to_the_end_levels_and_makes_the_relays_safe_at_once) {
+    run_.site.fixtures[0].end = {0.2f};
+    run_.site.endFade = 2s;
+    Lighting lighting(run_.site, run_.cues, run_.devices, run_.clock, Time{}, nullptr);
+    const std::vector<Part> relays = lighting.relayParts();
+    const auto work = [&] {
+        lighting.tick(run_.clock.now());
+        for (const Part& part : relays) part.work(run_.clock.now());
+    };
+    ASSERT_TRUE(lighting.replica().give(run_.jumpTo("Full")));
+    run_.clock.advance(10s);
+    work();
+    ASSERT_EQ(sculpture(), 255);
+    ASSERT_THAT(run_.world.relays("road"), Each(false));
+    lighting.end(run_.clock.now());
+    lighting.end(run_.clock.now() + 5s);  // only the first one counts
+    EXPECT_FALSE(lighting.ended());
+    EXPECT_THAT(lighting.unsafeBanks(), testing::ElementsAre(testing::Field(&UnsafeBank::name, "road")));
+    std::vector<int> levels;
+    for (int quarter = 0; quarter <= 4; ++quarter) {
+        work();
+        levels.push_back(sculpture());
+        EXPECT_THAT(run_.world.relays("road"), Each(true));
+        EXPECT_EQ(lighting.ended(), quarter == 4);
+        run_.clock.advance(500ms);
+    }
+    EXPECT_THAT(levels, testing::ElementsAre(255, 204, 153, 102, 51));
+    EXPECT_TRUE(lighting.unsafeBanks().empty());
+    ASSERT_TRUE(lighting.replica().give(run_.jumpTo("Full")));
+    run_.clock.advance(10s);
+    work();
+    EXPECT_EQ(sculpture(), 51) << "the show no longer decides";
+    EXPECT_THAT(run_.world.relays("road"), Each(true));
+}
+
+TEST_F(LightingPart, a_bank_that_comes_back_while_the_show_ends_gets_its_safe_states) {
+    ASSERT_TRUE(lighting_.replica().give(run_.jumpTo("Full")));
+    run(10s);
+    run_.world.setPlugged("road", false);
+    lighting_.end(run_.clock.now());
+    run(3s);
+    EXPECT_FALSE(lighting_.ended());
+    EXPECT_THAT(lighting_.unsafeBanks(),
+                testing::ElementsAre(testing::AllOf(testing::Field(&UnsafeBank::name, "road"),
+                                                    testing::Field(&UnsafeBank::why, testing::HasSubstr("road is absent: ")))));
+    run_.world.setPlugged("road", true);
+    run_.world.switchRelaysByHand("road", {false, true});
+    run(100ms);
+    EXPECT_TRUE(lighting_.ended());
+    EXPECT_THAT(run_.world.relays("road"), Each(true));
+}
+
+// Relays that the show left safe are asked once more: somebody may have switched them since.
+// Example failure: a street lamp that was switched off by hand in the last second stays off.
+TEST_F(LightingPart, asks_relays_that_are_safe_already_whether_they_are) {
+    run(1s);
+    std::vector<std::vector<bool>> written;
+    run_.devices.relayBanks[0] = std::make_unique<Noting>(std::move(run_.devices.relayBanks[0]), written);
+    lighting_.end(run_.clock.now());
+    run(2s);
+    EXPECT_TRUE(lighting_.ended());
+    EXPECT_TRUE(written.empty());
+
+    Lighting another(run_.site, run_.cues, run_.devices, run_.clock, Time{}, nullptr);
+    const std::vector<Part> relays = another.relayParts();
+    another.tick(run_.clock.now());
+    relays[0].work(run_.clock.now());
+    ASSERT_EQ(written.size(), 1u);
+    static_cast<Noting&>(*run_.devices.relayBanks[0]).read_ = {true, false};
+    another.end(run_.clock.now());
+    relays[0].work(run_.clock.now());
+    EXPECT_EQ(written.size(), 2u);
+}
+
+// A bank with a relay that stays off, as one with a burnt coil does.
+class Stuck final : public RelayBank {
+public:
+    explicit Stuck(std::vector<std::vector<bool>>& written) : written_(written) {}
+    DeviceStatus status() const override { return {"road", "stuck", DeviceState::Running, LossAction::Hold, "", 0}; }
+    std::size_t size() const override { return 2; }
+    Result<void> write(const std::vector<bool>& states) override {
+        written_.push_back(states);
+        is_ = {states[0], false};
+        if (states == is_) return {};
+        return Error("road: its read-back differs");
+    }
+    Result<std::vector<bool>> read() override { return is_; }
+
+private:
+    std::vector<std::vector<bool>>& written_;
+    std::vector<bool> is_{false, false};
+};
+
+class LightingWithFaults : public LightingPart {
+protected:
+    std::vector<std::string> told_;
+    FaultLog faults_{[this](const std::string& sentence) { told_.push_back(sentence); }};
+    std::vector<std::vector<bool>> written_;
+    Lighting watched_{run_.site, run_.cues, run_.devices, run_.clock, Time{}, nullptr, &faults_};
+    const std::vector<Part> watchedRelays_ = watched_.relayParts();
+
+    void runWatched(Time time) {
+        for (const Time end = run_.clock.now() + time; run_.clock.now() < end; run_.clock.advance(25ms)) {
+            watched_.tick(run_.clock.now());
+            for (const Part& part : watchedRelays_) part.work(run_.clock.now());
+        }
+    }
+};
+
+// Example failure: 20 writes a second for ever, and nobody is told.
+TEST_F(LightingWithFaults, relays_that_do_not_follow_are_told_once_and_tried_ever_more_rarely) {
+    run_.devices.relayBanks[0] = std::make_unique<Stuck>(written_);
+    runWatched(60s);
+    EXPECT_LE(written_.size(), 20u);
+    EXPECT_GE(written_.size(), 60u / 5u);
+    ASSERT_THAT(told_, testing::SizeIs(1));
+    EXPECT_THAT(told_[0], testing::StartsWith("road-south of 'road' did not switch (road: its read-back differs)"));
+    EXPECT_EQ(faults_.faults()[0].device, "road");
+    EXPECT_EQ(faults_.faults()[0].until, std::nullopt);
+
+    written_.clear();
+    show::Input cue = run_.jumpTo("Full");
+    ASSERT_TRUE(watched_.replica().give(cue));
+    runWatched(25ms);
+    EXPECT_THAT(written_, testing::ElementsAre(std::vector<bool>{false, false})) << "a new cue is written at once";
+    runWatched(6s);
+    EXPECT_THAT(told_, testing::ElementsAre(testing::_, testing::StartsWith("the relays of 'road' are as they should be after")));
+
+    written_.clear();
+    watched_.end(run_.clock.now());
+    runWatched(2s);
+    EXPECT_EQ(written_.size(), 80u) << "at the end nothing is waited for";
+    ASSERT_THAT(watched_.unsafeBanks(), testing::SizeIs(1));
+    EXPECT_EQ(watched_.unsafeBanks()[0].why, "road: its read-back differs");
+}
+
+// Another program has the module, too. Example failure: both switch the street eight times a second.
+TEST_F(LightingWithFaults, relays_that_somebody_else_switches_are_switched_back_ever_more_rarely) {
+    run_.devices.relayBanks[0] = std::make_unique<Noting>(std::move(run_.devices.relayBanks[0]), written_);
+    ASSERT_TRUE(watched_.replica().give(run_.jumpTo("Full")));
+    for (int time = 0; time < 4 * 60; ++time) {
+        runWatched(250ms);
+        run_.world.switchRelaysByHand("road", {true, false});
+    }
+    EXPECT_LE(written_.size(), 20u);
+    EXPECT_THAT(told_, testing::ElementsAre(testing::StartsWith("road-north of 'road' switched without the show")));
+    runWatched(20s);
+    EXPECT_THAT(told_, testing::ElementsAre(testing::_, testing::StartsWith("the relays of 'road' are as they should be after")));
+}
+
+TEST_F(LightingWithFaults, a_universe_that_a_desk_takes_is_a_fault_until_it_gives_it_back) {
+    run_.site.universes[0].desk = show::Desk{run_.site.universes[0].port, {.ownPriority = 100}};
+    run_.devices = valueOf(openDevices(run_.site, Backends::SimulatedHeadless, {run_.clock, &run_.world}));
+    Lighting lighting{run_.site, run_.cues, run_.devices, run_.clock, Time{}, nullptr, &faults_};
+    lighting.tell = [this](const std::string& sentence) { told_.push_back(sentence); };
+    for (const bool ended : {false, true}) {
+        DmxInput frame;
+        frame.source = "FOH";
+        frame.priority = 120;
+        frame.ended = ended;
+        run_.world.sendFromDesk(1, frame);
+        lighting.tick(run_.clock.now());
+        run_.clock.advance(2s);
+    }
+    EXPECT_THAT(told_, testing::ElementsAre("universe 1 is now sent by 'FOH'", "universe 1 is now sent by the show"));
+    ASSERT_THAT(faults_.faults(), testing::SizeIs(1));
+    EXPECT_EQ(faults_.faults()[0].device, "universe 1");
+    EXPECT_EQ(faults_.faults()[0].until, 2s);
 }
 
 // The default show, whose road lamps hang on a module each.
@@ -219,6 +423,30 @@ TEST(LightingWithADesk, gives_the_universe_away_and_takes_it_back) {
     pass(1s, {});
     EXPECT_THAT(seen, testing::ElementsAre(40, 255));
     EXPECT_THAT(told, testing::ElementsAre("universe 1 is now sent by 'FOH'", "universe 1 is now sent by the show"));
+}
+
+// Who moved a slot last has it: the show must not take it in order to darken it.
+TEST(LightingWithADesk, leaves_a_desk_what_it_has_when_the_show_ends) {
+    RunningShow run;
+    run.site.universes[0].desk = show::Desk{run.site.universes[0].port, {.rule = show::DmxMerge::Rule::Latest}};
+    run.devices = valueOf(openDevices(run.site, Backends::SimulatedHeadless, {run.clock, &run.world}));
+    Lighting lighting{run.site, run.cues, run.devices, run.clock, Time{}, nullptr};
+    ASSERT_TRUE(lighting.replica().give(run.jumpTo("Full")));
+    const auto pass = [&](Time time) {
+        for (const Time end = run.clock.now() + time; run.clock.now() < end; run.clock.advance(tickTime(1, Lighting::kRate))) {
+            DmxInput frame;
+            frame.source = "FOH";
+            frame.slots[0] = run.clock.now() < 10s ? 0 : 40;
+            run.world.sendFromDesk(1, frame);
+            lighting.tick(run.clock.now());
+        }
+    };
+    pass(11s);
+    ASSERT_EQ(run.world.slots(1)[0], 40);
+    lighting.end(run.clock.now());
+    pass(2s);
+    EXPECT_TRUE(lighting.unsafeBanks().size() == 1) << "no bank has worked here";
+    EXPECT_EQ(run.world.slots(1)[0], 40);
 }
 
 }  // namespace

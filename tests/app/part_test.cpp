@@ -49,6 +49,32 @@ TEST(SteppedClock, sleeping_in_several_steps_changes_nothing) {
     EXPECT_EQ(moments({1s}), moments({1ms, 333ms, 334ms, 1s}));
 }
 
+// The show is over, its lamps still fade. Example failure: the moments of those that go on begin anew.
+TEST(SteppedClock, parts_of_another_rank_end_and_the_others_keep_their_moments) {
+    SteppedClock clock;
+    std::vector<Time> lighting, watch;
+    clock.setParts(
+        {{.name = "lighting", .rate = 100, .work = [&](Time moment) { lighting.push_back(moment); }, .rank = Rank::Lighting},
+         {.name = "watch", .rate = 100, .work = [&](Time moment) { watch.push_back(moment); }, .rank = Rank::Watch}});
+    clock.sleepUntil(10ms);
+    clock.endAllBut(Rank::Lighting);
+    clock.sleepUntil(30ms);
+    EXPECT_THAT(lighting, ElementsAre(0ms, 10ms, 20ms, 30ms));
+    EXPECT_THAT(watch, ElementsAre(0ms, 10ms));
+}
+
+TEST(PartThreads, parts_of_another_rank_end_and_the_others_go_on) {
+    SteadyClock clock;
+    std::atomic<int> lighting = 0, watch = 0;
+    PartThreads threads(clock, {{.name = "lighting", .rate = 1000, .work = [&](Time) { ++lighting; }, .rank = Rank::Lighting},
+                                {.name = "watch", .rate = 1000, .work = [&](Time) { ++watch; }, .rank = Rank::Watch}});
+    while (watch == 0) std::this_thread::yield();
+    threads.endAllBut(Rank::Lighting);
+    const int watched = watch, lit = lighting;
+    while (lighting < lit + 3) std::this_thread::yield();
+    EXPECT_EQ(watch, watched);
+}
+
 // A thread that fell behind must not run after the moments it missed: a lamp wants the newest level, not all old ones.
 TEST(PartThreads, a_part_that_is_late_goes_on_with_the_newest_moment) {
     ManualClock clock;

@@ -306,7 +306,9 @@ TEST_F(PatternCommand, goes_on_from_a_pattern_in_a_region) {
     EXPECT_THAT(refused({"--region", "1,0,0.5,1"}).errors, HasSubstr("left top corner comes first"));
     EXPECT_THAT(refused({"--region", "1,0,1.5"}), exits(2));
     EXPECT_THAT(find({"--region", "0,0,1,1"}), exits(2)) << "a region of what?";
-    EXPECT_TRUE(writePng(folder_ / "square.png", GreyImage(36, 36)));
+    GreyImage square(36, 36);
+    square.at(18, 18) = 1;
+    EXPECT_TRUE(writePng(folder_ / "square.png", square));
     EXPECT_THAT(run({"pattern", "square.png", "-o", "out/q.pattern.yaml", "--start", "out/p.pattern.yaml"}).errors,
                 HasSubstr("cannot be compared"));
 }

@@ -129,7 +129,9 @@ Day dayOf(const ScratchFolder& folder, std::size_t times) {
             (status.showTime < *options.length / 2 ? day.noon : day.evening) = holdings();
         });
         FANTASCOPE_CHECK(report.has_value(), report.error().message());
-        day.faults = report->faults.size();
+        // What the site did; what the show noticed of it names the device.
+        day.faults = static_cast<std::size_t>(
+            std::ranges::count_if(report->faults, [](const FaultReport& fault) { return fault.device.empty(); }));
         day.cues = report->cues.size();
         for (std::size_t output = 0; output < 2; ++output)
             day.shown[output] = static_cast<double>(report->outputs[output].frames) / (30 * seconds(report->length));

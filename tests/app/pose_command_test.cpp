@@ -447,8 +447,8 @@ TEST_F(PoseCommand, bad_input_is_refused_with_one_message_and_leaves_nothing) {
     const std::string png = text("hill.png");
     folder_.file("half.png", png.substr(0, png.size() / 2));
     EXPECT_THAT(refusal("half.png"), HasSubstr("half.png: the picture is truncated"));
-    EXPECT_THAT(refusalOf(GreyImage(50, 50)), HasSubstr("t.png: nothing in it is white"));
-    EXPECT_THAT(refusalOf(GreyImage(50, 50, 1.0f)), HasSubstr("t.png: all of it is white"));
+    EXPECT_THAT(refusalOf(GreyImage(50, 50)), HasSubstr("t.png: nothing is drawn, it is black all over"));
+    EXPECT_THAT(refusalOf(GreyImage(50, 50, 1.0f)), HasSubstr("t.png: nothing is drawn, it is white all over"));
     EXPECT_THAT(refusalOf(pictureOf(50, 50, [](int x, int y) { return isIn(x, y, 20, 30, 3, 1); })), HasSubstr("3 pixels"));
     EXPECT_THAT(
         refusalOf(pictureOf(400, 100, [](int x, int y) { return isIn(x, y, 10, 10, 50, 80) || isIn(x, y, 300, 10, 50, 80); })),

@@ -32,13 +32,21 @@ TEST(Progress, on_a_terminal_one_line_is_drawn_over_and_ends_with_the_run) {
     ManualClock clock;
     std::ostringstream out;
     {
-        Progress progress("pattern", clock, out, true);
+        Progress progress("pattern", clock, out, true, [] { return 80; });
         progress.update(0.0, "z 0.5");
         clock.advance(90s);
         progress.update(0.5, "z 0.25");
         EXPECT_THAT(out.str(), Not(HasSubstr("\n")));
     }
-    EXPECT_THAT(out.str(), EndsWith("\r\x1b[Kpattern  [############............]  50 %  z 0.25  1:30 min left\n"));
+    EXPECT_THAT(out.str(), EndsWith("\r\x1b[Jpattern  [############............]  50 %  z 0.25  1:30 min left\r\n"));
+}
+
+TEST(Progress, a_narrow_terminal_has_no_room_for_a_bar) {
+    ManualClock clock;
+    std::ostringstream out;
+    Progress progress("pattern", clock, out, true, [] { return 40; });
+    progress.update(0.5, "z 0.25");
+    EXPECT_THAT(out.str(), EndsWith("\r\x1b[Jpattern   50 %  z 0.25  0 s left\r"));
 }
 
 TEST(Progress, a_run_without_an_end_shows_the_time_that_has_passed) {

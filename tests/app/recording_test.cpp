@@ -3,16 +3,29 @@
 #include "app/video_reader.h"
 
 #include "core/file.h"
+#include "core/random.h"
+#include "program.h"
+#include "scratch_folder.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
+#include <algorithm>
+#include <csignal>
 #include <filesystem>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <vector>
 
 namespace fantascope::app {
 namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
+using testing::AllOf;
 using testing::HasSubstr;
 
 class RecordingTest : public testing::Test {
@@ -23,12 +36,13 @@ protected:
     void record(const fs::path& target) {
         auto recording = Recording::open(target, {{"left", {64, 48}, 30}, {"right", {64, 48}, 30}});
         ASSERT_TRUE(recording) << recording.error().message();
+        (*recording)->begin(tickTime(10, 30));
         for (int refresh = 10; refresh < 15; ++refresh)
             for (std::size_t output : {0u, 1u}) {
                 const auto shade = static_cast<std::uint8_t>(refresh * 10);
                 ASSERT_TRUE((*recording)
                                 ->frame(output, RgbaImage(64, 48, {shade, 0, static_cast<std::uint8_t>(output * 200), 255}),
-                                        refresh, 33ms * refresh));
+                                        {.refresh = refresh, .at = tickTime(refresh, 30)}, 33ms * refresh));
             }
         (*recording)->lighting(1s, 1, std::vector<std::uint8_t>{7, 0, 9, 0, 0});
         (*recording)->cue(1, "2 Rise", RgbaImage(32, 18, {200, 100, 50, 255}));
@@ -65,6 +79,151 @@ TEST_F(RecordingTest, one_video_file_holds_the_outputs_side_by_side) {
     record(folder_ / "all.mp4");
     EXPECT_TRUE(fs::exists(folder_ / "all.mp4"));
     EXPECT_FALSE(fs::exists(folder_ / "frames.csv"));
+}
+
+// The display was late, was gone for a second, and refreshes a little faster than its site file says.
+TEST_F(RecordingTest, every_frame_is_at_the_moment_when_it_became_visible) {
+    const Time moments[] = {Time{}, 33ms, 100ms, 1100ms, 1116ms, 1133ms};
+    auto recording = Recording::open(folder_, {{"left", {64, 48}, 30}}).value();
+    recording->begin(5s);
+    for (const Time at : moments)
+        ASSERT_TRUE(recording->frame(0, RgbaImage(64, 48), {.refresh = 0, .at = 5s + at}, at)) << seconds(at);
+    ASSERT_TRUE(recording->finish());
+    EXPECT_EQ(recording->recorded(0), 6);
+    const Video video = readVideo(folder_ / "left.mp4");
+    ASSERT_EQ(video.times.size(), std::size(moments));
+    for (std::size_t i = 0; i < video.times.size(); ++i) EXPECT_NEAR(video.times[i], seconds(moments[i]), 1.0 / 240) << i;
+    EXPECT_NEAR(video.seconds, 1.133 + 1.0 / 30, 1.0 / 200);
+}
+
+// Example failures: pictures of different moments side by side; nothing more once the last projector is unplugged.
+TEST_F(RecordingTest, side_by_side_each_output_shows_what_it_showed_then) {
+    auto recording = Recording::open(folder_ / "all.mp4", {{"left", {64, 48}, 30}, {"right", {64, 48}, 30}}).value();
+    const auto show = [&](std::size_t output, int refresh) {
+        const auto grey = static_cast<std::uint8_t>(40 * refresh + 20);
+        const Time at = tickTime(refresh, 30);
+        ASSERT_TRUE(recording->frame(output, RgbaImage(64, 48, {grey, grey, grey, 255}), {.refresh = refresh, .at = at}, at));
+    };
+    for (int refresh = 0; refresh < 3; ++refresh)
+        for (const std::size_t output : {0u, 1u}) show(output, refresh);
+    show(0, 3);  // the right one is unplugged
+    show(0, 4);
+    ASSERT_TRUE(recording->finish());
+    EXPECT_EQ(recording->recorded(0), 5);
+    EXPECT_EQ(recording->recorded(1), 3);
+    const Video video = readVideo(folder_ / "all.mp4");
+    ASSERT_EQ(video.frames.size(), 5u);
+    for (int i = 0; i < 5; ++i) {
+        const Rgba16Image& picture = video.frames[static_cast<std::size_t>(i)];
+        EXPECT_NEAR(picture.at(20, 20).g / 257.0, 40 * i + 20, 4) << i;
+        EXPECT_NEAR(picture.at(84, 20).g / 257.0, 40 * std::min(i, 2) + 20, 4) << i;
+    }
+}
+
+// Files of this program and of those that it starts may have so many bytes: the disk is full.
+class FullDisk {
+public:
+    explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limited{bytes, before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limited);
+    }
+    ~FullDisk() {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+
+private:
+    rlimit before_{};
+    sighandler_t handler_;
+};
+
+RgbaImage noise(glm::ivec2 size, std::uint64_t seed) {
+    RgbaImage picture(size.x, size.y);
+    Rng rng(seed);
+    for (Rgba8& pixel : picture.pixels()) pixel.g = static_cast<std::uint8_t>(rng.below(256));
+    return picture;
+}
+
+// Example failures: the error is told for every frame; the video that there is room for is lost with the other.
+TEST_F(RecordingTest, a_video_that_the_disk_has_no_room_for_ends_alone_and_says_so_once) {
+    constexpr glm::ivec2 kSize{256, 256};
+    auto recording = Recording::open(folder_, {{"left", kSize, 30}, {"right", {64, 48}, 30}}).value();
+    int refusals = 0;
+    {
+        const FullDisk full(200'000);
+        for (int refresh = 0; refresh < 60; ++refresh) {
+            const Shown shown{.refresh = refresh, .at = tickTime(refresh, 30)};
+            const auto left = recording->frame(0, noise(kSize, static_cast<std::uint64_t>(refresh)), shown, shown.at);
+            if (!left) {
+                EXPECT_THAT(left.error().message(), AllOf(HasSubstr("left.mp4"), HasSubstr("File too large")));
+                ++refusals;
+            }
+            ASSERT_TRUE(recording->frame(1, RgbaImage(64, 48), shown, shown.at));
+        }
+        EXPECT_TRUE(recording->finish());
+    }
+    EXPECT_EQ(refusals, 1);
+    EXPECT_EQ(recording->recorded(0), 0);
+    EXPECT_EQ(recording->recorded(1), 60);
+    EXPECT_FALSE(fs::exists(folder_ / "left.mp4"));
+    EXPECT_EQ(readVideo(folder_ / "right.mp4").frames.size(), 60u);
+}
+
+nlohmann::json reportOf(const std::vector<std::string>& more, const ScratchFolder& folder) {
+    std::vector<std::string> arguments{"rehearse", "--record", "videos", "--report", "report.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = runProgram(arguments, folder.path());
+    EXPECT_THAT(outcome, exits(0));
+    return nlohmann::json::parse(contentsOf(folder / "report.json"));
+}
+
+// What is missing is counted, however busy the machine is: every frame that was shown is in the file or in the count.
+// Example failure: 321 of 447 frames are in the video, and nobody says so.
+TEST_F(RecordingTest, under_full_load_every_frame_is_in_the_video_or_counted_as_missing) {
+    const ScratchFolder folder;
+    nlohmann::json report;
+    {
+        std::vector<std::jthread> load;
+        for (unsigned i = 0; i < 2 * std::thread::hardware_concurrency(); ++i)
+            load.emplace_back([](const std::stop_token& stop) {
+                while (!stop.stop_requested()) continue;
+            });
+        report = reportOf({"--seconds", "3"}, folder);
+    }
+    for (const char* output : {"left", "right"}) {
+        const std::size_t frames = report["frames_by_output"][output], recorded = report["recorded"][output],
+                          missing = report["not_recorded"][output];
+        EXPECT_EQ(recorded + missing, frames) << output;
+        const Video video = readVideo(folder / "videos" / (std::string(output) + ".mp4"));
+        EXPECT_EQ(video.frames.size(), recorded) << output;
+        const std::string said = fmt::format("frames of '{}' are missing", output);
+        EXPECT_EQ(report["faults"].dump().find(said) != std::string::npos, missing > 0) << output;
+    }
+}
+
+TEST_F(RecordingTest, as_fast_as_possible_none_is_missing) {
+    const ScratchFolder folder;
+    const nlohmann::json report = reportOf({"--seconds", "2", "--as-fast-as-possible"}, folder);
+    EXPECT_EQ(report["recorded"], report["frames_by_output"]);
+    EXPECT_EQ(report["not_recorded"], nlohmann::json({{"left", 0}, {"right", 0}}));
+    EXPECT_EQ(readVideo(folder / "videos/right.mp4").frames.size(), 60u);
+}
+
+// Example failure: the show ends, or its report is thrown away with the recording.
+TEST_F(RecordingTest, on_a_full_disk_the_show_goes_on_and_the_report_says_when_it_was_full) {
+    const ScratchFolder folder;
+    nlohmann::json report;
+    {
+        const FullDisk full(60'000);
+        report = reportOf({"--seconds", "4", "--from", "Full", "--by-hand", "--as-fast-as-possible"}, folder);
+    }
+    EXPECT_EQ(report["frames"], 2 * 4 * 30);
+    EXPECT_EQ(report["recorded"]["left"], 0);
+    EXPECT_EQ(report["not_recorded"]["left"], 4 * 30);
+    const std::string faults = report["faults"].dump();
+    EXPECT_THAT(faults, HasSubstr("left.mp4: cannot be written: File too large; the show goes on without this video"));
+    EXPECT_THAT(faults, HasSubstr("120 of 120 frames of 'left' are missing"));
 }
 
 TEST_F(RecordingTest, another_kind_of_file_is_refused_with_advice) {

@@ -49,7 +49,7 @@ protected:
     }
     void play(Time length) {
         for (const Time end = run_.clock.now() + length; run_.clock.now() < end;) {
-            ASSERT_TRUE(loop_->step());
+            loop_->step();
             for (std::size_t output = 0; output < 2; ++output)
                 while (const render::ShownFrame* const frame = all_[output]->next(Time::max()))
                     shown_[{frame->showTime, output}] = frame->image;

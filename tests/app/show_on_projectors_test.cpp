@@ -6,14 +6,20 @@
 
 #include "render/golden.h"
 
+#include "contract/eventually.h"
 #include "contract/projectors.h"
 #include "core/check.h"
 #include "edid_block.h"
+#include "running_program.h"
+#include "scratch_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
+#include <csignal>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -59,10 +65,7 @@ protected:
     static std::vector<std::uint8_t> edidOf(int projector) {
         return edidBlock({.serial = std::string(1, static_cast<char>('A' + projector))});
     }
-    void frame() {
-        const auto stepped = loop_->step();
-        ASSERT_TRUE(stepped) << stepped.error().message();
-    }
+    void frame() { loop_->step(); }
     // Frames until it is so; what happens to a projector travels by the X server. An absurd number of frames: it will never be.
     bool framesUntil(const std::function<bool()>& so) {
         for (int frames = 0; frames < 5'000 && !so(); ++frames) frame();
@@ -138,6 +141,32 @@ TEST_F(ShowOnProjectors, looks_golden_on_each_while_they_come_and_go_and_change_
     EXPECT_EQ(loop_->framesLate(), 0) << "who is away is late for nothing, and nobody waited for them";
 }
 
+// Example failure: the program ends with the X server; or it goes on, and the wall stays dark.
+TEST_F(ShowOnProjectors, looks_golden_again_on_the_next_x_server) {
+    begin();
+    enter(show_->still);
+    expectGolden({0, 1, 2});
+    projectors_->crash();
+    frame();
+    ASSERT_TRUE(!runs(0) && !runs(1) && !runs(2));
+    const Frames before = frames();
+    const Time lost = clock_.now();
+    for (int count = 0; count < 120; ++count) frame();
+    EXPECT_EQ(frames(), before) << "nobody sees anything";
+    EXPECT_GT(clock_.now(), lost + std::chrono::seconds(1)) << "the show goes on";
+    projectors_->startAgain();
+    for (int i = 0; i < 3; ++i) {
+        projectors_->switchOn(connector(i), {i * ThreeOutputs::kSize.x, 0});
+        projectors_->plug(connector(i), edidOf(i));
+    }
+    contract::eventually("all are back", [&] {  // without a picture a frame takes no time, and what finds them has its own
+        frame();
+        return runs(0) && runs(1) && runs(2);
+    });
+    expectGolden({0, 1, 2});
+    EXPECT_EQ(loop_->framesLate(), 0);
+}
+
 // Its pictures were made before it came.
 TEST_F(ShowOnProjectors, joins_when_a_projector_comes_that_was_absent_at_the_start) {
     projectors_->plug(connector(1), {});
@@ -159,6 +188,80 @@ TEST_F(ShowOnProjectors, plays_every_kind_of_source_in_every_blend_at_once) {
     EXPECT_EQ(shown[2], shown[0]);
     EXPECT_EQ(loop_->framesLate(), 0);
     EXPECT_EQ(loop_->swapSkew().count(), static_cast<std::uint64_t>(shown[0]));
+}
+
+// The night itself, on windows of an X server that crashes, and once more without one at the start.
+class NightOnAnXServer : public testing::Test {
+protected:
+    NightOnAnXServer() {
+        (void)folder_.file("site.yaml", R"(fantascope: site
+version: 1
+outputs:
+  - {name: left, display: {driver: glfw}, size: [64, 36], refresh_rate: 30}
+  - {name: right, display: {driver: glfw}, size: [64, 36], refresh_rate: 30}
+)");
+        (void)folder_.file("show.yaml", R"(fantascope: show
+version: 1
+title: Two colours
+sources: {red: {solid: [1, 0, 0]}, blue: {solid: [0, 0, 1]}}
+looks: {both: {outputs: {left: [{source: red}], right: [{source: blue}]}}}
+cues: [{name: Both, look: both, fade: 0.1}]
+)");
+    }
+    RunningProgram night() const {
+        return {{"run", "show.yaml", "--site", "site.yaml", "--from", "Both", "--report", "report.json"}, folder_.path()};
+    }
+    // Returns once both windows show their colours.
+    static void see(const XServer& server) {
+        using Pixel = std::array<std::uint8_t, 3>;
+        contract::eventually("both windows are seen", [&] {
+            const auto row = server.row(10);
+            return std::ranges::count(row, Pixel{255, 0, 0}) == 64 && std::ranges::count(row, Pixel{0, 0, 255}) == 64;
+        });
+    }
+    static bool says(RunningProgram& night, const std::string& what) {
+        for (int lines = 0; lines < 60; ++lines) {
+            const auto line = night.line();
+            if (!line) return false;
+            if (line->find(what) != std::string::npos) return true;
+        }
+        return false;
+    }
+
+    const ScratchFolder folder_;
+};
+
+TEST_F(NightOnAnXServer, outlives_it_and_ends_well_when_asked_to) {
+    auto server = XServer::start();
+    ASSERT_TRUE(server) << server.error().message();
+    RunningProgram night = this->night();
+    see(**server);
+    for (const bool killed : {true, false}) {
+        if (killed)
+            (*server)->crash();
+        else
+            (*server)->killProgramOf("left");
+        ASSERT_TRUE(says(night, "the X server has ended")) << night.all();
+        if (killed) (*server)->startAgain();
+        ASSERT_TRUE(says(night, "is back")) << night.all();
+        see(**server);
+    }
+    (*server)->crash();
+    ASSERT_TRUE(says(night, "the X server has ended")) << night.all();
+    EXPECT_EQ(night.stop(SIGTERM), 0) << night.all();
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "report.json"));
+}
+
+// Its unit and the X server's may start in any order.
+TEST_F(NightOnAnXServer, may_begin_before_it) {
+    auto server = XServer::start();
+    ASSERT_TRUE(server) << server.error().message();
+    (*server)->crash();
+    RunningProgram night = this->night();
+    ASSERT_TRUE(says(night, "start an X server")) << night.all();
+    (*server)->startAgain();
+    see(**server);
+    EXPECT_EQ(night.stop(SIGTERM), 0) << night.all();
 }
 
 }  // namespace

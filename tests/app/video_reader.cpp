@@ -1,6 +1,7 @@
 #include "app/video_reader.h"
 
 #include "core/check.h"
+#include "core/padded_rows.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -19,9 +20,9 @@ Rgba16Image pictureOf(const AVFrame& frame) {
     FANTASCOPE_CHECK(convert != nullptr, "the frame's format is known");
     const int* const matrix = sws_getCoefficients(frame.colorspace == AVCOL_SPC_BT709 ? SWS_CS_ITU709 : SWS_CS_DEFAULT);
     sws_setColorspaceDetails(convert, matrix, frame.color_range == AVCOL_RANGE_JPEG ? 1 : 0, matrix, 1, 0, 1 << 16, 1 << 16);
-    auto* rows = reinterpret_cast<std::uint8_t*>(picture.pixels().data());
-    const int stride = picture.width() * static_cast<int>(sizeof(Rgba16));
-    sws_scale(convert, frame.data, frame.linesize, 0, frame.height, &rows, &stride);
+    PaddedRows<Rgba16>().fill(picture, [&](std::uint8_t* rows, int stride) {
+        sws_scale(convert, frame.data, frame.linesize, 0, frame.height, &rows, &stride);
+    });
     sws_freeContext(convert);
     return picture;
 }

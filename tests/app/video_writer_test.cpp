@@ -62,6 +62,7 @@ TEST(VideoWriter, leaves_nothing_where_it_was_not_finished) {
     for (const Kind& kind : kKinds) {
         auto writer = VideoWriter::open(folder / kind.file, {64, 48}, 25, kind.kind).value();
         ASSERT_TRUE(writer->write(RgbaImage(64, 48), 0));
+        EXPECT_TRUE(folder.names().empty()) << "nor where the program is killed now";
     }
     EXPECT_TRUE(folder.names().empty());
 }

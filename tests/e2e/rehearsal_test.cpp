@@ -166,6 +166,38 @@ TEST(Rehearsal, an_unplugged_projector_goes_dark_and_comes_back_while_the_other_
     EXPECT_THAT(outcome.errors, HasSubstr("left (headless) is back"));
 }
 
+TEST(Rehearsal, an_outage_stands_in_the_report_with_its_length) {
+    const ScratchFolder folder;
+    const fs::path site = siteWith(folder, "  faults:\n    - {at: 1, until: 2, kind: unplug, device: road}\n");
+    ASSERT_THAT(rehearse(folder.path(), {"--seconds", "3", "--by-hand", "--from", "Full", "--site", site.string()}), exits(0));
+    const json report = json::parse(contentsOf(folder / "report.json"));
+    std::vector<json> noticed;
+    for (const json& fault : report["faults"])
+        if (fault.contains("device")) noticed.push_back(fault);
+    ASSERT_EQ(noticed.size(), 1u) << report["faults"];
+    EXPECT_EQ(noticed[0]["device"], "road");
+    EXPECT_THAT(noticed[0]["what"].get<std::string>(), HasSubstr("road (simulated) is missing: "));
+    EXPECT_NEAR(noticed[0]["at"].get<double>(), 1, 0.15);
+    EXPECT_NEAR(noticed[0]["until"].get<double>(), 2, 0.15);
+}
+
+// The show ends in the middle of a cue: its pictures end, its lamps and relays go on to where they stay.
+// Example failure: the lamps keep their last level all night.
+TEST(Rehearsal, ends_with_its_lamps_at_the_end_levels_and_its_relays_safe) {
+    const ScratchFolder folder;
+    const fs::path site = siteWith(folder, "end_fade: 0.5\n");
+    std::string text = contentsOf(site / "site.yaml");
+    replace(text, "channels: [intensity]}", "channels: [intensity], end: 0.2}");
+    std::ofstream(site / "site.yaml") << text;
+    ASSERT_THAT(rehearse(folder.path(), {"--seconds", "2", "--by-hand", "--from", "Full", "--site", site.string()}), exits(0));
+    EXPECT_EQ(json::parse(contentsOf(folder / "report.json"))["seconds"], 2.0);
+    const std::string dmx = contentsOf(folder / "rehearsal/dmx.csv"), relays = contentsOf(folder / "rehearsal/relays.csv");
+    EXPECT_TRUE(dmx.ends_with("\n2.500000,1,51\n")) << dmx.substr(dmx.size() - 60);
+    EXPECT_THAT(relays, testing::MatchesRegex("show_time_s,bank,states\n0.000000,road,00\n2.0[0-9]+,road,11\n"));
+    const std::string recorded = contentsOf(folder / "rehearsal/frames.csv");
+    EXPECT_EQ(std::count(recorded.begin(), recorded.end(), '\n'), 1 + 2 * 2 * 30);
+}
+
 // Each mistake ends with one message that says where and what to do, exit status 1, and nothing half written.
 TEST(Rehearsal, bad_input_is_refused_before_anything_is_shown) {
     const ScratchFolder folder;

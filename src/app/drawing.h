@@ -1,0 +1,27 @@
+#pragma once
+// What is noticed about an artist's drawing before hours of work go into its negative, or into nothing.
+
+#include "core/image.h"
+#include "core/result.h"
+
+#include <filesystem>
+#include <string>
+
+namespace fantascope::app {
+
+// Error: it is of one grey all over.
+Result<void> checkDrawn(const GreyImage& drawing, const std::filesystem::path& file);
+
+// Whether it is probably dark ink on white paper, where a drawing is light on black: the picture's edge and most of its pixels are
+// nearly white, and some are dark.
+bool isInkOnPaper(const GreyImage& drawing);
+
+// What is odd about a silhouette, white on black; "" if nothing is. Holes in it that are less across than kNarrowest of its height are
+// flaws of the drawing: nobody can stand so that light falls through them.
+constexpr double kNarrowest = 0.02;
+std::string oddHolesIn(const GreyImage& silhouette);
+
+// The drawing turned over, beside an output, for what refers to it: STEM.inverted.png. Error: names the file.
+Result<std::filesystem::path> writeInverted(const std::filesystem::path& drawing, const std::filesystem::path& output);
+
+}  // namespace fantascope::app

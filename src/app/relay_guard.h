@@ -1,0 +1,49 @@
+#pragma once
+
+#include "drivers/common/file_handle.h"
+
+#include "core/clock.h"
+#include "core/result.h"
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace fantascope::app {
+
+// A small process of this program that outlives a run (docs/decisions/0030-a-guard-outlives-the-run.md): when the run ends without a word,
+// whatever ended it, the guard writes the safe states of the site's relays until every bank has confirmed them, for kPatience at most.
+// Thread: thread-safe.
+class RelayGuard {
+public:
+    static constexpr Time kPatience = std::chrono::seconds(30);
+
+    // Starts it. The guard reads the site file by itself, at once, and keeps `held` (files of claims) open until it ends.
+    // Error: no process can be started.
+    static Result<std::unique_ptr<RelayGuard>> start(std::filesystem::path site, std::vector<int> held);
+    // Unless it was armed, nothing was switched and it is dismissed; an armed one sets to work.
+    ~RelayGuard();
+    RelayGuard(const RelayGuard&) = delete;
+    RelayGuard& operator=(const RelayGuard&) = delete;
+
+    // From now on relays may be unsafe.
+    void arm();
+    bool hasDied() const;
+    // Another one in its place. Error: as start().
+    Result<void> restart();
+    // The relays are safe: it ends, and with it its hold on the claims. Returns once it has, after two seconds at the latest.
+    void dismiss();
+
+private:
+    RelayGuard(std::filesystem::path site, std::vector<int> held) : site_(std::move(site)), held_(std::move(held)) {}
+    const std::filesystem::path site_;
+    const std::vector<int> held_;
+    mutable std::mutex mutex_;  // of:
+    drivers::FileHandle pipe_;
+    int process_ = -1;
+    bool armed_ = false, dismissed_ = false;
+};
+
+}  // namespace fantascope::app
