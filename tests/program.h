@@ -32,12 +32,12 @@ inline std::string contentsOf(const std::filesystem::path& file) {
     return text.str();
 }
 
-// Becomes fantascope, in a child process.
-[[noreturn]] inline void execute(const std::vector<std::string>& arguments) {
-    std::vector<char*> words{const_cast<char*>(FANTASCOPE_PROGRAM)};
+// Becomes fantascope, or a copy of it, in a child process.
+[[noreturn]] inline void execute(const std::vector<std::string>& arguments, const char* program = FANTASCOPE_PROGRAM) {
+    std::vector<char*> words{const_cast<char*>(program)};
     for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
     words.push_back(nullptr);
-    ::execv(FANTASCOPE_PROGRAM, words.data());
+    ::execv(program, words.data());
     ::_exit(127);
 }
 
@@ -45,7 +45,8 @@ inline int statusOf(int waited) { return WIFEXITED(waited) ? WEXITSTATUS(waited)
 
 // Runs fantascope with `arguments` in `folder`, with further environment variables, and waits for it.
 inline Outcome runProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                          const std::vector<std::pair<std::string, std::string>>& environment = {}) {
+                          const std::vector<std::pair<std::string, std::string>>& environment = {},
+                          const std::filesystem::path& program = FANTASCOPE_PROGRAM) {
     const ScratchFolder captured;
     const std::string out = captured / "out", errors = captured / "errors";
     const pid_t child = ::fork();
@@ -55,7 +56,7 @@ inline Outcome runProgram(const std::vector<std::string>& arguments, const std::
         ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
         ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
         ::dup2(::open(errors.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
-        execute(arguments);
+        execute(arguments, program.c_str());
     }
     int status = 0;
     ::waitpid(child, &status, 0);

@@ -46,11 +46,13 @@ void fill(AVFrame& frame, const RgbaImage& picture, const VideoCoding& coding) {
         const AVComponentDescriptor& place = format.comp[component];
         const bool colour = !rgb && (component == 1 || component == 2), alpha = component == 3;
         const int wide = colour ? 1 << format.log2_chroma_w : 1, high = colour ? 1 << format.log2_chroma_h : 1;
-        for (int y = 0; y < picture.height() / high; ++y)
-            for (int x = 0; x < picture.width() / wide; ++x) {
+        for (int y = 0; y < (picture.height() + high - 1) / high; ++y)
+            for (int x = 0; x < (picture.width() + wide - 1) / wide; ++x) {
                 double sum = 0;
                 for (int i = 0; i < wide * high; ++i) {
-                    const Rgba8 pixel = picture.at(x * wide + i % wide, y * high + i / wide);
+                    // An odd last column or row counts twice.
+                    const Rgba8 pixel = picture.at(std::min(x * wide + i % wide, picture.width() - 1),
+                                                   std::min(y * high + i / wide, picture.height() - 1));
                     const Yuv yuv = yuvOf(pixel, coding.matrix);
                     const double values[] = {rgb ? pixel.r / 255.0 : yuv.y, rgb ? pixel.g / 255.0 : yuv.u,
                                              rgb ? pixel.b / 255.0 : yuv.v, pixel.a / 255.0};

@@ -39,6 +39,7 @@ const std::map<std::string_view, Names> kLibraries = {
     {"OpenGL", {"epoxy/gl.h"}},
     {"EGL", {"epoxy/egl.h"}},
     {"GLFW", {"GLFW/"}},
+    {"Xlib", {"X11/"}},
     {"XCB", {"xcb/"}},
     {"libav", {"libavcodec/", "libavformat/", "libavutil/", "libswscale/"}},
     {"libusb", {"libusb.h"}},
@@ -47,8 +48,8 @@ const std::map<std::string_view, Names> kLibraries = {
     {"CLI11", {"CLI/"}},
     {"nlohmann-json", {"nlohmann/"}},
     {"POSIX",
-     {"sys/", "arpa/", "asm/termbits.h", "net/", "netinet/", "fcntl.h", "grp.h", "ifaddrs.h", "linux/serial.h", "poll.h",
-      "sched.h", "signal.h", "termios.h", "unistd.h"}},
+     {"sys/", "arpa/", "asm/termbits.h", "net/", "netinet/", "fcntl.h", "grp.h", "ifaddrs.h", "linux/serial.h", "locale.h",
+      "poll.h", "sched.h", "signal.h", "spawn.h", "termios.h", "unistd.h", "wchar.h"}},
 };
 const Names kEverywhere = {"fmt", "GLM"};  // besides the standard library
 
@@ -97,6 +98,7 @@ const std::vector<Row> kTable = {
     {"drivers/display/glfw_library", kOfDrivers, {}, {"GLFW"}},
     {"drivers/display/monitor_watch", kOfDrivers, {}, {"POSIX"}},
     {"drivers/display/picture_window", kOfDrivers, {}, {"OpenGL", "GLFW"}},
+    {"drivers/display/lost_x_connection", kOfDrivers, {}, {"Xlib"}},
     {"drivers/display/x_screen", kOfDrivers, {}, {"XCB"}},
     {"drivers/dmx", kOnALine, {}, {"POSIX"}},
     {"drivers/modbus", kOnALine, {}, {"libmodbus", "POSIX"}},

@@ -65,6 +65,17 @@ public:
         if (ear_.heard[kUniverse].empty()) return std::nullopt;
         return ear_.heard[kUniverse].back().slots;
     }
+    // All has arrived when a mark has that was sent later.
+    std::optional<DmxFrame> lastFrame() override {
+        const DmxFrame mark = contract::dmxFrame(++mark_);
+        EXPECT_TRUE(marker_->send(mark));
+        const auto seen = [&] { return !ear_.heard[kMarker].empty() && ear_.heard[kMarker].back().slots == mark; };
+        if (!ear_.listenUntil(seen)) ADD_FAILURE() << "the mark was not heard";
+        std::optional<DmxFrame> last;
+        for (const PlainLevels& levels : ear_.heard[kUniverse])
+            if (levels.options != 0x40) last = levels.slots;  // a goodbye has none that count
+        return last;
+    }
     Clock& clock() override { return testClock(); }
     Device& neighbour() override { return *neighbour_; }
 

@@ -1,9 +1,7 @@
 #include "peers/own_network.h"
-
-#include <gmock/gmock.h>
+#include "test_run.h"
 
 int main(int count, char** arguments) {
     fantascope::peers::enterOwnNetwork();  // before anything starts a thread
-    testing::InitGoogleMock(&count, arguments);
-    return RUN_ALL_TESTS();
+    return fantascope::runTests(count, arguments);
 }

@@ -55,7 +55,8 @@ TEST_F(DmxNetwork, sacn_is_known_again_by_its_cid_after_a_restart) {
     for (const char* site : {"site.yaml", "site.yaml", "other/site.yaml"}) {
         const auto port = drivers::openDmxPort(ConfigNode::parse(kSacn, site).value(), 7, night()).value();
         ASSERT_TRUE(ear.listenUntil([&] { return runs(*port); }));
-        ASSERT_TRUE(isHeard(ear, *port, 7, dmxFrame(1)));
+        // Another frame each time: a port that closes sends its own again.
+        ASSERT_TRUE(isHeard(ear, *port, 7, dmxFrame(static_cast<int>(cids.size()) + 1)));
         cids.push_back(ear.heard[7].back().cid);
         ear.forget();
     }
@@ -77,6 +78,32 @@ TEST_F(DmxNetwork, sacn_says_goodbye_three_times) {
     EXPECT_EQ(ear.heard[7].back().options, 0x40) << "nothing comes after it";
     for (std::size_t i = 1; i < ear.heard[7].size(); ++i)
         EXPECT_EQ(ear.heard[7][i].sequence, (ear.heard[7][i - 1].sequence + 1) & 255);
+}
+
+// What receivers of a goodbye have then are the levels before it, since its own mean nothing (ANSI E1.31, section 6.2.6).
+// Example failure: a test of a lamp leaves it at full.
+TEST_F(DmxNetwork, the_newest_levels_are_out_four_times_before_a_port_closes) {
+    for (const std::string protocol : {"sacn", "artnet"}) {
+        SCOPED_TRACE(protocol);
+        Ear ear(protocol);
+        if (protocol == "sacn") ear.join(7);
+        auto port = openPort("driver: " + protocol + "\ninterface: near\n", 7);
+        ASSERT_TRUE(ear.listenUntil([&] { return runs(*port); }));
+        ASSERT_TRUE(isHeard(ear, *port, 7, dmxFrame(1)));
+        ear.forget();
+        const Slots dark{};
+        ASSERT_TRUE(port->send(dark));
+        port.reset();
+        const auto countOf = [&](int options) {
+            return std::ranges::count_if(
+                ear.heard[7], [&](const PlainLevels& heard) { return heard.slots == dark && heard.options == options; });
+        };
+        EXPECT_TRUE(ear.listenUntil([&] { return countOf(0) == 4; })) << countOf(0);
+        EXPECT_TRUE(ear.listenUntil([&] { return countOf(0x40) == (protocol == "sacn" ? 3 : 0); }));
+        ASSERT_FALSE(ear.heard[7].empty());
+        EXPECT_EQ(ear.heard[7].back().slots, dark);
+        EXPECT_EQ(ear.heard[7].back().options, protocol == "sacn" ? 0x40 : 0);
+    }
 }
 
 // Packets that follow each other on the wire: "7", "8", or "sync".

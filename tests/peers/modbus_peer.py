@@ -15,6 +15,7 @@ Every line has a second module, unit 2; L.2 is that. The faults below are the fi
   late L MS                   answers come so late                  exception L CODE            nothing but this is answered; 0: ends
   dead L                      it never answers again                asked L                     how often it was asked something
   noise L 0|1                 bytes of nobody on an rtu line        stuck L COIL                it stays as it is
+  refuse L 0|1                it answers every write with exception 4
   stood L                     the longest time in ms that the whole program stood still, since this was asked last
 
 Every write of coils that it obeyed, and every strike of a watchdog, is added to the file that JOURNAL in the environment names: `L write
@@ -35,6 +36,7 @@ from pymodbus.server.async_io import ModbusConnectedRequestHandler, ModbusSingle
 from pymodbus.transaction import ModbusRtuFramer, ModbusSocketFramer
 
 SIZE = 128
+WRITES = (5, 6, 15, 16)
 WATCHDOG_REGISTER = 100
 TICK_MS = 3
 SILENCE = 0.02  # seconds after which a frame on a serial line is over; generous, since this is no real-time program
@@ -103,8 +105,8 @@ class Faults:
         module.asked += 1
         if module.dead:
             return
-        if line.exception:
-            answer = request.doException(line.exception)
+        if line.exception or line.refuse and request.function_code in WRITES:
+            answer = request.doException(line.exception or 4)
             answer.transaction_id, answer.unit_id = request.transaction_id, request.unit_id
             self.send(answer, *addr)
             return
@@ -178,7 +180,7 @@ class Line:
         self.reset()
 
     def reset(self):
-        self.mute, self.late_ms, self.exception, self.noise, self.served = 0, 0, 0, 0, 0
+        self.mute, self.late_ms, self.exception, self.refuse, self.noise, self.served = 0, 0, 0, 0, 0, 0
         self.module, self.second = Module(self.number), Module(100 + self.number)
         context = Addresses(self.module, self.second)
         if self.kind == "tcp":
@@ -259,7 +261,7 @@ async def obey(lines, words):
             await line.cut()
         line.reset()
         await line.mend()
-    elif command in ("mute", "noise", "exception"):
+    elif command in ("mute", "noise", "exception", "refuse"):
         setattr(line, command, int(words[2]))
     elif command == "late":
         line.late_ms = int(words[2])

@@ -1,5 +1,7 @@
 // The Modbus drivers against pymodbus, over TCP and over a serial line.
 
+#include "app/lighting.h"
+#include "app/running_show.h"
 #include "drivers/common/file_handle.h"
 #include "drivers/registry.h"
 
@@ -213,6 +215,68 @@ TEST_P(OnModbus, a_write_is_confirmed_by_what_is_read_back) {
     EXPECT_THAT(written.error().message(), HasSubstr("coils 0 to 2 were set to 1 1 1 and say 1 0 1"));
     EXPECT_TRUE(runs(*bank)) << bank->status().detail;
     EXPECT_TRUE(bank->write({true, false, false}));
+}
+
+// The default show's street on a module. The show's time runs as fast as the module answers.
+class Street {
+public:
+    Street(std::unique_ptr<RelayBank> bank) { show_.devices.relayBanks[0] = std::move(bank); }
+    const RelayBank& bank() const { return *show_.devices.relayBanks[0]; }
+    void pass(Time time) {
+        for (const Time end = show_.clock.now() + time; show_.clock.now() < end;
+             show_.clock.advance(std::chrono::milliseconds(50))) {
+            lighting.tick(show_.clock.now());
+            relays_[0].work(show_.clock.now());
+        }
+    }
+    void enter(const char* cue) { ASSERT_TRUE(lighting.replica().give(show_.jumpTo(cue))); }
+    Time now() const { return show_.clock.now(); }
+
+private:
+    app::RunningShow show_;
+
+public:
+    std::vector<std::string> told;
+    app::FaultLog faults{[this](const std::string& sentence) { told.push_back(sentence); }};
+    app::Lighting lighting{show_.site, show_.cues, show_.devices, show_.clock, Time{}, nullptr, &faults};
+
+private:
+    const std::vector<app::Part> relays_ = lighting.relayParts();
+};
+
+// Example failure: 20 writes a second all night for one burnt relay, and nobody knows of it.
+TEST_P(OnModbus, a_relay_that_sticks_is_told_once_and_written_ever_more_rarely) {
+    Street street(relays("", 2));
+    ASSERT_TRUE(comesTrue([&] { return runs(street.bank()); })) << street.bank().status().detail;
+    peer_->ask("stuck 0 1");
+    street.pass(std::chrono::seconds(10));
+    EXPECT_THAT(peer_->journal(), testing::SizeIs(testing::Le(9)));
+    EXPECT_THAT(street.told, testing::ElementsAre(AllOf(HasSubstr("road-south of 'road' did not switch"), HasSubstr("say 1 0"))));
+    EXPECT_TRUE(runs(street.bank())) << street.bank().status().detail;
+
+    street.lighting.end(street.now());
+    street.pass(std::chrono::seconds(1));
+    EXPECT_THAT(peer_->journal(), testing::SizeIs(testing::Ge(20))) << "at the end it is tried at every tick";
+    EXPECT_FALSE(street.lighting.ended());
+    ASSERT_THAT(street.lighting.unsafeBanks(), testing::SizeIs(1));
+    EXPECT_THAT(street.lighting.unsafeBanks()[0].why, HasSubstr("say 1 0"));
+}
+
+// That a module will not is no loss of it: example failure, it is missing and back for ever.
+TEST_P(OnModbus, a_module_that_refuses_is_told_once_and_asked_ever_more_rarely) {
+    Street street(relays("", 2));
+    ASSERT_TRUE(comesTrue([&] { return runs(street.bank()); })) << street.bank().status().detail;
+    peer_->ask("refuse 0 1");
+    const int before = std::stoi(peer_->ask("asked 0"));
+    street.pass(std::chrono::seconds(10));
+    EXPECT_LE(std::stoi(peer_->ask("asked 0")) - before, 9 * 2 + 50) << "a write and a read each, and the looks of the meantime";
+    EXPECT_THAT(street.told, testing::ElementsAre(HasSubstr("road-north, road-south of 'road' did not switch (relays: ")));
+    EXPECT_EQ(street.bank().status().losses, 0);
+    peer_->ask("refuse 0 0");
+    street.enter("Farewell");
+    street.pass(std::chrono::seconds(20));
+    EXPECT_THAT(street.told, testing::ElementsAre(testing::_, HasSubstr("the relays of 'road' are as they should be after")));
+    EXPECT_EQ(peer_->ask("get 0 c 0 2"), "1 1");
 }
 
 // Many a cheap module knows no function that writes several.

@@ -6,20 +6,19 @@
 #include "contract/projectors.h"
 #include "contract/widget_socket.h"
 #include "core/check.h"
+#include "core/clock.h"
 #include "core/random.h"
 #include "edid_block.h"
 #include "mock_camera.h"
 #include "peers/modbus_peer.h"
 #include "peers/own_network.h"
-#include "program.h"
+#include "running_program.h"
 #include "scratch_folder.h"
+#include "test_run.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
-#include <poll.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -47,73 +46,6 @@ looks:
   two: {outputs: {left: [{source: seen}], right: [{source: red}]}, fixtures: {spot: .2, wash: 1, far: .4}, relays: {road: on}}
 cues: [{name: One, look: one, fade: 0.1}, {name: Two, look: two, fade: 0.1}]
 )";
-
-// A program that runs beside the test, and what it says line by line.
-class Program {
-public:
-    Program(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
-        int said[2];
-        FANTASCOPE_CHECK(::pipe2(said, O_CLOEXEC) == 0, "there are pipes");
-        process_ = ::fork();
-        if (process_ == 0) {
-            ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-            if (::chdir(folder.c_str()) != 0) ::_exit(127);
-            ::dup2(::open("/dev/null", O_RDWR), STDIN_FILENO);
-            ::dup2(STDIN_FILENO, STDOUT_FILENO);
-            ::dup2(said[1], STDERR_FILENO);
-            execute(arguments);
-        }
-        ::close(said[1]);
-        said_ = drivers::FileHandle(said[0]);
-    }
-    ~Program() {
-        if (process_ < 0) return;
-        ::kill(process_, SIGKILL);
-        ::waitpid(process_, nullptr, 0);
-    }
-
-    // Its next line: "" once it has none for half a minute, or has ended.
-    std::string line() {
-        for (std::size_t end = 0; (end = text_.find('\n')) == std::string::npos;) {
-            pollfd something{said_.get(), POLLIN, 0};
-            char bytes[4096];
-            const ssize_t count = ::poll(&something, 1, 30'000) > 0 ? ::read(said_.get(), bytes, sizeof bytes) : 0;
-            if (count <= 0) return "";
-            text_.append(bytes, static_cast<std::size_t>(count));
-        }
-        std::string line = text_.substr(0, text_.find('\n'));
-        text_.erase(0, line.size() + 1);
-        all_ += line + '\n';
-        return line;
-    }
-    const std::string& all() const { return all_; }
-    // Ctrl-C: its status.
-    int stop() {
-        ::kill(process_, SIGINT);
-        while (!line().empty()) continue;
-        int status = 0;
-        ::waitpid(std::exchange(process_, -1), &status, 0);
-        return statusOf(status);
-    }
-
-    std::ptrdiff_t countOf(const char* what) const {
-        return std::distance(std::filesystem::directory_iterator(fmt::format("/proc/{}/{}", process_, what)),
-                             std::filesystem::directory_iterator());
-    }
-    // Memory that is its own, in KiB.
-    long kibibytes() const {
-        std::ifstream rollup(fmt::format("/proc/{}/smaps_rollup", process_));
-        std::string word;
-        for (long number = 0; rollup >> word;)
-            if (word == "Anonymous:" && rollup >> number) return number;
-        return 0;
-    }
-
-private:
-    pid_t process_ = -1;
-    drivers::FileHandle said_;
-    std::string text_, all_;
-};
 
 // What is pulled as one, and the devices that go with it.
 struct Plug {
@@ -194,19 +126,19 @@ camera:
                            inside(contacts_->options(0) + "response_timeout: 0.2\n"), camera_.kind().serial);
     }
 
-    // Takes what the program says next. False: it says nothing more.
-    bool hear(Program& program) {
-        const std::string line = program.line();
+    // Takes what the program says next: a line may hold several sentences, of one device too. False: it says nothing more.
+    bool hear(RunningProgram& program) {
+        const auto said = program.line();
+        const std::string line = said.value_or("");
         for (const Plug& plug : plugs_)
-            for (const std::string& device : plug.devices) {
-                const std::size_t named = line.find(" " + device + " (");
-                if (named == std::string::npos) continue;
-                const std::string_view news = std::string_view(line).substr(line.find(')', named));
-                if (news.starts_with(") is missing")) missing_.insert(device);
-                if (news.starts_with(") is back")) missing_.erase(device);
-            }
+            for (const std::string& device : plug.devices)
+                for (std::size_t named = 0; (named = line.find(" " + device + " (", named)) != std::string::npos; ++named) {
+                    const std::string_view news = std::string_view(line).substr(line.find(')', named));
+                    if (news.starts_with(") is missing")) missing_.insert(device);
+                    if (news.starts_with(") is back")) missing_.erase(device);
+                }
         camera_.send({.bytes = std::vector<std::uint8_t>(64 * 48 * 2, 128)});  // to nobody where it is out
-        return !line.empty();
+        return said.has_value();
     }
     // Whether the program knows how a plug is.
     bool isTold(const Plug& plug) const {
@@ -218,9 +150,9 @@ camera:
             if (!isTold(plug)) names += fmt::format("{} is {}; ", fmt::join(plug.devices, ", "), plug.in ? "in" : "out");
         return names;
     }
-    static constexpr int kPatience = 60;  // lines of the program, of which there are two a second at the most
+    static constexpr int kPatience = 60;  // lines of the program
     // Every plug `times` times out and in again, in an order of chance: another one whenever the program has noticed.
-    void plugAndUnplug(Program& program, int times) {
+    void plugAndUnplug(RunningProgram& program, int times) {
         for (Plug& plug : plugs_) plug.pulls = 0;
         const auto isDone = [&](const Plug& plug) { return plug.in && plug.pulls == times && isTold(plug); };
         for (int idle = 0; !std::ranges::all_of(plugs_, isDone); ++idle) {
@@ -231,6 +163,8 @@ camera:
                 plug.put(plug.in);
                 idle = 0;
             }
+            // There is news only where something was pulled or plugged in.
+            if (std::ranges::all_of(plugs_, [&](const Plug& plug) { return isTold(plug); })) continue;
             ASSERT_TRUE(idle < kPatience && hear(program)) << untold() << "\n" << program.all();
         }
     }
@@ -255,7 +189,7 @@ camera:
 };
 
 TEST_F(Plugging, at_the_real_drivers_leaves_nothing_over_and_the_show_goes_on) {
-    Program program({"run", ".", "--site", ".", "--from", "One", "--report", "report.json"}, folder_.path());
+    RunningProgram program({"run", ".", "--site", ".", "--from", "One", "--report", "report.json"}, folder_.path());
     // Once it has its devices: a projector that is off before it switches on by itself.
     while (program.all().find("cue 1 of 2") == std::string::npos) ASSERT_TRUE(hear(program)) << program.all();
     plugAndUnplug(program, 3);  // whatever the libraries keep from their first uses
@@ -280,8 +214,8 @@ TEST_F(Plugging, at_the_real_drivers_leaves_nothing_over_and_the_show_goes_on) {
     // All of it still does what it is for.
     press(1);
     const auto comesTrue = [&](const std::function<bool()>& condition) {
-        for (int lines = 0; lines < kPatience && !condition(); ++lines)
-            if (!hear(program)) return false;
+        SteadyClock clock;
+        for (int looks = 0; looks < 1000 && !condition(); ++looks) clock.sleepUntil(clock.now() + std::chrono::milliseconds(20));
         return condition();
     };
     EXPECT_TRUE(comesTrue([&] { return relays_->ask("get 0 c 0 1") == "1"; })) << "the second cue's relay";
@@ -301,10 +235,9 @@ TEST_F(Plugging, at_the_real_drivers_leaves_nothing_over_and_the_show_goes_on) {
 
 int main(int count, char** arguments) {
     if (!fantascope::underUmockdev(arguments)) {
-        std::puts("[  SKIPPED ] all tests: Debian's package umockdev is not installed, see tools/peers");
-        return 0;
+        std::puts("skipped: all tests: Debian's package umockdev is not installed, see tools/peers");
+        return fantascope::kSkipped;
     }
     fantascope::peers::enterOwnNetwork();  // before anything starts a thread
-    testing::InitGoogleMock(&count, arguments);
-    return RUN_ALL_TESTS();
+    return fantascope::runTests(count, arguments);
 }

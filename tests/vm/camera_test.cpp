@@ -44,7 +44,7 @@ protected:
 
     void open(const std::string& options) {
         const std::string text = "driver: v4l2\n" + options;
-        camera_ = V4l2Camera::open(ConfigNode::parse(text, "site.yaml").value(), around_).value();
+        camera_ = V4l2Camera::fromConfig(ConfigNode::parse(text, "site.yaml").value()).value().open(around_).value();
     }
     V4l2Camera& camera() { return dynamic_cast<V4l2Camera&>(*camera_); }
 
@@ -264,7 +264,7 @@ private:
     static bool runs(const Device& device) { return device.status().state == DeviceState::Running; }
     std::unique_ptr<CameraSource> open(int node) {
         const std::string text = fmt::format("driver: v4l2\ndevice: /dev/video{}\nsize: [320, 180]\nrate: 30\n", node);
-        return V4l2Camera::open(ConfigNode::parse(text, "site.yaml").value(), around_).value();
+        return V4l2Camera::fromConfig(ConfigNode::parse(text, "site.yaml").value()).value().open(around_).value();
     }
 
     SteadyClock clock_;

@@ -78,7 +78,7 @@ private:
 
 std::unique_ptr<CueController> opened(const std::string& keys, const Surroundings& around) {
     const auto options = ConfigNode::parse("{driver: usb_hid, vendor: 16c0, product: 27d9" + keys + "}\n", "site.yaml").value();
-    return UsbHidController::open(options, around).value();
+    return UsbHidController::fromConfig(options).value().open(around).value();
 }
 
 class UsbHidOnTheKernel : public testing::Test {

@@ -1,0 +1,7 @@
+// Passes, skips and fails on purpose, for skips_test.cpp. ctest runs it under `-C deliberate` alone.
+
+#include <gmock/gmock.h>
+
+TEST(Deliberately, passes) {}
+TEST(Deliberately, skips) { GTEST_SKIP() << "there is no peer"; }
+TEST(Deliberately, fails) { ADD_FAILURE() << "on purpose"; }

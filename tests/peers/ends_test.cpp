@@ -1,0 +1,300 @@
+// Every end of a run leaves its relays safe: `fantascope run` at a module that somebody else wrote, ended in every way that a program ends.
+
+#include "core/check.h"
+#include "core/clock.h"
+#include "core/random.h"
+#include "peers/modbus_peer.h"
+#include "peers/own_network.h"
+#include "peers/process.h"
+#include "program.h"
+#include "scratch_folder.h"
+#include "test_run.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <tuple>
+
+namespace fantascope::peers {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr std::string_view kShow = R"(fantascope: show
+version: 1
+title: Ends
+sources: {red: {solid: [1, 0, 0]}}
+looks: {dark: {outputs: {wall: [{source: red}]}, relays: {road: off}}}
+cues: [{name: One, look: dark, fade: 0}]
+)";
+
+// A street lamp on a module, and a run that switches it off.
+class Street {
+public:
+    explicit Street(ModbusPeer::Wire wire, const std::string& display = "headless") : peer_(wire, 1) {
+        folder_.file("show.yaml", std::string(kShow));
+        writeSite("site.yaml", display);
+    }
+    const std::filesystem::path& folder() const { return folder_.path(); }
+    ModbusPeer& peer() { return peer_; }
+
+    void writeSite(const std::filesystem::path& file, const std::string& display) {
+        std::string device = peer_.options(0);
+        std::replace(device.begin(), device.end(), '\n', ',');
+        folder_.file(file, fmt::format(R"(fantascope: site
+version: 1
+outputs: [{{name: wall, display: {{driver: {}}}, size: [64, 36], refresh_rate: 30}}]
+relay_banks: [{{name: street, device: {{{}}}}}]
+relays: [{{name: road, coil: 0, safe: on}}]
+)",
+                                       display, device));
+    }
+    bool isSafe() const { return peer_.ask("get 0 c 0 1") == "1"; }
+    // Somebody at the module.
+    void switchByHand(bool on) { peer_.ask(on ? "set 0 c 0 1" : "set 0 c 0 0"); }
+    // Whether no program has written anything but the run's own "off".
+    bool isUndisturbed() const {
+        return std::ranges::all_of(peer_.journal(), [](const ModbusPeer::Change& change) { return change.coils[0] == '0'; });
+    }
+    // The lamp was on; returns once the run has switched it off.
+    Process run(bool nohup = false) {
+        switchByHand(true);
+        Process process({"run", ".", "--site", ".", "--from", "One", "--report", "report.json"}, folder(), nohup);
+        FANTASCOPE_CHECK(eventually([&] { return !isSafe() || !process.isRunning(); }) && process.isRunning(),
+                         "the run does not begin: " + process.said());
+        return process;
+    }
+    json report() const { return json::parse(contentsOf(folder_ / "report.json")); }
+    void removeReport() { std::filesystem::remove(folder_ / "report.json"); }
+
+private:
+    const ScratchFolder folder_;
+    ModbusPeer peer_;
+};
+
+// How a run ends. What it sees itself it ends in order, with a report.
+struct End {
+    std::string name;
+    bool seen;
+    std::function<void(Process& run, Process& x)> bring;
+    bool needsX = false;
+};
+
+End bySignal(const char* name, int signal, bool seen) {
+    return {name, seen, [signal](Process& run, Process&) { run.signal(signal); }, false};
+}
+
+const std::vector<End>& allEnds() {
+    static const std::vector<End> ends = {
+        bySignal("SIGINT", SIGINT, true),
+        bySignal("SIGKILL", SIGKILL, false),
+        bySignal("SIGTERM", SIGTERM, true),
+        bySignal("SIGSEGV", SIGSEGV, false),
+        bySignal("SIGHUP", SIGHUP, true),
+        bySignal("SIGABRT", SIGABRT, false),
+        bySignal("SIGQUIT", SIGQUIT, true),
+        bySignal("SIGPIPE of another process", SIGPIPE, true),
+        {"nobody reads it any more", true, [](Process& run, Process&) { run.stopReading(); }},
+        // A show goes on without its display.
+        {"X killed, then SIGTERM", false,
+         [](Process& run, Process& x) {
+             x.signal(SIGKILL);
+             run.signal(SIGTERM);
+         },
+         true},
+        {"X stopped, then SIGTERM", false,
+         [](Process& run, Process& x) {
+             x.signal(SIGSTOP);
+             run.signal(SIGTERM);
+         },
+         true},
+    };
+    return ends;
+}
+
+// How long after its end a run's relays were safe, as the module saw it; nothing: they were not within half a minute.
+std::optional<Time> safeAfter(Street& street, const End& end, std::string& wrong) {
+    std::optional<Process> x;
+    std::string display;
+    if (end.needsX) {
+        x.emplace(Process::xServer(display));
+        ::setenv("DISPLAY", display.c_str(), 1);
+    } else {
+        x.emplace();
+    }
+    street.writeSite("site.yaml", end.needsX ? "glfw" : "headless");
+    street.removeReport();
+    Process run = street.run();
+    (void)street.peer().ask("stood 0");  // from now on
+    const SteadyClock clock;
+    end.bring(run, *x);
+    const bool safe = eventually([&] { return street.isSafe(); });
+    const Time took = clock.now();
+    const int status = run.wait();
+    if (!safe) {
+        wrong = fmt::format("{}: the relays stay unsafe; it ended with {} and said {}", end.name, status, run.said());
+        return std::nullopt;
+    }
+    if (end.seen && status != 0) wrong = fmt::format("{}: it ended with {} and said {}", end.name, status, run.said());
+    if (end.seen && street.report()["unsafe_relays"] != json::array())
+        wrong = end.name + ": the report has relays that are unsafe";
+    if (!street.isSafe()) wrong = end.name + ": the relays are unsafe again";
+    return took;
+}
+
+class Ends : public testing::Test {
+protected:
+    void SetUp() override {
+        if (const std::string missing = ModbusPeer::missing(); !missing.empty()) GTEST_SKIP() << missing;
+    }
+};
+
+// Ends in an order of chance, but for the first of each kind: as many as FANTASCOPE_ENDS says on each wire, or each kind once on one of the
+// two. Each run begins on the site that the one before has left, so no end keeps a claim.
+// Example failures: only SIGINT and SIGTERM make relays safe; a crash leaves the street dark until the morning.
+TEST_F(Ends, leave_the_relays_safe_whatever_they_are) {
+    const char* const asked = std::getenv("FANTASCOPE_ENDS");
+    Rng rng(18);
+    for (const auto& [wire, name, begin] : {std::tuple{ModbusPeer::Wire::Tcp, "TCP", 0u}, {ModbusPeer::Wire::Rtu, "RTU", 1u}}) {
+        Street street(wire);
+        std::vector<const End*> ends;
+        for (std::size_t i = begin; i < allEnds().size(); i += asked != nullptr ? 1 : 2) ends.push_back(&allEnds()[i]);
+        while (asked != nullptr && std::ssize(ends) < std::atoi(asked))
+            ends.push_back(&allEnds()[rng.below(static_cast<std::uint32_t>(allEnds().size()))]);
+        int inTime = 0;
+        Time longest{};
+        for (const End* end : ends) {
+            std::string wrong;
+            const auto took = safeAfter(street, *end, wrong);
+            EXPECT_EQ(wrong, "");
+            if (!took) continue;
+            longest = std::max(longest, *took);
+            inTime += *took <= 2s;
+            if (*took > 2s)
+                fmt::print("  {}: {:.2f} s, of which the module's own process stood still for up to {} ms\n", end->name,
+                           seconds(*took), street.peer().ask("stood 0"));
+        }
+        fmt::print("{}: relays safe within 2 s in {} of {}, most {:.2f} s\n", name, inTime, ends.size(), seconds(longest));
+        if (asked != nullptr) {
+            EXPECT_EQ(inTime, std::ssize(ends));
+        }
+    }
+}
+
+// Example failure: with an X server that was stopped nothing but kill -9 ended the program, and no report was left.
+TEST_F(Ends, an_x_server_that_is_stopped_holds_up_no_end) {
+    Street street(ModbusPeer::Wire::Tcp, "glfw");
+    std::string display;
+    Process x = Process::xServer(display);
+    ::setenv("DISPLAY", display.c_str(), 1);
+    Process run = street.run();
+    x.signal(SIGSTOP);
+    run.signal(SIGTERM);
+    const int status = run.wait();  // what it does with X may hang, or not
+    EXPECT_EQ(status, run.said().find("it hung while") == std::string::npos ? 0 : 1) << run.said();
+    EXPECT_EQ(street.report()["unsafe_relays"], json::array());
+    EXPECT_EQ(street.report()["cues"].size(), 1u);
+    EXPECT_TRUE(street.isSafe());
+}
+
+// The operator hears what is not safe and the guard goes on.
+TEST_F(Ends, a_module_that_is_silent_at_the_end_is_told_and_tried_on) {
+    Street street(ModbusPeer::Wire::Tcp);
+    Process run = street.run();
+    street.peer().ask("dead 0");
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(), 1);
+    EXPECT_THAT(run.said(), HasSubstr("RELAYS MAY BE UNSAFE: 'street'"));
+    EXPECT_EQ(street.report()["unsafe_relays"][0]["bank"], "street");
+    street.peer().ask("reset 0");
+    EXPECT_TRUE(eventually([&] { return street.isSafe(); }));
+}
+
+TEST_F(Ends, a_guard_that_dies_is_replaced) {
+    Street street(ModbusPeer::Wire::Tcp);
+    Process run = street.run();
+    const std::vector<pid_t> before = run.children();
+    ASSERT_EQ(before.size(), 1u);
+    ::kill(before[0], SIGKILL);
+    EXPECT_TRUE(eventually([&] { return run.said().find("the relay guard died") != std::string::npos; })) << run.said();
+    run.signal(SIGKILL);
+    EXPECT_TRUE(eventually([&] { return street.isSafe(); }));
+}
+
+TEST_F(Ends, under_nohup_a_closed_terminal_ends_nothing) {
+    Street street(ModbusPeer::Wire::Tcp);
+    Process run = street.run(true);
+    run.signal(SIGHUP);
+    street.switchByHand(true);
+    EXPECT_TRUE(eventually([&] { return !street.isSafe(); })) << "the show goes on and puts its relay right";
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(), 0) << run.said();
+    EXPECT_TRUE(street.isSafe());
+}
+
+using Claims = Ends;
+
+// Two runs switched the relays 8 times a second against each other.
+TEST_F(Claims, a_second_run_is_refused_and_told_who_holds_the_site_or_a_device_of_it) {
+    Street street(ModbusPeer::Wire::Tcp);
+    Process first = street.run();
+    const auto refused = [&](const std::string& site, const std::string& what) {
+        const Outcome second = runProgram({"run", ".", "--site", site, "--from", "One"}, street.folder());
+        EXPECT_EQ(second.status, 1);
+        EXPECT_THAT(second.errors, AllOf(HasSubstr(what), HasSubstr(fmt::format("process {} (", first.id())),
+                                         HasSubstr("run . --site . --from One"), HasSubstr(fmt::format("kill {}", first.id()))));
+    };
+    refused(".", "the site ");
+    street.writeSite("copy.yaml", "headless");
+    refused("copy.yaml", "Modbus module 127.0.0.1:");
+    EXPECT_TRUE(street.isUndisturbed());
+    first.signal(SIGTERM);
+    EXPECT_EQ(first.wait(), 0);
+}
+
+// Example failure: the list was made by opening every bank, and closing them wrote all coils safe in the middle of a show.
+TEST_F(Claims, looking_at_the_devices_of_a_site_switches_nothing) {
+    if (!whyNoNetwork().empty()) GTEST_SKIP() << whyNoNetwork();  // `devices` asks every network that there is
+    Street street(ModbusPeer::Wire::Tcp);
+    street.peer().ask("set 0 c 0 0");
+    const Outcome before = runProgram({"devices", "--site", "."}, street.folder());
+    ASSERT_THAT(before, exits(0));
+    EXPECT_THAT(before.out, HasSubstr("street          modbus_tcp, running"));
+    EXPECT_FALSE(street.isSafe()) << "it was only to look";
+    EXPECT_TRUE(street.peer().journal().empty());
+    Process run = street.run();
+    const std::string holder = fmt::format("modbus_tcp, in use by process {}", run.id());
+    EXPECT_THAT(runProgram({"devices", "--site", ".", "--watch", "--seconds", "1"}, street.folder()).out, HasSubstr(holder));
+    EXPECT_FALSE(street.isSafe());
+    EXPECT_TRUE(street.isUndisturbed());
+}
+
+TEST_F(Claims, what_a_run_has_is_looked_at_from_afar_and_not_tried) {
+    if (!whyNoNetwork().empty()) GTEST_SKIP() << whyNoNetwork();
+    Street street(ModbusPeer::Wire::Rtu);
+    Process run = street.run();
+    const std::string holder = fmt::format("in use by process {}", run.id());
+    EXPECT_THAT(runProgram({"devices", "--site", "."}, street.folder()).out, HasSubstr(holder));
+    const Outcome tried = runProgram({"devices", "--site", ".", "--test", "street", "--seconds", "1"}, street.folder());
+    EXPECT_THAT(tried, exits(1));
+    EXPECT_THAT(tried.errors, HasSubstr(holder));
+    EXPECT_FALSE(street.isSafe());
+    EXPECT_TRUE(street.isUndisturbed());
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(), 0) << run.said();
+}
+
+}  // namespace
+}  // namespace fantascope::peers
+
+int main(int count, char** arguments) {
+    fantascope::peers::enterOwnNetwork();  // before anything starts a thread
+    return fantascope::runTests(count, arguments);
+}
