@@ -47,7 +47,7 @@ void measure(const std::string& format) {
     MockCamera mock(machine, {.formats = {format}, .rates = {{format, kRate}}, .size = kSize});
     mock.plugIn(0);
     const auto options = ConfigNode::parse(fmt::format("driver: v4l2\nrate: {}\n", kRate), "bench.yaml").value();
-    const auto camera = drivers::V4l2Camera::open(options, around).value();
+    const auto camera = drivers::V4l2Camera::fromConfig(options).value().open(around).value();
     if (!mock.waitUntilTaken()) return;
 
     std::vector<std::vector<std::uint8_t>> frames;

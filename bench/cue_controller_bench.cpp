@@ -35,7 +35,7 @@ void pressToEvent(int presses) {
                                  0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x08, 0x81, 0x02, 0xc0}};
     usb.plug(device);
     const auto options = ConfigNode::parse("{driver: usb_hid, serial: CUE-7}\n", "site.yaml").value();
-    const auto controller = drivers::UsbHidController::open(options, {clock}).value();
+    const auto controller = drivers::UsbHidController::fromConfig(options).value().open({clock}).value();
     while (controller->status().state != DeviceState::Running) std::this_thread::yield();
     std::vector<double> arrived, polled;
     for (int press = 0; press < presses; ++press)

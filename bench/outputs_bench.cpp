@@ -323,7 +323,7 @@ Pace oneThread(const Settings& settings, const PatternSource& source) {
     for (int i = 0; i < settings.outputs; ++i) {
         sinks.push_back(opened(settings, i, clock));
         renderers.push_back(rendererOf(settings, source, variants()[0]));
-        renderers.back()->warmUp(sinks.back()->framebuffer());
+        must(renderers.back()->warmUp(sinks.back()->framebuffer()));
         pace.shown.emplace_back();
     }
     const double processor = processorSeconds();
@@ -362,7 +362,7 @@ Pace threadAnOutput(const Settings& settings, const PatternSource& source) {
             threads.emplace_back([&, i] {
                 const auto sink = opened(settings, static_cast<int>(i), clock);
                 auto renderer = rendererOf(settings, source, variants()[0]);
-                renderer->warmUp(sink->framebuffer());
+                must(renderer->warmUp(sink->framebuffer()));
                 ++ready;
                 begin.wait(false);
                 for (const Time end = clock.now() + fromSeconds(settings.seconds); clock.now() < end;) {
@@ -395,7 +395,7 @@ Pace drawnOnThreads(const Settings& settings, const PatternSource& source) {
     for (int i = 0; i < settings.outputs; ++i) {
         sinks.push_back(opened(settings, i, clock));
         renderers.push_back(rendererOf(settings, source, variants()[0]));
-        renderers.back()->warmUp(sinks.back()->framebuffer());
+        must(renderers.back()->warmUp(sinks.back()->framebuffer()));
         letGo();
         pace.shown.emplace_back();
     }
@@ -497,7 +497,7 @@ void playShow(const Settings& settings) {
                          app::Rank::Render});
         const app::PartThreads threads(clock, std::move(parts));
         clock.sleepUntil(start);
-        while (loop.nextDue() <= end) must(loop.step());
+        while (loop.nextDue() <= end) loop.step();
         clock.sleepUntil(end);
     }
     loop.finish(end);

@@ -48,7 +48,7 @@ void drawFrame(
     for (int i = 0; i < outputs; ++i) {
         Output output;
         const ConfigNode driver = valueOf(ConfigNode::parse("driver: headless", "bench"));
-        output.sink = valueOf(drivers::HeadlessDisplay::open(driver, {"output", size, 30}, {clock}));
+        output.sink = valueOf(valueOf(drivers::HeadlessDisplay::fromConfig(driver, {"output", size, 30})).open({clock}));
         FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "a new display is there");
         const WarpShape keystone{.corners = {{{40, 20}, {610, 5}, {630, 350}, {10, 340}}}};
         OutputRenderer::Options options;

@@ -1,7 +1,11 @@
-// What a generation of the search costs besides evaluating it, with yardsticks of the machine beside it; and what the skin of an actor costs.
+// What a search for poses spends its time on: a generation of CMA-ES, the skin of an actor, evaluations of the energy. Yardsticks of the
+// machine stand beside them.
 
 #include "theatre/cma_es.h"
 #include "theatre/mesh_shadow.h"
+#include "theatre/scene_energy.h"
+
+#include "tests/theatre/a_scene.h"
 
 #include <benchmark/benchmark.h>
 
@@ -78,6 +82,33 @@ void skinAndShadow(benchmark::State& state) {
     }
 }
 BENCHMARK(skinAndShadow)->ArgName("shadow")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+
+// One evaluation of the energy: one of three actors moves, as in a local search; with and without skins.
+void evaluation(benchmark::State& state) {
+    PoseProblem problem = aScene({1.75, 1.75, 1.75});
+    if (state.range(0) != 0) problem.dress(), problem = simpler(std::move(problem));
+    const std::vector<double> start = aRow(problem, {-0.8, 0, 0.8}, 2);
+    makeTarget(problem, start);
+    problem.weights.stiffen(static_cast<double>(state.range(1)) / 100);
+    Rng rng(1);
+    std::vector<std::vector<double>> poses;
+    for (int i = 0; i < 64; ++i) {
+        poses.push_back(nudged(problem, start, rng, 0.15));
+        for (std::size_t actor = 0; actor < 3; ++actor) poses.back()[problem.firstFreedom(actor) + 1] = start[1];
+    }
+    SceneEnergy energy(problem);
+    energy.pose(start);
+    std::size_t turn = 0;
+    double sum = 0;
+    for (auto _ : state) {
+        const std::size_t actor = turn % 3, first = problem.firstFreedom(actor);
+        energy.pose(actor, std::span(poses[turn++ % poses.size()]).subspan(first, problem.actors[actor].freedoms));
+        sum += energy.energy();
+    }
+    benchmark::DoNotOptimize(sum);
+    state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(evaluation)->ArgNames({"skins", "stiffness_percent"})->ArgsProduct({{0, 1}, {1, 100}})->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace fantascope::theatre
