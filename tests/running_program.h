@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/pidfd.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -63,10 +64,13 @@ public:
         return line;
     }
     const std::string& all() const { return all_; }
-    // Its status after a signal that asks it to end.
+    // Its status after a signal that asks it to end; SIGKILL's where it has not ended half a minute after its last line.
     int stop(int signal = SIGINT) {
         ::kill(process_, signal);
         while (line()) continue;
+        const drivers::FileHandle end(::pidfd_open(process_, 0));
+        pollfd ended{end.get(), POLLIN, 0};
+        if (::poll(&ended, 1, 30'000) == 0) ::kill(process_, SIGKILL);
         int status = 0;
         ::waitpid(std::exchange(process_, -1), &status, 0);
         return statusOf(status);

@@ -1,4 +1,4 @@
-// What ctest and tools/run-tests make of a program whose tests pass, skip or fail.
+// What ctest and tools/run-tests make of a program whose tests pass, skip, fail or hang.
 
 #include "scratch_folder.h"
 
@@ -63,6 +63,13 @@ TEST(Skips, are_refused_where_asked) {
 
 // Example failure: a renamed test leaves .ci/run with a filter that runs nothing and passes.
 TEST(Skips, a_filter_that_wants_no_test_fails) { EXPECT_NE(runEntry("deliberately_runs_nothing").status, 0); }
+
+// Example failure: a program is ended after its time, and nobody knows which of its 400 tests it was.
+TEST(Hangs, are_named) {
+    const Outcome outcome = runEntry("deliberately_hangs", "FANTASCOPE_TEST_PATIENCE=1");
+    EXPECT_NE(outcome.status, 0) << outcome.said;
+    EXPECT_THAT(outcome.said, HasSubstr("Deliberately.hangs hangs"));
+}
 
 }  // namespace
 }  // namespace fantascope::house
