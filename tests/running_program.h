@@ -8,8 +8,8 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/pidfd.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -68,7 +68,7 @@ public:
     int stop(int signal = SIGINT) {
         ::kill(process_, signal);
         while (line()) continue;
-        const drivers::FileHandle end(::pidfd_open(process_, 0));
+        const drivers::FileHandle end(static_cast<int>(::syscall(SYS_pidfd_open, process_, 0)));
         pollfd ended{end.get(), POLLIN, 0};
         if (::poll(&ended, 1, 30'000) == 0) ::kill(process_, SIGKILL);
         int status = 0;

@@ -29,7 +29,8 @@ Outcome runEntry(const std::string& name, const std::string& environment = "") {
     const ScratchFolder folder;
     std::ofstream(folder / "CTestTestfile.cmake") << "subdirs(\"" FANTASCOPE_HOUSE_BUILD "\")\n";
     const std::string command = fmt::format(
-        "env -u GTEST_FILTER -u FANTASCOPE_REFUSE_SKIPS {} {}/tools/run-tests --test-dir {} -C deliberate -R '^{}$' 2>&1",
+        "env -u GTEST_FILTER -u FANTASCOPE_REFUSE_SKIPS CTEST_OUTPUT_ON_FAILURE=1 {} {}/tools/run-tests --test-dir {} -C "
+        "deliberate -R '^{}$' 2>&1",
         environment, FANTASCOPE_SOURCE_DIR, folder.path().string(), name);
     FILE* const pipe = ::popen(command.c_str(), "r");
     if (pipe == nullptr) return {};
