@@ -93,7 +93,7 @@ public:
         node_ = fmt::format("/dev/bus/usb/001/{:03}", address);
         folder_ = "/sys/devices/pci0000:00/0000:00:14.0/usb1/" + device_.path;
         const std::string entry = fmt::format(
-            "P: {0}\nN: bus/usb/001/{1:03}\nE: BUSNUM=001\nE: DEVNAME={2}\nE: DEVNUM={1:03}\nE: DEVTYPE=usb_device\nE: "
+            "P: {0}\nE: BUSNUM=001\nE: DEVNAME={2}\nE: DEVNUM={1:03}\nE: DEVTYPE=usb_device\nE: "
             "MAJOR=189\n"
             "E: MINOR={3}\nE: SUBSYSTEM=usb\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum={1}\\n\nA: speed=12\\n\n"
             "A: idVendor={4:04x}\\n\nA: idProduct={5:04x}\\n\nA: manufacturer=Lumen\\n\nA: product={6}\\n\nA: serial={7}\\n\n"
@@ -106,22 +106,19 @@ public:
                 "\nP: {0}\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber={1:02x}\\n\n"
                 "\nP: {2}\nE: SUBSYSTEM=hid\nH: report_descriptor={3}\n",
                 interfaceFolder(i).substr(4), i, hidFolder(i).substr(4), hex(device_.reportDescriptors[i]));
-        // Somebody answers before there is a device to be found: umockdev ends a program that asks too early.
+        // libusb may open the device before its event: a late event of the same port is enough. So its file and its handler come first. If
+        // open() failed, umockdev would keep the descriptor -1, and a read() of -1 on umockdev's own thread would wait for itself.
+        FANTASCOPE_CHECK(mkfifo(file().c_str(), 0600) == 0, "no pipe");
+        pipe_ = ::open(file().c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+        // usbfs says by POLLOUT that an answer can be fetched; a pipe says so unless it is full.
+        FANTASCOPE_CHECK(fcntl(pipe_, F_SETPIPE_SZ, kPipe) == kPipe, "no small pipe");
+        showAnswers();
         GError* error = nullptr;
         handler_ = umockdev_ioctl_base_new();
         g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(&Plugged::onIoctl), this);
         { const std::lock_guard lock(mutex_); }  // umockdev's thread takes it, and sees all of the above
         FANTASCOPE_CHECK(umockdev_testbed_attach_ioctl(bed_, node_.c_str(), handler_, &error) != 0, error->message);
         FANTASCOPE_CHECK(umockdev_testbed_add_from_string(bed_, entries.c_str(), &error) != 0, error->message);
-        // usbfs says by POLLOUT that an answer can be fetched; a pipe says so unless it is full.
-        {
-            const std::lock_guard lock(mutex_);  // somebody may ask already
-            unlink(file().c_str());
-            FANTASCOPE_CHECK(mkfifo(file().c_str(), 0600) == 0, "no pipe");
-            pipe_ = ::open(file().c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-            FANTASCOPE_CHECK(fcntl(pipe_, F_SETPIPE_SZ, kPipe) == kPipe, "no small pipe");
-            showAnswers();
-        }
         umockdev_testbed_uevent(bed_, folder_.c_str(), "add");
     }
     ~Plugged() {
@@ -149,6 +146,7 @@ public:
             umockdev_testbed_remove_device(bed_, interfaceFolder(i).c_str());
         }
         umockdev_testbed_remove_device(bed_, folder_.c_str());
+        unlink(file().c_str());
     }
 
     void report(int interface, const Bytes& bytes) {
