@@ -21,6 +21,7 @@
 #include "core/file.h"
 #include "crystals.h"
 #include "people.h"
+#include "source_folder.h"
 
 #include <CLI/CLI.hpp>
 #include <epoxy/egl.h>
@@ -61,7 +62,7 @@ double processorSeconds() {
     return of(usage.ru_utime) + of(usage.ru_stime);
 }
 
-const std::filesystem::path kFolder = FANTASCOPE_SOURCE_DIR "/bench";
+const std::filesystem::path kFolder = sourceFolder() + "/bench";
 
 // The plain draw on one output. Its context is current in every call.
 class Floor {
@@ -200,7 +201,7 @@ std::unique_ptr<OutputRenderer> rendererOf(const Settings& settings, const Patte
     const glm::ivec2 size(settings.width, settings.height);
     OutputRenderer::Options options{.projection = {size, Warp::straight(size)},
                                     .samples = settings.samples,
-                                    .shaders = FANTASCOPE_SOURCE_DIR "/assets/shaders"};
+                                    .shaders = sourceFolder() + "/assets/shaders"};
     options.projection.light.dither = false;
     variant.set(options);
     return valueOf(OutputRenderer::create(options, std::vector<PictureSource>{source}));
@@ -478,7 +479,7 @@ void playShow(const Settings& settings) {
     app::Devices devices = valueOf(app::openDevices(site, app::Backends::AsDeclared, {clock}));
     const PictureSource source = settings.people > 0 ? PictureSource(swayingPeople({settings.people}))
                                                      : PictureSource(swayingCrystals({settings.crystals}));
-    app::FrameLoop loop(site, cues, {source}, FANTASCOPE_SOURCE_DIR "/assets", devices, clock);
+    app::FrameLoop loop(site, cues, {source}, sourceFolder() + "/assets", devices, clock);
     must(loop.prepare());
     const Time start = loop.refreshFrom(clock.now() + std::chrono::milliseconds(200)),
                end = start + fromSeconds(settings.seconds);

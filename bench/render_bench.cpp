@@ -9,6 +9,7 @@
 #include "core/random.h"
 #include "crystals.h"
 #include "people.h"
+#include "source_folder.h"
 
 #include <benchmark/benchmark.h>
 
@@ -54,7 +55,7 @@ void drawFrame(
         OutputRenderer::Options options;
         options.projection = {size, Warp::of(keystone.scaled(glm::dvec2(size) / glm::dvec2(kSize))).value(), {}, light};
         options.samples = kSamples;
-        options.shaders = FANTASCOPE_SOURCE_DIR "/assets/shaders";
+        options.shaders = sourceFolder() + "/assets/shaders";
         output.renderer = valueOf(OutputRenderer::create(options, sources));
         all.push_back(std::move(output));
     }

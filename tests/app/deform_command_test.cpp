@@ -7,6 +7,7 @@
 #include "pictures.h"
 #include "program.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -309,7 +310,7 @@ TEST_F(DeformCommand, ctrl_c_leaves_nothing_half) {
 
 // Those that come with the program.
 TEST_F(DeformCommand, moves_the_projects_drawings_with_their_feet_on_the_floor_and_without_folds) {
-    const std::string drawings = FANTASCOPE_SOURCE_DIR "/assets/silhouettes/";
+    const std::string drawings = sourceFolder() + "/assets/silhouettes/";
     for (const auto& [name, frames] : {std::pair("rabbit", 16u), {"elephant", 34u}, {"car", 12u}}) {
         SCOPED_TRACE(name);
         const Outcome done = run({"deform", drawings + name + ".png", "--motion", drawings + name + ".motion.yaml", "-o", name});

@@ -8,6 +8,7 @@
 #include "core/image.h"
 #include "program.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const std::string kShow = FANTASCOPE_SOURCE_DIR "/shows/light-movement";
+const std::string kShow = sourceFolder() + "/shows/light-movement";
 
 class ExportCommand : public testing::Test {
 protected:
@@ -46,7 +47,7 @@ public:
     explicit Drawn(glm::ivec2 size) {
         app::RunOptions options;
         options.show = kShow;
-        options.site = FANTASCOPE_SOURCE_DIR "/config/simulated";
+        options.site = sourceFolder() + "/config/simulated";
         options.fromCue = "Full";
         const app::Programme programme = app::readProgramme(options).value();
         show::Playback playback(programme.cues);

@@ -6,6 +6,7 @@
 #include "pattern/pattern_motion.h"
 
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -75,7 +76,7 @@ protected:
         left_ = slow.get();
         run_.devices.displays[0] = std::move(slow);
         const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{});
-        loop_.emplace(run_.site, run_.cues, sources, FANTASCOPE_SOURCE_DIR "/assets", run_.devices, run_.clock);
+        loop_.emplace(run_.site, run_.cues, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output).addQueue());
         EXPECT_TRUE(loop_->prepare());
         loop_->begin(run_.clock.now());
@@ -252,7 +253,7 @@ TEST(FrameUploads, are_told_apart_from_drawing) {
     cues.cues[0].look.outputs[0].layers = {{0, 1.0f}};
     cues.cues[0].look.outputs[1].layers = {{1, 1.0f}};
     FrameLoop loop(run.site, cues, {render::PatternSource{pattern, nullptr}, render::SolidSource{}},
-                   FANTASCOPE_SOURCE_DIR "/assets", run.devices, clock);
+                   sourceFolder() + "/assets", run.devices, clock);
     ASSERT_TRUE(loop.prepare());
     loop.begin(run.clock.now());
     ASSERT_TRUE(loop.replica().give({Time{}, show::Input::Kind::Go}));
@@ -326,7 +327,7 @@ TEST(FrameLoopWind, each_output_sways_in_its_own) {
     for (show::OutputState& output : cues.cues[0].look.outputs) output.layers = {{0, 1.0f}};
     cues.cues[0].fade = Time{};
     cues.cues[0].winds = {{.strength = 0}, {.strength = 4}};
-    FrameLoop loop(run.site, cues, {source}, FANTASCOPE_SOURCE_DIR "/assets", run.devices, run.clock);
+    FrameLoop loop(run.site, cues, {source}, sourceFolder() + "/assets", run.devices, run.clock);
     const std::array<render::FrameReader*, 2> readers{&loop.tap(0).addQueue(), &loop.tap(1).addQueue()};
     ASSERT_TRUE(loop.prepare());
     loop.begin(run.clock.now());
@@ -347,7 +348,7 @@ TEST(FrameLoopWind, each_output_sways_in_its_own) {
 TEST(FrameLoop, keeps_its_renderer_where_a_new_one_cannot_be_made) {
     const ScratchFolder folder;
     std::filesystem::create_directories(folder / "assets");
-    std::filesystem::copy(FANTASCOPE_SOURCE_DIR "/assets/shaders", folder / "assets/shaders",
+    std::filesystem::copy(sourceFolder() + "/assets/shaders", folder / "assets/shaders",
                           std::filesystem::copy_options::recursive);
     RunningShow run;
     const std::vector<render::PictureSource> sources(run.show.sources.size(), render::SolidSource{});
@@ -430,7 +431,7 @@ class FrameLoopFaults : public testing::Test {
 protected:
     FrameLoopFaults() {
         std::filesystem::create_directories(folder_ / "assets");
-        std::filesystem::copy(FANTASCOPE_SOURCE_DIR "/assets/shaders", folder_ / "assets/shaders",
+        std::filesystem::copy(sourceFolder() + "/assets/shaders", folder_ / "assets/shaders",
                               std::filesystem::copy_options::recursive);
         auto mortal = std::make_unique<MortalDisplay>([this] {
             return std::move(valueOf(openDevices(run_.site, Backends::SimulatedHeadless, {run_.clock, &run_.world})).displays[0]);
@@ -550,7 +551,7 @@ TEST(FrameLoop, begins_without_an_output_that_cannot_be_drawn) {
     RunningShow run;
     run.site.outputs[0].projection.size = {100'000, 100'000};
     const std::vector<render::PictureSource> sources(run.show.sources.size(), render::SolidSource{});
-    FrameLoop loop(run.site, run.cues, sources, FANTASCOPE_SOURCE_DIR "/assets", run.devices, run.clock);
+    FrameLoop loop(run.site, run.cues, sources, sourceFolder() + "/assets", run.devices, run.clock);
     const auto prepared = loop.prepare();
     ASSERT_TRUE(prepared) << prepared.error().message();
     loop.begin(run.clock.now());

@@ -8,6 +8,7 @@
 
 #include "program.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -28,7 +29,7 @@ const glm::dvec3 kMarker(-4.7, 3.1, 0.01);  // off the middle of the left pictur
 class TemplateTest : public testing::Test {
 protected:
     void open(const std::string& corners = kLeftCorners) {
-        fs::copy(FANTASCOPE_SOURCE_DIR "/config/simulated", folder_ / "site", fs::copy_options::recursive);
+        fs::copy(sourceFolder() + "/config/simulated", folder_ / "site", fs::copy_options::recursive);
         std::string text = contentsOf(folder_ / "site/site.yaml");
         const auto replace = [&](const std::string& before, const std::string& after) {
             const auto at = text.find(before);

@@ -6,6 +6,7 @@
 
 #include "program.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -143,7 +144,7 @@ protected:
         arguments.insert(arguments.end(), more.begin(), more.end());
         return runProgram(arguments, folder_.path());
     }
-    const std::string kPattern = FANTASCOPE_SOURCE_DIR "/shows/light-movement/left.pattern.yaml";
+    const std::string kPattern = sourceFolder() + "/shows/light-movement/left.pattern.yaml";
     // Projector and viewer on one spot before the wall, each with a picture that just fits it: atan(1.6 / 4) to either side.
     const std::vector<std::string> kSquarely = {"--projector",     "0,0,4",        "--throw",   "1.25", "--viewer",  "0,0,4",
                                                 "--field-of-view", "43.602818972", "--seconds", "3",    "--ambient", "0.05"};

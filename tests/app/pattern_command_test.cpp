@@ -6,6 +6,7 @@
 #include "core/image.h"
 #include "program.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -34,7 +35,7 @@ protected:
         for (int y = 8; y < 28; ++y)
             for (int x = 8; x < 40; ++x) guide.at(x, y) = 1;
         EXPECT_TRUE(writePng(folder_ / "guide.png", guide));
-        fs::copy(FANTASCOPE_SOURCE_DIR "/shows/light-movement/shapes/sculpture.obj", folder_ / "sculpture.obj");
+        fs::copy(sourceFolder() + "/shows/light-movement/shapes/sculpture.obj", folder_ / "sculpture.obj");
         fs::create_directory(folder_ / "out");
     }
 

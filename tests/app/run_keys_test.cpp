@@ -4,6 +4,7 @@
 #include "app/rehearse_command.h"
 
 #include "core/file.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -26,7 +27,7 @@ TEST(RunKeys, stand_in_the_help_of_both_commands) {
 }
 
 TEST(RunKeys, stand_in_the_readme) {
-    const auto readme = readFile(FANTASCOPE_SOURCE_DIR "/README.md");
+    const auto readme = readFile(sourceFolder() + "/README.md");
     ASSERT_TRUE(readme);
     for (const RunKey& key : kRunKeys) EXPECT_THAT(*readme, HasSubstr(fmt::format("\n| `{}` | {} |\n", key.name, key.does)));
 }

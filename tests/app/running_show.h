@@ -9,6 +9,7 @@
 
 #include "core/check.h"
 #include "core/clock.h"
+#include "source_folder.h"
 
 #include <utility>
 
@@ -21,8 +22,8 @@ T valueOf(Result<T> result) {
 }
 
 struct RunningShow {
-    show::Site site = valueOf(show::readSite(FANTASCOPE_SOURCE_DIR "/config/simulated/site.yaml"));
-    show::Show show = valueOf(show::Show::load(FANTASCOPE_SOURCE_DIR "/shows/light-movement"));
+    show::Site site = valueOf(show::readSite(sourceFolder() + "/config/simulated/site.yaml"));
+    show::Show show = valueOf(show::Show::load(sourceFolder() + "/shows/light-movement"));
     show::CueList cues = valueOf(show.bind(site));
     ManualClock clock;
     site::World world{clock};

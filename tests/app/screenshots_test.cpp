@@ -5,6 +5,7 @@
 
 #include "core/image.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -29,7 +30,7 @@ class ScreenshotsTest : public testing::Test {
 protected:
     ScreenshotsTest() {
         const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{});
-        loop_.emplace(run_.site, run_.cues, sources, FANTASCOPE_SOURCE_DIR "/assets", run_.devices, run_.clock);
+        loop_.emplace(run_.site, run_.cues, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         std::vector<std::string> names;
         std::vector<render::NewestFrame*> frames;
         for (std::size_t output = 0; output < 2; ++output) {

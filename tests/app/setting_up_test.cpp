@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -52,7 +53,7 @@ private:
 class SettingUpPart : public testing::Test {
 protected:
     SettingUpPart() {
-        std::filesystem::copy(FANTASCOPE_SOURCE_DIR "/config/simulated", folder_ / "site",
+        std::filesystem::copy(sourceFolder() + "/config/simulated", folder_ / "site",
                               std::filesystem::copy_options::recursive);
         run_.site = valueOf(show::readSite(file_));
         for (auto& display : run_.devices.displays) {
@@ -61,7 +62,7 @@ protected:
             display = std::move(attended);
         }
         const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{glm::vec3(0.5f)});
-        loop_.emplace(run_.site, run_.cues, sources, FANTASCOPE_SOURCE_DIR "/assets", run_.devices, run_.clock);
+        loop_.emplace(run_.site, run_.cues, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output).addQueue());
         EXPECT_TRUE(loop_->prepare());
         loop_->begin(run_.clock.now() - 30s);  // the cue is faded in
@@ -124,7 +125,7 @@ TEST_F(SettingUpPart, moves_the_picture_on_the_wall) {
     press({.letter = 'e'});
     EXPECT_EQ(at(0, justInside), 0) << "the corner has moved inwards by 30 pixels both ways";
     EXPECT_GT(at(0, kInside), 100);
-    EXPECT_EQ(readFile(file_).value(), readFile(FANTASCOPE_SOURCE_DIR "/config/simulated/site.yaml").value())
+    EXPECT_EQ(readFile(file_).value(), readFile(sourceFolder() + "/config/simulated/site.yaml").value())
         << "nothing was written";
     EXPECT_THAT(told_, HasSubstr("not written to the file"));
 }

@@ -12,6 +12,7 @@
 #include "edid_block.h"
 #include "running_program.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -50,7 +51,7 @@ protected:
         auto devices = openDevices(show_->site, Backends::AsDeclared, {clock_});
         ASSERT_TRUE(devices) << devices.error().message();
         devices_ = std::move(devices).value();
-        loop_.emplace(show_->site, show_->cues, show_->sources, FANTASCOPE_SOURCE_DIR "/assets", devices_, clock_);
+        loop_.emplace(show_->site, show_->cues, show_->sources, sourceFolder() + "/assets", devices_, clock_);
         const auto prepared = loop_->prepare();
         ASSERT_TRUE(prepared) << prepared.error().message();
         loop_->begin(clock_.now());

@@ -11,6 +11,7 @@
 #include "pictures.h"
 #include "program.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -125,7 +126,7 @@ TEST_F(ShowWithShadows, says_what_cannot_be_played) {
 
 // The menagerie's casts as they lie in its folder: people can hold every frame, it reads as the drawing, and nobody slides or leaps.
 TEST(Menagerie, is_played_by_people_who_can_do_it) {
-    const fs::path folder = FANTASCOPE_SOURCE_DIR "/shows/menagerie";
+    const fs::path folder = sourceFolder() + "/shows/menagerie";
     for (const char* name : {"rabbit", "elephant", "car"}) {
         const fs::path file = folder / (std::string(name) + ".cast.yaml");
         const auto cast = theatre::readCast(file);
@@ -144,7 +145,7 @@ TEST(Menagerie, is_played_by_people_who_can_do_it) {
         }
         EXPECT_GE(mean, 0.92) << name;
     }
-    EXPECT_THAT(runProgram({"check", folder.string(), "--site", FANTASCOPE_SOURCE_DIR "/config/simulated"}, folder), exits(0));
+    EXPECT_THAT(runProgram({"check", folder.string(), "--site", sourceFolder() + "/config/simulated"}, folder), exits(0));
 }
 
 }  // namespace

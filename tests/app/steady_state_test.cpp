@@ -10,6 +10,7 @@
 
 #include "allocations.h"
 #include "gl_calls.h"
+#include "source_folder.h"
 #include "system_calls.h"
 
 #include <gmock/gmock.h>
@@ -41,7 +42,7 @@ protected:
         devices_ = std::move(devices).value();
     }
     void prepare() {
-        loop_.emplace(show_.site, show_.cues, show_.sources, FANTASCOPE_SOURCE_DIR "/assets", devices_, clock_);
+        loop_.emplace(show_.site, show_.cues, show_.sources, sourceFolder() + "/assets", devices_, clock_);
         const auto prepared = loop_->prepare();
         ASSERT_TRUE(prepared) << prepared.error().message();
         loop_->begin(clock_.now());
@@ -115,7 +116,7 @@ TEST_F(SteadyState, is_not_said_of_a_loop_that_was_not_prepared) {
     prepare();
     loop_.reset();
     const Counts before = now();
-    loop_.emplace(show_.site, show_.cues, show_.sources, FANTASCOPE_SOURCE_DIR "/assets", devices_, clock_);
+    loop_.emplace(show_.site, show_.cues, show_.sources, sourceFolder() + "/assets", devices_, clock_);
     ASSERT_TRUE(loop_->prepare());
     std::jthread([] {}).join();
     const Counts after = now();

@@ -4,6 +4,7 @@
 #include "core/file.h"
 #include "core/random.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -497,7 +498,7 @@ TEST(ConfigEdit, files_with_damage_are_refused_or_changed_rightly) {
     const std::string marks = "\n\n  :#-[]{},'\"&*!|>%@`\t\r\xFF\xC3?~a1";
     int refused = 0, changed = 0;
     for (const char* name : {"config/simulated/site.yaml", "shows/light-movement/show.yaml"}) {
-        const std::string whole = readFile(std::filesystem::path(FANTASCOPE_SOURCE_DIR) / name).value();
+        const std::string whole = readFile(std::filesystem::path(sourceFolder()) / name).value();
         const auto wellRead = treeOfText(whole);
         ASSERT_TRUE(wellRead) << wellRead.error().message();
         for (std::uint64_t seed = 0; seed < 250; ++seed) {
@@ -538,7 +539,7 @@ std::vector<std::string> linesOf(const std::string& text) {
 }
 
 TEST(ConfigEdit, in_the_default_site_moved_corners_change_their_line_alone) {
-    const std::filesystem::path site = std::filesystem::path(FANTASCOPE_SOURCE_DIR) / "config/simulated/site.yaml";
+    const std::filesystem::path site = std::filesystem::path(sourceFolder()) / "config/simulated/site.yaml";
     const std::string text = readFile(site).value();
     auto document = ConfigDocument::load(site);
     ASSERT_TRUE(document) << document.error().message();

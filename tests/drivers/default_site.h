@@ -6,11 +6,13 @@
 #include "show/site.h"
 #include "vision/camera_model.h"
 
+#include "source_folder.h"
+
 #include <string>
 
 namespace fantascope::site {
 
-inline show::Site defaultSite() { return show::readSite(FANTASCOPE_SOURCE_DIR "/config/simulated/site.yaml").value(); }
+inline show::Site defaultSite() { return show::readSite(sourceFolder() + "/config/simulated/site.yaml").value(); }
 
 inline NominalSite nominalPartsOf(const show::Site& site) {
     NominalSite nominal;

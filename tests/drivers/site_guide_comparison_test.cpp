@@ -7,6 +7,7 @@
 
 #include "core/file.h"
 #include "core/random.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -115,7 +116,7 @@ std::shared_ptr<const RgbaImage> frameOf(const std::vector<Disc>& discs, const s
 class Night {
 public:
     explicit Night(const std::string& faults) {
-        const std::string file = FANTASCOPE_SOURCE_DIR "/config/simulated/site.yaml";
+        const std::string file = sourceFolder() + "/config/simulated/site.yaml";
         const ConfigNode simulation = ConfigNode::parse(readFile(file).value() + "  faults: [" + faults + "]\n", file).value();
         const NominalSite nominal = nominalPartsOf(site_);
         simulated_ = SimulatedSite::open(section(simulation), nominal, 1, world_).value();

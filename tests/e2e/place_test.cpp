@@ -1,6 +1,7 @@
 // The built program where nobody built it: it finds its own files, and holds no path of the machine that it was built on.
 
 #include "program.h"
+#include "source_folder.h"
 
 #include <cstdio>
 
@@ -22,7 +23,7 @@ protected:
     void copyData(const fs::path& to) {
         fs::create_directories(to);
         for (const char* name : {"assets", "config", "shows"})
-            fs::copy(fs::path(FANTASCOPE_SOURCE_DIR) / name, to / name, fs::copy_options::recursive);
+            fs::copy(fs::path(sourceFolder()) / name, to / name, fs::copy_options::recursive);
     }
     Outcome rehearse(const std::vector<std::pair<std::string, std::string>>& environment = {}) {
         return runProgram({"rehearse", "--as-fast-as-possible", "--seconds", "0.2"}, folder_.path(), environment, program_);
@@ -48,12 +49,12 @@ TEST_F(ProgramElsewhere, says_where_it_looked_and_what_to_do) {
     const Outcome misled = rehearse({{"FANTASCOPE_DATA", folder_.path()}});
     EXPECT_THAT(misled, exits(1));
     EXPECT_THAT(misled.errors, HasSubstr("FANTASCOPE_DATA is " + folder_.path().string()));
-    EXPECT_THAT(rehearse({{"FANTASCOPE_DATA", FANTASCOPE_SOURCE_DIR}}), exits(0));
+    EXPECT_THAT(rehearse({{"FANTASCOPE_DATA", sourceFolder()}}), exits(0));
 }
 
 // In what is loaded: symbols for a debugger may say where they are from.
 TEST(Program, holds_no_path_of_the_source_tree) {
-    FILE* const pipe = ::popen("strings --data " FANTASCOPE_PROGRAM " | grep -F " FANTASCOPE_SOURCE_DIR, "r");
+    FILE* const pipe = ::popen(("strings --data " FANTASCOPE_PROGRAM " | grep -F " + sourceFolder()).c_str(), "r");
     ASSERT_NE(pipe, nullptr);
     std::string found;
     for (char buffer[256]; std::fgets(buffer, sizeof buffer, pipe) != nullptr;) found += buffer;

@@ -2,6 +2,7 @@
 
 #include "core/image.h"
 #include "program.h"
+#include "source_folder.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 
-const fs::path kSource = FANTASCOPE_SOURCE_DIR;
+const fs::path kSource = sourceFolder();
 const std::vector<std::string> kCues = {"Dusk", "First light", "Left rises", "Both", "Full", "Farewell"};
 
 void replace(std::string& text, const std::string& before, const std::string& after) {

@@ -1,6 +1,7 @@
 // A newcomer types what a README says, in its order: every file that a command reads is in the repository, or an earlier command made it.
 
 #include "house/repository.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -98,7 +99,7 @@ std::vector<std::string> missingIn(const TextFile& file, const auto& exists) {
 }
 
 TEST(Readme, names_files_that_are_there) {
-    const fs::path root = FANTASCOPE_SOURCE_DIR;
+    const fs::path root = sourceFolder();
     std::vector<std::string> missing;
     std::size_t commands = 0;
     for (const TextFile& file : repositoryFiles()) {

@@ -1,6 +1,7 @@
 #include "house/repository.h"
 
 #include "core/file.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 
@@ -32,7 +33,7 @@ std::set<std::string> ignoredAt(const fs::path& root) {
 }  // namespace
 
 std::vector<TextFile> repositoryFiles() {
-    const fs::path root = FANTASCOPE_SOURCE_DIR;
+    const fs::path root = sourceFolder();
     const std::set<std::string> ignored = ignoredAt(root);
     std::vector<TextFile> files;
     for (auto entry = fs::recursive_directory_iterator(root); entry != fs::recursive_directory_iterator(); ++entry) {

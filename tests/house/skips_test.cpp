@@ -1,6 +1,7 @@
 // What ctest and tools/run-tests make of a program whose tests pass, skip, fail or hang.
 
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -31,7 +32,7 @@ Outcome runEntry(const std::string& name, const std::string& environment = "") {
     const std::string command = fmt::format(
         "env -u GTEST_FILTER -u FANTASCOPE_REFUSE_SKIPS CTEST_OUTPUT_ON_FAILURE=1 {} {}/tools/run-tests --test-dir {} -C "
         "deliberate -R '^{}$' 2>&1",
-        environment, FANTASCOPE_SOURCE_DIR, folder.path().string(), name);
+        environment, sourceFolder(), folder.path().string(), name);
     FILE* const pipe = ::popen(command.c_str(), "r");
     if (pipe == nullptr) return {};
     Outcome outcome;

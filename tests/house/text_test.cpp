@@ -1,11 +1,13 @@
 // Holds the rules of the craft that can be seen in the text of a file.
 
 #include "house/repository.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 
 namespace fantascope::house {
@@ -15,7 +17,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-using Words = std::vector<std::string_view>;
+using Words = std::vector<std::string>;
 
 struct Ban {
     Words words;
@@ -31,7 +33,7 @@ const std::vector<Ban> kBans = {
      kAllCode,
      {"bench/floor."},
      "shaders live in assets/, never inside C++"},
-    {{"/home/", FANTASCOPE_SOURCE_DIR "/"}, {}, {}, "no path of one machine"},
+    {{"/home/", sourceFolder() + "/"}, {}, {}, "no path of one machine"},
     {{"_distribution<", "std::shuffle", "std::sample", "random_device", "default_random_engine", "rand()"},
      kAllCode,
      {},

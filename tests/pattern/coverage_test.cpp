@@ -4,6 +4,7 @@
 #include "pattern/elemental_shape.h"
 
 #include "core/random.h"
+#include "source_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -88,7 +89,7 @@ TEST(Coverage, is_what_a_test_of_every_pixel_against_every_triangle_gives) {
 // A closed surface seen from all sides, where inner edges cancel out and the outline of the far side lies behind.
 // Example failure: an edge between a facing and an averted triangle is skipped, and the silhouette opens there.
 TEST(Coverage, of_a_rotated_solid_is_its_whole_silhouette) {
-    const auto sculpture = loadShape(FANTASCOPE_SOURCE_DIR "/shows/light-movement/shapes/sculpture.obj");
+    const auto sculpture = loadShape(sourceFolder() + "/shows/light-movement/shapes/sculpture.obj");
     ASSERT_TRUE(sculpture) << sculpture.error().message();
     Rng rng(2);
     for (int i = 0; i < 30; ++i) expectAsBruteForce(sculpture->mesh, randomPose(rng), 100, 60);

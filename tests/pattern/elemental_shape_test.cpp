@@ -4,6 +4,7 @@
 
 #include "core/image.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
@@ -113,7 +114,7 @@ TEST(ElementalShape, an_unknown_name_is_answered_with_the_nearest) {
 
 // The renderer draws 330 of them on an output within 20,000 triangles, and both it and the search rely on a closed surface.
 TEST(ElementalShape, the_sculpture_of_the_default_show_is_closed_and_of_few_triangles) {
-    const auto mesh = readMesh(FANTASCOPE_SOURCE_DIR "/shows/light-movement/shapes/sculpture.obj");
+    const auto mesh = readMesh(sourceFolder() + "/shows/light-movement/shapes/sculpture.obj");
     ASSERT_TRUE(mesh) << mesh.error().message();
     EXPECT_LE(mesh->triangles.size(), 60u);
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> ways;

@@ -8,6 +8,7 @@
 #include "core/image.h"
 #include "core/random.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -329,7 +330,7 @@ std::set<std::string> keysBetween(const std::string& text, const std::string& op
 TEST(PatternDocs, explain_every_key_and_no_other) {
     const PatternFolder folder;
     ASSERT_TRUE(writePattern(folder.pattern(), sample(folder)));
-    const std::string document = readFile(std::filesystem::path(FANTASCOPE_SOURCE_DIR) / "docs/pattern-format.md").value();
+    const std::string document = readFile(std::filesystem::path(sourceFolder()) / "docs/pattern-format.md").value();
     EXPECT_EQ(keysBetween(document, "\n| `", "`"), keysBetween(folder.bytes(), "", ":"));
 
     const std::size_t example = document.find("```yaml\n") + 8;

@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/image.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -184,7 +185,7 @@ std::map<std::string, double> numbersOf(PatternSearch::Options options) {
 
 // The file that people copy from. Example failure: a default was changed, or a new number is not in it.
 TEST(PatternSettings, the_file_of_defaults_holds_every_number_and_changes_nothing) {
-    const std::string file = FANTASCOPE_SOURCE_DIR "/assets/defaults.pattern-settings.yaml";
+    const std::string file = sourceFolder() + "/assets/defaults.pattern-settings.yaml";
     const auto settings = readPatternSettings(file);
     ASSERT_TRUE(settings) << settings.error().message();
     const auto numbers = numbersOf(PatternSearch::Options());
@@ -212,7 +213,7 @@ TEST(PatternSettings, what_is_wrong_is_refused_with_its_place) {
 }
 
 TEST(PatternSettings, the_documents_examples_load) {
-    const std::string document = readFile(std::filesystem::path(FANTASCOPE_SOURCE_DIR) / "docs/pattern-settings.md").value();
+    const std::string document = readFile(std::filesystem::path(sourceFolder()) / "docs/pattern-settings.md").value();
     const SettingsFolder folder;
     int examples = 0;
     for (std::size_t at = 0; (at = document.find("```yaml\n", at)) != std::string::npos; ++examples) {

@@ -1,6 +1,7 @@
 #include "peers/modbus_peer.h"
 
 #include "core/check.h"
+#include "source_folder.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ namespace fantascope {
 namespace {
 
 constexpr const char* kPython = "/usr/bin/python3";  // Debian's own, for which its pymodbus is
-constexpr const char* kScript = FANTASCOPE_SOURCE_DIR "/tests/peers/modbus_peer.py";
+const std::string kScript = sourceFolder() + "/tests/peers/modbus_peer.py";
 
 // Becomes another program, in a child process that ends with the test.
 [[noreturn]] void become(std::vector<std::string> words) {

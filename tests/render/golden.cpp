@@ -2,6 +2,8 @@
 
 #include "render/scene.h"
 
+#include "source_folder.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +40,7 @@ std::string differsVisibly(const RgbaImage& golden, const RgbaImage& image) {
 }
 
 testing::AssertionResult looksLikeGolden(const std::string& name, const RgbaImage& image) {
-    const fs::path goldenFile = fs::path(FANTASCOPE_SOURCE_DIR "/tests/golden") / (name + ".png");
+    const fs::path goldenFile = fs::path(sourceFolder() + "/tests/golden") / (name + ".png");
     const fs::path output = FANTASCOPE_GOLDEN_OUTPUT;
     const fs::path newFile = output / (name + ".png"), compareFile = output / (name + ".compare.png");
     fs::remove(newFile);

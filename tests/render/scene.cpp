@@ -6,6 +6,7 @@
 
 #include "core/check.h"
 #include "core/random.h"
+#include "source_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -158,6 +159,6 @@ Difference difference(const RgbaImage& a, const RgbaImage& b) {
     return difference;
 }
 
-std::filesystem::path shaderFolder() { return FANTASCOPE_SOURCE_DIR "/assets/shaders"; }
+std::filesystem::path shaderFolder() { return sourceFolder() + "/assets/shaders"; }
 
 }  // namespace fantascope::render

@@ -3,6 +3,7 @@
 #include "show/site.h"
 
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -14,7 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::Each;
 
-const std::filesystem::path kSource = FANTASCOPE_SOURCE_DIR;
+const std::filesystem::path kSource = sourceFolder();
 
 // The default show as it stands, with files in the places of its patterns, which are made from its drawings.
 struct DefaultShow {

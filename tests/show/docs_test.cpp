@@ -5,6 +5,7 @@
 #include "show/site.h"
 
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -19,7 +20,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 std::string documentOf(const std::string& name) {
-    return readFile(std::filesystem::path(FANTASCOPE_SOURCE_DIR) / "docs" / name).value();
+    return readFile(std::filesystem::path(sourceFolder()) / "docs" / name).value();
 }
 
 // What stands between every two marks: between("`k1`, `k2`", "`", "`") is k1, k2.

@@ -1,5 +1,7 @@
 #include "theatre/cma_es.h"
 
+#include "source_folder.h"
+
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -161,7 +163,7 @@ double rankDifference(const std::vector<double>& a, const std::vector<double>& b
 // without c_sigma are all found. Were both the same algorithm, one of the cases would pass this bound by chance in less than one of
 // 10,000 choices of the seeds: two-sided, 4.7 standard deviations are 2.6e-6, times 28 cases.
 TEST(CmaEs, needs_as_many_evaluations_as_an_independent_implementation) {
-    std::ifstream file(FANTASCOPE_SOURCE_DIR "/tests/theatre/reference_cmaes.txt");
+    std::ifstream file(sourceFolder() + "/tests/theatre/reference_cmaes.txt");
     int cases = 0;
     for (std::string line; std::getline(file, line);) {
         if (line.starts_with('#')) continue;

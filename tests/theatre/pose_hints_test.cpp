@@ -6,6 +6,7 @@
 #include "a_scene.h"
 #include "core/file.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
@@ -121,7 +122,7 @@ TEST_F(HintsFile, may_mean_a_point_of_what_somebody_holds) {
 
 TEST_F(HintsFile, of_each_of_the_projects_silhouettes_is_read) {
     int files = 0;
-    for (const auto& file : std::filesystem::recursive_directory_iterator(FANTASCOPE_SOURCE_DIR "/assets/silhouettes")) {
+    for (const auto& file : std::filesystem::recursive_directory_iterator(sourceFolder() + "/assets/silhouettes")) {
         const std::string path = file.path().string(), ending = ".hints.yaml";
         if (!path.ends_with(ending)) continue;
         const auto picture = readGrey(path.substr(0, path.size() - ending.size()) + ".png");

@@ -1,6 +1,7 @@
 #include "theatre/pose_problem.h"
 
 #include "pictures.h"
+#include "source_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -143,7 +144,7 @@ TEST(PoseTarget, PartsOfAnyShapeAreOneIsland) {
 
 TEST(PoseTarget, TakesTheProjectsSilhouettes) {
     int count = 0;
-    for (const auto& file : std::filesystem::recursive_directory_iterator(FANTASCOPE_SOURCE_DIR "/assets/silhouettes")) {
+    for (const auto& file : std::filesystem::recursive_directory_iterator(sourceFolder() + "/assets/silhouettes")) {
         if (file.path().extension() != ".png") continue;
         const auto picture = readGrey(file.path());
         ASSERT_TRUE(picture);

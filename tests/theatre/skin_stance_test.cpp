@@ -6,6 +6,7 @@
 
 #include "core/geometry.h"
 #include "core/random.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -59,7 +60,7 @@ TEST(SkinStance, ABodyWeighsWhereItsSkinDoes) {
 TEST(SkinStance, EverybodyOfTheRepositorysCastsStands) {
     int people = 0;
     for (const char* folder : {"shows", "assets"})
-        for (const auto& entry : fs::recursive_directory_iterator(fs::path(FANTASCOPE_SOURCE_DIR) / folder)) {
+        for (const auto& entry : fs::recursive_directory_iterator(fs::path(sourceFolder()) / folder)) {
             if (!entry.path().string().ends_with(".cast.yaml")) continue;
             const auto cast = readCast(entry.path());
             ASSERT_TRUE(cast) << cast.error().message();

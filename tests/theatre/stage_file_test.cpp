@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
@@ -223,7 +224,7 @@ bool isClosed(const TriangleMesh& mesh) {
 
 // Example failure: a wheel whose tyre looks inwards pushes everybody into itself.
 TEST(ProjectsProps, are_solids_and_their_hints_are_of_the_drawings) {
-    const std::filesystem::path assets = FANTASCOPE_SOURCE_DIR "/assets";
+    const std::filesystem::path assets = sourceFolder() + "/assets";
     int standing = 0, held = 0, hints = 0;
     for (const auto& [name, played, height] : {std::tuple("car", "car", 1.6),
                                                {"airplane", "airplane", 2.3},

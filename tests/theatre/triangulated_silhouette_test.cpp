@@ -2,6 +2,7 @@
 
 #include "core/random.h"
 #include "pictures.h"
+#include "source_folder.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
@@ -71,7 +72,7 @@ GreyImage ringAndBar() {
 
 TEST(TriangulatedSilhouette, of_each_of_the_projects_drawings_is_well_triangulated_and_shows_the_drawing) {
     int pictures = 0;
-    for (const auto& file : std::filesystem::directory_iterator(FANTASCOPE_SOURCE_DIR "/assets/silhouettes")) {
+    for (const auto& file : std::filesystem::directory_iterator(sourceFolder() + "/assets/silhouettes")) {
         if (file.path().extension() != ".png") continue;
         SCOPED_TRACE(file.path().filename());
         ++pictures;

@@ -2,6 +2,7 @@
 
 #include "core/file.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -13,7 +14,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-const std::filesystem::path kPaper = FANTASCOPE_SOURCE_DIR "/assets/silhouettes/weights.yaml";
+const std::filesystem::path kPaper = sourceFolder() + "/assets/silhouettes/weights.yaml";
 
 std::array<double, 12> all(const PoseWeights& w) {
     return {w.w1, w.w2, w.w3, w.w4, w.w5, w.w6, w.w7, w.w8, w.w9, w.w10, w.w11, w.w12};

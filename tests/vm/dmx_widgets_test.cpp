@@ -7,6 +7,7 @@
 #include "contract/eventually.h"
 #include "contract/serial_dmx_rig.h"
 #include "contract/widget.h"
+#include "source_folder.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -36,7 +37,7 @@ std::string fileOf(int number) {
     return line ? line->string() : "";
 }
 void tellQemu(const std::string& command) {
-    ASSERT_EQ(std::system(fmt::format("'{}/tests/vm/monitor' '{}'", FANTASCOPE_SOURCE_DIR, command).c_str()), 0);
+    ASSERT_EQ(std::system(fmt::format("'{}/tests/vm/monitor' '{}'", sourceFolder(), command).c_str()), 0);
 }
 void pull(int number) {
     tellQemu(fmt::format("device_del adapter{}", number));
