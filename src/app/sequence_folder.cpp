@@ -2,10 +2,15 @@
 
 #include "app/output.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +42,33 @@ fs::path makingOf(const fs::path& folder) {
     return making;
 }
 
+// A folder whose lock is held by nobody else now.
+Result<drivers::FileHandle> locked(const fs::path& making) {
+    drivers::FileHandle folder(::open(making.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!folder.isOpen()) return Error(fmt::format("{}: cannot be opened: {}", making.string(), std::strerror(errno)));
+    if (::flock(folder.get(), LOCK_EX | LOCK_NB) != 0)
+        return Error(
+            fmt::format("{}: another run is making this sequence; wait for it, or choose another folder", making.string()));
+    return folder;
+}
+
+// Whether the path still leads to this folder: whoever held the lock before may have removed it.
+bool isStillThere(const drivers::FileHandle& folder, const fs::path& path) {
+    struct stat opened {
+    }, named{};
+    return ::fstat(folder.get(), &opened) == 0 && ::stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino;
+}
+
+// What a run leaves that was killed. Error: somebody keeps other files there.
+Result<void> checkLeftover(const fs::path& making) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(making, ignored))
+        if (const std::string name = entry.path().filename(); name != kSequence && !isFrame(name))
+            return Error(fmt::format("{}: is needed to make the sequence in, and has another file in it: {}; move it away",
+                                     making.string(), name));
+    return {};
+}
+
 }  // namespace
 
 Result<void> SequenceFolder::check(const fs::path& folder) {
@@ -52,19 +84,24 @@ Result<void> SequenceFolder::check(const fs::path& folder) {
     TRY(checkWritable(path / kSequence));
     const fs::path making = makingOf(folder);
     TRY(checkWritable(making / kSequence));
-    if (fs::exists(making, ignored))
-        return Error(fmt::format("{}: is there from a run that was cut short, or another is at work; remove it when none is",
-                                 making.string()));
-    return {};
+    if (!fs::exists(making, ignored)) return {};
+    TRY(locked(making));
+    return checkLeftover(making);
 }
 
 Result<std::unique_ptr<SequenceFolder>> SequenceFolder::open(const fs::path& folder) {
     TRY(check(folder));
     const fs::path making = makingOf(folder);
-    std::error_code failure;
-    fs::create_directories(making, failure);
-    if (failure) return Error(fmt::format("{}: the folder cannot be made: {}", making.string(), failure.message()));
-    return std::unique_ptr<SequenceFolder>(new SequenceFolder(plain(folder), making));
+    for (;;) {
+        std::error_code failure;
+        fs::create_directories(making, failure);
+        if (failure) return Error(fmt::format("{}: the folder cannot be made: {}", making.string(), failure.message()));
+        drivers::FileHandle lock = TRY(locked(making));
+        if (!isStillThere(lock, making)) continue;
+        TRY(checkLeftover(making));
+        for (const auto& entry : fs::directory_iterator(making, failure)) fs::remove(entry.path(), failure);
+        return std::unique_ptr<SequenceFolder>(new SequenceFolder(plain(folder), making, std::move(lock)));
+    }
 }
 
 SequenceFolder::~SequenceFolder() {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "drivers/common/file_handle.h"
+
 #include "theatre/silhouette_sequence.h"
 
 #include "core/result.h"
@@ -10,13 +12,15 @@
 
 namespace fantascope::app {
 
-// A folder that becomes a silhouette sequence: frame-0001.png, frame-0002.png, .. and sequence.yaml. Everything is made in a folder beside it and put
-// in place by finish(); without it nothing is left behind. A sequence that was there before is replaced; other files in the folder stay.
+// A folder that becomes a silhouette sequence: frame-0001.png, frame-0002.png, .. and sequence.yaml. Everything is made in a folder beside it,
+// NAME.unfinished, and put in place by finish(); without it nothing is left behind. A run that is killed leaves NAME.unfinished: the next
+// one takes it over. A sequence that was there before is replaced; other files in the folder stay.
 // Thread: thread-bound.
 class SequenceFolder {
 public:
-    // Whether open() can: the folder is not there, empty, or holds a sequence.
+    // Whether open() can. Error: the folder holds something else than a sequence, cannot be written, or another run is making it.
     static Result<void> check(const std::filesystem::path& folder);
+    // Error: as check().
     static Result<std::unique_ptr<SequenceFolder>> open(const std::filesystem::path& folder);
     ~SequenceFolder();
 
@@ -29,10 +33,11 @@ public:
     Result<void> finish(const theatre::SilhouetteSequence& sequence);
 
 private:
-    SequenceFolder(std::filesystem::path folder, std::filesystem::path making)
-        : folder_(std::move(folder)), making_(std::move(making)) {}
+    SequenceFolder(std::filesystem::path folder, std::filesystem::path making, drivers::FileHandle lock)
+        : folder_(std::move(folder)), making_(std::move(making)), lock_(std::move(lock)) {}
 
     std::filesystem::path folder_, making_;
+    drivers::FileHandle lock_;  // of making_; the kernel releases it with the process
 };
 
 }  // namespace fantascope::app

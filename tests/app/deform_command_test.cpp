@@ -6,6 +6,7 @@
 #include "core/image.h"
 #include "pictures.h"
 #include "program.h"
+#include "running_program.h"
 #include "scratch_folder.h"
 #include "source_folder.h"
 
@@ -255,9 +256,11 @@ TEST_F(DeformCommand, bad_input_is_refused_with_one_message_and_leaves_nothing) 
     EXPECT_THAT(with("bar.png", {"--sheet", "bar.png/x.png"}), HasSubstr("bar.png is not a folder"));
     EXPECT_THAT(with("bar.png", {"--report", "bar.motion.yaml"}), HasSubstr("is the motion, and would be overwritten"));
     EXPECT_THAT(with("bar.png", {"--sheet", "out/frame-0007.png"}), HasSubstr("the folder's own files are called so"));
-    fs::create_directory(folder_ / "out.unfinished");
-    EXPECT_THAT(with("bar.png"), HasSubstr("out.unfinished: is there from a run that was cut short"));
-    fs::remove(folder_ / "out.unfinished");
+    folder_.file("out.unfinished/letter.txt", "mine");
+    EXPECT_THAT(with("bar.png"),
+                HasSubstr("out.unfinished: is needed to make the sequence in, and has another file in it: letter.txt"));
+    EXPECT_EQ(text("out.unfinished/letter.txt"), "mine");
+    fs::remove_all(folder_ / "out.unfinished");
     // Too much of it.
     EXPECT_THAT(with("bar.png", {"--frames", "5000"}), HasSubstr("give --fps"));
     motion(3600, "");
@@ -306,6 +309,24 @@ TEST_F(DeformCommand, ctrl_c_leaves_nothing_half) {
                                "v.mp4",  "--frames", "10000",    "--fps",           "10", "--vertices", "20"};
     EXPECT_EQ(interruptProgram(endless, folder_ / ".", 2), 1);
     EXPECT_THAT(written(), ElementsAre("bar.motion.yaml", "bar.png"));
+}
+
+// Example failure: a second Ctrl-C leaves a folder behind, and every later run is refused because of it.
+TEST_F(DeformCommand, what_a_killed_run_leaves_is_taken_over_and_what_a_running_one_makes_is_not) {
+    motion(1000, "");
+    RunningProgram first(
+        {"deform", "bar.png", "--motion", "bar.motion.yaml", "-o", "out", "--frames", "10000", "--fps", "10", "--vertices", "20"},
+        folder_ / ".");
+    while (!fs::exists(folder_ / "out.unfinished/frame-0002.png")) ASSERT_TRUE(first.line()) << first.all();
+    motion(1, "");
+    const Outcome beside = deform();
+    EXPECT_THAT(beside, exits(1));
+    EXPECT_THAT(beside.errors, HasSubstr("out.unfinished: another run is making this sequence"));
+    first.stop(SIGKILL);
+    ASSERT_TRUE(fs::exists(folder_ / "out.unfinished/frame-0002.png"));
+    EXPECT_THAT(deform(), exits(0));
+    EXPECT_FALSE(fs::exists(folder_ / "out.unfinished"));
+    EXPECT_TRUE(fs::exists(folder_ / "out/sequence.yaml"));
 }
 
 // Those that come with the program.
