@@ -76,11 +76,4 @@ std::string oddHolesIn(const GreyImage& silhouette) {
         count == 1 ? "" : " the first", count == 1 ? "it" : "them", count == 1 ? "it" : "them");
 }
 
-Result<std::filesystem::path> writeInverted(const std::filesystem::path& drawing, const std::filesystem::path& output) {
-    const std::filesystem::path file =
-        std::filesystem::absolute(output).parent_path() / (drawing.stem().string() + ".inverted.png");
-    TRY(writePng(file, inverted(TRY(readGrey(drawing)))));
-    return file;
-}
-
 }  // namespace fantascope::app

@@ -21,7 +21,4 @@ bool isInkOnPaper(const GreyImage& drawing);
 constexpr double kNarrowest = 0.02;
 std::string oddHolesIn(const GreyImage& silhouette);
 
-// The drawing turned over, beside an output, for what refers to it: STEM.inverted.png. Error: names the file.
-Result<std::filesystem::path> writeInverted(const std::filesystem::path& drawing, const std::filesystem::path& output);
-
 }  // namespace fantascope::app

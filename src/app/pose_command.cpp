@@ -170,13 +170,23 @@ void declare(CLI::App& command, Options& options) {
     command.footer("While it searches, the space bar pauses and goes on; escape, q and Ctrl-C end it with the best so far.");
 }
 
-// All that the options ask to be written besides the cast.
+// "", or "-2" for the second beam's.
+std::string numbered(std::size_t beam) { return beam == 0 ? "" : fmt::format("-{}", beam + 1); }
+// What a silhouette that was turned over is called beside an output: P.inverted.png beside P.cast.yaml.
+std::string invertedName(const fs::path& output, std::size_t beam) {
+    return output.stem().stem().string() + ".inverted" + numbered(beam) + ".png";
+}
+
+// All that the options ask to be written.
 std::vector<fs::path> outputsOf(const Options& options) {
     std::vector<fs::path> files{options.output};
     for (const auto& file : {options.image, options.view, options.each, options.report})
         if (file) files.push_back(*file);
     if (options.solutions) files.push_back(*options.solutions / "solutions.png");
     if (options.meshes) files.push_back(*options.meshes / "stage.json");
+    if (options.invert)
+        for (std::size_t i = 0; i <= options.furtherTargets.size(); ++i)
+            files.push_back(fs::absolute(options.output).parent_path() / invertedName(options.output, i));
     return files;
 }
 
@@ -203,6 +213,7 @@ struct Round {
 // Everything that a run leaves behind is made of this.
 struct Found {
     const Options& options;
+    const std::vector<GreyImage>& silhouettes;   // of each beam, white on black
     const std::optional<theatre::Stage>& stage;  // of options.stage
     double height;                               // of the first silhouette, metres
     std::vector<theatre::Cast::Target> further;  // what the further beams' are
@@ -224,25 +235,27 @@ theatre::Cast castOf(const Found& found, std::span<const double> freedoms, const
     return cast;
 }
 
-Material targetFor(const Options& options, const fs::path& output, std::size_t beam) {
-    const fs::path& target = options.targetOf(beam);
-    const std::string name = beam == 0 ? "target" : fmt::format("target-{}", beam + 1);
-    return materialFor(output, target, name + target.extension().string());
+// The picture of a beam's silhouette, white on black, as a cast in `folder` names it: the target itself where it lies in the folder of `output`,
+// else a picture that is made beside it.
+Result<fs::path> placeTarget(const Found& found, const fs::path& folder, const fs::path& output, std::size_t beam) {
+    if (found.options.invert) {
+        const fs::path file = folder / invertedName(output, beam);
+        TRY(writePng(file, found.silhouettes[beam]));
+        return file;
+    }
+    const fs::path& target = found.options.targetOf(beam);
+    const Material material = materialFor(output, target, "target" + numbered(beam) + target.extension().string());
+    TRY(copyTo(folder, material));
+    return folder / material.name;
 }
 
 // What it names first, so that the cast never names what is not there.
 Result<void> writeCastWithMaterial(const Found& found, std::span<const double> freedoms, const fs::path& file,
                                    const fs::path& output) {
     const fs::path folder = fs::absolute(file).parent_path();
-    const Material target = targetFor(found.options, output, 0);
-    TRY(copyTo(folder, target));
-    theatre::Cast cast = castOf(found, freedoms, folder / target.name);
+    theatre::Cast cast = castOf(found, freedoms, TRY(placeTarget(found, folder, output, 0)));
     cast.further = found.further;
-    for (std::size_t i = 0; i < cast.further.size(); ++i) {
-        const Material further = targetFor(found.options, output, i + 1);
-        TRY(copyTo(folder, further));
-        cast.further[i].file = folder / further.name;
-    }
+    for (std::size_t i = 0; i < cast.further.size(); ++i) cast.further[i].file = TRY(placeTarget(found, folder, output, i + 1));
     if (found.options.stage) cast.stageFile = TRY(placeStage(*found.options.stage, *found.stage, output));
     return theatre::writeCast(file, cast);
 }
@@ -489,17 +502,16 @@ Result<Round> searchWith(const Options& options, PoseProblem problem, std::optio
 }
 
 // Won & Lee 2016, section 4: the last resort is one more actor, and all begins anew.
-Result<void> search(Found& found, std::span<const GreyImage> silhouettes, double area, const Troupe& first, Time start,
-                    Clock& clock) {
+Result<void> search(Found& found, double area, const Troupe& first, Time start, Clock& clock) {
     const Options& options = found.options;
     std::optional<double> seconds = options.seconds;
     if (!options.trials && !seconds) seconds = kDefaultSeconds;
     theatre::Stage stage = found.stage.value_or(theatre::Stage{});
-    const PoseTarget target = TRY(PoseTarget::from(silhouettes[0], stage, first.height, kRows).in(options.target.string()));
+    const PoseTarget target = TRY(PoseTarget::from(found.silhouettes[0], stage, first.height, kRows).in(options.target.string()));
     std::vector<PoseTarget> further;
-    for (std::size_t i = 1; i < silhouettes.size(); ++i) {
+    for (std::size_t i = 1; i < found.silhouettes.size(); ++i) {
         const auto& [file, height, middle] = found.further[i - 1];
-        auto laid = PoseTarget::from(silhouettes[i], stage, height, kRows, {i, middle}).in(file.string());
+        auto laid = PoseTarget::from(found.silhouettes[i], stage, height, kRows, {i, middle}).in(file.string());
         if (!laid && options.furtherMiddles.empty())
             return Error(laid.error().message() + "; --further-middle and --further-height lay it elsewhere");
         further.push_back(TRY(std::move(laid)));
@@ -563,18 +575,14 @@ theatre::Cast::Target furtherTarget(const Options& options, const theatre::Stage
     return target;
 }
 
-Result<void> run(const Options& given) {
-    Options options = given;
+Result<void> run(const Options& options) {
     SteadyClock clock;
     const Time start = clock.now();
     // Whatever can be refused is refused before the search begins.
     TRY(checkOutputs(options));
     std::vector<GreyImage> silhouettes;
-    for (std::size_t i = 0; i <= options.furtherTargets.size(); ++i) {
+    for (std::size_t i = 0; i <= options.furtherTargets.size(); ++i)
         silhouettes.push_back(TRY(readDrawnSilhouette(options.targetOf(i), options.invert)));
-        fs::path& target = i == 0 ? options.target : options.furtherTargets[i - 1];
-        if (options.invert) target = TRY(writeInverted(target, options.output));  // what the cast names
-    }
     std::optional<theatre::Stage> stage;
     if (options.stage) {
         stage = TRY(theatre::readStage(*options.stage));
@@ -589,10 +597,10 @@ Result<void> run(const Options& given) {
         area += scale * scale * target.area / (kRows * kRows) / static_cast<double>(silhouettes.size());
     }
     const Troupe troupe = TRY(Troupe::of(area, options.actors, options.height, options.statures));
-    Found found{options, stage, troupe.height, {}};
+    Found found{options, silhouettes, stage, troupe.height, {}};
     for (std::size_t i = 1; i < silhouettes.size(); ++i)
         found.further.push_back(furtherTarget(options, *stage, i, troupe.height));
-    TRY(search(found, silhouettes, area, troupe, start, clock));
+    TRY(search(found, area, troupe, start, clock));
 
     TRY(writeCastWithMaterial(found, found.best().freedoms, options.output, options.output));
     TRY(drawPictures(found));

@@ -56,14 +56,5 @@ TEST(Drawing, a_hole_too_small_for_people_is_told_with_its_place) {
     EXPECT_EQ(oddHolesIn(GreyImage(20, 20)), "");
 }
 
-TEST(Drawing, is_turned_over_beside_what_refers_to_it) {
-    const ScratchFolder folder;
-    ASSERT_TRUE(writePng(folder / "ink.png", GreyImage(4, 3, 1)));
-    const auto file = writeInverted(folder / "ink.png", folder / "out.cast.yaml");
-    ASSERT_TRUE(file);
-    EXPECT_EQ(*file, folder / "ink.inverted.png");
-    EXPECT_EQ(readGrey(*file).value(), GreyImage(4, 3, 0));
-}
-
 }  // namespace
 }  // namespace fantascope::app

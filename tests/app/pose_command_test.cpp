@@ -31,6 +31,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::IsSupersetOf;
+using testing::Not;
 using testing::StartsWith;
 using Arguments = std::vector<std::string>;
 
@@ -80,6 +81,41 @@ TEST_F(PoseCommand, writes_a_cast_with_its_target_beside_it) {
     ASSERT_EQ(cast->actors.size(), 2u);
     EXPECT_EQ(cast->actors[0].stature, 1.6);
     EXPECT_EQ(cast->actors[1].stature, 1.8);
+}
+
+// Example failures: a refused run leaves the turned picture behind; two targets of one name in different folders become one picture.
+TEST_F(PoseCommand, ink_on_paper_is_noticed_and_turned_over_beside_the_cast) {
+    const GreyImage hill = readGrey(folder_ / "hill.png").value();
+    fs::create_directory(folder_ / "other");
+    ASSERT_TRUE(writePng(folder_ / "ink.png", inverted(hill)));
+    ASSERT_TRUE(
+        writePng(folder_ / "other/ink.png", inverted(pictureOf(80, 90, [](int x, int y) { return x > 9 && x < 70 && y > 9; }))));
+    const auto pose = [&](const Arguments& more) {
+        Arguments arguments = {"pose", "ink.png", "-o", "out/c.cast.yaml", "--trials", "1"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    };
+    EXPECT_THAT(pose({"--evaluations", "1000"}).errors, AllOf(HasSubstr("ink.png: looks like black ink"), HasSubstr("--invert")));
+    fs::remove_all(folder_ / "out");
+    fs::create_directory(folder_ / "out");
+    EXPECT_THAT(pose({"--invert", "--evaluations", "1"}), exits(1));
+    EXPECT_THAT(written(), IsEmpty());
+    fs::copy(folder_ / "ink.png", folder_ / "c.inverted.png");
+    EXPECT_THAT(run({"pose", "c.inverted.png", "-o", "c.cast.yaml", "--invert"}).errors, HasSubstr("would be overwritten"));
+    const Outcome done = pose({"--invert", "--evaluations", "1000"});
+    ASSERT_THAT(done, exits(0));
+    EXPECT_THAT(done.errors, Not(HasSubstr("ink on white paper")));
+    EXPECT_THAT(written(), ElementsAre("c.cast.yaml", "c.inverted.png"));
+    EXPECT_EQ(readGrey(folder_ / "out/c.inverted.png").value(), hill);
+    EXPECT_EQ(theatre::readCast(folder_ / "out/c.cast.yaml").value().target, folder_ / "out/c.inverted.png");
+    ASSERT_TRUE(
+        writeFile(folder_ / "two.stage.yaml",
+                  "fantascope: stage\nversion: 1\nlight: [0, 0, 7]\nfurther_beams:\n  - {light: [-4, 0, 1.5], screen: {at: "
+                  "[2.5, 0, 1.5], turned: -90}}\n"));
+    ASSERT_THAT(pose({"--invert", "--evaluations", "1000", "--stage", "two.stage.yaml", "--further-target", "other/ink.png"}),
+                exits(0));
+    EXPECT_EQ(readGrey(folder_ / "out/c.inverted.png").value(), hill);
+    EXPECT_EQ(readGrey(folder_ / "out/c.inverted-2.png").value().width(), 80);
 }
 
 TEST_F(PoseCommand, refers_to_a_target_beside_or_below_it) {
