@@ -17,6 +17,7 @@
 #include "theatre/silhouette_sequence.h"
 #include "theatre/triangulated_silhouette.h"
 
+#include "core/naming.h"
 #include "core/parallel.h"
 #include "plot/cast_picture.h"
 
@@ -163,7 +164,9 @@ Result<std::size_t> representativeOf(const Options& options, const theatre::Cast
     const auto targetOf = [&](const GreyImage& picture, const fs::path& file) {
         return PoseTarget::from(picture, {}, 1, kLookRows).in(file.string());
     };
-    const PoseTarget wanted = TRY(targetOf(TRY(readSilhouette(cast.target)), cast.target));
+    const auto silhouette = readSilhouette(cast.target);
+    if (!silhouette) return namedIn(options.cast, cast.target, silhouette.error());
+    const PoseTarget wanted = TRY(targetOf(*silhouette, cast.target));
     std::size_t best = 0;
     double most = -1;
     for (std::size_t i = 0; i < pictures.size(); ++i)

@@ -29,14 +29,20 @@ Result<theatre::PoseTarget> targetOf(const theatre::Cast& cast, std::optional<st
         if (!silhouette) return namedIn(file, cast.target, silhouette.error());
         return theatre::PoseTarget::from(*silhouette, cast.stage, cast.height, kMaskRows).in(cast.target.string());
     }
-    const theatre::SilhouetteSequence sequence = TRY(theatre::readSequence(cast.sequence->file));
     const auto& [name, representative, first] = *cast.sequence;
+    const auto read = theatre::readSequence(name);
+    if (!read) return namedIn(file, name, read.error());
+    const theatre::SilhouetteSequence& sequence = *read;
     if (representative >= sequence.pictures.size())
         return Error(
             fmt::format("{}: has no frame {}, which the poses of {} are of", name.string(), representative + 1, file.string()));
     if (!frame) frame = principalOf(*cast.sequence, cast.actors[0].poses.size(), sequence.pictures.size());
     std::vector<GreyImage> pictures;
-    for (const fs::path& picture : sequence.pictures) pictures.push_back(TRY(readGrey(picture)));
+    for (const fs::path& picture : sequence.pictures) {
+        auto grey = readGrey(picture);
+        if (!grey) return namedIn(name, picture, grey.error());
+        pictures.push_back(std::move(*grey));
+    }
     auto targets =
         TRY(theatre::PoseTarget::ofSequence(pictures, representative, cast.stage, cast.height, kMaskRows).in(name.string()));
     return std::move(targets[(first + *frame) % targets.size()]);

@@ -3,6 +3,7 @@
 #include "core/config.h"
 #include "core/file.h"
 #include "core/image.h"
+#include "core/naming.h"
 
 #include <fmt/format.h>
 
@@ -112,10 +113,12 @@ Result<SilhouetteSequence> sequenceOf(const ConfigNode& root) {
     return sequence;
 }
 
-Result<void> checkPictures(const ConfigNode& root, const SilhouetteSequence& sequence) {
+Result<void> checkPictures(const fs::path& file, const ConfigNode& root, const SilhouetteSequence& sequence) {
     glm::ivec2 first(0);
     for (std::size_t i = 0; i < sequence.pictures.size(); ++i) {
-        const glm::ivec2 size = TRY(pictureSize(sequence.pictures[i]).in(root.place()));
+        const auto read = pictureSize(sequence.pictures[i]);
+        if (!read) return namedIn(file, sequence.pictures[i], read.error());
+        const glm::ivec2 size = *read;
         if (i == 0) first = size;
         if (size != first)
             return root.error(fmt::format("{} is {} x {} pixels, and the first picture {} x {}; all are of one size",
@@ -129,7 +132,7 @@ Result<void> checkPictures(const ConfigNode& root, const SilhouetteSequence& seq
 Result<SilhouetteSequence> readSequence(const fs::path& file) {
     const ConfigNode root = TRY(ConfigNode::load(file));
     SilhouetteSequence sequence = TRY(sequenceOf(root));
-    TRY(checkPictures(root, sequence));
+    TRY(checkPictures(file, root, sequence));
     return sequence;
 }
 
