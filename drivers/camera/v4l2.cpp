@@ -82,10 +82,10 @@ Result<Opening<CameraSource>> V4l2Camera::fromConfig(const ConfigNode& node) {
             controls[control] = TRY(controlFrom(value));
             return controls;
         });
-    TRY(fields.finish());
     const CameraIdentity& identity = options.identity;
     if (!identity.device.empty() && !(identity.serial + identity.usb + identity.card).empty())
-        return node.error("'device' says it all; leave out 'serial', 'usb' and 'card', or say only those");
+        fields.check(node, node.error("'device' says it all; leave out 'serial', 'usb' and 'card', or say only those"));
+    TRY(fields.finish());
     const auto open = [options](const Surroundings& around) -> Result<std::unique_ptr<CameraSource>> {
         return std::unique_ptr<CameraSource>(new V4l2Camera(options, around));
     };

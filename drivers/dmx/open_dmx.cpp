@@ -40,9 +40,9 @@ Result<Opening<DmxPort>> OpenDmxPort::fromConfig(const ConfigNode& options, int 
     fields.optional().read("break", wanted.breakTime, readTime(92, 1000));  // of ANSI E1.11
     fields.optional().read("mark_after_break", wanted.markAfterBreak, readTime(12, 1000));
     fields.optional().number("rate", wanted.rate, 1, 44, "Hz");
+    if (fields.right() && wanted.which.line.file.empty() && wanted.which.line.serial.empty())
+        fields.check(options, options.error("'serial' or 'port' is wanted: nothing tells an Open DMX from another adapter"));
     TRY(fields.finish());
-    if (wanted.which.line.file.empty() && wanted.which.line.serial.empty())
-        return options.error("'serial' or 'port' is wanted: nothing tells an Open DMX from another adapter");
     const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<DmxPort>> {
         return std::unique_ptr<DmxPort>(new OpenDmxPort(fmt::format("universe {}", universe), wanted, around.clock));
     };

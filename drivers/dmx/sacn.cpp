@@ -177,7 +177,8 @@ private:
         DmxSender* const sender = in.met(data.cid, now, kSilence);
         if (sender == nullptr) return;
         if (familiar == nullptr)
-            *sender = {data.name.empty() ? textOf(data.cid) : fmt::format("{} {}", printable(data.name), textOf(data.cid)), 0, {}, {}};
+            *sender = {
+                data.name.empty() ? textOf(data.cid) : fmt::format("{} {}", printable(data.name), textOf(data.cid)), 0, {}, {}};
         sender->sequence = data.sequence;
         sender->heard = now;
         frame.source = sender->source;
@@ -223,6 +224,11 @@ std::shared_ptr<DmxNetwork> networkFor(const ConfigNode& options, const std::str
     });
 }
 
+void checkUniverse(ConfigFields& fields, const ConfigNode& options, int universe) {
+    if (universe < 1 || universe > kLastUniverse)
+        fields.check(options, options.error(fmt::format("sACN has the universes 1 to {}, not {}", kLastUniverse, universe)));
+}
+
 }  // namespace
 
 Result<Opening<DmxPort>> SacnPort::fromConfig(const ConfigNode& options, int universe) {
@@ -239,11 +245,11 @@ Result<Opening<DmxPort>> SacnPort::fromConfig(const ConfigNode& options, int uni
     fields.optional().integer("sync", settings.sync, 1, kLastUniverse);
     fields.optional().boolean("preview", settings.preview);
     fields.optional().text("name", settings.name);
-    TRY(fields.finish());
     if (settings.name.size() >= kNameSize)
-        return options.error(fmt::format("'name' is {} bytes long, {} are the most", settings.name.size(), kNameSize - 1));
-    if (universe < 1 || universe > kLastUniverse)
-        return options.error(fmt::format("sACN has the universes 1 to {}, not {}", kLastUniverse, universe));
+        fields.check(options,
+                     options.error(fmt::format("'name' is {} bytes long, {} are the most", settings.name.size(), kNameSize - 1)));
+    checkUniverse(fields, options, universe);
+    TRY(fields.finish());
     const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<DmxPort>> {
         return std::unique_ptr<DmxPort>(std::make_unique<NetworkDmxPort>(fmt::format("universe {}", universe), driver, settings,
                                                                          networkFor(options, interface, around)));
@@ -257,9 +263,8 @@ Result<Opening<DmxSource>> SacnSource::fromConfig(const ConfigNode& options, int
     ConfigFields fields(options);
     fields.text("driver", driver);
     fields.optional().text("interface", interface);
+    checkUniverse(fields, options, universe);
     TRY(fields.finish());
-    if (universe < 1 || universe > kLastUniverse)
-        return options.error(fmt::format("sACN has the universes 1 to {}, not {}", kLastUniverse, universe));
     const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<DmxSource>> {
         return std::unique_ptr<DmxSource>(std::make_unique<NetworkDmxSource>(fmt::format("desk {}", universe), driver, universe,
                                                                              networkFor(options, interface, around)));

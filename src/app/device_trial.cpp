@@ -1,6 +1,7 @@
 #include "app/device_trial.h"
 
 #include "core/image.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 
@@ -53,7 +54,7 @@ Result<void> DeviceTrial::every(Time period, const Device& device, const std::fu
             TRY(step());
         } else if (missing != status.detail) {
             missing = status.detail;
-            out_ << fmt::format("{} ({}) is {}: {}", status.name, status.driver, nameOf(status.state), status.detail)
+            out_ << fmt::format("{} ({}) is {}: {}", status.name, status.driver, nameOf(status.state), printable(status.detail))
                  << std::endl;
         }
     }
