@@ -67,16 +67,31 @@ std::string fitAdvice(const show::Source& source, double aspect, const show::Out
         .message();
 }
 
+// What becomes of pictures on a canvas whose shape on the wall nobody has told.
+std::string unknownShape(const show::Site& site, const show::Output& output) {
+    return fmt::format(
+        "{}: the corners of '{}' do not tell the shape of the canvas '{}' on the wall: every picture fills it. Measure it and "
+        "write 'canvas_size: [WIDTH, HEIGHT]' in metres, so that circles stay round",
+        site.file.string(), output.name, output.canvas);
+}
+
 // Of every source and every canvas that it is shown on.
 void noteShapes(const show::Show& show, const show::CueList& cues, const std::vector<std::optional<double>>& aspects,
                 const show::Site& site, std::vector<std::string>& oddities) {
     std::set<std::pair<std::size_t, std::string>> told;
+    std::set<std::string> unknown;
     for (const auto& cue : cues.cues)
         for (std::size_t i = 0; i < site.outputs.size(); ++i)
             for (const show::LayerState& layer : cue.look.outputs[i].layers) {
                 const show::Output& output = site.outputs[i];
                 const auto aspect = aspects[layer.source];
-                if (!aspect || isSameShape(*aspect, output.projection.canvasAspect)) continue;
+                const double canvas = output.projection.canvasAspect;
+                if (!aspect) continue;
+                if (canvas == 0) {
+                    if (unknown.insert(output.canvas).second) oddities.push_back(unknownShape(site, output));
+                    continue;
+                }
+                if (isSameShape(*aspect, canvas)) continue;
                 if (told.insert({layer.source, output.canvas}).second)
                     oddities.push_back(fitAdvice(show.sources[layer.source], *aspect, output));
             }

@@ -8,6 +8,8 @@
 
 #include "core/config.h"
 #include "core/file.h"
+#include "core/fit.h"
+#include "core/log.h"
 
 #include <fmt/format.h>
 
@@ -57,6 +59,8 @@ std::optional<double> aspectOf(const std::vector<render::PictureSource>& sources
         if (const auto aspect = render::aspectOf(source)) return aspect;
     return std::nullopt;
 }
+
+double shapeOf(glm::ivec2 size) { return static_cast<double>(size.x) / size.y; }
 
 // Even, for the sake of videos.
 glm::ivec2 sizeOfCanvas(int rows, double aspect) { return {2 * std::max(1L, std::lround(rows * aspect / 2)), rows}; }
@@ -144,10 +148,14 @@ Result<Film> Film::ofShow(const FilmRequest& request) {
     Film film;
     film.size_ = request.size.value_or(output.size());
     if (request.canvas) {
-        if (const auto aspect = aspectOf(programme.sources); aspect && !request.size)
-            film.size_ = sizeOfCanvas(kCanvasRows, *aspect);
+        const double canvas = output.projection.canvasAspect;
+        const auto aspect = canvas > 0 ? std::optional(canvas) : aspectOf(programme.sources);
+        if (aspect && !request.size) film.size_ = sizeOfCanvas(kCanvasRows, *aspect);
         film.screen_ = TRY(OffScreen::open(film.size_, programme.sources));
     } else {
+        if (!isSameShape(shapeOf(film.size_), shapeOf(output.size())))
+            log::warning("app", fmt::format("the picture of '{}' is {:.2f} : 1 and is stretched to {:.2f} : 1, as --size says",
+                                            request.output, shapeOf(output.size()), shapeOf(film.size_)));
         const show::Site scaled = programme.site.scaled(glm::dvec2(film.size_) / glm::dvec2(output.size()));
         film.screen_ = TRY(OffScreen::open(scaled.outputs[index].projection, blendOf(scaled, index), programme.sources));
     }

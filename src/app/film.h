@@ -26,7 +26,7 @@ struct FilmRequest {
     std::string from;                 // or: enter this one at once and play on; neither: from the beginning
     std::optional<double> seconds;    // default: a minute; of a pattern or a single cue one loop of the movement
     std::optional<double> frameRate;  // default: the output's; of a pattern 30 Hz
-    std::optional<glm::ivec2> size;   // default: the output's; of a pattern or a canvas 1080 rows, as wide as the pattern
+    std::optional<glm::ivec2> size;   // default: the output's; of a pattern or a canvas 1080 rows in its shape
     bool canvas = false;              // without the output's keystone; a pattern has none
 };
 

@@ -36,6 +36,7 @@ SettingUp::SettingUp(const show::Site& site, FrameLoop& frames, Devices& devices
       blends_(site.outputs.size()) {
     for (std::size_t i = 0; i < drawn_.size(); ++i) {
         drawn_[i].warp = site.outputs[i].projection.warp.shape();
+        drawn_[i].canvasAspect = site.outputs[i].projection.canvasAspect;
         drawn_[i].light = site.outputs[i].projection.light;
         drawn_[i].masks = site.outputs[i].projection.masks;
     }
@@ -196,20 +197,29 @@ void SettingUp::save() {
 
 void SettingUp::show() {
     const show::Site& site = editor_.site();
+    bool warpsMoved = false;
+    for (std::size_t i = 0; i < site.outputs.size(); ++i) {
+        const Projection& projection = site.outputs[i].projection;
+        warpsMoved |= drawn_[i].warp != projection.warp.shape();
+        blendsDue_ |= drawn_[i].masks != projection.masks || drawn_[i].light.blackLevel != projection.light.blackLevel;
+    }
     // Blends take long: they are worked out once what moves has come to rest.
-    for (std::size_t i = 0; i < site.outputs.size(); ++i)
-        blendsDue_ |= drawn_[i].warp != site.outputs[i].projection.warp.shape() ||
-                      drawn_[i].masks != site.outputs[i].projection.masks ||
-                      drawn_[i].light.blackLevel != site.outputs[i].projection.light.blackLevel;
+    blendsDue_ |= warpsMoved;
     const bool newBlends = blendsDue_ && !moved_ && blendsShow(editor_.picture());
     if (newBlends) {
         for (std::size_t i = 0; i < site.outputs.size(); ++i) blends_[i] = blendOf(site, i);
         blendsDue_ = false;
     }
     for (std::size_t i = 0; i < site.outputs.size(); ++i) {
-        const Projection& projection = site.outputs[i].projection;
-        Drawn now{projection.warp.shape(), editor_.picture(), on_, i == editor_.output(), {}, 0, std::nullopt,
-                  projection.light,        projection.masks};
+        Projection projection = site.outputs[i].projection;
+        projection.canvasAspect = warpsMoved ? canvasAspectOf(site, site.outputs[i].canvas) : drawn_[i].canvasAspect;
+        Drawn now{.warp = projection.warp.shape(),
+                  .canvasAspect = projection.canvasAspect,
+                  .picture = editor_.picture(),
+                  .on = on_,
+                  .chosen = i == editor_.output(),
+                  .light = projection.light,
+                  .masks = projection.masks};
         if (on_ && now.chosen) {
             now.lines = editor_.lines();
             if (!message_.empty()) now.lines.push_back(message_);

@@ -45,6 +45,7 @@ private:
     // What an output shows of the editing: drawn anew only when it differs.
     struct Drawn {
         WarpShape warp{};
+        double canvasAspect = 0;
         TestPicture picture = TestPicture::None;
         bool on = false, chosen = false;
         std::vector<std::string> lines{};

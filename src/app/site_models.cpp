@@ -9,7 +9,9 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace fantascope::app {
@@ -24,6 +26,46 @@ Result<vision::CameraModel> cameraOf(const show::Site& site) {
     const show::NominalCamera& camera = *site.nominalCamera;
     return vision::CameraModel::fromFieldOfView(camera.pose, camera.size, camera.fieldOfView, camera.k1, camera.k2)
         .in(site.file.string() + ": camera");
+}
+
+// Width / height of the whole canvas in an output's pixels.
+double aspectInPixels(const show::Output& output) {
+    const WarpShape& warp = output.projection.warp.shape();
+    const auto& c = warp.corners;
+    glm::dvec2 size(glm::distance(c[0], c[1]) + glm::distance(c[3], c[2]), glm::distance(c[0], c[3]) + glm::distance(c[1], c[2]));
+    if (warp.orientation.quarterTurns % 2 != 0) std::swap(size.x, size.y);
+    size /= warp.part.high - warp.part.low;
+    return size.x / size.y;
+}
+
+// As precisely as somebody sets corners by hand.
+bool isRectangle(const std::array<glm::dvec2, 4>& c) {
+    return isSameShape(glm::distance(c[0], c[1]), glm::distance(c[3], c[2])) &&
+           isSameShape(glm::distance(c[0], c[3]), glm::distance(c[1], c[2])) &&
+           isSameShape(glm::distance(c[0], c[2]), glm::distance(c[1], c[3]));
+}
+
+// Width / height of an output's canvas in metres on its surface; nothing where the site does not say where both are.
+std::optional<double> aspectOnSurface(const show::Output& output) {
+    if (!output.projector || !output.surface) return std::nullopt;
+    const std::vector<site::SceneObject> nothing;
+    const vision::Plane surface{output.surface->point, output.surface->normal};
+    const auto size = CanvasView{output.name, projectorOf(output), surface, output.projection.warp, nothing}.sizeOnSurface();
+    if (!size) return std::nullopt;
+    return size->x / size->y;
+}
+
+// The mean of what a canvas's outputs say; nothing where one of them says nothing.
+template <class Aspect>
+std::optional<double> meanAspect(const show::Site& site, const std::string& canvas, const Aspect& aspectOf) {
+    double sum = 0;
+    const std::vector<std::size_t> outputs = site.outputsOn(canvas);
+    for (const std::size_t output : outputs) {
+        const std::optional<double> aspect = aspectOf(site.outputs[output]);
+        if (!aspect) return std::nullopt;
+        sum += *aspect;
+    }
+    return sum / static_cast<double>(outputs.size());
 }
 
 }  // namespace
@@ -80,33 +122,18 @@ Result<site::NominalSite> simulationOf(const show::Site& site) {
 }
 
 double canvasAspectInPixels(const show::Site& site, const std::string& canvas) {
-    double sum = 0;
-    const std::vector<std::size_t> outputs = site.outputsOn(canvas);
-    for (const std::size_t output : outputs) {
-        const WarpShape& warp = site.outputs[output].projection.warp.shape();
-        const auto& c = warp.corners;
-        glm::dvec2 size(glm::distance(c[0], c[1]) + glm::distance(c[3], c[2]),
-                        glm::distance(c[0], c[3]) + glm::distance(c[1], c[2]));
-        if (warp.orientation.quarterTurns % 2 != 0) std::swap(size.x, size.y);
-        size /= warp.part.high - warp.part.low;
-        sum += size.x / size.y;
-    }
-    return sum / static_cast<double>(outputs.size());
+    return *meanAspect(site, canvas, [](const show::Output& output) { return std::optional(aspectInPixels(output)); });
 }
 
 double canvasAspectOf(const show::Site& site, const std::string& canvas) {
-    double sum = 0;
-    const std::vector<std::size_t> outputs = site.outputsOn(canvas);
-    const std::vector<site::SceneObject> nothing;
-    for (const std::size_t index : outputs) {
-        const show::Output& output = site.outputs[index];
-        if (!output.projector || !output.surface) return canvasAspectInPixels(site, canvas);
-        const vision::Plane surface{output.surface->point, output.surface->normal};
-        const auto size = CanvasView{output.name, projectorOf(output), surface, output.projection.warp, nothing}.sizeOnSurface();
-        if (!size) return canvasAspectInPixels(site, canvas);
-        sum += size->x / size->y;
-    }
-    return sum / static_cast<double>(outputs.size());
+    for (const std::size_t output : site.outputsOn(canvas))
+        if (const auto& size = site.outputs[output].canvasSize) return size->x / size->y;
+    if (const auto aspect = meanAspect(site, canvas, aspectOnSurface)) return *aspect;
+    const auto ofRectangle = [](const show::Output& output) -> std::optional<double> {
+        if (!isRectangle(output.projection.warp.shape().corners)) return std::nullopt;
+        return aspectInPixels(output);
+    };
+    return meanAspect(site, canvas, ofRectangle).value_or(0);
 }
 
 Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site, std::size_t output, double pictureAspect,

@@ -21,9 +21,10 @@ std::shared_ptr<const render::BlendMap> blendOf(const show::Site& site, std::siz
 // Error: the site lacks a projector's place, the camera or a usable optic; names what to add to the site file.
 Result<site::NominalSite> simulationOf(const show::Site& site);
 
-// Width / height of a canvas, the mean of what its outputs make of it: by the corners that their pixels have.
+// Width / height of a canvas in the projectors' pixels: the mean over its outputs.
 double canvasAspectInPixels(const show::Site& site, const std::string& canvas);
-// The same where it falls: in metres if the site says where all its projectors and their surfaces are, else in pixels.
+// Width / height of a canvas on the wall, or 0 if unknown. In this order: its `canvas_size`; in metres, if the site gives all its projectors
+// and their surfaces; in pixels, if every output's corners form a rectangle. Keystoned corners alone do not tell the shape on the wall.
 double canvasAspectOf(const show::Site& site, const std::string& canvas);
 
 // What the comparison may know of one output for a picture of this aspect (width / height), which lies on the canvas as `fit` says. Nothing where the site does not say where the projector, its

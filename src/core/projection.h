@@ -47,7 +47,7 @@ struct Projection {
     Warp warp = Warp::straight({1, 1});
     std::vector<Mask> masks{};
     ProjectorLight light{};
-    double canvasAspect = 0;  // width / height of the whole canvas where it falls; 0: that of each picture
+    double canvasAspect = 0;  // width / height of the whole canvas on the wall; 0: unknown, every picture fills it
 };
 
 // What a technician puts on the outputs instead of the show.

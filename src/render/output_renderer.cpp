@@ -28,9 +28,9 @@ Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& op
     renderer->size_ = place.size;
     renderer->overlay_ = TRY(gpu::Overlay::create(place.size, renderer->tools_.programs));
     TRY(renderer->composer_->follow(options.projection.light, options.blend));
+    renderer->pictures_.assign(sources.begin(), sources.end());
     for (const PictureSource& source : sources) {
         const CanvasPart on = placeOf(source, options.projection.canvasAspect);
-        renderer->places_.push_back(on);
         renderer->sources_.push_back(TRY(makeDrawnSource(source, placeOn(place, on), renderer->tools_)));
     }
     return renderer;
@@ -39,7 +39,8 @@ Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& op
 Result<void> OutputRenderer::follow(const Projection& projection, const std::shared_ptr<const BlendMap>& blend) {
     const CanvasPlace place{projection.size, projection.warp};
     tools_.bend.follow(place);
-    for (std::size_t i = 0; i < sources_.size(); ++i) sources_[i]->follow(placeOn(place, places_[i]));
+    for (std::size_t i = 0; i < sources_.size(); ++i)
+        sources_[i]->follow(placeOn(place, placeOf(pictures_[i], projection.canvasAspect)));
     return composer_->follow(projection.light, blend);
 }
 

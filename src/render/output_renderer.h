@@ -66,7 +66,7 @@ private:
     DrawingTools tools_;
     std::optional<gpu::Composer> composer_;
     std::vector<std::unique_ptr<DrawnSource>> sources_;
-    std::vector<CanvasPart> places_;  // of the sources on the canvas
+    std::vector<PictureSource> pictures_;  // of sources_, for their places on the canvas
     glm::ivec2 size_{0};
     std::optional<gpu::Overlay> overlay_;
     std::unique_ptr<DrawnSource> card_;  // null: the show

@@ -23,6 +23,7 @@ constexpr int kNewestVersion = 1;
 constexpr int kMostPixels = 16384;         // along one side of a picture: what graphics cards take
 constexpr double kFarthestCorner = 32768;  // pixels: a corner may lie outside its picture
 constexpr double kFarthest = 1000;         // metres
+constexpr double kSmallestCanvas = 0.01;   // metres
 constexpr int kLastUniverse = 63999;       // ANSI E1.31
 constexpr int kLastSlot = 512;             // ANSI E1.11
 constexpr double kLongestEndFade = 60;     // seconds
@@ -218,6 +219,8 @@ Result<Output> readOutput(const ConfigNode& node, std::set<std::string>& names, 
         return output.display;
     });
     fields.optional().read("canvas", output.canvas, readName);
+    fields.optional().read("canvas_size", output.canvasSize,
+                           [](const ConfigNode& size) { return size.vector2(kSmallestCanvas, kFarthest, "m"); });
     fields.optional().read("part", warp.part, readPart);
     fields.optional().choice("flip", warp.orientation.flip, {"none", "horizontal", "vertical"});
     fields.optional().read("turn", warp.orientation.quarterTurns, [](const ConfigNode& value) -> Result<int> {
@@ -574,6 +577,16 @@ Result<Site> readSite(const std::filesystem::path& file, DeviceReader* devices) 
     for (const auto& [canvas, node] : canvasNodes)
         if (outputNames.contains(canvas))
             fields.check(node, node.error(fmt::format("'{}' is the name of an output; give the canvas another", canvas)));
+    for (std::size_t i = 0; i < site.outputs.size(); ++i)
+        for (const std::size_t other : site.outputsOn(site.outputs[i].canvas)) {
+            const auto &size = site.outputs[i].canvasSize, &otherSize = site.outputs[other].canvasSize;
+            if (other >= i || !size || !otherSize || *size == *otherSize) continue;
+            fields.check(canvasNodes[i].second,
+                         canvasNodes[i].second.error(fmt::format("output '{}' gives the canvas '{}' another 'canvas_size'; "
+                                                                 "one of the two is enough",
+                                                                 site.outputs[other].name, site.outputs[i].canvas)));
+            break;
+        }
 
     relayBanks.each([&](const Bank& bank, std::size_t size) {
         drivers.ask(bank.device.options, [&](DeviceReader& reader) { return reader.relayBank(bank, size); });

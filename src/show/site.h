@@ -52,8 +52,9 @@ struct NominalCamera {
 struct Output {
     std::string name;
     DeviceConfig display;
-    double refreshRate = 60;  // Hz
-    std::string canvas;       // the outputs of one name throw parts of one picture; its own name where no other does
+    double refreshRate = 60;               // Hz
+    std::string canvas;                    // the outputs of one name throw parts of one picture; its own name where no other does
+    std::optional<glm::dvec2> canvasSize;  // width and height of the whole canvas on the wall, metres, as somebody measured it
     Projection projection;
     std::optional<NominalProjector> projector;
     std::optional<Surface> surface;

@@ -218,6 +218,21 @@ TEST(Check, a_source_of_another_shape_than_its_canvas_is_noted_with_both_shapes_
                 HasSubstr("sources.dim.fit: one of contain, cover, stretch is needed"));
 }
 
+// Example failure: pictures are fitted to a shape that the canvas has in the projector only.
+TEST(Check, a_canvas_of_unknown_shape_is_noted_with_what_to_measure) {
+    const ScratchFolder folder;
+    ASSERT_TRUE(writePng(folder / "square.png", RgbaImage(64, 64)));
+    const auto show = folder.file("show.yaml", replaced(std::string(kShow), "solid: [0.1, 0.1, 0.1]", "image: square.png"));
+    const std::string keystoned = "size: [640, 360], corners: [[123, 48], [545, 45], [538, 325], [128, 283]]";
+    const auto noted = [&](const std::string& size) {
+        return check(folder, {{show}, folder.file("site.yaml", replaced(std::string(kSite), "size: [640, 360]", size))}).lines;
+    };
+    EXPECT_THAT(noted(keystoned),
+                HasSubstr("note: site.yaml: the corners of 'left' do not tell the shape of the canvas 'left' on the wall"));
+    EXPECT_THAT(noted(keystoned), HasSubstr("canvas_size: [WIDTH, HEIGHT]"));
+    EXPECT_THAT(noted(keystoned + ", canvas_size: [2, 2]"), testing::Not(HasSubstr("note:")));
+}
+
 // Leaves that were made as light shade what is to be light. Example failure: a deer of light on a dark wall becomes a dark deer.
 TEST(Check, leaves_that_show_the_drawings_negative_are_noted_with_what_makes_them_right) {
     const ScratchFolder folder;

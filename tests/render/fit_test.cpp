@@ -187,6 +187,23 @@ TEST_F(Fitting, goes_by_the_canvas_whatever_part_an_output_shows_of_it) {
     }
 }
 
+// Somebody sets the corners: the canvas gets another shape, and every picture another place on it.
+TEST_F(Fitting, follows_the_canvass_shape) {
+    const Projection wide = straight(kSize, kCanvas), wider = straight(kSize, 2 * kCanvas);
+    for (const Kind& kind : kinds()) {
+        const PictureSource source = kind.make();
+        DrawnOutput output(wide, {source});
+        if (const auto* camera = std::get_if<CameraSource>(&source))
+            camera->feed->publish(std::make_shared<const RgbaImage>(discPicture()));
+        const show::OutputState state{{{0, 1.0f}}};
+        (void)output.frame(state);
+        ASSERT_TRUE(output.renderer().follow(wider, nullptr));
+        const Moments seen = momentsOf(output.frame(state), kind.name == std::string("shadow"));
+        EXPECT_NEAR(seen.spread.x / seen.spread.y, 0.5, 0.01)
+            << kind.name;  // in pixels of an output that is stretched on the wall
+    }
+}
+
 // Example failure: leaves that sway over the drawing's edge hang into the dark beside it.
 TEST_F(Fitting, nothing_is_seen_beside_a_contained_picture) {
     const glm::ivec2 beside{(kSize.x - kSize.y) / 2, 0};
