@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 namespace fantascope::theatre {
@@ -172,8 +173,10 @@ std::vector<Contact> someStance(Rng& rng) {
 }
 
 TEST(SupportPolygon, IsThatOfAllPairsForRandomStances) {
+    const char* const asked = std::getenv("FANTASCOPE_STANCES");  // 100000 for a thorough run
+    const int stances = asked != nullptr ? std::atoi(asked) : 3000;
     Rng rng(1);
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < stances; ++i) {
         const std::vector<Contact> discs = someStance(rng);
         const Contacts contacts = on(discs);
         const Exhaustive all(discs);
