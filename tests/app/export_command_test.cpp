@@ -178,6 +178,40 @@ TEST_F(ExportCommand, a_pattern_alone_fills_the_frame_and_loops) {
     EXPECT_THAT(run({"export", pattern, "--cue", "Full", "-o", "more"}).errors, HasSubstr("are for shows"));
 }
 
+// Example failure: the first source's shape stands for the canvas's, whatever the cue shows.
+TEST_F(ExportCommand, a_canvas_has_its_own_shape_and_another_size_is_told) {
+    folder_.file("show/show.yaml", R"(fantascope: show
+version: 1
+title: Shapes
+sources: {square: {image: square.png}, wide: {image: wide.png}}
+looks: {full: {outputs: {left: [{source: wide}]}}}
+cues: [{name: Full, look: full, fade: 0}]
+)");
+    folder_.file("site.yaml", R"(fantascope: site
+version: 1
+outputs: [{name: left, display: {driver: headless}, size: [640, 360], refresh_rate: 30}]
+)");
+    const Rgba8 white{255, 255, 255, 255};
+    ASSERT_TRUE(writePng(folder_ / "show/square.png", RgbaImage(64, 64, white)));
+    ASSERT_TRUE(writePng(folder_ / "show/wide.png", RgbaImage(64, 36, white)));
+    const auto exported = [&](const std::string& name, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {"export", "show",      "--site", "site.yaml", "--output", "left", "--cue",
+                                              "Full",   "--seconds", "0.01",   "--alpha",   "none",     "-o",   name};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return runProgram(arguments, folder_.path());
+    };
+    ASSERT_THAT(exported("canvas", {"--canvas"}), exits(0));
+    const RgbaImage canvas = frame("canvas/frame-000000.png");
+    EXPECT_EQ(glm::ivec2(canvas.width(), canvas.height()), glm::ivec2(1920, 1080));
+    EXPECT_EQ(canvas.at(5, 540), white) << "no dark edge";
+    const Outcome stretched = exported("high", {"--size", "90x160"});
+    ASSERT_THAT(stretched, exits(0));
+    EXPECT_THAT(stretched.errors, HasSubstr("the picture of 'left' is 1.78 : 1 and is stretched to 0.56 : 1"));
+    const Outcome small = exported("small", {"--size", "160x90"});
+    ASSERT_THAT(small, exits(0));
+    EXPECT_THAT(small.errors, testing::Not(HasSubstr("stretched")));
+}
+
 // The canvas is what a light mask wants: the keystone is for the projector alone.
 TEST_F(ExportCommand, leaves_the_keystone_out_when_asked_to) {
     ASSERT_THAT(exportLeft("warped", {"--alpha", "none"}, "0.01"), exits(0));
