@@ -20,6 +20,7 @@ struct CueList {
         std::vector<WindWish> winds = {};  // one for each output; one that is missing is the usual wind
     };
     std::vector<Cue> cues;
+    bool loops = false;  // the first cue follows the last one, if that has a `follow`
     Look dark;               // what is seen before the first cue: black pictures, levels 0, relays in their safe states
     Time goInterval{};       // after a cue was entered, GO is ignored for this long
     Time blackoutFade{};     // from full light to none and back

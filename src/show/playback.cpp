@@ -20,12 +20,6 @@ const Event* lastBy(Time time, const std::vector<Event>& events) {
     return next == events.begin() ? nullptr : &*std::prev(next);
 }
 
-// How much of a change that began at `start` and lasts `length` has happened by `time` >= start, 0..1.
-float progress(Time start, Time length, Time time) {
-    if (time - start >= length) return 1;
-    return static_cast<float>(seconds(time - start) / seconds(length));
-}
-
 using Layers = std::span<const LayerState>;
 
 const LayerState* layerOf(std::uint32_t source, Layers layers) {
@@ -47,50 +41,6 @@ bool sameComposition(Layers a, Layers b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const LayerState& one, const LayerState& other) {
         return one.source == other.source && one.opacity == other.opacity && one.blend == other.blend;
     });
-}
-
-// The picture on the way from one to another that began at `entered`: the light of the one goes as that of the other comes. A source goes on
-// where both have it. `out` is neither of them.
-void mixOutputs(const OutputState& from, const OutputState& to, float share, Time entered, OutputState& out) {
-    out.layers.clear();
-    out.pictures.clear();
-    const auto begunOf = [&](std::uint32_t source) {
-        const LayerState* const before = layerOf(source, from.layers);
-        return before != nullptr ? before->begun : entered;
-    };
-    const Layers before = addedLayers(from), after = addedLayers(to);
-    const auto add = [&](const LayerState& layer) {
-        const LayerState *first = layerOf(layer.source, before), *second = layerOf(layer.source, after);
-        const float opacity = std::lerp(first ? first->opacity : 0, second ? second->opacity : 0, share);
-        if (opacity > 0) out.layers.push_back({layer.source, opacity, Blend::Add, begunOf(layer.source)});
-    };
-    for (const LayerState& layer : before) add(layer);
-    for (const LayerState& layer : after)
-        if (!layerOf(layer.source, before)) add(layer);
-
-    const auto compose = [&](const ComposedPicture& picture, const OutputState& of, float weight) {
-        const Layers layers = layersOf(picture, of);
-        for (ComposedPicture& there : out.pictures)
-            if (sameComposition(layersOf(there, out), layers)) {
-                there.share += picture.share * weight;
-                return;
-            }
-        if (picture.share * weight <= 0) return;
-        const auto first = static_cast<std::uint32_t>(out.layers.size());
-        for (const LayerState& layer : layers)
-            out.layers.push_back({layer.source, layer.opacity, layer.blend, begunOf(layer.source)});
-        out.pictures.push_back({first, static_cast<std::uint32_t>(out.layers.size()), picture.share * weight});
-    };
-    for (const ComposedPicture& picture : from.pictures) compose(picture, from, 1 - share);
-    for (const ComposedPicture& picture : to.pictures) compose(picture, to, share);
-}
-
-// The look on the way from one to another that was entered at `entered`: `share` 0 is `from`, 1 is `to`; the relays are already those of `to`.
-void mix(const Look& from, const Look& to, float share, Time entered, Look& out) {
-    for (std::size_t i = 0; i < to.outputs.size(); ++i)
-        mixOutputs(from.outputs[i], to.outputs[i], share, entered, out.outputs[i]);
-    for (std::size_t i = 0; i < to.levels.size(); ++i) out.levels[i] = std::lerp(from.levels[i], to.levels[i], share);
-    out.relays = to.relays;
 }
 
 void dim(Look& look, float light) {
@@ -126,7 +76,6 @@ std::string_view nameOf(Outcome outcome) {
 
 Playback::Playback(CueList list) : list_(std::move(list)), gusts_(list_.seed) {
     const std::size_t outputs = list_.dark.outputs.size();
-    usualWinds_.assign(outputs, WindCourse(WindWish()));
     const auto examine = [&](const Look& look) {
         FANTASCOPE_CHECK(look.outputs.size() == list_.dark.outputs.size() && look.levels.size() == list_.dark.levels.size() &&
                              look.relays.size() == list_.dark.relays.size(),
@@ -141,18 +90,23 @@ Playback::Playback(CueList list) : list_(std::move(list)), gusts_(list_.seed) {
         examine(cue.look);
         cue.winds.resize(outputs);
     }
+    const auto waits = [](const CueList::Cue& cue) { return !cue.follow || *cue.follow > Time{}; };
+    FANTASCOPE_CHECK(!list_.loops || std::ranges::any_of(list_.cues, waits), "a pass of a list that loops takes time");
+    Entry& dark = entries_.emplace_back();
+    for (const OutputState& output : list_.dark.outputs) dark.outputs.push_back(courseOf(output, output, Time{}, Time{}));
+    for (const float level : list_.dark.levels) dark.levels.push_back(Course::at(level));
 }
 
 Outcome Playback::apply(Input input) {
     newest_ = std::max(newest_, input.at);
     const Time at = newest_;
+    foresee(at);
     const int cue = cueAt(at), last = static_cast<int>(list_.cues.size()) - 1;
     switch (input.kind) {
         case Input::Kind::Go: {
-            const Entry* entry = lastBy(at, entries_);
-            if (entry && at - entry->at < list_.goInterval) return Outcome::TooSoonAfterCue;
-            if (cue == last) return Outcome::AtLastCue;
-            enter(cue + 1, at);
+            if (cue >= 0 && at - entryAt(at).at < list_.goInterval) return Outcome::TooSoonAfterCue;
+            if (cue == last && !list_.loops) return Outcome::AtLastCue;
+            enter((cue + 1) % (last + 1), at);
             break;
         }
         case Input::Kind::Back:
@@ -179,71 +133,132 @@ Outcome Playback::apply(Input input) {
 
 // Enters a cue, and after it those that follow by themselves. What would have followed otherwise is off.
 void Playback::enter(int cue, Time at) {
-    std::erase_if(entries_, [&](const Entry& entry) { return entry.at > at; });
-    for (;;) {
-        const CueList::Cue& entered = list_.cues[static_cast<std::size_t>(cue)];
-        Look from;
-        lookAt(at, from);
-        std::vector<WindCourse> winds;
-        for (std::size_t i = 0; i < entered.winds.size(); ++i)
-            winds.emplace_back(windsAt(at)[i], entered.winds[i], at, entered.fade);
-        entries_.push_back({at, cue, std::move(from), std::move(winds)});
-        const std::optional<Time> follow = entered.follow;
-        if (!follow || static_cast<std::size_t>(cue) + 1 == list_.cues.size()) return;
-        at += *follow;
-        ++cue;
+    while (entries_.back().at > at) entries_.pop_back();
+    entries_.push_back(entered(cue, at));
+    followOn(list_.cues.size());
+}
+
+std::optional<int> Playback::followerOf(int cue) const {
+    if (cue < 0 || !list_.cues[static_cast<std::size_t>(cue)].follow) return std::nullopt;
+    const int next = cue + 1, count = static_cast<int>(list_.cues.size());
+    if (next < count) return next;
+    return list_.loops ? std::optional(0) : std::nullopt;
+}
+
+// Adds the cues that follow by themselves after the last entry, at most so many.
+void Playback::followOn(std::size_t most) {
+    for (std::size_t added = 0; added < most; ++added) {
+        const Entry& last = entries_.back();
+        const std::optional<int> next = followerOf(last.cue);
+        if (!next) return;
+        entries_.push_back(entered(*next, last.at + *list_.cues[static_cast<std::size_t>(last.cue)].follow));
     }
 }
 
+void Playback::foresee(Time time) {
+    while (entries_.back().at <= time && followerOf(entries_.back().cue)) followOn(list_.cues.size());
+}
+
+// The courses from what is seen at `at` to a cue's look.
+Playback::Entry Playback::entered(int cue, Time at) const {
+    const CueList::Cue& wanted = list_.cues[static_cast<std::size_t>(cue)];
+    Look from;
+    lookAt(at, from);
+    Entry entry{at, cue, {}, {}};
+    const std::vector<OutputCourse>& before = entryAt(at).outputs;
+    for (std::size_t i = 0; i < wanted.look.outputs.size(); ++i) {
+        entry.outputs.push_back(courseOf(from.outputs[i], wanted.look.outputs[i], at, wanted.fade));
+        entry.outputs.back().wind = WindCourse(before[i].wind, wanted.winds[i], at, wanted.fade);
+    }
+    for (std::size_t i = 0; i < wanted.look.levels.size(); ++i)
+        entry.levels.push_back({from.levels[i], wanted.look.levels[i], at, wanted.fade});
+    return entry;
+}
+
+// A source goes on where both pictures have it.
+Playback::OutputCourse Playback::courseOf(const OutputState& from, const OutputState& to, Time at, Time fade) {
+    OutputCourse course;
+    const auto begunOf = [&](std::uint32_t source) {
+        const LayerState* const before = layerOf(source, from.layers);
+        return before != nullptr ? before->begun : at;
+    };
+    const Layers before = addedLayers(from), after = addedLayers(to);
+    const auto add = [&](std::uint32_t source) {
+        const LayerState *first = layerOf(source, before), *second = layerOf(source, after);
+        course.layers.push_back({source, {first ? first->opacity : 0, second ? second->opacity : 0, at, fade}, begunOf(source)});
+    };
+    for (const LayerState& layer : before) add(layer.source);
+    for (const LayerState& layer : after)
+        if (!layerOf(layer.source, before)) add(layer.source);
+
+    // The course of a composition; a new one where none is alike.
+    const auto composed = [&](const ComposedPicture& picture, const OutputState& of) -> PictureCourse& {
+        const Layers layers = layersOf(picture, of);
+        for (PictureCourse& there : course.pictures)
+            if (sameComposition(there.layers, layers)) return there;
+        PictureCourse& added = course.pictures.emplace_back();
+        for (const LayerState& layer : layers)
+            added.layers.push_back({layer.source, layer.opacity, layer.blend, begunOf(layer.source)});
+        return added;
+    };
+    for (const ComposedPicture& picture : from.pictures) composed(picture, from).leaving = {picture.share, 0, at, fade};
+    for (const ComposedPicture& picture : to.pictures) composed(picture, to).coming = {0, picture.share, at, fade};
+    return course;
+}
+
 Time Playback::fadeLeftAt(Time time) const {
-    const Entry* entry = lastBy(time, entries_);
-    return entry ? std::max(Time{}, entry->at + list_.cues[static_cast<std::size_t>(entry->cue)].fade - time) : Time{};
+    const Entry& entry = entryAt(time);
+    if (entry.cue < 0) return Time{};
+    return std::max(Time{}, entry.at + list_.cues[static_cast<std::size_t>(entry.cue)].fade - time);
 }
 
 std::optional<Time> Playback::untilFollowAt(Time time) const {
-    if (entries_.empty() || entries_.back().at <= time) return std::nullopt;
-    const auto next =
-        std::upper_bound(entries_.begin(), entries_.end(), time, [](Time t, const Entry& entry) { return t < entry.at; });
+    const Entry* const next = &entryAt(time) + 1;
+    if (next == entries_.data() + entries_.size()) return std::nullopt;
     return next->at - time;
 }
 
 void Playback::stateAt(Time time, ShowState& out) const {
+    const Entry& entry = entryAt(time);
     out.time = time;
-    out.cue = cueAt(time);
+    out.cue = entry.cue;
     lookAt(time, out);
-    const std::vector<WindCourse>& winds = windsAt(time);
     const double lull = gusts_.lullAt(time);
-    out.winds.resize(winds.size());
-    std::transform(winds.begin(), winds.end(), out.winds.begin(), [&](const WindCourse& wind) { return wind.at(time, lull); });
+    out.winds.resize(entry.outputs.size());
+    std::transform(entry.outputs.begin(), entry.outputs.end(), out.winds.begin(),
+                   [&](const OutputCourse& output) { return output.wind.at(time, lull); });
     const Shutter* shutter = lastBy(time, shutters_);
     out.blackout = shutter && shutter->dark;
     if (const float light = lightAt(time); light < 1) dim(out, light);
     out.inputs = static_cast<std::uint64_t>(std::upper_bound(taken_.begin(), taken_.end(), time) - taken_.begin());
 }
 
-int Playback::cueAt(Time time) const {
-    const Entry* entry = lastBy(time, entries_);
-    return entry ? entry->cue : -1;
-}
-
-const std::vector<WindCourse>& Playback::windsAt(Time time) const {
-    const Entry* entry = lastBy(time, entries_);
-    return entry ? entry->winds : usualWinds_;
-}
+const Playback::Entry& Playback::entryAt(Time time) const { return *lastBy(time, entries_); }
 
 // What is seen, blackout aside.
 void Playback::lookAt(Time time, Look& out) const {
-    out.outputs.resize(list_.dark.outputs.size());
-    for (OutputState& output : out.outputs) {
+    const Entry& entry = entryAt(time);
+    out.outputs.resize(entry.outputs.size());
+    for (std::size_t i = 0; i < entry.outputs.size(); ++i) {
+        OutputState& output = out.outputs[i];
         output.layers.reserve(sources_ + composed_.layers);
         output.pictures.reserve(composed_.pictures);
+        output.layers.clear();
+        output.pictures.clear();
+        for (const LayerCourse& layer : entry.outputs[i].layers)
+            if (const float opacity = layer.opacity.valueAt(time); opacity > 0)
+                output.layers.push_back({layer.source, opacity, Blend::Add, layer.begun});
+        for (const PictureCourse& picture : entry.outputs[i].pictures) {
+            const float share = picture.leaving.valueAt(time) + picture.coming.valueAt(time);
+            if (share <= 0) continue;
+            const auto first = static_cast<std::uint32_t>(output.layers.size());
+            output.layers.insert(output.layers.end(), picture.layers.begin(), picture.layers.end());
+            output.pictures.push_back({first, static_cast<std::uint32_t>(output.layers.size()), share});
+        }
     }
-    out.levels.resize(list_.dark.levels.size());
-
-    const Entry* entry = lastBy(time, entries_);
-    if (!entry) return mix(list_.dark, list_.dark, 1, Time{}, out);
-    const CueList::Cue& cue = list_.cues[static_cast<std::size_t>(entry->cue)];
-    mix(entry->from, cue.look, progress(entry->at, cue.fade, time), entry->at, out);
+    out.levels.resize(entry.levels.size());
+    std::ranges::transform(entry.levels, out.levels.begin(), [&](const Course& level) { return level.valueAt(time); });
+    out.relays = entry.cue < 0 ? list_.dark.relays : list_.cues[static_cast<std::size_t>(entry.cue)].look.relays;
 }
 
 // The factor of pictures and levels that blackout leaves: it moves at a constant rate, so that a change of mind on the way has no
@@ -251,7 +266,7 @@ void Playback::lookAt(Time time, Look& out) const {
 float Playback::lightAt(Time time) const {
     const Shutter* shutter = lastBy(time, shutters_);
     if (!shutter) return 1;
-    const float moved = progress(shutter->at, list_.blackoutFade, time);
+    const float moved = Course{0, 1, shutter->at, list_.blackoutFade}.shareAt(time);
     return shutter->dark ? std::max(0.0f, shutter->from - moved) : std::min(1.0f, shutter->from + moved);
 }
 

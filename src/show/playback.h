@@ -1,5 +1,6 @@
 #pragma once
 
+#include "show/course.h"
 #include "show/cue_list.h"
 #include "show/show_state.h"
 #include "show/wind.h"
@@ -36,21 +37,17 @@ std::string_view nameOf(Outcome outcome);
 // Plays a cue list: what is seen at any moment of show time, as a pure function of that time and of the inputs so far. Asking
 // changes nothing, so the same inputs give the same state in whatever order the moments are asked for.
 //
-// - A cue that is entered fades, in its `fade`, from what is seen at that moment (the middle of another fade, perhaps) to its
-// look:
-//   the light of pictures and levels moves linearly, layers that only add their light being matched by source. Relays take their new
-//   state at once.
-// - The wind of each output goes to what the cue asks for, in its fade and without a jump (WindCourse), whether there is light or not.
-// - A cue with `follow` is left for the next one by itself, that time after it was entered in whatever way, unless an input
-// enters
-//   another one first.
-// - GO is ignored until `goInterval` after a cue was entered, by hand or by itself, so that a trembling or late press skips
-// nothing.
+// - Everything that is seen has a course of its own (Course, WindCourse): each layer, picture, channel and wind. A cue that is entered
+//   gives each a new one, in its `fade`, from what is seen at that moment (the middle of another fade, perhaps) to its look. Layers
+//   that only add their light are matched by source. Relays take their new state at once.
+// - The wind of each output goes to what the cue asks for without a jump, whether there is light or not.
+// - A cue with `follow` is left for the next one by itself, that time after it was entered in whatever way, unless an input enters
+//   another one first. In a list that loops, the first cue comes after the last.
+// - GO is ignored until `goInterval` after a cue was entered, by hand or by itself, so that a trembling or late press skips nothing.
 // - Blackout dims pictures and levels to nothing in `blackoutFade`, over whatever is running; a second one, or Light, gives them back. The
-// cues
-//   go on underneath. Relays do not heed it: a dark picture is no reason for dark streets.
+//   cues go on underneath. Relays do not heed it: a dark picture is no reason for dark streets.
 //
-// Thread: stateAt() is reentrant; apply() is bound to one thread at a time and may not run beside it.
+// Thread: what is const is reentrant; the rest is bound to one thread at a time and may not run beside it.
 class Playback {
 public:
     explicit Playback(CueList list);
@@ -59,22 +56,42 @@ public:
     // its forerunner takes effect at its forerunner's time. It changes what is seen from then on and nothing before.
     Outcome apply(Input input);
 
+    // Works out which cues follow by themselves until `time`. Every input does so for one pass of the list, so only a list that loops needs
+    // more; the others do nothing here.
+    void foresee(Time time);
+
     // How much of its fade the cue of that time has still before it; 0 once its look is whole, and before the first cue.
     Time fadeLeftAt(Time time) const;
     bool fadesAt(Time time) const { return fadeLeftAt(time) > Time{}; }
     // How long after that time the next cue comes by itself; nothing if it waits for an input.
     std::optional<Time> untilFollowAt(Time time) const;
 
-    // What is seen at `time`, which may be any. Binary searches and one mix; it allocates only when it sees `out` the first time.
+    // What is seen at `time`, which may be any; a list that loops must have been foreseen until then. Binary searches and one course for
+    // each thing; it allocates only when it sees `out` the first time.
     void stateAt(Time time, ShowState& out) const;
 
 private:
-    // A cue that was entered, or that will be by itself if no input comes before.
+    struct LayerCourse {
+        std::uint32_t source = 0;
+        Course opacity;
+        Time begun{};
+    };
+    // Two looks may show one composition: then its light comes and goes at once.
+    struct PictureCourse {
+        std::vector<LayerState> layers;
+        Course coming, leaving;  // of its share
+    };
+    struct OutputCourse {
+        std::vector<LayerCourse> layers;  // that add as light one by one
+        std::vector<PictureCourse> pictures;
+        WindCourse wind{WindWish()};
+    };
+    // A cue that was entered, or that will be by itself if no input comes before; and the courses that it has begun.
     struct Entry {
-        Time at{};
-        int cue = 0;
-        Look from;                      // what was seen then, blackout aside
-        std::vector<WindCourse> winds;  // from then on, one for each output
+        Time at = Time::min();
+        int cue = -1;
+        std::vector<OutputCourse> outputs;
+        std::vector<Course> levels;
     };
     // The operator took the light away or gave it back.
     struct Shutter {
@@ -83,20 +100,23 @@ private:
         float from = 1;  // the light's factor then
     };
 
-    int cueAt(Time time) const;
+    const Entry& entryAt(Time time) const;
+    int cueAt(Time time) const { return entryAt(time).cue; }
     void enter(int cue, Time at);
+    void followOn(std::size_t most);
+    std::optional<int> followerOf(int cue) const;
+    Entry entered(int cue, Time at) const;
+    static OutputCourse courseOf(const OutputState& from, const OutputState& to, Time at, Time fade);
     void lookAt(Time time, Look& out) const;
     float lightAt(Time time) const;
-    const std::vector<WindCourse>& windsAt(Time time) const;
 
     CueList list_;
     Gusts gusts_;
-    std::vector<WindCourse> usualWinds_;  // before the first cue
-    std::size_t sources_ = 0;             // that looks show: as many layers add as light on one output at most
+    std::size_t sources_ = 0;  // that looks show: as many layers add as light on one output at most
     struct {
         std::size_t layers = 0, pictures = 0;
     } composed_;                     // of all looks and outputs, more than one output can show in a chain of fades
-    std::vector<Entry> entries_;     // by time, those in the future last
+    std::vector<Entry> entries_;     // by time, those in the future last; the first one is the dark before any cue
     std::vector<Shutter> shutters_;  // by time
     std::vector<Time> taken_;        // when each input took effect
     Time newest_ = Time::min();      // of all inputs, ignored ones included

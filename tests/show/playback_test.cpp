@@ -545,6 +545,29 @@ TEST(Playback, every_state_is_well_formed) {
 }
 
 // The render thread asks for a state with every frame and must not wait for the heap.
+// Cues that follow each other for ever are worked out as far as somebody asks. Example failures: the program never returns from the first
+// GO; at hour ten the list is a moment off, or its levels are.
+TEST(Playback, a_list_that_loops_goes_on_for_ever) {
+    CueList list = followingCues();
+    list.loops = true;
+    list.cues[2].follow = 2s;
+    Playback playback(list);
+    ASSERT_EQ(playback.apply(go(0s)), Outcome::Taken);
+    const Time pass = 10s;
+    playback.foresee(10h + pass);
+    for (const auto& [into, cue] : {std::pair(0s, 0), {2s, 0}, {3s, 1}, {7s, 1}, {8s, 2}}) {
+        EXPECT_EQ(stateOf(playback, 10h + into).cue, cue) << seconds(into);
+        EXPECT_EQ(lookOf(playback, 10h + into), lookOf(playback, pass + into)) << seconds(into);
+    }
+    EXPECT_EQ(playback.untilFollowAt(10h + 1s), 2s);
+    EXPECT_EQ(playback.apply(jump(10h + 4s, 2)), Outcome::Taken);
+    EXPECT_EQ(stateOf(playback, 10h + 4s).cue, 2) << "whoever presses goes on from there";
+    EXPECT_EQ(stateOf(playback, 10h + 6s).cue, 0);
+    EXPECT_EQ(playback.apply(jump(11h, 2)), Outcome::Taken);
+    EXPECT_EQ(playback.apply(go(11h + 1s)), Outcome::Taken);
+    EXPECT_EQ(stateOf(playback, 11h + 1s).cue, 0) << "GO at the last cue begins anew";
+}
+
 TEST(Playback, asking_again_allocates_nothing) {
     Rng rng(7);
     Playback playback(randomCues(rng));
