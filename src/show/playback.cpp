@@ -58,22 +58,6 @@ void dim(Look& look, float light) {
 
 }  // namespace
 
-std::string_view nameOf(Outcome outcome) {
-    switch (outcome) {
-        case Outcome::Taken:
-            return "taken";
-        case Outcome::TooSoonAfterCue:
-            return "ignored: too soon after the cue began";
-        case Outcome::AtLastCue:
-            return "ignored: this is the last cue";
-        case Outcome::AtFirstCue:
-            return "ignored: there is no cue before";
-        case Outcome::NoSuchCue:
-            return "ignored: there is no such cue";
-    }
-    return "unknown";
-}
-
 Playback::Playback(CueList list) : list_(std::move(list)), gusts_(list_.seed) {
     const std::size_t outputs = list_.dark.outputs.size();
     const auto examine = [&](const Look& look) {

@@ -2,6 +2,7 @@
 
 #include "show/course.h"
 #include "show/cue_list.h"
+#include "show/input.h"
 #include "show/show_state.h"
 #include "show/wind.h"
 
@@ -9,30 +10,9 @@
 
 #include <cstddef>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 namespace fantascope::show {
-
-// Something that the operator, or whoever acts for the operator, asked for.
-struct Input {
-    enum class Kind {
-        Go,        // enter the next cue
-        Back,      // enter the cue before
-        Jump,      // enter cue `cue`, also the one that is running
-        Blackout,  // hold pictures and lamps dark, or give them back
-        Dark,      // hold them dark, whether they are or not
-        Light      // give them back, whether they are dark or not
-    };
-    Time at{};  // show time
-    Kind kind = Kind::Go;
-    int cue = 0;  // for Jump alone: index into CueList::cues
-};
-
-// What became of an input.
-enum class Outcome { Taken, TooSoonAfterCue, AtLastCue, AtFirstCue, NoSuchCue };
-// In words for the operator: "taken", "ignored: ...".
-std::string_view nameOf(Outcome outcome);
 
 // Plays a cue list: what is seen at any moment of show time, as a pure function of that time and of the inputs so far. Asking
 // changes nothing, so the same inputs give the same state in whatever order the moments are asked for.

@@ -1,6 +1,7 @@
 // What threads hand to each other, and that the number of threads changes nothing. Data races are for the thread sanitizer to
 // find.
 
+#include "core/append_log.h"
 #include "core/bounded_queue.h"
 #include "core/latest_value.h"
 #include "core/parallel.h"
@@ -12,6 +13,7 @@
 #include <memory>
 #include <stop_token>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace fantascope {
@@ -108,6 +110,43 @@ TEST(BoundedQueue, everything_arrives_once_and_in_order_between_two_threads) {
         else
             std::this_thread::yield();
     }
+}
+
+// Example failure: a reader that comes late finds only the newest chunk.
+TEST(AppendLog, every_reader_sees_every_value_once_and_all_in_one_order) {
+    constexpr int kWriters = 4, kEach = 5000;
+    AppendLog<int> log;
+    std::vector<std::vector<int>> seen(3);
+    {
+        std::vector<std::jthread> threads;
+        for (int writer = 0; writer < kWriters; ++writer)
+            threads.emplace_back([&, writer] {
+                for (int i = 0; i < kEach; ++i) log.append(writer * kEach + i);
+            });
+        for (std::size_t number = 0; number < 2; ++number)
+            threads.emplace_back([&, number] {
+                auto reader = log.reader();
+                while (seen[number].size() < kWriters * kEach)
+                    if (const int* const value = reader.next()) seen[number].push_back(*value);
+            });
+    }
+    auto late = log.reader();
+    while (const int* const value = late.next()) seen[2].push_back(*value);
+    EXPECT_EQ(seen[0], seen[2]);
+    EXPECT_EQ(seen[1], seen[2]);
+    std::vector<int> all = seen[2];
+    std::sort(all.begin(), all.end());
+    for (int i = 0; i < kWriters * kEach; ++i) ASSERT_EQ(all[static_cast<std::size_t>(i)], i);
+    for (int writer = 0; writer < kWriters; ++writer) {
+        int newest = -1;
+        for (const int value : seen[2]) {
+            if (value / kEach != writer) continue;
+            ASSERT_GT(value, std::exchange(newest, value)) << "a writer's values keep their order";
+        }
+    }
+    EXPECT_EQ(late.next(), nullptr);
+    log.append(7);
+    EXPECT_EQ(*late.next(), 7);
 }
 
 TEST(ParallelFor, does_every_index_once_on_any_number_of_threads) {

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+namespace fantascope {
+
+// A sequence that only grows. Any number of threads append, any number of readers each see every value, once, and all in the same order. A
+// reader never waits and never allocates, and however late it looks it misses nothing. Values stay until the log goes: meant for what
+// comes a few times a second.
+// Thread: append() from any; a Reader belongs to one thread at a time. The log outlives its readers.
+template <class T>
+class AppendLog {
+    static constexpr std::size_t kChunk = 256;
+    struct Chunk {
+        std::array<T, kChunk> values{};
+        std::atomic<std::size_t> count = 0;  // of values that may be read
+        std::atomic<Chunk*> next = nullptr;
+    };
+
+public:
+    class Reader {
+    public:
+        // The next value, which stays where it is; null: there is none yet.
+        const T* next() {
+            if (read_ == kChunk) {
+                const Chunk* const next = chunk_->next.load(std::memory_order_acquire);
+                if (next == nullptr) return nullptr;
+                chunk_ = next;
+                read_ = 0;
+            }
+            return read_ < chunk_->count.load(std::memory_order_acquire) ? &chunk_->values[read_++] : nullptr;
+        }
+
+    private:
+        friend AppendLog;
+        explicit Reader(const Chunk* chunk) : chunk_(chunk) {}
+        const Chunk* chunk_;
+        std::size_t read_ = 0;  // in it
+    };
+
+    AppendLog() : first_(new Chunk), last_(first_) {}
+    ~AppendLog() {
+        for (const Chunk* chunk = first_; chunk != nullptr;)
+            delete std::exchange(chunk, chunk->next.load(std::memory_order_relaxed));
+    }
+    AppendLog(const AppendLog&) = delete;
+    AppendLog& operator=(const AppendLog&) = delete;
+
+    // Waits for other writers alone.
+    void append(T value) {
+        const std::lock_guard lock(writing_);
+        std::size_t count = last_->count.load(std::memory_order_relaxed);
+        if (count == kChunk) {
+            auto chunk = std::make_unique<Chunk>();
+            last_->next.store(chunk.get(), std::memory_order_release);
+            last_ = chunk.release();
+            count = 0;
+        }
+        last_->values[count] = std::move(value);
+        last_->count.store(count + 1, std::memory_order_release);
+    }
+
+    // From the first value on, whenever it is asked for.
+    Reader reader() const { return Reader(first_); }
+
+private:
+    Chunk* const first_;
+    std::mutex writing_;  // of:
+    Chunk* last_;
+};
+
+}  // namespace fantascope
