@@ -1,11 +1,9 @@
 #include "theatre/motion_adaptation.h"
 
-#include "theatre/freedom_search.h"
 #include "theatre/generalised_cone.h"
 #include "theatre/inverse_kinematics.h"
-#include "theatre/scene_energy.h"
-#include "theatre/silhouette_fit.h"
 #include "theatre/streams.h"
+#include "theatre/workshop.h"
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -27,20 +25,9 @@ constexpr int kReachSteps = 20, kWalkSteps = 8, kFitSteps = 30, kRefitSteps = 12
 constexpr double kStride = 0.02;
 constexpr int kMostStrides = 20;
 constexpr double kClearlyLess = 0.02;  // of intersection over union
-// Physics' stiffness while somebody cannot stand, and on the way back; and the search of one whom that does not help.
-constexpr std::array kMending = {2.0, 4.0, 8.0, 16.0}, kRelaxing = {8.0, 4.0, 2.0, 1.0};
+// Physics' stiffness on the way back from kMending; and the search of one whom that does not help.
+constexpr std::array kRelaxing = {8.0, 4.0, 2.0, 1.0};
 constexpr FreedomSearch::Settings kAlone{0.05, 16, 15};
-
-// A frame's problem and what works on it.
-struct Workshop {
-    explicit Workshop(PoseProblem given) : problem(std::move(given)), energy(problem), fit(problem), search(problem) {}
-    std::int64_t evaluations() const { return fit.evaluations() + search.evaluations(); }
-    double iou() const { return intersectionOverUnion(energy.shadow(), problem.target.mask); }
-    PoseProblem problem;
-    SceneEnergy energy;
-    SilhouetteFit fit;
-    FreedomSearch search;
-};
 
 class Adaptation {
 public:

@@ -3,6 +3,8 @@
 #include "theatre/distance_field.h"
 #include "theatre/surroundings.h"
 
+#include "core/disjoint_sets.h"
+
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
@@ -30,11 +32,7 @@ std::vector<Island> findIslands(const BitMask& mask) {
         std::size_t island;
     };
     std::vector<Island> islands;
-    std::vector<std::size_t> parents;
-    const auto rootOf = [&](std::size_t i) {
-        while (parents[i] != i) i = parents[i] = parents[parents[i]];
-        return i;
-    };
+    DisjointSets joined;
     std::vector<Run> above, here;
     for (int y = 0; y < mask.height(); ++y) {
         here.clear();
@@ -42,18 +40,15 @@ std::vector<Island> findIslands(const BitMask& mask) {
             if (!mask.at(x, y)) continue;
             const int from = x;
             while (mask.at(x, y)) ++x;
-            here.push_back({from, x, islands.size()});
-            parents.push_back(islands.size());
+            here.push_back({from, x, joined.add()});
             islands.push_back({x - from, {from, y}, from, x});
         }
         auto first = above.begin();
         for (const Run& run : here) {
             while (first != above.end() && first->to < run.from) ++first;
             for (auto other = first; other != above.end() && other->from <= run.to; ++other) {
-                const std::size_t a = rootOf(other->island), b = rootOf(run.island);
-                if (a == b) continue;
-                const std::size_t keep = std::min(a, b), gone = std::max(a, b);
-                parents[gone] = keep;
+                const auto [keep, gone] = joined.join(other->island, run.island);
+                if (keep == gone) continue;
                 islands[keep].area += islands[gone].area;
                 islands[keep].left = std::min(islands[keep].left, islands[gone].left);
                 islands[keep].right = std::max(islands[keep].right, islands[gone].right);
@@ -63,7 +58,7 @@ std::vector<Island> findIslands(const BitMask& mask) {
     }
     std::vector<Island> whole;
     for (std::size_t i = 0; i < islands.size(); ++i)
-        if (parents[i] == i) whole.push_back(islands[i]);
+        if (joined.root(i) == i) whole.push_back(islands[i]);
     return whole;
 }
 

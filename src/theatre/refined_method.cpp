@@ -1,9 +1,7 @@
 #include "theatre/refined_method.h"
 
-#include "theatre/freedom_search.h"
-#include "theatre/scene_energy.h"
-#include "theatre/silhouette_fit.h"
 #include "theatre/streams.h"
+#include "theatre/workshop.h"
 
 #include "core/random.h"
 
@@ -23,7 +21,6 @@ constexpr double kGlobalSigma = 0.5;
 constexpr std::array kStiffer = {0.01, 0.03, 0.1};  // while the outline is fitted
 constexpr double kHeld = 0.1,
                  kHeldBy = 0.87;  // at the beginning of the coarse local search, and the share of it by which it is 1
-constexpr std::array kMending = {2.0, 4.0, 8.0, 16.0};  // at the end, while somebody cannot stand
 constexpr int kFitSteps = 20, kRefitSteps = 20, kLastFitSteps = 60;
 // How much energy a change may cost at the beginning of the local search, and the share of it at the end.
 constexpr double kHot = 6, kCool = 0.05;
@@ -55,15 +52,6 @@ public:
     }
 
 private:
-    // A problem of its own, since the stiffness changes, and what works on it.
-    struct Workshop {
-        explicit Workshop(PoseProblem given) : problem(std::move(given)), energy(problem), search(problem), fit(problem) {}
-        std::int64_t evaluations() const { return search.evaluations() + fit.evaluations(); }
-        PoseProblem problem;
-        SceneEnergy energy;
-        FreedomSearch search;
-        SilhouetteFit fit;
-    };
     std::int64_t evaluations() const { return true_.evaluations() + fine_.evaluations() + coarse_.evaluations(); }
 
     bool goesOn(double energy) {

@@ -3,6 +3,7 @@
 #include "theatre/pose_problem.h"
 
 #include "core/check.h"
+#include "core/disjoint_sets.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace fantascope::theatre {
@@ -33,28 +33,9 @@ double areaOf(const std::vector<glm::dvec2>& ring) {
     return twice / 2;
 }
 
-// Numbers for those that are joined.
-class Sets {
-public:
-    explicit Sets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), std::size_t{0}); }
-    std::size_t root(std::size_t i) {
-        while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-        return i;
-    }
-    void join(std::size_t a, std::size_t b) { parents_[root(a)] = root(b); }
-    std::size_t count() {
-        std::size_t roots = 0;
-        for (std::size_t i = 0; i < parents_.size(); ++i) roots += root(i) == i;
-        return roots;
-    }
-
-private:
-    std::vector<std::size_t> parents_;
-};
-
 // The parts that hang together over whole edges: two that meet in a corner alone would turn about it freely.
 std::size_t partsOf(const FlatMesh& mesh) {
-    Sets parts(mesh.triangles.size());
+    DisjointSets parts(mesh.triangles.size());
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> edges;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         for (int corner = 0; corner < 3; ++corner) {
@@ -159,7 +140,7 @@ std::vector<std::size_t> foldedTriangles(const FlatMesh& rest, std::span<const g
 }
 
 std::vector<std::size_t> islandsOf(const FlatMesh& mesh) {
-    Sets islands(mesh.vertices.size());
+    DisjointSets islands(mesh.vertices.size());
     for (const glm::uvec3 triangle : mesh.triangles) islands.join(triangle.x, triangle.y), islands.join(triangle.y, triangle.z);
     std::map<std::size_t, std::size_t> numbers;
     std::vector<std::size_t> found;

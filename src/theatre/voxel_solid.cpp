@@ -4,6 +4,8 @@
 #include "theatre/implicit_surface.h"
 #include "theatre/triangle.h"
 
+#include "core/disjoint_sets.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -11,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -24,11 +25,6 @@ using glm::dvec3;
 constexpr float kFar = std::numeric_limits<float>::max();
 // Of a cell: no surface comes nearer to a node, lest a triangle there be lost to rounding; and what is farther has no say.
 constexpr double kNearest = 0.1, kFarthest = 1.75;
-
-std::uint32_t rootOf(std::vector<std::uint32_t>& parents, std::uint32_t i) {
-    while (parents[i] != i) i = parents[i] = parents[parents[i]];
-    return i;
-}
 
 double distanceToSegment(const dvec3& p, const dvec3& a, const dvec3& b) {
     const dvec3 along = b - a;
@@ -273,7 +269,7 @@ void VoxelSolid::cutBelow(double height) {
 // Nodes hang together along the edges of the tetrahedra: a step along any of the axes, all of one sign.
 VoxelSolid::Runs VoxelSolid::runsOf(bool inside) const {
     Runs all;
-    std::vector<std::uint32_t> parents;
+    DisjointSets joined;
     const auto ny = static_cast<std::size_t>(count_[1]);
     const auto join = [&](std::size_t row, std::size_t from, std::size_t to) {
         std::size_t other = all.rows[row];
@@ -281,11 +277,7 @@ VoxelSolid::Runs VoxelSolid::runsOf(bool inside) const {
         for (std::size_t i = from; i < to; ++i) {
             const Run& run = all.runs[i];
             while (other < end && all.runs[other].to + 1 <= run.from) ++other;
-            for (std::size_t o = other; o < end && all.runs[o].from < run.to; ++o) {
-                const std::uint32_t a = rootOf(parents, static_cast<std::uint32_t>(i)),
-                                    b = rootOf(parents, static_cast<std::uint32_t>(o));
-                parents[std::max(a, b)] = std::min(a, b);
-            }
+            for (std::size_t o = other; o < end && all.runs[o].from < run.to; ++o) joined.join(i, o);
         }
     };
     for (int z = 0; z < count_[2]; ++z)
@@ -300,7 +292,7 @@ VoxelSolid::Runs VoxelSolid::runsOf(bool inside) const {
                 }
                 const int from = x;
                 while (x < count_[0] && (row[x] != 0) == inside) ++x;
-                parents.push_back(static_cast<std::uint32_t>(all.runs.size()));
+                joined.add();
                 all.runs.push_back({from, x, 0});
             }
             const std::size_t own = all.rows.size() - 1, end = all.runs.size();
@@ -309,7 +301,7 @@ VoxelSolid::Runs VoxelSolid::runsOf(bool inside) const {
             if (y > 0 && z > 0) join(own - ny - 1, first, end);
         }
     all.rows.push_back(all.runs.size());
-    for (std::size_t i = 0; i < all.runs.size(); ++i) all.runs[i].component = rootOf(parents, static_cast<std::uint32_t>(i));
+    for (std::size_t i = 0; i < all.runs.size(); ++i) all.runs[i].component = static_cast<std::uint32_t>(joined.root(i));
     return all;
 }
 
