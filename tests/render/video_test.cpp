@@ -320,6 +320,9 @@ TEST_F(Videos, of_real_sizes_are_right_to_the_last_pixel) {
     }
 }
 
+// Of the formats that libav decodes, one that libswscale does not read.
+constexpr const char* kNotConverted = "uyyvyy411";
+
 TEST_F(Videos, that_are_broken_are_refused_with_advice) {
     EXPECT_THAT(refusal(folder_ / "absent.mp4"), HasSubstr("absent.mp4: not a video that can be read"));
     EXPECT_THAT(refusal(folder_.file("text.mp4", "no video at all, only words\n")),
@@ -345,6 +348,10 @@ TEST_F(Videos, that_are_broken_are_refused_with_advice) {
         EXPECT_THAT(refusal(folder_ / "long.mkv"),
                     HasSubstr(fmt::format("long.mkv: {} x {} pixels are too many", size.x, size.y)));
     }
+
+    writeVideo(folder_ / "odd.mkv", {.encoder = "rawvideo", .pixels = kNotConverted}, 3, [](int) { return RgbaImage(); });
+    EXPECT_THAT(refusal(folder_ / "odd.mkv"),
+                HasSubstr("odd.mkv: its pixels are stored as 'uyyvyy411', which cannot be converted; export it again"));
 
     ASSERT_EQ(::mkfifo((folder_ / "pipe.mp4").c_str(), 0600), 0);
     EXPECT_EQ(refusal(folder_ / "pipe.mp4"), "pipe.mp4: is a pipe, a file is needed");
@@ -399,6 +406,21 @@ TEST_F(Videos, leave_out_what_is_damaged_and_go_on) {
         EXPECT_LT(good, 100);
         EXPECT_EQ(seen.at(Time{}), 1) << "and it comes round";
     }
+}
+
+// A format that a file comes to halfway, or another version of it, is met by the decoding thread of a running show.
+// Example failure: the program ends.
+TEST_F(Videos, leave_out_frames_whose_pixels_cannot_be_converted) {
+    const auto file = folder_ / "a.mkv";
+    const auto write = [&](const char* pixels) {
+        writeVideo(file, {.encoder = "rawvideo", .pixels = pixels}, 3, [](int) { return RgbaImage(); });
+    };
+    write("gray");
+    const auto content = valueOf(VideoDecoder::examine(file));
+    write(kNotConverted);
+    const auto decoder = valueOf(VideoDecoder::open(content));
+    EXPECT_EQ(decoder->next(), std::nullopt);
+    EXPECT_THAT(decoder->damage(), HasSubstr("a.mkv: after frame 0: its pixels are stored as 'uyyvyy411'"));
 }
 
 // Somebody copies a new version over the file, or the disk goes: what was there stays on the wall, and whole again it goes on.
