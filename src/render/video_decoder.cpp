@@ -31,8 +31,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kLargestSide = 8192;
-constexpr std::int64_t kMostPixels = std::int64_t{kLargestSide} * 4320;  // of a frame: 8K, upright too
-constexpr double kMostMissing = 1;                                       // seconds that a file may be shorter than it says
+constexpr std::int64_t kMostPixels = std::int64_t{kLargestSide} * 4320;   // of a frame: 8K, upright too
+constexpr std::int64_t kMostDecoded = std::int64_t{kLargestSide} * 4352;  // with libav's padding of an upright one's rows
+constexpr double kMostMissing = 1;                                        // seconds that a file may be shorter than it says
 constexpr AVRational kNanoseconds{1, 1'000'000'000};
 constexpr std::string_view kExportAgain = "export it again, as MP4 or MOV with H.264, HEVC or ProRes";
 
@@ -119,7 +120,7 @@ Result<Codec> openCodec(const fs::path& file, const AVStream& stream) {
     Codec context(avcodec_alloc_context3(codec));
     avcodec_parameters_to_context(context.get(), stream.codecpar);
     context->pkt_timebase = stream.time_base;
-    context->max_pixels = kMostPixels;  // of any frame, whatever the file says beforehand
+    context->max_pixels = kMostDecoded;  // of any frame, whatever the file says beforehand
     context->thread_count = std::min(hardwareThreads(), VideoDecoder::kThreads);
     // Decoding begins only where it may, which a decoder does not know: after some keyframes it would keep good frames back.
     context->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;

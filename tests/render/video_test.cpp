@@ -323,6 +323,14 @@ TEST_F(Videos, of_real_sizes_are_right_to_the_last_pixel) {
 // Of the formats that libav decodes, one that libswscale does not read.
 constexpr const char* kNotConverted = "uyyvyy411";
 
+// Example failure: a decoder counts the padding of an upright frame's rows as pixels, and finds too many.
+TEST_F(Videos, of_the_largest_size_are_shown_lying_and_upright) {
+    for (const glm::ivec2 size : {glm::ivec2(8192, 4320), {4320, 8192}}) {
+        writeVideo(folder_ / "a.mov", {.encoder = "qtrle", .pixels = "gray", .size = size}, 1, [](int) { return RgbaImage(); });
+        EXPECT_EQ(refusal(folder_ / "a.mov"), "accepted") << size.x << " x " << size.y;
+    }
+}
+
 TEST_F(Videos, that_are_broken_are_refused_with_advice) {
     EXPECT_THAT(refusal(folder_ / "absent.mp4"), HasSubstr("absent.mp4: not a video that can be read"));
     EXPECT_THAT(refusal(folder_.file("text.mp4", "no video at all, only words\n")),
