@@ -8,8 +8,10 @@
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -262,6 +264,35 @@ TEST(JpegFrame, that_is_none_or_of_another_size_is_refused) {
     EXPECT_FALSE(decoder.decode(Bytes(5000, 0), picture));
     EXPECT_FALSE(decoder.decode(jpegByLibjpeg(cv::Mat(kSize.y, kSize.x + 16, CV_8UC1, cv::Scalar(77))), picture));
     EXPECT_TRUE(decoder.decode(jpegByLibav(), picture));
+}
+
+// The most address space that this process has had, MB.
+long mostMemory() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmPeak:")) return std::stol(line.substr(7)) / 1024;
+    return 0;
+}
+
+// A damaged header of a small frame, which may state any size. Example failure: 500 MB for each of a bad cable's frames.
+TEST(JpegFrame, that_says_it_is_huge_takes_no_memory) {
+    Bytes frame = jpegByLibav();
+    constexpr std::array<std::uint8_t, 2> kSizeFollows{0xff, 0xc0};
+    const auto header = std::ranges::search(frame, kSizeFollows).begin();
+    ASSERT_LT(header + 9, frame.end());
+    for (const int side : {5, 7}) {  // 16000 lines, and as many pixels in each
+        header[side] = 16000 >> 8;
+        header[side + 1] = 16000 & 0xff;
+    }
+    frame.resize(2'000'000);  // as large as libav believes such a picture to be at least
+    RgbaImage picture(kSize.x, kSize.y);
+    FrameDecoder decoder(jpegFormat(kSize));
+    const long before = mostMemory();
+    const auto decoded = decoder.decode(frame, picture);
+    ASSERT_FALSE(decoded);
+    EXPECT_THAT(decoded.error().message(), testing::HasSubstr("larger than the 96 x 32 pixels that are due"));
+    EXPECT_GT(before, 0);
+    EXPECT_LT(mostMemory() - before, 200);
 }
 
 }  // namespace
