@@ -3,6 +3,7 @@
 
 #include "allocations.h"
 #include "core/file.h"
+#include "pictures.h"
 #include "scratch_folder.h"
 #include "test_video.h"
 
@@ -258,40 +259,14 @@ TEST_F(Videos, keep_their_alpha) {
     }
 }
 
-// One colour, lighter and darker from pixel to pixel: what a conversion makes of it is known to a step or two, in every format.
-RgbaImage shaded(glm::ivec2 size) {
-    RgbaImage picture(size.x, size.y);
-    for (int y = 0; y < size.y; ++y)
-        for (int x = 0; x < size.x; ++x) {
-            const int light = 60 + (37 * x + 53 * y) % 90;
-            const auto channel = [&](int more) { return static_cast<std::uint8_t>(light + more); };
-            picture.at(x, y) = {channel(50), channel(0), channel(-30), 255};
-        }
-    return picture;
-}
-
-// The greatest difference in any channel, and where. Memory behind the decoded picture may not be touched.
-struct Difference {
-    int most = 0;
-    glm::ivec2 at{0};
-};
+// Neither the picture nor the decoder's own memory may be touched behind its end.
 Difference differenceOfFirstFrame(const std::filesystem::path& file, const RgbaImage& wanted) {
     const auto decoder = valueOf(VideoDecoder::open(valueOf(VideoDecoder::examine(file))));
-    RgbaImage seen;
-    {
-        const FencedAllocations fence;
-        seen = RgbaImage(wanted.width(), wanted.height(), {1, 2, 3, 4});
-    }
     FANTASCOPE_CHECK(decoder->next() == 0u, "the first frame");
+    const FencedAllocations fence;
+    RgbaImage seen(wanted.width(), wanted.height(), {1, 2, 3, 4});
     decoder->picture(seen);
-    Difference difference;
-    for (int y = 0; y < wanted.height(); ++y)
-        for (int x = 0; x < wanted.width(); ++x) {
-            const Rgba8 a = seen.at(x, y), b = wanted.at(x, y);
-            const int most = std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b), std::abs(a.a - b.a)});
-            if (most > difference.most) difference = {most, {x, y}};
-        }
-    return difference;
+    return differenceOf(seen, wanted);
 }
 
 // Example failures: the heap is overwritten behind the picture; the last columns stay as they were.
