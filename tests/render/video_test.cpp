@@ -345,27 +345,6 @@ TEST_F(Videos, that_are_broken_are_refused_with_advice) {
         EXPECT_THAT(refusal(folder_.file("list.mp4", list)), HasSubstr("list.mp4: ")) << list;
 }
 
-// Overwrites the coded frames of a video between two shares of the file.
-std::filesystem::path damaged(const ScratchFolder& folder, const std::filesystem::path& file, double from, double to) {
-    std::string bytes = readFile(file).value();
-    const auto at = [&](double share) { return static_cast<std::size_t>(share * static_cast<double>(bytes.size())); };
-    for (std::size_t i = at(from); i < at(to); ++i) bytes[i] = static_cast<char>(i * 37 % 251);
-    return folder.file("damaged-" + file.filename().string(), bytes);
-}
-
-// Noise is large when coded, so that the damage is within frames.
-RgbaImage noisy(glm::ivec2 size, int number) {
-    RgbaImage picture = numbered(size, number);
-    unsigned state = static_cast<unsigned>(number) * 2654435761u + 1;
-    for (Rgba8& pixel : picture.pixels()) {
-        state = state * 1664525u + 1013904223u;
-        const auto off = static_cast<std::uint8_t>(state >> 28);
-        pixel = {static_cast<std::uint8_t>(pixel.r + off), static_cast<std::uint8_t>(pixel.g + off),
-                 static_cast<std::uint8_t>(pixel.b + off), 255};
-    }
-    return picture;
-}
-
 // Example failures: the show waits for ever for a frame that never comes; grey blocks on the wall; the rest is lost too.
 TEST_F(Videos, leave_out_what_is_damaged_and_go_on) {
     for (const auto& [name, encoder, pixels] : {std::array{"a.mp4", "libx264", "yuv420p"}, {"a.mov", "png", "rgb24"}}) {
@@ -373,7 +352,8 @@ TEST_F(Videos, leave_out_what_is_damaged_and_go_on) {
         writeVideo(folder_ / name, {.encoder = encoder, .pixels = pixels, .size = {128, 128}, .keyEvery = 1}, 100, [](int i) {
             return noisy({128, 128}, i + 1);
         });
-        const auto stream = open(damaged(folder_, folder_ / name, 0.42, 0.48));
+        damage(folder_ / name, 0.42, 0.48);
+        const auto stream = open(folder_ / name);
         const auto& frames = stream->content().frames;
         Seen seen(stream);
         int good = 0, before = 0, last = 0;
@@ -388,6 +368,11 @@ TEST_F(Videos, leave_out_what_is_damaged_and_go_on) {
         EXPECT_GE(good, static_cast<int>(frames.size()) - 12);
         EXPECT_LT(good, 100);
         EXPECT_EQ(seen.at(Time{}), 1) << "and it comes round";
+        const auto missing = static_cast<std::int64_t>(frames.size()) - good;
+        EXPECT_EQ(stream->damagedFrames(), missing) << "each once";
+        for (const VideoContent::Frame& frame : frames) seen.at(frame.begins);
+        EXPECT_EQ(stream->damagedFrames(), 2 * missing) << "and once more each time round";
+        EXPECT_EQ(stream->lateFrames(), 0);
     }
 }
 
