@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -10,6 +11,8 @@
 #include <new>
 
 namespace {
+
+constexpr std::size_t kAlignment = 16;
 
 thread_local std::int64_t allocations = 0;
 thread_local bool isFenced = false;
@@ -22,7 +25,7 @@ struct Fenced {
 std::array<Fenced, 16> fenced;
 std::atomic<int> fencedCount = 0;
 
-void* allocateFenced(std::size_t bytes) {
+void* allocateFenced(std::size_t bytes, std::size_t alignment) {
     constexpr std::size_t kFence = 1 << 16;
     const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
     const std::size_t room = (bytes + page - 1) / page * page, length = room + kFence;
@@ -30,7 +33,7 @@ void* allocateFenced(std::size_t bytes) {
         if (one.memory != nullptr) continue;
         auto* const pages =
             static_cast<std::byte*>(::mmap(nullptr, length, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
-        if (bytes % 16 != 0 || pages == MAP_FAILED || ::mprotect(pages + room, kFence, PROT_NONE) != 0) std::abort();
+        if (bytes % alignment != 0 || pages == MAP_FAILED || ::mprotect(pages + room, kFence, PROT_NONE) != 0) std::abort();
         one.pages = pages;
         one.length = length;
         one.memory = pages + room - bytes;
@@ -61,14 +64,24 @@ void release(void* memory) {
 // These replace the standard library's for the whole test program.
 void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
     ++allocations;
-    return isFenced ? allocateFenced(bytes) : std::malloc(bytes);
+    return isFenced ? allocateFenced(bytes, kAlignment) : std::malloc(bytes);
 }
 void* operator new(std::size_t bytes) {
     if (void* memory = operator new(bytes, std::nothrow)) return memory;
     throw std::bad_alloc();
 }
+void* operator new(std::size_t bytes, std::align_val_t asked) {
+    ++allocations;
+    const std::size_t alignment = std::max(static_cast<std::size_t>(asked), kAlignment);
+    if (isFenced) return allocateFenced(bytes, alignment);
+    void* memory = nullptr;
+    if (::posix_memalign(&memory, alignment, bytes) != 0) throw std::bad_alloc();
+    return memory;
+}
 void operator delete(void* memory) noexcept { release(memory); }
 void operator delete(void* memory, std::size_t) noexcept { release(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { release(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { release(memory); }
 
 std::int64_t fantascope::allocationsSoFar() { return allocations; }
 

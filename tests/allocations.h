@@ -8,7 +8,8 @@ namespace fantascope {
 std::int64_t allocationsSoFar();
 
 // While one lives, what this thread allocates with `new` ends right before memory that may not be touched: whatever writes or reads behind it
-// ends the program, machine code of libraries too, which no sanitizer watches. Sizes are multiples of 16 bytes. At most 16 such allocations.
+// ends the program, machine code of libraries too, which no sanitizer watches. Sizes are multiples of 16 bytes and of the
+// alignment. At most 16 such allocations.
 class FencedAllocations {
 public:
     FencedAllocations();

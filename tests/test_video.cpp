@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <numeric>
 
 extern "C" {
@@ -167,6 +168,27 @@ int numberOn(const RgbaImage& picture) {
         if (picture.at(x, y).g >= 128) number |= 1 << bit;
     }
     return number;
+}
+
+RgbaImage noisy(glm::ivec2 size, int number) {
+    RgbaImage picture = numbered(size, number);
+    unsigned state = static_cast<unsigned>(number) * 2654435761u + 1;
+    for (Rgba8& pixel : picture.pixels()) {
+        state = state * 1664525u + 1013904223u;
+        const auto off = static_cast<std::uint8_t>(state >> 28);
+        pixel = {static_cast<std::uint8_t>(pixel.r + off), static_cast<std::uint8_t>(pixel.g + off),
+                 static_cast<std::uint8_t>(pixel.b + off), 255};
+    }
+    return picture;
+}
+
+void damage(const std::filesystem::path& file, double from, double to) {
+    const auto size = static_cast<double>(std::filesystem::file_size(file));
+    const auto begin = static_cast<std::size_t>(from * size), end = static_cast<std::size_t>(to * size);
+    std::fstream bytes(file, std::ios::binary | std::ios::in | std::ios::out);
+    bytes.seekp(static_cast<std::streamoff>(begin));
+    for (std::size_t i = begin; i < end; ++i) bytes.put(static_cast<char>(i * 37 % 251));
+    FANTASCOPE_CHECK(bytes.flush().good(), "the file can be written");
 }
 
 }  // namespace fantascope

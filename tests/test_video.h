@@ -37,5 +37,10 @@ void writeVideo(const std::filesystem::path& file, const VideoCoding& coding, in
 // A picture that carries a number of 16 bits as 4 x 4 blocks, light and dark, and how it is read again.
 RgbaImage numbered(glm::ivec2 size, int number);
 int numberOn(const RgbaImage& picture);
+// The same with noise, which is large when coded, so that damage to a file is within frames.
+RgbaImage noisy(glm::ivec2 size, int number);
+
+// Overwrites the bytes between two shares of a file's length.
+void damage(const std::filesystem::path& file, double from, double to);
 
 }  // namespace fantascope

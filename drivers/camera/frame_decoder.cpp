@@ -113,20 +113,21 @@ struct FrameDecoder::Impl {
     std::unique_ptr<AVPacket, PacketDeleter> packet;
     std::unique_ptr<AVFrame, FrameDeleter> decoded;
 
-    void convert(AVPixelFormat pixels, const std::uint8_t* const planes[], const int strides[], RgbaImage& picture) {
+    Result<void> convert(AVPixelFormat pixels, const std::uint8_t* const planes[], const int strides[], RgbaImage& picture) {
         if (pixels != from) {
             from = pixels;
             toRgba.reset(sws_getContext(format.size.x, format.size.y, pixels, format.size.x, format.size.y, AV_PIX_FMT_RGBA,
                                         SWS_BILINEAR | SWS_FULL_CHR_H_INT | SWS_ACCURATE_RND, nullptr, nullptr, nullptr));
-            FANTASCOPE_CHECK(toRgba != nullptr, "what a camera gives can be converted");
             constexpr int kOne = 1 << 16, kFull = 1;
             const int* const matrix = sws_getCoefficients(matrixOf(format.weights));
             const bool full = format.fullRange || (av_pix_fmt_desc_get(pixels)->flags & AV_PIX_FMT_FLAG_RGB) != 0;
-            sws_setColorspaceDetails(toRgba.get(), matrix, full ? kFull : 0, matrix, kFull, 0, kOne, kOne);
+            if (toRgba) sws_setColorspaceDetails(toRgba.get(), matrix, full ? kFull : 0, matrix, kFull, 0, kOne, kOne);
         }
+        if (!toRgba) return Error(fmt::format("pixels stored as '{}', which cannot be converted", av_get_pix_fmt_name(pixels)));
         rows.fill(picture, [&](std::uint8_t* to, int stride) {
             sws_scale(toRgba.get(), planes, strides, 0, format.size.y, &to, &stride);
         });
+        return {};
     }
 
     void convertGrey(const std::uint8_t* luma, int stride, RgbaImage& picture) const {
@@ -146,15 +147,14 @@ struct FrameDecoder::Impl {
         av_frame_unref(decoded.get());
         if (avcodec_send_packet(jpeg.get(), packet.get()) < 0 || avcodec_receive_frame(jpeg.get(), decoded.get()) < 0 ||
             decoded->decode_error_flags != 0)
-            return Error("a damaged JPEG");
+            return Error(fmt::format("a JPEG that is damaged, or larger than the {} x {} pixels that are due", format.size.x,
+                                     format.size.y));
         if (glm::ivec2(decoded->width, decoded->height) != format.size)
             return Error(fmt::format("a JPEG of {} x {} pixels where {} x {} are due", decoded->width, decoded->height,
                                      format.size.x, format.size.y));
         const auto pixels = withoutRange(static_cast<AVPixelFormat>(decoded->format));
-        if (pixels == AV_PIX_FMT_GRAY8)
-            convertGrey(decoded->data[0], decoded->linesize[0], picture);
-        else
-            convert(pixels, decoded->data, decoded->linesize, picture);
+        if (pixels != AV_PIX_FMT_GRAY8) return convert(pixels, decoded->data, decoded->linesize, picture);
+        convertGrey(decoded->data[0], decoded->linesize[0], picture);
         return {};
     }
 };
@@ -172,6 +172,9 @@ FrameDecoder::FrameDecoder(const FrameFormat& format) : impl_(std::make_unique<I
     FANTASCOPE_CHECK(codec != nullptr, "libavcodec decodes JPEG");
     impl_->jpeg.reset(avcodec_alloc_context3(codec));
     impl_->jpeg->thread_count = 1;  // several would hold frames back
+    // A damaged header may state any size: nothing larger is begun. libav counts the padding of a row with its pixels.
+    constexpr int kAlignment = 64;
+    impl_->jpeg->max_pixels = std::int64_t{format.size.x + kAlignment - 1} / kAlignment * kAlignment * format.size.y;
     impl_->jpeg->err_recognition = AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;
     FANTASCOPE_CHECK(avcodec_open2(impl_->jpeg.get(), codec, nullptr) == 0, "libavcodec decodes JPEG");
     impl_->packet.reset(av_packet_alloc());
@@ -193,8 +196,7 @@ Result<void> FrameDecoder::decode(std::span<const std::uint8_t> frame, RgbaImage
         frame.data(),
         format.coding == FrameCoding::Nv12 ? frame.data() + static_cast<std::ptrdiff_t>(format.stride) * format.size.y : nullptr};
     const int strides[4] = {format.stride, format.stride};
-    impl_->convert(pixelsOf(format.coding), planes, strides, picture);
-    return {};
+    return impl_->convert(pixelsOf(format.coding), planes, strides, picture);
 }
 
 }  // namespace fantascope::drivers

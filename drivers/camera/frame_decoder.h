@@ -53,7 +53,7 @@ public:
     static constexpr std::size_t kPadding = 256;
 
     // Writes stored values into `picture`, which has format.size; alpha 255. `frame` is followed by kPadding bytes of any value. Error: the
-    // frame is too short, or damaged, or a JPEG of another size; `picture` is then worth nothing.
+    // frame is too short, or damaged, or a JPEG of another size or of pixels that cannot be converted; `picture` is then worth nothing.
     Result<void> decode(std::span<const std::uint8_t> frame, RgbaImage& picture);
 
 private:

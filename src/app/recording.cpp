@@ -75,9 +75,12 @@ Result<void> Recording::frame(std::size_t output, const RgbaImage& picture, cons
         TRY(write(video, picture, shown.at));
         frames_[output].lines.push_back({shown.refresh, showTime, hashOf(picture)});
     } else {
-        // What becomes visible within half a refresh is seen together.
-        if (video.tiled && shown.at - *video.tiled > tickTime(1, 2 * outputs_[0].frameRate)) TRY(writeTiled());
+        // What becomes visible within half a refresh is seen together. An output that refreshes more quickly may have its next frame
+        // within that time.
+        const bool together = video.tiled && shown.at - *video.tiled <= tickTime(1, 2 * outputs_[0].frameRate);
+        if (!together || frames_[output].tiled) TRY(writeTiled());
         if (!video.tiled) video.tiled = shown.at;
+        frames_[output].tiled = true;
         int left = 0;
         for (std::size_t i = 0; i < output; ++i) left += outputs_[i].size.x;
         for (int y = 0; y < picture.height(); ++y)
@@ -89,6 +92,7 @@ Result<void> Recording::frame(std::size_t output, const RgbaImage& picture, cons
 
 Result<void> Recording::writeTiled() {
     if (videos_.empty() || !videos_[0].tiled || !videos_[0].writer) return {};
+    for (Frames& frames : frames_) frames.tiled = false;
     return write(videos_[0], tiled_, *std::exchange(videos_[0].tiled, std::nullopt));
 }
 

@@ -64,6 +64,7 @@ public:
 private:
     struct Frames {
         std::int64_t count = 0;
+        bool tiled = false;  // side by side: the newest is not written yet
         struct Line {
             std::int64_t refresh;
             Time showTime;

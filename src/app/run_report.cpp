@@ -71,8 +71,8 @@ Report jsonOf(const RunReport& report) {
     json["yardstick"] = {{"ticks", report.yardstickTicks}, {"late", report.yardstickLate}};
     json["frame_ms"] = frameMs;
     json["swap_skew_ms"] = jsonOf(report.swapSkew);
-    json["late_video_frames"] = Report::object();
-    for (const auto& [source, lateFrames] : report.lateVideoFrames) json["late_video_frames"][source] = lateFrames;
+    json["late_video_frames"] = Report(report.lateVideoFrames);
+    json["damaged_video_frames"] = Report(report.damagedVideoFrames);
     json["input_to_frame_ms"] = jsonOf(report.inputToFrame);
     json["dmx_interval_ms"] = jsonOf(report.dmxInterval);
     json["cues"] = Report::array();

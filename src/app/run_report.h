@@ -74,8 +74,8 @@ struct RunReport {
                  yardstickLate = 0;  // an empty thread at the first output's rate: what the machine itself misses
     std::vector<CueReport> cues;
     std::vector<FaultReport> faults;
-    std::map<std::string, std::vector<std::pair<Time, double>>> zCamera;  // per output
-    std::map<std::string, std::int64_t> lateVideoFrames;                  // per source that is a video
+    std::map<std::string, std::vector<std::pair<Time, double>>> zCamera;      // per output
+    std::map<std::string, std::int64_t> lateVideoFrames, damagedVideoFrames;  // per source that is a video
     std::vector<UnsafeBank> unsafe;
     std::string stopReason;
     std::string hung;  // why the program did not wait for the render thread; empty: it came back

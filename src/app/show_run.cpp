@@ -247,8 +247,11 @@ public:
         report.yardstickLate = yardstickLate_;
         report.zCamera = watch_.series();
         for (std::size_t i = 0; i < programme_.sources.size(); ++i)
-            if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources[i]))
-                report.lateVideoFrames[programme_.show.sources[i].name] = video->stream->lateFrames();
+            if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources[i])) {
+                const std::string& name = programme_.show.sources[i].name;
+                report.lateVideoFrames[name] = video->stream->lateFrames();
+                report.damagedVideoFrames[name] = video->stream->damagedFrames();
+            }
         if (surrounding_.simulation)
             for (const site::Happening& happening : surrounding_.simulation->happenings())
                 report.faults.push_back({happening.at, happening.text});

@@ -31,8 +31,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kLargestSide = 8192;
-constexpr std::int64_t kMostPixels = std::int64_t{kLargestSide} * 4320;  // of a frame: 8K, upright too
-constexpr double kMostMissing = 1;                                       // seconds that a file may be shorter than it says
+constexpr std::int64_t kMostPixels = std::int64_t{kLargestSide} * 4320;   // of a frame: 8K, upright too
+constexpr std::int64_t kMostDecoded = std::int64_t{kLargestSide} * 4352;  // with libav's padding of an upright one's rows
+constexpr double kMostMissing = 1;                                        // seconds that a file may be shorter than it says
 constexpr AVRational kNanoseconds{1, 1'000'000'000};
 constexpr std::string_view kExportAgain = "export it again, as MP4 or MOV with H.264, HEVC or ProRes";
 
@@ -119,7 +120,7 @@ Result<Codec> openCodec(const fs::path& file, const AVStream& stream) {
     Codec context(avcodec_alloc_context3(codec));
     avcodec_parameters_to_context(context.get(), stream.codecpar);
     context->pkt_timebase = stream.time_base;
-    context->max_pixels = kMostPixels;  // of any frame, whatever the file says beforehand
+    context->max_pixels = kMostDecoded;  // of any frame, whatever the file says beforehand
     context->thread_count = std::min(hardwareThreads(), VideoDecoder::kThreads);
     // Decoding begins only where it may, which a decoder does not know: after some keyframes it would keep good frames back.
     context->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
@@ -135,6 +136,10 @@ Result<void> checkPicture(const fs::path& file, const AVStream& stream) {
     if (std::max(picture.width, picture.height) > kLargestSide || std::int64_t{picture.width} * picture.height > kMostPixels)
         return refusal(file, fmt::format("{} x {} pixels are too many", picture.width, picture.height),
                        "at most 8192 x 4320, or 4320 x 8192");
+    const auto pixels = static_cast<AVPixelFormat>(picture.format);
+    if (pixels != AV_PIX_FMT_NONE && sws_isSupportedInput(pixels) == 0)  // libav does not know them of every file beforehand
+        return refusal(file, fmt::format("its pixels are stored as '{}', which cannot be converted", av_get_pix_fmt_name(pixels)),
+                       kExportAgain);
     if (picture.color_trc == AVCOL_TRC_SMPTE2084 || picture.color_trc == AVCOL_TRC_ARIB_STD_B67)
         return refusal(file, "a video of high dynamic range, which no projector shows", "export it again in SDR, Rec. 709");
     if (const auto* matrix =
@@ -286,6 +291,22 @@ struct VideoDecoder::Impl {
         return after == frames.begin() ? 0 : static_cast<std::uint32_t>(after - frames.begin()) - 1;
     }
 
+    // Makes toRgba for the frame. False: its pixels cannot be converted.
+    bool converts() {
+        const Coding newest(*frame);
+        if (newest == coding) return toRgba != nullptr;
+        coding = newest;
+        sws_freeContext(toRgba);
+        // Without SWS_ACCURATE_RND most videos are converted in .7 ms instead of 11 (1920 x 1080), and lose less than a step of 255.
+        toRgba = sws_getContext(coding.size.x, coding.size.y, coding.format, content->size.x, content->size.y, AV_PIX_FMT_RGBA,
+                                SWS_BILINEAR | SWS_FULL_CHR_H_INT, nullptr, nullptr, nullptr);
+        if (toRgba == nullptr) return false;
+        constexpr int kOne = 1 << 16, kFull = 1;
+        const int* const matrix = sws_getCoefficients(coding.matrix);
+        sws_setColorspaceDetails(toRgba, matrix, coding.fullRange ? kFull : 0, matrix, kFull, 0, kOne, kOne);
+        return true;
+    }
+
     // The video's next packet. False at the end.
     bool read() {
         for (;;) {
@@ -396,6 +417,10 @@ std::optional<std::uint32_t> VideoDecoder::next() {
             impl.note("damaged", AVERROR_INVALIDDATA);
             continue;
         }
+        if (!impl.converts()) {  // a file may change its format halfway
+            impl.note(fmt::format("its pixels are stored as '{}'", av_get_pix_fmt_name(impl.coding.format)), AVERROR(ENOSYS));
+            continue;
+        }
         impl.least = number + 1;
         return number;
     }
@@ -404,19 +429,7 @@ std::optional<std::uint32_t> VideoDecoder::next() {
 void VideoDecoder::picture(RgbaImage& picture) {
     Impl& impl = *impl_;
     const AVFrame& frame = *impl.frame;
-    const glm::ivec2 size = impl.content->size;
-    FANTASCOPE_CHECK(glm::ivec2(picture.width(), picture.height()) == size, "a picture of the video's size");
-    if (const Coding coding(frame); coding != impl.coding) {
-        impl.coding = coding;
-        sws_freeContext(impl.toRgba);
-        // Without SWS_ACCURATE_RND most videos are converted in .7 ms instead of 11 (1920 x 1080), and lose less than a step of 255.
-        impl.toRgba = sws_getContext(frame.width, frame.height, coding.format, size.x, size.y, AV_PIX_FMT_RGBA,
-                                     SWS_BILINEAR | SWS_FULL_CHR_H_INT, nullptr, nullptr, nullptr);
-        FANTASCOPE_CHECK(impl.toRgba != nullptr, "what a decoder gives can be converted");
-        constexpr int kOne = 1 << 16, kFull = 1;
-        const int* const matrix = sws_getCoefficients(coding.matrix);
-        sws_setColorspaceDetails(impl.toRgba, matrix, coding.fullRange ? kFull : 0, matrix, kFull, 0, kOne, kOne);
-    }
+    FANTASCOPE_CHECK(glm::ivec2(picture.width(), picture.height()) == impl.content->size, "a picture of the video's size");
     impl.rows.fill(picture, [&](std::uint8_t* rows, int stride) {
         sws_scale(impl.toRgba, frame.data, frame.linesize, 0, frame.height, &rows, &stride);
     });

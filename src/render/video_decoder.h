@@ -34,14 +34,14 @@ struct VideoContent {
     std::uint32_t frameAt(Time position) const;
 };
 
-// Decodes a video frame by frame, from any of them on. Damaged frames are left out. Thread: thread-bound; libav decodes on up to kThreads
-// threads of its own, with the same result.
+// Decodes a video frame by frame, from any of them on. Damaged frames are left out, and those whose pixels cannot be converted. Thread:
+// thread-bound; libav decodes on up to kThreads threads of its own, with the same result.
 class VideoDecoder {
 public:
     static constexpr int kThreads = 4;
 
     // Reads the file once through, for the moments of its frames. Error: names the file and says what to do: no video in it, not
-    // decodable here, truncated, no frame, too large, high dynamic range, not upright.
+    // decodable here, pixels that cannot be converted, truncated, no frame, too large, high dynamic range, not upright.
     static Result<std::shared_ptr<const VideoContent>> examine(const std::filesystem::path& file);
     // Error: the file is not as it was.
     static Result<std::unique_ptr<VideoDecoder>> open(std::shared_ptr<const VideoContent> content);

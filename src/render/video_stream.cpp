@@ -175,7 +175,10 @@ VideoStream::Reader::~Reader() {
 VideoStream::Slot* VideoStream::Reader::take(Time position) {
     VideoStream& stream = *stream_;
     const std::uint32_t frame = stream.content_->frameAt(position);
-    if (asked_->exchange(frame, std::memory_order_relaxed) != frame) stream.wake();
+    if (asked_->exchange(frame, std::memory_order_relaxed) != frame) {
+        late_ = damaged_ = false;
+        stream.wake();
+    }
     if (shown_ == frame) return nullptr;
     const auto count = static_cast<std::uint32_t>(stream.content_->frames.size());
     const auto lag = [&](std::uint32_t other) { return (frame + count - other) % count; };
@@ -186,14 +189,17 @@ VideoStream::Slot* VideoStream::Reader::take(Time position) {
         Slot* nearest = nullptr;
         for (Slot& slot : stream.slots_) {
             const Tag tag = slot.tag;
-            if (tag == Tag{State::Damaged, frame}) return nullptr;
+            if (tag == Tag{State::Damaged, frame}) {
+                if (!std::exchange(damaged_, true)) ++stream.damagedFrames_;
+                return nullptr;
+            }
             if (tag.state != State::Ready || lag(tag.frame) >= least) continue;
             least = lag(tag.frame);
             nearest = &slot;
         }
         const bool there = nearest != nullptr && least == 0;
         const std::uint32_t number = (frame + count - least) % count;
-        if (stream.pace_ == Pace::Live && !there && std::exchange(late_, frame) != frame) ++stream.lateFrames_;
+        if (stream.pace_ == Pace::Live && !there && !std::exchange(late_, true)) ++stream.lateFrames_;
         if (there || (nearest != nullptr && stream.pace_ == Pace::Live)) {
             // It may be made another frame at this very moment.
             if (nearest->change({State::Ready, number}, State::InUse)) {

@@ -39,6 +39,8 @@ public:
     const VideoContent& content() const { return *content_; }
     // How often a frame was not there in time, over all readers. Thread-safe.
     std::int64_t lateFrames() const { return lateFrames_; }
+    // How often one was asked for of which there is no picture, over all readers. Thread-safe.
+    std::int64_t damagedFrames() const { return damagedFrames_; }
 
 private:
     enum class State : std::uint32_t { Free, Ready, Damaged, InUse };  // Damaged: there is no picture of it
@@ -81,7 +83,8 @@ public:
 
         std::shared_ptr<VideoStream> stream_;
         std::shared_ptr<Asked> asked_;
-        std::optional<std::uint32_t> shown_, late_;
+        std::optional<std::uint32_t> shown_;
+        bool late_ = false, damaged_ = false;  // what is asked for was counted as such
     };
 
 private:
@@ -115,7 +118,7 @@ private:
     const Pace pace_;
     std::array<Slot, kSlots> slots_;
     std::atomic<std::uint32_t> wishes_ = 0, published_ = 0;  // counters to wait on
-    std::atomic<std::int64_t> lateFrames_ = 0;
+    std::atomic<std::int64_t> lateFrames_ = 0, damagedFrames_ = 0;
     std::mutex mutex_;
     std::vector<std::shared_ptr<Asked>> readers_;  // under mutex_
 

@@ -120,6 +120,28 @@ TEST_F(RecordingTest, side_by_side_each_output_shows_what_it_showed_then) {
     }
 }
 
+// The first output's projector is away, and a quicker one leads: two of its frames are within half a refresh of the first.
+// Example failure: every other frame is lost, and counted as recorded all the same.
+TEST_F(RecordingTest, side_by_side_every_frame_of_a_quicker_output_is_there) {
+    auto recording = Recording::open(folder_ / "all.mp4", {{"left", {64, 48}, 30}, {"right", {64, 48}, 60}}).value();
+    constexpr int kFrames = 8;
+    for (int refresh = 0; refresh < kFrames; ++refresh) {
+        const auto grey = static_cast<std::uint8_t>(25 * refresh + 20);
+        const Time at = tickTime(refresh, 60);
+        const Shown shown{.refresh = refresh, .at = at};
+        ASSERT_TRUE(recording->frame(1, RgbaImage(64, 48, {grey, grey, grey, 255}), shown, at));
+    }
+    ASSERT_TRUE(recording->finish());
+    EXPECT_EQ(recording->recorded(0), 0);
+    EXPECT_EQ(recording->recorded(1), kFrames);
+    const Video video = readVideo(folder_ / "all.mp4");
+    ASSERT_EQ(video.frames.size(), std::size_t{kFrames});
+    for (int i = 0; i < kFrames; ++i) {
+        EXPECT_NEAR(video.frames[static_cast<std::size_t>(i)].at(84, 20).g / 257.0, 25 * i + 20, 4) << i;
+        EXPECT_NEAR(video.times[static_cast<std::size_t>(i)], i / 60.0, 1.0 / 240) << i;
+    }
+}
+
 // Files of this program and of those that it starts may have so many bytes: the disk is full.
 class FullDisk {
 public:

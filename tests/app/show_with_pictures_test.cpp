@@ -53,6 +53,26 @@ TEST_F(ShowWithPictures, is_the_same_to_the_byte_as_fast_as_possible) {
         EXPECT_EQ(contentsOf(folder_ / "a" / file), contentsOf(folder_ / "b" / file)) << file;
     const auto report = nlohmann::json::parse(contentsOf(folder_ / "a.json"));
     EXPECT_EQ(report["late_video_frames"], (nlohmann::json{{"rain", 0}}));
+    EXPECT_EQ(report["damaged_video_frames"], (nlohmann::json{{"rain", 0}}));
+}
+
+// Twice round in 4 s: what is damaged is counted each time. Example failure: the log alone knows.
+TEST_F(ShowWithPictures, counts_the_damaged_frames_of_a_video) {
+    writeVideo(folder_ / "rain.mp4", {.size = {128, 72}, .rate = 25, .keyEvery = 1}, 50, [](int number) {
+        return noisy({128, 72}, number + 1);
+    });
+    const auto damagedIn = [&](const std::string& length) {
+        const Outcome done = run(
+            {"rehearse", ".", "--from", "Wet", "--by-hand", "--seconds", length, "--as-fast-as-possible", "--report", "a.json"});
+        EXPECT_THAT(done, exits(0));
+        const auto report = nlohmann::json::parse(contentsOf(folder_ / "a.json"));
+        EXPECT_EQ(report["late_video_frames"], (nlohmann::json{{"rain", 0}}));
+        return report["damaged_video_frames"]["rain"].get<int>();
+    };
+    damage(folder_ / "rain.mp4", 0.42, 0.48);
+    const int once = damagedIn("1.9");
+    EXPECT_GE(once, 1);
+    EXPECT_EQ(damagedIn("3.9"), 2 * once);
 }
 
 // A cue alone lasts one loop of its video, and canvas and rate are the video's where they are asked for.

@@ -2,14 +2,18 @@
 
 #include "drivers/camera/frame_decoder.h"
 
+#include "allocations.h"
 #include "core/random.h"
+#include "pictures.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -59,39 +63,40 @@ Components componentsOf(Rgba8 colour, LumaWeights weights, bool fullRange) {
 // What stands in the padding is seen if somebody takes it for pixels.
 constexpr std::uint8_t kRubbish = 0xa5;
 
-Bytes coded(const FrameFormat& format) {
-    const auto row = [&](const auto& write) {
-        Bytes bytes;
-        for (int x = 0; x < format.size.x; ++x) write(bytes, x, componentsOf(barAt(x), format.weights, format.fullRange));
-        bytes.resize(static_cast<std::size_t>(format.stride), kRubbish);
-        return bytes;
-    };
-    Bytes luma, colour;
-    switch (format.coding) {
-        case FrameCoding::Yuyv:
-            luma = row([](Bytes& to, int x, Components c) { to.insert(to.end(), {c.y, x % 2 == 0 ? c.cb : c.cr}); });
-            break;
-        case FrameCoding::Uyvy:
-            luma = row([](Bytes& to, int x, Components c) { to.insert(to.end(), {x % 2 == 0 ? c.cb : c.cr, c.y}); });
-            break;
-        case FrameCoding::Nv12:
-            luma = row([](Bytes& to, int, Components c) { to.push_back(c.y); });
-            colour = row([](Bytes& to, int x, Components c) { to.push_back(x % 2 == 0 ? c.cb : c.cr); });
-            break;
-        case FrameCoding::Rgb24:
-            luma = row([](Bytes& to, int x, Components) { to.insert(to.end(), {barAt(x).r, barAt(x).g, barAt(x).b}); });
-            break;
-        case FrameCoding::Grey:
-            luma = row([](Bytes& to, int, Components c) { to.push_back(c.y); });
-            break;
-        case FrameCoding::Mjpg:
-            break;
-    }
+// `colourAt`: of x and y, in pixels.
+template <class ColourAt>
+Bytes coded(const FrameFormat& format, ColourAt colourAt) {
     Bytes frame;
-    for (int y = 0; y < format.size.y; ++y) frame.insert(frame.end(), luma.begin(), luma.end());
-    for (int y = 0; y < format.size.y / 2; ++y) frame.insert(frame.end(), colour.begin(), colour.end());
+    const auto row = [&](int y, const auto& write) {
+        const std::size_t begin = frame.size();
+        for (int x = 0; x < format.size.x; ++x) write(x, componentsOf(colourAt(x, y), format.weights, format.fullRange));
+        frame.resize(begin + static_cast<std::size_t>(format.stride), kRubbish);
+    };
+    for (int y = 0; y < format.size.y; ++y)
+        row(y, [&](int x, Components c) {
+            const std::uint8_t colour = x % 2 == 0 ? c.cb : c.cr;
+            const Rgba8 rgb = colourAt(x, y);
+            switch (format.coding) {
+                case FrameCoding::Yuyv:
+                    return void(frame.insert(frame.end(), {c.y, colour}));
+                case FrameCoding::Uyvy:
+                    return void(frame.insert(frame.end(), {colour, c.y}));
+                case FrameCoding::Rgb24:
+                    return void(frame.insert(frame.end(), {rgb.r, rgb.g, rgb.b}));
+                case FrameCoding::Nv12:
+                case FrameCoding::Grey:
+                case FrameCoding::Mjpg:
+                    return frame.push_back(c.y);
+            }
+        });
+    if (format.coding == FrameCoding::Nv12)
+        for (int y = 0; y < format.size.y; y += 2)
+            row(y, [&](int x, Components c) { frame.push_back(x % 2 == 0 ? c.cb : c.cr); });
     frame.reserve(frame.size() + FrameDecoder::kPadding);
     return frame;
+}
+Bytes coded(const FrameFormat& format) {
+    return coded(format, [](int x, int) { return barAt(x); });
 }
 
 // The middle of each bar, where no neighbour's colour reaches; JPEG's blocks and bars are as wide as each other.
@@ -205,6 +210,16 @@ Bytes jpegByLibjpeg(const cv::Mat& pixels) {
     return bytes;
 }
 
+cv::Mat matOf(const RgbaImage& picture) {
+    cv::Mat pixels(picture.height(), picture.width(), CV_8UC3);
+    for (int y = 0; y < pixels.rows; ++y)
+        for (int x = 0; x < pixels.cols; ++x) {
+            const Rgba8 colour = picture.at(x, y);
+            pixels.at<cv::Vec3b>(y, x) = {colour.b, colour.g, colour.r};
+        }
+    return pixels;
+}
+
 TEST(JpegFrame, shows_its_colours) {
     RgbaImage picture(kSize.x, kSize.y);
     FrameDecoder decoder(jpegFormat(kSize));
@@ -229,6 +244,39 @@ TEST(JpegFrame, without_colours_is_grey) {
     ASSERT_TRUE(
         FrameDecoder(jpegFormat(kSize)).decode(jpegByLibjpeg(cv::Mat(kSize.y, kSize.x, CV_8UC1, cv::Scalar(77))), picture));
     EXPECT_EQ(picture.at(40, 20), (Rgba8{77, 77, 77, 255}));
+}
+
+// Neither the picture nor the decoder's own memory may be touched behind its end, nor the frame behind its padding.
+// Example failures: the heap is overwritten behind the picture; the last columns stay as they were.
+TEST(CodedFrame, of_every_width_is_right_to_the_last_pixel_and_nothing_is_touched_behind_it) {
+    constexpr int kRows = 4;
+    for (const FrameCoding coding :
+         {FrameCoding::Yuyv, FrameCoding::Nv12, FrameCoding::Uyvy, FrameCoding::Rgb24, FrameCoding::Mjpg, FrameCoding::Grey}) {
+        const bool twoByTwo = coding == FrameCoding::Yuyv || coding == FrameCoding::Nv12 || coding == FrameCoding::Uyvy;
+        for (int width = 2; width <= 130; width += twoByTwo ? 2 : 1) {
+            const glm::ivec2 size(width, kRows);
+            const FrameFormat format{coding, size, leastStride(coding, width), true, LumaWeights::Rec601};
+            RgbaImage wanted = shaded(size);
+            if (coding == FrameCoding::Grey)
+                for (Rgba8& pixel : wanted.pixels()) {
+                    const std::uint8_t luma = componentsOf(pixel, format.weights, format.fullRange).y;
+                    pixel = {luma, luma, luma, 255};
+                }
+            const Bytes bytes = coding == FrameCoding::Mjpg ? jpegByLibjpeg(matOf(wanted)) : coded(format, shadeAt);
+            FrameDecoder decoder(format);
+            const FencedAllocations fence;
+            const std::size_t room = bytes.size() + FrameDecoder::kPadding, before = (16 - room % 16) % 16;
+            Bytes fenced(before + room, kRubbish);
+            const std::span<std::uint8_t> frame(fenced.data() + before, bytes.size());
+            std::ranges::copy(bytes, frame.begin());
+            RgbaImage picture(width, kRows, {1, 2, 3, 4});
+            ASSERT_TRUE(decoder.decode(frame, picture));
+            const Difference difference = differenceOf(picture, wanted);
+            const int tolerance = coding == FrameCoding::Mjpg ? 6 : 3;
+            EXPECT_LE(difference.most, tolerance)
+                << nameOf(coding) << ", " << width << " wide, at " << difference.at.x << "," << difference.at.y;
+        }
+    }
 }
 
 // A cable that is too long loses packets, and what is decoded all the same is a torn picture. JPEG has no checksum: where a packet is lost in
@@ -262,6 +310,35 @@ TEST(JpegFrame, that_is_none_or_of_another_size_is_refused) {
     EXPECT_FALSE(decoder.decode(Bytes(5000, 0), picture));
     EXPECT_FALSE(decoder.decode(jpegByLibjpeg(cv::Mat(kSize.y, kSize.x + 16, CV_8UC1, cv::Scalar(77))), picture));
     EXPECT_TRUE(decoder.decode(jpegByLibav(), picture));
+}
+
+// The most address space that this process has had, MB.
+long mostMemory() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmPeak:")) return std::stol(line.substr(7)) / 1024;
+    return 0;
+}
+
+// A damaged header of a small frame, which may state any size. Example failure: 500 MB for each of a bad cable's frames.
+TEST(JpegFrame, that_says_it_is_huge_takes_no_memory) {
+    Bytes frame = jpegByLibav();
+    constexpr std::array<std::uint8_t, 2> kSizeFollows{0xff, 0xc0};
+    const auto header = std::ranges::search(frame, kSizeFollows).begin();
+    ASSERT_LT(header + 9, frame.end());
+    for (const int side : {5, 7}) {  // 16000 lines, and as many pixels in each
+        header[side] = 16000 >> 8;
+        header[side + 1] = 16000 & 0xff;
+    }
+    frame.resize(2'000'000);  // as large as libav believes such a picture to be at least
+    RgbaImage picture(kSize.x, kSize.y);
+    FrameDecoder decoder(jpegFormat(kSize));
+    const long before = mostMemory();
+    const auto decoded = decoder.decode(frame, picture);
+    ASSERT_FALSE(decoded);
+    EXPECT_THAT(decoded.error().message(), testing::HasSubstr("larger than the 96 x 32 pixels that are due"));
+    EXPECT_GT(before, 0);
+    EXPECT_LT(mostMemory() - before, 200);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "allocations.h"
 #include "core/file.h"
+#include "pictures.h"
 #include "scratch_folder.h"
 #include "test_video.h"
 
@@ -258,40 +259,14 @@ TEST_F(Videos, keep_their_alpha) {
     }
 }
 
-// One colour, lighter and darker from pixel to pixel: what a conversion makes of it is known to a step or two, in every format.
-RgbaImage shaded(glm::ivec2 size) {
-    RgbaImage picture(size.x, size.y);
-    for (int y = 0; y < size.y; ++y)
-        for (int x = 0; x < size.x; ++x) {
-            const int light = 60 + (37 * x + 53 * y) % 90;
-            const auto channel = [&](int more) { return static_cast<std::uint8_t>(light + more); };
-            picture.at(x, y) = {channel(50), channel(0), channel(-30), 255};
-        }
-    return picture;
-}
-
-// The greatest difference in any channel, and where. Memory behind the decoded picture may not be touched.
-struct Difference {
-    int most = 0;
-    glm::ivec2 at{0};
-};
+// Neither the picture nor the decoder's own memory may be touched behind its end.
 Difference differenceOfFirstFrame(const std::filesystem::path& file, const RgbaImage& wanted) {
     const auto decoder = valueOf(VideoDecoder::open(valueOf(VideoDecoder::examine(file))));
-    RgbaImage seen;
-    {
-        const FencedAllocations fence;
-        seen = RgbaImage(wanted.width(), wanted.height(), {1, 2, 3, 4});
-    }
     FANTASCOPE_CHECK(decoder->next() == 0u, "the first frame");
+    const FencedAllocations fence;
+    RgbaImage seen(wanted.width(), wanted.height(), {1, 2, 3, 4});
     decoder->picture(seen);
-    Difference difference;
-    for (int y = 0; y < wanted.height(); ++y)
-        for (int x = 0; x < wanted.width(); ++x) {
-            const Rgba8 a = seen.at(x, y), b = wanted.at(x, y);
-            const int most = std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b), std::abs(a.a - b.a)});
-            if (most > difference.most) difference = {most, {x, y}};
-        }
-    return difference;
+    return differenceOf(seen, wanted);
 }
 
 // Example failures: the heap is overwritten behind the picture; the last columns stay as they were.
@@ -317,6 +292,17 @@ TEST_F(Videos, of_real_sizes_are_right_to_the_last_pixel) {
         writeVideo(folder_ / "a.mkv", {.encoder = "ffv1", .size = size}, 1, [&](int) { return wanted; });
         const Difference difference = differenceOfFirstFrame(folder_ / "a.mkv", wanted);
         EXPECT_LE(difference.most, 3) << size.x << " x " << size.y << ", at " << difference.at.x << "," << difference.at.y;
+    }
+}
+
+// Of the formats that libav decodes, one that libswscale does not read.
+constexpr const char* kNotConverted = "uyyvyy411";
+
+// Example failure: a decoder counts the padding of an upright frame's rows as pixels, and finds too many.
+TEST_F(Videos, of_the_largest_size_are_shown_lying_and_upright) {
+    for (const glm::ivec2 size : {glm::ivec2(8192, 4320), {4320, 8192}}) {
+        writeVideo(folder_ / "a.mov", {.encoder = "qtrle", .pixels = "gray", .size = size}, 1, [](int) { return RgbaImage(); });
+        EXPECT_EQ(refusal(folder_ / "a.mov"), "accepted") << size.x << " x " << size.y;
     }
 }
 
@@ -346,6 +332,10 @@ TEST_F(Videos, that_are_broken_are_refused_with_advice) {
                     HasSubstr(fmt::format("long.mkv: {} x {} pixels are too many", size.x, size.y)));
     }
 
+    writeVideo(folder_ / "odd.mkv", {.encoder = "rawvideo", .pixels = kNotConverted}, 3, [](int) { return RgbaImage(); });
+    EXPECT_THAT(refusal(folder_ / "odd.mkv"),
+                HasSubstr("odd.mkv: its pixels are stored as 'uyyvyy411', which cannot be converted; export it again"));
+
     ASSERT_EQ(::mkfifo((folder_ / "pipe.mp4").c_str(), 0600), 0);
     EXPECT_EQ(refusal(folder_ / "pipe.mp4"), "pipe.mp4: is a pipe, a file is needed");
     EXPECT_EQ(refusal("/dev/zero"), "/dev/zero: is a device, a file is needed");
@@ -355,27 +345,6 @@ TEST_F(Videos, that_are_broken_are_refused_with_advice) {
         EXPECT_THAT(refusal(folder_.file("list.mp4", list)), HasSubstr("list.mp4: ")) << list;
 }
 
-// Overwrites the coded frames of a video between two shares of the file.
-std::filesystem::path damaged(const ScratchFolder& folder, const std::filesystem::path& file, double from, double to) {
-    std::string bytes = readFile(file).value();
-    const auto at = [&](double share) { return static_cast<std::size_t>(share * static_cast<double>(bytes.size())); };
-    for (std::size_t i = at(from); i < at(to); ++i) bytes[i] = static_cast<char>(i * 37 % 251);
-    return folder.file("damaged-" + file.filename().string(), bytes);
-}
-
-// Noise is large when coded, so that the damage is within frames.
-RgbaImage noisy(glm::ivec2 size, int number) {
-    RgbaImage picture = numbered(size, number);
-    unsigned state = static_cast<unsigned>(number) * 2654435761u + 1;
-    for (Rgba8& pixel : picture.pixels()) {
-        state = state * 1664525u + 1013904223u;
-        const auto off = static_cast<std::uint8_t>(state >> 28);
-        pixel = {static_cast<std::uint8_t>(pixel.r + off), static_cast<std::uint8_t>(pixel.g + off),
-                 static_cast<std::uint8_t>(pixel.b + off), 255};
-    }
-    return picture;
-}
-
 // Example failures: the show waits for ever for a frame that never comes; grey blocks on the wall; the rest is lost too.
 TEST_F(Videos, leave_out_what_is_damaged_and_go_on) {
     for (const auto& [name, encoder, pixels] : {std::array{"a.mp4", "libx264", "yuv420p"}, {"a.mov", "png", "rgb24"}}) {
@@ -383,7 +352,8 @@ TEST_F(Videos, leave_out_what_is_damaged_and_go_on) {
         writeVideo(folder_ / name, {.encoder = encoder, .pixels = pixels, .size = {128, 128}, .keyEvery = 1}, 100, [](int i) {
             return noisy({128, 128}, i + 1);
         });
-        const auto stream = open(damaged(folder_, folder_ / name, 0.42, 0.48));
+        damage(folder_ / name, 0.42, 0.48);
+        const auto stream = open(folder_ / name);
         const auto& frames = stream->content().frames;
         Seen seen(stream);
         int good = 0, before = 0, last = 0;
@@ -398,7 +368,27 @@ TEST_F(Videos, leave_out_what_is_damaged_and_go_on) {
         EXPECT_GE(good, static_cast<int>(frames.size()) - 12);
         EXPECT_LT(good, 100);
         EXPECT_EQ(seen.at(Time{}), 1) << "and it comes round";
+        const auto missing = static_cast<std::int64_t>(frames.size()) - good;
+        EXPECT_EQ(stream->damagedFrames(), missing) << "each once";
+        for (const VideoContent::Frame& frame : frames) seen.at(frame.begins);
+        EXPECT_EQ(stream->damagedFrames(), 2 * missing) << "and once more each time round";
+        EXPECT_EQ(stream->lateFrames(), 0);
     }
+}
+
+// A format that a file comes to halfway, or another version of it, is met by the decoding thread of a running show.
+// Example failure: the program ends.
+TEST_F(Videos, leave_out_frames_whose_pixels_cannot_be_converted) {
+    const auto file = folder_ / "a.mkv";
+    const auto write = [&](const char* pixels) {
+        writeVideo(file, {.encoder = "rawvideo", .pixels = pixels}, 3, [](int) { return RgbaImage(); });
+    };
+    write("gray");
+    const auto content = valueOf(VideoDecoder::examine(file));
+    write(kNotConverted);
+    const auto decoder = valueOf(VideoDecoder::open(content));
+    EXPECT_EQ(decoder->next(), std::nullopt);
+    EXPECT_THAT(decoder->damage(), HasSubstr("a.mkv: after frame 0: its pixels are stored as 'uyyvyy411'"));
 }
 
 // Somebody copies a new version over the file, or the disk goes: what was there stays on the wall, and whole again it goes on.
