@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <fstream>
 #include <functional>
 #include <optional>
 #include <tuple>
@@ -64,17 +65,23 @@ relays: [{{name: road, coil: 0, safe: on}}]
         return std::ranges::all_of(peer_.journal(), [](const ModbusPeer::Change& change) { return change.coils[0] == '0'; });
     }
     // The lamp was on; returns once the run has switched it off.
-    Process run(bool nohup = false) {
-        switchByHand(true);
-        Process process({"run", ".", "--site", ".", "--from", "One", "--report", "report.json"}, folder(), nohup);
-        FANTASCOPE_CHECK(eventually([&] { return !isSafe() || !process.isRunning(); }) && process.isRunning(),
-                         "the run does not begin: " + process.said());
-        return process;
+    Process run(const Process::Prepare& prepare = {}) {
+        return begun({"run", ".", "--site", ".", "--from", "One", "--report", "report.json"}, prepare);
     }
+    // The lamp was on; returns in the middle of its first click.
+    Process trial() { return begun({"devices", "--site", ".", "--test", "street", "--yes", "--seconds", "60"}); }
     json report() const { return json::parse(contentsOf(folder_ / "report.json")); }
     void removeReport() { std::filesystem::remove(folder_ / "report.json"); }
 
 private:
+    Process begun(const std::vector<std::string>& arguments, const Process::Prepare& prepare = {}) {
+        switchByHand(true);
+        Process process(arguments, folder(), prepare);
+        FANTASCOPE_CHECK(eventually([&] { return !isSafe() || !process.isRunning(); }) && process.isRunning(),
+                         "it does not begin: " + process.said());
+        return process;
+    }
+
     const ScratchFolder folder_;
     ModbusPeer peer_;
 };
@@ -230,13 +237,64 @@ TEST_F(Ends, a_guard_that_dies_is_replaced) {
 
 TEST_F(Ends, under_nohup_a_closed_terminal_ends_nothing) {
     Street street(ModbusPeer::Wire::Tcp);
-    Process run = street.run(true);
+    Process run = street.run([] { ::signal(SIGHUP, SIG_IGN); });
     run.signal(SIGHUP);
     street.switchByHand(true);
     EXPECT_TRUE(eventually([&] { return !street.isSafe(); })) << "the show goes on and puts its relay right";
     run.signal(SIGTERM);
     EXPECT_EQ(run.wait(), 0) << run.said();
     EXPECT_TRUE(street.isSafe());
+}
+
+class Trials : public Ends {
+protected:
+    void SetUp() override {
+        Ends::SetUp();
+        if (!whyNoNetwork().empty()) GTEST_SKIP() << whyNoNetwork();
+    }
+    // Until then it has the module, and the next test may get the same line.
+    static bool guardIsDone(Process& trial) {
+        return eventually([&] { return trial.said().find("made its relays safe") != std::string::npos; });
+    }
+};
+
+// Example failure: a street lamp that was tried stays off for ever.
+TEST_F(Trials, a_kill_in_the_middle_of_a_click_leaves_the_relay_safe) {
+    for (const auto wire : {ModbusPeer::Wire::Tcp, ModbusPeer::Wire::Rtu}) {
+        Street street(wire);
+        Process trial = street.trial();
+        trial.signal(SIGKILL);
+        EXPECT_TRUE(guardIsDone(trial)) << trial.said();
+        EXPECT_TRUE(street.isSafe());
+    }
+}
+
+// Example failure: the second Ctrl-C ended it at once.
+TEST_F(Trials, ctrl_c_twice_in_the_middle_of_a_click_leaves_the_relay_safe) {
+    Street street(ModbusPeer::Wire::Tcp);
+    Process trial = street.trial();
+    trial.signalAlone(SIGINT);
+    trial.signalAlone(SIGINT);
+    EXPECT_EQ(trial.wait(), 0) << trial.said();
+    EXPECT_TRUE(street.isSafe());
+}
+
+// Somebody else may have the other banks of the site.
+TEST_F(Trials, a_kill_switches_nothing_of_another_bank) {
+    Street street(ModbusPeer::Wire::Tcp);
+    std::string site = contentsOf(street.folder() / "site.yaml");
+    const auto replace = [&](const std::string& old, const std::string& by) { site.replace(site.find(old), old.size(), by); };
+    std::string other = street.peer().options(0) + "unit: 2\n";
+    std::replace(other.begin(), other.end(), '\n', ',');
+    replace("relay_banks: [", "relay_banks: [{name: yard, device: {" + other + "}}, ");
+    replace("relays: [", "relays: [{name: gate, bank: yard, coil: 0, safe: on}, ");
+    replace("{name: road,", "{name: road, bank: street,");
+    std::ofstream(street.folder() / "site.yaml") << site;
+    Process trial = street.trial();
+    trial.signal(SIGKILL);
+    EXPECT_TRUE(guardIsDone(trial)) << trial.said();
+    EXPECT_TRUE(street.isSafe());
+    EXPECT_EQ(street.peer().ask("get 0.2 c 0 1"), "0");
 }
 
 using Claims = Ends;
