@@ -246,6 +246,102 @@ TEST_F(Ends, under_nohup_a_closed_terminal_ends_nothing) {
     EXPECT_TRUE(street.isSafe());
 }
 
+// Somebody at a terminal with a shell.
+class Shell {
+public:
+    explicit Shell(const std::filesystem::path& folder) {
+        int terminal = -1;
+        process_ = ::forkpty(&terminal, nullptr, nullptr, nullptr);
+        FANTASCOPE_CHECK(process_ >= 0, "there are terminals");
+        if (process_ == 0) {
+            ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+            ::setenv("PS1", kPrompt, 1);
+            if (::chdir(folder.c_str()) == 0) ::execlp("bash", "bash", "--noprofile", "--norc", "-i", nullptr);
+            ::_exit(127);
+        }
+        ::fcntl(terminal, F_SETFL, O_NONBLOCK);
+        terminal_ = drivers::FileHandle(terminal);
+        FANTASCOPE_CHECK(shows(kPrompt), "a shell begins");
+    }
+    ~Shell() {
+        if (const pid_t program = started(); program > 0) ::kill(program, SIGKILL);
+        ::kill(process_, SIGKILL);
+        ::waitpid(process_, nullptr, 0);
+    }
+    static constexpr const char* kPrompt = "what next? ";
+
+    void type(const std::string& keys) {
+        shown_.clear();
+        FANTASCOPE_CHECK(::write(terminal_.get(), keys.data(), keys.size()) == std::ssize(keys), "a terminal takes keys");
+    }
+    // Whether the terminal has shown this since the last keys, or does soon.
+    bool shows(const std::string& text) {
+        return eventually([&] {
+            char bytes[4096];
+            for (ssize_t count = 0; (count = ::read(terminal_.get(), bytes, sizeof bytes)) > 0;)
+                shown_.append(bytes, static_cast<std::size_t>(count));
+            return shown_.find(text) != std::string::npos;
+        });
+    }
+    const std::string& shown() const { return shown_; }
+    // Whether the terminal shows each key and gives them by the line; the shell wants neither while it waits for keys.
+    bool echoes() const {
+        termios settings{};
+        tcgetattr(terminal_.get(), &settings);
+        return (settings.c_lflag & (ICANON | ECHO)) != 0;
+    }
+    // The program that it has started; 0: none.
+    pid_t started() const {
+        std::ifstream children(fmt::format("/proc/{0}/task/{0}/children", process_));
+        pid_t child = 0;
+        children >> child;
+        return child;
+    }
+
+private:
+    pid_t process_ = -1;
+    drivers::FileHandle terminal_;
+    std::string shown_;
+};
+
+// Example failure: Ctrl-Z in place of Ctrl-C left the street dark for as long as nobody looked.
+TEST_F(Ends, ctrl_z_does_not_stop_a_run) {
+    Street street(ModbusPeer::Wire::Tcp);
+    Shell shell(street.folder());
+    street.switchByHand(true);
+    shell.type(std::string(FANTASCOPE_PROGRAM) + " run . --site . --from One\n");
+    ASSERT_TRUE(eventually([&] { return !street.isSafe(); }));
+    shell.type(
+        "\x1a"
+        "0");
+    EXPECT_TRUE(shell.shows("BLACKOUT")) << shell.shown();
+    shell.type("qq");
+    EXPECT_TRUE(eventually([&] { return shell.started() == 0; })) << shell.shown();
+    EXPECT_TRUE(street.isSafe());
+}
+
+// Example failures: at its end it was stopped, since it gave back a terminal that was not its own any more, and left no report; the shell
+// got the settings that the run had found.
+TEST_F(Ends, a_run_in_the_background_ends_with_its_report_and_leaves_the_terminal_to_the_shell) {
+    Street street(ModbusPeer::Wire::Tcp);
+    Shell shell(street.folder());
+    street.switchByHand(true);
+    shell.type(std::string(FANTASCOPE_PROGRAM) + " run . --site . --from One --report report.json\n");
+    ASSERT_TRUE(eventually([&] { return !street.isSafe(); }));
+    const pid_t run = shell.started();
+    ASSERT_GT(run, 0);
+    shell.type("");
+    ::kill(run, SIGSTOP);
+    ASSERT_TRUE(shell.shows(Shell::kPrompt)) << shell.shown();
+    shell.type("bg\n");
+    ASSERT_TRUE(shell.shows(Shell::kPrompt)) << shell.shown();
+    ::kill(run, SIGTERM);
+    ASSERT_TRUE(eventually([&] { return shell.started() == 0; })) << shell.shown();
+    EXPECT_EQ(street.report()["unsafe_relays"], json::array());
+    EXPECT_TRUE(street.isSafe());
+    EXPECT_FALSE(shell.echoes());
+}
+
 class Trials : public Ends {
 protected:
     void SetUp() override {
