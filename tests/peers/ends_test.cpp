@@ -246,6 +246,23 @@ TEST_F(Ends, under_nohup_a_closed_terminal_ends_nothing) {
     EXPECT_TRUE(street.isSafe());
 }
 
+// Example failures: what is printed goes into the file that signals ring; the guard's own files replace the claims that it keeps.
+TEST_F(Ends, a_run_without_standard_streams_ends_as_any_other) {
+    Street street(ModbusPeer::Wire::Tcp);
+    const auto withoutStreams = [] {
+        for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::close(stream);
+    };
+    Process run = street.run(withoutStreams);
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        EXPECT_EQ(std::filesystem::read_symlink(fmt::format("/proc/{}/fd/{}", run.id(), stream)), "/dev/null") << stream;
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(), 0);
+    EXPECT_EQ(street.report()["unsafe_relays"], json::array());
+    EXPECT_TRUE(street.isSafe());
+    street.run(withoutStreams).signal(SIGKILL);
+    EXPECT_TRUE(eventually([&] { return street.isSafe(); }));
+}
+
 // Somebody at a terminal with a shell.
 class Shell {
 public:
