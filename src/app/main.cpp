@@ -20,6 +20,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 
 namespace fantascope::app {
@@ -42,6 +43,7 @@ void openMissingStreams() {
 
 int run(int argc, char** argv) {
     openMissingStreams();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that grows over its limit is an error of its write, as on a full disk
     CLI::App program("A live installation controller for night-time public projection.", "fantascope");
     program.set_version_flag("--version", FANTASCOPE_VERSION);
     program.require_subcommand(1);
