@@ -108,6 +108,7 @@ const std::vector<End>& allEnds() {
         bySignal("SIGABRT", SIGABRT, false),
         bySignal("SIGQUIT", SIGQUIT, true),
         bySignal("SIGPIPE of another process", SIGPIPE, true),
+        bySignal("SIGUSR1", SIGUSR1, true),
         {"nobody reads it any more", true, [](Process& run, Process&) { run.stopReading(); }},
         // A show goes on without its display.
         {"X killed, then SIGTERM", false,
