@@ -1,5 +1,7 @@
 #include "app/device_trial.h"
 
+#include "app/run_report.h"
+
 #include "core/image.h"
 #include "core/text.h"
 
@@ -44,8 +46,9 @@ double brightnessOf(const RgbaImage& image) {
 Result<void> DeviceTrial::every(Time period, const Device& device, const std::function<Result<void>()>& step) {
     std::optional<std::string> missing;  // and why
     bool wasThere = false;
-    for (Time moment = clock_.now(); goesOn(); moment = std::max(moment + period, clock_.now())) {
+    for (Time moment = clock_.now();; moment = std::max(moment + period, clock_.now())) {
         clock_.sleepUntil(moment);
+        if (!goesOn()) break;
         const DeviceStatus status = device.status();
         if (status.state == DeviceState::Running) {
             if (missing || !wasThere) out_ << fmt::format("{} ({}) is there", status.name, status.driver) << std::endl;
@@ -78,12 +81,13 @@ Result<void> DeviceTrial::chase(DmxPort& port, const std::vector<std::size_t>& s
     return tried;
 }
 
-Result<void> DeviceTrial::click(RelayBank& bank, const std::vector<bool>& safeStates, const Names& names) {
+Result<void> DeviceTrial::click(RelayBank& bank, const std::vector<bool>& safeStates, const Names& names, RelayGuard* guard) {
     std::vector<std::size_t> relays;
     for (std::size_t coil = 0; coil < safeStates.size(); ++coil)
         if (names.empty() || names.contains(coil)) relays.push_back(coil);
     std::size_t next = 0;
-    const auto tried = every(kToBeSeen, bank, [&]() -> Result<void> {
+    auto tried = every(kToBeSeen, bank, [&]() -> Result<void> {
+        if (guard != nullptr) guard->arm();
         std::vector<bool> states = safeStates;
         const std::size_t relay = relays[next / 2 % relays.size()];
         if (next++ % 2 == 0) states[relay] = !states[relay];
@@ -103,8 +107,14 @@ Result<void> DeviceTrial::click(RelayBank& bank, const std::vector<bool>& safeSt
         return Error(fmt::format("{} was told{} and says{}{}", bank.status().name, shown(states), shown(*read),
                                  names.empty() ? "" : wrong));
     });
-    (void)bank.write(safeStates);
-    return tried;
+    if (next == 0) return tried;  // nothing was switched
+    const auto safe = bank.write(safeStates);
+    if (safe) {
+        if (guard != nullptr) guard->dismiss();
+        return tried;
+    }
+    const std::string unsafe = sentenceOf({{bank.status().name, safe.error().message()}});
+    return Error(tried ? unsafe : tried.error().message() + "; " + unsafe);
 }
 
 Result<void> DeviceTrial::tellPresses(CueController& controller, const Names& names) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/interrupt.h"
+#include "app/relay_guard.h"
 
 #include "device/camera_source.h"
 #include "device/cue_controller.h"
@@ -36,8 +37,10 @@ public:
     // Lights one of these slots (0 .. 511) after the other, the others dark, over and over; dark at the end.
     Result<void> chase(DmxPort& port, const std::vector<std::size_t>& slots, const Names& names = {});
     // Switches each relay to its unsafe state and back, one after the other, and asks the bank each time what it did; safe at the end.
-    // With names only the relays that have one.
-    Result<void> click(RelayBank& bank, const std::vector<bool>& safeStates, const Names& names = {});
+    // With names only the relays that have one. The guard, where relays are real, outlives the bank. Error: also that the bank has not
+    // confirmed the safe states at the end.
+    Result<void> click(RelayBank& bank, const std::vector<bool>& safeStates, const Names& names = {},
+                       RelayGuard* guard = nullptr);
     // Tells of every button that goes down or up, and of every contact.
     Result<void> tellPresses(CueController& controller, const Names& names = {});
     Result<void> tellContacts(InputBank& bank, const Names& names = {});
@@ -47,7 +50,8 @@ public:
     Result<void> snapshot(CameraSource& camera, const std::filesystem::path& file);
 
 private:
-    bool goesOn() const { return clock_.now() < end_ && (interrupt_ == nullptr || !interrupt_->requested()); }
+    // Not where nobody reads it any more.
+    bool goesOn() const { return clock_.now() < end_ && out_.good() && (interrupt_ == nullptr || !interrupt_->requested()); }
     // Does something every `period` while the device is there. Error: it never was, or what `step` says.
     Result<void> every(Time period, const Device& device, const std::function<Result<void>()>& step);
 

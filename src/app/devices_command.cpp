@@ -3,6 +3,7 @@
 #include "app/device_trial.h"
 #include "app/devices.h"
 #include "app/interrupt.h"
+#include "app/relay_guard.h"
 #include "app/site_claims.h"
 #include "app/site_file.h"
 #include "drivers/registry.h"
@@ -246,7 +247,8 @@ Result<std::optional<drivers::Claim>> claimForTest(const std::string& name, cons
 }
 
 // A device of the site, by the name that its status has.
-Result<void> testDeclared(const Options& options, const show::Site& site, DeviceTrial& trial, Clock& clock) {
+Result<void> testDeclared(const Options& options, const show::Site& site, const std::optional<drivers::Claim>& claim,
+                          DeviceTrial& trial, Clock& clock) {
     const drivers::Surroundings around{clock};
     std::vector<std::string> names;
     const auto isIt = [&](const std::string& name) {
@@ -268,7 +270,9 @@ Result<void> testDeclared(const Options& options, const show::Site& site, Device
     for (std::size_t bank = 0; bank < site.relayBanks.size(); ++bank)
         if (const auto& [name, device] = site.relayBanks[bank]; isIt(name)) {
             const auto safe = show::safeCoils(site, bank);
-            return trial.click(*TRY(drivers::openRelayBank(device.options, name, safe, around)), safe, relayNames(site, bank));
+            const auto guard = TRY(RelayGuard::start(site.file, claim ? std::vector{claim->file()} : std::vector<int>(), name));
+            return trial.click(*TRY(drivers::openRelayBank(device.options, name, safe, around)), safe, relayNames(site, bank),
+                               guard.get());
         }
     if (site.cueController && isIt("cue controller"))
         return trial.tellPresses(*TRY(drivers::openCueController(site.cueController->options, around)), buttonNames(site));
@@ -342,9 +346,9 @@ Result<void> devices(const Options& options) {
             TRY(askBeforeClicking(options, *site));
         }
         SteadyClock clock;
-        const Interrupt interrupt;
+        const Interrupt interrupt(Interrupt::Second::IsCounted);  // no lamp stays lit, no relay unsafe
         DeviceTrial trial(clock, fromSeconds(options.length.value_or(kTrial)), &interrupt, std::cout);
-        return site ? testDeclared(options, *site, trial, clock) : testFound(options, trial, clock);
+        return site ? testDeclared(options, *site, claim, trial, clock) : testFound(options, trial, clock);
     }
     if (options.watch) return watch(site, fromSeconds(options.length.value_or(kForever)));
     return list(site);

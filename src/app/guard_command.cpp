@@ -24,6 +24,7 @@ constexpr Time kAgain = std::chrono::milliseconds(10);
 
 struct Options {
     std::filesystem::path site;
+    std::string bank;
 };
 
 // Nothing but SIGKILL ends it: it ends by itself.
@@ -74,6 +75,7 @@ Result<void> guard(const Options& options) {
     std::vector<Bank> banks;
     for (std::size_t number = 0; number < site.relayBanks.size(); ++number) {
         const auto& [name, device] = site.relayBanks[number];
+        if (!options.bank.empty() && name != options.bank) continue;
         auto safe = show::safeCoils(site, number);
         auto opened = drivers::openRelayBank(device.options, name, safe, {clock});
         banks.push_back({name, std::move(safe), std::move(opened), {}});
@@ -93,12 +95,13 @@ Result<void> guard(const Options& options) {
             bank.name, seconds(RelayGuard::kPatience), bank.made.error().message()));
     }
     if (!all) return Error("the run has ended, and not all of its relays are safe");
-    say("the run has ended without a word; its guard has made all relays safe");
+    say("the run has ended without a word; its guard has made its relays safe");
     return {};
 }
 
 void declare(CLI::App& command, Options& options) {
     command.add_option("site", options.site, "the site file")->required();
+    command.add_option("--bank", options.bank, "of its relay banks this one alone");
     command.group("");  // hidden
 }
 

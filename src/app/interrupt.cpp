@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kAlways[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE};
 constexpr int kOfShows[] = {SIGPWR, SIGUSR1, SIGUSR2};
+constexpr int kStops[] = {SIGTSTP, SIGTTIN, SIGTTOU};  // a show that stands still has not ended: its guard would wait
 
 // Lock-free, so a signal handler may write them.
 std::atomic<int> signals = 0, first = 0, bell = -1;
@@ -60,8 +61,15 @@ Interrupt::Interrupt(Second second) {
         replaced_.push_back({signal, before});
     };
     for (const int signal : kAlways) replace(signal);
-    if (counts)
-        for (const int signal : kOfShows) replace(signal);
+    if (!counts) return;
+    for (const int signal : kOfShows) replace(signal);
+    for (const int signal : kStops) {
+        struct sigaction before {
+        }, ignored{};
+        ignored.sa_handler = SIG_IGN;
+        sigaction(signal, &ignored, &before);
+        replaced_.push_back({signal, before});
+    }
 }
 
 Interrupt::~Interrupt() {

@@ -13,7 +13,8 @@ class Interrupt {
 public:
     enum class Second {
         EndsProgram,  // the second signal of a kind ends the program at once
-        IsCounted     // a show: nothing ends it at once. SIGPWR, SIGUSR1 and SIGUSR2 ask for the end too
+        IsCounted  // relays may be unsafe: nothing ends it at once. SIGPWR, SIGUSR1 and SIGUSR2 ask for the end too, and what a
+                   // terminal stops programs with, such as Ctrl-Z, has no effect
     };
     explicit Interrupt(Second second = Second::EndsProgram);
     ~Interrupt();  // the signals do again what they did before

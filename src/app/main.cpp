@@ -16,8 +16,11 @@
 
 #include "core/text.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 
 namespace fantascope::app {
@@ -31,7 +34,16 @@ constexpr AddCommand kCommands[] = {addPatternCommand,   addPoseCommand,     add
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 
+// Where a standard stream was closed before we started, the next file that is opened would take its number, and what is printed would go
+// into a device.
+void openMissingStreams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(stream, F_GETFD) == -1) (void)open("/dev/null", O_RDWR);  // takes the lowest number that is free: this one
+}
+
 int run(int argc, char** argv) {
+    openMissingStreams();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that grows over its limit is an error of its write, as on a full disk
     CLI::App program("A live installation controller for night-time public projection.", "fantascope");
     program.set_version_flag("--version", FANTASCOPE_VERSION);
     program.require_subcommand(1);

@@ -29,9 +29,9 @@ void crashAtOnce() {
 
 }  // namespace
 
-Result<std::unique_ptr<RelayGuard>> RelayGuard::start(std::filesystem::path site, std::vector<int> held) {
+Result<std::unique_ptr<RelayGuard>> RelayGuard::start(std::filesystem::path site, std::vector<int> held, std::string bank) {
     crashAtOnce();
-    std::unique_ptr<RelayGuard> guard(new RelayGuard(std::move(site), std::move(held)));
+    std::unique_ptr<RelayGuard> guard(new RelayGuard(std::move(site), std::move(held), std::move(bank)));
     TRY(guard->restart());
     return guard;
 }
@@ -73,8 +73,9 @@ Result<void> RelayGuard::restart() {
     posix_spawn_file_actions_adddup2(&files, far.get(), STDIN_FILENO);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     for (const int file : held_) posix_spawn_file_actions_adddup2(&files, file, file);  // onto itself: it stays open
-    std::string program = "/proc/self/exe", command = kGuardCommand, file = site_.string(), name = "fantascope";
-    char* words[] = {name.data(), command.data(), file.data(), nullptr};
+    std::string program = "/proc/self/exe", command = kGuardCommand, file = site_.string(), bank = "--bank=" + bank_,
+                name = "fantascope";
+    char* words[] = {name.data(), command.data(), file.data(), bank_.empty() ? nullptr : bank.data(), nullptr};
     const int error = posix_spawn(&process_, program.c_str(), &files, &attributes, words, environ);
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);

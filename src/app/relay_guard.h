@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,9 +21,9 @@ class RelayGuard {
 public:
     static constexpr Time kPatience = std::chrono::seconds(30);
 
-    // Starts it. The guard reads the site file by itself, at once, and keeps `held` (files of claims) open until it ends.
-    // Error: no process can be started.
-    static Result<std::unique_ptr<RelayGuard>> start(std::filesystem::path site, std::vector<int> held);
+    // Starts it. The guard reads the site file by itself, at once, and keeps `held` (files of claims) open until it ends. Of one `bank`
+    // alone, where it is named. Error: no process can be started.
+    static Result<std::unique_ptr<RelayGuard>> start(std::filesystem::path site, std::vector<int> held, std::string bank = {});
     // Unless it was armed, nothing was switched and it is dismissed; an armed one sets to work.
     ~RelayGuard();
     RelayGuard(const RelayGuard&) = delete;
@@ -37,9 +38,11 @@ public:
     void dismiss();
 
 private:
-    RelayGuard(std::filesystem::path site, std::vector<int> held) : site_(std::move(site)), held_(std::move(held)) {}
+    RelayGuard(std::filesystem::path site, std::vector<int> held, std::string bank)
+        : site_(std::move(site)), held_(std::move(held)), bank_(std::move(bank)) {}
     const std::filesystem::path site_;
     const std::vector<int> held_;
+    const std::string bank_;    // "": all
     mutable std::mutex mutex_;  // of:
     drivers::FileHandle pipe_;
     int process_ = -1;

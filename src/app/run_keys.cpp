@@ -17,6 +17,7 @@ std::string_view keyFor(RunKey::Action action) { return std::ranges::find(kRunKe
 std::string runKeysHelp() {
     std::string text = "Keys while the show runs:\n";
     for (const RunKey& key : kRunKeys) text += fmt::format("  {:<7}{}\n", key.name, key.does);
+    text += "  Ctrl-C end at once\n  Ctrl-Z nothing: it would leave the relays as they are\n";
     return text;
 }
 

@@ -5,6 +5,12 @@
 #include <unistd.h>
 
 namespace fantascope::app {
+namespace {
+
+// A process in the background that touches its terminal would be stopped, or take keys and settings from the one in front.
+bool isInFront() { return tcgetpgrp(STDIN_FILENO) == getpgrp(); }
+
+}  // namespace
 
 struct TerminalKeys::Settings {
     termios value{};
@@ -12,21 +18,20 @@ struct TerminalKeys::Settings {
 
 TerminalKeys::TerminalKeys() {
     termios settings{};
-    // A process in the background that touches its terminal's settings would be stopped.
-    if (isatty(STDIN_FILENO) == 0 || tcgetpgrp(STDIN_FILENO) != getpgrp() || tcgetattr(STDIN_FILENO, &settings) != 0) return;
+    if (isatty(STDIN_FILENO) == 0 || !isInFront() || tcgetattr(STDIN_FILENO, &settings) != 0) return;
     saved_ = std::make_unique<Settings>(Settings{settings});
     settings.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
     tcsetattr(STDIN_FILENO, TCSANOW, &settings);
 }
 
 TerminalKeys::~TerminalKeys() {
-    if (saved_) tcsetattr(STDIN_FILENO, TCSANOW, &saved_->value);
+    if (saved_ && isInFront()) tcsetattr(STDIN_FILENO, TCSANOW, &saved_->value);
 }
 
 std::optional<char> TerminalKeys::poll() {
     pollfd input{STDIN_FILENO, POLLIN, 0};
     char key = 0;
-    if (!saved_ || ::poll(&input, 1, 0) <= 0 || read(STDIN_FILENO, &key, 1) != 1) return std::nullopt;
+    if (!saved_ || ::poll(&input, 1, 0) <= 0 || !isInFront() || read(STDIN_FILENO, &key, 1) != 1) return std::nullopt;
     return key;
 }
 

@@ -6,7 +6,8 @@
 namespace fantascope::app {
 
 // Single key presses from the terminal on standard input, without echo or Enter, for as long as it lives; nothing where standard input is
-// no terminal. The terminal's own settings are put back at the end, and Ctrl-C goes on to work. Thread: thread-bound.
+// no terminal, or while another program has it. The terminal's own settings are put back at the end, and Ctrl-C goes on to work.
+// Thread: thread-bound.
 class TerminalKeys {
 public:
     TerminalKeys();

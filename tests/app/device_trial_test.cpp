@@ -11,6 +11,7 @@
 
 #include <gmock/gmock.h>
 
+#include <csignal>
 #include <set>
 #include <sstream>
 
@@ -121,6 +122,39 @@ TEST_F(TrialOfADevice, a_relay_that_sticks_is_found) {
     EXPECT_EQ(tried.error().message(), "road was told on off and says on on");
     EXPECT_EQ(trial_.click(bank, {false, false}, {{0, "path"}, {1, "fog"}}).error().message(),
               "road was told on off and says on on: look at fog (coil 1)");
+}
+
+// Example failure: the module loses its power in the middle of a click, and the trial ends well.
+TEST_F(TrialOfADevice, relays_that_are_not_safe_at_the_end_are_told) {
+    const auto bank = opened(drivers::openRelayBank(simulated_, "road", {true}, around_));
+    eachSecond([&](int second) { world_.setPlugged("road", second != 4); });
+    const auto tried = trial_.click(*bank, {true});
+    ASSERT_FALSE(tried);
+    EXPECT_THAT(tried.error().message(), HasSubstr("RELAYS MAY BE UNSAFE: 'road'"));
+}
+
+// Example failure: after Ctrl-C one more lamp lights up, one more relay clicks.
+TEST_F(TrialOfADevice, an_interrupted_trial_does_nothing_more) {
+    const Interrupt interrupt(Interrupt::Second::IsCounted);
+    DeviceTrial trial(clock_, 5s, &interrupt, out_);
+    const auto port = opened(drivers::openDmxPort(simulated_, 1, around_));
+    eachSecond([&](int second) {
+        if (second == 1) std::raise(SIGINT);
+    });
+    EXPECT_TRUE(trial.chase(*port, {0, 1, 2, 3, 4}));
+    EXPECT_THAT(told(), ElementsAre(HasSubstr("is there"), "slot 1 is at full", "slot 2 is at full", "slot 3 is at full"));
+    EXPECT_THAT(world_.slots(1), testing::Each(0));
+}
+
+// Example failure: `fantascope devices --test street | head -1` goes on clicking for nobody.
+TEST_F(TrialOfADevice, a_trial_that_nobody_reads_ends) {
+    const auto port = opened(drivers::openDmxPort(simulated_, 1, around_));
+    eachSecond([&](int second) {
+        if (second == 1) out_.setstate(std::ios::badbit);
+    });
+    EXPECT_TRUE(trial_.chase(*port, {0}));
+    EXPECT_LT(clock_.now(), 2s);
+    EXPECT_THAT(world_.slots(1), testing::Each(0));
 }
 
 TEST_F(TrialOfADevice, presses_and_contacts_are_told_as_they_come) {

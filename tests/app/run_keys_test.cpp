@@ -23,6 +23,7 @@ TEST(RunKeys, stand_in_the_help_of_both_commands) {
     for (const char* command : {"run", "rehearse"}) {
         const std::string help = program.get_subcommand(command)->help();
         for (const RunKey& key : kRunKeys) EXPECT_THAT(help, HasSubstr(fmt::format("\n  {:<7}{}\n", key.name, key.does)));
+        EXPECT_THAT(help, testing::AllOf(HasSubstr("\n  Ctrl-C "), HasSubstr("\n  Ctrl-Z ")));
     }
 }
 

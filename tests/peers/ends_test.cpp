@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <fstream>
 #include <functional>
 #include <optional>
 #include <tuple>
@@ -64,17 +65,23 @@ relays: [{{name: road, coil: 0, safe: on}}]
         return std::ranges::all_of(peer_.journal(), [](const ModbusPeer::Change& change) { return change.coils[0] == '0'; });
     }
     // The lamp was on; returns once the run has switched it off.
-    Process run(bool nohup = false) {
-        switchByHand(true);
-        Process process({"run", ".", "--site", ".", "--from", "One", "--report", "report.json"}, folder(), nohup);
-        FANTASCOPE_CHECK(eventually([&] { return !isSafe() || !process.isRunning(); }) && process.isRunning(),
-                         "the run does not begin: " + process.said());
-        return process;
+    Process run(const Process::Prepare& prepare = {}) {
+        return begun({"run", ".", "--site", ".", "--from", "One", "--report", "report.json"}, prepare);
     }
+    // The lamp was on; returns in the middle of its first click.
+    Process trial() { return begun({"devices", "--site", ".", "--test", "street", "--yes", "--seconds", "60"}); }
     json report() const { return json::parse(contentsOf(folder_ / "report.json")); }
     void removeReport() { std::filesystem::remove(folder_ / "report.json"); }
 
 private:
+    Process begun(const std::vector<std::string>& arguments, const Process::Prepare& prepare = {}) {
+        switchByHand(true);
+        Process process(arguments, folder(), prepare);
+        FANTASCOPE_CHECK(eventually([&] { return !isSafe() || !process.isRunning(); }) && process.isRunning(),
+                         "it does not begin: " + process.said());
+        return process;
+    }
+
     const ScratchFolder folder_;
     ModbusPeer peer_;
 };
@@ -101,6 +108,7 @@ const std::vector<End>& allEnds() {
         bySignal("SIGABRT", SIGABRT, false),
         bySignal("SIGQUIT", SIGQUIT, true),
         bySignal("SIGPIPE of another process", SIGPIPE, true),
+        bySignal("SIGUSR1", SIGUSR1, true),
         {"nobody reads it any more", true, [](Process& run, Process&) { run.stopReading(); }},
         // A show goes on without its display.
         {"X killed, then SIGTERM", false,
@@ -230,13 +238,177 @@ TEST_F(Ends, a_guard_that_dies_is_replaced) {
 
 TEST_F(Ends, under_nohup_a_closed_terminal_ends_nothing) {
     Street street(ModbusPeer::Wire::Tcp);
-    Process run = street.run(true);
+    Process run = street.run([] { ::signal(SIGHUP, SIG_IGN); });
     run.signal(SIGHUP);
     street.switchByHand(true);
     EXPECT_TRUE(eventually([&] { return !street.isSafe(); })) << "the show goes on and puts its relay right";
     run.signal(SIGTERM);
     EXPECT_EQ(run.wait(), 0) << run.said();
     EXPECT_TRUE(street.isSafe());
+}
+
+// Example failures: what is printed goes into the file that signals ring; the guard's own files replace the claims that it keeps.
+TEST_F(Ends, a_run_without_standard_streams_ends_as_any_other) {
+    Street street(ModbusPeer::Wire::Tcp);
+    const auto withoutStreams = [] {
+        for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::close(stream);
+    };
+    Process run = street.run(withoutStreams);
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        EXPECT_EQ(std::filesystem::read_symlink(fmt::format("/proc/{}/fd/{}", run.id(), stream)), "/dev/null") << stream;
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(), 0);
+    EXPECT_EQ(street.report()["unsafe_relays"], json::array());
+    EXPECT_TRUE(street.isSafe());
+    street.run(withoutStreams).signal(SIGKILL);
+    EXPECT_TRUE(eventually([&] { return street.isSafe(); }));
+}
+
+// Somebody at a terminal with a shell.
+class Shell {
+public:
+    explicit Shell(const std::filesystem::path& folder) {
+        int terminal = -1;
+        process_ = ::forkpty(&terminal, nullptr, nullptr, nullptr);
+        FANTASCOPE_CHECK(process_ >= 0, "there are terminals");
+        if (process_ == 0) {
+            ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+            ::setenv("PS1", kPrompt, 1);
+            if (::chdir(folder.c_str()) == 0) ::execlp("bash", "bash", "--noprofile", "--norc", "-i", nullptr);
+            ::_exit(127);
+        }
+        ::fcntl(terminal, F_SETFL, O_NONBLOCK);
+        terminal_ = drivers::FileHandle(terminal);
+        FANTASCOPE_CHECK(shows(kPrompt), "a shell begins");
+    }
+    ~Shell() {
+        if (const pid_t program = started(); program > 0) ::kill(program, SIGKILL);
+        ::kill(process_, SIGKILL);
+        ::waitpid(process_, nullptr, 0);
+    }
+    static constexpr const char* kPrompt = "what next? ";
+
+    void type(const std::string& keys) {
+        shown_.clear();
+        FANTASCOPE_CHECK(::write(terminal_.get(), keys.data(), keys.size()) == std::ssize(keys), "a terminal takes keys");
+    }
+    // Whether the terminal has shown this since the last keys, or does soon.
+    bool shows(const std::string& text) {
+        return eventually([&] {
+            char bytes[4096];
+            for (ssize_t count = 0; (count = ::read(terminal_.get(), bytes, sizeof bytes)) > 0;)
+                shown_.append(bytes, static_cast<std::size_t>(count));
+            return shown_.find(text) != std::string::npos;
+        });
+    }
+    const std::string& shown() const { return shown_; }
+    // Whether the terminal shows each key and gives them by the line; the shell wants neither while it waits for keys.
+    bool echoes() const {
+        termios settings{};
+        tcgetattr(terminal_.get(), &settings);
+        return (settings.c_lflag & (ICANON | ECHO)) != 0;
+    }
+    // The program that it has started; 0: none.
+    pid_t started() const {
+        std::ifstream children(fmt::format("/proc/{0}/task/{0}/children", process_));
+        pid_t child = 0;
+        children >> child;
+        return child;
+    }
+
+private:
+    pid_t process_ = -1;
+    drivers::FileHandle terminal_;
+    std::string shown_;
+};
+
+// Example failure: Ctrl-Z in place of Ctrl-C left the street dark for as long as nobody looked.
+TEST_F(Ends, ctrl_z_does_not_stop_a_run) {
+    Street street(ModbusPeer::Wire::Tcp);
+    Shell shell(street.folder());
+    street.switchByHand(true);
+    shell.type(std::string(FANTASCOPE_PROGRAM) + " run . --site . --from One\n");
+    ASSERT_TRUE(eventually([&] { return !street.isSafe(); }));
+    shell.type(
+        "\x1a"
+        "0");
+    EXPECT_TRUE(shell.shows("BLACKOUT")) << shell.shown();
+    shell.type("qq");
+    EXPECT_TRUE(eventually([&] { return shell.started() == 0; })) << shell.shown();
+    EXPECT_TRUE(street.isSafe());
+}
+
+// Example failures: at its end it was stopped, since it gave back a terminal that was not its own any more, and left no report; the shell
+// got the settings that the run had found.
+TEST_F(Ends, a_run_in_the_background_ends_with_its_report_and_leaves_the_terminal_to_the_shell) {
+    Street street(ModbusPeer::Wire::Tcp);
+    Shell shell(street.folder());
+    street.switchByHand(true);
+    shell.type(std::string(FANTASCOPE_PROGRAM) + " run . --site . --from One --report report.json\n");
+    ASSERT_TRUE(eventually([&] { return !street.isSafe(); }));
+    const pid_t run = shell.started();
+    ASSERT_GT(run, 0);
+    shell.type("");
+    ::kill(run, SIGSTOP);
+    ASSERT_TRUE(shell.shows(Shell::kPrompt)) << shell.shown();
+    shell.type("bg\n");
+    ASSERT_TRUE(shell.shows(Shell::kPrompt)) << shell.shown();
+    ::kill(run, SIGTERM);
+    ASSERT_TRUE(eventually([&] { return shell.started() == 0; })) << shell.shown();
+    EXPECT_EQ(street.report()["unsafe_relays"], json::array());
+    EXPECT_TRUE(street.isSafe());
+    EXPECT_FALSE(shell.echoes());
+}
+
+class Trials : public Ends {
+protected:
+    void SetUp() override {
+        Ends::SetUp();
+        if (!whyNoNetwork().empty()) GTEST_SKIP() << whyNoNetwork();
+    }
+    // Until then it has the module, and the next test may get the same line.
+    static bool guardIsDone(Process& trial) {
+        return eventually([&] { return trial.said().find("made its relays safe") != std::string::npos; });
+    }
+};
+
+// Example failure: a street lamp that was tried stays off for ever.
+TEST_F(Trials, a_kill_in_the_middle_of_a_click_leaves_the_relay_safe) {
+    for (const auto wire : {ModbusPeer::Wire::Tcp, ModbusPeer::Wire::Rtu}) {
+        Street street(wire);
+        Process trial = street.trial();
+        trial.signal(SIGKILL);
+        EXPECT_TRUE(guardIsDone(trial)) << trial.said();
+        EXPECT_TRUE(street.isSafe());
+    }
+}
+
+// Example failure: the second Ctrl-C ended it at once.
+TEST_F(Trials, ctrl_c_twice_in_the_middle_of_a_click_leaves_the_relay_safe) {
+    Street street(ModbusPeer::Wire::Tcp);
+    Process trial = street.trial();
+    trial.signalAlone(SIGINT);
+    trial.signalAlone(SIGINT);
+    EXPECT_EQ(trial.wait(), 0) << trial.said();
+    EXPECT_TRUE(street.isSafe());
+}
+
+// Somebody else may have the other banks of the site.
+TEST_F(Trials, a_kill_switches_nothing_of_another_bank) {
+    Street street(ModbusPeer::Wire::Tcp);
+    std::string site = contentsOf(street.folder() / "site.yaml");
+    const auto replace = [&](const std::string& old, const std::string& by) { site.replace(site.find(old), old.size(), by); };
+    std::string other = street.peer().options(0) + "unit: 2\n";
+    std::replace(other.begin(), other.end(), '\n', ',');
+    replace("relay_banks: [", "relay_banks: [{name: yard, device: {" + other + "}}, ");
+    replace("relays: [", "relays: [{name: gate, bank: yard, coil: 0, safe: on}, ");
+    replace("{name: road,", "{name: road, bank: street,");
+    std::ofstream(street.folder() / "site.yaml") << site;
+    Process trial = street.trial();
+    trial.signal(SIGKILL);
+    EXPECT_TRUE(guardIsDone(trial)) << trial.said();
+    EXPECT_TRUE(street.isSafe());
+    EXPECT_EQ(street.peer().ask("get 0.2 c 0 1"), "0");
 }
 
 using Claims = Ends;

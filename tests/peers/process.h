@@ -7,6 +7,7 @@
 #include "program.h"
 
 #include <poll.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -24,12 +25,14 @@ namespace fantascope::peers {
 class Process {
 public:
     Process() = default;
-    // fantascope with these arguments; what it says goes through a pipe. SIGHUP does nothing to it where `nohup`.
-    Process(const std::vector<std::string>& arguments, const std::filesystem::path& folder, bool nohup = false) {
+    // fantascope with these arguments; what it says goes through a pipe. `prepare` is the last that its process does before.
+    using Prepare = std::function<void()>;
+    Process(const std::vector<std::string>& arguments, const std::filesystem::path& folder, const Prepare& prepare = {}) {
         start([&] {
             if (::chdir(folder.c_str()) != 0) ::_exit(127);
-            ::signal(SIGHUP, nohup ? SIG_IGN : SIG_DFL);
+            ::signal(SIGHUP, SIG_DFL);
             ::signal(SIGPIPE, SIG_DFL);
+            if (prepare) prepare();
             execute(arguments);
         });
     }
@@ -59,6 +62,18 @@ public:
     pid_t id() const { return process_; }
     void signal(int number) const {
         if (process_ > 0) ::kill(process_, number);
+    }
+    // The same, and it has reached the program when this returns: two signals of a kind do not become one.
+    void signalAlone(int number) const {
+        signal(number);
+        const auto isPending = [&] {
+            std::ifstream file(fmt::format("/proc/{}/status", process_));
+            for (std::string word; file >> word;)
+                if (unsigned long long pending = 0; word == "ShdPnd:" && file >> std::hex >> pending)
+                    return (pending >> (number - 1) & 1) != 0;
+            return false;
+        };
+        while (isPending() && isRunning()) ::sched_yield();  // the signal that ends a program stays pending
     }
     void stopReading() { words_ = {}; }
     bool isRunning() const {
