@@ -48,7 +48,8 @@ std::string lineOf(const drivers::FoundDevice& device) {
 
 std::string lineOf(const DeviceStatus& status) {
     std::string line = fmt::format("{:15} {}, {}", status.name, status.driver, nameOf(status.state));
-    if (!status.detail.empty()) line += ": " + status.detail;
+    for (const std::string& words : {status.detail, status.trouble})
+        if (!words.empty()) line += ": " + words;
     return printableLines(line);
 }
 
