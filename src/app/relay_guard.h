@@ -2,6 +2,8 @@
 
 #include "drivers/common/file_handle.h"
 
+#include "show/site.h"
+
 #include "core/clock.h"
 #include "core/result.h"
 
@@ -20,9 +22,9 @@ class RelayGuard {
 public:
     static constexpr Time kPatience = std::chrono::seconds(30);
 
-    // Starts it. The guard reads the site file by itself, at once, and keeps `held` (files of claims) open until it ends.
-    // Error: no process can be started.
-    static Result<std::unique_ptr<RelayGuard>> start(std::filesystem::path site, std::vector<int> held);
+    // Starts it. The guard reads the site as the run has read it, whatever the file says meanwhile, and keeps `held` (files of claims) open
+    // until it ends. Error: no process can be started.
+    static Result<std::unique_ptr<RelayGuard>> start(const show::Site& site, std::vector<int> held);
     // Unless it was armed, nothing was switched and it is dismissed; an armed one sets to work.
     ~RelayGuard();
     RelayGuard(const RelayGuard&) = delete;
@@ -37,8 +39,10 @@ public:
     void dismiss();
 
 private:
-    RelayGuard(std::filesystem::path site, std::vector<int> held) : site_(std::move(site)), held_(std::move(held)) {}
+    RelayGuard(std::filesystem::path site, drivers::FileHandle text, std::vector<int> held)
+        : site_(std::move(site)), text_(std::move(text)), held_(std::move(held)) {}
     const std::filesystem::path site_;
+    const drivers::FileHandle text_;  // the site's, in memory
     const std::vector<int> held_;
     mutable std::mutex mutex_;  // of:
     drivers::FileHandle pipe_;

@@ -472,7 +472,7 @@ private:
 // A guard where relays are real.
 Result<std::unique_ptr<RelayGuard>> guardOf(const RunOptions& options, const show::Site& site, const SiteClaims& claims) {
     if (options.backends != Backends::AsDeclared || site.relayBanks.empty()) return std::unique_ptr<RelayGuard>();
-    return RelayGuard::start(site.file, claims.files());
+    return RelayGuard::start(site, claims.files());
 }
 
 }  // namespace
