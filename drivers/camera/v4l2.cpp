@@ -225,6 +225,7 @@ Outage V4l2Camera::stream(Service& service, Life& life) {
         if (error == 0 && show(service, life)) {
             heard = clock_.now();
             patience = later;
+            if (restarted) service.trouble("");
             restarted = damaged = false;
             continue;
         }
@@ -240,7 +241,7 @@ Outage V4l2Camera::stream(Service& service, Life& life) {
                     fmt::format("{} '{}' {}; plug it in again, at another port or by a shorter cable", life.file.string(),
                                 life.node.card(), damaged ? "gives damaged frames alone" : "gives no frames")};
         }
-        log::warning("camera", fmt::format("{} has stalled; its stream is started again", life.file.string()));
+        service.trouble("it gave no frames for a while; its stream is started again");
         if (const int failed = life.node.restart(); failed != 0)
             return whyNotUsed(life.file, "its stream cannot be started again", failed);
         life.counted.reset();

@@ -49,6 +49,11 @@ void Service::running() {
     running_ = true;
 }
 
+void Service::trouble(std::string what) {
+    const std::lock_guard lock(mutex_);
+    status_.trouble = std::move(what);
+}
+
 bool Service::wait(Time patience, std::initializer_list<int> files) {
     if (ending_) return false;
     std::vector<pollfd> waited{{bell_.get(), POLLIN, 0}};
@@ -75,6 +80,7 @@ void Service::run() {
             running_ = false;
             status_.state = outage.state;
             status_.detail = std::move(outage.why);
+            status_.trouble.clear();
         }
         wait(pause);
     }

@@ -47,7 +47,8 @@ public:
     void call();
 
     // For attend(), on the service's thread.
-    void running();  // the device is found, opened and does its work from now on
+    void running();                  // the device is found, opened and does its work from now on
+    void trouble(std::string what);  // of a device that is running, until it is over ("") or the device is lost
     bool ending() const { return ending_; }
     // Waits until one of `files` can be read (or has failed), it was called, or `patience` is over. Returns at once when it is ending.
     // Whether a file is ready.

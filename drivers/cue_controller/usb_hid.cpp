@@ -149,6 +149,7 @@ Outage UsbHidController::attend(Service& service) {
             usb_->wait(due ? *due - clock_.now() : Time(1s));
             events_.pass(clock_.now());
             life.tend();
+            service.trouble(life.trouble());
         }
         if (leaving_) life.darken();
         events_.lose(clock_.now());

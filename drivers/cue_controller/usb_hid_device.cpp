@@ -1,7 +1,5 @@
 #include "drivers/cue_controller/usb_hid_device.h"
 
-#include "core/log.h"
-
 #include <fmt/format.h>
 #include <libusb.h>
 
@@ -274,7 +272,7 @@ void UsbHidDevice::sent(libusb_transfer* transfer) {
 // A device that does not take its lights is no worse as a controller.
 void UsbHidDevice::failToSend() {
     if (++failures_ >= kMostFailures) {
-        log::warning("cue controller", fmt::format("{}: it takes no lights; its buttons serve all the same", file_.string()));
+        trouble_ = "it takes no lights; its buttons serve all the same. Plug it in again";
         lamps_.reset();
         return;
     }

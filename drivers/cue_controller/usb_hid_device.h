@@ -17,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 struct libusb_device_handle;
@@ -44,6 +45,8 @@ public:
 
     // Why it is over, or never began.
     const std::optional<Outage>& outage() const { return outage_; }
+    // What it does not do although it lives.
+    const std::string& trouble() const { return trouble_; }
 
     // Takes the state in which the device is for known, and asks it for that where `asks`.
     void settle(bool asks);
@@ -76,6 +79,7 @@ private:
     const std::filesystem::path file_;
     Handle handle_;
     std::optional<Outage> outage_;
+    std::string trouble_;
     std::vector<HidEndpoints> claimed_;
     std::vector<HidInterface> interfaces_;
     std::optional<HidButtons> buttons_;

@@ -49,7 +49,8 @@ std::string lineOf(const drivers::FoundDevice& device) {
 
 std::string lineOf(const DeviceStatus& status) {
     std::string line = fmt::format("{:15} {}, {}", status.name, status.driver, nameOf(status.state));
-    if (!status.detail.empty()) line += ": " + status.detail;
+    for (const std::string& words : {status.detail, status.trouble})
+        if (!words.empty()) line += ": " + words;
     return printableLines(line);
 }
 
@@ -270,7 +271,7 @@ Result<void> testDeclared(const Options& options, const show::Site& site, const 
     for (std::size_t bank = 0; bank < site.relayBanks.size(); ++bank)
         if (const auto& [name, device] = site.relayBanks[bank]; isIt(name)) {
             const auto safe = show::safeCoils(site, bank);
-            const auto guard = TRY(RelayGuard::start(site.file, claim ? std::vector{claim->file()} : std::vector<int>(), name));
+            const auto guard = TRY(RelayGuard::start(site, claim ? std::vector{claim->file()} : std::vector<int>(), name));
             return trial.click(*TRY(drivers::openRelayBank(device.options, name, safe, around)), safe, relayNames(site, bank),
                                guard.get());
         }

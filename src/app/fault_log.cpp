@@ -73,6 +73,11 @@ void DeviceWatch::look(Time at, std::span<const DeviceStatus> devices) {
             faults_.raise(at, device.name, FaultLog::Topic::Missing, called + " was lost for a moment");
         else if (device.state == DeviceState::Running)
             faults_.clear(at, device.name, FaultLog::Topic::Missing, called + " is back");
+        if (device.state != DeviceState::Running) continue;
+        if (!device.trouble.empty())
+            faults_.raise(at, device.name, FaultLog::Topic::Trouble, called + ": " + device.trouble);
+        else
+            faults_.clear(at, device.name, FaultLog::Topic::Trouble, called + " is all right again");
     }
 }
 

@@ -4,8 +4,6 @@
 
 #include "render/gpu/handles.h"
 
-#include "core/log.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -15,12 +13,17 @@ namespace fantascope::app {
 
 FrameLoop::FrameLoop(const show::Site& site, const show::CueList& cues, std::vector<render::PictureSource> sources,
                      std::filesystem::path assets, Devices& devices, Clock& clock)
-    : sources_(std::move(sources)), assets_(std::move(assets)), clock_(clock), replica_(cues) {
+    : sources_(std::move(sources)),
+      assets_(std::move(assets)),
+      clock_(clock),
+      replica_(cues),
+      framesShownOn_(site.outputs.size()) {
     for (std::size_t i = 0; i < site.outputs.size(); ++i) {
         outputs_.push_back({site.outputs[i], *devices.displays[i], blendOf(site, i)});
         outputs_.back().report.name = site.outputs[i].name;
     }
     faults_.resize(outputs_.size());
+    unfollowed_.resize(outputs_.size());
 }
 
 FrameLoop::~FrameLoop() {
@@ -57,9 +60,9 @@ void FrameLoop::look() {
     }
 }
 
-void FrameLoop::tell(const Output& output, const std::string& fault) {
+void FrameLoop::tell(std::vector<std::string>& faults, const Output& output, const std::string& fault) {
     const std::lock_guard lock(faultsMutex_);
-    faults_[static_cast<std::size_t>(&output - outputs_.data())] = fault;
+    faults[static_cast<std::size_t>(&output - outputs_.data())] = fault;
 }
 
 std::vector<DeviceStatus> FrameLoop::withFaults(std::vector<DeviceStatus> statuses) const {
@@ -67,6 +70,7 @@ std::vector<DeviceStatus> FrameLoop::withFaults(std::vector<DeviceStatus> status
     for (std::size_t i = 0; i < faults_.size(); ++i) {
         DeviceStatus& display = statuses[i];  // Devices lists them first
         if (display.state != DeviceState::Running) continue;
+        if (!unfollowed_[i].empty()) display.trouble = unfollowed_[i];
         const bool hangs = i == inHand_ && clock_.now().count() > hangsFrom_;
         if (!hangs && faults_[i].empty()) continue;
         display.state = DeviceState::Faulted;
@@ -80,7 +84,10 @@ std::vector<DeviceStatus> FrameLoop::withFaults(std::vector<DeviceStatus> status
 
 std::vector<OutputReport> FrameLoop::outputs() const {
     std::vector<OutputReport> reports;
-    for (const Output& output : outputs_) reports.push_back(output.report);
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        reports.push_back(outputs_[i].report);
+        reports.back().frames = framesShownOn_[i];
+    }
     return reports;
 }
 
@@ -115,12 +122,12 @@ bool FrameLoop::ready(Output& output, Time now) {
     if (output.faulted && now < output.retryAt) return false;
     const auto made = beReady(output);
     if (made) {
-        if (std::exchange(output.faulted, false)) tell(output, "");
+        if (std::exchange(output.faulted, false)) tell(faults_, output, "");
         output.pause = Time{};
         return true;
     }
     output.faulted = true;
-    tell(output, "its picture cannot be drawn: " + made.error().message());
+    tell(faults_, output, "its picture cannot be drawn: " + made.error().message());
     output.pause = std::clamp(2 * output.pause, kSoonestRetry, kLatestRetry);
     output.retryAt = clock_.now() + output.pause;
     return false;
@@ -150,7 +157,7 @@ void FrameLoop::followSettings(Output& output) {
             TRY(output.renderer->follow(wanted.projection, wanted.blend));
         return output.renderer->setUp(wanted.overlay.get(), wanted.card.get());
     }();
-    if (!followed) log::error("app", "output '" + output.site.name + "' stays as it was: " + followed.error().message());
+    tell(unfollowed_, output, followed ? "" : "it stays as it was set before: " + followed.error().message());
 }
 
 void FrameLoop::spend(Output& output, FramePart part, Time time) {
@@ -234,7 +241,7 @@ void FrameLoop::show(Output& output, const Presenting& present) {
     // Whatever kept us: every refresh since the last one that had a frame counts.
     if (before) countLate(output, std::llround(seconds(shown->at - before->at) * output.display.refreshRate()) - 1);
     output.spentUntilShown = spent_;
-    ++output.report.frames;
+    ++framesShownOn_[static_cast<std::size_t>(&output - outputs_.data())];
     ++framesShown_;
     for (std::size_t part = 0; part < kFrameParts; ++part) output.report.took[part].add(output.spent[part]);
 }

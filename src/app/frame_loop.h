@@ -76,11 +76,12 @@ public:
     void finish(Time end);
 
     // `statuses`, Devices::statuses(), with what the loop knows besides: a display that runs is Faulted where its picture cannot be drawn, or
-    // where it keeps the loop from going on. Thread-safe; never waits for the render thread.
+    // where it keeps the loop from going on, and in trouble where it could not follow its newest settings. Thread-safe; never waits for the render thread.
     std::vector<DeviceStatus> withFaults(std::vector<DeviceStatus> statuses) const;
 
     // Counters for the progress line. Thread-safe.
-    std::int64_t framesShown() const { return framesShown_; }
+    std::int64_t framesShown() const { return framesShown_; }  // on all outputs
+    std::int64_t framesShown(std::size_t output) const { return framesShownOn_[output]; }
     std::int64_t framesLate() const { return framesLate_; }
     // After the last frame.
     std::vector<OutputReport> outputs() const;
@@ -113,8 +114,8 @@ private:
     Result<void> beReady(Output& output);
     // Whether it can be drawn now, or at least once its display is there. Tries it where that is due.
     bool ready(Output& output, Time now);
-    // Tells, or takes back (""), why it cannot be drawn.
-    void tell(const Output& output, const std::string& fault);
+    // Tells, or takes back (""), why it cannot be drawn, or not follow its settings.
+    void tell(std::vector<std::string>& faults, const Output& output, const std::string& fault);
     void forget(Output& output);
     void inHand(const Output& output);
     void followSettings(Output& output);
@@ -142,9 +143,11 @@ private:
     Durations swapSkew_;
     Durations inputToFrame_;
     std::atomic<std::int64_t> framesShown_ = 0, framesLate_ = 0;
+    std::vector<std::atomic<std::int64_t>> framesShownOn_;  // each output
 
     mutable std::mutex faultsMutex_;
     std::vector<std::string> faults_;             // by output; "": none
+    std::vector<std::string> unfollowed_;         // settings, by output: why not; "": followed
     std::atomic<std::size_t> inHand_ = 0;         // the output that the loop works on
     std::atomic<Time::rep> hangsFrom_ = kNotYet;  // on the clock: it hangs in that output unless it has gone on until then
     static constexpr Time::rep kNotYet = Time::max().count();

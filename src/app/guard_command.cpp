@@ -7,6 +7,7 @@
 #include "show/site.h"
 
 #include "core/clock.h"
+#include "core/file.h"
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -23,7 +24,7 @@ namespace {
 constexpr Time kAgain = std::chrono::milliseconds(10);
 
 struct Options {
-    std::filesystem::path site;
+    std::filesystem::path site, text;
     std::string bank;
 };
 
@@ -62,7 +63,7 @@ Result<void> makeSafe(RelayBank& bank, const std::vector<bool>& safe, Clock& clo
 
 Result<void> guard(const Options& options) {
     ignoreSignals();
-    const show::Site site = TRY(show::readSite(options.site));
+    const show::Site site = TRY(show::parseSite(TRY(readFile(options.text)), options.site));
     if (runSaidSafe()) return {};
     SteadyClock clock;
     const Time latest = clock.now() + RelayGuard::kPatience;
@@ -101,6 +102,7 @@ Result<void> guard(const Options& options) {
 
 void declare(CLI::App& command, Options& options) {
     command.add_option("site", options.site, "the site file")->required();
+    command.add_option("text", options.text, "a file with what stood in it when the run began")->required();
     command.add_option("--bank", options.bank, "of its relay banks this one alone");
     command.group("");  // hidden
 }

@@ -2,8 +2,6 @@
 
 #include "show/contact_inputs.h"
 
-#include "core/log.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -21,8 +19,9 @@ static_assert(kWords.size() == static_cast<std::size_t>(show::Button::Write) + 1
 
 }  // namespace
 
-Hand::Hand(const show::Show& show, const show::CueList& cues, const show::Site& site, Devices& devices, Time start)
-    : show_(show), site_(site), devices_(devices), start_(start), buttons_(site.buttons), playback_(cues) {
+Hand::Hand(const show::Show& show, const show::CueList& cues, const show::Site& site, Devices& devices, Time start,
+           FaultLog* faults)
+    : show_(show), site_(site), devices_(devices), start_(start), faults_(faults), buttons_(site.buttons), playback_(cues) {
     entered_.reserve(show.cues.size());
     lights_.resize(site.buttons.size());
 }
@@ -30,7 +29,9 @@ Hand::Hand(const show::Show& show, const show::CueList& cues, const show::Site& 
 void Hand::give(const show::Input& input) {
     const show::Outcome outcome = playback_.apply(input);
     for (PlaybackReplica* replica : replicas_)
-        if (!replica->give(input)) log::error("app", "an input was lost: a part of the show has stopped taking them");
+        if (!replica->give(input) && faults_ != nullptr)
+            faults_->raise(input.at, "", FaultLog::Topic::Input,
+                           "inputs are lost: a part of the show takes none any more and shows another cue than the rest");
     if (outcome != show::Outcome::Taken) tell(std::string(show::nameOf(outcome)));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/devices.h"
+#include "app/fault_log.h"
 #include "app/playback_replica.h"
 #include "app/run_report.h"
 
@@ -19,8 +20,9 @@ namespace fantascope::app {
 // which cue is on.
 class Hand {
 public:
-    // All outlive it; without `devices`' controller or contacts it does without. Show time 0 is `start` on the clock.
-    Hand(const show::Show& show, const show::CueList& cues, const show::Site& site, Devices& devices, Time start);
+    // All outlive it; without `devices`' controller or contacts it does without, and `faults` may be null. Show time 0 is `start` on the clock.
+    Hand(const show::Show& show, const show::CueList& cues, const show::Site& site, Devices& devices, Time start,
+         FaultLog* faults = nullptr);
 
     // How often both are asked: a press waits 5 ms at most.
     static constexpr double kRate = 200;
@@ -49,6 +51,7 @@ private:
     const show::Site& site_;
     Devices& devices_;
     const Time start_;
+    FaultLog* const faults_;
     show::CueButtons buttons_;
     show::Playback playback_;
     show::ShowState state_;

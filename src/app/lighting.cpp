@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kRelayRate = 20;  // Hz; a relay clicks in tens of milliseconds
 constexpr const char* kUnanswered = "it has not answered yet";
+constexpr const char* kNotSent = "they were not sent any more";
 
 }  // namespace
 
@@ -30,7 +31,8 @@ Lighting::Lighting(const show::Site& site, const show::CueList& cues, Devices& d
       faults_(faults),
       replica_(cues),
       banks_(site.relayBanks.size()),
-      endLevels_(show::endLevels(site)) {
+      endLevels_(show::endLevels(site)),
+      whyUnended_(site.universes.size(), kNotSent) {
     for (Bank& bank : banks_) bank.whyUnsafe = kUnanswered;
     for (const show::Universe& universe : site.universes) {
         shared_.emplace_back();
@@ -63,16 +65,21 @@ void Lighting::mergeWithDesk(Devices::Line& line, Shared& shared, Time now, std:
 void Lighting::tick(Time moment) {
     const Time showTime = moment - start_, endsAt = endsAt_.load();
     replica_.stateAt(std::min(moment, endsAt) - start_, state_);
-    if (moment >= endsAt) fadeToEnd(moment - endsAt);
+    const bool atEnd = moment >= endsAt && (hurried_ || moment - endsAt >= site_.endFade);
+    if (moment >= endsAt) fadeToEnd(atEnd ? 1 : seconds(moment - endsAt) / seconds(site_.endFade));
     for (std::size_t i = 0; i < devices_.lines.size(); ++i) {
         Devices::Line& line = devices_.lines[i];
         std::array<std::uint8_t, kDmxSlots> slots;
         show::slotsOf(site_, state_, line.universe, slots);
         if (shared_[i]) mergeWithDesk(line, *shared_[i], clock_.now(), slots);
         // A line that is not there says so in its status and comes back by itself; the newest levels go out at the next tick.
-        if (line.port->send(slots) && recording_ != nullptr) recording_->lighting(showTime, line.universe, slots);
+        const Result<void> sent = line.port->send(slots);
+        if (sent && recording_ != nullptr) recording_->lighting(showTime, line.universe, slots);
+        if (!atEnd) continue;
+        const std::lock_guard lock(linesMutex_);
+        whyUnended_[i] = sent ? "" : sent.error().message();
     }
-    lampsEnded_ = moment >= endsAt && moment - endsAt >= site_.endFade;
+    lampsEnded_ = atEnd;
     const Time now = clock_.now();
     if (lastTick_) dmxInterval_.add(now - *lastTick_);
     lastTick_ = now;
@@ -179,8 +186,7 @@ std::string Lighting::differing(std::size_t number, const Coils& wanted) {
     return listed(names);
 }
 
-void Lighting::fadeToEnd(Time since) {
-    const double share = since < site_.endFade ? seconds(since) / seconds(site_.endFade) : 1;
+void Lighting::fadeToEnd(double share) {
     for (std::size_t i = 0; i < endLevels_.size(); ++i)
         state_.levels[i] = std::lerp(state_.levels[i], endLevels_[i], static_cast<float>(share));
 }
@@ -199,6 +205,14 @@ std::vector<UnsafeBank> Lighting::unsafeBanks() const {
         if (!banks_[number].whyUnsafe.empty()) unsafe.push_back({site_.relayBanks[number].name, banks_[number].whyUnsafe});
     }
     return unsafe;
+}
+
+std::vector<UnendedLine> Lighting::unendedLines() const {
+    std::vector<UnendedLine> lines;
+    const std::lock_guard lock(linesMutex_);
+    for (std::size_t i = 0; i < whyUnended_.size(); ++i)
+        if (!whyUnended_[i].empty()) lines.push_back({site_.universes[i].number, whyUnended_[i]});
+    return lines;
 }
 
 }  // namespace fantascope::app

@@ -48,10 +48,14 @@ public:
     // From `moment` on the show no longer decides: relays take their safe states at once and keep them, lamps fade to the site's end levels.
     // A desk keeps what it has. Only the first call counts. Thread: any.
     void end(Time moment);
+    // Nobody waits for the fade any more: with their next frame the lamps are at their end levels. After end(). Thread: any.
+    void hurry() { hurried_ = true; }
     // Whether every bank has confirmed its safe states, and the end levels were handed to every line that is there. Thread: any.
     bool ended() const;
     // The banks whose safe states are not confirmed since end(), and why. Thread: any; waits for no device.
     std::vector<UnsafeBank> unsafeBanks() const;
+    // The lines that have not taken the end levels since end(), and why. Thread: any; waits for no device.
+    std::vector<UnendedLine> unendedLines() const;
 
     // Called on the lighting thread with a sentence for the operator: who is in charge of a universe.
     std::function<void(const std::string&)> tell = [](const std::string&) {};
@@ -89,7 +93,7 @@ private:
     void reportRecovery(std::size_t bank, Time moment);
     // The relays of a bank that differ from `wanted`, by the bank's own word: "road-north, road-south"; empty: none, or it does not say.
     std::string differing(std::size_t bank, const Coils& wanted);
-    void fadeToEnd(Time since);
+    void fadeToEnd(double share);  // of the way, 0..1
     void mergeWithDesk(Devices::Line& line, Shared& shared, Time now, std::span<std::uint8_t, kDmxSlots> slots);
     const show::Site& site_;
     Devices& devices_;
@@ -105,7 +109,9 @@ private:
     std::deque<Bank> banks_;  // of Site::relayBanks
     const std::vector<float> endLevels_;
     std::atomic<Time> endsAt_ = Time::max();
-    std::atomic<bool> lampsEnded_ = false;
+    std::atomic<bool> hurried_ = false, lampsEnded_ = false;
+    mutable std::mutex linesMutex_;        // of:
+    std::vector<std::string> whyUnended_;  // of each line; empty: it has taken the end levels
 };
 
 }  // namespace fantascope::app

@@ -6,6 +6,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -27,11 +28,26 @@ void crashAtOnce() {
     setrlimit(RLIMIT_CORE, &limit);
 }
 
+Error notStarted(int reason) { return Error("no relay guard can be started: " + drivers::systemMessage(reason)); }
+
+// A file that only this program and those that it starts can open.
+Result<drivers::FileHandle> inMemory(std::string_view text) {
+    drivers::FileHandle file(memfd_create("site", MFD_CLOEXEC));
+    if (!file.isOpen()) return notStarted(errno);
+    while (!text.empty()) {
+        const ssize_t written = write(file.get(), text.data(), text.size());
+        if (written < 0) return notStarted(errno);
+        text.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return file;
+}
+
 }  // namespace
 
-Result<std::unique_ptr<RelayGuard>> RelayGuard::start(std::filesystem::path site, std::vector<int> held, std::string bank) {
+Result<std::unique_ptr<RelayGuard>> RelayGuard::start(const show::Site& site, std::vector<int> held, std::string bank) {
     crashAtOnce();
-    std::unique_ptr<RelayGuard> guard(new RelayGuard(std::move(site), std::move(held), std::move(bank)));
+    drivers::FileHandle text = TRY(inMemory(site.text));
+    std::unique_ptr<RelayGuard> guard(new RelayGuard(site.file, std::move(text), std::move(held), std::move(bank)));
     TRY(guard->restart());
     return guard;
 }
@@ -57,7 +73,7 @@ Result<void> RelayGuard::restart() {
     if (process_ > 0) waitpid(process_, nullptr, 0);
     process_ = -1;
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) return Error("no relay guard can be started: " + drivers::systemMessage(errno));
+    if (pipe2(ends, O_CLOEXEC) != 0) return notStarted(errno);
     const drivers::FileHandle far(ends[0]);
     pipe_ = drivers::FileHandle(ends[1]);
 
@@ -73,15 +89,17 @@ Result<void> RelayGuard::restart() {
     posix_spawn_file_actions_adddup2(&files, far.get(), STDIN_FILENO);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     for (const int file : held_) posix_spawn_file_actions_adddup2(&files, file, file);  // onto itself: it stays open
+    posix_spawn_file_actions_adddup2(&files, text_.get(), text_.get());
     std::string program = "/proc/self/exe", command = kGuardCommand, file = site_.string(), bank = "--bank=" + bank_,
                 name = "fantascope";
-    char* words[] = {name.data(), command.data(), file.data(), bank_.empty() ? nullptr : bank.data(), nullptr};
+    std::string text = "/proc/self/fd/" + std::to_string(text_.get());
+    char* words[] = {name.data(), command.data(), file.data(), text.data(), bank_.empty() ? nullptr : bank.data(), nullptr};
     const int error = posix_spawn(&process_, program.c_str(), &files, &attributes, words, environ);
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);
     if (error == 0) return {};
     process_ = -1;
-    return Error("no relay guard can be started: " + drivers::systemMessage(error));
+    return notStarted(error);
 }
 
 void RelayGuard::dismiss() {

@@ -2,6 +2,8 @@
 
 #include "drivers/common/file_handle.h"
 
+#include "show/site.h"
+
 #include "core/clock.h"
 #include "core/result.h"
 
@@ -21,9 +23,9 @@ class RelayGuard {
 public:
     static constexpr Time kPatience = std::chrono::seconds(30);
 
-    // Starts it. The guard reads the site file by itself, at once, and keeps `held` (files of claims) open until it ends. Of one `bank`
-    // alone, where it is named. Error: no process can be started.
-    static Result<std::unique_ptr<RelayGuard>> start(std::filesystem::path site, std::vector<int> held, std::string bank = {});
+    // Starts it. The guard reads the site as the run has read it, whatever the file says meanwhile, and keeps `held` (files of claims) open
+    // until it ends. Of one `bank` alone, where it is named. Error: no process can be started.
+    static Result<std::unique_ptr<RelayGuard>> start(const show::Site& site, std::vector<int> held, std::string bank = {});
     // Unless it was armed, nothing was switched and it is dismissed; an armed one sets to work.
     ~RelayGuard();
     RelayGuard(const RelayGuard&) = delete;
@@ -38,9 +40,10 @@ public:
     void dismiss();
 
 private:
-    RelayGuard(std::filesystem::path site, std::vector<int> held, std::string bank)
-        : site_(std::move(site)), held_(std::move(held)), bank_(std::move(bank)) {}
+    RelayGuard(std::filesystem::path site, drivers::FileHandle text, std::vector<int> held, std::string bank)
+        : site_(std::move(site)), text_(std::move(text)), held_(std::move(held)), bank_(std::move(bank)) {}
     const std::filesystem::path site_;
+    const drivers::FileHandle text_;  // the site's, in memory
     const std::vector<int> held_;
     const std::string bank_;    // "": all
     mutable std::mutex mutex_;  // of:

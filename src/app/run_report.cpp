@@ -43,6 +43,10 @@ std::string sentenceOf(const std::vector<UnsafeBank>& unsafe) {
     return fmt::format("RELAYS MAY BE UNSAFE: {} did not confirm the safe states. Switch them at the module", banks);
 }
 
+std::string sentenceOf(const UnendedLine& line) {
+    return fmt::format("the lamps of universe {} did not get their end levels ({}). Look yourself", line.universe, line.why);
+}
+
 Report jsonOf(const RunReport& report) {
     Report json, frameMs = Report::object(), late = Report::object(), lateBy = Report::object(), framesBy = Report::object();
     for (const OutputReport& output : report.outputs) {
@@ -56,6 +60,10 @@ Report jsonOf(const RunReport& report) {
         if (!output.recorded) continue;
         json["recorded"][output.name] = *output.recorded;
         json["not_recorded"][output.name] = output.frames - *output.recorded;
+    }
+    for (const auto& [output, frames] : report.lostFrames) {
+        json["recorded"][output] = 0;
+        json["not_recorded"][output] = frames;
     }
     json["seconds"] = seconds(report.length);
     json["seed"] = report.seed;

@@ -58,8 +58,14 @@ struct FaultReport {
 struct UnsafeBank {
     std::string name, why;
 };
+// A universe whose lamps did not get their end levels.
+struct UnendedLine {
+    int universe;
+    std::string why;
+};
 // What to tell the operator of relays that were not made safe: which, why, and what to do.
 std::string sentenceOf(const std::vector<UnsafeBank>& unsafe);
+std::string sentenceOf(const UnendedLine& line);
 
 // What a run has to say of itself. Every figure is a measurement of that run; times are show time.
 struct RunReport {
@@ -76,6 +82,7 @@ struct RunReport {
     std::vector<FaultReport> faults;
     std::map<std::string, std::vector<std::pair<Time, double>>> zCamera;      // per output
     std::map<std::string, std::int64_t> lateVideoFrames, damagedVideoFrames;  // per source that is a video
+    std::map<std::string, std::int64_t> lostFrames;                           // per output, of a recording that was not finished
     std::vector<UnsafeBank> unsafe;
     std::string stopReason;
     std::string hung;  // why the program did not wait for the render thread; empty: it came back

@@ -105,12 +105,13 @@ public:
           wall_(readers(surrounding.simulation != nullptr,
                         [](render::FrameTap& tap) { return &tap.addNewest(std::numeric_limits<double>::infinity()); })),
           recorder_(recorderOf(recording)),
+          recordingIsOpen_(recording != nullptr),
           pictured_(readers(keys_ && keys_->listens(), [](render::FrameTap& tap) { return &tap.addNewest(0); })),
           prepared_(frames_.prepare()),
           start_(frames_.refreshFrom(clock.now() + kStartUp)),
           deviceWatch_(faults_, bankNames()),
           lighting_(programme.site, programme.cues, surrounding.devices, clock, start_, recording, &faults_),
-          hand_(programme.show, programme.cues, programme.site, surrounding.devices, start_),
+          hand_(programme.show, programme.cues, programme.site, surrounding.devices, start_, &faults_),
           watch_(programme.show, outputNames(), programme.comparisons, surrounding.devices.camera.get(), programme.camera.get(),
                  start_, recording),
           settingUp_(programme.site, frames_, surrounding.devices, [this](const std::string& sentence) { news_.add(sentence); }),
@@ -197,8 +198,12 @@ public:
     }
     // What the supervisor needs to end it while the render thread hangs.
     Supervisor::Run supervised() {
-        return {[this] { endLights(); }, [this] { return lighting_.ended(); }, [this] { closeLights(); },
-                [this](const std::string& why) { tellHung(why); }};
+        return {[this] { endLights(); },
+                [this] { lighting_.hurry(); },
+                [this] { return lighting_.ended(); },
+                [this] { closeLights(); },
+                [this](const std::string& why) { tellHung(why); },
+                [this](const Result<void>& another) { tellGuardDied(another); }};
     }
     // Waits until lamps and relays are where they are to be at the end, for as long as that may take.
     void awaitLights() {
@@ -212,21 +217,15 @@ public:
         lights_.reset();
         keys_.reset();  // the terminal is as it was
         unsafe_ = lighting_.unsafeBanks();
+        unended_ = lighting_.unendedLines();
         surrounding_.devices.lines.clear();
         surrounding_.devices.relayBanks.clear();
         if (guard_ != nullptr && unsafe_.empty()) guard_->dismiss();
     }
-    // Tells which relays are not safe, and whatever else nobody was told yet. Once the lights are closed.
+    // Tells which relays are not safe and which lamps not at their end levels, and whatever else nobody was told yet. Once the lights are
+    // closed.
     void tellTheRest(const std::function<void(const RunStatus&)>& progress) {
-        for (const auto& [bank, why] : unsafe_) {
-            std::vector<std::string> relays;
-            for (const show::Relay& relay : programme_.site.relays)
-                if (programme_.site.relayBanks[relay.bank].name == bank)
-                    relays.push_back(relay.name + (relay.safe ? " on" : " off"));
-            faults_.raise(
-                length_, bank, FaultLog::Topic::SafeStates,
-                fmt::format("'{}' has not confirmed its safe states: {}. Look yourself: {}", bank, why, listed(relays)));
-        }
+        raiseLastFaults(length_);
         if (news_.isThere()) progress(statusAt(start_ + length_));
     }
 
@@ -234,6 +233,7 @@ public:
     RunReport report() {
         std::vector<OutputReport> outputs = frames_.outputs();
         if (recorder_) recorder_->finish(length_, outputs);
+        recordingIsOpen_ = false;
         if (settingUp_.unsaved())
             log::warning("app",
                          "how the outputs were set up was not written to " + programme_.site.file.string() + " and is lost");
@@ -262,6 +262,26 @@ public:
     const std::vector<UnsafeBank>& unsafe() const { return unsafe_; }  // once the lights are closed
 
 private:
+    void raiseLastFaults(Time at) {
+        for (const auto& [bank, why] : unsafe_) {
+            std::vector<std::string> relays;
+            for (const show::Relay& relay : programme_.site.relays)
+                if (programme_.site.relayBanks[relay.bank].name == bank)
+                    relays.push_back(relay.name + (relay.safe ? " on" : " off"));
+            faults_.raise(
+                at, bank, FaultLog::Topic::SafeStates,
+                fmt::format("'{}' has not confirmed its safe states: {}. Look yourself: {}", bank, why, listed(relays)));
+        }
+        for (const UnendedLine& line : unended_)
+            faults_.raise(at, fmt::format("universe {}", line.universe), FaultLog::Topic::EndLevels, sentenceOf(line));
+    }
+    void tellGuardDied(const Result<void>& another) {
+        const Time at = clock_.now() - start_;
+        if (!std::exchange(guardIsAway_, !another))
+            faults_.raise(at, "", FaultLog::Topic::Guard,
+                          another ? "the relay guard died" : "the relay guard died: " + another.error().message());
+        if (another) faults_.clear(at, "", FaultLog::Topic::Guard, "there is a new relay guard");
+    }
     // What is known once the lights are closed, whatever the render thread does.
     RunReport reportOfLights() const {
         RunReport report;
@@ -276,11 +296,21 @@ private:
         return report;
     }
     void tellHung(const std::string& why) {
+        const Time at = clock_.now() - start_;
+        raiseLastFaults(at);
+        std::string words = fmt::format("the show was to end, but {}. Its lamps and relays were closed first: {}", why,
+                                        unsafe_.empty() ? "all relays are safe" : sentenceOf(unsafe_));
+        for (const UnendedLine& line : unended_) words += "; " + sentenceOf(line);
+        const bool isLost = recordingIsOpen_;
+        if (isLost) {
+            faults_.raise(at, "", FaultLog::Topic::Recording, "recording: it was not finished and is lost");
+            words += ". The recording was not finished and is lost";
+        }
         RunReport report = reportOfLights();
         report.stopReason = "hung";
         report.hung = why;
-        std::string words = fmt::format("the show was to end, but {}. Its lamps and relays were closed first: {}", why,
-                                        unsafe_.empty() ? "all relays are safe" : sentenceOf(unsafe_));
+        for (std::size_t output = 0; isLost && output < programme_.site.outputs.size(); ++output)
+            report.lostFrames[programme_.site.outputs[output].name] = frames_.framesShown(output);
         if (!options_.report.empty())
             if (const auto written = writeReport(options_.report, jsonOf(report)); !written)
                 words += fmt::format(". No report: {}", written.error().message());
@@ -448,6 +478,7 @@ private:
     std::unique_ptr<TerminalKeys> keys_;          // null: as fast as possible, there is nobody to press one
     std::vector<render::NewestFrame*> wall_;      // what simulated projectors throw; none where they are real
     std::unique_ptr<FrameRecorder> recorder_;     // null: nothing is recorded
+    std::atomic<bool> recordingIsOpen_;           // its files are not there yet
     std::vector<render::NewestFrame*> pictured_;  // none where no terminal listens
     Result<void> prepared_;
     const Time start_;         // after everything slow; a refresh
@@ -468,6 +499,8 @@ private:
     std::mutex closing_;  // of:
     bool closed_ = false;
     std::vector<UnsafeBank> unsafe_;
+    std::vector<UnendedLine> unended_;
+    bool guardIsAway_ = false;  // the supervisor's
     std::int64_t framesBefore_ = 0, yardstickTicks_ = 0, yardstickLate_ = 0;
     std::optional<PartThreads> lights_;  // last, so that none works on what has gone
 };
@@ -475,7 +508,7 @@ private:
 // A guard where relays are real.
 Result<std::unique_ptr<RelayGuard>> guardOf(const RunOptions& options, const show::Site& site, const SiteClaims& claims) {
     if (options.backends != Backends::AsDeclared || site.relayBanks.empty()) return std::unique_ptr<RelayGuard>();
-    return RelayGuard::start(site.file, claims.files());
+    return RelayGuard::start(site, claims.files());
 }
 
 }  // namespace
@@ -493,7 +526,7 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
     if (options.backends == Backends::AsDeclared) claims = TRY(SiteClaims::take(programme.site, interrupt));
     const std::unique_ptr<RelayGuard> guard = TRY(guardOf(options, programme.site, claims));
     News news;
-    Supervisor supervisor(interrupt, guard.get(), [&](const std::string& sentence) { news.add(sentence); });
+    Supervisor supervisor(interrupt, guard.get());
     supervisor.step("opening the devices");
     if (!options.asFastAsPossible) setThreadRank(Rank::Render);  // before the displays make threads of their own
     const auto surrounding = TRY(Surrounding::open(options, programme.site, clock));

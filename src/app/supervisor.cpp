@@ -19,7 +19,8 @@ namespace {
 constexpr Time kLook = std::chrono::milliseconds(50);
 constexpr Time kOnePress = std::chrono::milliseconds(500);                                       // signals within it are one
 constexpr Time kFirstPause = std::chrono::seconds(1), kLongestPause = std::chrono::seconds(30);  // between guards that die
-constexpr unsigned kLastResort = 15;  // s; whatever hangs in the way out as well
+constexpr Time kLampsWithin = std::chrono::seconds(1);  // their next frame, on a machine that is busy
+constexpr unsigned kLastResort = 15;                    // s; whatever hangs in the way out as well
 
 // Whether somebody may read a file of ours as we write it, and go.
 bool isPipe(int file) {
@@ -34,8 +35,8 @@ bool isBroken(int file) {
 
 }  // namespace
 
-Supervisor::Supervisor(const Interrupt& interrupt, RelayGuard* guard, std::function<void(const std::string&)> tell)
-    : interrupt_(interrupt), guard_(guard), tell_(std::move(tell)), thread_([this](const std::stop_token& stop) {
+Supervisor::Supervisor(const Interrupt& interrupt, RelayGuard* guard)
+    : interrupt_(interrupt), guard_(guard), thread_([this](const std::stop_token& stop) {
           setThreadRank(Rank::Lighting);
           live(stop);
       }) {}
@@ -90,9 +91,10 @@ bool Supervisor::outputIsRead() {
 void Supervisor::keepGuard(Time now) {
     if (guard_ == nullptr || now < nextGuard_ || !guard_->hasDied()) return;
     const auto restarted = guard_->restart();
-    tell_(restarted ? "the relay guard died; there is a new one" : restarted.error().message());
     guardPause_ = std::clamp(2 * guardPause_, kFirstPause, kLongestPause);
     nextGuard_ = now + guardPause_;
+    const std::lock_guard lock(mutex_);
+    if (run_) run_->tellGuardDied(restarted);  // without a run no relay was switched, or all is told
 }
 
 void Supervisor::live(const std::stop_token& stop) {
@@ -117,7 +119,8 @@ void Supervisor::leave(const std::string& why) {
     signal(SIGALRM, [](int) { _exit(1); });
     alarm(kLastResort);
     if (run_) {
-        const Time latest = std::max(*began_ + kSafeWithin, clock_.now());
+        run_->hurry();  // most lamps keep the last levels that they got
+        const Time latest = std::max(*began_ + kSafeWithin, clock_.now() + kLampsWithin);
         while (!run_->ended() && clock_.now() < latest) clock_.sleepUntil(clock_.now() + std::chrono::milliseconds(5));
         run_->close();
         run_->tell(why);

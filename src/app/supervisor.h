@@ -16,8 +16,8 @@ namespace fantascope::app {
 
 // Ends a run that is to end, whatever hangs: on a thread of its own it sees the request and has the relays made safe at once, without
 // waiting for a display, a recording or a terminal. The render thread then takes the run apart in steps. A step that takes longer than it
-// may hangs (an X server that was stopped, a graphics card, a disk): the supervisor closes lamps and relays, writes the report, says
-// what hung, and leaves with exit status 1. It also starts another relay guard where that has died.
+// may hangs (an X server that was stopped, a graphics card, a disk): the supervisor has the lamps go to their end levels at once, closes
+// lamps and relays, writes the report, says what hung, and leaves with exit status 1. It also starts another relay guard where that has died.
 //
 // Whoever reads this program's output through a pipe and goes (`run ... | head -1`) asks for the end too.
 class Supervisor {
@@ -27,14 +27,16 @@ public:
 
     // What a run has from when it may switch relays.
     struct Run {
-        std::function<void()> end;                         // relays to their safe states, lamps to their end levels; never waits
-        std::function<bool()> ended;                       // whether both are there
-        std::function<void()> close;                       // lamps and relays; may wait for their lines, for nothing else
+        std::function<void()> end;    // relays to their safe states, lamps to their end levels; never waits
+        std::function<void()> hurry;  // lamps to their end levels without the rest of their fade; never waits
+        std::function<bool()> ended;  // whether both are there
+        std::function<void()> close;  // lamps and relays; may wait for their lines, for nothing else
         std::function<void(const std::string& why)> tell;  // report and last words, where the render thread does not come back
+        std::function<void(const Result<void>& another)> tellGuardDied;  // and whether there is another one
     };
 
-    // `guard` may be null; both outlive it. `tell` is called on its thread with news for the operator.
-    Supervisor(const Interrupt& interrupt, RelayGuard* guard, std::function<void(const std::string&)> tell);
+    // `guard` may be null; both outlive it.
+    Supervisor(const Interrupt& interrupt, RelayGuard* guard);
     ~Supervisor();  // the run has ended in order
     Supervisor(const Supervisor&) = delete;
     Supervisor& operator=(const Supervisor&) = delete;
@@ -62,7 +64,6 @@ private:
 
     const Interrupt& interrupt_;
     RelayGuard* const guard_;
-    const std::function<void(const std::string&)> tell_;
     SteadyClock clock_;
     std::atomic<bool> requested_ = false;
     Time nextGuard_{}, guardPause_{};

@@ -2,10 +2,17 @@
 
 #include "core/text.h"
 
-#include <spdlog/sinks/stdout_color_sinks.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <spdlog/details/os.h>
+#include <spdlog/sinks/ansicolor_sink.h>
 #include <spdlog/spdlog.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -28,6 +35,44 @@ spdlog::level::level_enum spdlogLevel(Level level) {
     return spdlog::level::info;
 }
 
+// What standard error takes of `bytes` at once; -1: nothing. The description behind it belongs to other programs too, so it stays blocking: a
+// terminal or a pipe is opened once more for one line.
+ssize_t writeAtOnce(const char* bytes, std::size_t count) {
+    struct stat status {};
+    if (fstat(STDERR_FILENO, &status) != 0) return -1;
+    if (S_ISSOCK(status.st_mode)) return send(STDERR_FILENO, bytes, count, MSG_DONTWAIT);
+    if (!S_ISFIFO(status.st_mode) && !S_ISCHR(status.st_mode)) return ::write(STDERR_FILENO, bytes, count);
+    const int own = open("/proc/self/fd/2", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (own < 0) {  // another user's
+        pollfd room{STDERR_FILENO, POLLOUT, 0};
+        return poll(&room, 1, 0) > 0 ? ::write(STDERR_FILENO, bytes, count) : -1;
+    }
+    const ssize_t written = ::write(own, bytes, count);
+    close(own);
+    return written;
+}
+
+// Standard error as a file that never waits. Bound to the sink's lock.
+class Unwaiting {
+public:
+    FILE* file() { return file_; }
+
+private:
+    static ssize_t take(void* self, const char* bytes, std::size_t count) {
+        auto& file = *static_cast<Unwaiting*>(self);
+        const std::string news =
+            file.lost_ == 0 ? "" : fmt::format("\n({} lines of the log were lost: nobody read them)\n", file.lost_);
+        const std::string text = news + std::string(bytes, count);
+        if (writeAtOnce(text.data(), text.size()) == static_cast<ssize_t>(text.size()))
+            file.lost_ = 0;
+        else
+            ++file.lost_;  // also what was cut short
+        return static_cast<ssize_t>(count);
+    }
+    int lost_ = 0;  // since the last line that was taken whole
+    FILE* const file_ = fopencookie(this, "w", {.read = nullptr, .write = take, .seek = nullptr, .close = nullptr});
+};
+
 class Loggers {
 public:
     spdlog::logger& of(std::string_view category) {
@@ -49,7 +94,11 @@ public:
 
 private:
     std::mutex mutex_;
-    spdlog::sink_ptr sink_ = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+    Unwaiting standardError_;
+    spdlog::sink_ptr sink_ = std::make_shared<spdlog::sinks::ansicolor_sink<spdlog::details::console_mutex>>(
+        standardError_.file(), isatty(STDERR_FILENO) != 0 && spdlog::details::os::is_color_terminal()
+                                   ? spdlog::color_mode::always
+                                   : spdlog::color_mode::never);
     // On a terminal a status line may stand where this one comes; whoever drew it draws it again.
     const char* const wipe_ = isatty(STDERR_FILENO) != 0 ? "\r\x1b[J" : "";
     spdlog::level::level_enum level_ = spdlog::level::info;

@@ -8,7 +8,9 @@ namespace fantascope::log {
 enum class Level { Debug, Info, Warning, Error };
 
 // One line to standard error: time, level, category (the module's folder name), message. Lines below the category's level are dropped.
-// Thread: thread-safe; may block on standard error, so never on the render thread in steady state.
+// Never waits for whoever reads standard error: a line that a held terminal or a full pipe does not take at once is lost, and the next one
+// that it takes says so. Nothing is kept back, so that a program's last words are out when it ends.
+// Thread: thread-safe; never on the render thread in steady state.
 void write(Level level, std::string_view category, std::string_view message);
 
 inline void debug(std::string_view category, std::string_view message) { write(Level::Debug, category, message); }

@@ -23,8 +23,9 @@ struct DeviceStatus {
     std::string driver;  // as in the registry: "headless", "simulated"
     DeviceState state = DeviceState::Absent;
     LossAction onLoss = LossAction::Hold;
-    std::string detail;  // why not Running and what to do about it; empty when Running
-    int losses = 0;      // times that it left Running since the start
+    std::string detail;     // why not Running and what to do about it; empty when Running
+    int losses = 0;         // times that it left Running since the start
+    std::string trouble{};  // what it does not do although it is Running; empty: it does all
 };
 
 constexpr const char* nameOf(DeviceState state) {

@@ -1,6 +1,7 @@
 #include "show/site.h"
 
 #include "core/check.h"
+#include "core/file.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -488,7 +489,11 @@ std::size_t Site::inputCount(std::size_t bank) const {
 }
 
 Result<Site> readSite(const std::filesystem::path& file, DeviceReader* devices) {
-    const ConfigNode root = TRY(ConfigNode::load(file));
+    return parseSite(TRY(readFile(file)), file, devices);
+}
+
+Result<Site> parseSite(std::string text, const std::filesystem::path& file, DeviceReader* devices) {
+    const ConfigNode root = TRY(ConfigNode::parse(text, file));
     DriversWord drivers(devices);
     // As long as there was one bank of each kind.
     for (const auto& [key, value] : TRY(root.entries()))
@@ -500,6 +505,7 @@ Result<Site> readSite(const std::filesystem::path& file, DeviceReader* devices) 
                                 old, members));
     Site site;
     site.file = file;
+    site.text = std::move(text);
     ConfigFields fields(root);
     fields.header("site", kNewestVersion);
 

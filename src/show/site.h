@@ -114,6 +114,7 @@ struct Contact {
 // The place as the technician wrote it down: the nominal site. Read at start, constant afterwards. See docs/site-format.md.
 struct Site {
     std::filesystem::path file;
+    std::string text;  // the file as it was read
     std::vector<Output> outputs;
     std::vector<Universe> universes;
     std::vector<Fixture> fixtures;
@@ -158,5 +159,7 @@ public:
 // surface turned from its projector. `devices` reads what the drivers need; null: nobody does. Error: all that is wrong, a line for each with
 // file, line, column, key, advice.
 Result<Site> readSite(const std::filesystem::path& file, DeviceReader* devices = nullptr);
+// The same of a text that stood in `file`.
+Result<Site> parseSite(std::string text, const std::filesystem::path& file, DeviceReader* devices = nullptr);
 
 }  // namespace fantascope::show

@@ -105,6 +105,18 @@ TEST_F(WatchOfDevices, reports_a_loss_that_is_over_before_it_looked) {
     EXPECT_THAT(reported(), ElementsAre("1-2 universe 1: universe 1 (sacn) was lost for a moment"));
 }
 
+// Example failure: a hand controller whose lights have failed is dark all night, and the report says that nothing was wrong.
+TEST_F(WatchOfDevices, reports_what_a_device_does_not_do_although_it_is_there) {
+    DeviceStatus status{"cue controller", "usb_hid", DeviceState::Running, LossAction::Hold, "", 0};
+    for (const auto& [at, trouble] : {std::pair{1s, "it takes no lights"}, {2s, "it takes no lights"}, {4s, ""}}) {
+        status.trouble = trouble;
+        watch_.look(at, std::vector{status});
+    }
+    EXPECT_THAT(told_, ElementsAre("cue controller (usb_hid): it takes no lights",
+                                   "cue controller (usb_hid) is all right again after 3.0 s"));
+    EXPECT_THAT(reported(), ElementsAre("1-4 cue controller: cue controller (usb_hid): it takes no lights"));
+}
+
 // Relays that a hand switched are a loss to their bank, and Lighting says which they are.
 TEST_F(WatchOfDevices, leaves_what_happens_to_relays_of_a_bank_that_is_there_to_others) {
     for (const int losses : {0, 1, 2})

@@ -252,8 +252,8 @@ TEST(FrameUploads, are_told_apart_from_drawing) {
     cues.cues[0].fade = Time{};
     cues.cues[0].look.outputs[0].layers = {{0, 1.0f}};
     cues.cues[0].look.outputs[1].layers = {{1, 1.0f}};
-    FrameLoop loop(run.site, cues, {render::PatternSource{pattern, nullptr}, render::SolidSource{}},
-                   sourceFolder() + "/assets", run.devices, clock);
+    FrameLoop loop(run.site, cues, {render::PatternSource{pattern, nullptr}, render::SolidSource{}}, sourceFolder() + "/assets",
+                   run.devices, clock);
     ASSERT_TRUE(loop.prepare());
     loop.begin(run.clock.now());
     ASSERT_TRUE(loop.replica().give({Time{}, show::Input::Kind::Go}));
@@ -375,11 +375,17 @@ TEST(FrameLoop, keeps_its_renderer_where_a_new_one_cannot_be_made) {
     };
     std::filesystem::rename(folder / "assets/shaders/shape.frag", folder / "aside");
     give();
+    const auto told = [&] { return loop.withFaults(run.devices.statuses())[0]; };
+    EXPECT_EQ(told().trouble, "");
     EXPECT_EQ(shown(), before);
     EXPECT_EQ(shown(), before);
+    EXPECT_EQ(told().state, DeviceState::Running);
+    EXPECT_THAT(told().trouble,
+                testing::AllOf(testing::StartsWith("it stays as it was set before: "), testing::HasSubstr("shape.frag")));
     std::filesystem::rename(folder / "aside", folder / "assets/shaders/shape.frag");
     give();
     EXPECT_NE(shown(), before) << "and takes the next settings";
+    EXPECT_EQ(told().trouble, "");
 }
 
 // A display whose context can be lost, as by the end of an X server; or that has none before it comes.

@@ -55,6 +55,21 @@ TEST_F(HandPart, a_press_reaches_every_part_of_the_show_and_the_operator) {
     EXPECT_EQ(hand_.cues()[0].entered, 2s);
 }
 
+// Example failure: the lamps stay in a cue that the pictures have left, and nobody is told.
+TEST_F(HandPart, an_input_that_a_part_does_not_take_is_a_fault) {
+    FaultLog faults([this](const std::string& sentence) { told_.push_back(sentence); });
+    Hand hand(run_.show, run_.cues, run_.site, run_.devices, Time{}, &faults);
+    hand.feed(lamps_);  // which nobody asks for its state
+    const auto give = [&] { hand.give({2s, show::Input::Kind::Blackout}); };
+    for (int input = 0; input < 256; ++input) give();
+    EXPECT_TRUE(faults.faults().empty());
+    for (int input = 0; input < 3; ++input) give();
+    EXPECT_THAT(told_, ElementsAre(HasSubstr("inputs are lost")));
+    ASSERT_EQ(faults.faults().size(), 1u);
+    EXPECT_EQ(faults.faults()[0].at, 2s);
+    EXPECT_EQ(faults.faults()[0].until, std::nullopt) << "it stays in another cue";
+}
+
 // Otherwise the operator presses again, harder.
 TEST_F(HandPart, says_why_a_press_did_nothing) {
     run_.clock.advance(2s);

@@ -154,6 +154,44 @@ TEST_F(LightingPart, fades_the_lamps_to_the_end_levels_and_makes_the_relays_safe
     EXPECT_THAT(run_.world.relays("road"), Each(true));
 }
 
+// Nobody waits for the fade where a display hangs, or somebody is impatient.
+// Example failure: the lamps stay at the level of that moment until the morning.
+TEST_F(LightingPart, hurried_jumps_to_the_end_levels_with_one_frame_and_says_which_line_has_not_taken_it) {
+    run_.site.fixtures[0].end = {0.2f};
+    run_.site.endFade = 60s;
+    for (const bool isThere : {true, false}) {
+        Lighting lighting(run_.site, run_.cues, run_.devices, run_.clock, Time{}, nullptr);
+        const std::vector<Part> relays = lighting.relayParts();
+        const auto work = [&] {
+            lighting.tick(run_.clock.now());
+            for (const Part& part : relays) part.work(run_.clock.now());
+        };
+        ASSERT_TRUE(lighting.replica().give(run_.jumpTo("Full")));
+        run_.clock.advance(10s);
+        work();
+        ASSERT_EQ(sculpture(), 255);
+        EXPECT_EQ(lighting.unendedLines().size(), run_.site.universes.size());
+        lighting.end(run_.clock.now());
+        run_.clock.advance(1s);
+        work();
+        EXPECT_GT(sculpture(), 250);
+        EXPECT_FALSE(lighting.ended());
+        EXPECT_EQ(lighting.unendedLines().size(), run_.site.universes.size()) << "none is there yet";
+        run_.world.setPlugged("universe 1", isThere);
+        lighting.hurry();
+        work();
+        EXPECT_TRUE(lighting.ended());
+        if (isThere) {
+            EXPECT_EQ(sculpture(), 51);
+            EXPECT_TRUE(lighting.unendedLines().empty());
+        } else {
+            ASSERT_EQ(lighting.unendedLines().size(), 1u);
+            EXPECT_THAT(sentenceOf(lighting.unendedLines()[0]),
+                        testing::StartsWith("the lamps of universe 1 did not get their end levels (universe 1 is absent"));
+        }
+    }
+}
+
 TEST_F(LightingPart, a_bank_that_comes_back_while_the_show_ends_gets_its_safe_states) {
     ASSERT_TRUE(lighting_.replica().give(run_.jumpTo("Full")));
     run(10s);

@@ -17,7 +17,12 @@ void say(const char* what) { std::fputs(what, stderr); }
 
 // What a run hands over; it says what it is told to do.
 Supervisor::Run speaking() {
-    return {[] { say("end;"); }, [] { return true; }, [] { say("close;"); }, [](const std::string& why) { say(why.c_str()); }};
+    return {[] { say("end;"); },
+            [] { say("hurry;"); },
+            [] { return true; },
+            [] { say("close;"); },
+            [](const std::string& why) { say(why.c_str()); },
+            {}};
 }
 
 class SupervisorDeathTest : public testing::Test {
@@ -29,32 +34,33 @@ protected:
 TEST_F(SupervisorDeathTest, a_step_that_hangs_is_not_waited_for_and_the_lights_come_first) {
     const auto hang = [] {
         const Interrupt interrupt(Interrupt::Second::IsCounted);
-        Supervisor supervisor(interrupt, nullptr, [](const std::string&) {});
+        Supervisor supervisor(interrupt, nullptr);
         supervisor.attend(speaking());
         supervisor.step("showing the pictures", 20ms);
         std::raise(SIGTERM);
         for (;;) pause();
     };
-    EXPECT_EXIT(hang(), testing::ExitedWithCode(1), "^end;close;it hung while showing the pictures");
+    EXPECT_EXIT(hang(), testing::ExitedWithCode(1), "^end;hurry;close;it hung while showing the pictures");
 }
 
 TEST_F(SupervisorDeathTest, who_presses_ctrl_c_again_waits_for_the_lights_alone) {
     const auto impatient = [] {
         const Interrupt interrupt(Interrupt::Second::IsCounted);
-        Supervisor supervisor(interrupt, nullptr, [](const std::string&) {});
+        Supervisor supervisor(interrupt, nullptr);
         supervisor.attend(speaking());
         supervisor.step("finishing the recording", 1h);
         SteadyClock clock;
         for (;; clock.sleepUntil(clock.now() + 100ms)) std::raise(SIGINT);
     };
-    EXPECT_EXIT(impatient(), testing::ExitedWithCode(1), "^end;close;it was interrupted again while finishing the recording");
+    EXPECT_EXIT(impatient(), testing::ExitedWithCode(1),
+                "^end;hurry;close;it was interrupted again while finishing the recording");
 }
 
 // A run that is over has nothing left to close.
 TEST_F(SupervisorDeathTest, a_step_after_the_lights_are_closed_may_hang_too) {
     const auto hang = [] {
         const Interrupt interrupt(Interrupt::Second::IsCounted);
-        Supervisor supervisor(interrupt, nullptr, [](const std::string&) {});
+        Supervisor supervisor(interrupt, nullptr);
         supervisor.attend(speaking());
         supervisor.release();
         supervisor.step("closing the devices", 20ms);
@@ -69,11 +75,12 @@ TEST(Supervisor, waits_for_what_is_in_time) {
     const Interrupt interrupt(Interrupt::Second::IsCounted);
     int ends = 0;
     {
-        Supervisor supervisor(interrupt, nullptr, [](const std::string&) {});
+        Supervisor supervisor(interrupt, nullptr);
         EXPECT_FALSE(supervisor.ending());
         std::raise(SIGTERM);
         EXPECT_TRUE(supervisor.ending()) << "before anybody looks";
-        supervisor.attend({[&] { ++ends; }, [] { return true; }, [] { FAIL(); }, [](const std::string&) { FAIL(); }});
+        supervisor.attend(
+            {[&] { ++ends; }, [] { FAIL(); }, [] { return true; }, [] { FAIL(); }, [](const std::string&) { FAIL(); }, {}});
         for (int step = 0; step < 10; ++step) supervisor.step("some step");
     }
     EXPECT_LE(ends, 1);
@@ -82,8 +89,8 @@ TEST(Supervisor, waits_for_what_is_in_time) {
 // Example failure: on a busy machine the frames that are not written yet at the end are lost, and the report with them.
 TEST(Supervisor, waits_for_a_step_that_gets_on) {
     const Interrupt interrupt(Interrupt::Second::IsCounted);
-    Supervisor supervisor(interrupt, nullptr, [](const std::string&) {});
-    supervisor.attend({[] {}, [] { return true; }, [] { FAIL(); }, [](const std::string&) { FAIL(); }});
+    Supervisor supervisor(interrupt, nullptr);
+    supervisor.attend({[] {}, [] { FAIL(); }, [] { return true; }, [] { FAIL(); }, [](const std::string&) { FAIL(); }, {}});
     supervisor.requestEnd();
     supervisor.step("recording", 2s);
     SteadyClock clock;

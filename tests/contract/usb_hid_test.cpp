@@ -455,6 +455,22 @@ TEST_F(UsbHidTest, a_device_that_takes_no_lights_for_a_while_serves_and_shows_th
     EXPECT_EQ(controller->status().losses, 0);
 }
 
+// Example failure: the pad is dark for the rest of the night, and nobody is told why.
+TEST_F(UsbHidTest, a_device_that_takes_no_lights_any_more_serves_and_says_so) {
+    const Kind kind = xkeys(true);
+    usb_.plug(kind.device);
+    const auto controller = open(", vendor: 05f3");
+    ASSERT_TRUE(eventually([&] { return isRunning(*controller) && usb_.sent("1-1").size() >= 49; }));
+    EXPECT_EQ(controller->status().trouble, "");
+    usb_.take("1-1", MockUsb::Taking::Stalls);
+    controller->light(1, {Alarm, ""});
+    EXPECT_TRUE(eventually([&] { return controller->status().trouble.starts_with("it takes no lights"); }));
+    usb_.report("1-1", 0, kind.report({5}));
+    usb_.report("1-1", 0, kind.report({}));
+    EXPECT_EQ(given(*controller), "+5-5");
+    EXPECT_TRUE(isRunning(*controller));
+}
+
 TEST_F(UsbHidTest, ends_with_a_device_that_takes_no_farewell) {
     const Kind kind = xkeys(true);
     usb_.plug(kind.device);

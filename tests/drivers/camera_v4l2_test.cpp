@@ -416,12 +416,18 @@ TEST_F(V4l2Cameras, that_stall_are_started_again_then_faulted_until_they_speak) 
     stream(mock);
     ASSERT_NE(seenOf(mock, {.bytes = yuyv(100)}), nullptr);
     const int streams = mock.streams();
+    EXPECT_EQ(camera_->status().trouble, "");
     ASSERT_TRUE(mock.waitForStreams(streams + 1)) << "its stream is started again first";
     EXPECT_EQ(camera_->status().losses, 0);
+    EXPECT_THAT(camera_->status().trouble, HasSubstr("its stream is started again"));
+    EXPECT_NE(seenOf(mock, {.bytes = yuyv(100)}), nullptr);
+    EXPECT_EQ(camera_->status().trouble, "");
+    ASSERT_TRUE(mock.waitForStreams(streams + 2));
     ASSERT_TRUE(comesTo(DeviceState::Faulted));
     EXPECT_THAT(camera_->status().detail, HasSubstr("gives no frames"));
+    EXPECT_EQ(camera_->status().trouble, "");
     // It is opened again and again, and is not said to run before there is a picture.
-    ASSERT_TRUE(mock.waitForStreams(streams + 2));
+    ASSERT_TRUE(mock.waitForStreams(streams + 3));
     ASSERT_TRUE(mock.waitUntilTaken());
     EXPECT_EQ(camera_->status().state, DeviceState::Faulted);
     EXPECT_NE(seenOf(mock, {.bytes = yuyv(100)}), nullptr);

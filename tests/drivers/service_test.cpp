@@ -68,6 +68,29 @@ TEST(Service, counts_a_loss_for_every_life_that_ends) {
     EXPECT_THAT(losses, ElementsAre(0, 1, 2));
 }
 
+TEST(Service, is_in_trouble_until_that_is_over_or_it_is_lost) {
+    std::vector<std::string> troubles;
+    std::promise<void> done;
+    {
+        Service service("lamp", "test", LossAction::Hold, [&](Service& device) -> Outage {
+            const auto note = [&] { troubles.push_back(device.status().trouble); };
+            note();
+            if (troubles.size() > 1) {
+                done.set_value();
+                return untilTheEnd(device);
+            }
+            device.running();
+            for (const char* trouble : {"it flickers", "", "it hums"}) {
+                device.trouble(trouble);
+                note();
+            }
+            return {DeviceState::Faulted, "it bit"};
+        });
+        done.get_future().wait();
+    }
+    EXPECT_THAT(troubles, ElementsAre("", "it flickers", "", "it hums", ""));
+}
+
 TEST(Service, ends_while_it_waits) {
     std::promise<void> running;
     Service service("lamp", "test", LossAction::Hold, [&](Service& device) {

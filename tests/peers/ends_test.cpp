@@ -5,6 +5,7 @@
 #include "core/random.h"
 #include "peers/modbus_peer.h"
 #include "peers/own_network.h"
+#include "peers/plain_dmx.h"
 #include "peers/process.h"
 #include "program.h"
 #include "scratch_folder.h"
@@ -18,6 +19,7 @@
 #include <fstream>
 #include <functional>
 #include <optional>
+#include <regex>
 #include <tuple>
 
 namespace fantascope::peers {
@@ -46,7 +48,8 @@ public:
     const std::filesystem::path& folder() const { return folder_.path(); }
     ModbusPeer& peer() { return peer_; }
 
-    void writeSite(const std::filesystem::path& file, const std::string& display) {
+    void write(const std::filesystem::path& file, const std::string& text) { folder_.file(file, text); }
+    void writeSite(const std::filesystem::path& file, const std::string& display, const std::string& more = "") {
         std::string device = peer_.options(0);
         std::replace(device.begin(), device.end(), '\n', ',');
         folder_.file(file, fmt::format(R"(fantascope: site
@@ -54,8 +57,8 @@ version: 1
 outputs: [{{name: wall, display: {{driver: {}}}, size: [64, 36], refresh_rate: 30}}]
 relay_banks: [{{name: street, device: {{{}}}}}]
 relays: [{{name: road, coil: 0, safe: on}}]
-)",
-                                       display, device));
+{})",
+                                       display, device, more));
     }
     bool isSafe() const { return peer_.ask("get 0 c 0 1") == "1"; }
     // Somebody at the module.
@@ -65,8 +68,10 @@ relays: [{{name: road, coil: 0, safe: on}}]
         return std::ranges::all_of(peer_.journal(), [](const ModbusPeer::Change& change) { return change.coils[0] == '0'; });
     }
     // The lamp was on; returns once the run has switched it off.
-    Process run(const Process::Prepare& prepare = {}) {
-        return begun({"run", ".", "--site", ".", "--from", "One", "--report", "report.json"}, prepare);
+    Process run(const Process::Prepare& prepare = {}, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments = {"run", ".", "--site", ".", "--from", "One", "--report", "report.json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return begun(arguments, prepare);
     }
     // The lamp was on; returns in the middle of its first click.
     Process trial() { return begun({"devices", "--site", ".", "--test", "street", "--yes", "--seconds", "60"}); }
@@ -221,6 +226,7 @@ TEST_F(Ends, a_module_that_is_silent_at_the_end_is_told_and_tried_on) {
     EXPECT_EQ(run.wait(), 1);
     EXPECT_THAT(run.said(), HasSubstr("RELAYS MAY BE UNSAFE: 'street'"));
     EXPECT_EQ(street.report()["unsafe_relays"][0]["bank"], "street");
+    EXPECT_THAT(street.report()["faults"].dump(), HasSubstr("'street' has not confirmed its safe states"));
     street.peer().ask("reset 0");
     EXPECT_TRUE(eventually([&] { return street.isSafe(); }));
 }
@@ -461,6 +467,75 @@ TEST_F(Claims, what_a_run_has_is_looked_at_from_afar_and_not_tried) {
     EXPECT_TRUE(street.isUndisturbed());
     run.signal(SIGTERM);
     EXPECT_EQ(run.wait(), 0) << run.said();
+}
+
+// Example failure: the guard reads the site file anew, which somebody saves in the middle of the show; it guards other relays, or none.
+TEST_F(Ends, a_guard_that_is_replaced_knows_the_site_that_the_run_has_read) {
+    Street street(ModbusPeer::Wire::Tcp);
+    Process run = street.run();
+    street.write("site.yaml", "relays: [{name: roa");
+    const std::vector<pid_t> before = run.children();
+    ASSERT_EQ(before.size(), 1u);
+    ::kill(before[0], SIGKILL);
+    EXPECT_TRUE(eventually([&] { return run.said().find("there is a new relay guard") != std::string::npos; })) << run.said();
+    run.signal(SIGKILL);
+    EXPECT_TRUE(eventually([&] { return street.isSafe(); }));
+}
+
+TEST_F(Ends, the_report_tells_of_a_guard_that_died) {
+    Street street(ModbusPeer::Wire::Tcp);
+    Process run = street.run();
+    ASSERT_EQ(run.children().size(), 1u);
+    ::kill(run.children()[0], SIGKILL);
+    EXPECT_TRUE(eventually([&] { return run.said().find("there is a new relay guard") != std::string::npos; })) << run.said();
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(), 0) << run.said();
+    const json faults = street.report()["faults"];
+    ASSERT_EQ(faults.size(), 1u) << faults;
+    EXPECT_EQ(faults[0]["what"], "the relay guard died");
+    EXPECT_TRUE(faults[0].contains("until"));
+}
+
+// Example failure: most lamps hold the last level that they got, the one of that moment, until the morning.
+TEST_F(Ends, an_impatient_operator_gets_the_end_levels_at_once_and_is_told_of_the_recording) {
+    if (!whyNoNetwork().empty()) GTEST_SKIP() << whyNoNetwork();
+    Street street(ModbusPeer::Wire::Tcp);
+    street.write("show.yaml",
+                 std::regex_replace(std::string(kShow), std::regex("relays:"), "fixtures: {lamp: {level: 1}}, relays:"));
+    street.writeSite("site.yaml", "headless",
+                     "universes: [{number: 7, port: {driver: sacn, interface: near}}]\n"
+                     "fixtures: [{name: lamp, universe: 7, address: 1, channels: [level], end: 0.2}]\nend_fade: 60\n");
+    PlainSocket ear = madeThere([] {
+        PlainSocket socket("far", "", 5568);
+        socket.join("far", sacnGroup(7));
+        return socket;
+    });
+    std::optional<int> level;
+    const auto hears = [&](int patience) {
+        for (Datagram bytes = ear.receive(patience); !bytes.empty(); bytes = ear.receive(0))
+            if (const auto levels = readPlainSacn(bytes)) level = levels->slots[0];
+        return level;
+    };
+    Process run = street.run({}, {"--record", "recorded"});
+    ASSERT_TRUE(eventually([&] { return hears(2) == 255; })) << run.said();
+    ASSERT_TRUE(eventually([&] {
+        run.signal(SIGINT);
+        hears(2);
+        return !run.isRunning();
+    }));
+    EXPECT_EQ(hears(100), 51);
+    const std::string said = run.said();
+    EXPECT_EQ(run.wait(), 1);
+    EXPECT_THAT(said, AllOf(HasSubstr("it was interrupted again while making the relays safe"),
+                            HasSubstr("The recording was not finished and is lost")));
+    EXPECT_TRUE(street.isSafe());
+    const json report = street.report();
+    EXPECT_EQ(report["stop_reason"], "hung");
+    EXPECT_EQ(report["recorded"]["wall"], 0);
+    EXPECT_EQ(report["not_recorded"]["wall"], report["frames"]);
+    EXPECT_GT(report["frames"], 0);
+    ASSERT_EQ(report["faults"].size(), 1u) << report["faults"];
+    EXPECT_EQ(report["faults"][0]["what"], "recording: it was not finished and is lost");
 }
 
 }  // namespace
