@@ -199,9 +199,8 @@ std::vector<Variant> variants() {
 
 std::unique_ptr<OutputRenderer> rendererOf(const Settings& settings, const PatternSource& source, const Variant& variant) {
     const glm::ivec2 size(settings.width, settings.height);
-    OutputRenderer::Options options{.projection = {size, Warp::straight(size)},
-                                    .samples = settings.samples,
-                                    .shaders = sourceFolder() + "/assets/shaders"};
+    OutputRenderer::Options options{
+        .projection = {size, Warp::straight(size)}, .samples = settings.samples, .shaders = sourceFolder() + "/assets/shaders"};
     options.projection.light.dither = false;
     variant.set(options);
     return valueOf(OutputRenderer::create(options, std::vector<PictureSource>{source}));
@@ -479,12 +478,13 @@ void playShow(const Settings& settings) {
     app::Devices devices = valueOf(app::openDevices(site, app::Backends::AsDeclared, {clock}));
     const PictureSource source = settings.people > 0 ? PictureSource(swayingPeople({settings.people}))
                                                      : PictureSource(swayingCrystals({settings.crystals}));
-    app::FrameLoop loop(site, cues, {source}, sourceFolder() + "/assets", devices, clock);
+    show::InputLog inputs(cues);
+    app::FrameLoop loop(site, inputs, {source}, sourceFolder() + "/assets", devices, clock);
     must(loop.prepare());
     const Time start = loop.refreshFrom(clock.now() + std::chrono::milliseconds(200)),
                end = start + fromSeconds(settings.seconds);
     loop.begin(start);
-    FANTASCOPE_CHECK(loop.replica().give({Time{}, show::Input::Kind::Go}), "there is room");
+    inputs.submit({Time{}, show::Input::Kind::Go});
     app::RunReport report;
     {
         std::vector<app::Part> parts;

@@ -11,12 +11,12 @@
 
 namespace fantascope::app {
 
-FrameLoop::FrameLoop(const show::Site& site, const show::CueList& cues, std::vector<render::PictureSource> sources,
+FrameLoop::FrameLoop(const show::Site& site, const show::InputLog& inputs, std::vector<render::PictureSource> sources,
                      std::filesystem::path assets, Devices& devices, Clock& clock)
     : sources_(std::move(sources)),
       assets_(std::move(assets)),
       clock_(clock),
-      replica_(cues),
+      replica_(inputs),
       framesShownOn_(site.outputs.size()) {
     for (std::size_t i = 0; i < site.outputs.size(); ++i) {
         outputs_.push_back({site.outputs[i], *devices.displays[i], blendOf(site, i)});

@@ -46,11 +46,10 @@ public:
     static constexpr Time kHangs = std::chrono::seconds(5);
 
     // All outlive it. `assets`: the folder of the shaders.
-    FrameLoop(const show::Site& site, const show::CueList& cues, std::vector<render::PictureSource> sources,
+    FrameLoop(const show::Site& site, const show::InputLog& inputs, std::vector<render::PictureSource> sources,
               std::filesystem::path assets, Devices& devices, Clock& clock);
     ~FrameLoop();
 
-    PlaybackReplica& replica() { return replica_; }
     // Where the frames that `output` shows are read. Readers come before the first frame, best before prepare().
     render::FrameTap& tap(std::size_t output);
     // The state of the newest frame goes into this slot too. Before the first frame.

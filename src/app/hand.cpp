@@ -19,27 +19,24 @@ static_assert(kWords.size() == static_cast<std::size_t>(show::Button::Write) + 1
 
 }  // namespace
 
-Hand::Hand(const show::Show& show, const show::CueList& cues, const show::Site& site, Devices& devices, Time start,
-           FaultLog* faults)
-    : show_(show), site_(site), devices_(devices), start_(start), faults_(faults), buttons_(site.buttons), playback_(cues) {
+Hand::Hand(const show::Show& show, show::InputLog& inputs, const show::Site& site, Devices& devices, Time start)
+    : show_(show),
+      site_(site),
+      devices_(devices),
+      start_(start),
+      buttons_(site.buttons),
+      inputs_(inputs),
+      replica_(inputs),
+      outcomes_(inputs.reader()) {
     entered_.reserve(show.cues.size());
     lights_.resize(site.buttons.size());
-}
-
-void Hand::give(const show::Input& input) {
-    const show::Outcome outcome = playback_.apply(input);
-    for (PlaybackReplica* replica : replicas_)
-        if (!replica->give(input) && faults_ != nullptr)
-            faults_->raise(input.at, "", FaultLog::Topic::Input,
-                           "inputs are lost: a part of the show takes none any more and shows another cue than the rest");
-    if (outcome != show::Outcome::Taken) tell(std::string(show::nameOf(outcome)));
 }
 
 void Hand::tick(Time moment) {
     while (devices_.cueController) {
         const auto event = devices_.cueController->poll();
         if (!event) break;
-        if (const auto input = buttons_.inputFor(event->button, event->pressed, event->at - start_)) give(*input);
+        if (const auto input = buttons_.inputFor(event->button, event->pressed, event->at - start_)) inputs_.submit(*input);
         for (const auto& [number, button] : site_.buttons)
             if (number == event->button && button >= show::Button::Edit) edit(button, event->pressed);
     }
@@ -47,8 +44,10 @@ void Hand::tick(Time moment) {
         while (const auto change = devices_.contactBanks[bank]->poll())
             if (const auto input =
                     show::inputFor(site_, bank, change->contact, change->closed, change->witnessed, change->at - start_))
-                give(*input);
-    playback_.stateAt(moment - start_, state_);
+                inputs_.submit(*input);
+    while (const show::LoggedInput* const logged = outcomes_.next())
+        if (logged->outcome != show::Outcome::Taken) tell(std::string(show::nameOf(logged->outcome)));
+    replica_.stateAt(moment - start_, state_);
     light(moment - start_);
     if (std::exchange(blackout_, state_.blackout) != state_.blackout)
         tell(state_.blackout ? "blackout: pictures and lamps are dark" : "light: the blackout is over");
@@ -65,7 +64,7 @@ ButtonLight Hand::lightOf(show::Button button, Time showTime) const {
     const auto state = [&] {
         switch (button) {
             case show::Button::Go:
-                if (playback_.fadesAt(showTime)) return State::Active;
+                if (replica_.playback().fadesAt(showTime)) return State::Active;
                 return lit(state_.cue + 1 < static_cast<int>(show_.cues.size()), State::Ready);
             case show::Button::Back:
                 return lit(state_.cue > 0, State::Ready);

@@ -15,21 +15,15 @@
 
 namespace fantascope::app {
 
-// The operator's side of a run: polls the cue controller and the contacts, turns what they say into inputs and gives each to every replica,
-// so that the whole show agrees; lights the controller's buttons by what they are good for. Keeps a copy of the playback itself, to tell
-// which cue is on.
+// The operator's side of a run: polls the cue controller and the contacts and submits what they say as inputs; lights the controller's
+// buttons by what they are good for; tells which cue is on and which inputs are ignored.
 class Hand {
 public:
-    // All outlive it; without `devices`' controller or contacts it does without, and `faults` may be null. Show time 0 is `start` on the clock.
-    Hand(const show::Show& show, const show::CueList& cues, const show::Site& site, Devices& devices, Time start,
-         FaultLog* faults = nullptr);
+    // All outlive it; without `devices`' controller or contacts it does without. Show time 0 is `start` on the clock.
+    Hand(const show::Show& show, show::InputLog& inputs, const show::Site& site, Devices& devices, Time start);
 
     // How often both are asked: a press waits 5 ms at most.
     static constexpr double kRate = 200;
-    // A part of the run that is given every input. Before the first tick.
-    void feed(PlaybackReplica& replica) { replicas_.push_back(&replica); }
-    // An input that no button stands for, such as the cue to start from. From the input thread, or before it starts.
-    void give(const show::Input& input);
     void tick(Time moment);
 
     // Called on the input thread with a sentence whenever an input or a cue change is worth telling the operator.
@@ -51,11 +45,11 @@ private:
     const show::Site& site_;
     Devices& devices_;
     const Time start_;
-    FaultLog* const faults_;
     show::CueButtons buttons_;
-    show::Playback playback_;
+    show::InputLog& inputs_;
+    PlaybackReplica replica_;
+    show::InputLog::Reader outcomes_;
     show::ShowState state_;
-    std::vector<PlaybackReplica*> replicas_;
     std::vector<CueReport> entered_;
     std::vector<ButtonLight> lights_;  // of Site::buttons, as the controller was told
     int cue_ = -1;

@@ -21,7 +21,7 @@ constexpr const char* kNotSent = "they were not sent any more";
 
 }  // namespace
 
-Lighting::Lighting(const show::Site& site, const show::CueList& cues, Devices& devices, const Clock& clock, Time start,
+Lighting::Lighting(const show::Site& site, const show::InputLog& inputs, Devices& devices, const Clock& clock, Time start,
                    Recording* recording, FaultLog* faults)
     : site_(site),
       devices_(devices),
@@ -29,7 +29,7 @@ Lighting::Lighting(const show::Site& site, const show::CueList& cues, Devices& d
       start_(start),
       recording_(recording),
       faults_(faults),
-      replica_(cues),
+      replica_(inputs),
       banks_(site.relayBanks.size()),
       endLevels_(show::endLevels(site)),
       whyUnended_(site.universes.size(), kNotSent) {

@@ -33,12 +33,11 @@ namespace fantascope::app {
 class Lighting {
 public:
     // All outlive it; `recording` and `faults` may be null. Show time 0 is `start` on the clock.
-    Lighting(const show::Site& site, const show::CueList& cues, Devices& devices, const Clock& clock, Time start,
+    Lighting(const show::Site& site, const show::InputLog& inputs, Devices& devices, const Clock& clock, Time start,
              Recording* recording, FaultLog* faults = nullptr);
 
     // DMX512 allows up to 44 full frames a second; this leaves the line some rest (ANSI E1.11).
     static constexpr double kRate = 40;
-    PlaybackReplica& replica() { return replica_; }
     void tick(Time moment);  // the lighting part's work, at kRate
     // A part for each bank of relays. A call of a slow or dead bank takes as long as its driver's time-out, so each has
     // a thread of its own, and none waits for another. Relays that do not follow, or that somebody else switches, are written ever more

@@ -28,9 +28,9 @@ std::string inFileName(std::string text) {
 
 }  // namespace
 
-Screenshots::Screenshots(std::filesystem::path folder, const show::Show& show, const show::CueList& cues,
+Screenshots::Screenshots(std::filesystem::path folder, const show::Show& show, const show::InputLog& inputs,
                          const std::vector<std::string>& outputs, const std::vector<render::NewestFrame*>& frames, Time start)
-    : folder_(std::move(folder)), show_(show), start_(start), replica_(cues) {
+    : folder_(std::move(folder)), show_(show), start_(start), replica_(inputs) {
     for (std::size_t i = 0; i < outputs.size(); ++i) outputs_.push_back({outputs[i], frames[i]});
 }
 

@@ -23,15 +23,13 @@ class Screenshots {
 public:
     // All outlive it. `frames` of each output: those alone that are asked for. The folder is made with the first picture. Show time 0 is
     // `start` on the clock.
-    Screenshots(std::filesystem::path folder, const show::Show& show, const show::CueList& cues,
+    Screenshots(std::filesystem::path folder, const show::Show& show, const show::InputLog& inputs,
                 const std::vector<std::string>& outputs, const std::vector<render::NewestFrame*>& frames, Time start);
 
     // How often it looks for what was asked for.
     static constexpr double kRate = 20;
     // A picture of every output, a moment later in the show. Another call before they are taken takes another one.
     void take() { wanted_ = true; }
-    // The playback that names the cue of a frame.
-    PlaybackReplica& replica() { return replica_; }
     void tick(Time moment);
 
     // Called on the thread of tick() with a sentence for the operator: where a picture is, or why there is none.
@@ -48,7 +46,7 @@ private:
     const std::filesystem::path folder_;
     const show::Show& show_;
     const Time start_;
-    PlaybackReplica replica_;
+    PlaybackReplica replica_;  // names the cue of a frame
     show::ShowState state_;
     std::vector<Output> outputs_;
     Time from_{};  // show time of the frames that were asked for

@@ -49,15 +49,15 @@ bool SettingUp::unsaved() const { return !editor_.unsaved().empty(); }
 bool SettingUp::key(const Key& key) {
     const bool begins = key == Key{.letter = 'e'};
     if (!on_ && !begins) return false;
-    presses_.push(Press{.key = key});
+    presses_.append(Press{.key = key});
     return true;
 }
 
-void SettingUp::button(show::Button button, bool pressed) { presses_.push(Press{.button = button, .pressed = pressed}); }
+void SettingUp::button(show::Button button, bool pressed) { presses_.append(Press{.button = button, .pressed = pressed}); }
 
 void SettingUp::tick(Time moment, const std::function<void(const Key&)>& other) {
     moved_ = false;
-    while (const auto press = presses_.pop()) {
+    while (const Press* const press = pressed_.next()) {
         // A terminal tells of no key's release.
         if (press->key && moment - std::exchange(lastKey_, moment) > kPause) run(edit::Release{});
         if (press->key)

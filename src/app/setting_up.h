@@ -7,7 +7,7 @@
 
 #include "device/screen_event.h"
 
-#include "core/bounded_queue.h"
+#include "core/append_log.h"
 #include "core/clock.h"
 #include "core/config_edit.h"
 
@@ -78,7 +78,8 @@ private:
     Devices& devices_;
     std::function<void(const std::string&)> tell_;
     std::atomic<bool> on_ = false;
-    BoundedQueue<Press, 64> presses_;
+    AppendLog<Press> presses_;
+    AppendLog<Press>::Reader pressed_ = presses_.reader();
 
     show::SiteEditor editor_;
     std::optional<ConfigDocument> document_;  // none: it could not be read, or not be written

@@ -21,7 +21,7 @@
 #include "app/watch.h"
 #include "drivers/site/simulated_site.h"
 
-#include "core/bounded_queue.h"
+#include "core/append_log.h"
 #include "core/check.h"
 #include "core/config.h"
 #include "core/log.h"
@@ -100,7 +100,8 @@ public:
           guard_(guard),
           news_(news),
           faults_([this](const std::string& sentence) { news_.add(sentence); }),
-          frames_(programme.site, programme.cues, programme.sources, assets, surrounding.devices, clock),
+          inputs_(programme.cues),
+          frames_(programme.site, inputs_, programme.sources, assets, surrounding.devices, clock),
           keys_(options.asFastAsPossible ? nullptr : std::make_unique<TerminalKeys>()),
           wall_(readers(surrounding.simulation != nullptr,
                         [](render::FrameTap& tap) { return &tap.addNewest(std::numeric_limits<double>::infinity()); })),
@@ -110,30 +111,26 @@ public:
           prepared_(frames_.prepare()),
           start_(frames_.refreshFrom(clock.now() + kStartUp)),
           deviceWatch_(faults_, bankNames()),
-          lighting_(programme.site, programme.cues, surrounding.devices, clock, start_, recording, &faults_),
-          hand_(programme.show, programme.cues, programme.site, surrounding.devices, start_, &faults_),
+          lighting_(programme.site, inputs_, surrounding.devices, clock, start_, recording, &faults_),
+          hand_(programme.show, inputs_, programme.site, surrounding.devices, start_),
           watch_(programme.show, outputNames(), programme.comparisons, surrounding.devices.camera.get(), programme.camera.get(),
                  start_, recording),
           settingUp_(programme.site, frames_, surrounding.devices, [this](const std::string& sentence) { news_.add(sentence); }),
           schedule_(scheduleOf(options, programme)),
           quitKey_(options.backends == Backends::AsDeclared),
-          told_(programme.cues) {
+          told_(inputs_) {
         frames_.begin(start_);
         if (recorder_) recorder_->begin(start_);
         frames_.publishStateTo(watch_.shown());
-        hand_.feed(frames_.replica());
-        hand_.feed(lighting_.replica());
-        hand_.feed(told_);
         hand_.edit = [this](show::Button button, bool pressed) { settingUp_.button(button, pressed); };
         hand_.editing = [this] { return settingUp_.on(); };
         lighting_.tell = [this](const std::string& sentence) { news_.add(sentence); };
         hand_.tell = [this](const std::string& sentence) { news_.add(sentence); };
         if (!pictured_.empty()) {
-            screenshots_.emplace(options.pictures, programme.show, programme.cues, outputNames(), pictured_, start_);
-            hand_.feed(screenshots_->replica());
+            screenshots_.emplace(options.pictures, programme.show, inputs_, outputNames(), pictured_, start_);
             screenshots_->tell = hand_.tell;
         }
-        if (programme.firstInput) hand_.give(*programme.firstInput);
+        if (programme.firstInput) inputs_.submit(*programme.firstInput);
     }
 
     ~ShowRun() {
@@ -162,9 +159,10 @@ public:
         parts.push_back(
             {"progress", kProgressRate, start_, [this, progress](Time moment) { progress(statusAt(moment)); }, Rank::Input});
         if (!options_.asFastAsPossible) {
-            parts.push_back({"setting up", SettingUp::kRate, start_,
-                             [this](Time moment) { settingUp_.tick(moment, [this](const Key& key) { screenKeys_.push(key); }); },
-                             Rank::Watch});
+            parts.push_back(
+                {"setting up", SettingUp::kRate, start_,
+                 [this](Time moment) { settingUp_.tick(moment, [this](const Key& key) { screenKeys_.append(key); }); },
+                 Rank::Watch});
             parts.push_back(yardstick());
         }
         return parts;
@@ -348,27 +346,28 @@ private:
         return readers;
     }
 
+    using Source = show::Input::Source;
     void takeInput(Time moment) {
         while (const auto character = keys_ ? keys_->poll() : std::nullopt)
-            if (const auto key = terminal_.take(*character)) pressKey(*key, moment);
-        if (const auto key = terminal_.pause(moment)) pressKey(*key, moment);
-        while (const auto key = screenKeys_.pop()) pressKey(*key, moment);
+            if (const auto key = terminal_.take(*character)) pressKey(*key, Source::Terminal, moment);
+        if (const auto key = terminal_.pause(moment)) pressKey(*key, Source::Terminal, moment);
+        while (const Key* const key = pressedAtScreens_.next()) pressKey(*key, Source::Screen, moment);
         if (schedule_.due(moment - start_)) pressGo(moment);
         nextGo_ = schedule_.next();
         hand_.tick(moment);
     }
     // The terminal's keys act as a hand controller; whoever presses one has taken over from the schedule.
-    void pressKey(const Key& pressed, Time moment) {
+    void pressKey(const Key& pressed, Source source, Time moment) {
         if (settingUp_.key(pressed)) return;
         const auto action = actionOf(pressed.letter);
         if (!action) return;
         switch (*action) {
             case RunKey::Action::Go:
-                return takeOver({moment - start_, show::Input::Kind::Go});
+                return takeOver({.at = moment - start_, .kind = show::Input::Kind::Go, .source = source});
             case RunKey::Action::Back:
-                return takeOver({moment - start_, show::Input::Kind::Back});
+                return takeOver({.at = moment - start_, .kind = show::Input::Kind::Back, .source = source});
             case RunKey::Action::Blackout:
-                return takeOver({moment - start_, show::Input::Kind::Blackout});
+                return takeOver({.at = moment - start_, .kind = show::Input::Kind::Blackout, .source = source});
             case RunKey::Action::Pictures:
                 if (screenshots_) screenshots_->take();
                 return;
@@ -386,7 +385,7 @@ private:
     void takeOver(const show::Input& input) {
         if (!schedule_.ended()) news_.add("you have the controller");
         schedule_.end();
-        hand_.give(input);
+        inputs_.submit(input);
     }
     // A press of the simulated hand, through its device; straight to the show where the site has no controller.
     void pressGo(Time moment) {
@@ -396,7 +395,7 @@ private:
         if (surrounding_.simulation && surrounding_.devices.cueController && go != buttons.end())
             for (const bool pressed : {true, false}) surrounding_.world.press(go->first, pressed);
         else
-            hand_.give({moment - start_, show::Input::Kind::Go});
+            inputs_.submit({.at = moment - start_, .kind = show::Input::Kind::Go, .source = Source::Schedule});
     }
 
     // What the displays show is what the simulated projectors throw, whatever display it is.
@@ -474,6 +473,7 @@ private:
     RelayGuard* guard_;
     News& news_;
     FaultLog faults_;
+    show::InputLog inputs_;
     FrameLoop frames_;
     std::unique_ptr<TerminalKeys> keys_;          // null: as fast as possible, there is nobody to press one
     std::vector<render::NewestFrame*> wall_;      // what simulated projectors throw; none where they are real
@@ -494,7 +494,8 @@ private:
     show::ShowState toldState_;
     std::optional<Screenshots> screenshots_;
     TerminalKeyParser terminal_;
-    BoundedQueue<Key, 16> screenKeys_;  // pressed at a display, from the part that polls it
+    AppendLog<Key> screenKeys_;  // pressed at a display, from the part that polls it
+    AppendLog<Key>::Reader pressedAtScreens_ = screenKeys_.reader();
     Time length_{};
     std::mutex closing_;  // of:
     bool closed_ = false;
@@ -527,7 +528,7 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
     const std::unique_ptr<RelayGuard> guard = TRY(guardOf(options, programme.site, claims));
     News news;
     Supervisor supervisor(interrupt, guard.get());
-    supervisor.step("opening the devices");
+    supervisor.step("opening the devices: look at the X server");
     if (!options.asFastAsPossible) setThreadRank(Rank::Render);  // before the displays make threads of their own
     const auto surrounding = TRY(Surrounding::open(options, programme.site, clock));
     std::unique_ptr<Recording> recording;
@@ -538,6 +539,7 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
         recording = TRY(Recording::open(options.recordTo, std::move(outputs)));
     }
 
+    supervisor.step("preparing the pictures: look at the graphics card");
     ShowRun run(options, programme, *surrounding, recording.get(), clock, assets, supervisor, guard.get(), news);
     if (guard) guard->arm();
     supervisor.attend(run.supervised());

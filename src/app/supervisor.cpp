@@ -49,6 +49,7 @@ Supervisor::~Supervisor() {
 void Supervisor::attend(Run run) {
     const std::lock_guard lock(mutex_);
     run_ = std::move(run);
+    isSettingUp_ = false;
     if (began_) run_->end();
 }
 
@@ -97,6 +98,13 @@ void Supervisor::keepGuard(Time now) {
     if (run_) run_->tellGuardDied(restarted);  // without a run no relay was switched, or all is told
 }
 
+// Nobody draws a status line yet, and an X server that hangs answers no call.
+void Supervisor::tellOfSlowSetUp(Time now) {
+    if (!isSettingUp_ || doing_.empty() || now - since_ < patience_) return;
+    isSettingUp_ = false;  // once
+    std::fputs(fmt::format("fantascope: still {}; lamps and relays wait for that. Ctrl-C ends\n", doing_).c_str(), stderr);
+}
+
 void Supervisor::live(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         pollfd request{ending() ? -1 : interrupt_.file(), POLLIN, 0};
@@ -105,8 +113,11 @@ void Supervisor::live(const std::stop_token& stop) {
         const Time now = clock_.now();
         keepGuard(now);
         if (!outputIsRead()) requested_ = true;
-        if (!ending()) continue;
         const std::lock_guard lock(mutex_);
+        if (!ending()) {
+            tellOfSlowSetUp(now);
+            continue;
+        }
         if (stop.stop_requested()) return;
         begin(now);
         // Some programs that start others hand a signal on that they all got.

@@ -19,6 +19,8 @@ namespace fantascope::app {
 // may hangs (an X server that was stopped, a graphics card, a disk): the supervisor has the lamps go to their end levels at once, closes
 // lamps and relays, writes the report, says what hung, and leaves with exit status 1. It also starts another relay guard where that has died.
 //
+// Before attend() it says on the terminal what a set-up waits for that takes longer than it may.
+//
 // Whoever reads this program's output through a pipe and goes (`run ... | head -1`) asks for the end too.
 class Supervisor {
 public:
@@ -57,7 +59,8 @@ private:
     void live(const std::stop_token& stop);
     bool outputIsRead();
     void keepGuard(Time now);
-    void begin(Time now);  // of the end; with the mutex held
+    void begin(Time now);            // of the end; with the mutex held
+    void tellOfSlowSetUp(Time now);  // with the mutex held
     // Why nobody waits for the render thread any more; with the mutex held.
     std::optional<std::string> hung(Time now) const;
     [[noreturn]] void leave(const std::string& why);
@@ -69,6 +72,7 @@ private:
     Time nextGuard_{}, guardPause_{};
     std::mutex mutex_;  // of:
     std::optional<Run> run_;
+    bool isSettingUp_ = true;    // and nobody was told yet that it takes long
     std::optional<Time> began_;  // the end
     int signals_ = 0;            // counted so far
     bool pressedAgain_ = false;  // the operator will not wait

@@ -22,7 +22,8 @@ std::optional<Input> inputFor(const Site& site, std::size_t bank, std::size_t co
                   {Input::Kind::Light, true}};
     const auto& asked = kAsked[static_cast<std::size_t>(*action)];
     if (!witnessed && !asked.isState) return std::nullopt;
-    return Input{.at = at, .kind = asked.kind};
+    const auto which = static_cast<int>(declared - site.contacts.begin());
+    return Input{.at = at, .kind = asked.kind, .source = Input::Source::Contact, .which = which};
 }
 
 }  // namespace fantascope::show

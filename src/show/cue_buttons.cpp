@@ -25,7 +25,7 @@ std::optional<Input> CueButtons::inputFor(int button, bool pressed, Time at) {
     if (key == keys_.end()) return std::nullopt;
     const bool wasDown = std::exchange(key->down, pressed);
     if (!pressed || wasDown) return std::nullopt;
-    return Input{.at = at, .kind = key->kind};
+    return Input{.at = at, .kind = key->kind, .source = Input::Source::Controller, .which = button};
 }
 
 }  // namespace fantascope::show

@@ -28,6 +28,9 @@ public:
 
     explicit InputLog(const CueList& cues) : playback_(cues) {}
 
+    // What the inputs step through.
+    const CueList& cues() const { return playback_.cues(); }
+
     LoggedInput submit(const Input& input);
     // From the first input on. The log outlives it.
     Reader reader() const { return inputs_.reader(); }

@@ -32,6 +32,8 @@ class Playback {
 public:
     explicit Playback(CueList list);
 
+    const CueList& cues() const { return list_; }
+
     // Takes one input, or says why not. Inputs take effect in the order in which they are given: one whose time is before that of
     // its forerunner takes effect at its forerunner's time. It changes what is seen from then on and nothing before.
     Outcome apply(Input input);

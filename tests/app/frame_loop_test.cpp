@@ -76,7 +76,7 @@ protected:
         left_ = slow.get();
         run_.devices.displays[0] = std::move(slow);
         const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{});
-        loop_.emplace(run_.site, run_.cues, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
+        loop_.emplace(run_.site, run_.inputs, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output).addQueue());
         EXPECT_TRUE(loop_->prepare());
         loop_->begin(run_.clock.now());
@@ -252,11 +252,12 @@ TEST(FrameUploads, are_told_apart_from_drawing) {
     cues.cues[0].fade = Time{};
     cues.cues[0].look.outputs[0].layers = {{0, 1.0f}};
     cues.cues[0].look.outputs[1].layers = {{1, 1.0f}};
-    FrameLoop loop(run.site, cues, {render::PatternSource{pattern, nullptr}, render::SolidSource{}}, sourceFolder() + "/assets",
+    show::InputLog inputs(cues);
+    FrameLoop loop(run.site, inputs, {render::PatternSource{pattern, nullptr}, render::SolidSource{}}, sourceFolder() + "/assets",
                    run.devices, clock);
     ASSERT_TRUE(loop.prepare());
     loop.begin(run.clock.now());
-    ASSERT_TRUE(loop.replica().give({Time{}, show::Input::Kind::Go}));
+    inputs.submit({Time{}, show::Input::Kind::Go});
     for (int frame = 0; frame < 5; ++frame) loop.step();
     constexpr auto kUpload = static_cast<std::size_t>(FramePart::Upload);
     EXPECT_EQ(loop.outputs()[0].took[kUpload].maxMs(), 1e-3);
@@ -302,7 +303,7 @@ TEST_F(FrameLoopPart, the_show_goes_on_in_time_toldevery_output_is_lost) {
 TEST_F(FrameLoopPart, measures_a_press_to_the_refresh_that_shows_it) {
     step(5);
     const Time pressed = run_.clock.now();
-    ASSERT_TRUE(loop_->replica().give({pressed, show::Input::Kind::Go}));
+    run_.inputs.submit({pressed, show::Input::Kind::Go});
     step(3);
     EXPECT_EQ(loop_->inputToFrame().count(), 1u);
     EXPECT_NEAR(loop_->inputToFrame().maxMs(), 2000.0 / 30, 0.01);
@@ -327,11 +328,12 @@ TEST(FrameLoopWind, each_output_sways_in_its_own) {
     for (show::OutputState& output : cues.cues[0].look.outputs) output.layers = {{0, 1.0f}};
     cues.cues[0].fade = Time{};
     cues.cues[0].winds = {{.strength = 0}, {.strength = 4}};
-    FrameLoop loop(run.site, cues, {source}, sourceFolder() + "/assets", run.devices, run.clock);
+    show::InputLog inputs(cues);
+    FrameLoop loop(run.site, inputs, {source}, sourceFolder() + "/assets", run.devices, run.clock);
     const std::array<render::FrameReader*, 2> readers{&loop.tap(0).addQueue(), &loop.tap(1).addQueue()};
     ASSERT_TRUE(loop.prepare());
     loop.begin(run.clock.now());
-    ASSERT_TRUE(loop.replica().give({run.clock.now(), show::Input::Kind::Go}));
+    inputs.submit({run.clock.now(), show::Input::Kind::Go});
     std::array<RgbaImage, 2> before;
     std::array<int, 2> changes{};
     for (int frame = 0; frame < 360; ++frame) {
@@ -352,11 +354,11 @@ TEST(FrameLoop, keeps_its_renderer_where_a_new_one_cannot_be_made) {
                           std::filesystem::copy_options::recursive);
     RunningShow run;
     const std::vector<render::PictureSource> sources(run.show.sources.size(), render::SolidSource{});
-    FrameLoop loop(run.site, run.cues, sources, folder / "assets", run.devices, run.clock);
+    FrameLoop loop(run.site, run.inputs, sources, folder / "assets", run.devices, run.clock);
     render::FrameReader& reader = loop.tap(0).addQueue();
     ASSERT_TRUE(loop.prepare());
     loop.begin(run.clock.now() - 30s);  // the cue is faded in
-    loop.replica().give(run.jumpTo("Both"));
+    run.inputs.submit(run.jumpTo("Both"));
     const auto shown = [&] {
         loop.step();
         RgbaImage image;
@@ -445,14 +447,14 @@ protected:
         left_ = mortal.get();
         run_.devices.displays[0] = std::move(mortal);
         const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{});
-        loop_.emplace(run_.site, run_.cues, sources, folder_ / "assets", run_.devices, run_.clock);
+        loop_.emplace(run_.site, run_.inputs, sources, folder_ / "assets", run_.devices, run_.clock);
         for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output).addQueue());
     }
     void begin() {
         const auto prepared = loop_->prepare();
         ASSERT_TRUE(prepared) << prepared.error().message();
         loop_->begin(run_.clock.now() - 30s);  // the cue is faded in
-        loop_->replica().give(run_.jumpTo("Both"));
+        run_.inputs.submit(run_.jumpTo("Both"));
     }
     struct Seen {
         int frames = 0;
@@ -557,7 +559,7 @@ TEST(FrameLoop, begins_without_an_output_that_cannot_be_drawn) {
     RunningShow run;
     run.site.outputs[0].projection.size = {100'000, 100'000};
     const std::vector<render::PictureSource> sources(run.show.sources.size(), render::SolidSource{});
-    FrameLoop loop(run.site, run.cues, sources, sourceFolder() + "/assets", run.devices, run.clock);
+    FrameLoop loop(run.site, run.inputs, sources, sourceFolder() + "/assets", run.devices, run.clock);
     const auto prepared = loop.prepare();
     ASSERT_TRUE(prepared) << prepared.error().message();
     loop.begin(run.clock.now());

@@ -47,7 +47,7 @@ protected:
     int sculpture() const { return run_.world.slots(1)[0]; }
 
     RunningShow run_;
-    Lighting lighting_{run_.site, run_.cues, run_.devices, run_.clock, Time{}, nullptr};
+    Lighting lighting_{run_.site, run_.inputs, run_.devices, run_.clock, Time{}, nullptr};
     const std::vector<Part> relays_ = lighting_.relayParts();
 };
 
@@ -55,7 +55,7 @@ TEST_F(LightingPart, brings_the_lamps_to_the_cue_and_dims_the_street) {
     run(1s);
     EXPECT_EQ(sculpture(), 0);
     EXPECT_THAT(run_.world.relays("road"), Each(true)) << "before the first cue the street is lit";
-    ASSERT_TRUE(lighting_.replica().give(run_.jumpTo("Full")));
+    run_.inputs.submit(run_.jumpTo("Full"));
     run(10s);
     EXPECT_EQ(sculpture(), 255);
     EXPECT_THAT(run_.world.relays("road"), Each(false));
@@ -63,7 +63,7 @@ TEST_F(LightingPart, brings_the_lamps_to_the_cue_and_dims_the_street) {
 
 // Example failure: relays are written when the show changes them and only then; after a lost bus the street stays lit all night.
 TEST_F(LightingPart, gives_a_returned_relay_bank_its_states_again) {
-    ASSERT_TRUE(lighting_.replica().give(run_.jumpTo("Full")));
+    run_.inputs.submit(run_.jumpTo("Full"));
     run(10s);
     for (int loss = 0; loss < 2; ++loss) {
         run_.world.setPlugged("road", false);
@@ -77,7 +77,7 @@ TEST_F(LightingPart, gives_a_returned_relay_bank_its_states_again) {
 
 // The loss is over before anybody looked.
 TEST_F(LightingPart, notices_a_loss_between_two_looks) {
-    ASSERT_TRUE(lighting_.replica().give(run_.jumpTo("Full")));
+    run_.inputs.submit(run_.jumpTo("Full"));
     run(10s);
     run_.world.setPlugged("road", false);
     run_.world.setPlugged("road", true);
@@ -88,7 +88,7 @@ TEST_F(LightingPart, notices_a_loss_between_two_looks) {
 
 // Somebody on a ladder tries the lamps, or the module was without power for a moment.
 TEST_F(LightingPart, gives_relays_that_a_hand_switched_their_states_again) {
-    ASSERT_TRUE(lighting_.replica().give(run_.jumpTo("Full")));
+    run_.inputs.submit(run_.jumpTo("Full"));
     run(10s);
     run_.world.switchRelaysByHand("road", {true, false});
     run(1s);
@@ -98,7 +98,7 @@ TEST_F(LightingPart, gives_relays_that_a_hand_switched_their_states_again) {
 TEST_F(LightingPart, a_lost_line_stops_neither_itself_nor_the_relays) {
     run(1s);
     run_.world.setPlugged("universe 1", false);
-    ASSERT_TRUE(lighting_.replica().give(run_.jumpTo("Full")));
+    run_.inputs.submit(run_.jumpTo("Full"));
     run(10s);
     EXPECT_EQ(sculpture(), 0);
     EXPECT_THAT(run_.world.relays("road"), Each(false));
@@ -109,7 +109,7 @@ TEST_F(LightingPart, a_lost_line_stops_neither_itself_nor_the_relays) {
 
 // Example failure: the street is switched off and on at the start of a show that begins in a dark cue.
 TEST_F(LightingPart, writes_no_relay_before_the_show_has_decided) {
-    ASSERT_TRUE(lighting_.replica().give(run_.jumpTo("Full")));
+    run_.inputs.submit(run_.jumpTo("Full"));
     std::vector<std::vector<bool>> written;
     run_.devices.relayBanks[0] = std::make_unique<Noting>(std::move(run_.devices.relayBanks[0]), written);
     for (const Part& part : relays_) part.work(run_.clock.now());
@@ -122,13 +122,13 @@ TEST_F(LightingPart, writes_no_relay_before_the_show_has_decided) {
 TEST_F(LightingPart, fades_the_lamps_to_the_end_levels_and_makes_the_relays_safe_at_once) {
     run_.site.fixtures[0].end = {0.2f};
     run_.site.endFade = 2s;
-    Lighting lighting(run_.site, run_.cues, run_.devices, run_.clock, Time{}, nullptr);
+    Lighting lighting(run_.site, run_.inputs, run_.devices, run_.clock, Time{}, nullptr);
     const std::vector<Part> relays = lighting.relayParts();
     const auto work = [&] {
         lighting.tick(run_.clock.now());
         for (const Part& part : relays) part.work(run_.clock.now());
     };
-    ASSERT_TRUE(lighting.replica().give(run_.jumpTo("Full")));
+    run_.inputs.submit(run_.jumpTo("Full"));
     run_.clock.advance(10s);
     work();
     ASSERT_EQ(sculpture(), 255);
@@ -147,7 +147,7 @@ TEST_F(LightingPart, fades_the_lamps_to_the_end_levels_and_makes_the_relays_safe
     }
     EXPECT_THAT(levels, testing::ElementsAre(255, 204, 153, 102, 51));
     EXPECT_TRUE(lighting.unsafeBanks().empty());
-    ASSERT_TRUE(lighting.replica().give(run_.jumpTo("Full")));
+    run_.inputs.submit(run_.jumpTo("Full"));
     run_.clock.advance(10s);
     work();
     EXPECT_EQ(sculpture(), 51) << "the show no longer decides";
@@ -160,13 +160,13 @@ TEST_F(LightingPart, hurried_jumps_to_the_end_levels_with_one_frame_and_says_whi
     run_.site.fixtures[0].end = {0.2f};
     run_.site.endFade = 60s;
     for (const bool isThere : {true, false}) {
-        Lighting lighting(run_.site, run_.cues, run_.devices, run_.clock, Time{}, nullptr);
+        Lighting lighting(run_.site, run_.inputs, run_.devices, run_.clock, Time{}, nullptr);
         const std::vector<Part> relays = lighting.relayParts();
         const auto work = [&] {
             lighting.tick(run_.clock.now());
             for (const Part& part : relays) part.work(run_.clock.now());
         };
-        ASSERT_TRUE(lighting.replica().give(run_.jumpTo("Full")));
+        run_.inputs.submit(run_.jumpTo("Full"));
         run_.clock.advance(10s);
         work();
         ASSERT_EQ(sculpture(), 255);
@@ -193,7 +193,7 @@ TEST_F(LightingPart, hurried_jumps_to_the_end_levels_with_one_frame_and_says_whi
 }
 
 TEST_F(LightingPart, a_bank_that_comes_back_while_the_show_ends_gets_its_safe_states) {
-    ASSERT_TRUE(lighting_.replica().give(run_.jumpTo("Full")));
+    run_.inputs.submit(run_.jumpTo("Full"));
     run(10s);
     run_.world.setPlugged("road", false);
     lighting_.end(run_.clock.now());
@@ -220,7 +220,7 @@ TEST_F(LightingPart, asks_relays_that_are_safe_already_whether_they_are) {
     EXPECT_TRUE(lighting_.ended());
     EXPECT_TRUE(written.empty());
 
-    Lighting another(run_.site, run_.cues, run_.devices, run_.clock, Time{}, nullptr);
+    Lighting another(run_.site, run_.inputs, run_.devices, run_.clock, Time{}, nullptr);
     const std::vector<Part> relays = another.relayParts();
     another.tick(run_.clock.now());
     relays[0].work(run_.clock.now());
@@ -255,7 +255,7 @@ protected:
     std::vector<std::string> told_;
     FaultLog faults_{[this](const std::string& sentence) { told_.push_back(sentence); }};
     std::vector<std::vector<bool>> written_;
-    Lighting watched_{run_.site, run_.cues, run_.devices, run_.clock, Time{}, nullptr, &faults_};
+    Lighting watched_{run_.site, run_.inputs, run_.devices, run_.clock, Time{}, nullptr, &faults_};
     const std::vector<Part> watchedRelays_ = watched_.relayParts();
 
     void runWatched(Time time) {
@@ -279,7 +279,7 @@ TEST_F(LightingWithFaults, relays_that_do_not_follow_are_told_once_and_tried_eve
 
     written_.clear();
     show::Input cue = run_.jumpTo("Full");
-    ASSERT_TRUE(watched_.replica().give(cue));
+    run_.inputs.submit(cue);
     runWatched(25ms);
     EXPECT_THAT(written_, testing::ElementsAre(std::vector<bool>{false, false})) << "a new cue is written at once";
     runWatched(6s);
@@ -296,7 +296,7 @@ TEST_F(LightingWithFaults, relays_that_do_not_follow_are_told_once_and_tried_eve
 // Another program has the module, too. Example failure: both switch the street eight times a second.
 TEST_F(LightingWithFaults, relays_that_somebody_else_switches_are_switched_back_ever_more_rarely) {
     run_.devices.relayBanks[0] = std::make_unique<Noting>(std::move(run_.devices.relayBanks[0]), written_);
-    ASSERT_TRUE(watched_.replica().give(run_.jumpTo("Full")));
+    run_.inputs.submit(run_.jumpTo("Full"));
     for (int time = 0; time < 4 * 60; ++time) {
         runWatched(250ms);
         run_.world.switchRelaysByHand("road", {true, false});
@@ -310,7 +310,7 @@ TEST_F(LightingWithFaults, relays_that_somebody_else_switches_are_switched_back_
 TEST_F(LightingWithFaults, a_universe_that_a_desk_takes_is_a_fault_until_it_gives_it_back) {
     run_.site.universes[0].desk = show::Desk{run_.site.universes[0].port, {.ownPriority = 100}};
     run_.devices = valueOf(openDevices(run_.site, Backends::SimulatedHeadless, {run_.clock, &run_.world}));
-    Lighting lighting{run_.site, run_.cues, run_.devices, run_.clock, Time{}, nullptr, &faults_};
+    Lighting lighting{run_.site, run_.inputs, run_.devices, run_.clock, Time{}, nullptr, &faults_};
     lighting.tell = [this](const std::string& sentence) { told_.push_back(sentence); };
     for (const bool ended : {false, true}) {
         DmxInput frame;
@@ -339,11 +339,11 @@ struct OnTwoBanks : RunningShow {
 
 TEST(LightingWithSeveralBanks, gives_each_bank_its_own_relays_and_loses_one_alone) {
     OnTwoBanks run;
-    Lighting lighting{run.site, run.cues, run.devices, run.clock, Time{}, nullptr};
+    Lighting lighting{run.site, run.inputs, run.devices, run.clock, Time{}, nullptr};
     const std::vector<Part> parts = lighting.relayParts();
     ASSERT_EQ(parts.size(), 2u);
     const auto enter = [&](const char* cue) {
-        ASSERT_TRUE(lighting.replica().give(run.jumpTo(cue)));
+        run.inputs.submit(run.jumpTo(cue));
         run.clock.advance(1s);
         lighting.tick(run.clock.now());
         for (const Part& part : parts) part.work(run.clock.now());
@@ -403,7 +403,7 @@ TEST(LightingWithSeveralBanks, a_bank_that_hangs_holds_up_no_other) {
     run.devices.relayBanks[0] = std::move(made);
     SteadyClock clock;
     const Time start = clock.now();
-    Lighting lighting{run.site, run.cues, run.devices, clock, start, nullptr};
+    Lighting lighting{run.site, run.inputs, run.devices, clock, start, nullptr};
     std::vector<Part> parts = lighting.relayParts();
     parts.push_back({"lighting", Lighting::kRate, start, [&](Time moment) { lighting.tick(moment); }, Rank::Lighting});
     const PartThreads threads(clock, std::move(parts));
@@ -418,7 +418,7 @@ TEST(LightingWithSeveralBanks, a_bank_that_hangs_holds_up_no_other) {
     for (const char* cue : {"Full", "Farewell", "Full", "Farewell", "Full"}) {
         show::Input jump = run.jumpTo(cue);
         jump.at = clock.now() - start;
-        ASSERT_TRUE(lighting.replica().give(jump));
+        run.inputs.submit(jump);
         const std::vector<bool> wanted = {false, cue == std::string_view("Farewell")};
         EXPECT_TRUE(comesTrue([&] { return run.world.relays("park") == wanted; })) << cue;
     }
@@ -434,10 +434,10 @@ TEST(LightingWithADesk, gives_the_universe_away_and_takes_it_back) {
     RunningShow run;
     run.site.universes[0].desk = show::Desk{run.site.universes[0].port, {.ownPriority = 100}};
     run.devices = valueOf(openDevices(run.site, Backends::SimulatedHeadless, {run.clock, &run.world}));
-    Lighting lighting{run.site, run.cues, run.devices, run.clock, Time{}, nullptr};
+    Lighting lighting{run.site, run.inputs, run.devices, run.clock, Time{}, nullptr};
     std::vector<std::string> told;
     lighting.tell = [&](const std::string& sentence) { told.push_back(sentence); };
-    ASSERT_TRUE(lighting.replica().give(run.jumpTo("Full")));
+    run.inputs.submit(run.jumpTo("Full"));
     std::vector<int> seen;
     const auto pass = [&](Time time, std::optional<int> level, bool ended = false) {
         for (const Time end = run.clock.now() + time; run.clock.now() < end; run.clock.advance(tickTime(1, Lighting::kRate))) {
@@ -468,8 +468,8 @@ TEST(LightingWithADesk, leaves_a_desk_what_it_has_when_the_show_ends) {
     RunningShow run;
     run.site.universes[0].desk = show::Desk{run.site.universes[0].port, {.rule = show::DmxMerge::Rule::Latest}};
     run.devices = valueOf(openDevices(run.site, Backends::SimulatedHeadless, {run.clock, &run.world}));
-    Lighting lighting{run.site, run.cues, run.devices, run.clock, Time{}, nullptr};
-    ASSERT_TRUE(lighting.replica().give(run.jumpTo("Full")));
+    Lighting lighting{run.site, run.inputs, run.devices, run.clock, Time{}, nullptr};
+    run.inputs.submit(run.jumpTo("Full"));
     const auto pass = [&](Time time) {
         for (const Time end = run.clock.now() + time; run.clock.now() < end; run.clock.advance(tickTime(1, Lighting::kRate))) {
             DmxInput frame;

@@ -4,6 +4,7 @@
 #include "app/devices.h"
 #include "drivers/site/world.h"
 
+#include "show/input_log.h"
 #include "show/show.h"
 #include "show/site.h"
 
@@ -25,6 +26,7 @@ struct RunningShow {
     show::Site site = valueOf(show::readSite(sourceFolder() + "/config/simulated/site.yaml"));
     show::Show show = valueOf(show::Show::load(sourceFolder() + "/shows/light-movement"));
     show::CueList cues = valueOf(show.bind(site));
+    show::InputLog inputs{cues};
     ManualClock clock;
     site::World world{clock};
     Devices devices = valueOf(openDevices(site, Backends::SimulatedHeadless, {clock, &world}));

@@ -30,7 +30,7 @@ class ScreenshotsTest : public testing::Test {
 protected:
     ScreenshotsTest() {
         const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{});
-        loop_.emplace(run_.site, run_.cues, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
+        loop_.emplace(run_.site, run_.inputs, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         std::vector<std::string> names;
         std::vector<render::NewestFrame*> frames;
         for (std::size_t output = 0; output < 2; ++output) {
@@ -41,12 +41,8 @@ protected:
         EXPECT_TRUE(loop_->prepare());
         start_ = run_.clock.now();
         loop_->begin(start_);
-        screenshots_.emplace(folder_ / "pictures", run_.show, run_.cues, names, frames, start_);
+        screenshots_.emplace(folder_ / "pictures", run_.show, run_.inputs, names, frames, start_);
         screenshots_->tell = [this](const std::string& sentence) { told_.push_back(sentence); };
-    }
-    void give(const show::Input& input) {
-        ASSERT_TRUE(loop_->replica().give(input));
-        ASSERT_TRUE(screenshots_->replica().give(input));
     }
     void play(Time length) {
         for (const Time end = run_.clock.now() + length; run_.clock.now() < end;) {
@@ -80,7 +76,7 @@ protected:
 TEST_F(ScreenshotsTest, every_output_at_one_moment_as_its_display_got_it_and_named_after_the_cue) {
     play(200ms);
     EXPECT_THAT(files(), IsEmpty()) << "nobody asked";
-    give(run_.jumpTo("First light"));
+    run_.inputs.submit(run_.jumpTo("First light"));
     play(1s);
     screenshots_->take();
     play(500ms);

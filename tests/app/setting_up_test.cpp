@@ -63,11 +63,11 @@ protected:
             display = std::move(attended);
         }
         const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{glm::vec3(0.5f)});
-        loop_.emplace(run_.site, run_.cues, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
+        loop_.emplace(run_.site, run_.inputs, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output).addQueue());
         EXPECT_TRUE(loop_->prepare());
         loop_->begin(run_.clock.now() - 30s);  // the cue is faded in
-        loop_->replica().give(run_.jumpTo("Both"));
+        run_.inputs.submit(run_.jumpTo("Both"));
         setting_.emplace(run_.site, *loop_, run_.devices, [this](const std::string& sentence) { told_ += sentence + "\n"; });
         step();
     }

@@ -51,7 +51,8 @@ protected:
         auto devices = openDevices(show_->site, Backends::AsDeclared, {clock_});
         ASSERT_TRUE(devices) << devices.error().message();
         devices_ = std::move(devices).value();
-        loop_.emplace(show_->site, show_->cues, show_->sources, sourceFolder() + "/assets", devices_, clock_);
+        inputs_.emplace(show_->cues);
+        loop_.emplace(show_->site, *inputs_, show_->sources, sourceFolder() + "/assets", devices_, clock_);
         const auto prepared = loop_->prepare();
         ASSERT_TRUE(prepared) << prepared.error().message();
         loop_->begin(clock_.now());
@@ -75,7 +76,7 @@ protected:
     bool runs(std::size_t output) const { return devices_.displays[output]->status().state == DeviceState::Running; }
     // Enters a cue and lets its fade pass.
     void enter(int cue) {
-        FANTASCOPE_CHECK(loop_->replica().give({clock_.now(), show::Input::Kind::Jump, cue}), "there is room");
+        inputs_->submit({clock_.now(), show::Input::Kind::Jump, cue});
         for (int frames = 0; frames < 10; ++frames) frame();
     }
     Frames frames() const {
@@ -107,6 +108,7 @@ protected:
 
     std::unique_ptr<Projectors> projectors_;
     std::optional<ThreeOutputs> show_;
+    std::optional<show::InputLog> inputs_;
     ManualClock clock_;
     Devices devices_;
     std::optional<FrameLoop> loop_;

@@ -42,7 +42,7 @@ protected:
         devices_ = std::move(devices).value();
     }
     void prepare() {
-        loop_.emplace(show_.site, show_.cues, show_.sources, sourceFolder() + "/assets", devices_, clock_);
+        loop_.emplace(show_.site, inputs_, show_.sources, sourceFolder() + "/assets", devices_, clock_);
         const auto prepared = loop_->prepare();
         ASSERT_TRUE(prepared) << prepared.error().message();
         loop_->begin(clock_.now());
@@ -53,7 +53,7 @@ protected:
     Counts lap() {
         Counts sum;
         for (int cue = 0; cue < static_cast<int>(show_.cues.cues.size()); ++cue) {
-            FANTASCOPE_CHECK(loop_->replica().give({clock_.now(), show::Input::Kind::Jump, cue}), "there is room");
+            inputs_.submit({clock_.now(), show::Input::Kind::Jump, cue});
             for (int frame = 0; frame < kFrames; ++frame) {
                 const auto picture = std::make_shared<const RgbaImage>(show_.seen);
                 show_.camera->publish(picture);
@@ -77,6 +77,7 @@ protected:
     }
 
     ThreeOutputs show_;
+    show::InputLog inputs_{show_.cues};
     ManualClock clock_;
     site::World world_{clock_};
     Devices devices_;
@@ -116,7 +117,7 @@ TEST_F(SteadyState, is_not_said_of_a_loop_that_was_not_prepared) {
     prepare();
     loop_.reset();
     const Counts before = now();
-    loop_.emplace(show_.site, show_.cues, show_.sources, sourceFolder() + "/assets", devices_, clock_);
+    loop_.emplace(show_.site, inputs_, show_.sources, sourceFolder() + "/assets", devices_, clock_);
     ASSERT_TRUE(loop_->prepare());
     std::jthread([] {}).join();
     const Counts after = now();

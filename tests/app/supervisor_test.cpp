@@ -56,6 +56,23 @@ TEST_F(SupervisorDeathTest, who_presses_ctrl_c_again_waits_for_the_lights_alone)
                 "^end;hurry;close;it was interrupted again while finishing the recording");
 }
 
+// Example failure: with an X server that hangs the program waits for ever and says nothing.
+TEST_F(SupervisorDeathTest, a_set_up_that_takes_long_is_told_before_anybody_asks_for_the_end) {
+    const auto wait = [] {
+        int said[2];
+        if (pipe(said) != 0) _exit(2);
+        const int terminal = dup(STDERR_FILENO);
+        dup2(said[1], STDERR_FILENO);
+        const Interrupt interrupt(Interrupt::Second::IsCounted);
+        Supervisor supervisor(interrupt, nullptr);
+        supervisor.step("opening the devices", 20ms);
+        char line[256];
+        const ssize_t length = read(said[0], line, sizeof line);
+        _exit(length > 0 && write(terminal, line, static_cast<std::size_t>(length)) == length ? 0 : 1);
+    };
+    EXPECT_EXIT(wait(), testing::ExitedWithCode(0), "still opening the devices; lamps and relays wait for that. Ctrl-C ends");
+}
+
 // A run that is over has nothing left to close.
 TEST_F(SupervisorDeathTest, a_step_after_the_lights_are_closed_may_hang_too) {
     const auto hang = [] {

@@ -229,7 +229,7 @@ public:
             relays_[0].work(show_.clock.now());
         }
     }
-    void enter(const char* cue) { ASSERT_TRUE(lighting.replica().give(show_.jumpTo(cue))); }
+    void enter(const char* cue) { show_.inputs.submit(show_.jumpTo(cue)); }
     Time now() const { return show_.clock.now(); }
 
 private:
@@ -238,7 +238,7 @@ private:
 public:
     std::vector<std::string> told;
     app::FaultLog faults{[this](const std::string& sentence) { told.push_back(sentence); }};
-    app::Lighting lighting{show_.site, show_.cues, show_.devices, show_.clock, Time{}, nullptr, &faults};
+    app::Lighting lighting{show_.site, show_.inputs, show_.devices, show_.clock, Time{}, nullptr, &faults};
 
 private:
     const std::vector<app::Part> relays_ = lighting.relayParts();
