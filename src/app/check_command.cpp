@@ -46,6 +46,7 @@ struct Finding {
     std::string summary;
     std::vector<fs::path> names{};        // the files that it names
     std::vector<std::string> oddities{};  // what is no fault, but perhaps not what was meant; each with its place
+    bool isPicture = false;               // that may be odd for good reason where another file names it
 };
 
 // "1 cue", "6 cues".
@@ -183,11 +184,20 @@ Result<Finding> checkSite(const fs::path& path, const std::optional<show::Site>&
     return finding;
 }
 
-Result<Finding> checkPattern(const fs::path& path, const std::optional<show::Site>&) {
+Result<Finding> checkPattern(const fs::path& path, const std::optional<show::Site>& site) {
     const pattern::ShapePattern pattern = TRY(pattern::readPattern(path));
-    return Finding{fmt::format("pattern, {}, {}", counted(pattern.instances.size(), "instance"),
-                               counted(pattern.triangleCount(), "triangle")),
-                   {pattern.guide}};
+    Finding finding{fmt::format("pattern, {}, {}", counted(pattern.instances.size(), "instance"),
+                                counted(pattern.triangleCount(), "triangle"))};
+    std::error_code ignored;
+    const bool isWatched = !site || site->camera;  // by a camera that compares the wall with the drawing
+    if (isWatched || fs::exists(pattern.guide, ignored))
+        finding.names.push_back(pattern.guide);
+    else
+        finding.oddities.push_back(
+            namedIn(path, pattern.guide,
+                    Error(fmt::format("{}: is missing; without a camera the show plays all the same", pattern.guide.string())))
+                .message());
+    return finding;
 }
 
 Result<Finding> checkPatternSettings(const fs::path& path, const std::optional<show::Site>&) {
@@ -277,6 +287,7 @@ Result<Finding> checkWeights(const fs::path& path, const std::optional<show::Sit
 Result<Finding> checkGuide(const fs::path& path) {
     const GreyImage guide = TRY(readGrey(path));
     Finding finding{fmt::format("guide, {} x {} px", guide.width(), guide.height())};
+    finding.isPicture = true;
     if (isInkOnPaper(guide))
         finding.oddities.push_back(
             fmt::format("{}: looks like dark ink on white paper; as a guide or silhouette it needs --invert", path.string()));
@@ -370,7 +381,8 @@ Result<void> checkFiles(const CheckOptions& options, std::ostream& out) {
         waiting.push_front(*options.site);
         if (auto read = readSite(*options.site)) site = std::move(read).value();  // what is wrong with it is said in its turn
     }
-    std::set<fs::path> seen;
+    std::set<fs::path> seen, given;
+    for (const fs::path& path : options.paths) given.insert(path.lexically_normal());
     std::map<fs::path, fs::path> namedBy;
     std::size_t refused = 0;
     for (; !waiting.empty(); waiting.pop_front()) {
@@ -385,9 +397,8 @@ Result<void> checkFiles(const CheckOptions& options, std::ostream& out) {
             continue;
         }
         out << printableLines(fmt::format("ok {}: {}\n", path.string(), finding->summary));
-        const bool isGiven = !namedBy.contains(path);  // what a show names may be dark on white for good reason
-        for (const std::string& oddity : isGiven ? finding->oddities : std::vector<std::string>())
-            out << printableLines("   note: " + oddity) << "\n";
+        if (!finding->isPicture || given.contains(path.lexically_normal()))
+            for (const std::string& oddity : finding->oddities) out << printableLines("   note: " + oddity) << "\n";
         for (const fs::path& name : finding->names) {
             waiting.push_back(name);
             namedBy.try_emplace(name, fileOf(path));

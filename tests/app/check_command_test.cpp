@@ -233,6 +233,30 @@ TEST(Check, a_canvas_of_unknown_shape_is_noted_with_what_to_measure) {
     EXPECT_THAT(noted(keystoned + ", canvas_size: [2, 2]"), testing::Not(HasSubstr("note:")));
 }
 
+// Example failure: a show that plays at a site without a camera is refused for the lack of a drawing that nobody looks at.
+TEST(Check, a_missing_drawing_is_a_fault_only_where_a_camera_compares_with_it) {
+    const ScratchFolder folder;
+    pattern::ShapePattern pattern;
+    pattern.width = 64;
+    pattern.height = 36;
+    pattern.shapes = {pattern::loadShape("triangle").value()};
+    pattern.instances = {{.id = 0, .centre = {0.5, 0.5}, .size = 0.1}};
+    pattern.guide = folder / "guide.png";
+    ASSERT_TRUE(writePng(pattern.guide, GreyImage(64, 36)));
+    ASSERT_TRUE(pattern::writePattern(folder / "deer.pattern.yaml", pattern));
+    std::filesystem::remove(pattern.guide);
+    const auto show =
+        folder.file("show.yaml", replaced(std::string(kShow), "solid: [0.1, 0.1, 0.1]", "pattern: deer.pattern.yaml"));
+    const std::string camera =
+        "camera: {device: {driver: simulated}, size: [64, 36], field_of_view: 60, position: [0, 1, 9], look_at: [0, 1, 0]}\n";
+    const Checked plays = check(folder, {{show}, folder.file("site.yaml", kSite)});
+    EXPECT_EQ(plays.refusal, "");
+    EXPECT_THAT(plays.lines, HasSubstr("note: deer.pattern.yaml:"));
+    EXPECT_THAT(plays.lines, HasSubstr("guide.png: is missing; without a camera the show plays all the same"));
+    EXPECT_NE(check(folder, {{show}, std::nullopt}).refusal, "") << "any site may have one";
+    EXPECT_NE(check(folder, {{show}, folder.file("watched.yaml", std::string(kSite) + camera)}).refusal, "");
+}
+
 // Leaves that were made as light shade what is to be light. Example failure: a deer of light on a dark wall becomes a dark deer.
 TEST(Check, leaves_that_show_the_drawings_negative_are_noted_with_what_makes_them_right) {
     const ScratchFolder folder;
