@@ -19,7 +19,6 @@
 #include <fstream>
 #include <functional>
 #include <optional>
-#include <regex>
 #include <tuple>
 
 namespace fantascope::peers {
@@ -500,8 +499,8 @@ TEST_F(Ends, the_report_tells_of_a_guard_that_died) {
 TEST_F(Ends, an_impatient_operator_gets_the_end_levels_at_once_and_is_told_of_the_recording) {
     if (!whyNoNetwork().empty()) GTEST_SKIP() << whyNoNetwork();
     Street street(ModbusPeer::Wire::Tcp);
-    street.write("show.yaml",
-                 std::regex_replace(std::string(kShow), std::regex("relays:"), "fixtures: {lamp: {level: 1}}, relays:"));
+    std::string show(kShow);
+    street.write("show.yaml", show.insert(show.find("relays:"), "fixtures: {lamp: {level: 1}}, "));
     street.writeSite("site.yaml", "headless",
                      "universes: [{number: 7, port: {driver: sacn, interface: near}}]\n"
                      "fixtures: [{name: lamp, universe: 7, address: 1, channels: [level], end: 0.2}]\nend_fade: 60\n");
