@@ -11,6 +11,7 @@ Every line has a second module, unit 2; L.2 is that. The faults below are the fi
   served L                    how many requests were answered       unit L N                    it has this address from now on (at first 1)
   watchdog L MS FIRST BITS    unless register 100 is written every MS, the coils from FIRST on become BITS; 0: no watchdog
   armed L                     whether the watchdog may yet strike   reset L                     as at the start
+  fed L                       the first three values that register 100 was given, "-" for none
   cut L / mend L              the line itself                       mute L 0|1                  it does what is asked and says nothing
   late L MS                   answers come so late                  exception L CODE            nothing but this is answered; 0: ends
   dead L                      it never answers again                asked L                     how often it was asked something
@@ -51,6 +52,7 @@ class Module(ModbusSlaveContext):
         self.number = number
         self.watchdog_ms, self.safe_first, self.safe_bits = 0, 0, []
         self.fed_at = None  # not since the last strike
+        self.fed = []
         self.stuck = None
         self.dead, self.asked = False, 0
 
@@ -70,6 +72,7 @@ class Module(ModbusSlaveContext):
             self.note("write")
         if table == "h" and address <= WATCHDOG_REGISTER < address + len(values):
             self.fed_at = time.monotonic()
+            self.fed = (self.fed + [values[WATCHDOG_REGISTER - address]])[:3]
 
     def watch(self):
         if not self.watchdog_ms or self.fed_at is None or time.monotonic() - self.fed_at < self.watchdog_ms / 1000:
@@ -241,6 +244,8 @@ async def obey(lines, words):
         return str(line.served)
     elif command == "armed":
         return str(int(bool(line.module.watchdog_ms) and line.module.fed_at is not None))
+    elif command == "fed":
+        return " ".join(map(str, module.fed)) or "-"
     elif command == "unit":
         line.server.context.move(int(words[2]))
     elif command == "watchdog":
