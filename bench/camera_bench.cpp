@@ -1,4 +1,5 @@
-// How long a camera's frame takes from where the kernel's driver has it to where the program sees it, on a camera of umockdev.
+// How long a camera's frame takes from where the kernel's driver has it to where the program sees
+// it, on a camera of umockdev.
 
 #include "drivers/camera/v4l2.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 // What the benches draw: crystals that sway, as many and as fine as one likes.
 
-#include "render/picture_source.h"
+#include "render/source/picture_source.h"
 
 #include "core/check.h"
 #include "core/random.h"

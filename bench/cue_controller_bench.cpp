@@ -1,6 +1,7 @@
-// How long a press takes from the USB to whoever polls: through usbfs (umockdev's in its place, which talks over a socket and is slower than
-// a kernel), libusb, the descriptor, the debounce and the queue. Prints percentiles in milliseconds; what a host controller's polling adds
-// (bInterval, 1 to 10 ms on common devices) is not in them.
+// How long a press takes from the USB to whoever polls: through usbfs (umockdev's in its place,
+// which talks over a socket and is slower than a kernel), libusb, the descriptor, the debounce and
+// the queue. Prints percentiles in milliseconds; what a host controller's polling adds (bInterval,
+// 1 to 10 ms on common devices) is not in them.
 
 #include "drivers/cue_controller/usb_hid.h"
 

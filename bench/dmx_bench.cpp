@@ -1,5 +1,6 @@
-// How evenly levels leave this machine over the loopback: packets of ours, of every other Art-Net sender that is heard meanwhile, and, beside
-// them, an idle timer of the same rate. Each packet's time is the kernel's. bench/dmx runs it with QLC+ playing.
+// How evenly levels leave this machine over the loopback: packets of ours, of every other Art-Net
+// sender that is heard meanwhile, and, beside them, an idle timer of the same rate. Each packet's
+// time is the kernel's. bench/dmx runs it with QLC+ playing.
 
 #include "drivers/registry.h"
 
@@ -34,7 +35,8 @@ public:
         const int yes = 1;
         setsockopt(file_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
         setsockopt(file_, SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof yes);
-        // Of all sockets on the port the one that is bound most narrowly gets what is sent to this machine.
+        // Of all sockets on the port the one that is bound most narrowly gets what is sent to this
+        // machine.
         setsockopt(file_, SOL_SOCKET, SO_BINDTODEVICE, "lo", 2);
         sockaddr_in here{};
         here.sin_family = AF_INET;

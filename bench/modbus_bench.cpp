@@ -1,5 +1,5 @@
-// How soon relays are what they should be after a fault of their module or its line has ended (tests/peers/modbus_campaign.h), against
-// pymodbus.
+// How soon relays are what they should be after a fault of their module or its line has ended
+// (tests/peers/modbus_campaign.h), against pymodbus.
 
 #include "core/check.h"
 #include "peers/modbus_campaign.h"

@@ -1,8 +1,8 @@
-// What the movement of a pattern costs: groups once when it is made, construction once when it is loaded, posesAt once a frame.
-// Yardsticks of the machine stand beside them.
+// What the movement of a pattern costs: groups once when it is made, construction once when it is
+// loaded, posesAt once a frame. Yardsticks of the machine stand beside them.
 
-#include "pattern/grouping.h"
-#include "pattern/pattern_motion.h"
+#include "pattern/motion/pattern_motion.h"
+#include "pattern/shape/grouping.h"
 
 #include <benchmark/benchmark.h>
 

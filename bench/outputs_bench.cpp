@@ -1,16 +1,18 @@
 // What our frame costs beside what a user would write for it, and how outputs keep together.
 //
-// `cost`: the floor is a plain instanced draw of the same shapes to the same windows: one vertex buffer, a matrix and a colour an instance
-// written anew every frame, the same samples a pixel, resolved by glBlitFramebuffer straight into what is shown; no light, no warp's edge, no
-// layers. Both take turns in the same run, frame by frame, so that what the machine does meanwhile meets both.
+// `cost`: the floor is a plain instanced draw of the same shapes to the same windows: one vertex
+// buffer, a matrix and a colour an instance written anew every frame, the same samples a pixel,
+// resolved by glBlitFramebuffer straight into what is shown; no light, no warp's edge, no layers.
+// Both take turns in the same run, frame by frame, so that what the machine does meanwhile meets
+// both.
 //
-// `threads`: one thread that draws all outputs, as the program does, against a thread an output, and against threads that draw for one that
-// shows, in real time.
+// `threads`: one thread that draws all outputs, as the program does, against a thread an output,
+// and against threads that draw for one that shows, in real time.
 //
 // `show`: the program's frame loop in real time, beside an empty thread of the same rate and rank.
 
-#include "app/frame_loop.h"
-#include "app/part.h"
+#include "app/live/frame_loop.h"
+#include "app/live/part.h"
 #include "drivers/registry.h"
 
 #include "render/gpu/shader_program.h"
@@ -208,7 +210,8 @@ std::unique_ptr<OutputRenderer> rendererOf(const Settings& settings, const Patte
 
 const show::OutputState kLook{{{0, 1.0f}}};
 
-// The least of the frames' times tells what the work takes, the median what it takes on this machine now.
+// The least of the frames' times tells what the work takes, the median what it takes on this
+// machine now.
 struct Cost {
     std::vector<double> real, processor;  // ms a frame
     static double median(std::vector<double> of) {
@@ -385,7 +388,8 @@ Pace threadAnOutput(const Settings& settings, const PatternSource& source) {
     return pace;
 }
 
-// Drawn on a thread an output and shown by one: the thread that shows waits until all pictures are complete.
+// Drawn on a thread an output and shown by one: the thread that shows waits until all pictures are
+// complete.
 Pace drawnOnThreads(const Settings& settings, const PatternSource& source) {
     SteadyClock clock;
     Pace pace;

@@ -1,11 +1,12 @@
-// What the search for a pattern reaches, both methods side by side: one row for each guide, method and time, with the work done beside the
-// seconds. Seconds are those of the processor, on one thread. "redraw": whether the search's own z is that of a fresh drawing; "strays": how far
-// local movement carries the shapes' corners over the loop, in mean sizes (LoopQuality).
+// What the search for a pattern reaches, both methods side by side: one row for each guide, method
+// and time, with the work done beside the seconds. Seconds are those of the processor, on one
+// thread. "redraw": whether the search's own z is that of a fresh drawing; "strays": how far local
+// movement carries the shapes' corners over the loop, in mean sizes (LoopQuality).
 
-#include "pattern/elemental_shape.h"
-#include "pattern/measure.h"
-#include "pattern/motion_fit.h"
-#include "pattern/pattern_search.h"
+#include "pattern/search/measure.h"
+#include "pattern/search/motion_fit.h"
+#include "pattern/search/pattern_search.h"
+#include "pattern/shape/elemental_shape.h"
 
 #include "core/parallel.h"
 #include "core/random.h"
@@ -46,7 +47,8 @@ double yardstick() {
     return bits > 0 ? took : 0;
 }
 
-// A picture of 1280x720 from what each of its points is, with 4 x 4 samples a pixel. Points in pixels.
+// A picture of 1280x720 from what each of its points is, with 4 x 4 samples a pixel. Points in
+// pixels.
 GreyImage picture(const std::function<double(glm::dvec2)>& valueAt) {
     GreyImage image(1280, 720);
     constexpr int kSamples = 4;

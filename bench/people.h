@@ -1,8 +1,9 @@
 #pragma once
-// What the benches throw shadows of: people of some 5,000 triangles each who stand in a row and sway.
+// What the benches throw shadows of: people of some 5,000 triangles each who stand in a row and
+// sway.
 
-#include "render/picture_source.h"
-#include "theatre/cast.h"
+#include "render/source/picture_source.h"
+#include "theatre/stage/cast.h"
 
 #include "core/random.h"
 

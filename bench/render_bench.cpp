@@ -1,5 +1,6 @@
-// How long a frame takes: a pattern of as many triangles as the default show's on every output, or of three times as many, in software
-// OpenGL or on whatever GPU EGL offers. Compare with the yardstick of the same run, since machines and their neighbours differ.
+// How long a frame takes: a pattern of as many triangles as the default show's on every output, or
+// of three times as many, in software OpenGL or on whatever GPU EGL offers. Compare with the
+// yardstick of the same run, since machines and their neighbours differ.
 
 #include "drivers/display/headless.h"
 
@@ -104,7 +105,8 @@ void drawShadow(benchmark::State& state) {
     drawFrame(state, 1, 1, {swayingPeople({static_cast<int>(state.range(0)), samples > 1 ? 0.1 : 0, samples})});
 }
 
-// A picture of so many rows that stands still; one that is another every frame, as a video's or a camera's.
+// A picture of so many rows that stands still; one that is another every frame, as a video's or a
+// camera's.
 RgbaImage noise(int rows) {
     RgbaImage picture(rows * 16 / 9, rows);
     Rng rng(5);
@@ -155,8 +157,8 @@ BENCHMARK(drawImage)->ArgName("rows")->Arg(360)->Arg(720)->Arg(1080)->Arg(2160)-
 BENCHMARK(drawChangingPicture)->ArgName("rows")->Arg(360)->Arg(720)->Arg(1080)->Arg(2160)->Apply(settings);
 BENCHMARK(decodeVideo)->ArgName("converted")->Arg(0)->Arg(1)->Apply(settings);
 
-// The yardstick: what one multisampled picture needs at least, on one core: every sample's colour and depth cleared, then
-// averaged.
+// The yardstick: what one multisampled picture needs at least, on one core: every sample's colour
+// and depth cleared, then averaged.
 void yardstick(benchmark::State& state) {
     constexpr std::size_t kPixels = static_cast<std::size_t>(kSize.x) * kSize.y;
     std::vector<std::uint32_t> colour(kPixels * kSamples), depth(kPixels * kSamples), picture(kPixels);

@@ -1,9 +1,9 @@
-// What a search for poses spends its time on: a generation of CMA-ES, the skin of an actor, evaluations of the energy. Yardsticks of the
-// machine stand beside them.
+// What a search for poses spends its time on: a generation of CMA-ES, the skin of an actor,
+// evaluations of the energy. Yardsticks of the machine stand beside them.
 
-#include "theatre/cma_es.h"
-#include "theatre/mesh_shadow.h"
-#include "theatre/scene_energy.h"
+#include "theatre/energy/scene_energy.h"
+#include "theatre/search/cma_es.h"
+#include "theatre/stage/mesh_shadow.h"
 
 #include "tests/theatre/a_scene.h"
 
@@ -48,7 +48,8 @@ void yardstickNormals(benchmark::State& state) {
 }
 BENCHMARK(yardstickNormals)->Arg(45)->Arg(135)->Arg(270)->Unit(benchmark::kMicrosecond);
 
-// Yardstick: a plain product of a size x size matrix and the population; a generation has about one and a half of them a block.
+// Yardstick: a plain product of a size x size matrix and the population; a generation has about one
+// and a half of them a block.
 void yardstickProduct(benchmark::State& state) {
     const auto size = static_cast<std::size_t>(state.range(0));
     std::vector<double> matrix(size * size, 0.5), population(size * kPopulation, 0.25), product(size * kPopulation);
@@ -83,7 +84,8 @@ void skinAndShadow(benchmark::State& state) {
 }
 BENCHMARK(skinAndShadow)->ArgName("shadow")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
-// One evaluation of the energy: one of three actors moves, as in a local search; with and without skins.
+// One evaluation of the energy: one of three actors moves, as in a local search; with and without
+// skins.
 void evaluation(benchmark::State& state) {
     PoseProblem problem = aScene({1.75, 1.75, 1.75});
     if (state.range(0) != 0) problem.dress(), problem = simpler(std::move(problem));

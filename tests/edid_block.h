@@ -20,7 +20,8 @@ inline void setEdidChecksum(std::vector<std::uint8_t>& edid) {
     edid[127] = static_cast<std::uint8_t>(256 - sum % 256);
 }
 
-// The 128 bytes that such a projector sends: EDID 1.3, with one timing of 1920 x 1080 at 60 Hz, as real ones have.
+// The 128 bytes that such a projector sends: EDID 1.3, with one timing of 1920 x 1080 at 60 Hz, as
+// real ones have.
 inline std::vector<std::uint8_t> edidBlock(const EdidParts& parts) {
     std::vector<std::uint8_t> edid = {
         0,  255, 255, 255, 255,  255, 255, 0,    0,    0,    0,    0,    0,    0,    0,    0,  //

@@ -4,8 +4,9 @@
 
 namespace fantascope {
 
-// Counts calls of OpenGL in this program that make something, while it lives. One at a time, made once OpenGL was used: the functions are
-// found at their first call. What the driver does on its own account, and calls that GLFW makes, are not seen.
+// Counts calls of OpenGL in this program that make something, while it lives. One at a time, made
+// once OpenGL was used: the functions are found at their first call. What the driver does on its
+// own account, and calls that GLFW makes, are not seen.
 class GlCalls {
 public:
     GlCalls();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/mesh.h"
+#include "media/mesh.h"
 
 #include <glm/vec4.hpp>
 

@@ -58,7 +58,8 @@ void MockCamera::plugIn(int number) {
         fmt::format("\nP: {0}/{1}:1.0\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_interface\nA: bInterfaceNumber=00\n", place, kind_.usb);
     told += fmt::format("\nP: {0}/{1}:1.0/video4linux/video{2}\nN: video{2}=00\nE: SUBSYSTEM=video4linux\nA: name={3}\n", place,
                         kind_.usb, number, kind_.card);
-    // Whoever opens a node finds somebody who answers, before it can be seen and after it is gone: umockdev ends the program otherwise.
+    // Whoever opens a node finds somebody who answers, before it can be seen and after it is gone:
+    // umockdev ends the program otherwise.
     GError* error = nullptr;
     stopUnless(umockdev_testbed_attach_ioctl(machine_.testbed(), file().c_str(), handler_, &error), error);
     answered_.push_back(file());

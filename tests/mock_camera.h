@@ -1,6 +1,7 @@
 #pragma once
-// Cameras that a program under umockdev sees where the kernel has none: the driver's own system calls arrive at a MockCamera. What it cannot
-// mimic is poll(): a node is a file, which is always ready. So a camera without a frame answers a little late, as if the wait had been there.
+// Cameras that a program under umockdev sees where the kernel has none: the driver's own system
+// calls arrive at a MockCamera. What it cannot mimic is poll(): a node is a file, which is always
+// ready. So a camera without a frame answers a little late, as if the wait had been there.
 
 #include "core/clock.h"
 #include "mock_machine.h"
@@ -63,7 +64,8 @@ public:
         std::uint32_t skipped = 0;       // how many the camera drops before it
     };
     void send(const Frame& frame);
-    // Waits until the driver has taken all of them and has come back for more, which is when their pictures can be seen. False: it does not.
+    // Waits until the driver has taken all of them and has come back for more, which is when their
+    // pictures can be seen. False: it does not.
     bool waitUntilTaken();
 
     void setBusy(bool busy);                       // another program has it

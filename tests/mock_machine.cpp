@@ -29,7 +29,8 @@ bool underUmockdev(char** arguments) {
     if (before != nullptr && std::string_view(before).find(kLibrary) != std::string_view::npos)
         return dlopen(kLibrary, RTLD_LAZY | RTLD_NOLOAD) != nullptr;
     setenv("LD_PRELOAD", (kLibrary + std::string(before != nullptr ? ":" : "") + (before != nullptr ? before : "")).c_str(), 1);
-    // The sanitizers want to be first; their library is linked, and all is well as long as nothing that is preloaded is built with one.
+    // The sanitizers want to be first; their library is linked, and all is well as long as nothing
+    // that is preloaded is built with one.
     const char* const options = std::getenv("ASAN_OPTIONS");
     setenv("ASAN_OPTIONS", (std::string(options != nullptr ? options : "") + ":verify_asan_link_order=0").c_str(), 1);
     execv("/proc/self/exe", arguments);

@@ -22,8 +22,9 @@ private:
     _UMockdevTestbed* testbed_;
 };
 
-// Starts the program again under umockdev's library, at the beginning of main(); programs that it starts are under it too. Returns there
-// whether it is under it: not where Debian's package umockdev is not installed.
+// Starts the program again under umockdev's library, at the beginning of main(); programs that it
+// starts are under it too. Returns there whether it is under it: not where Debian's package
+// umockdev is not installed.
 bool underUmockdev(char** arguments);
 
 }  // namespace fantascope

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/image.h"
+#include "media/image.h"
 
 #include <glm/vec2.hpp>
 
@@ -23,7 +23,8 @@ inline bool isIn(int x, int y, int left, int top, int width, int height) {
     return x >= left && x < left + width && y >= top && y < top + height;
 }
 
-// One colour, lighter and darker from pixel to pixel: what a conversion makes of it is known to a step or two, in every format.
+// One colour, lighter and darker from pixel to pixel: what a conversion makes of it is known to a
+// step or two, in every format.
 inline Rgba8 shadeAt(int x, int y) {
     const int light = 60 + (37 * x + 53 * y) % 90;
     const auto channel = [&](int more) { return static_cast<std::uint8_t>(light + more); };

@@ -44,7 +44,8 @@ inline std::string contentsOf(const std::filesystem::path& file) {
 
 inline int statusOf(int waited) { return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited); }
 
-// Runs fantascope with `arguments` in `folder`, with further environment variables, and waits for it.
+// Runs fantascope with `arguments` in `folder`, with further environment variables, and waits for
+// it.
 inline Outcome runProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                           const std::vector<std::pair<std::string, std::string>>& environment = {},
                           const std::filesystem::path& program = FANTASCOPE_PROGRAM) {
@@ -74,8 +75,8 @@ inline void PrintTo(const Outcome& outcome, std::ostream* out) {
 // EXPECT_THAT(run(...), exits(0)) tells of a program that ended otherwise what it had said.
 MATCHER_P(exits, status, fmt::format("{} with {}", negation ? "does not end" : "ends", status)) { return arg.status == status; }
 
-// Runs fantascope with `arguments` in `folder`, presses Ctrl-C once it has told `lines` lines of progress, and waits for it: the exit
-// status, or 128 + the signal; -1 if it ended before.
+// Runs fantascope with `arguments` in `folder`, presses Ctrl-C once it has told `lines` lines of
+// progress, and waits for it: the exit status, or 128 + the signal; -1 if it ended before.
 inline int interruptProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder, int lines) {
     int pipe[2];
     if (::pipe(pipe) != 0) return -1;
@@ -96,8 +97,9 @@ inline int interruptProgram(const std::vector<std::string>& arguments, const std
     return lines > 0 ? -1 : statusOf(status);
 }
 
-// Runs fantascope with `arguments` in `folder` on a terminal of its own and types: each key once the text before it has been read that
-// often since the last key. The exit status, or 128 + the signal.
+// Runs fantascope with `arguments` in `folder` on a terminal of its own and types: each key once
+// the text before it has been read that often since the last key. The exit status, or 128 + the
+// signal.
 struct Typed {
     std::string after;
     int times;

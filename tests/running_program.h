@@ -64,7 +64,8 @@ public:
         return line;
     }
     const std::string& all() const { return all_; }
-    // Its status after a signal that asks it to end; SIGKILL's where it has not ended half a minute after its last line.
+    // Its status after a signal that asks it to end; SIGKILL's where it has not ended half a minute
+    // after its last line.
     int stop(int signal = SIGINT) {
         ::kill(process_, signal);
         while (line()) continue;

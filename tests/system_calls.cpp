@@ -23,7 +23,8 @@ Function* next(const char* name) {
 
 }  // namespace
 
-// These stand before the C library's for the whole test program and all its shared libraries; <fcntl.h> would declare them otherwise.
+// These stand before the C library's for the whole test program and all its shared libraries;
+// <fcntl.h> would declare them otherwise.
 extern "C" {
 
 #define FANTASCOPE_OPENS(name)                                            \

@@ -34,7 +34,8 @@ Yuv yuvOf(Rgba8 pixel, const std::string& matrix) {
     return {y, (b - y) / (2 * (1 - kb)), (r - y) / (2 * (1 - kr))};
 }
 
-// Puts the picture into the frame, plane by plane, the mean over the pixels that a value stands for.
+// Puts the picture into the frame, plane by plane, the mean over the pixels that a value stands
+// for.
 void fill(AVFrame& frame, const RgbaImage& picture, const VideoCoding& coding) {
     if (picture.empty()) {
         std::memset(frame.data[0], 0, static_cast<std::size_t>(frame.linesize[0]) * static_cast<std::size_t>(frame.height));

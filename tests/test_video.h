@@ -1,7 +1,7 @@
 #pragma once
 // Videos that tests make for themselves.
 
-#include "core/image.h"
+#include "media/image.h"
 
 #include <glm/vec2.hpp>
 
@@ -26,15 +26,18 @@ struct VideoCoding {
     std::string range = "tv";
 };
 
-// Writes a video: frame i shows pictureOf(i) and begins after begins[i] frame periods; the last one lasts one. The picture is converted by
-// this function's own arithmetic, in the matrix and range of the coding ("unknown": bt709); an empty one gives zeros in a format of one plane. Stops the program if it cannot be made.
+// Writes a video: frame i shows pictureOf(i) and begins after begins[i] frame periods; the last one
+// lasts one. The picture is converted by this function's own arithmetic, in the matrix and range of
+// the coding ("unknown": bt709); an empty one gives zeros in a format of one plane. Stops the
+// program if it cannot be made.
 void writeVideo(const std::filesystem::path& file, const VideoCoding& coding, const std::vector<std::int64_t>& begins,
                 const std::function<RgbaImage(int)>& pictureOf);
 // The same of a steady rate.
 void writeVideo(const std::filesystem::path& file, const VideoCoding& coding, int frames,
                 const std::function<RgbaImage(int)>& pictureOf);
 
-// A picture that carries a number of 16 bits as 4 x 4 blocks, light and dark, and how it is read again.
+// A picture that carries a number of 16 bits as 4 x 4 blocks, light and dark, and how it is read
+// again.
 RgbaImage numbered(glm::ivec2 size, int number);
 int numberOn(const RgbaImage& picture);
 // The same with noise, which is large when coded, so that damage to a file is within frames.

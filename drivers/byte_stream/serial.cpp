@@ -38,7 +38,8 @@ std::string described(const std::vector<UsbFile>& lines) {
 
 bool fits(const std::string& wanted, const std::string& is) { return wanted.empty() || wanted == is; }
 
-// Bytes as they are, at the settings' rate. Whether the line runs so now: of what an adapter cannot do the kernel says nothing.
+// Bytes as they are, at the settings' rate. Whether the line runs so now: of what an adapter cannot
+// do the kernel says nothing.
 bool arrange(int file, const SerialSettings& settings) {
     termios2 line{};
     if (ioctl(file, TCGETS2, &line) != 0) return false;
@@ -74,7 +75,8 @@ FileHandle opened(const std::filesystem::path& path, const SerialSettings& setti
         why = {DeviceState::Faulted, fmt::format("{} cannot do {} bits a second", path.string(), settings.rate)};
         return {};
     }
-    // What an adapter does without these is a little later, or the same: what drives no modem has no RTS.
+    // What an adapter does without these is a little later, or the same: what drives no modem has
+    // no RTS.
     serial_struct speed{};
     if (ioctl(file.get(), TIOCGSERIAL, &speed) == 0) {
         speed.flags |= ASYNC_LOW_LATENCY;

@@ -13,7 +13,8 @@
 namespace fantascope::drivers {
 namespace {
 
-// How often a reader that waits looks again: far finer than any protocol's time-out, far coarser than a busy loop.
+// How often a reader that waits looks again: far finer than any protocol's time-out, far coarser
+// than a busy loop.
 constexpr Time kLookAgain = std::chrono::milliseconds(1);
 
 // More than any script replies before its driver reads.

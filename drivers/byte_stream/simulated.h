@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/surroundings.h"
+#include "drivers/common/surroundings.h"
 
 #include "device/byte_stream.h"
 
@@ -15,21 +15,25 @@ namespace fantascope::drivers {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// Two ends of one line in memory: what is written to one is read from the other. The line holds `capacity` bytes in each
-// direction. Both ends go by `device` in the world, and one plug is for both. Needs around.world.
+// Two ends of one line in memory: what is written to one is read from the other. The line holds
+// `capacity` bytes in each direction. Both ends go by `device` in the world, and one plug is for
+// both. Needs around.world.
 std::array<std::unique_ptr<ByteStream>, 2> openLoopback(const Surroundings& around, const std::string& device,
                                                         std::size_t capacity = 4096);
 
-// A line to a far end that plays a script, for testing a protocol driver as it is: when exactly the expected bytes have come, the
-// reply is sent. The first byte that is not as expected ends the script: nothing more is replied. Thread: what ByteStream has is
-// bound to the driver's thread, all else is thread-safe.
+// A line to a far end that plays a script, for testing a protocol driver as it is: when exactly the
+// expected bytes have come, the reply is sent. The first byte that is not as expected ends the
+// script: nothing more is replied. Thread: what ByteStream has is bound to the driver's thread, all
+// else is thread-safe.
 class ScriptedStream final : public ByteStream {
 public:
     ScriptedStream(const Surroundings& around, const std::string& device);
 
-    // Adds an exchange to the script's end. With nothing expected, the far end speaks first: as soon as the script gets there.
+    // Adds an exchange to the script's end. With nothing expected, the far end speaks first: as
+    // soon as the script gets there.
     ScriptedStream& expect(Bytes expected, Bytes reply = {});
-    // "" as long as everything was as expected, else where it went wrong: "exchange 2, byte 5: 0x7e was expected, 0x7f came".
+    // "" as long as everything was as expected, else where it went wrong: "exchange 2, byte 5: 0x7e
+    // was expected, 0x7f came".
     std::string deviation() const;
     // Whether the script was played to its end.
     bool finished() const;

@@ -1,7 +1,7 @@
 #include "drivers/camera/frame_decoder.h"
 
 #include "core/check.h"
-#include "core/padded_rows.h"
+#include "media/padded_rows.h"
 
 #include <fmt/format.h>
 
@@ -172,7 +172,8 @@ FrameDecoder::FrameDecoder(const FrameFormat& format) : impl_(std::make_unique<I
     FANTASCOPE_CHECK(codec != nullptr, "libavcodec decodes JPEG");
     impl_->jpeg.reset(avcodec_alloc_context3(codec));
     impl_->jpeg->thread_count = 1;  // several would hold frames back
-    // A damaged header may state any size: nothing larger is begun. libav counts the padding of a row with its pixels.
+    // A damaged header may state any size: nothing larger is begun. libav counts the padding of a
+    // row with its pixels.
     constexpr int kAlignment = 64;
     impl_->jpeg->max_pixels = std::int64_t{format.size.x + kAlignment - 1} / kAlignment * kAlignment * format.size.y;
     impl_->jpeg->err_recognition = AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;

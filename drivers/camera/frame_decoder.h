@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/image.h"
 #include "core/result.h"
+#include "media/image.h"
 
 #include <glm/vec2.hpp>
 
@@ -52,8 +52,9 @@ public:
     // Bytes after a frame that may be read: libswscale reads whole blocks.
     static constexpr std::size_t kPadding = 256;
 
-    // Writes stored values into `picture`, which has format.size; alpha 255. `frame` is followed by kPadding bytes of any value. Error: the
-    // frame is too short, or damaged, or a JPEG of another size or of pixels that cannot be converted; `picture` is then worth nothing.
+    // Writes stored values into `picture`, which has format.size; alpha 255. `frame` is followed by
+    // kPadding bytes of any value. Error: the frame is too short, or damaged, or a JPEG of another
+    // size or of pixels that cannot be converted; `picture` is then worth nothing.
     Result<void> decode(std::span<const std::uint8_t> frame, RgbaImage& picture);
 
 private:

@@ -10,8 +10,9 @@
 
 namespace fantascope::drivers {
 
-// Frames whose pictures are used again once nobody holds them, so that a steady stream asks for no memory of a picture's size. Thread: take()
-// from one thread; frames may be held and let go on any, after the pool's end too.
+// Frames whose pictures are used again once nobody holds them, so that a steady stream asks for no
+// memory of a picture's size. Thread: take() from one thread; frames may be held and let go on any,
+// after the pool's end too.
 class FramePool {
 public:
     // A frame of this size; its picture is an older one's.

@@ -8,7 +8,8 @@
 
 namespace fantascope::drivers {
 
-// The camera of the simulated site; what it sees comes from site::SimulatedSite through the world. Plug: "camera".
+// The camera of the simulated site; what it sees comes from site::SimulatedSite through the world.
+// Plug: "camera".
 class SimulatedCamera final : public CameraSource {
 public:
     static Result<Opening<CameraSource>> fromConfig(const ConfigNode& options);

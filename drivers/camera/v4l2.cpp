@@ -15,7 +15,8 @@
 namespace fantascope::drivers {
 namespace {
 
-// A camera that gives nothing for so long has stalled. Many take more than a second for their first frame.
+// A camera that gives nothing for so long has stalled. Many take more than a second for their first
+// frame.
 constexpr Time kFirstPatience = std::chrono::seconds(3), kLeastPatience = std::chrono::seconds(1);
 constexpr int kPatientPeriods = 5;
 constexpr Time kOldest = std::chrono::seconds(10);  // a stamp that lies further back is none
@@ -37,7 +38,8 @@ const char* nameOf(VideoNode::Control control) {
     return kNames[static_cast<int>(control)];
 }
 
-// A rate is that of another if nobody sees the difference: 29.97 Hz is 30 Hz. Drivers that say none do what they can.
+// A rate is that of another if nobody sees the difference: 29.97 Hz is 30 Hz. Drivers that say none
+// do what they can.
 bool isRate(double granted, double asked) { return granted == 0 || granted > .95 * asked; }
 
 // "auto", or a value in V4L2's unit of the control.
@@ -146,7 +148,8 @@ Outage V4l2Camera::attend(Service& service) {
     return outage;
 }
 
-// Drivers rather answer with something else than refuse, so each format is asked for, and what comes nearest is taken.
+// Drivers rather answer with something else than refuse, so each format is asked for, and what
+// comes nearest is taken.
 std::optional<Outage> V4l2Camera::negotiate(Life& life) const {
     const VideoNode::Offer offer = life.node.offer();
     if (offer.codings.empty())
@@ -252,7 +255,8 @@ Outage V4l2Camera::stream(Service& service, Life& life) {
     return {};
 }
 
-// Takes all frames that have come and keeps the bytes of the newest. EAGAIN: none has come; EBADMSG: none that is whole.
+// Takes all frames that have come and keeps the bytes of the newest. EAGAIN: none has come;
+// EBADMSG: none that is whole.
 int V4l2Camera::take(Life& life) {
     int outcome = EAGAIN;
     for (;;) {

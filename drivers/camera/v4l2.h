@@ -3,7 +3,7 @@
 #include "drivers/camera/camera_search.h"
 #include "drivers/camera/frame_pool.h"
 #include "drivers/common/service.h"
-#include "drivers/surroundings.h"
+#include "drivers/common/surroundings.h"
 
 #include "device/camera_source.h"
 
@@ -18,7 +18,8 @@
 
 namespace fantascope::drivers {
 
-// A camera behind the kernel's V4L2, as USB cameras are: README.md has its keys. Frames are decoded on the driver's own thread.
+// A camera behind the kernel's V4L2, as USB cameras are: README.md has its keys. Frames are decoded
+// on the driver's own thread.
 class V4l2Camera final : public CameraSource {
 public:
     static Result<Opening<CameraSource>> fromConfig(const ConfigNode& options);

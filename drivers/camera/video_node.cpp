@@ -219,7 +219,8 @@ int VideoNode::ask(FrameCoding coding, glm::ivec2 size, double rate, Grant& gran
         (pairs && granted.width % 2 != 0) || (coding == FrameCoding::Nv12 && granted.height % 2 != 0))
         return ENOTSUP;
     const int width = static_cast<int>(granted.width);
-    // Some drivers say 0 where rows have no padding, and some a number that means nothing where rows are coded.
+    // Some drivers say 0 where rows have no padding, and some a number that means nothing where
+    // rows are coded.
     const int stride = coding == FrameCoding::Mjpg ? 0 : std::max(static_cast<int>(granted.stride), leastStride(coding, width));
     grant.format = {coding, {width, granted.height}, stride, isFullRange(coding, granted), weightsOf(granted)};
 

@@ -17,11 +17,13 @@
 
 namespace fantascope::drivers {
 
-// An open video node of the kernel (V4L2), such as /dev/video0, one that captures: how it is asked, and what it really grants. What fails
-// gives the errno of the failing call, 0 being success. Thread: thread-bound.
+// An open video node of the kernel (V4L2), such as /dev/video0, one that captures: how it is asked,
+// and what it really grants. What fails gives the errno of the failing call, 0 being success.
+// Thread: thread-bound.
 class VideoNode {
 public:
-    // Opens a node. `error`: 0, or why not; ENOTSUP says that it does not capture (a camera has nodes for its metadata, too).
+    // Opens a node. `error`: 0, or why not; ENOTSUP says that it does not capture (a camera has
+    // nodes for its metadata, too).
     static std::optional<VideoNode> open(const std::filesystem::path& path, int& error);
     VideoNode(VideoNode&&) = default;
     VideoNode& operator=(VideoNode&&) = default;
@@ -41,14 +43,16 @@ public:
         FrameFormat format;
         double rate = 0;  // Hz; 0: it does not say
     };
-    // Asks for a coding, and tells what is granted: drivers answer with another size or rate rather than refuse. ENOTSUP: it answered with
-    // another coding.
+    // Asks for a coding, and tells what is granted: drivers answer with another size or rate rather
+    // than refuse. ENOTSUP: it answered with another coding.
     int ask(FrameCoding coding, glm::ivec2 size, double rate, Grant& grant);
 
-    // The controls of V4L2 that are named here; by itself a camera may change what it is not told to leave alone.
+    // The controls of V4L2 that are named here; by itself a camera may change what it is not told
+    // to leave alone.
     enum class Control { Exposure, Gain, WhiteBalance, Focus };
     enum class Outcome { Done, Changed, Missing };  // Changed: another value than asked
-    // Sets a control, or hands it over to the camera's own automatism without a value. `value` becomes what is in force.
+    // Sets a control, or hands it over to the camera's own automatism without a value. `value`
+    // becomes what is in force.
     Outcome set(Control control, std::optional<std::int64_t>& value);
     // How long it exposes, where that is locked and known.
     std::optional<Time> lockedExposure() const;
@@ -72,12 +76,13 @@ public:
     int giveBack(unsigned index);
 
 private:
-    // What the kernel's memory of a buffer is seen by. As a DMABUF, its caches are made to agree with the device's around each reading:
-    // a driver that shares memory with other devices need not do so by itself.
+    // What the kernel's memory of a buffer is seen by. As a DMABUF, its caches are made to agree
+    // with the device's around each reading: a driver that shares memory with other devices need
+    // not do so by itself.
     class Memory {
     public:
-        // `dmabuf`: the buffer's, if the driver exports it and this kernel lets it be read, closed otherwise; then the driver's `node` is
-        // mapped at `offset`.
+        // `dmabuf`: the buffer's, if the driver exports it and this kernel lets it be read, closed
+        // otherwise; then the driver's `node` is mapped at `offset`.
         Memory(FileHandle dmabuf, int node, std::size_t length, std::int64_t offset);
         ~Memory();
         Memory(Memory&& other) noexcept : dmabuf_(std::move(other.dmabuf_)), bytes_(std::exchange(other.bytes_, {})) {}

@@ -19,9 +19,10 @@ struct ClaimHolder {
     std::string words() const;  // "process 812 (fantascope run shows/x --site y)"
 };
 
-// A thing that one program at a time may use, by a name that all programs on this machine (in this network namespace) agree on. The claim
-// holds for as long as any process has its file open, so a child that inherits the file shares it, and the kernel releases it when the
-// last one ends, whatever ends it. Thread: reentrant.
+// A thing that one program at a time may use, by a name that all programs on this machine (in this
+// network namespace) agree on. The claim holds for as long as any process has its file open, so a
+// child that inherits the file shares it, and the kernel releases it when the last one ends,
+// whatever ends it. Thread: reentrant.
 class Claim {
 public:
     // Nothing: somebody else has it.
@@ -37,7 +38,8 @@ private:
 std::string claimOfFile(std::string_view kind, const std::filesystem::path& file);
 constexpr std::string_view kSerialLine = "serial line";  // the kind; families that share lines call them alike
 
-// Whether somebody has claimed this. May be asked for ever, which holderOf() may not: who holds a claim keeps a note of every question.
+// Whether somebody has claimed this. May be asked for ever, which holderOf() may not: who holds a
+// claim keeps a note of every question.
 bool isClaimed(const std::string& name);
 // Who has claimed this; nothing: nobody.
 std::optional<ClaimHolder> holderOf(const std::string& name);

@@ -29,8 +29,9 @@ private:
     int file_ = -1;
 };
 
-// Why a device's file cannot be opened, from errno: what the device is then, and what to do about it. Without permission it names the
-// group that has it, and the rules file for udev that this program comes with (systemd/70-fantascope.rules).
+// Why a device's file cannot be opened, from errno: what the device is then, and what to do about
+// it. Without permission it names the group that has it, and the rules file for udev that this
+// program comes with (systemd/70-fantascope.rules).
 struct Outage {
     DeviceState state = DeviceState::Absent;
     std::string why;

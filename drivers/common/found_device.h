@@ -4,7 +4,8 @@
 
 namespace fantascope::drivers {
 
-// A device that this machine has, or that answers on its network, whether or not a site file names it.
+// A device that this machine has, or that answers on its network, whether or not a site file names
+// it.
 struct FoundDevice {
     std::string family;    // as the folder of its driver: "dmx", "camera"
     std::string what;      // "ENTTEC DMX USB PRO, firmware 1.44"

@@ -16,8 +16,9 @@
 
 namespace fantascope::drivers {
 
-// The thread that attends to one real device, and what the device says of itself. A driver hands it one function that lives through one
-// life of the device; the service calls it again and again, with a back-off from kSoonest to kLatest between, at once when called.
+// The thread that attends to one real device, and what the device says of itself. A driver hands it
+// one function that lives through one life of the device; the service calls it again and again,
+// with a back-off from kSoonest to kLatest between, at once when called.
 //
 //     Outage MyDriver::attend(Service& service) {
 //         if (cannot be opened) return whyNotOpened(path, errno);
@@ -50,8 +51,8 @@ public:
     void running();                  // the device is found, opened and does its work from now on
     void trouble(std::string what);  // of a device that is running, until it is over ("") or the device is lost
     bool ending() const { return ending_; }
-    // Waits until one of `files` can be read (or has failed), it was called, or `patience` is over. Returns at once when it is ending.
-    // Whether a file is ready.
+    // Waits until one of `files` can be read (or has failed), it was called, or `patience` is over.
+    // Returns at once when it is ending. Whether a file is ready.
     bool wait(Time patience, std::initializer_list<int> files = {});
 
 private:

@@ -6,9 +6,9 @@
 
 namespace fantascope::drivers {
 
-// What several devices use together, such as the two ends of one widget, the modules on one bus, the socket that a protocol has but one of:
-// everybody who asks by the same key is given the same thing, for as long as anybody holds it. Thread: thread-safe; a thing is made
-// while others wait.
+// What several devices use together, such as the two ends of one widget, the modules on one bus,
+// the socket that a protocol has but one of: everybody who asks by the same key is given the same
+// thing, for as long as anybody holds it. Thread: thread-safe; a thing is made while others wait.
 template <class Key, class Thing>
 class Shared {
 public:

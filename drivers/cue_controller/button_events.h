@@ -15,8 +15,9 @@
 
 namespace fantascope::drivers {
 
-// Between what a device's buttons do and the events of the CueController. A press comes out at once; what its contacts do within the
-// debounce after a press or a release is looked at when that is over, in the order in which it happened. No release overtakes another.
+// Between what a device's buttons do and the events of the CueController. A press comes out at
+// once; what its contacts do within the debounce after a press or a release is looked at when that
+// is over, in the order in which it happened. No release overtakes another.
 // Thread: poll() belongs to the input thread, everything else to the device's.
 class ButtonEvents {
 public:
@@ -24,14 +25,16 @@ public:
 
     explicit ButtonEvents(Time debounce) : debounce_(debounce) {}
 
-    // Before the device is in service: what is down now is no press, nor is letting go of it a release.
+    // Before the device is in service: what is down now is no press, nor is letting go of it a
+    // release.
     void settle(const std::vector<ButtonChange>& changes);
     void take(const std::vector<ButtonChange>& changes, Time now);
     // Lets out what the debounce has held back until `now`.
     void pass(Time now);
     // When there is something to pass().
     std::optional<Time> due() const;
-    // The device is gone: what was pressed and polled goes up, what nobody has polled yet never was.
+    // The device is gone: what was pressed and polled goes up, what nobody has polled yet never
+    // was.
     void lose(Time now);
 
     std::optional<ButtonEvent> poll();

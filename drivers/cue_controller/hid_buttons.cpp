@@ -23,7 +23,8 @@ constexpr int kMostButtons = 1 << 16;  // whoever has more is garbage
 
 constexpr HidUsage pageOf(HidUsage usage) { return usage >> 16; }
 
-// What is no key though it may be one bit: lamps, the state of batteries, measurements, and the usages for "nothing".
+// What is no key though it may be one bit: lamps, the state of batteries, measurements, and the
+// usages for "nothing".
 bool saysNothingOfKeys(HidUsage usage) {
     const HidUsage page = pageOf(usage);
     return (usage & 0xffff) == 0 || page == kLed || page == kGenericDevice || page == kSensor || page == kPower ||
@@ -69,7 +70,8 @@ std::size_t bytesOf(const HidDescriptor& descriptor, int report) {
     return 0;
 }
 
-// A side of a range is reached beyond 3/4 of the way to its end and left before 5/8, so that a hand at the edge presses once.
+// A side of a range is reached beyond 3/4 of the way to its end and left before 5/8, so that a hand
+// at the edge presses once.
 bool isBeyond(std::int64_t value, std::int64_t from, std::int64_t to, bool isDown) {
     const double way = static_cast<double>(value - from) / static_cast<double>(to - from);
     return way > (isDown ? 0.625 : 0.75);

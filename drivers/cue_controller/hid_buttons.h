@@ -47,16 +47,18 @@ struct HidInterface {
     HidDescriptor descriptor;
 };
 
-// Every control of a device that can be taken for buttons, numbered from 1 in this order: keys (of any usage page) by interface and by place
-// in the descriptor, an array's in the order of its usages; then hats; then wheels; then axes. What says that nothing is pressed (keyboard
-// usages 0 to 3, usage 0 elsewhere) has no number, nor has the movement of a pointer.
+// Every control of a device that can be taken for buttons, numbered from 1 in this order: keys (of
+// any usage page) by interface and by place in the descriptor, an array's in the order of its
+// usages; then hats; then wheels; then axes. What says that nothing is pressed (keyboard usages 0
+// to 3, usage 0 elsewhere) has no number, nor has the movement of a pointer.
 std::vector<HidControl> controlsOf(const std::vector<HidInterface>& interfaces);
 
 // The number of the first button with this usage; 0: there is none.
 int buttonOf(const std::vector<HidControl>& controls, HidUsage usage);
 
-// A device's controls as it numbers them. `leading` are the numbers (by controlsOf) of the buttons that a profile puts first, so that they are
-// 1, 2, ... on every device of its kind, 0 where this one has none; the others come after them in their order.
+// A device's controls as it numbers them. `leading` are the numbers (by controlsOf) of the buttons
+// that a profile puts first, so that they are 1, 2, ... on every device of its kind, 0 where this
+// one has none; the others come after them in their order.
 struct HidLayout {
     std::vector<HidControl> controls;
     std::vector<int> leading;
@@ -86,8 +88,9 @@ class HidButtons {
 public:
     explicit HidButtons(HidLayout layout) : layout_(std::move(layout)), positions_(layout_.controls.size()) {}
 
-    // What the report changes: what went up, then what went down, then detents. Nothing for a report that is too short, has an unknown id, or
-    // says what was known. A position that wraps is known from its first report on.
+    // What the report changes: what went up, then what went down, then detents. Nothing for a
+    // report that is too short, has an unknown id, or says what was known. A position that wraps is
+    // known from its first report on.
     std::vector<ButtonChange> take(int interface, std::span<const std::uint8_t> report);
 
 private:

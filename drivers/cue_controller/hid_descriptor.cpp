@@ -13,7 +13,8 @@ namespace {
 // More than any real device has; what asks for more is garbage.
 constexpr std::size_t kMostBits = 8 * 16384, kMostFields = 16384, kMostUsages = 4096, kDeepest = 64;
 
-// Sections 6.2.2.4, 6.2.2.7 and 6.2.2.8: an item's tag and type, as its first byte has them above its size.
+// Sections 6.2.2.4, 6.2.2.7 and 6.2.2.8: an item's tag and type, as its first byte has them above
+// its size.
 enum Item : std::uint8_t {
     kInput = 0x80,
     kOutput = 0x90,
@@ -211,7 +212,8 @@ private:
         field.wraps = (flags & kWrap) != 0;
         field.hasNull = (flags & kNullState) != 0;
         field.low = globals_.low.asSigned();
-        // Many devices write 25 FF and mean 255: the maximum has a sign only where the minimum is negative.
+        // Many devices write 25 FF and mean 255: the maximum has a sign only where the minimum is
+        // negative.
         field.high = field.low < 0 ? globals_.high.asSigned() : std::int64_t{globals_.high.bits};
         field.application = collections_.empty() ? 0 : collections_.front();
         if (field.low > field.high) return wrong(fmt::format("a value from {} to {}", field.low, field.high));

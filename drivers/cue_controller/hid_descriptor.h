@@ -1,6 +1,7 @@
 #pragma once
-// What a USB HID device says of its reports: its report descriptor, read as the Device Class Definition for Human Interface Devices 1.11
-// (section 6.2.2) has it. Its tables of usages are the HID Usage Tables 1.4.
+// What a USB HID device says of its reports: its report descriptor, read as the Device Class
+// Definition for Human Interface Devices 1.11 (section 6.2.2) has it. Its tables of usages are the
+// HID Usage Tables 1.4.
 
 #include "core/result.h"
 
@@ -12,7 +13,8 @@
 
 namespace fantascope::drivers {
 
-// What a control is for: its usage page in the upper half, its usage in the lower. 0x00090001 is button 1; 0 says nothing.
+// What a control is for: its usage page in the upper half, its usage in the lower. 0x00090001 is
+// button 1; 0 says nothing.
 using HidUsage = std::uint32_t;
 struct HidUsages {  // from first to last, both included
     HidUsage first = 0, last = 0;
@@ -52,8 +54,9 @@ struct HidDescriptor {
     std::vector<HidReport> inputReports, outputReports;  // by id, lowest first
 };
 
-// Error: it ends in the middle of an item or a collection, or says what cannot be; with the byte where it does. What the program has no
-// use for (long items, reserved tags, units, designators, strings) is skipped; of alternative usages (delimiters) the first is taken.
+// Error: it ends in the middle of an item or a collection, or says what cannot be; with the byte
+// where it does. What the program has no use for (long items, reserved tags, units, designators,
+// strings) is skipped; of alternative usages (delimiters) the first is taken.
 Result<HidDescriptor> parseHidDescriptor(std::span<const std::uint8_t> bytes);
 
 }  // namespace fantascope::drivers

@@ -15,8 +15,9 @@ std::uint8_t byteOf(double value) { return static_cast<std::uint8_t>(std::lround
 std::uint8_t low(std::size_t value) { return static_cast<std::uint8_t>(value & 0xff); }
 std::uint8_t high(std::size_t value) { return static_cast<std::uint8_t>(value >> 8 & 0xff); }
 
-// P.I. Engineering's data reports of the XK-24 and of the sticks, and https://github.com/Xkeys-Lib/xkeys (core/src/xkeys.ts): 35 bytes
-// without an id, the command first.
+// P.I. Engineering's data reports of the XK-24 and of the sticks, and
+// https://github.com/Xkeys-Lib/xkeys (core/src/xkeys.ts): 35 bytes without an id, the command
+// first.
 class XkeysBacklights final : public HidLamps {
 public:
     explicit XkeysBacklights(XkeysLamps kind) : kind_(std::move(kind)) {}
@@ -53,8 +54,10 @@ private:
     const XkeysLamps kind_;
 };
 
-// https://docs.elgato.com/streamdeck/hid (general, module-6, stream-deck-neo), https://github.com/abcminiuser/python-elgato-streamdeck
-// (Devices), https://github.com/Julusian/node-elgato-stream-deck (imageWriter) and, of which way up, Boatswain's doc/stream-deck.md.
+// https://docs.elgato.com/streamdeck/hid (general, module-6, stream-deck-neo),
+// https://github.com/abcminiuser/python-elgato-streamdeck (Devices),
+// https://github.com/Julusian/node-elgato-stream-deck (imageWriter) and, of which way up,
+// Boatswain's doc/stream-deck.md.
 class StreamDeckKeys final : public HidLamps {
 public:
     explicit StreamDeckKeys(const StreamDeckLamps& kind) : kind_(kind) {}
@@ -63,7 +66,8 @@ public:
 
     std::vector<HidOutReport> begin(double brightness) const override {
         const std::uint8_t percent = byteOf(100 * brightness);
-        // Whoever had it before may have left it in the middle of a picture; an empty report ends that.
+        // Whoever had it before may have left it in the middle of a picture; an empty report ends
+        // that.
         return {output({}), isMain() ? feature({0x03, 0x08, percent}, 32) : feature({0x05, 0x55, 0xaa, 0xd1, 0x01, percent}, 17)};
     }
 

@@ -40,7 +40,8 @@ struct StreamDeckLamps {
     int colours = 0;  // touch keys after the keys, which have a colour only
 };
 
-// The outputs of the LED page (08) that the descriptors name, in their order: the lamps of buttons 1, 2, ...
+// The outputs of the LED page (08) that the descriptors name, in their order: the lamps of buttons
+// 1, 2, ...
 struct LedPageLamps {};
 
 // Nothing: it has no lamps, or none that are known.

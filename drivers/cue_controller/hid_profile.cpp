@@ -68,7 +68,8 @@ StreamDeckLamps deck(int keys, int side, Turn turn = Turn::Half) {
     return {Protocol::Main, keys, keys, {side, Coding::Jpeg, turn}, 0};
 }
 
-// https://docs.elgato.com/streamdeck/hid/stream-deck-plus: byte 1 says of what a report is: 0 keys, 2 the touch strip, 3 dials.
+// https://docs.elgato.com/streamdeck/hid/stream-deck-plus: byte 1 says of what a report is: 0 keys,
+// 2 the touch strip, 3 dials.
 std::vector<HidControl> dialsAndStrip() {
     std::vector<HidControl> made = keys({{1, 32, 8, 8, 8}});
     for (HidControl& key : made) key.marks = {{1, 0, 0}};
@@ -80,7 +81,8 @@ std::vector<HidControl> dialsAndStrip() {
         made.push_back(control(Kind::Wheel, fmt::format("dial {}", dial + 1), 1, 40 + 8 * dial, 8, -128, 127));
         made.back().marks = {{1, 3, 3}, {4, 1, 1}};
     }
-    // The strip tells where it was touched, 800 wide, once the finger has left it: shortly or for long, but not in passing.
+    // The strip tells where it was touched, 800 wide, once the finger has left it: shortly or for
+    // long, but not in passing.
     for (int part = 0; part < 4; ++part) {
         made.push_back(
             control(Kind::Touch, fmt::format("strip above dial {}", part + 1), 1, 48, 16, 200 * part, 200 * part + 199));
@@ -89,14 +91,15 @@ std::vector<HidControl> dialsAndStrip() {
     return made;
 }
 
-// The jog is a position that wraps and the shuttle one that springs back; the descriptor calls both relative. As Contour's own
-// (0b33:0020), with the bits of its 13 buttons of which five are there.
+// The jog is a position that wraps and the shuttle one that springs back; the descriptor calls both
+// relative. As Contour's own (0b33:0020), with the bits of its 13 buttons of which five are there.
 std::vector<HidControl> jogAndShuttle() {
     return {control(Kind::Counter, "jog", 0, 8, 8, 0, 255), control(Kind::Axis, "shuttle", 0, 0, 8, -7, 7)};
 }
 
 std::vector<HidProfile> made() {
-    // Keyboard: Page Down, Page Up, F5, Escape, period, B, Right, Left; then the consumer page's volume up and down.
+    // Keyboard: Page Down, Page Up, F5, Escape, period, B, Right, Left; then the consumer page's
+    // volume up and down.
     const std::vector<HidUsage> presenterKeys = {0x0007004e, 0x0007004b, 0x0007003e, 0x00070029, 0x00070037,
                                                  0x00070005, 0x0007004f, 0x00070050, 0x000c00e9, 0x000c00ea};
     std::vector<HidProfile> all;
@@ -146,7 +149,8 @@ std::vector<HidProfile> made() {
     all.push_back(
         laidOut("stream_deck_plus", "Elgato Stream Deck +", {{0x0fd9, 0x0084}}, dialsAndStrip(), deck(8, 120, Turn::None)));
     all.push_back(laidOut("stream_deck_pedal", "Elgato Stream Deck Pedal", {{0x0fd9, 0x0086}}, keys({{1, 32, 8, 8, 3}})));
-    // Their descriptors say that there are lamps, and not what they are for: only whoever asks for it gets the Num Lock lamp as that of GO.
+    // Their descriptors say that there are lamps, and not what they are for: only whoever asks for
+    // it gets the Num Lock lamp as that of GO.
     all.push_back({"number_pad",
                    "number pad",
                    {},

@@ -28,7 +28,8 @@ std::span<const HidProfile> hidProfiles();
 const HidProfile* hidProfileOf(std::uint16_t vendor, std::uint16_t product);
 const HidProfile* hidProfileNamed(std::string_view name);
 
-// A device's buttons by its descriptors, and by its profile where it has one (`profile` may be null).
+// A device's buttons by its descriptors, and by its profile where it has one (`profile` may be
+// null).
 HidLayout layoutOf(const std::vector<HidInterface>& interfaces, const HidProfile* profile);
 
 }  // namespace fantascope::drivers

@@ -1,6 +1,6 @@
 #include "drivers/cue_controller/key_picture.h"
 
-#include "core/glyph.h"
+#include "media/glyph.h"
 
 #include <glm/common.hpp>
 

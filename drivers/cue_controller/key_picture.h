@@ -3,7 +3,7 @@
 
 #include "device/cue_controller.h"
 
-#include "core/image.h"
+#include "media/image.h"
 
 #include <cstdint>
 #include <vector>
@@ -28,7 +28,8 @@ struct KeyPictureFormat {
 // What a key has as its colour: black when it is off.
 Rgba8 colourOf(ButtonLight::State state);
 
-// The picture as the operator sees it: the colour of its state, and the word as large as it fits. `side` pixels square.
+// The picture as the operator sees it: the colour of its state, and the word as large as it fits.
+// `side` pixels square.
 RgbaImage keyPicture(const ButtonLight& light, int side);
 
 // The same as the file that the device wants.

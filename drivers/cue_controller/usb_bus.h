@@ -18,7 +18,8 @@ struct libusb_device;
 
 namespace fantascope::drivers {
 
-// libusb, from the first time that it starts. Thread: interrupt() from any, the rest from the device's.
+// libusb, from the first time that it starts. Thread: interrupt() from any, the rest from the
+// device's.
 class UsbBus {
 public:
     UsbBus() = default;

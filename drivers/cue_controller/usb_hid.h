@@ -2,10 +2,10 @@
 
 #include "drivers/common/found_device.h"
 #include "drivers/common/service.h"
+#include "drivers/common/surroundings.h"
 #include "drivers/common/usb_identity.h"
 #include "drivers/cue_controller/button_events.h"
 #include "drivers/cue_controller/button_lights.h"
-#include "drivers/surroundings.h"
 
 #include "device/cue_controller.h"
 
@@ -21,8 +21,8 @@ namespace fantascope::drivers {
 struct HidProfile;
 class UsbBus;
 
-// Any USB controller that is a HID device: presenters, pedals, jog wheels, key pads, gamepads. All of its HID interfaces are held, so that
-// its keys reach nobody else.
+// Any USB controller that is a HID device: presenters, pedals, jog wheels, key pads, gamepads. All
+// of its HID interfaces are held, so that its keys reach nobody else.
 class UsbHidController final : public CueController {
 public:
     // What the site file says; README.md has the keys.

@@ -18,8 +18,8 @@ constexpr int kInputReport = 1, kOutputReport = 2, kFeatureReport = 3;
 constexpr std::uint8_t kFromInterface = 0x81, kFromHid = 0xa1, kToHid = 0x21;  // bmRequestType
 
 constexpr unsigned kDescriptorPatience = 1000, kStatePatience = 200;  // milliseconds
-// A device that was not listened to has a report or two from that time left, which come with the first polls; no bInterval of a
-// device with buttons is longer than a fifth of this.
+// A device that was not listened to has a report or two from that time left, which come with the
+// first polls; no bInterval of a device with buttons is longer than a fifth of this.
 constexpr Time kSettling = 100ms;
 constexpr int kQueued = 8;       // transfers of an interface that wait for reports
 constexpr int kMostErrors = 64;  // of transfers, one after the other
@@ -124,7 +124,8 @@ void UsbHidDevice::listen() {
         for (const HidInterface& interface : interfaces_)
             if (interface.number == heard.number)
                 for (const HidReport& report : interface.descriptor.inputReports) longest = std::max(longest, report.bytes);
-        // Whole packets: a device that sends more than it says does not end the transfer with an error.
+        // Whole packets: a device that sends more than it says does not end the transfer with an
+        // error.
         const std::size_t size = (longest + heard.packet - 1) / heard.packet * heard.packet;
         for (int i = 0; i < kQueued; ++i) {
             auto& buffer = buffers_.emplace_back(size);

@@ -25,8 +25,9 @@ struct libusb_transfer;
 
 namespace fantascope::drivers {
 
-// One life of a USB HID device: opened, its interfaces held, its reports listened to and its lamps lit. At its end the kernel's drivers
-// have it again. Thread: bound to the device's; it works while the bus waits.
+// One life of a USB HID device: opened, its interfaces held, its reports listened to and its lamps
+// lit. At its end the kernel's drivers have it again. Thread: bound to the device's; it works while
+// the bus waits.
 class UsbHidDevice {
 public:
     // What of it goes on when the device is gone.
@@ -50,7 +51,8 @@ public:
 
     // Takes the state in which the device is for known, and asks it for that where `asks`.
     void settle(bool asks);
-    // What is to be done between two waits of the bus: endpoints that have stopped, and lights that have changed.
+    // What is to be done between two waits of the bus: endpoints that have stopped, and lights that
+    // have changed.
     void tend();
     // Farewell to a device that is still there: all its lamps go off, unless it takes too long.
     void darken();

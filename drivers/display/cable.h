@@ -1,7 +1,7 @@
 #pragma once
 
+#include "drivers/common/surroundings.h"
 #include "drivers/site/plug.h"
-#include "drivers/surroundings.h"
 
 #include "device/status.h"
 
@@ -12,7 +12,8 @@
 
 namespace fantascope::drivers {
 
-// The line from an output to its projector. A simulated site can pull it by the output's name; elsewhere it is always in.
+// The line from an output to its projector. A simulated site can pull it by the output's name;
+// elsewhere it is always in.
 // Thread: thread-safe.
 class Cable {
 public:

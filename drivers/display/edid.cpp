@@ -27,7 +27,8 @@ std::string letters(std::span<const std::uint8_t> edid) {
     return make;
 }
 
-// The text of the first descriptor of a kind. It ends at a line's end and is filled up with spaces; makers put anything else there, too.
+// The text of the first descriptor of a kind. It ends at a line's end and is filled up with spaces;
+// makers put anything else there, too.
 std::string textOf(std::span<const std::uint8_t> edid, std::uint8_t kind) {
     for (const std::size_t at : kDescriptors) {
         const auto descriptor = edid.subspan(at, 18);

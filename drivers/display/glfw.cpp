@@ -23,13 +23,15 @@ constexpr const char* kClosed = "its window was closed; start Fantascope again t
 constexpr const char* kEnded = "the X server has ended or closed the connection; the picture is back once the X server is";
 constexpr const char* kDestroyed = "another program has destroyed its window; it is made again";
 constexpr Time kRetry = std::chrono::seconds(1);
-// Where swaps wait, one that takes more than this part of a period waited for a refresh; one that takes less had room in a queue.
+// Where swaps wait, one that takes more than this part of a period waited for a refresh; one that
+// takes less had room in a queue.
 constexpr double kWaitOfSwap = 0.25;
 
 // OpenGL's name of what the current context's window shows next.
 constexpr GLuint kWindow = 0;
 
-// Whether the current context's window takes linear light and stores it as sRGB in 8 bits, like a framebuffer of our own.
+// Whether the current context's window takes linear light and stores it as sRGB in 8 bits, like a
+// framebuffer of our own.
 bool windowStoresSrgb() {
     const auto of = [](GLenum what) {
         GLint value = 0;
@@ -94,10 +96,12 @@ Result<Opening<DisplaySink>> GlfwDisplay::fromConfig(const ConfigNode& options, 
         (void)sink->poll();  // a missing device is no error: its status tells of it
         return std::unique_ptr<DisplaySink>(std::move(sink));
     }};
-    // Several monitors of one make are told apart by who asks first; one connector or serial number is one monitor.
+    // Several monitors of one make are told apart by who asks first; one connector or serial number
+    // is one monitor.
     if (wanted && !(wanted->monitor.connector + wanted->monitor.serial).empty())
         opening.uses.push_back({"the monitor " + wanted->monitor.text(), ""});
-    // By the words of the site file: that the X server answers is not to be waited for before a show begins.
+    // By the words of the site file: that the X server answers is not to be waited for before a
+    // show begins.
     if (wanted)
         opening.claim = [monitor = wanted->monitor.text()] {
             return fmt::format("the monitor {} of the X server {}", monitor, XScreen::serverName());
@@ -144,7 +148,8 @@ Result<void> GlfwDisplay::appear() {
 }
 
 Result<void> GlfwDisplay::makeWindow() {
-    // Frames are drawn straight into the window, which spares a copy of each; they need nothing but colours there.
+    // Frames are drawn straight into the window, which spares a copy of each; they need nothing but
+    // colours there.
     window_ = TRY(glfw_->makeWindow(request_.name, request_.size,
                                     {{GLFW_RESIZABLE, GLFW_FALSE},
                                      {GLFW_SRGB_CAPABLE, GLFW_TRUE},

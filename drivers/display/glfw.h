@@ -1,10 +1,10 @@
 #pragma once
 
+#include "drivers/common/surroundings.h"
 #include "drivers/display/cable.h"
 #include "drivers/display/glfw_library.h"
 #include "drivers/display/monitor_watch.h"
 #include "drivers/display/refresh_train.h"
-#include "drivers/surroundings.h"
 
 #include "device/display_sink.h"
 
@@ -20,22 +20,27 @@ struct GLFWwindow;
 
 namespace fantascope::drivers {
 
-// A window on the desktop, or a whole monitor or projector of the X server, known by its identity and switched on by MonitorWatch.
+// A window on the desktop, or a whole monitor or projector of the X server, known by its identity
+// and switched on by MonitorWatch.
 //
-// It is Absent without an X server, without its monitor, and after somebody closed its window. It is back as soon as its monitor is; the
-// X server, and what was refused, is tried again once a second, at poll(). A window that was closed by its button stays closed until the
-// program's next start, because somebody wanted it closed.
-// The context outlives the loss of a monitor. It is lost when the X server ends, closes the connection, or when another program destroys the
-// window.
-// Refreshes: those of the monitor where swapping waits for them, which is tried with some black frames when the first window appears;
-// elsewhere (as in Xvfb) those of the clock, and the swap waits for it.
-// Thread: the render thread must be the main thread, to which GLFW belongs. All GLFW displays of a program share it.
+// It is Absent without an X server, without its monitor, and after somebody closed its window. It
+// is back as soon as its monitor is; the X server, and what was refused, is tried again once a
+// second, at poll(). A window that was closed by its button stays closed until the program's next
+// start, because somebody wanted it closed.
+// The context outlives the loss of a monitor. It is lost when the X server ends, closes the
+// connection, or when another program destroys the window.
+// Refreshes: those of the monitor where swapping waits for them, which is tried with some black
+// frames when the first window appears; elsewhere (as in Xvfb) those of the clock, and the swap
+// waits for it.
+// Thread: the render thread must be the main thread, to which GLFW belongs. All GLFW displays of a
+// program share it.
 // An X server that ends may raise SIGPIPE there, of which the program must not die.
 class GlfwDisplay final : public DisplaySink {
 public:
     // Keys: monitor, position. Error: a wrong key.
     static Result<Opening<DisplaySink>> fromConfig(const ConfigNode& options, const DisplayRequest& request);
-    // Which monitor it would claim; nothing: it would be a window of the desktop. Error: a wrong key.
+    // Which monitor it would claim; nothing: it would be a window of the desktop. Error: a wrong
+    // key.
     static Result<std::optional<MonitorClaim>> claimOf(const ConfigNode& options, const DisplayRequest& request);
     ~GlfwDisplay() override;
 
@@ -47,7 +52,8 @@ public:
     bool poll() override;
     int context() const override { return context_; }
     Result<void> makeCurrent() override;
-    // The window itself (0) where that can hold stored sRGB values, else a picture that finish() copies there.
+    // The window itself (0) where that can hold stored sRGB values, else a picture that finish()
+    // copies there.
     unsigned framebuffer() const override { return framebuffer_; }
     Result<void> finish() override;
     Result<Shown> present() override;
@@ -76,9 +82,11 @@ private:
         Time done{};
         Time took{};
     };
-    // Swaps after so many refreshes: 1 waits for the next where the driver can, 0 swaps at once. Error: its context is lost.
+    // Swaps after so many refreshes: 1 waits for the next where the driver can, 0 swaps at once.
+    // Error: its context is lost.
     Result<Swap> swap(int refreshes);
-    // Finds out whether swaps wait, if nobody did. A driver may say so and not do it, and a slow swap alone proves nothing.
+    // Finds out whether swaps wait, if nobody did. A driver may say so and not do it, and a slow
+    // swap alone proves nothing.
     Result<void> tryWhetherSwapsWait();
 
     const DisplayRequest request_;

@@ -61,7 +61,8 @@ Result<std::shared_ptr<GlfwLibrary>> GlfwLibrary::shared() {
     std::shared_ptr<GlfwLibrary> library(new GlfwLibrary);
     surviveLoss(glfwGetX11Display(), library->lost_);
     XSetErrorHandler(RefusedRequest::take);
-    // GLFW would ask the X server for every monitor at each change, in the middle of a frame, and does not bear one that vanishes meanwhile.
+    // GLFW would ask the X server for every monitor at each change, in the middle of a frame, and
+    // does not bear one that vanishes meanwhile.
     XRRSelectInput(glfwGetX11Display(), DefaultRootWindow(glfwGetX11Display()), 0);
     theOne() = library;
     return library;

@@ -19,7 +19,8 @@ constexpr const char* kPackages =
     "Debian's packages libegl1, libegl-mesa0 and libgl1-mesa-dri bring a software OpenGL: apt-get install libegl1 libegl-mesa0 "
     "libgl1-mesa-dri";
 
-// A context of OpenGL 4.5 core that draws into framebuffer objects alone. Error: why `display` gives none.
+// A context of OpenGL 4.5 core that draws into framebuffer objects alone. Error: why `display`
+// gives none.
 Result<EGLContext> makeContext(EGLDisplay display) {
     for (const char* needed : {"EGL_KHR_create_context", "EGL_KHR_no_config_context", "EGL_KHR_surfaceless_context"})
         if (!epoxy_has_egl_extension(display, needed)) return Error(fmt::format("{} is missing", needed));
@@ -32,8 +33,9 @@ Result<EGLContext> makeContext(EGLDisplay display) {
     return context;
 }
 
-// The process's one connection to EGL, once a headless display needed it; kept to the end, since opening it loads a whole driver and Mesa
-// does not free all of that again. Tries Mesa without a window system, then every GPU that EGL lists. Error: why each of them failed.
+// The process's one connection to EGL, once a headless display needed it; kept to the end, since
+// opening it loads a whole driver and Mesa does not free all of that again. Tries Mesa without a
+// window system, then every GPU that EGL lists. Error: why each of them failed.
 Result<EGLDisplay> connection() {
     static std::mutex mutex;
     static EGLDisplay open = EGL_NO_DISPLAY;

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "drivers/common/surroundings.h"
 #include "drivers/display/cable.h"
 #include "drivers/display/refresh_train.h"
-#include "drivers/surroundings.h"
 
 #include "device/display_sink.h"
 
@@ -12,14 +12,16 @@
 
 namespace fantascope::drivers {
 
-// A display without a window system: real OpenGL on EGL alone, Mesa's software renderer or a GPU. Its refreshes are those of a
-// clock: number k takes place at tickTime(k, rate). It can be unplugged where a simulated site has its plug.
+// A display without a window system: real OpenGL on EGL alone, Mesa's software renderer or a GPU.
+// Its refreshes are those of a clock: number k takes place at tickTime(k, rate). It can be
+// unplugged where a simulated site has its plug.
 //
 // One finished frame is held until its refresh comes, as a graphics card's swap chain does.
 // The context lives as long as the object.
 class HeadlessDisplay final : public DisplaySink {
 public:
-    // Keys: none of its own. Error: a wrong key; at the opening: no OpenGL 4.5 here (names the Debian packages that bring one).
+    // Keys: none of its own. Error: a wrong key; at the opening: no OpenGL 4.5 here (names the
+    // Debian packages that bring one).
     static Result<Opening<DisplaySink>> fromConfig(const ConfigNode& options, const DisplayRequest& request);
     ~HeadlessDisplay() override;
 

@@ -16,7 +16,8 @@ struct Work {
 };
 Work* running = nullptr;
 
-// In place of Xlib's own, which tells the terminal of the loss. What comes after it is the connection's own matter.
+// In place of Xlib's own, which tells the terminal of the loss. What comes after it is the
+// connection's own matter.
 int onLoss(Display* connection) {
     if (Work* const work = std::exchange(running, nullptr)) {
         work->connection = connection;
@@ -25,7 +26,8 @@ int onLoss(Display* connection) {
     return 0;
 }
 
-// Of a lost connection Xlib gives no room for a request where another library such as EGL used it last, and writes the request all the same.
+// Of a lost connection Xlib gives no room for a request where another library such as EGL used it
+// last, and writes the request all the same.
 void makeRoomForRequests(Display* connection) {
     constexpr int kRoom = 2048;  // bytes: the least that Xlib has (BUFSIZE)
     connection->bufptr = connection->buffer;

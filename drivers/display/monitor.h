@@ -22,7 +22,8 @@ struct Area {
     bool overlaps(const Area& other) const;
 };
 
-// A connector of a graphics card, and the monitor or projector on it. Numbers named `...Id` are the X server's.
+// A connector of a graphics card, and the monitor or projector on it. Numbers named `...Id` are the
+// X server's.
 struct Monitor {
     struct Mode {
         std::uint32_t modeId = 0;
@@ -45,7 +46,8 @@ struct Monitor {
     std::vector<std::uint32_t> possibleCrtcs;  // that can drive it
     std::optional<Picture> on;                 // nothing: it is switched off
 
-    // For a person, with the identity as the site file's `monitor` takes it: "HDMI-1 {make: EPS, model: EPSON PJ, serial: X4}".
+    // For a person, with the identity as the site file's `monitor` takes it: "HDMI-1 {make: EPS,
+    // model: EPSON PJ, serial: X4}".
     std::string text() const;
 };
 

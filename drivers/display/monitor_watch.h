@@ -17,10 +17,11 @@
 
 namespace fantascope::drivers {
 
-// Keeps each claimed monitor on and in its place (see Placement), and knows where it is. All that waits for the X server happens on a
-// thread of its own, which the X server wakes when anything changes, so that no frame has to wait for a monitor that comes or goes.
-// It lives as long as somebody has a claim; meanwhile the screen is not blanked. An X server that ends takes all seats along; once a second
-// it is tried whether there is one again. Thread: thread-safe.
+// Keeps each claimed monitor on and in its place (see Placement), and knows where it is. All that
+// waits for the X server happens on a thread of its own, which the X server wakes when anything
+// changes, so that no frame has to wait for a monitor that comes or goes. It lives as long as
+// somebody has a claim; meanwhile the screen is not blanked. An X server that ends takes all seats
+// along; once a second it is tried whether there is one again. Thread: thread-safe.
 class MonitorWatch : public std::enable_shared_from_this<MonitorWatch> {
 public:
     // The process's one. Error: there is no X server with RandR.
@@ -59,7 +60,8 @@ private:
     void deny(const std::string& why, Whom whom);
     void publish();  // with the mutex
     void wake();
-    // Sleeps until it is woken, `file` can be read (-1: none), or so many milliseconds are over (-1: never). Whether it was woken.
+    // Sleeps until it is woken, `file` can be read (-1: none), or so many milliseconds are over
+    // (-1: never). Whether it was woken.
     bool wait(int file, int milliseconds);
     bool ending();
 

@@ -2,8 +2,8 @@
 
 #include "drivers/display/glfw_library.h"
 
-#include "core/image.h"
 #include "core/result.h"
+#include "media/image.h"
 
 #include <glm/vec2.hpp>
 
@@ -16,11 +16,13 @@ struct GLFWwindow;
 
 namespace fantascope::drivers {
 
-// A window of the desktop that shows one picture after the other, for a person who looks at work in progress, and hears what keys the
-// person presses. It is no output: nobody waits for a refresh. Thread: the main thread.
+// A window of the desktop that shows one picture after the other, for a person who looks at work in
+// progress, and hears what keys the person presses. It is no output: nobody waits for a refresh.
+// Thread: the main thread.
 class PictureWindow {
 public:
-    // A picture of other proportions than `size` gets black bars. Error: no X server, or no OpenGL 4.5.
+    // A picture of other proportions than `size` gets black bars. Error: no X server, or no OpenGL
+    // 4.5.
     static Result<std::unique_ptr<PictureWindow>> open(const std::string& title, glm::ivec2 size);
     ~PictureWindow();
     PictureWindow(const PictureWindow&) = delete;
@@ -28,7 +30,8 @@ public:
 
     // Stored values.
     void show(const GreyImage& picture);
-    // The next key that was pressed: ' ', '\x1b' for escape, which a window that was closed or lost means too, or a letter. Never waits.
+    // The next key that was pressed: ' ', '\x1b' for escape, which a window that was closed or lost
+    // means too, or a letter. Never waits.
     std::optional<char> pollKey();
 
 private:

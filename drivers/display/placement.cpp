@@ -20,8 +20,9 @@ bool sameRate(const Monitor::Mode& a, const Monitor::Mode& b) {
     return a.interlaced == b.interlaced && std::abs(a.hertz - b.hertz) <= kSameHertz;
 }
 
-// Of the modes of the asked size the one nearest to the asked rate, of equal ones the one that the monitor lists first; an interlaced
-// one, whose lines comb what moves, only where there is no other. Null: none.
+// Of the modes of the asked size the one nearest to the asked rate, of equal ones the one that the
+// monitor lists first; an interlaced one, whose lines comb what moves, only where there is no
+// other. Null: none.
 const Monitor::Mode* bestMode(const Monitor& monitor, const MonitorClaim& claim) {
     const auto cost = [&](const Monitor::Mode& mode) {
         return std::pair(mode.interlaced, std::abs(mode.hertz - claim.refreshRate));
@@ -166,9 +167,11 @@ bool Placement::keeps(Holder& holder, Round& round) {
     return true;
 }
 
-// Finds the place that is kept for it, now and later. It has none where the X screen would become too large.
+// Finds the place that is kept for it, now and later. It has none where the X screen would become
+// too large.
 void Placement::reserve(Holder& holder, Round& round) {
-    // A monitor that nobody claims may be one whose identity is only just missing, so it takes no place away until the place is used.
+    // A monitor that nobody claims may be one whose identity is only just missing, so it takes no
+    // place away until the place is used.
     const bool now = holder.mode != nullptr;
     const auto free = [&](const Area& area) {
         const auto covers = [&](const Area& other) { return now && area.overlaps(other); };
@@ -251,7 +254,8 @@ Placement::Plan Placement::look(const std::vector<Monitor>& monitors, glm::ivec2
         if (monitor.connected && !claimed) round.foreign.push_back(monitor.on->area);
     }
 
-    // Who has to be at a certain place comes first; then whoever is well where they are; then the others.
+    // Who has to be at a certain place comes first; then whoever is well where they are; then the
+    // others.
     std::vector<Holder*> rest;
     const auto settle = [&](Holder& holder) {
         if (holder.mode != nullptr)

@@ -21,12 +21,14 @@ struct MonitorClaim {
     std::optional<glm::ivec2> position;  // of its top left corner; nothing: wherever there is room
 };
 
-// Where each output's picture is to be: it finds the monitors that the outputs claim, by identity, and decides what has to be switched.
+// Where each output's picture is to be: it finds the monitors that the outputs claim, by identity,
+// and decides what has to be switched.
 //
-// What is on in the right mode stays where it is, unless two outputs would overlap. Anything else comes to its `position`, to the place
-// that it had before, or right of everything else. The place of an output that is absent is kept free, so that nothing has to move, and
-// the screen does not have to grow, when it comes. A monitor is switched on when it arrives; one that somebody switches off while it
-// shows a picture stays off until somebody switches it on, or plugs it in again.
+// What is on in the right mode stays where it is, unless two outputs would overlap. Anything else
+// comes to its `position`, to the place that it had before, or right of everything else. The place
+// of an output that is absent is kept free, so that nothing has to move, and the screen does not
+// have to grow, when it comes. A monitor is switched on when it arrives; one that somebody switches
+// off while it shows a picture stays off until somebody switches it on, or plugs it in again.
 // It knows no X server: it is told what there is, and tells what to do. Thread: thread-bound.
 class Placement {
 public:
@@ -52,7 +54,8 @@ public:
     // A number for the claim, to be used below. Earlier ones have the first choice.
     int add(MonitorClaim claim);
     void remove(int claim);
-    // What has to be done now that the monitors are these, and the X screen can be `largest` pixels at most.
+    // What has to be done now that the monitors are these, and the X screen can be `largest` pixels
+    // at most.
     Plan look(const std::vector<Monitor>& monitors, glm::ivec2 largest);
     // A change that look() asked for did not succeed.
     void refused(int claim, const std::string& why);

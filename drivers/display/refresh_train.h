@@ -7,8 +7,9 @@
 
 namespace fantascope::drivers {
 
-// The numbered refreshes of a display, `hertz` a second. At first number k takes place at tickTime(k, hertz); a display that sees
-// its monitor's real refreshes sets the count right by each of them. Thread: thread-bound.
+// The numbered refreshes of a display, `hertz` a second. At first number k takes place at
+// tickTime(k, hertz); a display that sees its monitor's real refreshes sets the count right by each
+// of them. Thread: thread-bound.
 class RefreshTrain {
 public:
     explicit RefreshTrain(double hertz) : hertz_(hertz) {}
@@ -17,8 +18,8 @@ public:
     // The number of the refresh that is showing at `time`.
     std::int64_t running(Time time) const { return number_ + tickAt(time - at_, hertz_); }
     Time timeOf(std::int64_t number) const { return at_ + tickTime(number - number_, hertz_); }
-    // A real refresh was seen at `time`: the nearest one by the count so far, but never one that was seen before. Later ones
-    // count from it.
+    // A real refresh was seen at `time`: the nearest one by the count so far, but never one that
+    // was seen before. Later ones count from it.
     std::int64_t seen(Time time) {
         const Time halfPeriod = tickTime(1, 2 * hertz_);
         number_ = std::max(number_ + 1, running(time + halfPeriod));

@@ -186,7 +186,8 @@ Result<std::vector<Monitor>> XScreen::monitors() {
     if (!whole) return Error("the monitors are changing; it is tried again");
     unplugged_.clear();
 
-    // Who switches on a connector that seems to have no monitor knows better: the X server has not looked at it for long.
+    // Who switches on a connector that seems to have no monitor knows better: the X server has not
+    // looked at it for long.
     bool stale = false;
     std::set<std::uint32_t> on;
     for (const Monitor& monitor : monitors) {

@@ -17,14 +17,16 @@ struct xcb_connection_t;
 
 namespace fantascope::drivers {
 
-// The default X screen and its monitors, by a connection of its own (XCB, the RandR extension 1.3 or later), whose errors are values:
-// a monitor may vanish between two requests. Its calls wait for the X server's answers. While it lives, the screen is never blanked.
+// The default X screen and its monitors, by a connection of its own (XCB, the RandR extension 1.3
+// or later), whose errors are values: a monitor may vanish between two requests. Its calls wait for
+// the X server's answers. While it lives, the screen is never blanked.
 // Thread: thread-bound, to any one thread.
 class XScreen {
 public:
     // Error: there is no X server, or it has no RandR.
     static Result<std::unique_ptr<XScreen>> open();
-    // The X server that open() would ask, by its address, ":0"; "" where none is named. Asks nobody.
+    // The X server that open() would ask, by its address, ":0"; "" where none is named. Asks
+    // nobody.
     static std::string serverName();
     // Gives the screen saver and the power saving their settings back.
     ~XScreen();
@@ -33,9 +35,11 @@ public:
 
     // Readable when the X server has something to tell.
     int fileDescriptor() const;
-    // Takes in what the X server has told meanwhile, without waiting: whether any monitor changed. Error: the X server is gone.
+    // Takes in what the X server has told meanwhile, without waiting: whether any monitor changed.
+    // Error: the X server is gone.
     Result<bool> changed();
-    // Every connector, in the X server's order. Error: the X server is gone, or the monitors changed meanwhile (ask again).
+    // Every connector, in the X server's order. Error: the X server is gone, or the monitors
+    // changed meanwhile (ask again).
     Result<std::vector<Monitor>> monitors();
     glm::ivec2 largest() const { return largest_; }  // pixels that the screen can have; known from monitors()
     // Makes the screen at least that large. Error: it cannot be.
@@ -46,13 +50,15 @@ public:
         TooLate   // the monitors changed since monitors()
     };
     Applied apply(const Placement::Change& change);
-    // Turns off the screen saver and the monitors' power saving, and wakes them up, whoever turned them on meanwhile.
+    // Turns off the screen saver and the monitors' power saving, and wakes them up, whoever turned
+    // them on meanwhile.
     void keepAwake();
 
 private:
     struct Wakefulness;
     XScreen(xcb_connection_t* connection, std::uint32_t root);
-    // Makes the X server look for monitors. It holds up everybody for tens of milliseconds, and does so by itself when cables are plugged.
+    // Makes the X server look for monitors. It holds up everybody for tens of milliseconds, and
+    // does so by itself when cables are plugged.
     void lookAtConnectors();
 
     xcb_connection_t* connection_;

@@ -58,7 +58,8 @@ public:
             nextPoll_ = now + kPoll;
             const auto poll = bytesOf(Poll{});
             wire.send(poll, {wire.interface.broadcast, kUdpPort});
-            // Broadcasts end at a router, and some switches swallow them. From our own port, where nodes send their replies.
+            // Broadcasts end at a router, and some switches swallow them. From our own port, where
+            // nodes send their replies.
             for (const Outgoing* const out : wire.outgoing)
                 if (out->settings.polled) (void)wire.socket.send(poll, {out->settings.to.front(), kUdpPort});
         }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/surroundings.h"
+#include "drivers/common/surroundings.h"
 
 #include "device/dmx_port.h"
 #include "device/dmx_source.h"

@@ -1,6 +1,6 @@
 #pragma once
-// The packets of Art-Net 4 (Artistic Licence, Art-Net 4 Protocol Release) that carry levels and find nodes, as bytes and as values. No
-// sockets and no clocks.
+// The packets of Art-Net 4 (Artistic Licence, Art-Net 4 Protocol Release) that carry levels and
+// find nodes, as bytes and as values. No sockets and no clocks.
 
 #include "drivers/dmx/udp_socket.h"
 
@@ -27,7 +27,8 @@ struct Dmx {
 struct Sync {};
 struct Poll {};
 
-// What a node or a controller is. One that has many ports sends several replies, told apart by bindIndex.
+// What a node or a controller is. One that has many ports sends several replies, told apart by
+// bindIndex.
 struct PollReply {
     Ipv4 address;
     std::array<std::uint8_t, 6> hardware{};

@@ -22,8 +22,10 @@ constexpr std::size_t kLongestDatagram = 1500;
 // More than that are left for the next round, so that a flood never keeps levels from going out.
 constexpr int kMostAtOnce = 1000;
 
-// Some microseconds of work a tick that lamps show when they are late: it goes before everything, where the system allows that even before
-// the pictures (docs/decisions/0007-rendering-has-real-time-priority.md), whose threads may each keep a core for a tenth of a second.
+// Some microseconds of work a tick that lamps show when they are late: it goes before everything,
+// where the system allows that even before the pictures
+// (docs/decisions/0007-rendering-has-real-time-priority.md), whose threads may each keep a core for
+// a tenth of a second.
 void goFirst() {
     prctl(PR_SET_TIMERSLACK, 1UL);
     for (const int priority : {2, 1}) {
@@ -276,7 +278,8 @@ Outage DmxNetwork::serve(Service& service) {
             }
             if (now >= nextTick_) tick(now);
             due = std::min(protocol_->tend(wire_, now), nextLook_);
-            // Whoever hands over levels from now on calls; what was handed over before is seen here.
+            // Whoever hands over levels from now on calls; what was handed over before is seen
+            // here.
             idle_ = true;
             nextTick_ = nextTick(now);
             if (nextTick_ <= tickAfter(now)) idle_ = false;

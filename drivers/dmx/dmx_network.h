@@ -67,9 +67,11 @@ public:
 
     // For the network's thread.
     bool isFresh() const { return fresh_; }
-    // Whether there is something to send at a tick: new levels, one of the three repeats after them, or the keep-alive.
+    // Whether there is something to send at a tick: new levels, one of the three repeats after
+    // them, or the keep-alive.
     bool isDue(Time now);
-    // Whether the newest levels, or one of their repeats, are still to be sent; each call counts as sending one.
+    // Whether the newest levels, or one of their repeats, are still to be sent; each call counts as
+    // sending one.
     bool isOwed();
     // When there is something to send next, unless new levels come.
     std::optional<Time> nextDue() const;
@@ -137,8 +139,9 @@ private:
     std::deque<DmxInput> waiting_;
 };
 
-// What there is while the interface is: an open socket for the protocol's port, and one for each device that is spoken to alone, because
-// datagrams to one that is off wait in its socket for the device's hardware address and take up all the room.
+// What there is while the interface is: an open socket for the protocol's port, and one for each
+// device that is spoken to alone, because datagrams to one that is off wait in its socket for the
+// device's hardware address and take up all the room.
 struct DmxWire {
     NetworkInterface interface;
     UdpSocket socket;
@@ -167,8 +170,9 @@ public:
     virtual void receive(DmxWire& wire, std::span<const std::uint8_t> bytes, Endpoint from, Time now) = 0;
 };
 
-// All universes of one protocol on one interface, with one thread. While levels change they go out at the ticks of a train of kRate from
-// the clock's zero, all universes together; a late tick is made up for at once and the train stays as it is.
+// All universes of one protocol on one interface, with one thread. While levels change they go out
+// at the ticks of a train of kRate from the clock's zero, all universes together; a late tick is
+// made up for at once and the train stays as it is.
 // Thread: all methods may be called from any.
 class DmxNetwork {
 public:

@@ -88,7 +88,8 @@ bool takeOver(const WidgetMessage& message, DmxPacket& packet) {
         std::copy(data.begin() + 1, data.end(), packet.begin());
         return true;
     }
-    // Which of 40 slots have changed is told by a bit each, from eight times the first byte on; then come these slots.
+    // Which of 40 slots have changed is told by a bit each, from eight times the first byte on;
+    // then come these slots.
     constexpr std::size_t kBits = 40, kBitBytes = kBits / 8;
     if (message.label != WidgetLabel::Changed || data.size() < 1 + kBitBytes) return false;
     std::size_t value = 1 + kBitBytes;

@@ -1,5 +1,6 @@
 #pragma once
-// What an Enttec DMX USB Pro and its kin say over their line ("DMX USB PRO Widget API Specification", 1.44):
+// What an Enttec DMX USB Pro and its kin say over their line ("DMX USB PRO Widget API
+// Specification", 1.44):
 //     0x7e, label, length (low byte, high byte), data, 0xe7
 
 #include "device/dmx_port.h"
@@ -53,7 +54,8 @@ DmxPacket packetOf(std::span<const std::uint8_t, kDmxSlots> slots);
 // At most kWidgetCapacity bytes of data.
 std::vector<std::uint8_t> encoded(WidgetLabel label, std::span<const std::uint8_t> data);
 
-// Finds the messages in what arrives. What is none is skipped; a message inside of what only looked like one is found all the same.
+// Finds the messages in what arrives. What is none is skipped; a message inside of what only looked
+// like one is found all the same.
 class WidgetParser {
 public:
     void put(std::span<const std::uint8_t> bytes);
@@ -73,8 +75,8 @@ std::optional<std::string> numberIn(std::span<const std::uint8_t> data);
 // The name behind the two bytes of an identity.
 std::string nameIn(std::span<const std::uint8_t> data);
 
-// Takes over what came in, of a Received or a Changed message. Whether it is a frame of levels (start code 0) that the widget
-// received well; slots that a frame did not have are 0.
+// Takes over what came in, of a Received or a Changed message. Whether it is a frame of levels
+// (start code 0) that the widget received well; slots that a frame did not have are 0.
 bool takeOver(const WidgetMessage& message, DmxPacket& packet);
 
 }  // namespace fantascope::drivers

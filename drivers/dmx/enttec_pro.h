@@ -1,9 +1,9 @@
 #pragma once
 
 #include "drivers/common/service.h"
+#include "drivers/common/surroundings.h"
 #include "drivers/dmx/enttec_widget.h"
 #include "drivers/dmx/widget_search.h"
-#include "drivers/surroundings.h"
 
 #include "device/dmx_port.h"
 #include "device/dmx_source.h"
@@ -19,7 +19,8 @@
 
 namespace fantascope::drivers {
 
-// An Enttec DMX USB Pro, or what speaks as it does, through all its lives. Thread: bound to its device's own.
+// An Enttec DMX USB Pro, or what speaks as it does, through all its lives. Thread: bound to its
+// device's own.
 class EnttecPro {
 public:
     struct Options {
@@ -27,7 +28,8 @@ public:
         std::optional<int> breakTime, markAfterBreak;  // in WidgetParameters' units; as the widget has it where not given
         std::optional<int> rate;                       // frames a second; the same
     };
-    // What to do with a widget that was found and has the parameters that it should; until the service ends, or something goes wrong.
+    // What to do with a widget that was found and has the parameters that it should; until the
+    // service ends, or something goes wrong.
     using Work = std::function<Result<void>(EnttecWidget&, const WidgetParameters&, const std::string& number)>;
 
     EnttecPro(const std::string& name, Options options, Clock& clock);

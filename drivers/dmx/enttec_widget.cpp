@@ -5,7 +5,8 @@
 namespace fantascope::drivers {
 namespace {
 
-// A widget answers within a few milliseconds; this is for an adapter that collects bytes, and a loaded machine.
+// A widget answers within a few milliseconds; this is for an adapter that collects bytes, and a
+// loaded machine.
 constexpr Time kPatience = std::chrono::milliseconds(300);
 constexpr int kAttempts = 3;
 

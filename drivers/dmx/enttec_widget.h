@@ -15,8 +15,8 @@
 
 namespace fantascope::drivers {
 
-// A conversation with a widget, over one life of its line. Errors of all: the line is lost, or the widget takes nothing for kStalled, or does
-// not answer. Thread: bound to that of the line.
+// A conversation with a widget, over one life of its line. Errors of all: the line is lost, or the
+// widget takes nothing for kStalled, or does not answer. Thread: bound to that of the line.
 class EnttecWidget {
 public:
     static constexpr Time kStalled = std::chrono::seconds(1);   // a widget that takes no byte for so long is stuck
@@ -38,7 +38,8 @@ public:
     void say(WidgetLabel label, std::span<const std::uint8_t> data);
     // Whether all that was said has gone.
     bool idle() const { return outgoing_.empty(); }
-    // Sends and hears until `until`, and asks now and then whether the widget is still there: by the one question that leaves it sending.
+    // Sends and hears until `until`, and asks now and then whether the widget is still there: by
+    // the one question that leaves it sending.
     Result<void> work(Time until, const std::function<void(const WidgetMessage&)>& hear);
 
 private:

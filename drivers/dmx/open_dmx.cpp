@@ -9,11 +9,13 @@
 namespace fantascope::drivers {
 namespace {
 
-// ANSI E1.11: 250 kbit/s, 8 bits and two stop bits, so 44 us a slot. The adapter's driver of the RS-485 line listens to RTS.
+// ANSI E1.11: 250 kbit/s, 8 bits and two stop bits, so 44 us a slot. The adapter's driver of the
+// RS-485 line listens to RTS.
 constexpr SerialSettings kDmxLine{.rate = 250'000, .parity = Parity::None, .stopBits = 2, .requestToSend = false};
 constexpr Time kPacket = (1 + kDmxSlots) * std::chrono::microseconds(44);
 
-// As long as the store of an adapter (384 bytes) takes to run empty, for one that does not say when it has.
+// As long as the store of an adapter (384 bytes) takes to run empty, for one that does not say when
+// it has.
 constexpr Time kStore = 384 * std::chrono::microseconds(44);
 
 // A line that has not sent a packet by then is stuck.
@@ -111,7 +113,8 @@ Result<void> OpenDmxPort::say(const DmxPacket& packet) {
         if (!rest.empty()) clock_.sleepUntil(clock_.now() + kLookAgain);
         if (clock_.now() >= begun + kStalled) return Error("it takes no more bytes");
     }
-    // A break reaches the line at once, ahead of bytes that still wait in the adapter: it may begin only when all are out.
+    // A break reaches the line at once, ahead of bytes that still wait in the adapter: it may begin
+    // only when all are out.
     clock_.sleepUntil(begun + kPacket);
     for (Time handedOver = clock_.now(); clock_.now() < handedOver + kStore && !TRY(line_.isDrained());) {
         clock_.sleepUntil(clock_.now() + kLookAgain);

@@ -2,9 +2,9 @@
 
 #include "drivers/byte_stream/serial.h"
 #include "drivers/common/service.h"
+#include "drivers/common/surroundings.h"
 #include "drivers/dmx/enttec_message.h"
 #include "drivers/dmx/widget_search.h"
-#include "drivers/surroundings.h"
 
 #include "device/dmx_port.h"
 
@@ -17,7 +17,8 @@
 
 namespace fantascope::drivers {
 
-// A universe going out by an Enttec Open DMX USB or another bare serial adapter: this program makes every break and every byte itself.
+// A universe going out by an Enttec Open DMX USB or another bare serial adapter: this program makes
+// every break and every byte itself.
 class OpenDmxPort final : public DmxPort {
 public:
     static Result<Opening<DmxPort>> fromConfig(const ConfigNode& options, int universe);

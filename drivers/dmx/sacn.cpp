@@ -20,7 +20,8 @@ namespace {
 
 using namespace sacn;
 
-// E1.31's network data loss (section 6.7.1); sync packets may stay away for as long (section 11.1.2).
+// E1.31's network data loss (section 6.7.1); sync packets may stay away for as long (section
+// 11.1.2).
 constexpr Time kSilence = std::chrono::milliseconds(2500);
 constexpr Time kDiscovery = std::chrono::seconds(10);
 // A source's universes are all opened within this; the first discovery packet then tells of all.
@@ -148,8 +149,8 @@ private:
         }
     }
 
-    // Whether frames that name this sync universe wait for its packets (section 6.2.4.1). Until the first one came nobody waits: many a
-    // sender names a universe and sends none.
+    // Whether frames that name this sync universe wait for its packets (section 6.2.4.1). Until the
+    // first one came nobody waits: many a sender names a universe and sends none.
     bool waitsFor(DmxWire& wire, const Data& data, Time now) {
         if (data.sync == 0) return false;
         auto found = syncsIn_.find(data.sync);
@@ -214,7 +215,8 @@ std::string machineName() {
 }
 
 std::shared_ptr<DmxNetwork> networkFor(const ConfigNode& options, const std::string& interface, const Surroundings& around) {
-    // The same after a restart, and another one for another site, machine or interface: each has its own count of packets.
+    // The same after a restart, and another one for another site, machine or interface: each has
+    // its own count of packets.
     std::error_code relative;
     const std::filesystem::path site = std::filesystem::absolute(options.file(), relative);
     const Cid cid = cidFor(fmt::format("{}\n{}\n{}", machineName(), site.lexically_normal().string(), interface));

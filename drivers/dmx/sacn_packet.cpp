@@ -11,7 +11,8 @@
 namespace fantascope::drivers::sacn {
 namespace {
 
-// Offsets of tables 4-1 to 4-3. Each layer begins with its flags and length, which counts from there to the packet's end.
+// Offsets of tables 4-1 to 4-3. Each layer begins with its flags and length, which counts from
+// there to the packet's end.
 constexpr std::size_t kRootLayer = 16, kRootVector = 18, kCid = 22, kFraming = 38, kFramingVector = 40;
 constexpr std::size_t kName = 44, kPriority = 108, kSyncAddress = 109, kSequence = 111, kOptions = 112, kUniverse = 113;
 constexpr std::size_t kDmp = 115, kDmpVector = 117, kCount = 123, kStartCode = 125, kSlots = 126;
@@ -37,7 +38,8 @@ void put(std::span<std::uint8_t> bytes, std::size_t at, std::uint32_t value, std
 void putLayer(std::span<std::uint8_t> bytes, std::size_t at) {
     put(bytes, at, 0x7000 | static_cast<std::uint32_t>(bytes.size() - at), 2);
 }
-// Whether a layer's flags and length are those of what came. What follows a packet is not looked at (section 5.4 of E1.17).
+// Whether a layer's flags and length are those of what came. What follows a packet is not looked at
+// (section 5.4 of E1.17).
 bool holdsLayer(Bytes bytes, std::size_t at, std::size_t least) {
     if (bytes.size() < at + 2 || bytes[at] >> 4 != 7) return false;
     const std::size_t length = word(bytes, at) & 0x0fff;

@@ -64,7 +64,8 @@ DataBytes bytesOf(const Data& data);
 SyncBytes bytesOf(const Sync& sync);
 std::vector<std::uint8_t> bytesOf(const Discovery& discovery);  // universes.size() <= kUniversesOnPage
 
-// Whether a packet is out of sequence after `last` and to be dropped: their difference is in (-20, 0] (section 6.7.2).
+// Whether a packet is out of sequence after `last` and to be dropped: their difference is in (-20,
+// 0] (section 6.7.2).
 constexpr bool isLate(std::uint8_t sequence, std::uint8_t last) {
     const auto difference = static_cast<std::int8_t>(sequence - last);
     return difference <= 0 && difference > -20;

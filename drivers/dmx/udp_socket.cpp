@@ -15,10 +15,12 @@
 namespace fantascope::drivers {
 namespace {
 
-// Room for what hundreds of universes send while this program is busy elsewhere. More than the system allows gets what it allows.
+// Room for what hundreds of universes send while this program is busy elsewhere. More than the
+// system allows gets what it allows.
 constexpr int kReceiveBuffer = 4 << 20;
 
-// The cable leads to something. IFF_RUNNING says so too, but up to a second late. (IFF_LOWER_UP, which <net/if.h> does not have.)
+// The cable leads to something. IFF_RUNNING says so too, but up to a second late. (IFF_LOWER_UP,
+// which <net/if.h> does not have.)
 constexpr unsigned kLowerUp = 1u << 16;
 
 Ipv4 ipv4Of(const sockaddr* address) {

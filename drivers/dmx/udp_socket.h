@@ -42,23 +42,25 @@ struct NetworkInterface {
 };
 std::vector<NetworkInterface> networkInterfaces();
 
-// Finds the interface that a site file means by its name or its address; by "" it means the only one that there is besides the loopback.
-// Why it cannot be used, or nothing and `found` is set.
+// Finds the interface that a site file means by its name or its address; by "" it means the only
+// one that there is besides the loopback. Why it cannot be used, or nothing and `found` is set.
 std::optional<Outage> whyNoInterface(std::string_view wanted, NetworkInterface& found);
 // What a claim adds for the interface: " on eth0". While none is found: what the site file says.
 std::string onWhichInterface(const std::string& wanted);
 
-// A UDP socket on one interface: it hears and speaks there and nowhere else. It shares its port with other programs that share theirs.
-// No call ever waits. Thread: thread-bound.
+// A UDP socket on one interface: it hears and speaks there and nowhere else. It shares its port
+// with other programs that share theirs. No call ever waits. Thread: thread-bound.
 class UdpSocket {
 public:
     UdpSocket() = default;  // none yet
     // Port 0: any, for sending alone. Errors are the system's and name the port.
     static Result<UdpSocket> open(const NetworkInterface& interface, std::uint16_t port);
-    // One that hears every interface, but of what is sent to this machine alone only what no socket of an interface takes.
+    // One that hears every interface, but of what is sent to this machine alone only what no socket
+    // of an interface takes.
     static Result<UdpSocket> openAnywhere(std::uint16_t port);
 
-    // The errno of what went wrong. A line or a neighbour that takes nothing more just now loses the datagram and is no error.
+    // The errno of what went wrong. A line or a neighbour that takes nothing more just now loses
+    // the datagram and is no error.
     int send(std::span<const std::uint8_t> bytes, Endpoint to);
     // What has arrived, written to the front of `buffer`: its size, or nothing when there is none.
     std::optional<std::size_t> receive(std::span<std::uint8_t> buffer, Endpoint& from);
@@ -71,8 +73,9 @@ private:
     FileHandle file_;
 };
 
-// As long as it lives, this machine asks its network for what is sent to a multicast group, and every UdpSocket on that interface hears it.
-// (A socket of its own for each group: one socket may join but few, net.ipv4.igmp_max_memberships.)
+// As long as it lives, this machine asks its network for what is sent to a multicast group, and
+// every UdpSocket on that interface hears it. (A socket of its own for each group: one socket may
+// join but few, net.ipv4.igmp_max_memberships.)
 class Membership {
 public:
     static Result<Membership> join(const NetworkInterface& interface, Ipv4 group);

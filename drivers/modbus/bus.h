@@ -24,11 +24,13 @@ namespace fantascope::drivers {
 
 class ModbusUnit;
 
-// A line with its one thread, on which all units on it take turns: who is due first goes first. A unit that does not answer is tried ever
-// more rarely (BackOff); a line that is gone is tried again by its Service, and all its units are lost until then.
+// A line with its one thread, on which all units on it take turns: who is due first goes first. A
+// unit that does not answer is tried ever more rarely (BackOff); a line that is gone is tried again
+// by its Service, and all its units are lost until then.
 class ModbusBus {
 public:
-    // The bus of that line, for as long as anybody holds it. Error: somebody has it already with other settings (rate, time-out).
+    // The bus of that line, for as long as anybody holds it. Error: somebody has it already with
+    // other settings (rate, time-out).
     static Result<std::shared_ptr<ModbusBus>> of(const ConfigNode& node, const ModbusLineOptions& options, const Clock& clock);
     ModbusBus(const ModbusLineOptions& options, const Clock& clock);
 
@@ -51,17 +53,19 @@ private:
     Service service_;
 };
 
-// One device on a bus: what it does at its turns, and what it says of itself. It is the device's last member, so that no turn is under way
-// when anything that it uses goes.
+// One device on a bus: what it does at its turns, and what it says of itself. It is the device's
+// last member, so that no turn is under way when anything that it uses goes.
 class ModbusUnit {
 public:
     // The unit was away without anybody's noticing, and is back.
     struct CameBack {
         Time next;
     };
-    // When the next turn is due, or why this one failed: then the unit is lost. One that came back was lost in between.
+    // When the next turn is due, or why this one failed: then the unit is lost. One that came back
+    // was lost in between.
     using Turned = std::variant<Time, CameBack, ModbusFailure>;
-    // On the bus's thread. Until one has succeeded the unit is not Running; of that turn everything must end by responseTimeout.
+    // On the bus's thread. Until one has succeeded the unit is not Running; of that turn everything
+    // must end by responseTimeout.
     using Turn = std::function<Turned(ModbusLine&)>;
     using Job = std::function<ModbusOutcome(ModbusLine&)>;
 
@@ -75,8 +79,9 @@ public:
     const std::string& name() const { return status_.name; }  // constant
     bool isRunning() const { return status().state == DeviceState::Running; }
 
-    // Does a job on the bus's thread at once, but for the requests that are under way or due before, and waits for it. The job's own requests
-    // must end by `deadline`; what has not begun by then never begins. Error: not Running, no time, or the job failed: then the unit is lost,
+    // Does a job on the bus's thread at once, but for the requests that are under way or due
+    // before, and waits for it. The job's own requests must end by `deadline`; what has not begun
+    // by then never begins. Error: not Running, no time, or the job failed: then the unit is lost,
     // unless it answered that it will not.
     Result<void> run(const Job& job, Time deadline);
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "drivers/common/surroundings.h"
 #include "drivers/modbus/bus.h"
 #include "drivers/modbus/values.h"
-#include "drivers/surroundings.h"
 
 #include "device/input_bank.h"
 

@@ -34,7 +34,8 @@ void setResponseTimeout(modbus_t* context, Time limit) {
     modbus_set_response_timeout(context, static_cast<std::uint32_t>(us / 1'000'000), static_cast<std::uint32_t>(us % 1'000'000));
 }
 
-// The longest silence that still belongs to a frame (Modbus over Serial Line V1.02, section 2.5.1.1).
+// The longest silence that still belongs to a frame (Modbus over Serial Line V1.02, section
+// 2.5.1.1).
 Time silenceOf(const ModbusRtu& wire) {
     const Time least = std::chrono::microseconds(1750);
     return std::max(least, fromSeconds(3.5 * kBitsOfCharacter / wire.baud));
@@ -106,7 +107,8 @@ Result<void> checkLine(const ConfigNode& node, const ModbusLineOptions& options)
 }
 
 void declareUnit(ConfigFields& fields, const ModbusLineOptions& line, ModbusPlace& place) {
-    // The specification has 1 to 247; a module with a network socket of its own may also be 255, which none behind a gateway is.
+    // The specification has 1 to 247; a module with a network socket of its own may also be 255,
+    // which none behind a gateway is.
     const bool tcp = std::holds_alternative<ModbusTcp>(line.wire);
     fields.optional().read("unit", place.unit, [tcp](const ConfigNode& node) -> Result<int> {
         const auto unit = static_cast<int>(TRY(node.integer(1, tcp ? 255 : 247)));
@@ -175,7 +177,8 @@ ModbusOutcome ModbusLine::open(Time deadline) {
                               closeAndFree);
     if (!opened) return failure({DeviceState::Faulted, fmt::format("{}: {}", nameOf(options_), modbus_strerror(errno))});
     setResponseTimeout(opened.get(), limit);  // a connection has no other
-    // Without it a byte may take half a second whatever the deadline is; so the whole answer has the response's time.
+    // Without it a byte may take half a second whatever the deadline is; so the whole answer has
+    // the response's time.
     modbus_set_byte_timeout(opened.get(), 0, 0);
     if (modbus_connect(opened.get()) != 0) {
         const int error = errno;
@@ -199,7 +202,8 @@ ModbusOutcome ModbusLine::lost(int error) {
     return ModbusFailure{{DeviceState::Absent, fmt::format("{} went away: {}", nameOf(options_), systemMessage(error))}, true};
 }
 
-// A frame begins after a silence. What comes meanwhile is noise, or the answer to a request that was given up.
+// A frame begins after a silence. What comes meanwhile is noise, or the answer to a request that
+// was given up.
 ModbusOutcome ModbusLine::waitForSilence(Time deadline) {
     const ModbusRtu* serial = std::get_if<ModbusRtu>(&options_.wire);
     if (serial == nullptr) return std::nullopt;
@@ -243,7 +247,8 @@ ModbusOutcome ModbusLine::exchangeOnce(const ModbusPlace& place, std::size_t cou
         return refusal;
     }
     const bool serial = std::holds_alternative<ModbusRtu>(options_.wire);
-    // A module that hangs up may have been without power: that its relays fell must not go unnoticed behind a new connection.
+    // A module that hangs up may have been without power: that its relays fell must not go
+    // unnoticed behind a new connection.
     if (error != ETIMEDOUT && !isLibrarys(error)) return lost(error);
     // The answer may still come; on a connection of its own nobody takes it for another.
     if (!serial) context_.reset();

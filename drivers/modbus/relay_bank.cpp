@@ -140,7 +140,8 @@ ModbusUnit::Turned ModbusRelayBank::turn(ModbusLine& line) {
         std::vector<std::uint16_t> values(size());
         if (auto failure = line.read(options_.place, values, deadline)) return *failure;
         nextLook_ = now + fromSeconds(1 / options_.rate);
-        // Between two looks the module was without power, or its watchdog struck, or somebody switched it by hand.
+        // Between two looks the module was without power, or its watchdog struck, or somebody
+        // switched it by hand.
         if (!standing_.empty() && values != standing_) {
             standing_.clear();
             return ModbusUnit::CameBack{nextLook_};

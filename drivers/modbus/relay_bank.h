@@ -1,7 +1,7 @@
 #pragma once
 
+#include "drivers/common/surroundings.h"
 #include "drivers/modbus/bus.h"
-#include "drivers/surroundings.h"
 
 #include "device/relay_bank.h"
 
@@ -14,7 +14,8 @@
 
 namespace fantascope::drivers {
 
-// Relays that are the coils of a Modbus unit, or holding registers with a value for on and one for off.
+// Relays that are the coils of a Modbus unit, or holding registers with a value for on and one for
+// off.
 class ModbusRelayBank final : public RelayBank {
 public:
     static Result<Opening<RelayBank>> readTcp(const ConfigNode& options, const std::string& name,
@@ -29,7 +30,8 @@ public:
     Result<std::vector<bool>> read() override;
 
 private:
-    // A register of the module that must be written again and again, or it switches its relays to the safe states by itself.
+    // A register of the module that must be written again and again, or it switches its relays to
+    // the safe states by itself.
     struct Watchdog {
         int address = 0;
         std::vector<std::uint16_t> values{1};  // in turn
@@ -61,7 +63,8 @@ private:
     const std::vector<bool> safeStates_;
     const Clock& clock_;
     // Of the bus's thread:
-    // What was confirmed since the last loss. While it is empty nothing is written, not even to the watchdog, which keeps the relays safe.
+    // What was confirmed since the last loss. While it is empty nothing is written, not even to the
+    // watchdog, which keeps the relays safe.
     std::vector<std::uint16_t> standing_;
     std::size_t fed_ = 0;  // times
     Time nextFeed_{}, nextLook_{};

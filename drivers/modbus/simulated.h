@@ -14,7 +14,8 @@
 
 namespace fantascope::drivers {
 
-// A bank of the simulated site's relays; its watchdog knows at once that its line is dead. Plug: the bank's name.
+// A bank of the simulated site's relays; its watchdog knows at once that its line is dead. Plug:
+// the bank's name.
 class SimulatedRelayBank final : public RelayBank {
 public:
     static Result<Opening<RelayBank>> fromConfig(const ConfigNode& options, const std::string& name,

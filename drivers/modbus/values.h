@@ -8,7 +8,8 @@
 
 namespace fantascope::drivers {
 
-// What an exception of a unit means and what to do about it. `code` as in the Modbus Application Protocol V1.1b3, section 7.
+// What an exception of a unit means and what to do about it. `code` as in the Modbus Application
+// Protocol V1.1b3, section 7.
 std::string exceptionInWords(int code, const ModbusPlace& place, std::size_t count, bool writing);
 
 // "coils 4 to 6", "holding register 17".

@@ -67,8 +67,8 @@ void CameraView::addLamp(const Lamp& lamp) {
         layer.meanIlluminance += illuminance / static_cast<float>(samples_.size());
     }
 
-    // The head itself, a disc in the picture; never smaller than a pixel, so that a far one's light does not fall between the
-    // samples.
+    // The head itself, a disc in the picture; never smaller than a pixel, so that a far one's light
+    // does not fall between the samples.
     const auto centre = camera_.pixelFromWorld(lamp.position);
     const glm::dvec3 fromLamp = camera_.pose.position - lamp.position;
     if (centre && !scene_.blocked(camera_.pose.position, lamp.position)) {

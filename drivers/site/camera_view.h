@@ -5,7 +5,7 @@
 
 #include "vision/camera_model.h"
 
-#include "core/image.h"
+#include "media/image.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -17,12 +17,12 @@
 
 namespace fantascope::site {
 
-// Light of one colour channel is counted in photometric units that white light of the same strength has: lux on a surface,
-// candela per square metre from it, both linear.
+// Light of one colour channel is counted in photometric units that white light of the same strength
+// has: lux on a surface, candela per square metre from it, both linear.
 
-// A lamp: a small round head whose light falls off from its aim. The intensity at an angle from the aim is
-// candela * exp(-(angle / a)^p), with a and p such that it is a half at half the beam angle and a tenth at half the field angle,
-// as those are defined (ANSI E1.9).
+// A lamp: a small round head whose light falls off from its aim. The intensity at an angle from the
+// aim is candela * exp(-(angle / a)^p), with a and p such that it is a half at half the beam angle
+// and a tenth at half the field angle, as those are defined (ANSI E1.9).
 struct Lamp {
     glm::dvec3 position{0.0};        // metres
     glm::dvec3 aim{0, -1, 0};        // unit
@@ -34,8 +34,9 @@ struct Lamp {
     double intensity(glm::dvec3 direction) const;  // candela towards a unit direction
 };
 
-// What the camera sees of a scene, as a sum over its lights. How much of each light arrives at each pixel is worked out
-// beforehand (direct light on matt surfaces, with shadows); a picture is then one pass over those weights. Thread-bound.
+// What the camera sees of a scene, as a sum over its lights. How much of each light arrives at each
+// pixel is worked out beforehand (direct light on matt surfaces, with shadows); a picture is then
+// one pass over those weights. Thread-bound.
 class CameraView {
 public:
     // `scene` outlives the view. `ambient`: lux on every surface; `sky`: cd/m2 where there is none.
@@ -43,14 +44,15 @@ public:
 
     // Lamps count from 0 in the order in which they are added, projectors too.
     void addLamp(const Lamp& lamp);
-    // `lumens`: of a full white picture, spread evenly over the picture on a wall that the lens faces squarely.
+    // `lumens`: of a full white picture, spread evenly over the picture on a wall that the lens
+    // faces squarely.
     void addProjector(const vision::CameraModel& projector, double lumens);
     // Works out one projector's light again. Some tens of milliseconds.
     void moveProjector(std::size_t projector, const vision::CameraModel& model);
 
-    // Fills `luminance` (cd/m2, the camera's size) at the lamps' levels (linear, 1 is full power) and the projectors' frames.
-    // `fog`: extinction per metre, >= 0; it weakens light on its whole way and, lit by the same lights, lays a veil over the
-    // distance.
+    // Fills `luminance` (cd/m2, the camera's size) at the lamps' levels (linear, 1 is full power)
+    // and the projectors' frames. `fog`: extinction per metre, >= 0; it weakens light on its whole
+    // way and, lit by the same lights, lays a veil over the distance.
     void render(std::span<const glm::vec3> levels, std::span<const ProjectedLight> frames, double fog,
                 Image<glm::vec3>& luminance) const;
 
@@ -66,8 +68,8 @@ private:
         glm::vec3 point, normal;
         glm::vec3 response;  // cd/m2 that the pixel sees for one lux here: the sample's share of reflectance / pi
     };
-    // A steady light at full power, one entry a pixel: cd/m2 in rgb, and in w the metres that it has travelled when it reaches
-    // the camera.
+    // A steady light at full power, one entry a pixel: cd/m2 in rgb, and in w the metres that it
+    // has travelled when it reaches the camera.
     struct Layer {
         Image<glm::vec4> light;
         glm::vec3 meanIlluminance{0};  // lux, over the surfaces in view: what the air between them is lit with in fog

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "drivers/common/surroundings.h"
 #include "drivers/site/world.h"
-#include "drivers/surroundings.h"
 
 #include "device/status.h"
 
@@ -13,15 +13,16 @@
 
 namespace fantascope::site {
 
-// A simulated device's end of its line to the world, from which it knows whether it is there and what its status is: Running
-// while plugged in, Absent otherwise, back at once when plugged in again. Thread: thread-safe but for lostAgain(), which belongs
-// to the device's own thread.
+// A simulated device's end of its line to the world, from which it knows whether it is there and
+// what its status is: Running while plugged in, Absent otherwise, back at once when plugged in
+// again. Thread: thread-safe but for lostAgain(), which belongs to the device's own thread.
 class Plug {
 public:
     // `device` is its name in the world. Losses count from now.
     Plug(World& world, std::string device, LossAction onLoss);
-    // The same for a driver of the site file, which has no key there but `driver`: make(Plug) gives the device. Error: another key, with its
-    // place in the file; at the opening: there is no world.
+    // The same for a driver of the site file, which has no key there but `driver`: make(Plug) gives
+    // the device. Error: another key, with its place in the file; at the opening: there is no
+    // world.
     template <class Port, class Make>
     static Result<drivers::Opening<Port>> fromConfig(const ConfigNode& options, std::string device, LossAction onLoss,
                                                      Make make) {
@@ -40,7 +41,8 @@ public:
     DeviceStatus status() const;
     // The error of a call while the device is not Running.
     Error absent() const;
-    // Whether the device was lost since the last call (or the construction), even if it is back already.
+    // Whether the device was lost since the last call (or the construction), even if it is back
+    // already.
     bool lostAgain();
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/image.h"
+#include "media/image.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
@@ -11,20 +11,21 @@
 
 namespace fantascope::site {
 
-// A projector's frame as the light that leaves its lens: linear, 1 is a full white pixel, w unused; averaged over cells of 1, 2,
-// 4 ... pixels, so that a camera pixel that covers many of the projector's sees all of them. Thread-bound.
+// A projector's frame as the light that leaves its lens: linear, 1 is a full white pixel, w unused;
+// averaged over cells of 1, 2, 4 ... pixels, so that a camera pixel that covers many of the
+// projector's sees all of them. Thread-bound.
 class ProjectedLight {
     using LightImage = Image<glm::vec4>;
 
 public:
     // Of the smallest frame: two pixels to lie between.
     static constexpr int kLeastSide = 2;
-    // light = blackLevel + (1 - blackLevel) stored^gamma. blackLevel 0..1, gamma > 0,
-    // size >= kLeastSide each way.
+    // light = blackLevel + (1 - blackLevel) stored^gamma. blackLevel 0..1, gamma > 0, size >=
+    // kLeastSide each way.
     ProjectedLight(glm::ivec2 size, double gamma, double blackLevel);
 
-    // Takes a new frame, stretched to the projector's own pixels if its size differs; null is no light at all. Does nothing if it
-    // is the one that it has already.
+    // Takes a new frame, stretched to the projector's own pixels if its size differs; null is no
+    // light at all. Does nothing if it is the one that it has already.
     void show(std::shared_ptr<const RgbaImage> frame);
     bool dark() const { return frame_ == nullptr; }
 
@@ -34,7 +35,8 @@ public:
         std::uint32_t corner = 0;  // the cell whose centre is next above and left
         glm::vec2 share{0};        // of the way from there to the next centres right and below
     };
-    // In frames of `size`, around `pixel` in [0, width] x [0, height], in cells about `footprint` pixels wide.
+    // In frames of `size`, around `pixel` in [0, width] x [0, height], in cells about `footprint`
+    // pixels wide.
     static Place placeOf(glm::ivec2 size, glm::vec2 pixel, double footprint);
     // Bilinear between cell centres. Not while dark().
     glm::vec4 at(const Place& place) const {

@@ -15,7 +15,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t kDeepest = 60;  // levels of boxes; what is left over there is one leaf
 constexpr float kSkin = 1e-3f;        // metres: a surface does not shadow itself
 
-// Distance along the ray to the triangle's plane where that lies inside the triangle, else infinity (Möller & Trumbore 1997).
+// Distance along the ray to the triangle's plane where that lies inside the triangle, else infinity
+// (Möller & Trumbore 1997).
 float meet(glm::vec3 origin, glm::vec3 direction, glm::vec3 corner, glm::vec3 edge1, glm::vec3 edge2) {
     const glm::vec3 p = glm::cross(direction, edge2);
     const float determinant = glm::dot(edge1, p);
@@ -45,8 +46,9 @@ Scene::Scene(const std::vector<SceneObject>& objects) {
     divide(0, 0, static_cast<std::uint32_t>(triangles_.size()), 0);
 }
 
-// Splits the triangles where the surface area heuristic (MacDonald & Booth 1990) expects rays to meet the fewest of them: beside
-// a few great sheets, ground and wall, a split by number alone would put small triangles into great boxes.
+// Splits the triangles where the surface area heuristic (MacDonald & Booth 1990) expects rays to
+// meet the fewest of them: beside a few great sheets, ground and wall, a split by number alone
+// would put small triangles into great boxes.
 void Scene::divide(std::uint32_t index, std::uint32_t begin, std::uint32_t end, std::size_t depth) {
     const auto sortAlong = [&](int axis) {
         std::sort(triangles_.begin() + begin, triangles_.begin() + end,

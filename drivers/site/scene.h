@@ -2,7 +2,7 @@
 
 #include "vision/camera_model.h"
 
-#include "core/mesh.h"
+#include "media/mesh.h"
 
 #include <glm/vec3.hpp>
 
@@ -34,7 +34,8 @@ public:
     };
     // The first surface along the ray. `direction` is unit.
     std::optional<Hit> nearest(glm::vec3 origin, glm::vec3 direction) const;
-    // Whether a surface stands between two points; those within a millimetre of either do not count.
+    // Whether a surface stands between two points; those within a millimetre of either do not
+    // count.
     bool blocked(glm::vec3 from, glm::vec3 to) const;
 
 private:
@@ -55,8 +56,8 @@ private:
         std::uint32_t count = 0;  // of triangles; 0: an inner node
     };
     void divide(std::uint32_t node, std::uint32_t begin, std::uint32_t end, std::size_t depth);
-    // Calls test(triangle) for the triangles whose box the ray enters before `limit`, which test may lower, until it returns
-    // true.
+    // Calls test(triangle) for the triangles whose box the ray enters before `limit`, which test
+    // may lower, until it returns true.
     template <class Test>
     void visit(glm::vec3 origin, glm::vec3 direction, const float& limit, Test test) const;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/image.h"
+#include "media/image.h"
 
 #include <glm/vec3.hpp>
 
@@ -20,7 +20,8 @@ public:
     // `seed`: of the noise.
     Sensor(const Settings& settings, std::uint64_t seed);
 
-    // The stored picture of a luminance (cd/m2). The noise depends on the seed and the frame's number alone.
+    // The stored picture of a luminance (cd/m2). The noise depends on the seed and the frame's
+    // number alone.
     RgbaImage expose(const Image<glm::vec3>& luminance, std::uint64_t frame) const;
 
 private:

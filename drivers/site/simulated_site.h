@@ -16,7 +16,8 @@
 
 namespace fantascope::site {
 
-// What the simulated site is told of the nominal one: the parts of the site file that throw light, or that have a plug.
+// What the simulated site is told of the nominal one: the parts of the site file that throw light,
+// or that have a plug.
 struct NominalSite {
     struct Output {
         std::string name;
@@ -52,11 +53,13 @@ struct Happening {
     std::string text;
 };
 
-// The simulated site in one scene: ground, wall and objects, lit by what the simulated devices do in World, seen by a camera. A
-// projector shows World::frame() of its output, whoever drew it: a headless display, or a real window through the renderer's tap.
-// Faults change the simulated truth, never the nominal site that it started from.
+// The simulated site in one scene: ground, wall and objects, lit by what the simulated devices do
+// in World, seen by a camera. A projector shows World::frame() of its output, whoever drew it: a
+// headless display, or a real window through the renderer's tap. Faults change the simulated truth,
+// never the nominal site that it started from.
 //
-// Time: everything happens on World's clock, counted from begin(). The same code runs on a thread of its own in real time,
+// Time: everything happens on World's clock, counted from begin(). The same code runs on a thread
+// of its own in real time,
 //     site->begin(clock.now());
 //     while (!stopped) {
 //         site->advanceTo(clock.now());
@@ -66,17 +69,19 @@ struct Happening {
 // Thread: bound to the site's thread; happenings() may be called from any.
 class SimulatedSite {
 public:
-    // `simulation`: the site file's section of that name, see README.md; it reads the meshes named there and works out
-    // all light beforehand, which takes about a second. `seed`: of the noise. `world` outlives the site. Error: file, line,
-    // column, key.
+    // `simulation`: the site file's section of that name, see README.md; it reads the meshes named
+    // there and works out all light beforehand, which takes about a second. `seed`: of the noise.
+    // `world` outlives the site. Error: file, line, column, key.
     static Result<std::unique_ptr<SimulatedSite>> open(const ConfigNode& simulation, const NominalSite& nominal,
                                                        std::uint64_t seed, World& world);
     ~SimulatedSite();
 
-    // Sets the beginning from which faults and camera frames count. Before the first advanceTo(), once.
+    // Sets the beginning from which faults and camera frames count. Before the first advanceTo(),
+    // once.
     void begin(Time at);
-    // Makes the faults happen and the contacts move that are due, and lets the camera expose the newest frame that is due; if several are,
-    // the older ones are dropped as a real camera's would be. Some milliseconds for a frame, nothing otherwise.
+    // Makes the faults happen and the contacts move that are due, and lets the camera expose the
+    // newest frame that is due; if several are, the older ones are dropped as a real camera's would
+    // be. Some milliseconds for a frame, nothing otherwise.
     void advanceTo(Time now);
     // When advanceTo() has something to do next.
     Time nextEvent() const;

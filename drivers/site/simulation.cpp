@@ -1,7 +1,7 @@
 #include "drivers/site/simulation.h"
 
 #include "core/geometry.h"
-#include "core/mesh.h"
+#include "media/mesh.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -136,7 +136,8 @@ std::vector<std::string> namesOf(const std::vector<Named>& things) {
     return names;
 }
 
-// A map from names that the site declares to what the simulation adds to them; use(index of the name, value).
+// A map from names that the site declares to what the simulation adds to them; use(index of the
+// name, value).
 template <class Parse, class Use>
 Result<void> readNamed(const ConfigNode& node, const std::vector<std::string>& names, std::string_view kind, Parse parse,
                        Use use) {

@@ -36,7 +36,8 @@ struct SimulatedCamera {
     double frameRate = 10;             // Hz
 };
 
-// Something that goes wrong with the simulated truth, and when. Times count from the site's beginning.
+// Something that goes wrong with the simulated truth, and when. Times count from the site's
+// beginning.
 struct Fault {
     enum class Kind { Unplug, Freeze, Bump, Fog };
     Kind kind = Kind::Unplug;

@@ -5,7 +5,7 @@
 #include "device/dmx_source.h"
 
 #include "core/clock.h"
-#include "core/image.h"
+#include "media/image.h"
 
 #include <array>
 #include <deque>
@@ -20,9 +20,10 @@
 
 namespace fantascope::site {
 
-// The far end of every simulated device: what lamps, relays, projectors, the hand and the camera of the simulated site are doing
-// now. The simulated drivers act on it from one side; the scene (simulated_site.h), tests and the rehearsal's operator from the
-// other. Nothing passes a pulled plug in either direction, and what was on its way when it was pulled is lost. Thread:
+// The far end of every simulated device: what lamps, relays, projectors, the hand and the camera of
+// the simulated site are doing now. The simulated drivers act on it from one side; the scene
+// (simulated_site.h), tests and the rehearsal's operator from the other. Nothing passes a pulled
+// plug in either direction, and what was on its way when it was pulled is lost. Thread:
 // thread-safe; no call waits for more than a copy.
 class World {
 public:
@@ -30,45 +31,52 @@ public:
 
     const Clock& clock() const { return clock_; }
 
-    // Pulls a device's plug, or puts it back. Devices go by their name in the site file: an output's or a bank's name, "universe N",
-    // "desk N", "cue controller", "camera". All are plugged in at first.
+    // Pulls a device's plug, or puts it back. Devices go by their name in the site file: an
+    // output's or a bank's name, "universe N", "desk N", "cue controller", "camera". All are
+    // plugged in at first.
     void setPlugged(const std::string& device, bool plugged);
     bool plugged(const std::string& device) const;
-    // How many times the device was lost so far, by its plug or by a hand at its relays: tells a driver of a loss that was over before
-    // it looked.
+    // How many times the device was lost so far, by its plug or by a hand at its relays: tells a
+    // driver of a loss that was over before it looked.
     int losses(const std::string& device) const;
 
-    // Lamps: what each universe's line carried last; all zero before the first frame. They hold it while the line is silent.
+    // Lamps: what each universe's line carried last; all zero before the first frame. They hold it
+    // while the line is silent.
     // False: the line is unplugged and the lamps see nothing of it.
     bool setSlots(int universe, std::span<const std::uint8_t, kDmxSlots> slots);
     std::array<std::uint8_t, kDmxSlots> slots(int universe) const;
 
-    // Relays of a bank. installRelays() wires it: they take their safe states now, and whenever the plug is pulled. states.size() is
-    // the installed number.
+    // Relays of a bank. installRelays() wires it: they take their safe states now, and whenever the
+    // plug is pulled. states.size() is the installed number.
     void installRelays(const std::string& bank, const std::vector<bool>& safeStates);
     bool setRelays(const std::string& bank, const std::vector<bool>& states);  // false: unplugged, nothing changes
     // Somebody at the module switches them. Where they were as written that is a loss.
     void switchRelaysByHand(const std::string& bank, const std::vector<bool>& states);
     std::vector<bool> relays(const std::string& bank) const;  // empty before installRelays()
 
-    // Contacts of an input bank; all open at first. They open and close whether or not anybody is connected to them.
+    // Contacts of an input bank; all open at first. They open and close whether or not anybody is
+    // connected to them.
     void setContact(const std::string& bank, std::size_t contact, bool closed);
     bool contact(const std::string& bank, std::size_t contact) const;
 
-    // Somebody else's desk on a universe: frames wait until the driver takes them, oldest first. `arrived` is set to the clock's
-    // now. Of each sender the newest waits at least; older ones are dropped beyond kDeskDepth.
+    // Somebody else's desk on a universe: frames wait until the driver takes them, oldest first.
+    // `arrived` is set to the clock's now. Of each sender the newest waits at least; older ones are
+    // dropped beyond kDeskDepth.
     static constexpr std::size_t kDeskDepth = 16;
     void sendFromDesk(int universe, DmxInput frame);
     std::optional<DmxInput> takeFromDesk(int universe);
 
-    // The hand on the cue controller: events wait until the driver takes them. `at` is set to the clock's now.
+    // The hand on the cue controller: events wait until the driver takes them. `at` is set to the
+    // clock's now.
     void press(int button, bool pressed);
     std::optional<ButtonEvent> takePress();
-    // The lamps of its buttons, from 1 on: what they are driven with, and what they show of it, which is nothing while the plug is out.
+    // The lamps of its buttons, from 1 on: what they are driven with, and what they show of it,
+    // which is nothing while the plug is out.
     void setLight(int button, const ButtonLight& light);
     ButtonLight light(int button) const;
 
-    // Projectors: the frame each one throws on the wall now; null before the first, and after its plug was pulled until the next.
+    // Projectors: the frame each one throws on the wall now; null before the first, and after its
+    // plug was pulled until the next.
     void setFrame(const std::string& output, std::shared_ptr<const RgbaImage> frame);
     std::shared_ptr<const RgbaImage> frame(const std::string& output) const;
 

@@ -9,10 +9,12 @@
 
 namespace fantascope {
 
-// A sequence that only grows. Any number of threads append, any number of readers each see every value, once, and all in the same order. A
-// reader never waits and never allocates, and however late it looks it misses nothing. Values stay until the log goes: meant for what
-// comes a few times a second.
-// Thread: append() from any; a Reader belongs to one thread at a time. The log outlives its readers.
+// A sequence that only grows. Any number of threads append, any number of readers each see every
+// value, once, and all in the same order. A reader never waits and never allocates, and however
+// late it looks it misses nothing. Values stay until the log goes: meant for what comes a few times
+// a second.
+// Thread: append() from any; a Reader belongs to one thread at a time. The log outlives its
+// readers.
 template <class T>
 class AppendLog {
     static constexpr std::size_t kChunk = 256;

@@ -8,15 +8,17 @@
 
 namespace fantascope {
 
-// A first-in first-out queue of at most `kCapacity` values from one writing thread to one reading thread; neither side ever waits or allocates.
-// Large values are written and read in place: a T that keeps its capacity (a vector, an image) costs nothing in steady state.
+// A first-in first-out queue of at most `kCapacity` values from one writing thread to one reading
+// thread; neither side ever waits or allocates. Large values are written and read in place: a T
+// that keeps its capacity (a vector, an image) costs nothing in steady state.
 // Thread: space() and push() from one thread, front(), drop() and pop() from one other.
 template <class T, std::size_t kCapacity>
 class BoundedQueue {
 public:
     explicit BoundedQueue(const T& initial = T{}) { values_.fill(initial); }
 
-    // Where the next value goes; it holds some older one: overwrite all of it, then push(). Null if the queue is full.
+    // Where the next value goes; it holds some older one: overwrite all of it, then push(). Null if
+    // the queue is full.
     T* space() {
         const std::size_t tail = tail_.load(std::memory_order_relaxed);
         return tail - head_.load(std::memory_order_acquire) == kCapacity ? nullptr : &values_[tail % kCapacity];

@@ -9,5 +9,6 @@ namespace fantascope {
 
 }  // namespace fantascope
 
-// A promise that our own code keeps. Never for what a file, a device or a user may do: that is a Result.
+// A promise that our own code keeps. Never for what a file, a device or a user may do: that is a
+// Result.
 #define FANTASCOPE_CHECK(condition, why) ((condition) ? void(0) : ::fantascope::checkFailed(__FILE__, __LINE__, #condition, why))

@@ -6,15 +6,18 @@
 
 namespace fantascope {
 
-// A span of time, and by convention a point on a Clock (since its start) or in a show (since the show's start).
+// A span of time, and by convention a point on a Clock (since its start) or in a show (since the
+// show's start).
 using Time = std::chrono::nanoseconds;
 
 constexpr double seconds(Time time) { return std::chrono::duration<double>(time).count(); }
 // Rounds to the nearest nanosecond. |seconds| < 9e9.
 Time fromSeconds(double seconds);
-// The time of tick number `index` of a regular train of `hertz` ticks a second, from 0; exact to a nanosecond for any index. hertz > 0.
+// The time of tick number `index` of a regular train of `hertz` ticks a second, from 0; exact to a
+// nanosecond for any index. hertz > 0.
 Time tickTime(std::int64_t index, double hertz);
-// The number of the last tick at or before `time`: tickTime(tickAt(t, hz), hz) <= t < tickTime(tickAt(t, hz) + 1, hz).
+// The number of the last tick at or before `time`: tickTime(tickAt(t, hz), hz) <= t <
+// tickTime(tickAt(t, hz) + 1, hz).
 std::int64_t tickAt(Time time, double hertz);
 
 // Thread: every method of every clock is thread-safe.
@@ -38,11 +41,13 @@ private:
     std::chrono::steady_clock::time_point start_;
 };
 
-// The monotonic clock by which the system's kernel stamps what devices give (CLOCK_MONOTONIC), since the machine's start. It runs as fast
-// as a SteadyClock does, so that a stamp and a Clock's time differ by what the two differ by now.
+// The monotonic clock by which the system's kernel stamps what devices give (CLOCK_MONOTONIC),
+// since the machine's start. It runs as fast as a SteadyClock does, so that a stamp and a Clock's
+// time differ by what the two differ by now.
 Time kernelTime();
 
-// A clock that moves only when told to: in tests, and to rehearse as fast as possible. sleepUntil moves it.
+// A clock that moves only when told to: in tests, and to rehearse as fast as possible. sleepUntil
+// moves it.
 class ManualClock final : public Clock {
 public:
     Time now() const override { return now_.load(); }

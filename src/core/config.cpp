@@ -379,7 +379,8 @@ std::string shortest(double value) {
 
 std::string shortestDegrees(double radians) {
     constexpr int kReach = 4;  // units in the last place; the two conversions together are wrong by fewer
-    // Ends in the number itself, so that the choice does not depend on where the search for it began.
+    // Ends in the number itself, so that the choice does not depend on where the search for it
+    // began.
     const auto rank = [&](double degrees) {
         return std::tuple(std::abs(degrees * std::numbers::pi / 180 - radians), shortest(degrees).size(), degrees);
     };

@@ -1,8 +1,9 @@
 #pragma once
-// Strict YAML. Every key of every file is declared in one place with its type, unit and range; anything else in the file is refused
-// with file, line, column, the key's path and advice:
+// Strict YAML. Every key of every file is declared in one place with its type, unit and range;
+// anything else in the file is refused with file, line, column, the key's path and advice:
 //   config/courtyard.yaml:14:7: outputs[1].keystome: unknown key (did you mean 'keystone'?)
-// A reader goes on after a fault, so that an error tells all faults of a file, a line for each, in the file's order.
+// A reader goes on after a fault, so that an error tells all faults of a file, a line for each, in
+// the file's order.
 
 #include "core/result.h"
 
@@ -23,13 +24,16 @@
 
 namespace fantascope {
 
-// One node of a loaded file; cheap to copy, keeps the file alive. Thread: thread-bound (a copy shares its file's tree).
+// One node of a loaded file; cheap to copy, keeps the file alive. Thread: thread-bound (a copy
+// shares its file's tree).
 class ConfigNode {
 public:
     ConfigNode() = default;  // no node yet: only to be assigned to
-    // The file's root, a map. Error: unreadable, not YAML, or more than one document: place and reason.
+    // The file's root, a map. Error: unreadable, not YAML, or more than one document: place and
+    // reason.
     static Result<ConfigNode> load(const std::filesystem::path& path);
-    // The same from text; `name` stands for the file in messages, and relative paths start from its folder.
+    // The same from text; `name` stands for the file in messages, and relative paths start from its
+    // folder.
     static Result<ConfigNode> parse(const std::string& text, const std::filesystem::path& name);
 
     const std::filesystem::path& file() const;
@@ -46,13 +50,15 @@ public:
     Result<std::string> text() const;                                                 // not empty, without control characters
     Result<std::size_t> choice(std::initializer_list<std::string_view> names) const;  // the index of the name that stands here
     Result<std::size_t> choice(const std::vector<std::string>& names) const;
-    // A path relative to the file's folder, returned joined to it. Error: absolute, or it leaves the folder by "..".
+    // A path relative to the file's folder, returned joined to it. Error: absolute, or it leaves
+    // the folder by "..".
     Result<std::filesystem::path> path() const;
     Result<glm::dvec2> vector2(double low, double high, std::string_view unit = "") const;  // [x, y], each in the range
     Result<glm::dvec3> vector3(double low, double high, std::string_view unit = "") const;
     Result<std::vector<ConfigNode>> items(std::size_t least = 0,
                                           std::size_t most = std::numeric_limits<std::size_t>::max()) const;
-    // The entries of a map whose keys are names chosen by the file's author, in the file's order; a name given twice is refused.
+    // The entries of a map whose keys are names chosen by the file's author, in the file's order; a
+    // name given twice is refused.
     Result<std::vector<std::pair<std::string, ConfigNode>>> entries() const;
 
 private:
@@ -82,11 +88,13 @@ private:
     std::vector<std::string> faults_;
 };
 
-// Reads the fields of one map: declare each with its key, target and range, then finish(). The declarations are the table of known keys.
+// Reads the fields of one map: declare each with its key, target and range, then finish(). The
+// declarations are the table of known keys.
 //     ConfigFields fields(node);
 //     fields.number("refresh", output.refreshHz, 1, 240, "Hz");          // required
 //     fields.optional().number("gamma", output.gamma, 1, 4);             // keeps the target's default when absent
-//     return fields.finish();                                            // all that is wrong in the file's order, unknown keys included
+//     return fields.finish();                                            // all that is wrong in the file's order, unknown keys
+//     included
 // A target is written only when its value is good.
 class ConfigFields {
 public:
@@ -115,7 +123,8 @@ public:
     void choice(std::string_view key, Enum& target, std::initializer_list<std::string_view> names) {
         read(key, target, [&](const ConfigNode& node) -> Result<Enum> { return static_cast<Enum>(TRY(node.choice(names))); });
     }
-    // Anything else: `parse` turns the key's node into the target's value, or gives an error that already names its place.
+    // Anything else: `parse` turns the key's node into the target's value, or gives an error that
+    // already names its place.
     template <class Value, class Parse>
     void read(std::string_view key, Value& target, Parse parse) {
         visit(key, [&](const ConfigNode& node) -> Result<void> {
@@ -136,7 +145,8 @@ public:
             return elements;
         });
     }
-    // The first two keys of every file: `fantascope: KIND` and `version: N`. Error: another kind of file, or a version of a newer program.
+    // The first two keys of every file: `fantascope: KIND` and `version: N`. Error: another kind of
+    // file, or a version of a newer program.
     void header(std::string_view kind, std::int64_t newestVersion);
     // What else is wrong: `checked` is told at the place of `at`.
     void check(const ConfigNode& at, const Result<void>& checked);
@@ -155,16 +165,19 @@ private:
     std::vector<std::pair<std::pair<int, int>, Error>> failures_;  // by line and column
 };
 
-// The name among `known` that a person most likely meant by `word`, or "" if none is near (Levenshtein distance <= a third of the length).
+// The name among `known` that a person most likely meant by `word`, or "" if none is near
+// (Levenshtein distance <= a third of the length).
 std::string nearestName(std::string_view word, const std::vector<std::string>& known);
 
 // "a, b, c", for messages.
 std::string listed(const std::vector<std::string>& names);
 
-// For writing YAML: the shortest decimal that reads back as the same double, the same for any locale.
+// For writing YAML: the shortest decimal that reads back as the same double, the same for any
+// locale.
 std::string shortest(double value);
-// Degrees for ConfigFields::angle: of those doubles that it reads as nearest to `radians` the shortest decimal. An angle that was once
-// read comes back exactly, with the same text; of others one in ten or so by one unit in its last place, as no degrees stand for it.
+// Degrees for ConfigFields::angle: of those doubles that it reads as nearest to `radians` the
+// shortest decimal. An angle that was once read comes back exactly, with the same text; of others
+// one in ten or so by one unit in its last place, as no degrees stand for it.
 std::string shortestDegrees(double radians);
 // Quoted where YAML needs it.
 std::string quoted(std::string_view text);

@@ -49,7 +49,8 @@ public:
     Pathfinder(const YamlText& yaml, const YamlPatch& patch, const fs::path& file, const ConfigPath& path)
         : yaml_(yaml), patch_(patch), file_(file), path_(path) {}
 
-    // Names the line that the path leads to as far as it goes, and the whole path, which is what somebody wanted to change.
+    // Names the line that the path leads to as far as it goes, and the whole path, which is what
+    // somebody wanted to change.
     Error refused(const Place& place, const std::string& why) const {
         return Error(fmt::format("{}: {}: {}", yaml_.place(file_, yaml_.events[place.entry.value].begin), spelled(path_), why));
     }
@@ -119,7 +120,8 @@ private:
     const ConfigPath& path_;
 };
 
-// `value` in the maps and lists that the path from `step` on asks for, or nothing if it asks for an item behind others.
+// `value` in the maps and lists that the path from `step` on asks for, or nothing if it asks for an
+// item behind others.
 std::optional<ConfigValue> within(const ConfigPath& path, std::size_t step, ConfigValue value) {
     for (std::size_t i = path.size(); i-- > step;) {
         if (path[i].key() != nullptr)
@@ -132,7 +134,8 @@ std::optional<ConfigValue> within(const ConfigPath& path, std::size_t step, Conf
     return value;
 }
 
-// Whether `now` reads as `before` but for the events [begin, end), in whose place stand the key, if any, and the value, if any.
+// Whether `now` reads as `before` but for the events [begin, end), in whose place stand the key, if
+// any, and the value, if any.
 bool differsOnlyAt(const YamlText& before, std::size_t begin, std::size_t end, const YamlText& now, const std::string* key,
                    const ConfigValue* value) {
     const auto same = [](const YamlEvent& a, const YamlEvent& b) { return a.readsAs(b); };
@@ -157,7 +160,8 @@ std::size_t childOf(const YamlText& yaml, std::size_t node, const ConfigStep& st
     return item;
 }
 
-// Whether what the path leads to is the same in both, and the items of lists on the way are the same ones.
+// Whether what the path leads to is the same in both, and the items of lists on the way are the
+// same ones.
 bool sameAt(const YamlText& a, const YamlText& b, const ConfigPath& path) {
     const auto alike = [&](std::size_t i, std::size_t j) {
         return std::equal(a.events.begin() + i, a.events.begin() + a.after(i), b.events.begin() + j,

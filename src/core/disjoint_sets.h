@@ -9,8 +9,10 @@
 
 namespace fantascope {
 
-// Numbers 0, 1, 2, ... in sets that are joined one by one. The root of a set is its smallest number, whatever order they were joined in.
-// Source: union-find with path halving (Tarjan & van Leeuwen 1984). Thread: bound to one thread at a time.
+// Numbers 0, 1, 2, ... in sets that are joined one by one. The root of a set is its smallest
+// number, whatever order they were joined in.
+// Source: union-find with path halving (Tarjan & van Leeuwen 1984). Thread: bound to one thread at
+// a time.
 class DisjointSets {
 public:
     // Numbers 0 to `count` - 1, each a set of its own.
@@ -26,7 +28,8 @@ public:
         while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
         return i;
     }
-    // Gives the root that stays and the one that is none any more; both are the same if the two were joined before.
+    // Gives the root that stays and the one that is none any more; both are the same if the two
+    // were joined before.
     std::pair<std::size_t, std::size_t> join(std::size_t one, std::size_t other) {
         const auto [stays, goes] = std::minmax({root(one), root(other)});
         parents_[goes] = static_cast<std::uint32_t>(stays);

@@ -161,7 +161,8 @@ bool NewFile::giveName() {
 Result<void> NewFile::finish(const fs::path& like) {
     struct stat model = {};
     const bool modelled = ::stat(like.empty() ? target_.c_str() : like.c_str(), &model) == 0;
-    // Only root may give a file away, others may to a group of their own; where neither is allowed the file is the writer's.
+    // Only root may give a file away, others may to a group of their own; where neither is allowed
+    // the file is the writer's.
     [[maybe_unused]] const bool given = modelled && (::fchown(descriptor_, model.st_uid, model.st_gid) == 0 ||
                                                      ::fchown(descriptor_, static_cast<uid_t>(-1), model.st_gid) == 0);
     if (::fchmod(descriptor_, modelled ? model.st_mode & 0777 : 0644) != 0 || ::fsync(descriptor_) != 0 || !giveName())

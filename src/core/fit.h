@@ -11,14 +11,15 @@ enum class Fit {
     Stretch   // edge to edge: circles become ellipses
 };
 
-// Shapes that differ by less are one: nobody sees the stretching, but everybody would see a dark edge.
+// Shapes that differ by less are one: nobody sees the stretching, but everybody would see a dark
+// edge.
 constexpr double kSameShape = 0.02;
 
 // Whether two shapes (width / height) are one.
 bool isSameShape(double aspect, double other);
 
-// Where on the canvas the picture lies, in the middle; beyond the canvas where it is cut off. Aspects are width / height, > 0. Stretched, or of
-// the canvas's own shape: the whole canvas.
+// Where on the canvas the picture lies, in the middle; beyond the canvas where it is cut off.
+// Aspects are width / height, > 0. Stretched, or of the canvas's own shape: the whole canvas.
 CanvasPart placeOnCanvas(double pictureAspect, double canvasAspect, Fit fit);
 
 }  // namespace fantascope

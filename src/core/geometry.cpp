@@ -20,7 +20,8 @@ std::optional<std::string> whyNotConvex(const std::array<glm::dvec2, 4>& corners
         extent = std::max(extent, glm::length(corner - corners[0]));
     }
     if (extent == 0) return "all corners lie on one point";
-    // Going round, every corner must turn the same way; a turn of (nearly) nothing is three corners in a line.
+    // Going round, every corner must turn the same way; a turn of (nearly) nothing is three corners
+    // in a line.
     int left = 0, right = 0;
     for (std::size_t i = 0; i < 4; ++i) {
         const glm::dvec2 in = corners[(i + 1) % 4] - corners[i], out = corners[(i + 2) % 4] - corners[(i + 1) % 4];
@@ -37,8 +38,9 @@ std::optional<std::string> whyNotConvex(const std::array<glm::dvec2, 4>& corners
 Result<Homography> Homography::fromCorners(const std::array<glm::dvec2, 4>& source, const std::array<glm::dvec2, 4>& target) {
     for (const auto* corners : {&source, &target})
         if (const auto why = whyNotConvex(*corners)) return Error(*why);
-    // The direct linear transform with h33 = 1 (Hartley & Zisserman 2004, section 4.1). h33 is the w of the source's origin, which
-    // may not be 0; so the source is measured from its first corner, whose image is a finite point.
+    // The direct linear transform with h33 = 1 (Hartley & Zisserman 2004, section 4.1). h33 is the
+    // w of the source's origin, which may not be 0; so the source is measured from its first
+    // corner, whose image is a finite point.
     Eigen::Matrix<double, 8, 8> equations;
     Eigen::Matrix<double, 8, 1> values;
     for (int i = 0; i < 4; ++i) {

@@ -35,8 +35,8 @@ spdlog::level::level_enum spdlogLevel(Level level) {
     return spdlog::level::info;
 }
 
-// What standard error takes of `bytes` at once; -1: nothing. The description behind it belongs to other programs too, so it stays blocking: a
-// terminal or a pipe is opened once more for one line.
+// What standard error takes of `bytes` at once; -1: nothing. The description behind it belongs to
+// other programs too, so it stays blocking: a terminal or a pipe is opened once more for one line.
 ssize_t writeAtOnce(const char* bytes, std::size_t count) {
     struct stat status {};
     if (fstat(STDERR_FILENO, &status) != 0) return -1;

@@ -1,5 +1,6 @@
 #pragma once
-// Plain logs for those who look for a cause. What an operator or a test cares about is a status or a report, never a log line.
+// Plain logs for those who look for a cause. What an operator or a test cares about is a status or
+// a report, never a log line.
 
 #include <string_view>
 
@@ -7,9 +8,10 @@ namespace fantascope::log {
 
 enum class Level { Debug, Info, Warning, Error };
 
-// One line to standard error: time, level, category (the module's folder name), message. Lines below the category's level are dropped.
-// Never waits for whoever reads standard error: a line that a held terminal or a full pipe does not take at once is lost, and the next one
-// that it takes says so. Nothing is kept back, so that a program's last words are out when it ends.
+// One line to standard error: time, level, category (the module's folder name), message. Lines
+// below the category's level are dropped. Never waits for whoever reads standard error: a line that
+// a held terminal or a full pipe does not take at once is lost, and the next one that it takes says
+// so. Nothing is kept back, so that a program's last words are out when it ends.
 // Thread: thread-safe; never on the render thread in steady state.
 void write(Level level, std::string_view category, std::string_view message);
 

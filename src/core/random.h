@@ -1,6 +1,7 @@
 #pragma once
-// Chance, the same everywhere: a Mersenne Twister and our own distributions, since those of the standard library differ between
-// implementations. Whoever needs chance is handed an Rng; a thing with an identity gets a stream of its own from streamSeed.
+// Chance, the same everywhere: a Mersenne Twister and our own distributions, since those of the
+// standard library differ between implementations. Whoever needs chance is handed an Rng; a thing
+// with an identity gets a stream of its own from streamSeed.
 
 #include <cstdint>
 #include <initializer_list>
@@ -24,8 +25,9 @@ private:
     bool hasSpare_ = false;
 };
 
-// A seed for the stream of one thing, from the run's seed and the thing's stable identity, such as {instance id, axis}. Different
-// identities give unrelated streams, and one thing's stream does not depend on which other things exist.
+// A seed for the stream of one thing, from the run's seed and the thing's stable identity, such as
+// {instance id, axis}. Different identities give unrelated streams, and one thing's stream does not
+// depend on which other things exist.
 std::uint64_t streamSeed(std::uint64_t seed, std::initializer_list<std::uint64_t> identity);
 
 }  // namespace fantascope

@@ -1,6 +1,7 @@
 #pragma once
-// How this program says that the world refused: a file, a device, a parser. What cannot be refused returns its value; what did
-// not converge says so in its Summary; our own mistakes end in FANTASCOPE_CHECK.
+// How this program says that the world refused: a file, a device, a parser. What cannot be refused
+// returns its value; what did not converge says so in its Summary; our own mistakes end in
+// FANTASCOPE_CHECK.
 
 #include <optional>
 #include <string>
@@ -9,7 +10,8 @@
 
 namespace fantascope {
 
-// What, where and what to do about it, ready for a person to read. Context is added going up: "shows/x: patterns[2]: ...".
+// What, where and what to do about it, ready for a person to read. Context is added going up:
+// "shows/x: patterns[2]: ...".
 class Error {
 public:
     explicit Error(std::string message) : message_(std::move(message)) {}
@@ -20,7 +22,8 @@ private:
     std::string message_;
 };
 
-// A value or an Error, in the manner of C++23's std::expected. Asking for the one that is not there is our own bug and stops the program.
+// A value or an Error, in the manner of C++23's std::expected. Asking for the one that is not there
+// is our own bug and stops the program.
 template <class T>
 class [[nodiscard]] Result {
 public:
@@ -69,8 +72,9 @@ private:
 
 }  // namespace fantascope
 
-// The value of a Result, or a return of its error from the enclosing function: auto image = TRY(readGrey(path));
-// Between braces that make a value it comes first, never as in {name, TRY(...)}: g++ would not destroy the name. tests/house holds this.
+// The value of a Result, or a return of its error from the enclosing function: auto image =
+// TRY(readGrey(path)); Between braces that make a value it comes first, never as in {name,
+// TRY(...)}: g++ would not destroy the name. tests/house holds this.
 #define TRY(expression)                                                      \
     ({                                                                       \
         auto tried_ = (expression);                                          \

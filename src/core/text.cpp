@@ -7,7 +7,8 @@
 namespace fantascope {
 namespace {
 
-// Whether a terminal would obey the character instead of showing it. U+0080 to U+009F begin with 0xc2.
+// Whether a terminal would obey the character instead of showing it. U+0080 to U+009F begin with
+// 0xc2.
 bool isControl(std::string_view character) {
     const auto lead = static_cast<unsigned char>(character[0]);
     return lead < 0x20 || lead == 0x7f || (lead == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0);

@@ -44,7 +44,8 @@ glm::dvec2 WarpMesh::offsetAt(glm::dvec2 onPicture) const {
     const glm::dvec2 at = glm::clamp(onPicture, 0.0, 1.0) * glm::dvec2(points - 1);
     const glm::ivec2 cell = glm::min(glm::ivec2(at), points - 2);
     const auto across = weightsOf(between, at.x - cell.x), down = weightsOf(between, at.y - cell.y);
-    // Beyond the last point the lattice goes on in a straight line, so that a mesh of two points is one.
+    // Beyond the last point the lattice goes on in a straight line, so that a mesh of two points is
+    // one.
     const auto point = [&](int x, int y) { return offsets[static_cast<std::size_t>(y * points.x + x)]; };
     const auto along = [&](int y, int x) {
         if (x < 0) return 2.0 * point(0, y) - point(1, y);
@@ -163,7 +164,8 @@ std::optional<glm::dvec2> Warp::canvasFromProjector(glm::dvec2 pixel) const {
     auto place = undone(pixel);
     if (!place) return std::nullopt;
     if (bends()) {
-        // Newton's method from where the keystone alone would have it; half a step where a whole one leads farther away.
+        // Newton's method from where the keystone alone would have it; half a step where a whole
+        // one leads farther away.
         glm::dvec2 miss = pixel - projectorFromPicture(*place);
         for (int step = 0; step < kMostSteps && glm::length(miss) > kNear; ++step) {
             const glm::dvec2 move = glm::inverse(slopeAt(*place)) * miss;

@@ -18,7 +18,8 @@ struct CanvasPart {
     friend bool operator==(const CanvasPart&, const CanvasPart&) = default;
 };
 
-// Which way up a picture leaves the projector: first mirrored, as rear projection needs it, then turned, as a projector on its side does.
+// Which way up a picture leaves the projector: first mirrored, as rear projection needs it, then
+// turned, as a projector on its side does.
 struct Orientation {
     enum class Flip { None, Horizontal, Vertical };
     Flip flip = Flip::None;
@@ -26,7 +27,8 @@ struct Orientation {
     friend bool operator==(const Orientation&, const Orientation&) = default;
 };
 
-// A lattice of points, spread evenly over the picture, that are moved from where the keystone alone puts them.
+// A lattice of points, spread evenly over the picture, that are moved from where the keystone alone
+// puts them.
 struct WarpMesh {
     enum class Between {
         Smooth,   // bicubic Bezier patches through all points, joined without a kink (Catmull & Rom 1974)
@@ -38,15 +40,16 @@ struct WarpMesh {
     glm::ivec2 points{0};             // across and down: 2 .. kMostPoints each; 0: no mesh
     std::vector<glm::dvec2> offsets;  // projector pixels; row by row from the picture's top left
 
-    // Where it moves a point of the picture, 0..1 from its top left; beyond the picture as at its edge.
+    // Where it moves a point of the picture, 0..1 from its top left; beyond the picture as at its
+    // edge.
     glm::dvec2 offsetAt(glm::dvec2 onPicture) const;
     // One of another number of points, 0 or at least 2 each way, that lie where this one has them.
     WarpMesh resampled(glm::ivec2 count) const;
     friend bool operator==(const WarpMesh&, const WarpMesh&) = default;
 };
 
-// A warp as a technician sets it. The canvas's `part` is flipped and turned, its corners then go to `corners`, and what lies between them is
-// moved by the mesh.
+// A warp as a technician sets it. The canvas's `part` is flipped and turned, its corners then go to
+// `corners`, and what lies between them is moved by the mesh.
 struct WarpShape {
     CanvasPart part{};
     Orientation orientation{};
@@ -58,17 +61,18 @@ struct WarpShape {
     friend bool operator==(const WarpShape&, const WarpShape&) = default;
 };
 
-// How a canvas lies in a projector's picture. Canvas points are widths and heights of the whole canvas here, 0..1, whatever its aspect.
-// Value type; constant.
+// How a canvas lies in a projector's picture. Canvas points are widths and heights of the whole
+// canvas here, 0..1, whatever its aspect. Value type; constant.
 class Warp {
 public:
-    // Error: corners that are not those of a picture, a part without an area, a mesh that folds the picture or whose numbers do not fit.
+    // Error: corners that are not those of a picture, a part without an area, a mesh that folds the
+    // picture or whose numbers do not fit.
     static Result<Warp> of(const WarpShape& shape);
     // The whole canvas, from edge to edge of a picture of `size` pixels.
     static Warp straight(glm::ivec2 size);
 
-    // The same for a picture that lies on a part of the canvas, perhaps beyond its edges: the picture is then the canvas, and what is shown of it
-    // may end before, or lie around, its edges.
+    // The same for a picture that lies on a part of the canvas, perhaps beyond its edges: the
+    // picture is then the canvas, and what is shown of it may end before, or lie around, its edges.
     Warp ofPictureOn(const CanvasPart& place) const;
 
     const WarpShape& shape() const { return shape_; }
@@ -88,7 +92,8 @@ public:
     std::optional<glm::dvec2> canvasFromProjector(glm::dvec2 pixel) const;
     // Whether anything of the canvas's part is seen in a picture of `size` pixels.
     bool reaches(glm::ivec2 size) const;
-    // How many pixels the whole canvas would be high, on average over the part that is shown. `aspect`: its width / height.
+    // How many pixels the whole canvas would be high, on average over the part that is shown.
+    // `aspect`: its width / height.
     double canvasRows(double aspect) const;
 
 private:

@@ -62,7 +62,8 @@ private:
     }
 };
 
-// Walks libyaml's events, whose places are counted in characters and, of block scalars and block collections, reach to what comes next.
+// Walks libyaml's events, whose places are counted in characters and, of block scalars and block
+// collections, reach to what comes next.
 class LibyamlReader {
 public:
     LibyamlReader(YamlText& yaml, const fs::path& name) : yaml_(yaml), name_(name) {
@@ -149,7 +150,8 @@ private:
         finish(yaml_.events.size() - 1);
     }
 
-    // Without the line break behind it, which the next line needs too, and without blank lines where they are not of the value.
+    // Without the line break behind it, which the next line needs too, and without blank lines
+    // where they are not of the value.
     std::size_t blockScalarEnd(const YamlEvent& scalar) const {
         const std::string& bytes = yaml_.bytes;
         std::size_t header = std::min(bytes.find_first_of("|>", scalar.begin), scalar.end);
@@ -172,7 +174,8 @@ private:
         open_.pop_back();
         YamlEvent& collection = yaml_.events[opened];
         collection.close = yaml_.events.size() - 1;
-        // Where a closing bracket stands it is the end; all else ends with what came last in it, which has told by now.
+        // Where a closing bracket stands it is the end; all else ends with what came last in it,
+        // which has told by now.
         if (collection.flow && added.end > added.begin) collection.end = added.end;
         finish(opened);
     }
@@ -238,7 +241,8 @@ Result<YamlText> readYamlText(std::string bytes, const fs::path& name) {
     YamlCppEvents other;
     std::istringstream stream(yaml.bytes);
     YAML::Parser(stream).HandleNextDocument(other);
-    // Where lines are folded the two differ in blanks and line breaks; what counts is what the program reads.
+    // Where lines are folded the two differ in blanks and line breaks; what counts is what the
+    // program reads.
     for (std::size_t i = 0; i < std::min(yaml.events.size(), other.events.size()); ++i)
         if (yaml.events[i].lines && yaml.events[i].kind == other.events[i].kind) yaml.events[i].text = other.events[i].text;
     const auto [mine, theirs] = std::mismatch(yaml.events.begin(), yaml.events.end(), other.events.begin(), other.events.end(),

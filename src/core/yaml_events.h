@@ -1,5 +1,6 @@
 #pragma once
-// A YAML text as a row of events with the bytes that each stands in, for whoever changes the text in place (core/config_edit.h).
+// A YAML text as a row of events with the bytes that each stands in, for whoever changes the text
+// in place (core/config_edit.h).
 
 #include "core/result.h"
 
@@ -10,7 +11,8 @@
 
 namespace fantascope {
 
-// Begin of a node, or the end of a list or map. In a map a key's node and its value's follow each other.
+// Begin of a node, or the end of a list or map. In a map a key's node and its value's follow each
+// other.
 struct YamlEvent {
     enum class Kind { Scalar, Null, Alias, List, Map, End };
     Kind kind = Kind::Null;
@@ -18,7 +20,8 @@ struct YamlEvent {
     std::string tag;         // written out, "" if there is none
     std::size_t anchor = 0;  // anchors are counted from 1 as they come; an alias has the one that it means; 0: none
 
-    // Where the node stands; bytes of the text. What only leads to it ("key:", "- ") and what follows it on its line are not its own.
+    // Where the node stands; bytes of the text. What only leads to it ("key:", "- ") and what
+    // follows it on its line are not its own.
     std::size_t begin = 0, end = 0;
     bool flow = false;      // in brackets, as against lines of "- item" and "key: value"
     bool lines = false;     // of a scalar: the lines below a '|' or '>'
@@ -45,12 +48,14 @@ struct YamlText {
     std::size_t column(std::size_t byte) const;     // in characters, from 0
     // "name:line:column".
     std::string place(const std::filesystem::path& name, std::size_t byte) const;
-    // The first byte from `byte` on that is neither blank, nor line break, nor in a comment. `byte` is in none of them halfway.
+    // The first byte from `byte` on that is neither blank, nor line break, nor in a comment. `byte`
+    // is in none of them halfway.
     std::size_t pastComments(std::size_t byte) const;
 };
 
-// `name` stands for the file in messages. Error: not YAML, its root is no map, or it is one that cannot safely be changed in place:
-// several documents, UTF-16, or a text that libyaml and yaml-cpp understand differently.
+// `name` stands for the file in messages. Error: not YAML, its root is no map, or it is one that
+// cannot safely be changed in place: several documents, UTF-16, or a text that libyaml and yaml-cpp
+// understand differently.
 Result<YamlText> readYamlText(std::string bytes, const std::filesystem::path& name);
 
 }  // namespace fantascope

@@ -26,7 +26,8 @@ std::string written(const std::string& text) {
     return std::string(emitter.c_str() + 1, emitter.size() - 2);
 }
 
-// In pieces, between which a line may break. A list or map of numbers and texts stays in one piece if it is short.
+// In pieces, between which a line may break. A list or map of numbers and texts stays in one piece
+// if it is short.
 std::vector<std::string> pieces(const ConfigValue& value) {
     if (const double* number = value.number()) return {shortest(*number)};
     if (const std::string* text = value.text()) return {written(*text)};

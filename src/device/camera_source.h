@@ -3,7 +3,7 @@
 #include "device/status.h"
 
 #include "core/clock.h"
-#include "core/image.h"
+#include "media/image.h"
 
 #include <cstdint>
 #include <memory>
@@ -19,8 +19,9 @@ struct CameraFrame {
 // A camera that watches the site. Thread: bound to the vision thread.
 class CameraSource : public Device {
 public:
-    // The newest frame that has arrived and was not taken yet, or null. Never waits; older frames are dropped, so `sequence` and `exposed`
-    // only rise. A frame stays valid for as long as it is held; the next ones go elsewhere.
+    // The newest frame that has arrived and was not taken yet, or null. Never waits; older frames
+    // are dropped, so `sequence` and `exposed` only rise. A frame stays valid for as long as it is
+    // held; the next ones go elsewhere.
     // Loss: null until frames come again.
     virtual std::shared_ptr<const CameraFrame> newest() = 0;
 };

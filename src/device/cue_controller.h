@@ -32,14 +32,17 @@ struct ButtonLight {
 // The hand-held device that steps the cues. Thread: bound to the input thread.
 class CueController : public Device {
 public:
-    // The next event, oldest first; nothing when there is none. Never waits. Events of one button alternate, a press first; a
-    // key's auto-repeat is left out. Plugging in, unplugging or noise never makes a press, nor does one that waited while the
-    // device was lost come out after its return; a button that was down when the device was lost is reported up.
+    // The next event, oldest first; nothing when there is none. Never waits. Events of one button
+    // alternate, a press first; a key's auto-repeat is left out. Plugging in, unplugging or noise
+    // never makes a press, nor does one that waited while the device was lost come out after its
+    // return; a button that was down when the device was lost is reported up.
     virtual std::optional<ButtonEvent> poll() = 0;
 
-    // Shows what a button is good for, until it is told otherwise; all are off at first. Never waits and never makes a press. Of several
-    // lights for a button the newest is shown, and it is sent only where it differs from what is shown. A lost device shows all of
-    // it again when it returns; at the end all is off, as far as the device still answers. What has no lamp takes it silently.
+    // Shows what a button is good for, until it is told otherwise; all are off at first. Never
+    // waits and never makes a press. Of several lights for a button the newest is shown, and it is
+    // sent only where it differs from what is shown. A lost device shows all of it again when it
+    // returns; at the end all is off, as far as the device still answers. What has no lamp takes it
+    // silently.
     virtual void light(int button, const ButtonLight& light) = 0;
 };
 

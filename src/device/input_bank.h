@@ -21,9 +21,10 @@ struct ContactChange {
 class InputBank : public Device {
 public:
     virtual std::size_t size() const = 0;
-    // The next change, oldest first; nothing when there is none. Never waits. Changes of one contact alternate: closed, open,
-    // closed; a contact that is closed at the start is the first change. A contact that opens and closes between two looks at it
-    // may go unnoticed. A loss is no change: nothing is reported for it, and after the return only what really differs from the
+    // The next change, oldest first; nothing when there is none. Never waits. Changes of one
+    // contact alternate: closed, open, closed; a contact that is closed at the start is the first
+    // change. A contact that opens and closes between two looks at it may go unnoticed. A loss is
+    // no change: nothing is reported for it, and after the return only what really differs from the
     // last report.
     virtual std::optional<ContactChange> poll() = 0;
 };

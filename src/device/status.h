@@ -10,7 +10,8 @@ namespace fantascope {
 //   any -> Absent                    unplugged, or never there
 enum class DeviceState { Absent, Starting, Running, Faulted };
 
-// What takes effect at the far end when the device is lost. Declared by each driver, shown with its status.
+// What takes effect at the far end when the device is lost. Declared by each driver, shown with its
+// status.
 enum class LossAction {
     Hold,      // the last value stays (a DMX line into most dimmers)
     Dark,      // the picture or the light goes out (a projector without a signal)
@@ -44,10 +45,13 @@ constexpr const char* nameOf(DeviceState state) {
 
 // What every port has in common.
 //
-// Life: a driver's open() gives a device that may be Absent: a missing device is no error of open(), a wrong key in its part of the site
-// file is. A lost device comes back by itself, retried with back-off on its own time; the same object serves before and after.
-// Errors: a call on a device that is not Running returns an error, does nothing, never waits, and leaves other devices alone.
-// Thread: status() may be called from any thread at any time; every other method from the one thread that each port names.
+// Life: a driver's open() gives a device that may be Absent: a missing device is no error of
+// open(), a wrong key in its part of the site file is. A lost device comes back by itself, retried
+// with back-off on its own time; the same object serves before and after.
+// Errors: a call on a device that is not Running returns an error, does nothing, never waits, and
+// leaves other devices alone.
+// Thread: status() may be called from any thread at any time; every other method from the one
+// thread that each port names.
 class Device {
 public:
     virtual ~Device() = default;

@@ -24,7 +24,8 @@ using Cover = std::uint64_t;
 constexpr int kMostActors = 63;
 constexpr Cover kTarget = Cover{1} << kMostActors;
 
-// Who covers what, also between the pixels: the line between white and black runs straight from pixel to pixel.
+// Who covers what, also between the pixels: the line between white and black runs straight from
+// pixel to pixel.
 class Covers {
 public:
     Covers(std::span<const ActorShadow> actors, const theatre::BitMask& target)
@@ -68,7 +69,8 @@ bool isHatched(const glm::dvec2& at, bool rising) {
     return along - std::floor(along) < kShare;
 }
 
-// What a place looks like in shadowPicture(). sRGB, as what is mixed below: these are inks, not light.
+// What a place looks like in shadowPicture(). sRGB, as what is mixed below: these are inks, not
+// light.
 glm::dvec3 inkOf(Cover cover, const glm::dvec2& at) {
     const Cover actors = cover & ~kTarget;
     if (actors == 0) {

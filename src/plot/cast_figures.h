@@ -1,9 +1,9 @@
 #pragma once
 // The figures of Won & Lee 2016 for a cast of one's own. All masks of a figure are of one size.
 
-#include "theatre/bit_mask.h"
+#include "theatre/mask/bit_mask.h"
 
-#include "core/image.h"
+#include "media/image.h"
 #include "plot/page.h"
 #include "plot/stage_view.h"
 
@@ -24,15 +24,17 @@ struct ActorShadow {
 inline constexpr double kStageAspect = 2;
 Page stageFigure(const StageView& view, const Camera& camera);
 
-// The shadow by who throws it: each actor's colour, darker and mixed where several do; hatched in red where the target is missed, in black
-// what sticks out of it. With the target's outline, a legend and these lines; as large as fits into 760 x 600 points, without the rows and
-// columns in which there is nothing. At most 63 actors.
+// The shadow by who throws it: each actor's colour, darker and mixed where several do; hatched in
+// red where the target is missed, in black what sticks out of it. With the target's outline, a
+// legend and these lines; as large as fits into 760 x 600 points, without the rows and columns in
+// which there is nothing. At most 63 actors.
 Page shadowFigure(std::span<const ActorShadow> actors, const theatre::BitMask& target, std::span<const std::string> lines);
 
 // Figure 9: each actor's shadow alone, the others' in grey.
 Page actorsFigure(std::span<const ActorShadow> actors, const theatre::BitMask& target);
 
-// Figure 8: solutions to choose from, each with a view of its stage (kCellView pixels), its shadow and some lines, the first the largest.
+// Figure 8: solutions to choose from, each with a view of its stage (kCellView pixels), its shadow
+// and some lines, the first the largest.
 inline constexpr glm::ivec2 kCellView{360, 240};
 struct SolutionCell {
     RgbaImage view;

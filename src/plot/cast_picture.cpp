@@ -1,6 +1,6 @@
 #include "plot/cast_picture.h"
 
-#include "theatre/scene_energy.h"
+#include "theatre/energy/scene_energy.h"
 
 #include "core/check.h"
 #include "plot/palette.h"

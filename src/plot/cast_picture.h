@@ -1,6 +1,6 @@
 #pragma once
 
-#include "theatre/pose_search.h"
+#include "theatre/search/pose_search.h"
 
 #include "plot/cast_figures.h"
 #include "plot/stage_view.h"

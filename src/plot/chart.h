@@ -14,7 +14,8 @@ struct Axis {
     bool logarithmic = false;
 };
 
-// Where an axis has its marks: round numbers, some `most` of them at most; powers of ten on a logarithmic one.
+// Where an axis has its marks: round numbers, some `most` of them at most; powers of ten on a
+// logarithmic one.
 std::vector<double> ticks(const Axis& axis, int most);
 // The smallest axis from 0 or below to 0 or above, with some room, that all values lie on.
 Axis axisAround(std::span<const double> values, std::string label);
@@ -22,7 +23,8 @@ Axis axisAround(std::span<const double> values, std::string label);
 // Two axes in a rectangle of a page. Points off the axes are cut at the rectangle.
 class Chart {
 public:
-    // Draws frame, marks and labels; these stand outside the rectangle, 60 points left of it and 40 below.
+    // Draws frame, marks and labels; these stand outside the rectangle, 60 points left of it and 40
+    // below.
     Chart(Page& page, glm::dvec2 topLeft, glm::dvec2 bottomRight, Axis x, Axis y);
 
     void line(std::span<const glm::dvec2> points, const Stroke& stroke);

@@ -1,5 +1,5 @@
-#include "pattern/measure.h"
-#include "pattern/silhouette.h"
+#include "pattern/search/measure.h"
+#include "pattern/search/silhouette.h"
 
 #include "plot/figures.h"
 

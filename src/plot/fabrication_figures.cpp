@@ -39,7 +39,8 @@ struct Range {
     double middle() const { return 0.5 * (least + most); }
 };
 
-// The triangles as seen along an axis, filled: `u` and `v` name the print's axes that go right and down or, with `isUp`, up.
+// The triangles as seen along an axis, filled: `u` and `v` name the print's axes that go right and
+// down or, with `isUp`, up.
 RgbaImage filledView(const TriangleMesh& mesh, int u, int v, bool isUp, const Range& across, const Range& along, double perMm) {
     const int width = std::max(1, static_cast<int>(std::ceil(across.size() * perMm))),
               height = std::max(1, static_cast<int>(std::ceil(along.size() * perMm)));
@@ -65,7 +66,8 @@ RgbaImage filledView(const TriangleMesh& mesh, int u, int v, bool isUp, const Ra
     return image;
 }
 
-// In the print's frame, millimetres; on the paper the lamp is on the left and the screen on the right.
+// In the print's frame, millimetres; on the paper the lamp is on the left and the screen on the
+// right.
 class Sheet {
 public:
     Sheet(const Fabrication& print, const theatre::PoseTarget& target) : print_(print), page_(kPaperWidth, kPaperHeight) {

@@ -4,7 +4,8 @@ namespace fantascope::plot {
 
 std::vector<std::vector<glm::dvec2>> maskOutline(const theatre::BitMask& mask) {
     std::vector<std::vector<glm::dvec2>> rings;
-    // Every ring has a side with white below and black above: it is begun there, and the others of its kind are done with it.
+    // Every ring has a side with white below and black above: it is begun there, and the others of
+    // its kind are done with it.
     theatre::BitMask done(mask.width(), mask.height());
     for (int y = 0; y < mask.height(); ++y)
         for (int x = 0; x < mask.width(); ++x) {

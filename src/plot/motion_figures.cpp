@@ -1,6 +1,6 @@
-#include "pattern/harmonic_motion.h"
-#include "pattern/pattern_motion.h"
-#include "pattern/streams.h"
+#include "pattern/motion/harmonic_motion.h"
+#include "pattern/motion/pattern_motion.h"
+#include "pattern/shape/streams.h"
 
 #include "plot/chart.h"
 #include "plot/figures.h"
@@ -119,7 +119,8 @@ Page spectrumFigure(const pattern::ShapePattern& pattern) {
     const pattern::MotionSettings& motion = pattern.motion;
     const std::uint64_t id = pattern.instances.empty() ? 0 : pattern.instances[0].id;
     const std::uint64_t group = pattern.instances.empty() ? 0 : pattern.instances[0].group;
-    // Movement is drawn by seed and number: patterns that share those and the settings move alike, so the figure names them.
+    // Movement is drawn by seed and number: patterns that share those and the settings move alike,
+    // so the figure names them.
     const std::array<Panel, 2> panels{
         {{fmt::format("seed {}, group {}, major direction", pattern.seed, group), motion.groupMajor,
           streamSeed(pattern.seed, {pattern::Stream::GroupMotion, group, 0})},

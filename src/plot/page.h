@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/image.h"
 #include "core/result.h"
+#include "media/image.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -24,8 +24,8 @@ struct Stroke {
 // Which point of a text stands at the place that it is given.
 enum class Anchor { Left, Middle, Right };
 
-// A white page to draw on, in points from its top left, x right, y down; written as PNG (a pixel a point) or SVG. What is drawn later lies
-// on top. Thread: thread-bound.
+// A white page to draw on, in points from its top left, x right, y down; written as PNG (a pixel a
+// point) or SVG. What is drawn later lies on top. Thread: thread-bound.
 class Page {
 public:
     Page(int width, int height);
@@ -52,7 +52,8 @@ public:
     void clip(glm::dvec2 topLeft, glm::dvec2 bottomRight);
     void endClip();
 
-    // By the name's end, .png or .svg; written aside and renamed. Error: another name, or the file cannot be written.
+    // By the name's end, .png or .svg; written aside and renamed. Error: another name, or the file
+    // cannot be written.
     Result<void> write(const std::filesystem::path& file) const;
     // Whether write() knows what the name asks for.
     static bool knows(const std::filesystem::path& file);

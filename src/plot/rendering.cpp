@@ -56,7 +56,8 @@ Corner between(const Corner& a, const Corner& b, double share) {
     return {glm::mix(a.seen, b.seen, share), glm::mix(a.place, b.place, s), glm::mix(a.normal, b.normal, s)};
 }
 
-// A triangle on the picture: attributes are linear in the picture once they are divided by the depth.
+// A triangle on the picture: attributes are linear in the picture once they are divided by the
+// depth.
 struct Drawn {
     std::array<glm::dvec2, 3> at;
     std::array<double, 3> nearness;  // 1 / depth
@@ -65,7 +66,8 @@ struct Drawn {
     std::size_t surface;
 };
 
-// Of each corner of each triangle: the mean of the normals around the vertex, of those that are near to the triangle's own.
+// Of each corner of each triangle: the mean of the normals around the vertex, of those that are
+// near to the triangle's own.
 std::vector<std::array<glm::vec3, 3>> normalsOf(const TriangleMesh& mesh) {
     std::vector<glm::vec3> areas, flat;
     std::vector<std::vector<std::size_t>> around(mesh.vertices.size());
@@ -139,7 +141,8 @@ public:
         const int left = sampleFrom(least, width_), right = sampleFrom(most, width_);
         const std::array<glm::dvec2, 3> starts{b, c, a}, sides{c - b, a - c, b - a};
         for (int y = from; y < to; ++y) {
-            // Where all three edges have the row on their inner side, and a sample more at each end.
+            // Where all three edges have the row on their inner side, and a sample more at each
+            // end.
             double first = left, last = right;
             for (std::size_t edge = 0; edge < 3; ++edge) {
                 const double at = cross(sides[edge], glm::dvec2(0.5, first_ + y + 0.5) - starts[edge]) / area,
@@ -204,8 +207,9 @@ Camera Camera::fitting(std::span<const glm::dvec3> points, const glm::dvec3& dir
                        double margin) {
     const Axes axes = axesOf(direction);
     const double tall = std::tan(0.5 * fieldOfView) * (1 - margin), wide = tall * aspect;
-    // A point at (x, y, z) along the axes is between the left and the right side of the view from (cx, cy, cz) if
-    // |x - cx| <= wide (z - cz); so all are if cx - wide cz and cx + wide cz have room between these; the same upwards.
+    // A point at (x, y, z) along the axes is between the left and the right side of the view from
+    // (cx, cy, cz) if |x - cx| <= wide (z - cz); so all are if cx - wide cz and cx + wide cz have
+    // room between these; the same upwards.
     constexpr double kFar = std::numeric_limits<double>::infinity();
     double left = kFar, right = -kFar, low = kFar, high = -kFar;
     for (const glm::dvec3& point : points) {

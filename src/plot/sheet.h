@@ -1,7 +1,7 @@
 #pragma once
 // What the pictures for setting up a projector are drawn on.
 
-#include "core/image.h"
+#include "media/image.h"
 
 #include <glm/vec2.hpp>
 
@@ -57,7 +57,8 @@ public:
     // Row by row from the top left.
     void pixels(const std::function<int(int, int)>& value);
 
-    // `origin`: what pixel comes to the result's top left; `across`, `down`: the steps to its neighbours.
+    // `origin`: what pixel comes to the result's top left; `across`, `down`: the steps to its
+    // neighbours.
     RgbaImage image(glm::ivec2 size, glm::ivec2 origin, glm::ivec2 across, glm::ivec2 down);
 
 private:

@@ -1,6 +1,6 @@
 #include "plot/stage_view.h"
 
-#include "theatre/distance_field.h"
+#include "theatre/mask/distance_field.h"
 
 #include "core/check.h"
 #include "core/geometry.h"
@@ -71,7 +71,8 @@ TriangleMesh ball(const glm::vec3& centre, float radius) {
     return mesh;
 }
 
-// How much of the sky the things above hide from the floor, in a grid: the sum of the form factors of their surfaces that face a place.
+// How much of the sky the things above hide from the floor, in a grid: the sum of the form factors
+// of their surfaces that face a place.
 class ContactShade {
 public:
     explicit ContactShade(const StageView& view) {

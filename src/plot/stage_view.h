@@ -1,10 +1,10 @@
 #pragma once
 
-#include "theatre/bit_mask.h"
-#include "theatre/stage.h"
+#include "theatre/mask/bit_mask.h"
+#include "theatre/stage/stage.h"
 
-#include "core/image.h"
-#include "core/mesh.h"
+#include "media/image.h"
+#include "media/mesh.h"
 #include "plot/rendering.h"
 
 #include <glm/vec3.hpp>
@@ -13,8 +13,9 @@
 
 namespace fantascope::plot {
 
-// What an outsider would see on the stage of a shadow theatre: each lamp and its beam to the target, the actors on the floor, and behind
-// them the screens with their shadows and the targets' outlines in red. Metres, the stage's frame.
+// What an outsider would see on the stage of a shadow theatre: each lamp and its beam to the
+// target, the actors on the floor, and behind them the screens with their shadows and the targets'
+// outlines in red. Metres, the stage's frame.
 struct StageView {
     struct Actor {
         TriangleMesh mesh;
@@ -31,13 +32,15 @@ struct StageView {
     std::vector<Actor> actors;
     std::vector<Actor> props{};  // platforms and whatever else stands there
 
-    // Cameras for a picture of this aspect: from behind the first lamp, from above and the right, or the left if that shows more screens from
-    // before; the same, near, with people and screens, but not the lamps; and from the right, with all.
+    // Cameras for a picture of this aspect: from behind the first lamp, from above and the right,
+    // or the left if that shows more screens from before; the same, near, with people and screens,
+    // but not the lamps; and from the right, with all.
     Camera overview(double aspect) const;
     Camera closeUp(double aspect) const;
     Camera fromTheSide(double aspect) const;
 
-    // Opaque. The floor has a line a metre and is darker where something stands close above it. Thread: reentrant.
+    // Opaque. The floor has a line a metre and is darker where something stands close above it.
+    // Thread: reentrant.
     RgbaImage draw(const Camera& camera, int width, int height) const;
 };
 

@@ -28,14 +28,16 @@ constexpr double kCell = 0.1;          // of the grid, canvas heights
 constexpr double kTolerance = 0.05;    // pixels between a curve and its chords
 constexpr double kPlateHeight = 0.38;  // of the picture at most: above or below a handle there is always room
 
-// The projector's pixels as they lie on the wall: mirrored and turned back, so that whatever is drawn there is read upright. One of eight
-// ways, each of which brings whole pixels to whole pixels.
+// The projector's pixels as they lie on the wall: mirrored and turned back, so that whatever is
+// drawn there is read upright. One of eight ways, each of which brings whole pixels to whole
+// pixels.
 struct Wall {
     glm::ivec2 projector;               // pixels
     glm::dmat2 projectorFromWall{1.0};  // about the middles; entries 0, 1 and -1
 
     explicit Wall(const Projection& projection) : projector(projection.size) {
-        // From the picture itself and not from the warp's settings: crossed-over corners mirror and turn it, too.
+        // From the picture itself and not from the warp's settings: crossed-over corners mirror and
+        // turn it, too.
         const CanvasPart& part = projection.warp.shape().part;
         const glm::dvec2 middle = (part.low + part.high) / 2.0, reach = (part.high - part.low) / 4.0;
         const auto moved = [&](glm::dvec2 by) {
@@ -138,7 +140,8 @@ private:
         for (int i = 0; i < pieces; ++i) reach(reach, double(i) / pieces, double(i + 1) / pieces, at(double(i + 1) / pieces), 8);
         return points;
     }
-    // In so many pieces none has two of the kinks that a line may have from cell to cell of the mesh.
+    // In so many pieces none has two of the kinks that a line may have from cell to cell of the
+    // mesh.
     std::vector<glm::dvec2> straight(glm::dvec2 from, glm::dvec2 to) const {
         const glm::ivec2 cells = glm::max(warp_.shape().mesh.points - 1, 1);
         return curve([&](double along) { return from + along * (to - from); }, 2 * std::max(cells.x, cells.y));
@@ -218,7 +221,8 @@ private:
                 pointAt(corner, label, 1, false);
                 continue;
             }
-            // The last pixel that belongs to the picture: a corner at the right edge of the pixels lies in none.
+            // The last pixel that belongs to the picture: a corner at the right edge of the pixels
+            // lies in none.
             const glm::dvec2 towards = glm::sign(middle - corner);
             const glm::dvec2 pixel = glm::clamp(glm::floor(corner + 1e-6 * towards), glm::dvec2(0), sheet_.all().high - 1.0);
             const double arm = std::round(std::max(4.0, 60 * unit_));
@@ -287,7 +291,8 @@ private:
             sheet_.text(word, middle, size, light_);
         }
     }
-    // Where a crossing of the grid lies on the canvas, in heights of it, below and to the right of the crossing.
+    // Where a crossing of the grid lies on the canvas, in heights of it, below and to the right of
+    // the crossing.
     void gridLabels() {
         const auto labelOf = [](double x, double y) { return fmt::format("{:.1f}, {:.1f}", x, y); };
         const double cell = std::sqrt(seen_.size().x * seen_.size().y / std::max(1.0, double(columns().size() * rows().size())));

@@ -1,8 +1,8 @@
 #pragma once
 // What a technician sees on a projector while setting it up.
 
-#include "core/image.h"
-#include "core/projection.h"
+#include "media/image.h"
+#include "media/projection.h"
 
 #include <glm/vec2.hpp>
 
@@ -33,15 +33,19 @@ struct EditView {
     bool chosen = true;                   // the output that is edited is bright: its frame and texts; others are dim
 };
 
-// In the projector's pixels, stored values, colours multiplied by alpha. Grid, Corners, Numbers, Focus and Identify hide the show: opaque.
-// Otherwise it is transparent but for frame, handles, pointer and lines. Texts stand so that they are read on the wall whichever way the
-// warp mirrors and turns the picture, and handles outside the picture are pointed at from its edge. Thread: reentrant.
+// In the projector's pixels, stored values, colours multiplied by alpha. Grid, Corners, Numbers,
+// Focus and Identify hide the show: opaque. Otherwise it is transparent but for frame, handles,
+// pointer and lines. Texts stand so that they are read on the wall whichever way the warp mirrors
+// and turns the picture, and handles outside the picture are pointed at from its edge. Thread:
+// reentrant.
 RgbaImage drawEditView(const EditView& view);
 
-// Light that is to pass the projector's colours, and so a picture for the renderer; opaque stored sRGB values, 0..255 the full range.
-// Bars, after SMPTE EG 1: seven bars at 75 % (191) from grey to blue; below them, from 2/3 of the height, the same blues in reverse; below
-// these, from 3/4, in place of the signals of NTSC: white, black, red, green and blue at 100 %, black, and strips of 2, 4 and 6 % (5, 10, 15).
-// Ramp, four rows of equal height: 17 steps of 255 i / 16; all 256 values; 0..32; 223..255. The first, third and fourth bear their values.
+// Light that is to pass the projector's colours, and so a picture for the renderer; opaque stored
+// sRGB values, 0..255 the full range. Bars, after SMPTE EG 1: seven bars at 75 % (191) from grey to
+// blue; below them, from 2/3 of the height, the same blues in reverse; below these, from 3/4, in
+// place of the signals of NTSC: white, black, red, green and blue at 100 %, black, and strips of 2,
+// 4 and 6 % (5, 10, 15). Ramp, four rows of equal height: 17 steps of 255 i / 16; all 256 values;
+// 0..32; 223..255. The first, third and fourth bear their values.
 RgbaImage drawColourCard(TestPicture picture, glm::ivec2 size);
 
 }  // namespace fantascope::plot

@@ -1,15 +1,17 @@
 #pragma once
 
 #include "render/drawn_source.h"
-#include "render/gpu/canvas_painter.h"
 #include "render/gpu/light_canvas.h"
+#include "render/gpu/paint/canvas_painter.h"
 
 namespace fantascope::render {
 
-// Light that adds up in a picture of the canvas, shown in one colour through the output's warp. Thread: the context's.
+// Light that adds up in a picture of the canvas, shown in one colour through the output's warp.
+// Thread: the context's.
 class CanvasLight {
 public:
-    // `aspect`: the canvas's; `colour`: of as much light as 1 in that picture, linear. Errors as makeDrawnSource().
+    // `aspect`: the canvas's; `colour`: of as much light as 1 in that picture, linear. Errors as
+    // makeDrawnSource().
     static Result<CanvasLight> create(double aspect, glm::vec3 colour, const CanvasPlace& place, DrawingTools& tools);
 
     void follow(const CanvasPlace& place) { painter_.follow(place); }

@@ -1,8 +1,8 @@
 #include "render/drawn_caustics.h"
 
 #include "render/canvas_light.h"
-#include "render/gpu/caustics_painter.h"
-#include "render/water.h"
+#include "render/gpu/paint/caustics_painter.h"
+#include "render/source/water.h"
 
 #include <array>
 #include <utility>

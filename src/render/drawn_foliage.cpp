@@ -1,8 +1,8 @@
 #include "render/drawn_foliage.h"
 
-#include "render/gpu/canvas_painter.h"
-#include "render/gpu/convolution.h"
-#include "render/penumbra.h"
+#include "render/gpu/paint/canvas_painter.h"
+#include "render/gpu/paint/convolution.h"
+#include "render/source/penumbra.h"
 
 #include "core/check.h"
 #include "core/geometry.h"
@@ -26,7 +26,8 @@ public:
         auto convolution = TRY(gpu::Convolution::create(grid.size, grid.filter, grid.block, tools.samples, tools.programs));
         const glm::ivec2 painted = grid.block * (grid.size + 2 * convolution.margin());
         auto picture = TRY(gpu::LayerPicture::create(painted, tools.samples));
-        // OpenGL has its row 0 at the bottom: the canvas is painted upside down, so that the picture's row 0 is its top.
+        // OpenGL has its row 0 at the bottom: the canvas is painted upside down, so that the
+        // picture's row 0 is its top.
         WarpShape upsideDown{.corners = rectangleCorners(grid.block * aspect / grid.pitch, grid.block / grid.pitch)};
         for (glm::dvec2& corner : upsideDown.corners) {
             corner += glm::dvec2(grid.block * (convolution.margin() + 1));

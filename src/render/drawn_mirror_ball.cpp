@@ -1,7 +1,7 @@
 #include "render/drawn_mirror_ball.h"
 
 #include "render/canvas_light.h"
-#include "render/gpu/spot_painter.h"
+#include "render/gpu/paint/spot_painter.h"
 
 #include "core/geometry.h"
 #include "core/random.h"

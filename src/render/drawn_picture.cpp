@@ -1,8 +1,8 @@
 #include "render/drawn_picture.h"
 
-#include "render/gpu/picture_painter.h"
+#include "render/gpu/paint/picture_painter.h"
 #include "render/gpu/picture_texture.h"
-#include "render/premultiply.h"
+#include "render/source/premultiply.h"
 
 #include "core/check.h"
 #include "core/geometry.h"
@@ -16,7 +16,8 @@
 namespace fantascope::render {
 namespace {
 
-// The most texels of a picture that a pixel covers along a side: by the keystone nowhere more than in one of the corners.
+// The most texels of a picture that a pixel covers along a side: by the keystone nowhere more than
+// in one of the corners.
 double mostTexels(const CanvasPlace& place, glm::ivec2 size) {
     constexpr double kStep = 1e-3;  // pixels
     const Homography canvasFromProjector = place.warp.keystone().inverse();
@@ -35,7 +36,8 @@ struct PictureOnCanvas {
     gpu::PicturePainter painter;
 
     static Result<PictureOnCanvas> create(glm::ivec2 size, const CanvasPlace& place, const gpu::Bend& bend, DrawingTools& tools) {
-        // Where a mesh bends the canvas besides, or the warp changes while the show runs, a pixel covers a little more.
+        // Where a mesh bends the canvas besides, or the warp changes while the show runs, a pixel
+        // covers a little more.
         const bool small = 2 * mostTexels(place, size) > gpu::PicturePainter::kMostTaps;
         auto texture = TRY(gpu::PictureTexture::create(size, small ? gpu::Mipmaps::All : gpu::Mipmaps::None));
         auto painter = TRY(gpu::PicturePainter::create(bend, tools.programs));

@@ -4,7 +4,8 @@
 
 namespace fantascope::render {
 
-// Pictures that fill the canvas: they keep no shape of their own, their corners lie on the canvas's. Errors as makeDrawnSource().
+// Pictures that fill the canvas: they keep no shape of their own, their corners lie on the
+// canvas's. Errors as makeDrawnSource().
 Result<std::unique_ptr<DrawnSource>> makeDrawnImage(const ImageSource& source, const CanvasPlace& place, DrawingTools& tools);
 Result<std::unique_ptr<DrawnSource>> makeDrawnVideo(const VideoSource& source, const CanvasPlace& place, DrawingTools& tools);
 Result<std::unique_ptr<DrawnSource>> makeDrawnCamera(const CameraSource& source, const CanvasPlace& place, DrawingTools& tools);

@@ -1,11 +1,11 @@
 #include "render/drawn_shadow.h"
 
-#include "render/facet_mesh.h"
-#include "render/gpu/screen_painter.h"
-#include "render/gpu/shadow_caster.h"
-#include "render/gpu/shadow_sum.h"
-#include "theatre/body_mesh.h"
-#include "theatre/moving_cast.h"
+#include "render/canvas/facet_mesh.h"
+#include "render/gpu/paint/screen_painter.h"
+#include "render/gpu/paint/shadow_caster.h"
+#include "render/gpu/paint/shadow_sum.h"
+#include "theatre/body/body_mesh.h"
+#include "theatre/motion/moving_cast.h"
 
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
@@ -43,7 +43,8 @@ ShadowCaster::Piece pieceOf(const TriangleMesh& thing) {
     return piece;
 }
 
-// Where a lamp shines from, in the screen's frame: spread evenly over its disc (Vogel 1979), or its middle alone.
+// Where a lamp shines from, in the screen's frame: spread evenly over its disc (Vogel 1979), or its
+// middle alone.
 std::vector<glm::dvec3> pointsOf(const ShadowSource::Lamp& lamp, int samples, const theatre::Screen& screen) {
     const glm::dvec3 middle = screen.screenFromStage(lamp.place);
     if (lamp.size <= 0) return {middle};
@@ -76,7 +77,8 @@ public:
         std::unique_ptr<DrawnShadow> made(new DrawnShadow(source, tools));
         const std::vector<ShadowCaster::Piece> pieces = made->pieces();
         made->caster_.emplace(TRY(ShadowCaster::create(pieces, made->onto_.isCurved(), tools.bend, tools.programs)));
-        // The shadow of one point of light is painted as it is, within straight edges; those of many add up first.
+        // The shadow of one point of light is painted as it is, within straight edges; those of
+        // many add up first.
         const bool sums = source.lamps.size() > 1 || (source.lamps[0].size > 0 && source.samples > 1) ||
                           (made->onto_.isCurved() && made->beam_.lit);
         if (sums) made->sum_.emplace(TRY(gpu::ShadowSum::create(place.size, tools.samples)));

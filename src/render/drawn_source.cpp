@@ -5,7 +5,7 @@
 #include "render/drawn_mirror_ball.h"
 #include "render/drawn_picture.h"
 #include "render/drawn_shadow.h"
-#include "render/gpu/canvas_painter.h"
+#include "render/gpu/paint/canvas_painter.h"
 
 #include <cmath>
 #include <utility>

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "render/canvas_warp.h"
+#include "render/canvas/canvas_warp.h"
 #include "render/gpu/instanced_meshes.h"
 #include "render/gpu/layer_picture.h"
+#include "render/gpu/paint/shape_painter.h"
 #include "render/gpu/program_cache.h"
-#include "render/gpu/shape_painter.h"
-#include "render/picture_source.h"
 #include "render/placed_source.h"
-#include "render/stopwatch.h"
+#include "render/source/picture_source.h"
+#include "render/source/stopwatch.h"
 
 #include "core/clock.h"
 #include "core/result.h"
@@ -38,7 +38,8 @@ struct Moment {
 class DrawnSource {
 public:
     virtual ~DrawnSource() = default;
-    // Paints all of the source as it stands at that moment, at full opacity. `picture` is begun by this. No allocation.
+    // Paints all of the source as it stands at that moment, at full opacity. `picture` is begun by
+    // this. No allocation.
     virtual void paint(const Moment& moment, gpu::LayerPicture& picture) = 0;
     // The output shows its canvas elsewhere from now on; the tools' bend follows by itself.
     virtual void follow(const CanvasPlace& place) = 0;
@@ -50,7 +51,8 @@ Result<std::unique_ptr<DrawnSource>> makeDrawnSource(const PictureSource& source
 // A pattern's instances in one picture; what every source that shows a pattern draws it with.
 class DrawnInstances {
 public:
-    // Straight onto an output: cut at the edges of the canvas's shown part, bent by the tools' mesh.
+    // Straight onto an output: cut at the edges of the canvas's shown part, bent by the tools'
+    // mesh.
     DrawnInstances(const PatternSource& source, const CanvasPlace& place, const gpu::Bend& bend);
     // Into a picture of the canvas, cut by nothing but the picture.
     DrawnInstances(const PatternSource& source, const CanvasPlace& place);

@@ -6,9 +6,9 @@
 
 #include "core/bounded_queue.h"
 #include "core/clock.h"
-#include "core/image.h"
 #include "core/latest_value.h"
 #include "core/result.h"
+#include "media/image.h"
 
 #include <glm/vec2.hpp>
 
@@ -33,8 +33,9 @@ struct ShownFrame {
     RgbaImage image;         // stored values, row 0 at the top, alpha 255
 };
 
-// A frame's pixels where OpenGL put them, for all readers at once. Readers take their copy on their own threads; who holds the frame is
-// counted by the render thread alone, since slots and queues give back to it what they held.
+// A frame's pixels where OpenGL put them, for all readers at once. Readers take their copy on their
+// own threads; who holds the frame is counted by the render thread alone, since slots and queues
+// give back to it what they held.
 struct CapturedFrame {
     explicit CapturedFrame(gpu::PixelReader reader) : pixels(std::move(reader)) {}
 
@@ -46,14 +47,15 @@ struct CapturedFrame {
     int holders = 0;
 };
 
-// One reader's view of an output's frames. A display may be handed a frame before it shows it; nobody sees it earlier here. When the output's
-// context is lost, frames that were not taken yet are lost with it. Thread: next() from one thread; the private rest is the render thread's.
+// One reader's view of an output's frames. A display may be handed a frame before it shows it;
+// nobody sees it earlier here. When the output's context is lost, frames that were not taken yet
+// are lost with it. Thread: next() from one thread; the private rest is the render thread's.
 class FrameReader {
 public:
     virtual ~FrameReader() = default;
 
-    // A frame that is visible at `now` or was so before, in the order in which they were shown and each once; null if there is none. Valid
-    // until the next call.
+    // A frame that is visible at `now` or was so before, in the order in which they were shown and
+    // each once; null if there is none. Valid until the next call.
     const ShownFrame* next(Time now) {
         const std::lock_guard lock(taking_);
         return newer(now);
@@ -80,13 +82,15 @@ private:
     ShownFrame own_;
 };
 
-// Every frame, while there is room for those that wait. For whoever must not miss one, such as a recording.
+// Every frame, while there is room for those that wait. For whoever must not miss one, such as a
+// recording.
 class FrameQueue final : public FrameReader {
 public:
     // `depth`: how many frames may wait; beyond that they are left out and counted.
     FrameQueue(const ShownFrame& blank, std::size_t depth) : FrameReader(blank), waiting_(depth) {}
 
-    // When the oldest frame that was not taken became visible; nothing if there is none that next(now) gives. Thread: that of next().
+    // When the oldest frame that was not taken became visible; nothing if there is none that
+    // next(now) gives. Thread: that of next().
     std::optional<Time> nextAt(Time now);
     // How many frames were shown and left out, or lost with their context. Thread-safe.
     std::int64_t missed() const { return missed_; }
@@ -102,21 +106,25 @@ private:
     std::size_t mostHeld() const override { return waiting_.size(); }
     CapturedFrame* oldest(Time now) const;
 
-    // A ring: the reader takes from `taken_` to `given_`, the render thread gives back what it held up to `taken_`.
+    // A ring: the reader takes from `taken_` to `given_`, the render thread gives back what it held
+    // up to `taken_`.
     std::vector<CapturedFrame*> waiting_;
     std::atomic<std::size_t> given_ = 0, taken_ = 0;
     std::size_t released_ = 0;
     std::atomic<std::int64_t> missed_ = 0;
 };
 
-// The newest frame, for whoever looks at the show as it is now. One that does not look costs nothing but this slot.
+// The newest frame, for whoever looks at the show as it is now. One that does not look costs
+// nothing but this slot.
 class NewestFrame final : public FrameReader {
 public:
-    // `rate`: Hz, how many frames it is given at most; 0 for those alone that are asked for, infinity for every frame.
+    // `rate`: Hz, how many frames it is given at most; 0 for those alone that are asked for,
+    // infinity for every frame.
     NewestFrame(const ShownFrame& blank, double rate);
 
-    // Wants one frame besides: the first that is drawn for `showTime` or later. Readers of several outputs that ask for the same moment, far
-    // enough ahead that no output has drawn it, get frames of one moment. Thread: that of next().
+    // Wants one frame besides: the first that is drawn for `showTime` or later. Readers of several
+    // outputs that ask for the same moment, far enough ahead that no output has drawn it, get
+    // frames of one moment. Thread: that of next().
     void ask(Time showTime) { asked_ = showTime.count(); }
 
 private:
@@ -129,7 +137,8 @@ private:
     // Two in the slot that is read, and two in what waits for it.
     std::size_t mostHeld() const override { return 4; }
 
-    // A display holds one frame at most, so when the newest one is not visible yet, the one before it is.
+    // A display holds one frame at most, so when the newest one is not visible yet, the one before
+    // it is.
     struct Newest {
         CapturedFrame *frame = nullptr, *before = nullptr;
     };
@@ -151,13 +160,16 @@ private:
 //   small pictures for a console        the newest, a few a second    addNewest(rate), then resizedLight() of core/image.h
 //   pictures that nobody is shown       each, once it is drawn        addNewest(infinity), finish()
 //
-// A frame: draw; capture(); the display's present(); publish(). A frame is copied from the GPU once if any reader wants it, and not at all
-// otherwise. The render thread queues that copy and passes on where it is; readers take it from there on their own threads. It never waits
-// for a copy: one that the display's present() has not waited for either is handed out with a later frame, and while kMostUnderWay are
-// under way further ones are left out; a queue counts them. No allocation after prepare().
+// A frame: draw; capture(); the display's present(); publish(). A frame is copied from the GPU once
+// if any reader wants it, and not at all otherwise. The render thread queues that copy and passes
+// on where it is; readers take it from there on their own threads. It never waits for a copy: one
+// that the display's present() has not waited for either is handed out with a later frame, and
+// while kMostUnderWay are under way further ones are left out; a queue counts them. No allocation
+// after prepare().
 //
-// Thread: the render thread, with the output's context current in capture(), publish(), prepare(), finish() and the destructor; after
-// forget() the destructor needs no context. Each reader belongs to one thread of its own.
+// Thread: the render thread, with the output's context current in capture(), publish(), prepare(),
+// finish() and the destructor; after forget() the destructor needs no context. Each reader belongs
+// to one thread of its own.
 class FrameTap {
 public:
     // `size`: pixels of the output's display.
@@ -167,13 +179,17 @@ public:
     FrameQueue& addQueue(std::size_t depth = 4);
     NewestFrame& addNewest(double rate);
 
-    // Makes room for all that its readers can hold. Otherwise it is made when a frame needs it. Error: OpenGL has no memory left.
+    // Makes room for all that its readers can hold. Otherwise it is made when a frame needs it.
+    // Error: OpenGL has no memory left.
     Result<void> prepare();
-    // The context is lost: forgets, without OpenGL calls, every frame that no reader has taken. prepare() makes room in the next context.
+    // The context is lost: forgets, without OpenGL calls, every frame that no reader has taken.
+    // prepare() makes room in the next context.
     void forget();
-    // After draw(): starts to copy what is in `framebuffer`, drawn for show time `showTime`, if a reader wants it.
+    // After draw(): starts to copy what is in `framebuffer`, drawn for show time `showTime`, if a
+    // reader wants it.
     void capture(unsigned framebuffer, Time showTime);
-    // After present(): the captured frame was shown. When present() failed nothing was: leave it out.
+    // After present(): the captured frame was shown. When present() failed nothing was: leave it
+    // out.
     void publish(const Shown& shown);
     // Waits for all copies and hands them out: no frame is to come, or this one is needed now.
     void finish();

@@ -12,7 +12,8 @@ enum class Curve {
     Smooth  // begins and ends at rest: 3 s^2 - 2 s^3 of the share s of its time
 };
 
-// The way of one value in time: `from` until `start`, `to` from `start` + `length` on. Value type; thread: reentrant.
+// The way of one value in time: `from` until `start`, `to` from `start` + `length` on. Value type;
+// thread: reentrant.
 struct Course {
     float from = 0, to = 0;
     Time start{}, length{};

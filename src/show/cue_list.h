@@ -11,7 +11,8 @@
 
 namespace fantascope::show {
 
-// A show's cues with every name looked up in one site: all that playback needs. Constant during a night; see Show::bind.
+// A show's cues with every name looked up in one site: all that playback needs. Constant during a
+// night; see Show::bind.
 struct CueList {
     struct Cue {
         Look look;
@@ -20,7 +21,7 @@ struct CueList {
         std::vector<WindWish> winds = {};  // one for each output; one that is missing is the usual wind
     };
     std::vector<Cue> cues;
-    bool loops = false;  // the first cue follows the last one, if that has a `follow`
+    bool loops = false;      // the first cue follows the last one, if that has a `follow`
     Look dark;               // what is seen before the first cue: black pictures, levels 0, relays in their safe states
     Time goInterval{};       // after a cue was entered, GO is ignored for this long
     Time blackoutFade{};     // from full light to none and back

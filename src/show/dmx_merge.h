@@ -23,14 +23,16 @@ struct DmxFrame {
     bool ended = false;  // it said goodbye; its slots mean nothing
 };
 
-// What one universe carries when several send it: our own levels and desks that come and go. The highest priority wins whole; among equals
-// each slot is merged by the rule.
+// What one universe carries when several send it: our own levels and desks that come and go. The
+// highest priority wins whole; among equals each slot is merged by the rule.
 //
-// A desk is gone when it said goodbye, or when it was silent for longer than it may be. If it went in silence and was the highest, its last
-// levels hold for the settling time before a lower priority is let through, so that a loose cable does not make the lamps jump
-// to and fro; a goodbye, or a lower priority from the desk itself, is meant, and acts at once.
+// A desk is gone when it said goodbye, or when it was silent for longer than it may be. If it went
+// in silence and was the highest, its last levels hold for the settling time before a lower
+// priority is let through, so that a loose cable does not make the lamps jump to and fro; a
+// goodbye, or a lower priority from the desk itself, is meant, and acts at once.
 //
-// Times are those of one clock and only rise. In steady state nothing allocates. Thread: thread-bound.
+// Times are those of one clock and only rise. In steady state nothing allocates. Thread:
+// thread-bound.
 class DmxMerge {
 public:
     enum class Rule {
@@ -57,9 +59,11 @@ public:
     void receive(const DmxFrame& frame);
     // From now on our own changes claim no slot (Rule::Latest): a desk keeps what it changed last.
     void claimNothing() { claims_ = false; }
-    // What the universe carries at `now`, no earlier than all that was received. `own` and `out` may be the same.
+    // What the universe carries at `now`, no earlier than all that was received. `own` and `out`
+    // may be the same.
     void mergeAt(Time now, std::span<const std::uint8_t, 512> own, std::span<std::uint8_t, 512> out);
-    // Who was in charge then: our own levels first, then the desks in the order of their coming. Good until the next call of any method.
+    // Who was in charge then: our own levels first, then the desks in the order of their coming.
+    // Good until the next call of any method.
     std::span<const Charge> inCharge() const { return inCharge_; }
 
 private:

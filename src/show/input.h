@@ -9,7 +9,8 @@
 
 namespace fantascope::show {
 
-// Something that the operator, or whoever acts for the operator, asked for. Value type; lineOf() writes it down.
+// Something that the operator, or whoever acts for the operator, asked for. Value type; lineOf()
+// writes it down.
 struct Input {
     enum class Kind {
         Go,        // enter the next cue
@@ -41,7 +42,8 @@ enum class Outcome { Taken, TooSoonAfterCue, AtLastCue, AtFirstCue, NoSuchCue };
 // In words for the operator: "taken", "ignored: ...".
 std::string_view nameOf(Outcome outcome);
 
-// One line, without its end: show time in nanoseconds, kind, cue, source, which: "12500000000 jump 3 terminal 0".
+// One line, without its end: show time in nanoseconds, kind, cue, source, which: "12500000000 jump
+// 3 terminal 0".
 std::string lineOf(const Input& input);
 // Reads what lineOf() has written. Error: what is wrong with the line.
 Result<Input> inputOf(std::string_view line);

@@ -18,8 +18,9 @@ struct LoggedInput {
     Outcome outcome = Outcome::Taken;
 };
 
-// The one way into the show: whoever asks for something submits it here. The log puts all inputs in one order, says what becomes of each, and
-// hands the same sequence to everybody who reads it. Nothing is lost, however late somebody reads.
+// The one way into the show: whoever asks for something submits it here. The log puts all inputs in
+// one order, says what becomes of each, and hands the same sequence to everybody who reads it.
+// Nothing is lost, however late somebody reads.
 //
 // Thread: submit() from any, which waits for other submissions alone; readers as AppendLog says.
 class InputLog {

@@ -115,7 +115,8 @@ Outcome Playback::apply(Input input) {
     return Outcome::Taken;
 }
 
-// Enters a cue, and after it those that follow by themselves. What would have followed otherwise is off.
+// Enters a cue, and after it those that follow by themselves. What would have followed otherwise is
+// off.
 void Playback::enter(int cue, Time at) {
     while (entries_.back().at > at) entries_.pop_back();
     entries_.push_back(entered(cue, at));
@@ -245,8 +246,8 @@ void Playback::lookAt(Time time, Look& out) const {
     out.relays = entry.cue < 0 ? list_.dark.relays : list_.cues[static_cast<std::size_t>(entry.cue)].look.relays;
 }
 
-// The factor of pictures and levels that blackout leaves: it moves at a constant rate, so that a change of mind on the way has no
-// step.
+// The factor of pictures and levels that blackout leaves: it moves at a constant rate, so that a
+// change of mind on the way has no step.
 float Playback::lightAt(Time time) const {
     const Shutter* shutter = lastBy(time, shutters_);
     if (!shutter) return 1;

@@ -14,42 +14,51 @@
 
 namespace fantascope::show {
 
-// Plays a cue list: what is seen at any moment of show time, as a pure function of that time and of the inputs so far. Asking
-// changes nothing, so the same inputs give the same state in whatever order the moments are asked for.
+// Plays a cue list: what is seen at any moment of show time, as a pure function of that time and of
+// the inputs so far. Asking changes nothing, so the same inputs give the same state in whatever
+// order the moments are asked for.
 //
-// - Everything that is seen has a course of its own (Course, WindCourse): each layer, picture, channel and wind. A cue that is entered
-//   gives each a new one, in its `fade`, from what is seen at that moment (the middle of another fade, perhaps) to its look. Layers
-//   that only add their light are matched by source. Relays take their new state at once.
+// - Everything that is seen has a course of its own (Course, WindCourse): each layer, picture, channel and wind. A cue that is
+// entered
+//   gives each a new one, in its `fade`, from what is seen at that moment (the middle of another fade, perhaps) to its look.
+//   Layers that only add their light are matched by source. Relays take their new state at once.
 // - The wind of each output goes to what the cue asks for without a jump, whether there is light or not.
-// - A cue with `follow` is left for the next one by itself, that time after it was entered in whatever way, unless an input enters
+// - A cue with `follow` is left for the next one by itself, that time after it was entered in whatever way, unless an input
+// enters
 //   another one first. In a list that loops, the first cue comes after the last.
-// - GO is ignored until `goInterval` after a cue was entered, by hand or by itself, so that a trembling or late press skips nothing.
-// - Blackout dims pictures and levels to nothing in `blackoutFade`, over whatever is running; a second one, or Light, gives them back. The
+// - GO is ignored until `goInterval` after a cue was entered, by hand or by itself, so that a trembling or late press skips
+// nothing.
+// - Blackout dims pictures and levels to nothing in `blackoutFade`, over whatever is running; a second one, or Light, gives them
+// back. The
 //   cues go on underneath. Relays do not heed it: a dark picture is no reason for dark streets.
 //
-// Thread: what is const is reentrant; the rest is bound to one thread at a time and may not run beside it.
+// Thread: what is const is reentrant; the rest is bound to one thread at a time and may not run
+// beside it.
 class Playback {
 public:
     explicit Playback(CueList list);
 
     const CueList& cues() const { return list_; }
 
-    // Takes one input, or says why not. Inputs take effect in the order in which they are given: one whose time is before that of
-    // its forerunner takes effect at its forerunner's time. It changes what is seen from then on and nothing before.
+    // Takes one input, or says why not. Inputs take effect in the order in which they are given:
+    // one whose time is before that of its forerunner takes effect at its forerunner's time. It
+    // changes what is seen from then on and nothing before.
     Outcome apply(Input input);
 
-    // Works out which cues follow by themselves until `time`. Every input does so for one pass of the list, so only a list that loops needs
-    // more; the others do nothing here.
+    // Works out which cues follow by themselves until `time`. Every input does so for one pass of
+    // the list, so only a list that loops needs more; the others do nothing here.
     void foresee(Time time);
 
-    // How much of its fade the cue of that time has still before it; 0 once its look is whole, and before the first cue.
+    // How much of its fade the cue of that time has still before it; 0 once its look is whole, and
+    // before the first cue.
     Time fadeLeftAt(Time time) const;
     bool fadesAt(Time time) const { return fadeLeftAt(time) > Time{}; }
     // How long after that time the next cue comes by itself; nothing if it waits for an input.
     std::optional<Time> untilFollowAt(Time time) const;
 
-    // What is seen at `time`, which may be any; a list that loops must have been foreseen until then. Binary searches and one course for
-    // each thing; it allocates only when it sees `out` the first time.
+    // What is seen at `time`, which may be any; a list that loops must have been foreseen until
+    // then. Binary searches and one course for each thing; it allocates only when it sees `out` the
+    // first time.
     void stateAt(Time time, ShowState& out) const;
 
 private:
@@ -68,7 +77,8 @@ private:
         std::vector<PictureCourse> pictures;
         WindCourse wind{WindWish()};
     };
-    // A cue that was entered, or that will be by itself if no input comes before; and the courses that it has begun.
+    // A cue that was entered, or that will be by itself if no input comes before; and the courses
+    // that it has begun.
     struct Entry {
         Time at = Time::min();
         int cue = -1;

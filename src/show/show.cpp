@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kNewestVersion = 1;
 
-// Defaults. 0.3 s is shorter than a deliberate second press and longer than a bouncing or trembling one; as a fade it is quick
-// without being a flash.
+// Defaults. 0.3 s is shorter than a deliberate second press and longer than a bouncing or trembling
+// one; as a fade it is quick without being a flash.
 constexpr Time kGoInterval = std::chrono::milliseconds(300);
 constexpr Time kBlackoutFade = std::chrono::milliseconds(300);
 
@@ -35,7 +35,8 @@ std::vector<std::string> namesOf(const Range& things) {
     return names;
 }
 
-// The index of `name` among `known`, or why not: "no output is called 'lefd' (did you mean 'left'?)".
+// The index of `name` among `known`, or why not: "no output is called 'lefd' (did you mean
+// 'left'?)".
 Result<std::size_t> find(std::string_view name, const std::vector<std::string>& known, std::string_view what) {
     const auto found = std::find(known.begin(), known.end(), name);
     if (found != known.end()) return static_cast<std::size_t>(found - known.begin());

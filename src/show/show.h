@@ -61,12 +61,12 @@ struct Show {
     std::vector<NamedLook> looks;
     std::vector<Cue> cues;
 
-    // Reads a show.yaml, or the one in a folder. Strict; the files that it names must exist. Error: file, line, column, key,
-    // advice.
+    // Reads a show.yaml, or the one in a folder. Strict; the files that it names must exist. Error:
+    // file, line, column, key, advice.
     static Result<Show> load(const std::filesystem::path& fileOrFolder);
 
-    // Looks every name up in `site`. Error: place in the show file, and what the site has instead. Thread: the one that loaded
-    // it.
+    // Looks every name up in `site`. Error: place in the show file, and what the site has instead.
+    // Thread: the one that loaded it.
     Result<CueList> bind(const Site& site) const;
 
     // The index of a cue. Error: no cue has this name; says which one was perhaps meant.

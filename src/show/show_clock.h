@@ -7,12 +7,14 @@
 
 namespace fantascope::show {
 
-// Show time from the machine's clock. Show time counts from the show's epoch, run time from the start of this run: a show that is resumed at hour
-// three has show time three hours when its run time is 0. Lateness, patience and progress count in run time; cues, pictures and inputs in
-// show time.
+// Show time from the machine's clock. Show time counts from the show's epoch, run time from the
+// start of this run: a show that is resumed at hour three has show time three hours when its run
+// time is 0. Lateness, patience and progress count in run time; cues, pictures and inputs in show
+// time.
 //
-// A show may stand still (pause), jump (seek) or go faster or slower (setRate). Each change holds from a moment on and alters nothing
-// before, so that what was seen then can still be asked for. Changes come in the order of their moments.
+// A show may stand still (pause), jump (seek) or go faster or slower (setRate). Each change holds
+// from a moment on and alters nothing before, so that what was seen then can still be asked for.
+// Changes come in the order of their moments.
 //
 // Value type: every thread has its own copy. Moments are on the machine's clock.
 class ShowClock {
@@ -22,9 +24,11 @@ public:
 
     Time runStart() const { return runStart_; }
     Time runTime(Time moment) const { return moment - runStart_; }
-    // Of any moment; before the run's start as if it had begun earlier. At rate 1 exact, else to a nanosecond.
+    // Of any moment; before the run's start as if it had begun earlier. At rate 1 exact, else to a
+    // nanosecond.
     Time showTime(Time moment) const;
-    // The first moment, from `since` on, at which the show stands at `showTime`; nothing: it never will, as the clock goes now.
+    // The first moment, from `since` on, at which the show stands at `showTime`; nothing: it never
+    // will, as the clock goes now.
     std::optional<Time> momentOf(Time showTime, Time since) const;
     // 0 while the show stands still.
     double rateAt(Time moment) const;

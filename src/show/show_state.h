@@ -1,5 +1,6 @@
 #pragma once
-// The one value that the show gives out: what is to be seen at one moment. Renderer and lighting read it; nothing flows back.
+// The one value that the show gives out: what is to be seen at one moment. Renderer and lighting
+// read it; nothing flows back.
 
 #include "core/clock.h"
 #include "core/wind.h"
@@ -33,8 +34,8 @@ struct ComposedPicture {
     friend bool operator==(const ComposedPicture&, const ComposedPicture&) = default;
 };
 
-// One output's picture: the light of its layers and pictures, added up; nothing is black. Layers before those of the first picture add as
-// light one by one, each source once.
+// One output's picture: the light of its layers and pictures, added up; nothing is black. Layers
+// before those of the first picture add as light one by one, each source once.
 struct OutputState {
     std::vector<LayerState> layers;
     std::vector<ComposedPicture> pictures{};  // in the order of their layers
@@ -49,7 +50,8 @@ struct Look {
     friend bool operator==(const Look&, const Look&) = default;
 };
 
-// The look of one moment of show time. Value type; reused from frame to frame, so that its vectors keep their capacity.
+// The look of one moment of show time. Value type; reused from frame to frame, so that its vectors
+// keep their capacity.
 struct ShowState : Look {
     std::vector<Wind> winds;   // one for each of Site::outputs
     Time time{};               // show time

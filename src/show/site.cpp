@@ -71,7 +71,8 @@ Result<DeviceConfig> readDevice(const ConfigNode& node) {
     return node.error("'driver' is missing: the name of the device's driver");
 }
 
-// What the drivers say of the devices. It is told beside what else is wrong, so that one mistake in a device does not hide others.
+// What the drivers say of the devices. It is told beside what else is wrong, so that one mistake in
+// a device does not hide others.
 class DriversWord {
 public:
     explicit DriversWord(DeviceReader* reader) : reader_(reader) {}
@@ -165,7 +166,8 @@ Result<ProjectorLight> readLight(const ConfigNode& node) {
     return light;
 }
 
-// The keys that say where a projector or a camera stands and looks. Ask for pose() after the fields are finished.
+// The keys that say where a projector or a camera stands and looks. Ask for pose() after the fields
+// are finished.
 struct Aim {
     glm::dvec3 position{0.0}, target{0.0}, up{0, 1, 0};
 
@@ -349,7 +351,8 @@ public:
         TRY(fields.finish());
         return bank;
     }
-    // Declares the keys that say where a relay or contact is. Who has one bank need not call it by its name.
+    // Declares the keys that say where a relay or contact is. Who has one bank need not call it by
+    // its name.
     void declarePlace(ConfigFields& fields, std::size_t& bank, std::string_view placeKey, int& place, std::string_view owner,
                       int last) {
         std::optional<std::size_t> known;

@@ -5,8 +5,8 @@
 #include "core/clock.h"
 #include "core/config.h"
 #include "core/geometry.h"
-#include "core/projection.h"
 #include "core/result.h"
+#include "media/projection.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -23,7 +23,8 @@ namespace fantascope::show {
 
 constexpr double kBrightestBlack = 0.1;  // of a projector: 10 : 1, in bright surroundings
 
-// A device as the site file declares it: the registry's name of its driver and the driver's own keys, which the driver reads.
+// A device as the site file declares it: the registry's name of its driver and the driver's own
+// keys, which the driver reads.
 struct DeviceConfig {
     std::string driver;
     ConfigNode options;  // the whole map, `driver:` included
@@ -111,7 +112,8 @@ struct Contact {
     std::optional<ContactAction> closes, opens;  // at least one
 };
 
-// The place as the technician wrote it down: the nominal site. Read at start, constant afterwards. See docs/site-format.md.
+// The place as the technician wrote it down: the nominal site. Read at start, constant afterwards.
+// See docs/site-format.md.
 struct Site {
     std::filesystem::path file;
     std::string text;  // the file as it was read
@@ -139,7 +141,8 @@ struct Site {
     std::size_t inputCount(std::size_t bank) const;     // a contact bank's highest input + 1: its size
 };
 
-// Reads the keys of a site file that are a driver's own: show knows no driver. Nothing is opened. Each call gives all that is wrong with them.
+// Reads the keys of a site file that are a driver's own: show knows no driver. Nothing is opened.
+// Each call gives all that is wrong with them.
 class DeviceReader {
 public:
     virtual ~DeviceReader() = default;
@@ -154,10 +157,11 @@ public:
     virtual Result<void> simulation(const Site& site) = 0;
 };
 
-// Strict. Besides types, ranges and unknown keys it refuses two things of one name, coil or button; fixtures on top of each other, beyond
-// slot 512 or on no universe; a bank without a relay or contact, and those of no bank; a contact that asks for nothing; folded corners; a
-// surface turned from its projector. `devices` reads what the drivers need; null: nobody does. Error: all that is wrong, a line for each with
-// file, line, column, key, advice.
+// Strict. Besides types, ranges and unknown keys it refuses two things of one name, coil or button;
+// fixtures on top of each other, beyond slot 512 or on no universe; a bank without a relay or
+// contact, and those of no bank; a contact that asks for nothing; folded corners; a surface turned
+// from its projector. `devices` reads what the drivers need; null: nobody does. Error: all that is
+// wrong, a line for each with file, line, column, key, advice.
 Result<Site> readSite(const std::filesystem::path& file, DeviceReader* devices = nullptr);
 // The same of a text that stood in `file`.
 Result<Site> parseSite(std::string text, const std::filesystem::path& file, DeviceReader* devices = nullptr);

@@ -156,8 +156,8 @@ ConfigValue valueOf(const Mask& mask) {
     return map;
 }
 
-// What makes one list of masks of another, as calls of set(differs, path, value): what differs is written at its place, and what goes
-// is taken from the end of that.
+// What makes one list of masks of another, as calls of set(differs, path, value): what differs is
+// written at its place, and what goes is taken from the end of that.
 template <class Set>
 void maskChanges(const std::vector<Mask>& then, const std::vector<Mask>& now, const Set& set) {
     if (now.empty()) return set(!then.empty(), {"masks"}, std::nullopt);
@@ -277,7 +277,8 @@ std::vector<std::string> SiteEditor::lines() const {
             fmt::format("{}{}step {}", value, value.empty() ? "" : "   ", step), unsaved().empty() ? "saved" : "not saved"};
 }
 
-// Takes the projection over if it can be projected; a move that goes on is undone together with its beginning.
+// Takes the projection over if it can be projected; a move that goes on is undone together with its
+// beginning.
 Result<void> SiteEditor::change(Projection wanted, bool moves) {
     if (!wanted.warp.reaches(wanted.size)) return Error("nothing of the picture would be seen");
     if (!(moves && moving_)) done_.push_back({output_, projection()});

@@ -4,8 +4,8 @@
 #include "show/site.h"
 
 #include "core/config_edit.h"
-#include "core/projection.h"
 #include "core/result.h"
+#include "media/projection.h"
 
 #include <glm/vec2.hpp>
 
@@ -17,7 +17,8 @@
 
 namespace fantascope::show {
 
-// One thing that is asked for. Keyboard, mouse, hand controller and whatever comes later all end in these.
+// One thing that is asked for. Keyboard, mouse, hand controller and whatever comes later all end in
+// these.
 namespace edit {
 
 enum class Tool { Corners, Mesh, Part, Masks, Light };
@@ -80,8 +81,9 @@ struct EditHandle {
     std::string label;
 };
 
-// A site while somebody sets its outputs up. Every state of it could be saved and loaded: what could not is refused and changes nothing, so
-// that the last good picture stays on the wall. Thread: thread-bound.
+// A site while somebody sets its outputs up. Every state of it could be saved and loaded: what
+// could not is refused and changes nothing, so that the last good picture stays on the wall.
+// Thread: thread-bound.
 class SiteEditor {
 public:
     explicit SiteEditor(Site site);
@@ -96,7 +98,8 @@ public:
     // Of the tool on the chosen output; never empty.
     std::vector<EditHandle> handles() const;
     std::size_t handle() const { return handle_; }
-    // What is being edited, in words: output, tool and handle; its value and the step; what was not saved.
+    // What is being edited, in words: output, tool and handle; its value and the step; what was not
+    // saved.
     std::vector<std::string> lines() const;
 
     // One entry of the site file that is to read otherwise.

@@ -17,7 +17,8 @@
 
 namespace fantascope::show {
 
-// Where a layer's picture comes from; docs/show-format.md has the keys. Files exist; what is in them was not looked at.
+// Where a layer's picture comes from; docs/show-format.md has the keys. Files exist; what is in
+// them was not looked at.
 
 struct PatternSource {
     std::filesystem::path file;  // a *.pattern.yaml
@@ -98,10 +99,12 @@ struct Source {
     Fit fit = Fit::Contain;
 };
 
-// One entry of a show's `sources`. Strict; the files that it names must exist. Error: place, key, advice.
+// One entry of a show's `sources`. Strict; the files that it names must exist. Error: place, key,
+// advice.
 Result<Source> readSource(const std::string& name, const ConfigNode& node);
 
-// All files that a source names and that can be checked by themselves: patterns, images, videos, casts.
+// All files that a source names and that can be checked by themselves: patterns, images, videos,
+// casts.
 std::vector<std::filesystem::path> filesOf(const Source& source);
 
 }  // namespace fantascope::show

@@ -14,8 +14,8 @@ constexpr std::uint64_t kGustStream = 0x6701;  // of the show's seed
 constexpr double kSlowestGust = 0.05;          // Hz; each wave is some octave above the one before
 constexpr double kScatter = 0.15;              // of the frequencies, so that they have no common period
 
-// A value that follows what is asked for, `from` + `rate` * time, through both lags: first' = (asked - first) / lag, second' = (first -
-// second) / lag. Exact.
+// A value that follows what is asked for, `from` + `rate` * time, through both lags: first' =
+// (asked - first) / lag, second' = (first - second) / lag. Exact.
 struct Followed {
     double asked, first, second;
 

@@ -17,8 +17,9 @@ struct WindWish {
     std::optional<double> direction = std::nullopt;
 };
 
-// The slow come and go of gusts: a sum of waves whose phases come from a random stream of their own. It has neither a beginning nor
-// an end nor a period that anybody could notice. Thread: reentrant.
+// The slow come and go of gusts: a sum of waves whose phases come from a random stream of their
+// own. It has neither a beginning nor an end nor a period that anybody could notice. Thread:
+// reentrant.
 class Gusts {
 public:
     explicit Gusts(std::uint64_t seed);
@@ -35,10 +36,12 @@ private:
     std::array<Wave, 4> waves_;
 };
 
-// The wind on one output from one cue to the next. What is asked for moves linearly in the cue's fade, as levels do; the wind follows it
-// through two lags of half a second each, for air has inertia: neither the wind nor its rate of change ever jumps, not even at a cue
-// without a fade or in the middle of another one. A lag is a weighted mean of what was asked for so far, so the wind never overshoots.
-// A direction is a vector here: from 359 to 1 degrees it hardly moves, and to turn back the wind dies down first. Thread: reentrant.
+// The wind on one output from one cue to the next. What is asked for moves linearly in the cue's
+// fade, as levels do; the wind follows it through two lags of half a second each, for air has
+// inertia: neither the wind nor its rate of change ever jumps, not even at a cue without a fade or
+// in the middle of another one. A lag is a weighted mean of what was asked for so far, so the wind
+// never overshoots. A direction is a vector here: from 359 to 1 degrees it hardly moves, and to
+// turn back the wind dies down first. Thread: reentrant.
 class WindCourse {
 public:
     // As if `wish` had been asked for since ever.

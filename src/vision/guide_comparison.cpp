@@ -14,9 +14,10 @@
 namespace fantascope::vision {
 namespace {
 
-// The low-pass, sigma in canvas heights: that of the pattern's own `tone`. On the default site with a pattern of 400 shapes, the score in
-// place and with the projector turned by half a degree were .060 / .108 at 1/144, .043 / .092 at 1/72, .027 / .074 at 1/36 and
-// .014 / .048 at 1/18: less blur counts the gaps between shapes as faults, more blur hides small moves.
+// The low-pass, sigma in canvas heights: that of the pattern's own `tone`. On the default site with
+// a pattern of 400 shapes, the score in place and with the projector turned by half a degree were
+// .060 / .108 at 1/144, .043 / .092 at 1/72, .027 / .074 at 1/36 and .014 / .048 at 1/18: less blur
+// counts the gaps between shapes as faults, more blur hides small moves.
 constexpr double kBlur = 1.0 / 36;
 constexpr int kRows = 72;                 // cells down the canvas: two a sigma
 constexpr int kPlaces = 3;                // across and down a cell
@@ -26,8 +27,8 @@ constexpr float kFlat = 0.02f;            // a picture that spans less, in linea
 constexpr int kBackgroundTerms = 6;       // 1, x, y, x^2, xy, y^2
 constexpr double kBackgroundCost = 1e-3;  // just enough to give to the picture what could be either
 
-// Where the camera sees one cell of the canvas: some places of it in camera pixels, and how strongly the projector lights it
-// there.
+// Where the camera sees one cell of the canvas: some places of it in camera pixels, and how
+// strongly the projector lights it there.
 struct Cell {
     int column = 0, row = 0;
     std::vector<glm::vec2> places;
@@ -82,9 +83,10 @@ struct Exposure {
     double span = 0;  // of what is seen
 };
 
-// Exposure, fades and the colour of the shapes scale what is seen, and uniform light lifts it. By how much follows from the
-// values alone, wherever they stand: the line through the quantiles of one against those of the other. So a picture in the wrong
-// place is not taken for a faint one in the right place, as the best fit cell by cell would.
+// Exposure, fades and the colour of the shapes scale what is seen, and uniform light lifts it. By
+// how much follows from the values alone, wherever they stand: the line through the quantiles of
+// one against those of the other. So a picture in the wrong place is not taken for a faint one in
+// the right place, as the best fit cell by cell would.
 Exposure exposureOf(std::vector<float> seen, std::vector<float> wanted) {
     std::sort(seen.begin(), seen.end());
     std::sort(wanted.begin(), wanted.end());
@@ -146,8 +148,8 @@ GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wante
     for (const Cell& cell : tables->cells) values.push_back(guide.at(cell.column, cell.row));
     tables->wanted = tables->lowPassed(values);
 
-    // Least squares of the low-passed light on the low-passed guide and on a smooth background: the first column takes the
-    // picture out of the fit.
+    // Least squares of the low-passed light on the low-passed guide and on a smooth background: the
+    // first column takes the picture out of the fit.
     Eigen::MatrixXd terms(count, 1 + kBackgroundTerms);
     for (int i = 0; i < count; ++i) {
         const Cell& cell = tables->cells[static_cast<std::size_t>(i)];
@@ -168,8 +170,8 @@ std::optional<double> GuideComparison::compare(const RgbaImage& frame) const {
     const auto count = static_cast<int>(tables.cells.size());
     if (count < kMostlySeen * tables.shown * tables.grid.x * tables.grid.y) return std::nullopt;
 
-    // The light on every cell, and what of it comes from sky and lamps: each channel for itself, since that has a colour of its
-    // own.
+    // The light on every cell, and what of it comes from sky and lamps: each channel for itself,
+    // since that has a colour of its own.
     std::array<std::vector<float>, 3> light;
     for (const Cell& cell : tables.cells) {
         glm::dvec3 sum(0);
@@ -182,7 +184,8 @@ std::optional<double> GuideComparison::compare(const RgbaImage& frame) const {
         const Eigen::VectorXf share = tables.backgroundOf * Eigen::Map<const Eigen::VectorXf>(smooth.data(), count);
         Eigen::Map<Eigen::VectorXf>(channel.data(), count) -= tables.background * share;
     }
-    // A pixel's value is its brightest channel, so that shapes of any colour count alike; over the projector's own fall-off.
+    // A pixel's value is its brightest channel, so that shapes of any colour count alike; over the
+    // projector's own fall-off.
     std::vector<float> seen;
     for (std::size_t i = 0; i < tables.cells.size(); ++i)
         seen.push_back(std::max({light[0][i], light[1][i], light[2][i]}) / static_cast<float>(tables.cells[i].gain));

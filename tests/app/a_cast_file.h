@@ -1,9 +1,9 @@
 #pragma once
 // A cast written by hand, for what reads casts.
 
-#include "theatre/cast.h"
-#include "theatre/joint.h"
-#include "theatre/posed_body.h"
+#include "theatre/body/joint.h"
+#include "theatre/body/posed_body.h"
+#include "theatre/stage/cast.h"
 
 #include "pictures.h"
 #include "scratch_folder.h"
@@ -16,7 +16,8 @@
 
 namespace fantascope {
 
-// Two people side by side who raise their arms and walk aside, frame by frame; one frame is a still. `stage`: a stage's file in the folder.
+// Two people side by side who raise their arms and walk aside, frame by frame; one frame is a
+// still. `stage`: a stage's file in the folder.
 inline theatre::Cast writeACast(const ScratchFolder& folder, const std::string& name, std::size_t frames,
                                 const std::string& stage = "") {
     EXPECT_TRUE(writePng(folder / "target.png", pictureOf(120, 100, [](int x, int y) { return isIn(x, y, 5, 10, 110, 90); })));

@@ -1,7 +1,8 @@
-// Two projectors side by side on the simulated wall, drawn by the show's own renderer and seen by the camera: what blends are for.
+// Two projectors side by side on the simulated wall, drawn by the show's own renderer and seen by
+// the camera: what blends are for.
 
-#include "app/off_screen.h"
-#include "app/site_models.h"
+#include "app/export/off_screen.h"
+#include "app/site/site_models.h"
 
 #include "scratch_folder.h"
 
@@ -13,7 +14,8 @@
 namespace fantascope::app {
 namespace {
 
-// Pictures of 4 m x 2.25 m, side by side from x = -3.6 m to 3.6 m, overlapping by a fifth of a picture, thrown squarely on a matt wall.
+// Pictures of 4 m x 2.25 m, side by side from x = -3.6 m to 3.6 m, overlapping by a fifth of a
+// picture, thrown squarely on a matt wall.
 constexpr const char* kSite = R"(fantascope: site
 version: 1
 outputs:
@@ -49,7 +51,8 @@ struct Field {
 
 class BlendOnTheWall : public testing::Test {
 protected:
-    // What the camera sees of a canvas of one grey, over all of the wall that is lit but for its rim; linear light.
+    // What the camera sees of a canvas of one grey, over all of the wall that is lit but for its
+    // rim; linear light.
     Field fieldOf(float grey, const std::string& site) {
         const show::Site read = show::readSite(folder_.file("site.yaml", site)).value();
         ManualClock clock;
@@ -93,7 +96,8 @@ TEST_F(BlendOnTheWall, every_grey_is_even_from_one_end_to_the_other_black_includ
     std::printf("at most %.2f %% of full white between the brightest and the darkest place\n", 100 * worst);
 }
 
-// What the technician has to say for it: without the gamma the overlap is off, and without a canvas in common it is twice as bright.
+// What the technician has to say for it: without the gamma the overlap is off, and without a canvas
+// in common it is twice as bright.
 TEST_F(BlendOnTheWall, is_uneven_without_what_it_needs_to_know) {
     const auto without = [](const std::string& what) {
         std::string text = kSite;

@@ -1,6 +1,7 @@
-// A day's worth of plugging: every device of a site goes and comes back a hundred times, in random order, while a show runs.
+// A day's worth of plugging: every device of a site goes and comes back a hundred times, in random
+// order, while a show runs.
 
-#include "app/show_run.h"
+#include "app/live/show_run.h"
 
 #include "core/check.h"
 #include "core/random.h"
@@ -150,7 +151,8 @@ TEST(Plugging, a_hundred_times_each_leaves_nothing_over_and_the_show_goes_on) {
 
     EXPECT_EQ(day.faults, 2 * kTimes * kDevices.size()) << "each going and each coming";
     EXPECT_EQ(day.cues, 2u) << "the hand got through between its own losses";
-    // An absence, shorter than a refresh, costs the one that it falls on and the one until which the display is back.
+    // An absence, shorter than a refresh, costs the one that it falls on and the one until which
+    // the display is back.
     constexpr double kRefreshes = 30 * (2 + kApart * static_cast<double>(kTimes * kDevices.size()));
     for (const double share : day.shown) EXPECT_GE(share, 1 - 2 * static_cast<double>(kTimes) / kRefreshes);
     EXPECT_EQ(day.evening.files, day.noon.files);

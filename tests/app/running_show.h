@@ -1,7 +1,8 @@
 #pragma once
-// The default show on the simulated default site, its devices open, on a clock that stands still: what the tests of a run's parts need.
+// The default show on the simulated default site, its devices open, on a clock that stands still:
+// what the tests of a run's parts need.
 
-#include "app/devices.h"
+#include "app/site/devices.h"
 #include "drivers/site/world.h"
 
 #include "show/input_log.h"

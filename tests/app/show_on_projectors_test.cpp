@@ -1,7 +1,7 @@
-// The show on a real X server with three projectors: what each of them is sent, read back from the screen, while somebody switches one off
-// and on and changes two cables over.
+// The show on a real X server with three projectors: what each of them is sent, read back from the
+// screen, while somebody switches one off and on and changes two cables over.
 
-#include "app/frame_loop.h"
+#include "app/live/frame_loop.h"
 #include "app/three_outputs.h"
 
 #include "render/golden.h"
@@ -68,7 +68,8 @@ protected:
         return edidBlock({.serial = std::string(1, static_cast<char>('A' + projector))});
     }
     void frame() { loop_->step(); }
-    // Frames until it is so; what happens to a projector travels by the X server. An absurd number of frames: it will never be.
+    // Frames until it is so; what happens to a projector travels by the X server. An absurd number
+    // of frames: it will never be.
     bool framesUntil(const std::function<bool()>& so) {
         for (int frames = 0; frames < 5'000 && !so(); ++frames) frame();
         return so();
@@ -97,8 +98,9 @@ protected:
             }
         return image;
     }
-    // Every projector throws the picture of its output, whatever connector it hangs on. Nothing in the cue moves, since how many frames
-    // it takes until the X server has told of a cable is nobody's to say.
+    // Every projector throws the picture of its output, whatever connector it hangs on. Nothing in
+    // the cue moves, since how many frames it takes until the X server has told of a cable is
+    // nobody's to say.
     void expectGolden(const std::array<int, 3>& connectors) {
         frame();
         for (std::size_t i = 0; i < 3; ++i)

@@ -1,9 +1,9 @@
 // A show with an image, a video and the camera, as a person runs it.
 
-#include "app/programme.h"
+#include "app/live/programme.h"
 #include "app/video_reader.h"
 
-#include "core/image.h"
+#include "media/image.h"
 #include "program.h"
 #include "scratch_folder.h"
 #include "test_video.h"
@@ -75,7 +75,8 @@ TEST_F(ShowWithPictures, counts_the_damaged_frames_of_a_video) {
     EXPECT_EQ(damagedIn("3.9"), 2 * once);
 }
 
-// A cue alone lasts one loop of its video, and canvas and rate are the video's where they are asked for.
+// A cue alone lasts one loop of its video, and canvas and rate are the video's where they are asked
+// for.
 TEST_F(ShowWithPictures, is_exported_frame_by_frame) {
     const Outcome done = run({"export", ".", "--output", "left", "--cue", "Wet", "--canvas", "--fps", "25", "--size", "128x72",
                               "-o", "a.mkv", "--alpha", "none"});
@@ -98,7 +99,8 @@ TEST_F(ShowWithPictures, says_where_in_the_show_a_broken_file_is_named) {
     EXPECT_THAT(done.errors, HasSubstr("rain.mp4: not a video that can be read, or a truncated one"));
 }
 
-// What the camera saw a moment before is on the wall: the left output, dark but for the camera's picture.
+// What the camera saw a moment before is on the wall: the left output, dark but for the camera's
+// picture.
 TEST_F(ShowWithPictures, shows_what_the_camera_sees) {
     const Outcome done = run({"rehearse", ".", "--seconds", "2", "--from", "Seen", "--as-fast-as-possible", "--record", "seen"});
     ASSERT_THAT(done, exits(0));

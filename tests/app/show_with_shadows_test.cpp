@@ -1,13 +1,13 @@
 // A show with shadow theatre, from the drawing to the wall, as a person makes it.
 
-#include "app/cast_scene.h"
+#include "app/export/cast_scene.h"
 
-#include "theatre/cast.h"
-#include "theatre/pose_search.h"
-#include "theatre/silhouette_sequence.h"
+#include "theatre/deform/silhouette_sequence.h"
+#include "theatre/search/pose_search.h"
+#include "theatre/stage/cast.h"
 
 #include "core/file.h"
-#include "core/image.h"
+#include "media/image.h"
 #include "pictures.h"
 #include "program.h"
 #include "scratch_folder.h"
@@ -124,7 +124,8 @@ TEST_F(ShowWithShadows, says_what_cannot_be_played) {
     EXPECT_THAT(refusal("bar.cast.yaml"), HasSubstr("bar.png"));
 }
 
-// The menagerie's casts as they lie in its folder: people can hold every frame, it reads as the drawing, and nobody slides or leaps.
+// The menagerie's casts as they lie in its folder: people can hold every frame, it reads as the
+// drawing, and nobody slides or leaps.
 TEST(Menagerie, is_played_by_people_who_can_do_it) {
     const fs::path folder = sourceFolder() + "/shows/menagerie";
     for (const char* name : {"rabbit", "elephant", "car"}) {

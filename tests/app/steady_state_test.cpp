@@ -1,10 +1,13 @@
-// What a frame of a running show may not do, held by counting it: three outputs, every kind of source, every blend.
+// What a frame of a running show may not do, held by counting it: three outputs, every kind of
+// source, every blend.
 //
-// The steps of the frame loop run here with llvmpipe's rasteriser on the render thread, so that a wait for another thread of OpenGL's does
-// not hide one of ours, and on a clock that is moved by whoever sleeps on it: what waits then waits for something else than a refresh.
-// Not held: what a graphics card's driver does, what the X server does with a window, and C libraries' use of malloc (`new` alone is seen).
+// The steps of the frame loop run here with llvmpipe's rasteriser on the render thread, so that a
+// wait for another thread of OpenGL's does not hide one of ours, and on a clock that is moved by
+// whoever sleeps on it: what waits then waits for something else than a refresh. Not held: what a
+// graphics card's driver does, what the X server does with a window, and C libraries' use of malloc
+// (`new` alone is seen).
 
-#include "app/frame_loop.h"
+#include "app/live/frame_loop.h"
 #include "app/three_outputs.h"
 #include "drivers/site/world.h"
 
@@ -60,7 +63,8 @@ protected:
                 const Counts before = now();
                 loop_->step();
                 const Counts after = now();
-                // An input is remembered for the night, so that the frame that takes one may need room for it.
+                // An input is remembered for the night, so that the frame that takes one may need
+                // room for it.
                 if (frame > 0) sum.allocations += after.allocations - before.allocations;
                 sum.programs += after.programs - before.programs;
                 sum.objects += after.objects - before.objects;

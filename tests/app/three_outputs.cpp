@@ -1,8 +1,8 @@
 #include "app/three_outputs.h"
 
 #include "render/scene.h"
-#include "theatre/cast.h"
-#include "theatre/surroundings.h"
+#include "theatre/stage/cast.h"
+#include "theatre/stage/surroundings.h"
 
 #include "core/check.h"
 #include "test_video.h"

@@ -1,11 +1,12 @@
 #pragma once
-// A site of three projectors, no two alike, and a show with every kind of source and blend: what holds of these holds of any show.
+// A site of three projectors, no two alike, and a show with every kind of source and blend: what
+// holds of these holds of any show.
 
-#include "render/picture_source.h"
+#include "render/source/picture_source.h"
 #include "show/cue_list.h"
 #include "show/site.h"
 
-#include "core/image.h"
+#include "media/image.h"
 #include "scratch_folder.h"
 
 #include <glm/vec2.hpp>

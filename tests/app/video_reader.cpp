@@ -1,7 +1,7 @@
 #include "app/video_reader.h"
 
 #include "core/check.h"
-#include "core/padded_rows.h"
+#include "media/padded_rows.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/image.h"
+#include "media/image.h"
 
 #include <filesystem>
 #include <string>

@@ -19,7 +19,8 @@ public:
     virtual Bytes farReceives() = 0;
 };
 
-// Every byte there is, `times` times over, so that no value is special and every position is told from its neighbours.
+// Every byte there is, `times` times over, so that no value is special and every position is told
+// from its neighbours.
 inline Bytes everyByte(std::size_t times = 1) {
     Bytes bytes(256 * times);
     std::iota(bytes.begin(), bytes.end(), std::uint8_t{0});

@@ -32,7 +32,8 @@ private:
     std::unique_ptr<ByteStream> farEnd_;
 };
 
-// Its script says nothing: whatever comes is taken, and what it sends is an exchange in which nothing is expected.
+// Its script says nothing: whatever comes is taken, and what it sends is an exchange in which
+// nothing is expected.
 class ScriptedRig final : public SimulatedRig<ByteStreamRig> {
 public:
     ScriptedRig() : SimulatedRig("line", {}) { reopen(); }

@@ -1,7 +1,7 @@
 #pragma once
-// A contract suite is the list of what a port promises, one clause a promise, in terms of a rig: the port under test and its far
-// end (what the wire carries, how to unplug it and plug it in again, how to let time pass). The same suite runs on every backend
-// of the port.
+// A contract suite is the list of what a port promises, one clause a promise, in terms of a rig:
+// the port under test and its far end (what the wire carries, how to unplug it and plug it in
+// again, how to let time pass). The same suite runs on every backend of the port.
 
 #include <functional>
 #include <memory>
@@ -42,7 +42,8 @@ inline void PrintTo(const Violation& violation, std::ostream* out) {
     *out << "\"" << violation.clause << "\": " << violation.what;
 }
 
-// EXPECT_THAT(clausesOf(violations(suite, makeBrokenRig)), ElementsAre("...")) for a backend that breaks a promise.
+// EXPECT_THAT(clausesOf(violations(suite, makeBrokenRig)), ElementsAre("...")) for a backend that
+// breaks a promise.
 inline std::vector<std::string> clausesOf(const std::vector<Violation>& violations) {
     std::vector<std::string> names;
     for (const Violation& violation : violations) names.push_back(violation.clause);

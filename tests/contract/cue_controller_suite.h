@@ -12,12 +12,14 @@ namespace fantascope::contract {
 
 class CueControllerRig : public Rig<CueController> {
 public:
-    // A button goes down or up under the operator's finger; a button that is down already repeats itself as a held key does.
+    // A button goes down or up under the operator's finger; a button that is down already repeats
+    // itself as a held key does.
     virtual void finger(int button, bool down) = 0;
 
     // Closes the port, and nobody opens it again.
     virtual void close() = 0;
-    // What the button's lamp or picture shows now, as the operator sees it. For a device with lamps on buttons 1 to 3.
+    // What the button's lamp or picture shows now, as the operator sees it. For a device with lamps
+    // on buttons 1 to 3.
     virtual ButtonLight::State shown(int button) = 0;
     // A button that the device does not have.
     virtual int absentButton() const = 0;

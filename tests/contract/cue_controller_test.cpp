@@ -71,7 +71,8 @@ class PressesAtItsReturn : public BetweenControllers {
     }
     int seen_ = 0;
 };
-// Example failure: the kernel's autodetection of a keyboard looks like a GO, in the middle of the show.
+// Example failure: the kernel's autodetection of a keyboard looks like a GO, in the middle of the
+// show.
 TEST(CueControllerContract, finds_a_controller_that_presses_when_it_is_plugged_in) {
     EXPECT_THAT(brokenBy<PressesAtItsReturn>(),
                 testing::Contains("unplugging and plugging in make no press, and what was pressed meanwhile stays lost"));

@@ -15,8 +15,8 @@
 
 namespace fantascope::contract {
 
-// A display that was asked to be kSize large and kRefreshRate fast, on a clock that stands still unless somebody moves it, so
-// that whoever waits is found out.
+// A display that was asked to be kSize large and kRefreshRate fast, on a clock that stands still
+// unless somebody moves it, so that whoever waits is found out.
 class DisplaySinkRig : public Rig<DisplaySink> {
 public:
     static constexpr glm::ivec2 kSize{64, 36};
@@ -25,7 +25,8 @@ public:
     virtual ManualClock& manualClock() = 0;
     // Another output of the same kind on the same thread.
     virtual DisplaySink& otherOutput() = 0;
-    // Takes away what its context was made on, which a new one can be made on after kRetry. False: nothing can.
+    // Takes away what its context was made on, which a new one can be made on after kRetry. False:
+    // nothing can.
     static constexpr Time kRetry = std::chrono::seconds(1);
     virtual bool loseContext() { return false; }
 };
@@ -88,7 +89,8 @@ inline Suite<DisplaySinkRig> displaySinkSuite() {
                  fill(rig.port(), 0.5f);
                  const glm::ivec2 last = DisplaySinkRig::kSize - 1;
                  for (const glm::ivec2 pixel : {glm::ivec2(0), last}) {
-                     // Half of the light is stored as 188 (IEC 61966-2-1); a framebuffer of linear values stores 128.
+                     // Half of the light is stored as 188 (IEC 61966-2-1); a framebuffer of linear
+                     // values stores 128.
                      const int stored = storedRed(rig.port(), pixel.x, pixel.y);
                      CONTRACT_REQUIRE(stored == 188, "half of the light is stored as {} at {}, {}", stored, pixel.x, pixel.y);
                  }

@@ -19,7 +19,8 @@ public:
     virtual std::optional<DmxFrame> lastFrame() = 0;
 };
 
-// A frame in which every slot differs from its neighbours, and any two of which differ in every slot.
+// A frame in which every slot differs from its neighbours, and any two of which differ in every
+// slot.
 inline DmxFrame dmxFrame(int number) {
     DmxFrame frame;
     for (std::size_t slot = 0; slot < frame.size(); ++slot)

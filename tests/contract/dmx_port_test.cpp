@@ -37,7 +37,8 @@ TEST(DmxPortContract, is_kept_by_the_simulated_port) {
     EXPECT_THAT(violations(dmxPortSuite(), [] { return std::make_unique<SimulatedDmxPortRig>(); }), IsEmpty());
 }
 
-// The suite is worth something only if it finds the port that breaks a promise, and names that promise.
+// The suite is worth something only if it finds the port that breaks a promise, and names that
+// promise.
 class KeepsTheUnsentFrame : public Between<DmxPort> {
     using Between::Between;
     Result<void> send(std::span<const std::uint8_t, kDmxSlots> slots) override {

@@ -13,7 +13,8 @@ namespace fantascope::contract {
 
 class DmxSourceRig : public Rig<DmxSource> {
 public:
-    // Somebody's desk sends a frame whose slots are all `level`; `priority` only where the protocol has it.
+    // Somebody's desk sends a frame whose slots are all `level`; `priority` only where the protocol
+    // has it.
     virtual void deskSends(const std::string& source, int level, int priority = 100) = 0;
     // It says goodbye. False: the protocol knows none.
     virtual bool deskSaysGoodbye(const std::string& source) = 0;

@@ -1,5 +1,5 @@
-// Projectors bound by identity, on a real X server with several outputs: what a display driver sees of a night on which somebody pulls
-// cables, changes them over and switches projectors off.
+// Projectors bound by identity, on a real X server with several outputs: what a display driver sees
+// of a night on which somebody pulls cables, changes them over and switches projectors off.
 
 #include "drivers/display/glfw.h"
 #include "drivers/registry.h"
@@ -68,7 +68,8 @@ protected:
     }
     Output& openSerial(const std::string& serial) { return open(serial, "monitor: {serial: " + serial + "}"); }
 
-    // Picture number `picture` has cells of 20 x 20 pixels that are all different, and different in every picture.
+    // Picture number `picture` has cells of 20 x 20 pixels that are all different, and different in
+    // every picture.
     static Pixel colourOf(int picture, glm::ivec2 cell) {
         return {static_cast<std::uint8_t>(picture * 50 + cell.y), static_cast<std::uint8_t>(cell.x * 7),
                 static_cast<std::uint8_t>(255 - cell.y * 11)};
@@ -90,7 +91,8 @@ protected:
         glDisable(GL_SCISSOR_TEST);
     }
 
-    // A frame on every output that is there, as the frame loop makes one: the first leads, the others show with it.
+    // A frame on every output that is there, as the frame loop makes one: the first leads, the
+    // others show with it.
     void frame() {
         std::vector<Output*> drawn;
         for (Output& output : outputs_)
@@ -107,7 +109,8 @@ protected:
             leading = shown->at;
         }
     }
-    // Frames until it is so; what happens to a projector travels by the X server. An absurd number of frames: it will never be.
+    // Frames until it is so; what happens to a projector travels by the X server. An absurd number
+    // of frames: it will never be.
     bool framesUntil(const std::function<bool()>& so) {
         for (int frames = 0; frames < 5'000; ++frames) {
             if (so()) return true;
@@ -118,7 +121,8 @@ protected:
     static bool runs(const Output& output) { return output.sink->status().state == DeviceState::Running; }
     static std::string detailOf(const Output& output) { return output.sink->status().detail; }
 
-    // What is wrong on the screen, where these pictures should be in these areas: the first wrong pixel, or "".
+    // What is wrong on the screen, where these pictures should be in these areas: the first wrong
+    // pixel, or "".
     std::string wrongPixel(const std::map<int, glm::ivec2>& cornersOfPictures, glm::ivec2 size = kSize) {
         const auto rows = projectors_->server().rows();
         for (const auto& [picture, corner] : cornersOfPictures)
@@ -166,7 +170,8 @@ TEST_F(FullscreenOutputs, that_show_the_same_are_taken_apart) {
     EXPECT_EQ(wrongPixel({{1, cornerOf("DUMMY0")}, {2, cornerOf("DUMMY1")}, {3, cornerOf("DUMMY2")}}), "");
 }
 
-// A desktop may have arranged them well, and each change of a mode makes a projector dark for seconds.
+// A desktop may have arranged them well, and each change of a mode makes a projector dark for
+// seconds.
 TEST_F(FullscreenOutputs, that_are_on_already_stay_where_they_are) {
     hang();
     projectors_->switchOn("DUMMY2", {0, 200});
@@ -209,7 +214,8 @@ TEST_F(FullscreenOutputs, go_on_when_another_is_switched_off_and_have_it_back_wh
         EXPECT_EQ(lost->frames, framesOfLost);
         EXPECT_EQ(projectors_->picture(connector), std::nullopt) << "whoever switched it off wanted it";
 
-        // Somebody switches it on as the projector likes best; it gets its mode and its place again.
+        // Somebody switches it on as the projector likes best; it gets its mode and its place
+        // again.
         projectors_->switchOn(connector, {0, 300}, Projectors::kLarge);
         ASSERT_TRUE(framesUntil([&] { return runs(*lost); })) << detailOf(*lost);
         frame();

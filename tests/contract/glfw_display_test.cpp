@@ -53,8 +53,9 @@ protected:
     ManualClock clock_;
 };
 
-// All 256 stored values, in the picture's top row alone, so that a picture upside down is found out. A conversion there and back on
-// the way to the window would move some by one, a single one nearly all.
+// All 256 stored values, in the picture's top row alone, so that a picture upside down is found
+// out. A conversion there and back on the way to the window would move some by one, a single one
+// nearly all.
 TEST_F(GlfwDisplay, fills_its_monitor_with_the_stored_values) {
     const auto sink = open("{driver: glfw, monitor: screen}", {1280, 720}, clock_);
     ASSERT_TRUE(sink->makeCurrent()) << sink->status().detail;
@@ -92,7 +93,8 @@ TEST_F(GlfwDisplay, is_absent_on_a_monitor_without_a_mode_of_its_size) {
     EXPECT_THAT(sink->status().detail, HasSubstr("no mode of 1000 x 700"));
 }
 
-// Nobody could see both otherwise: where no window manager places them, two windows would lie on each other.
+// Nobody could see both otherwise: where no window manager places them, two windows would lie on
+// each other.
 TEST_F(GlfwDisplay, stands_beside_the_windows_before_it) {
     const auto left = open("{driver: glfw}", {640, 36}, clock_), right = open("{driver: glfw}", {640, 36}, clock_),
                below = open("{driver: glfw}", {64, 20}, clock_);
@@ -119,7 +121,8 @@ TEST_F(GlfwDisplay, stays_closed_when_somebody_closes_its_window) {
     ASSERT_TRUE(sink->present());
     ASSERT_TRUE(server_->hasWindow("left"));
     server_->closeWindow("left");
-    // The request travels by the server: some frame's events tell of it, the next one's or a later one's.
+    // The request travels by the server: some frame's events tell of it, the next one's or a later
+    // one's.
     for (int frame = 0; frame < 100'000 && sink->presentWith(clock_.now()); ++frame) {
     }
     for (int second = 0; second < 3; ++second) {
@@ -133,7 +136,8 @@ TEST_F(GlfwDisplay, stays_closed_when_somebody_closes_its_window) {
     EXPECT_FALSE(server_->hasWindow("left"));
 }
 
-// A technician's keyboard at the output itself. A key comes by the server: some frame's events tell of it.
+// A technician's keyboard at the output itself. A key comes by the server: some frame's events tell
+// of it.
 TEST_F(GlfwDisplay, hears_the_keys_that_are_pressed_at_it) {
     const auto sink = open("{driver: glfw}", {64, 36}, clock_);
     ASSERT_TRUE(sink->present());
@@ -195,7 +199,8 @@ void comesBack(DisplaySink& sink, ManualClock& clock) {
     });
 }
 
-// Example failure: Xlib ends the program; or a display, a window and a thread more are left each time.
+// Example failure: Xlib ends the program; or a display, a window and a thread more are left each
+// time.
 TEST_F(GlfwDisplay, outlives_twenty_x_servers_and_leaves_nothing_of_them) {
     const auto window = open("{driver: glfw}", {64, 36}, clock_),
                monitor = open("{driver: glfw, monitor: screen}", {1280, 720}, clock_);
@@ -228,7 +233,8 @@ TEST_F(GlfwDisplay, outlives_twenty_x_servers_and_leaves_nothing_of_them) {
     EXPECT_EQ(entriesIn("/proc/self/task"), threads);
 }
 
-// Example failure: BadWindow, for which Xlib ends the program; or the picture is away and its status says Running.
+// Example failure: BadWindow, for which Xlib ends the program; or the picture is away and its
+// status says Running.
 TEST_F(GlfwDisplay, makes_its_window_again_that_another_program_has_destroyed) {
     const auto sink = open("{driver: glfw}", {64, 36}, clock_);
     ASSERT_TRUE(shows(*sink, 1));
@@ -260,7 +266,8 @@ TEST_F(GlfwDisplay, stays_closed_on_the_next_x_server) {
     EXPECT_TRUE(other->poll()) << "the closed one keeps nothing that others need: " << other->status().detail;
 }
 
-// A hung graphics card. Example failure: who asks for the status waits for the render thread, which waits for the X server.
+// A hung graphics card. Example failure: who asks for the status waits for the render thread, which
+// waits for the X server.
 TEST_F(GlfwDisplay, tells_its_status_while_the_x_server_hangs_and_goes_on_with_it) {
     const auto sink = open("{driver: glfw}", {64, 36}, clock_);
     ASSERT_TRUE(shows(*sink, 1));
@@ -276,7 +283,8 @@ TEST_F(GlfwDisplay, tells_its_status_while_the_x_server_hangs_and_goes_on_with_i
     EXPECT_EQ(sink->status().losses, 0);
 }
 
-// An X server that ends after so many bytes of what it is asked: while GLFW starts, while a window is made, in a frame, anywhere.
+// An X server that ends after so many bytes of what it is asked: while GLFW starts, while a window
+// is made, in a frame, anywhere.
 class MortalXServer {
 public:
     explicit MortalXServer(const std::string& real) {

@@ -106,8 +106,9 @@ public:
                 "\nP: {0}\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber={1:02x}\\n\n"
                 "\nP: {2}\nE: SUBSYSTEM=hid\nH: report_descriptor={3}\n",
                 interfaceFolder(i).substr(4), i, hidFolder(i).substr(4), hex(device_.reportDescriptors[i]));
-        // libusb may open the device before its event: a late event of the same port is enough. So its file and its handler come first. If
-        // open() failed, umockdev would keep the descriptor -1, and a read() of -1 on umockdev's own thread would wait for itself.
+        // libusb may open the device before its event: a late event of the same port is enough. So
+        // its file and its handler come first. If open() failed, umockdev would keep the descriptor
+        // -1, and a read() of -1 on umockdev's own thread would wait for itself.
         FANTASCOPE_CHECK(mkfifo(file().c_str(), 0600) == 0, "no pipe");
         pipe_ = ::open(file().c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
         // usbfs says by POLLOUT that an answer can be fetched; a pipe says so unless it is full.

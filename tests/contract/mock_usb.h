@@ -1,6 +1,6 @@
 #pragma once
-// USB devices that are not there: umockdev shows libusb their entries under /sys, their files and their coming and going; what the kernel's
-// usbfs would do with them is done here.
+// USB devices that are not there: umockdev shows libusb their entries under /sys, their files and
+// their coming and going; what the kernel's usbfs would do with them is done here.
 
 #include "mock_machine.h"
 
@@ -19,7 +19,8 @@ struct MockUsbDevice {
     // A HID interface with an interrupt endpoint for each, and the kernel's driver on it.
     std::vector<std::vector<std::uint8_t>> reportDescriptors;
     bool tellsState = true;  // false: GET_REPORT stalls
-    // Each interface has an interrupt endpoint for reports to it too; else they come over the control pipe.
+    // Each interface has an interrupt endpoint for reports to it too; else they come over the
+    // control pipe.
     bool hasOutEndpoints = false;
 };
 
@@ -32,7 +33,8 @@ struct MockUsbReport {
     std::vector<std::uint8_t> bytes;
 };
 
-// The program must run under umockdev's preloaded library, see mock_machine.h. One on a machine. Thread: thread-safe.
+// The program must run under umockdev's preloaded library, see mock_machine.h. One on a machine.
+// Thread: thread-safe.
 class MockUsb {
 public:
     explicit MockUsb(MockMachine& machine);  // which outlives it
@@ -43,17 +45,21 @@ public:
     void plug(const MockUsbDevice& device);
     void unplug(const std::string& path);
 
-    // The device has a report to tell; it waits for who listens. Nothing where nothing is plugged in.
+    // The device has a report to tell; it waits for who listens. Nothing where nothing is plugged
+    // in.
     void report(const std::string& path, int interface, const std::vector<std::uint8_t>& bytes);
-    // The same, in the moment in which the next transfer that waits for one is cancelled: too late for that.
+    // The same, in the moment in which the next transfer that waits for one is cancelled: too late
+    // for that.
     void reportAtCancel(const std::string& path, int interface, const std::vector<std::uint8_t>& bytes);
-    // What GET_REPORT answers from now on, also after it is plugged in again; with its id, if it has one.
+    // What GET_REPORT answers from now on, also after it is plugged in again; with its id, if it
+    // has one.
     void setState(const std::string& path, int interface, const std::vector<std::uint8_t>& bytes);
     // The next reports of the interface stall its endpoint, or come with an error.
     void stall(const std::string& path, int interface);
     void fail(const std::string& path, int interface);
 
-    // What the device was sent since it was last plugged in, also after it was unplugged; oldest first.
+    // What the device was sent since it was last plugged in, also after it was unplugged; oldest
+    // first.
     std::vector<MockUsbReport> sent(const std::string& path) const;
     // What it is sent waits from now on, or is answered: taken, or with a stall.
     enum class Taking { All, Nothing, Stalls };

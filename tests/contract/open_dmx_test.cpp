@@ -1,4 +1,5 @@
-// Over a pseudo-terminal, which knows no break and no rate: what is tested is what is between the breaks, and that the driver lives.
+// Over a pseudo-terminal, which knows no break and no rate: what is tested is what is between the
+// breaks, and that the driver lives.
 
 #include "contract/serial_dmx_rig.h"
 

@@ -32,7 +32,8 @@ protected:
     std::unique_ptr<drivers::PictureWindow> window_;
 };
 
-// White at the top, grey below, in the middle of a window that is wider. Example failure: upside down, or stretched.
+// White at the top, grey below, in the middle of a window that is wider. Example failure: upside
+// down, or stretched.
 TEST_F(PictureWindow, shows_a_picture_upright_between_black_bars) {
     GreyImage picture(72, 72, 0.4f);
     for (int y = 0; y < 36; ++y)

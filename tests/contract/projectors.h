@@ -17,8 +17,9 @@ struct xcb_connection_t;
 
 namespace fantascope {
 
-// Xorg with its dummy driver, which really sets modes, on no card: connectors DUMMY0 to DUMMY15, of which DUMMY0 is on at the start.
-// A connector has a projector from the first time on that it is on, and for ever; that somebody pulls it is seen by its EDID.
+// Xorg with its dummy driver, which really sets modes, on no card: connectors DUMMY0 to DUMMY15, of
+// which DUMMY0 is on at the start. A connector has a projector from the first time on that it is
+// on, and for ever; that somebody pulls it is seen by its EDID.
 class Projectors {
 public:
     static constexpr glm::ivec2 kSize{320, 180};
@@ -33,7 +34,8 @@ public:
     // The X server crashes, and another one starts on the same display: as at the start.
     void crash();
     void startAgain();
-    // Puts a projector with such an EDID on a connector that was on before, or, without bytes, one that tells nothing.
+    // Puts a projector with such an EDID on a connector that was on before, or, without bytes, one
+    // that tells nothing.
     void plug(const std::string& connector, std::span<const std::uint8_t> edid);
     enum class Looks { Before, AndAfter };  // when it makes the X server look at its connectors, as the command `xrandr` does
     void switchOn(const std::string& connector, glm::ivec2 corner, glm::ivec2 size = kSize, double hertz = 60,

@@ -109,7 +109,8 @@ class DoesNotLookAtItsRelays : public AlmostGood {
     DeviceStatus status() const override {
         const std::lock_guard lock(mutex_);
         DeviceStatus status = good_->status();
-        // What the plug does leaves the relays safe; anything else that the good bank noticed was a hand.
+        // What the plug does leaves the relays safe; anything else that the good bank noticed was a
+        // hand.
         const bool byHand = around_.world->relays("road") != RelayBankRig::kSafe;
         if (const int more = status.losses - std::exchange(seen_, status.losses); !byHand) counted_ += more;
         status.losses = counted_;

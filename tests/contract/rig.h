@@ -14,7 +14,8 @@
 #include <type_traits>
 #include <vector>
 
-// In a clause: unless the condition holds, the clause is violated, and the rest tells what was seen.
+// In a clause: unless the condition holds, the clause is violated, and the rest tells what was
+// seen.
 #define CONTRACT_REQUIRE(condition, ...)                   \
     do {                                                   \
         if (!(condition)) return fmt::format(__VA_ARGS__); \
@@ -39,7 +40,8 @@ public:
     virtual void reopen() = 0;
     virtual void unplug() = 0;
     virtual void plugIn() = 0;
-    // Lets as much time pass as the port and its line may need to notice what happened and to carry what is on its way.
+    // Lets as much time pass as the port and its line may need to notice what happened and to carry
+    // what is on its way.
     virtual void letTimePass() = 0;
     // The clock that open() was handed.
     virtual Clock& clock() = 0;
@@ -132,7 +134,8 @@ Suite<AnyRig> lifeClauses(const std::function<std::string(AnyRig&)>& serves) {
     };
 }
 
-// Everything that a poll() or a receive() has to give. A port that never ends is stopped at an absurd number.
+// Everything that a poll() or a receive() has to give. A port that never ends is stopped at an
+// absurd number.
 template <class Next>
 auto drained(Next next) {
     std::vector<typename std::invoke_result_t<Next>::value_type> all;

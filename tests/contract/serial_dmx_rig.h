@@ -39,7 +39,8 @@ private:
     bool& sent_;
 };
 
-// A socket is like Socket. Its far end has out(), the frame that its lamps are given, and framesOut(), how many it was sent.
+// A socket is like Socket. Its far end has out(), the frame that its lamps are given, and
+// framesOut(), how many it was sent.
 template <class AnySocket>
 class SerialDmxPortRig final : public DmxPortRig {
 public:

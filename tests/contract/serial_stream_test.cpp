@@ -69,7 +69,8 @@ public:
         letTimePass();
     }
     void unplug() override {
-        // What arrived before the loss has been read by then: the kernel forgets what nobody read in time.
+        // What arrived before the loss has been read by then: the kernel forgets what nobody read
+        // in time.
         eventually("what was sent is read", [&] { return !runs(*port_) || adapter_.line().hasBeenRead(); });
         adapter_.unplug();
     }

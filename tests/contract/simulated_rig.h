@@ -36,7 +36,8 @@ std::unique_ptr<Port> wrappedIn(std::unique_ptr<Port> good, const drivers::Surro
     return std::make_unique<Broken>(std::move(good), around);
 }
 
-// A rig of the simulated site. A subclass opens the port in its constructor's end by reopen() and reaches the far end in world_.
+// A rig of the simulated site. A subclass opens the port in its constructor's end by reopen() and
+// reaches the far end in world_.
 template <class PortRig>
 class SimulatedRig : public PortRig {
 public:

@@ -154,7 +154,8 @@ Kind lampless(bool tellsState) {
 
 using enum ButtonLight::State;
 
-// P.I. Engineering's data report of the XK-24: bytes 2 to 5 are its columns of six; command 181 lights index 0 to 29 blue, 32 to 61 red.
+// P.I. Engineering's data report of the XK-24: bytes 2 to 5 are its columns of six; command 181
+// lights index 0 to 29 blue, 32 to 61 red.
 Kind xkeys(bool hasOutEndpoint) {
     Kind kind;
     kind.device.vendor = 0x05f3;
@@ -179,7 +180,8 @@ Kind xkeys(bool hasOutEndpoint) {
     return kind;
 }
 
-// The pictures of a Stream Deck, by their colour at the edge; https://docs.elgato.com/streamdeck/hid.
+// The pictures of a Stream Deck, by their colour at the edge;
+// https://docs.elgato.com/streamdeck/hid.
 Kind streamDeck() {
     Kind kind;
     kind.device.vendor = 0x0fd9;
@@ -293,7 +295,8 @@ TEST_F(UsbHidTest, takes_every_interface_from_the_kernel_and_gives_it_back) {
     for (int interface = 0; interface < 3; ++interface) EXPECT_TRUE(usb_.kernelHas("1-1", interface));
 }
 
-// Example failure: somebody sat on the clicker before the doors opened; the report of it waits in the device, and the show begins with a GO.
+// Example failure: somebody sat on the clicker before the doors opened; the report of it waits in
+// the device, and the show begins with a GO.
 TEST_F(UsbHidTest, a_report_from_before_is_no_press) {
     MockUsbDevice device = eightButtons("1-1", "P");
     device.tellsState = false;
@@ -433,7 +436,8 @@ TEST_F(UsbHidTest, says_how_bright_a_key_pad_is_in_a_feature_report) {
     EXPECT_EQ(sent[1].bytes, brightness);
 }
 
-// Example failure: the operator presses GO while the pad chews on its pictures, and nothing happens.
+// Example failure: the operator presses GO while the pad chews on its pictures, and nothing
+// happens.
 TEST_F(UsbHidTest, a_device_that_takes_no_lights_for_a_while_serves_and_shows_the_newest_then) {
     const Kind kind = xkeys(true);
     usb_.plug(kind.device);

@@ -1,4 +1,5 @@
-// Widgets told apart by what they say of themselves, on a machine of umockdev's: its /sys lists them as the kernel does.
+// Widgets told apart by what they say of themselves, on a machine of umockdev's: its /sys lists
+// them as the kernel does.
 
 #include "drivers/byte_stream/serial.h"
 #include "drivers/dmx/widget_search.h"
@@ -49,14 +50,14 @@ struct Answering {
     int file = -1;
 };
 
-// Asks the kernel past umockdev, which may take the number of this file for that of a line that a driver has just closed, and then passes the
-// question to the very thread that asks.
+// Asks the kernel past umockdev, which may take the number of this file for that of a line that a
+// driver has just closed, and then passes the question to the very thread that asks.
 int askKernel(int file, unsigned long request, void* argument) {
     return static_cast<int>(syscall(SYS_ioctl, file, request, argument));
 }
 
-// What a program asks of a line's file passes through umockdev, on a thread of its own, also once the line has gone. In the manner of a
-// GLib signal.
+// What a program asks of a line's file passes through umockdev, on a thread of its own, also once
+// the line has gone. In the manner of a GLib signal.
 gboolean passOn(UMockdevIoctlBase*, UMockdevIoctlClient* client, void* answering) {
     auto& [mutex, file] = *static_cast<Answering*>(answering);
     const std::lock_guard lock(mutex);
@@ -136,8 +137,8 @@ private:
         Answering* answering = nullptr;
         std::vector<std::string> folders;
     };
-    // Who asks a line that has just gone is answered too: else it would wait for ever. So nobody is taken away sooner than another
-    // comes, or all ends.
+    // Who asks a line that has just gone is answered too: else it would wait for ever. So nobody is
+    // taken away sooner than another comes, or all ends.
     void hush(const std::string& file) {
         const auto answers = answers_.find(file);
         if (answers == answers_.end()) return;
@@ -275,7 +276,8 @@ std::string claimOfRelaysOn(const std::string& usb) {
     return drivers::readRelayBank(node, "relays", {true}).value().claim();
 }
 
-// Example failure: with several fitting adapters nothing was claimed, and a second run took the first one's relays.
+// Example failure: with several fitting adapters nothing was claimed, and a second run took the
+// first one's relays.
 TEST_F(UsbWidgets, are_claimed_as_the_lines_that_their_drivers_take) {
     const auto claim = [](const std::string& keys) {
         return drivers::readDmxPort(ConfigNode::parse(keys, "site.yaml").value(), 1).value().claim();

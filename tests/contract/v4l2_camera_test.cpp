@@ -76,7 +76,8 @@ private:
         return drivers::V4l2Camera::fromConfig(ConfigNode::parse(text, "site.yaml").value()).value().open(around_).value();
     }
     MockCameraKind kindOf(const std::string& serial, const std::string& usb) const {
-        // It says that a frame takes ten seconds, so that its silence between two exposures is none, however slow the machine.
+        // It says that a frame takes ten seconds, so that its silence between two exposures is
+        // none, however slow the machine.
         return {.serial = serial, .usb = usb, .formats = {format_}, .rates = {{format_, .1}}};
     }
 

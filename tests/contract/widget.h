@@ -18,8 +18,9 @@ struct WidgetSettings {
     std::uint8_t breakTime = 9, markAfterBreak = 1, rate = 40;
 };
 
-// Stands in for an Enttec DMX USB Pro at the far end of a line. It reads the protocol with code of its own, none of the driver's; that it
-// is one in the eyes of others is shown in tests/peers. Thread: thread-safe.
+// Stands in for an Enttec DMX USB Pro at the far end of a line. It reads the protocol with code of
+// its own, none of the driver's; that it is one in the eyes of others is shown in tests/peers.
+// Thread: thread-safe.
 class Widget {
 public:
     using Frame = std::array<std::uint8_t, 512>;
@@ -38,7 +39,8 @@ public:
     int parametersWritten() const;
     bool wasToldToReceive() const;
 
-    // A frame comes in by its DMX line: these slots behind a start code. It passes on every one until it is given one to send out.
+    // A frame comes in by its DMX line: these slots behind a start code. It passes on every one
+    // until it is given one to send out.
     void comesIn(std::span<const std::uint8_t> slots, std::uint8_t startCode = 0, std::uint8_t status = 0);
     // It stops to answer, and reads on; or reads nothing more.
     void fallSilent() { silent_ = true; }

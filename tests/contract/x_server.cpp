@@ -65,7 +65,8 @@ struct Child {
 Result<Child> launched(std::vector<std::string> command) {
     int ends[2];
     FANTASCOPE_CHECK(::pipe(ends) == 0, "no pipe");
-    // By itself it starts afresh when its last client leaves, and turns away whoever comes meanwhile.
+    // By itself it starts afresh when its last client leaves, and turns away whoever comes
+    // meanwhile.
     command.insert(command.end(), {"-noreset", "-displayfd", std::to_string(ends[1])});
     std::vector<char*> words;
     for (std::string& word : command) words.push_back(word.data());
@@ -80,7 +81,8 @@ Result<Child> launched(std::vector<std::string> command) {
         ::_exit(127);
     }
     ::close(ends[1]);
-    // The server writes its number and a line's end once it can be used; if it ends before, so does the pipe.
+    // The server writes its number and a line's end once it can be used; if it ends before, so does
+    // the pipe.
     std::string number;
     char letter = 0;
     while (::read(ends[0], &letter, 1) == 1 && letter != '\n') number += letter;

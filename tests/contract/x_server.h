@@ -18,7 +18,8 @@ namespace fantascope {
 // An X server without a window manager. While it runs, DISPLAY names it.
 class XServer {
 public:
-    // Xvfb with one screen of 1280 x 720 pixels, monitor "screen". Error: it is not installed or does not start.
+    // Xvfb with one screen of 1280 x 720 pixels, monitor "screen". Error: it is not installed or
+    // does not start.
     static Result<std::unique_ptr<XServer>> start();
     // `command` starts an X server; -noreset and -displayfd are added. Error: it does not start.
     static Result<std::unique_ptr<XServer>> start(std::vector<std::string> command);
@@ -27,11 +28,13 @@ public:
     XServer& operator=(const XServer&) = delete;
 
     const std::string& display() const { return display_; }  // ":99"
-    // What the screen shows in its row `y` from the top: pixels of red, green, blue as they are stored.
+    // What the screen shows in its row `y` from the top: pixels of red, green, blue as they are
+    // stored.
     std::vector<std::array<std::uint8_t, 3>> row(int y) const;
     std::vector<std::vector<std::array<std::uint8_t, 3>>> rows() const;  // all of them
     bool hasWindow(const std::string& title) const;                      // a visible one
-    // Presses a key while the window has the focus; the key's name as xmodmap has it: "space", "Escape", "a".
+    // Presses a key while the window has the focus; the key's name as xmodmap has it: "space",
+    // "Escape", "a".
     void pressKey(const std::string& title, const std::string& key) const;
     // Asks the window to close, as its close button does.
     void closeWindow(const std::string& title) const;
@@ -40,7 +43,8 @@ public:
     // Ends the connection of the program that the window belongs to, as `xkill` does.
     void killProgramOf(const std::string& title) const;
 
-    // What becomes of the server itself: it crashes, and a new one starts on the same display; it hangs, and goes on.
+    // What becomes of the server itself: it crashes, and a new one starts on the same display; it
+    // hangs, and goes on.
     void crash();
     void startAgain();
     void hang() const;

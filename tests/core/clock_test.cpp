@@ -16,8 +16,8 @@ TEST(Time, seconds_and_nanoseconds_turn_into_each_other) {
     EXPECT_EQ(seconds(Time(250ms)), 0.25);
 }
 
-// A night has ten hours and an installation many nights. Example failure: a period rounded to a nanosecond, added up, is 20 ms
-// late in the morning.
+// A night has ten hours and an installation many nights. Example failure: a period rounded to a
+// nanosecond, added up, is 20 ms late in the morning.
 TEST(Time, ticks_stay_exact_over_days) {
     constexpr std::int64_t kDays = 100 * 24 * 3600;
     EXPECT_EQ(tickTime(1, 60), 16'666'667ns);

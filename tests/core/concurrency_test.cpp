@@ -1,5 +1,5 @@
-// What threads hand to each other, and that the number of threads changes nothing. Data races are for the thread sanitizer to
-// find.
+// What threads hand to each other, and that the number of threads changes nothing. Data races are
+// for the thread sanitizer to find.
 
 #include "core/append_log.h"
 #include "core/bounded_queue.h"

@@ -176,7 +176,8 @@ TEST(ConfigEdit, entries_and_items_are_taken_away_with_their_lines) {
     EXPECT_EQ(afterErase("a: 1\n", {"a"}), "refused: f:1:4: a: the file's last key cannot be taken away");
 }
 
-// One place that is written stands for two, or says more than its value. Example failure: every projector's corners move with one's.
+// One place that is written stands for two, or says more than its value. Example failure: every
+// projector's corners move with one's.
 TEST(ConfigEdit, what_would_change_more_than_one_place_is_refused) {
     EXPECT_THAT(afterSet("a: &x [1, 2]\nb: *x\n", {"b"}, 1), HasSubstr("refused: f:2:4: b: an alias (*) stands here"));
     EXPECT_THAT(afterSet("a: &x [1, 2]\nb: *x\n", {"b", 0}, 5),
@@ -347,7 +348,8 @@ std::string labelOf(const ConfigPath& path) {
     return label;
 }
 
-// Writes documents as persons do who know all of YAML's ways but anchors and tags. Each comment says in which value it stands.
+// Writes documents as persons do who know all of YAML's ways but anchors and tags. Each comment
+// says in which value it stands.
 class Author {
 public:
     explicit Author(std::uint64_t seed) : rng_(seed) {}
@@ -466,7 +468,8 @@ TEST(ConfigEdit, in_any_document_any_value_is_set_and_all_else_reads_as_before) 
             const ConfigPath path = randomPath(expected, rng);
             const ConfigValue value = randomValue(rng, 2);
             const std::string before = document->text();
-            // Text that keeps its blank lines ("|+") would take those behind what goes, too: refused.
+            // Text that keeps its blank lines ("|+") would take those behind what goes, too:
+            // refused.
             const bool erases =
                 rng.below(4) == 0 && text.find('+') == std::string::npos && (path.size() > 1 || expected.entries.size() > 1);
             const auto set = erases ? document->erase(path) : document->set(path, value);
@@ -492,8 +495,8 @@ TEST(ConfigEdit, in_any_document_any_value_is_set_and_all_else_reads_as_before) 
     EXPECT_GT(changed, 1400);
 }
 
-// Whatever somebody has done to a file: it is refused, or its other values stay. Bytes are changed one by one, with those that mean
-// something to YAML in the majority.
+// Whatever somebody has done to a file: it is refused, or its other values stay. Bytes are changed
+// one by one, with those that mean something to YAML in the majority.
 TEST(ConfigEdit, files_with_damage_are_refused_or_changed_rightly) {
     const std::string marks = "\n\n  :#-[]{},'\"&*!|>%@`\t\r\xFF\xC3?~a1";
     int refused = 0, changed = 0;

@@ -88,7 +88,8 @@ TEST(Config, mistakes_in_several_items_are_all_told) {
               "f:4:9: lenses[2].a: 3 is out of range, 0 .. 2 is allowed");
 }
 
-// Example failure: "unknown key 'nme'" and "'name' is missing" send a reader to two places for one slip of the finger.
+// Example failure: "unknown key 'nme'" and "'name' is missing" send a reader to two places for one
+// slip of the finger.
 TEST(Config, a_key_that_is_misspelt_is_not_missing_too) {
     for (const char* slip : {"nme", "Name", "namee"})
         EXPECT_EQ(refusal(std::string(slip) + ": Nikkor\n"),
@@ -104,7 +105,8 @@ TEST(Config, a_second_document_is_refused_with_its_place) {
 }
 
 // A file from elsewhere must not steer the terminal that tells of it.
-// Example failure: "\x1b[2J" in a name clears the screen, and 70 KB of a value push everything out of it.
+// Example failure: "\x1b[2J" in a name clears the screen, and 70 KB of a value push everything out
+// of it.
 TEST(Config, what_is_quoted_of_a_file_is_harmless_and_short) {
     const std::string escape = "\"\\e[2J\"", longText(70'000, 'x');
     for (const std::string& text :

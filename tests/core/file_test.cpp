@@ -106,7 +106,8 @@ TEST(File, a_file_that_is_kept_from_being_written_is_not_replaced) {
     EXPECT_THAT(folder.names(), ElementsAre("a"));
 }
 
-// As on a full disk: some bytes were written aside already. Example failure: the half of them stays there, or becomes the file.
+// As on a full disk: some bytes were written aside already. Example failure: the half of them stays
+// there, or becomes the file.
 TEST(File, a_write_that_fails_half_way_leaves_the_old_bytes) {
     const ScratchFolder folder;
     folder.file("a", "old");
@@ -123,7 +124,8 @@ TEST(File, a_write_that_fails_half_way_leaves_the_old_bytes) {
     EXPECT_THAT(folder.names(), ElementsAre("a"));
 }
 
-// Example failures: a pipe is waited for without end; a device without an end is read until the memory is full.
+// Example failures: a pipe is waited for without end; a device without an end is read until the
+// memory is full.
 TEST(File, what_is_no_regular_file_is_refused_at_once) {
     const ScratchFolder folder;
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
@@ -159,7 +161,8 @@ TEST(File, that_is_too_large_is_refused_before_it_is_read) {
     EXPECT_EQ(readStart(file, 5)->size(), 5u);
 }
 
-// A program that is ended in the middle leaves no half file, however it is ended. Example failure: NAME.part lies about.
+// A program that is ended in the middle leaves no half file, however it is ended. Example failure:
+// NAME.part lies about.
 TEST(File, that_is_written_has_no_name_before_it_is_whole) {
     const ScratchFolder folder;
     for (const char* before : {"", "old"}) {
@@ -179,7 +182,8 @@ TEST(File, that_is_written_has_no_name_before_it_is_whole) {
     EXPECT_THAT(folder.names(), ElementsAre("a", "b"));
 }
 
-// Example failure: a report that is to be thrown away replaces /dev/null, for every program of the machine.
+// Example failure: a report that is to be thrown away replaces /dev/null, for every program of the
+// machine.
 TEST(File, a_device_is_not_replaced) {
     const ScratchFolder folder;
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
@@ -188,7 +192,8 @@ TEST(File, a_device_is_not_replaced) {
     EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
 }
 
-// The rename fails, at the very end: what was there stays, and nothing written aside is left lying about.
+// The rename fails, at the very end: what was there stays, and nothing written aside is left lying
+// about.
 TEST(File, a_failed_write_leaves_nothing_behind) {
     const ScratchFolder folder;
     folder.file("taken/inside", "x");
@@ -208,7 +213,8 @@ TEST(File, a_folder_that_cannot_be_made_is_named_with_the_reason) {
     EXPECT_THAT(folder.names(), ElementsAre("file"));
 }
 
-// Whoever has the old file open goes on reading the old bytes. Example failure: the file is truncated and written in place.
+// Whoever has the old file open goes on reading the old bytes. Example failure: the file is
+// truncated and written in place.
 TEST(File, a_reader_never_sees_half_a_file) {
     const ScratchFolder folder;
     folder.file("a", "the old bytes");

@@ -58,7 +58,8 @@ TEST(Homography, inverse_and_product_are_those_of_the_maps) {
     EXPECT_EQ(Homography()({3, 4}), glm::dvec2(3, 4));
 }
 
-// (x, y) -> (1 / x, y / x) sends the origin to infinity; the four corners are as good as any others.
+// (x, y) -> (1 / x, y / x) sends the origin to infinity; the four corners are as good as any
+// others.
 TEST(Homography, the_sources_origin_may_lie_on_the_horizon) {
     const Corners source = {{{1, 0}, {2, 0}, {2, 1}, {1, 1}}}, target = {{{1, 0}, {0.5, 0}, {0.5, 0.5}, {1, 1}}};
     const auto map = *Homography::fromCorners(source, target);

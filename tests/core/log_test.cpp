@@ -68,8 +68,9 @@ struct Told {
     int lost = 0;
 };
 
-// Of a log whose messages end in a full stop. A line that was cut short has what was lost on the next line, a whole one has an empty line
-// between; and a loss that was told before a line that was cut short is told again.
+// Of a log whose messages end in a full stop. A line that was cut short has what was lost on the
+// next line, a whole one has an empty line between; and a loss that was told before a line that was
+// cut short is told again.
 Told toldBy(const std::string& log) {
     Told told;
     int lost = 0;
@@ -91,7 +92,8 @@ Told toldBy(const std::string& log) {
     return told;
 }
 
-// Example failure: somebody presses Ctrl-S, or `run 2>&1 | less` is not scrolled, and the thread that sends the lamps stands still.
+// Example failure: somebody presses Ctrl-S, or `run 2>&1 | less` is not scrolled, and the thread
+// that sends the lamps stands still.
 TEST_P(Unread, holds_up_nobody_who_logs_and_is_told_what_it_lost) {
     int logged = 10000;
     auto logging = std::async(std::launch::async, [logged] {

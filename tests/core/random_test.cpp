@@ -26,8 +26,9 @@ Moments momentsOf(Draw draw) {
     return moments;
 }
 
-// Computed by an independent implementation of SplitMix64, std::seed_seq (as the standard defines it) and the Mersenne Twister.
-// If these change, every show that was computed before looks different.
+// Computed by an independent implementation of SplitMix64, std::seed_seq (as the standard defines
+// it) and the Mersenne Twister. If these change, every show that was computed before looks
+// different.
 TEST(Rng, first_values_are_those_of_every_machine) {
     Rng bits(42), uniform(42), normal(42), below(42);
     for (const std::uint32_t expected : {1763492588u, 1912930480u, 3568202319u, 1523670562u}) EXPECT_EQ(bits.bits(), expected);
@@ -87,7 +88,8 @@ TEST(Rng, each_of_a_few_is_as_likely_as_the_others) {
     for (const int count : counts) chiSquare += std::pow(count - kMany / 7.0, 2) / (kMany / 7.0);
     EXPECT_LT(chiSquare, 22.5) << "0.1 % of honest generators exceed this, 6 degrees of freedom";
     EXPECT_EQ(rng.below(1), 0u);
-    // With so many that 2^32 is no multiple of them, a plain remainder would give the first third half of all draws.
+    // With so many that 2^32 is no multiple of them, a plain remainder would give the first third
+    // half of all draws.
     int low = 0;
     for (int i = 0; i < kMany; ++i) low += rng.below(3u << 30) < (1u << 30) ? 1 : 0;
     EXPECT_NEAR(low, kMany / 3.0, 5 * std::sqrt(kMany * 2.0 / 9));

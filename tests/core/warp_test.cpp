@@ -65,7 +65,8 @@ TEST(Warp, mirrors_first_and_then_turns_clockwise) {
     EXPECT_EQ(seen({Flip::Horizontal, 1}), "CBAD");
 }
 
-// A technician drags a point: that point goes along, exactly, and so does nothing that lies two points away.
+// A technician drags a point: that point goes along, exactly, and so does nothing that lies two
+// points away.
 TEST(Warp, moves_each_point_of_the_mesh_by_its_offset_and_only_its_surroundings) {
     for (const Between between : {Between::Smooth, Between::Straight}) {
         WarpShape shape{.corners = kKeystone, .mesh = meshOf({7, 5}, between, 0, 1)};
@@ -84,7 +85,8 @@ TEST(Warp, moves_each_point_of_the_mesh_by_its_offset_and_only_its_surroundings)
     }
 }
 
-// A mesh that only shears and stretches must not ripple: what lies between points of a plane lies in it.
+// A mesh that only shears and stretches must not ripple: what lies between points of a plane lies
+// in it.
 TEST(Warp, keeps_a_plane_of_offsets_plane) {
     for (const Between between : {Between::Smooth, Between::Straight})
         for (const glm::ivec2 points : {glm::ivec2(2, 2), glm::ivec2(3, 5), glm::ivec2(9, 4)}) {
@@ -98,7 +100,8 @@ TEST(Warp, keeps_a_plane_of_offsets_plane) {
         }
 }
 
-// Straight lines stay smooth curves: the slope does not jump where two patches meet, as it does in a bilinear mesh.
+// Straight lines stay smooth curves: the slope does not jump where two patches meet, as it does in
+// a bilinear mesh.
 TEST(Warp, joins_smooth_patches_without_a_kink) {
     const auto kinkOf = [](Between between) {
         const Warp warp =
@@ -135,7 +138,8 @@ TEST(Warp, finds_the_canvas_point_of_every_pixel) {
     }
 }
 
-// Beyond the horizon of a steep keystone there is no canvas; the formula alone gives a point of its far side.
+// Beyond the horizon of a steep keystone there is no canvas; the formula alone gives a point of its
+// far side.
 TEST(Warp, has_no_canvas_beyond_the_horizon) {
     const Warp steep = Warp::of({.corners = {{{900, 200}, {1020, 200}, {1900, 1000}, {20, 1000}}}}).value();
     EXPECT_TRUE(steep.canvasFromProjector({960, 210}));

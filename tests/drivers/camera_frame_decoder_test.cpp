@@ -1,4 +1,5 @@
-// Frames of every coding against pictures that were coded by this file's own arithmetic, or by other people's encoders.
+// Frames of every coding against pictures that were coded by this file's own arithmetic, or by
+// other people's encoders.
 
 #include "drivers/camera/frame_decoder.h"
 
@@ -99,7 +100,8 @@ Bytes coded(const FrameFormat& format) {
     return coded(format, [](int x, int) { return barAt(x); });
 }
 
-// The middle of each bar, where no neighbour's colour reaches; JPEG's blocks and bars are as wide as each other.
+// The middle of each bar, where no neighbour's colour reaches; JPEG's blocks and bars are as wide
+// as each other.
 void expectBars(const RgbaImage& picture, int tolerance) {
     for (int x = kBar / 2; x < kSize.x; x += kBar)
         for (const int y : {0, kSize.y / 2, kSize.y - 1}) {
@@ -246,7 +248,8 @@ TEST(JpegFrame, without_colours_is_grey) {
     EXPECT_EQ(picture.at(40, 20), (Rgba8{77, 77, 77, 255}));
 }
 
-// Neither the picture nor the decoder's own memory may be touched behind its end, nor the frame behind its padding.
+// Neither the picture nor the decoder's own memory may be touched behind its end, nor the frame
+// behind its padding.
 // Example failures: the heap is overwritten behind the picture; the last columns stay as they were.
 TEST(CodedFrame, of_every_width_is_right_to_the_last_pixel_and_nothing_is_touched_behind_it) {
     constexpr int kRows = 4;
@@ -279,8 +282,8 @@ TEST(CodedFrame, of_every_width_is_right_to_the_last_pixel_and_nothing_is_touche
     }
 }
 
-// A cable that is too long loses packets, and what is decoded all the same is a torn picture. JPEG has no checksum: where a packet is lost in
-// the middle, what follows may happen to make sense.
+// A cable that is too long loses packets, and what is decoded all the same is a torn picture. JPEG
+// has no checksum: where a packet is lost in the middle, what follows may happen to make sense.
 TEST(JpegFrame, that_lost_a_part_is_refused_and_the_next_one_is_not) {
     cv::Mat noise(240, 320, CV_8UC3);
     Rng rng(1);
@@ -320,7 +323,8 @@ long mostMemory() {
     return 0;
 }
 
-// A damaged header of a small frame, which may state any size. Example failure: 500 MB for each of a bad cable's frames.
+// A damaged header of a small frame, which may state any size. Example failure: 500 MB for each of
+// a bad cable's frames.
 TEST(JpegFrame, that_says_it_is_huge_takes_no_memory) {
     Bytes frame = jpegByLibav();
     constexpr std::array<std::uint8_t, 2> kSizeFollows{0xff, 0xc0};

@@ -1,5 +1,5 @@
-// What the contract does not know of the V4L2 driver: what is asked of a camera, what is done with what it answers, and what is wrong with
-// its frames. Against cameras of umockdev.
+// What the contract does not know of the V4L2 driver: what is asked of a camera, what is done with
+// what it answers, and what is wrong with its frames. Against cameras of umockdev.
 
 #include "drivers/camera/v4l2.h"
 

@@ -97,7 +97,8 @@ TEST(Claim, is_one_programs_and_names_it_until_it_ends) {
     EXPECT_TRUE(Claim::take(name)) << "it is free again";
 }
 
-// Example failure: after kill -9 a new show begins while the relay guard of the old one still switches.
+// Example failure: after kill -9 a new show begins while the relay guard of the old one still
+// switches.
 TEST(Claim, goes_over_to_a_child_when_its_maker_dies) {
     const std::string name = fmt::format("an inheritance of process {}", getpid());
     int ready[2], release[2];

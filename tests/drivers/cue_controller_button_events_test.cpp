@@ -123,7 +123,8 @@ TEST_F(ButtonEventsTest, presses_that_nobody_polls_are_dropped_with_their_releas
     EXPECT_LE(events, static_cast<int>(ButtonEvents::kMost) + 1);
 }
 
-// Whatever contacts do: the events of a button alternate, a press first, and in the end it is what the contact is.
+// Whatever contacts do: the events of a button alternate, a press first, and in the end it is what
+// the contact is.
 TEST_F(ButtonEventsTest, alternate_in_any_weather) {
     Rng rng(7);
     Time now{};

@@ -157,7 +157,8 @@ TEST(HidButtons, of_a_hat_that_counts_from_one_has_its_rest_at_zero) {
     EXPECT_EQ(pad.after("02 01"), "+11");
 }
 
-// Nobody turns a knob in six directions by detents, whatever its descriptor says; and it goes further than it says.
+// Nobody turns a knob in six directions by detents, whatever its descriptor says; and it goes
+// further than it says.
 TEST(HidButtons, of_a_knob_that_springs_back_are_its_directions) {
     Device knob({kSpaceNavigator});
     EXPECT_EQ(knob.count(), 2u + 12);
@@ -219,7 +220,8 @@ TEST(HidButtons, of_a_key_pad_come_from_its_profile) {
     EXPECT_EQ(first.after("01 01 00 00 00 00 00 00 00 00 00 01 00 00 00 00"), "+5+15") << "its rows run from the right";
 }
 
-// https://docs.elgato.com/streamdeck/hid/stream-deck-plus: one id for keys, dials and the strip; byte 1 says which.
+// https://docs.elgato.com/streamdeck/hid/stream-deck-plus: one id for keys, dials and the strip;
+// byte 1 says which.
 TEST(HidButtons, of_a_pad_with_dials_are_its_keys_then_its_dials_then_its_strip) {
     Device pad({kStreamDeck}, hidProfileOf(0x0fd9, 0x0084));
     EXPECT_EQ(pad.count(), 8u + 4 + 2 * 4 + 4);
@@ -268,7 +270,8 @@ TEST(HidButtons, of_the_button_page_count_however_they_are_written) {
     EXPECT_EQ(box.after("81 10 ff"), "-9+10");
 }
 
-// A device that says it has more keys than there are usages has none of the surplus; the numbers stay numbers.
+// A device that says it has more keys than there are usages has none of the surplus; the numbers
+// stay numbers.
 TEST(HidButtons, have_an_end) {
     std::vector<std::uint8_t> bytes = bytesOf("05 01 09 06 a1 01 15 00 26 ff 00 75 08 95 01 05 0c");
     for (int array = 0; array < 40; ++array) {

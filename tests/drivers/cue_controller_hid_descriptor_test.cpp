@@ -63,7 +63,8 @@ TEST(HidDescriptor, keeps_the_reports_of_several_ids_apart) {
     EXPECT_EQ(knob.inputs[5].valueIn(std::vector<std::uint8_t>{2, 0, 0, 0, 0, 0xa2, 0xfe}), -350);
 }
 
-// Example failure: 25 FF, which is -1 by the letter and 255 by what every device means, makes a range without values.
+// Example failure: 25 FF, which is -1 by the letter and 255 by what every device means, makes a
+// range without values.
 TEST(HidDescriptor, takes_a_maximum_for_unsigned_where_the_minimum_is_not_negative) {
     const HidDescriptor byte = parsed(bytesOf("05 01 09 04 a1 01 09 30 15 00 25 ff 75 08 95 01 81 02 c0"));
     EXPECT_EQ(byte.inputs.at(0).high, 255);
@@ -145,8 +146,8 @@ TEST(HidDescriptor, that_says_nothing_has_no_controls) {
     EXPECT_THAT(parsed(bytesOf("05 01 09 06 a1 01 c0")).inputs, IsEmpty());
 }
 
-// Mutations of real descriptors and reports: cut off, bytes changed, put in, taken out. The sanitizers look on; here it must come to an end,
-// and whatever is read lies inside of its report.
+// Mutations of real descriptors and reports: cut off, bytes changed, put in, taken out. The
+// sanitizers look on; here it must come to an end, and whatever is read lies inside of its report.
 TEST(HidDescriptor, survives_garbage) {
     const std::vector<std::vector<std::uint8_t>> seeds = {kBootKeyboard, kMouse,         kPresenterConsumer, kDualShock4,
                                                           kXboxGamepad,  kShuttleXpress, kSpaceNavigator,    kFootPedal,

@@ -84,7 +84,8 @@ Sent pictureIn(const std::vector<HidOutReport>& reports, std::size_t head, std::
 
 cv::Mat decoded(const Bytes& file) { return cv::imdecode(file, cv::IMREAD_COLOR); }
 
-// An "L" has ink to the left, at the top too, and at the bottom right; none at the top right. White on green: its blue tells.
+// An "L" has ink to the left, at the top too, and at the bottom right; none at the top right. White
+// on green: its blue tells.
 bool isUpright(const cv::Mat& picture) {
     const int side = picture.cols;
     int topLeft = 0, topRight = 0, bottomRight = 0;
@@ -157,7 +158,8 @@ TEST(StreamDeckLamps, of_touch_keys_are_colours_in_a_feature_report) {
     EXPECT_EQ(alarm[0].bytes[4], 0);
 }
 
-// https://gist.github.com/cliffrowley/d18a9c4569537b195f2b1eb6c68469e0 has the head of the file as its own program sends it.
+// https://gist.github.com/cliffrowley/d18a9c4569537b195f2b1eb6c68469e0 has the head of the file as
+// its own program sends it.
 TEST(StreamDeckLamps, of_the_first_one_are_bmp_files_in_two_halves_with_the_keys_counted_from_the_right) {
     const auto first = lampsOfDevice(0x0fd9, 0x0060);
     const auto reports = first->show(6, {Ready, "L"});  // the leftmost of the second row
@@ -252,7 +254,8 @@ TEST(KeyPicture, is_the_colour_of_its_state_with_the_word_in_its_middle) {
     EXPECT_EQ(keyPicture({Ready, "\x01"}, 72), keyPicture({Ready, ""}, 72)) << "what cannot be written is left out";
 }
 
-// Otherwise a light that changes back is sent twice, and a lamp that was told nothing stays as the last program left it.
+// Otherwise a light that changes back is sent twice, and a lamp that was told nothing stays as the
+// last program left it.
 TEST(ButtonLights, give_what_differs_oldest_first_and_all_of_it_anew) {
     ButtonLights lights;
     const auto given = [&] {

@@ -1,5 +1,6 @@
 #pragma once
-// The default site as the program opens it: the nominal site from its file, the simulation on top of it.
+// The default site as the program opens it: the nominal site from its file, the simulation on top
+// of it.
 
 #include "drivers/site/simulated_site.h"
 
@@ -24,7 +25,8 @@ inline NominalSite nominalPartsOf(const show::Site& site) {
     }
     for (const show::Fixture& fixture : site.fixtures)
         nominal.fixtures.push_back({fixture.name, fixture.universe, fixture.address, fixture.channels});
-    for (const show::Relay& relay : site.relays) nominal.relays.push_back({relay.name, site.relayBanks[relay.bank].name, static_cast<std::size_t>(relay.coil)});
+    for (const show::Relay& relay : site.relays)
+        nominal.relays.push_back({relay.name, site.relayBanks[relay.bank].name, static_cast<std::size_t>(relay.coil)});
     const show::NominalCamera& camera = site.nominalCamera.value();
     nominal.camera =
         vision::CameraModel::fromFieldOfView(camera.pose, camera.size, camera.fieldOfView, camera.k1, camera.k2).value();

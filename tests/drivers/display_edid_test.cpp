@@ -29,7 +29,8 @@ TEST(Edid, falls_back_to_the_numbers_where_there_is_no_text) {
         << "spaces are no text";
 }
 
-// Makers fill up with whatever they like. A status with such bytes in it could not be copied into a file.
+// Makers fill up with whatever they like. A status with such bytes in it could not be copied into a
+// file.
 TEST(Edid, leaves_out_what_is_not_text) {
     EXPECT_THAT(identityFromEdid(edidBlock({.name = " BenQ PJ  ", .serial = "A\x01\xFF\x42"})),
                 Optional(Eq(MonitorIdentity{"EPS", "BenQ PJ", "AB"})));

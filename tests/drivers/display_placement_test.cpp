@@ -1,5 +1,6 @@
-// What is to be switched on, and where, when monitors come and go. What no X server without a graphics card can play is here, too:
-// cables that are pulled, and cards that cannot drive everything.
+// What is to be switched on, and where, when monitors come and go. What no X server without a
+// graphics card can play is here, too: cables that are pulled, and cards that cannot drive
+// everything.
 
 #include "drivers/display/placement.h"
 
@@ -16,7 +17,8 @@ using testing::SizeIs;
 constexpr glm::ivec2 kHd{1920, 1080}, kLargest{16384, 16384};
 constexpr std::uint32_t kHd60 = 100, kHd50 = 101, kHdFields = 102, kSmall = 103;
 
-// Monitor number n: a projector of serial "Sn" on connector HDMI-n, dark, that any of three CRTCs can drive.
+// Monitor number n: a projector of serial "Sn" on connector HDMI-n, dark, that any of three CRTCs
+// can drive.
 Monitor projector(std::uint32_t n) {
     Monitor monitor;
     monitor.connector = "HDMI-" + std::to_string(n);
@@ -86,8 +88,8 @@ TEST_F(PlacementOfOutputs, takes_an_interlaced_mode_only_where_there_is_no_other
     EXPECT_THAT(look().changes, ElementsAre(testing::Field(&Placement::Change::modeId, kHdFields)));
 }
 
-// Without a desktop nobody switches an unplugged monitor off, so that its CRTC shows on; nothing may be switched when it goes, since every
-// change of a mode may make the others blink.
+// Without a desktop nobody switches an unplugged monitor off, so that its CRTC shows on; nothing
+// may be switched when it goes, since every change of a mode may make the others blink.
 TEST_F(PlacementOfOutputs, switches_nothing_when_a_cable_is_pulled_and_plugged_in_again) {
     const int a = claim("S1"), b = claim("S2");
     settle();
@@ -107,7 +109,8 @@ TEST_F(PlacementOfOutputs, switches_nothing_when_a_cable_is_pulled_and_plugged_i
     EXPECT_EQ(absence(a), "");
 }
 
-// Some drivers switch the picture off with the cable. Whoever only sees that it is off must not take it for somebody's wish.
+// Some drivers switch the picture off with the cable. Whoever only sees that it is off must not
+// take it for somebody's wish.
 TEST_F(PlacementOfOutputs, switches_on_again_what_went_off_with_its_cable_even_if_it_was_back_at_once) {
     const int a = claim("S1");
     settle();
@@ -137,7 +140,8 @@ TEST_F(PlacementOfOutputs, leaves_off_what_somebody_switched_off_until_it_is_plu
     EXPECT_EQ(absence(b), "");
 }
 
-// A card with as many CRTCs as projectors: the projector comes back on another connector, and its old one still holds its CRTC.
+// A card with as many CRTCs as projectors: the projector comes back on another connector, and its
+// old one still holds its CRTC.
 TEST_F(PlacementOfOutputs, takes_the_crtc_of_a_monitor_that_is_gone) {
     monitors_.push_back(projector(4));
     monitors_[3].connected = false;

@@ -27,7 +27,8 @@ TEST(RefreshTrain, follows_the_refreshes_that_are_seen) {
     for (int refresh = 4; refresh < 100; ++refresh) EXPECT_EQ(train.seen(milliseconds(67 + 20.2 * (refresh - 3))), refresh);
 }
 
-// Example failure: a frame that came late is given the number of the refresh it was for, and nobody hears of it.
+// Example failure: a frame that came late is given the number of the refresh it was for, and nobody
+// hears of it.
 TEST(RefreshTrain, counts_the_refreshes_that_nobody_saw) {
     RefreshTrain train(kHertz);
     train.seen(milliseconds(67));

@@ -1,4 +1,5 @@
-// When a universe is sent, and what is kept of what comes in: values and times alone. tests/peers has the networks.
+// When a universe is sent, and what is kept of what comes in: values and times alone. tests/peers
+// has the networks.
 
 #include "drivers/dmx/dmx_network.h"
 
@@ -125,7 +126,8 @@ TEST_F(IncomingUniverse, knows_a_sender_for_as_long_as_it_may_be_silent) {
     EXPECT_EQ(in_.known(key(2), 1s, 2500ms), nullptr);
 }
 
-// Example failure: somebody's broken gateway takes a new name for every packet, and the show's memory runs full.
+// Example failure: somebody's broken gateway takes a new name for every packet, and the show's
+// memory runs full.
 TEST_F(IncomingUniverse, gives_a_flood_of_strangers_a_bounded_place) {
     std::size_t known = 0;
     for (std::uint32_t number = 0; number < 100'000; ++number) {

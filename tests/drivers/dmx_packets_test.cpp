@@ -300,7 +300,8 @@ TEST(Packets, that_end_too_early_are_not_read) {
     for (const Bytes& whole : goodPackets()) {
         ASSERT_TRUE(sacn::read(whole) || artnet::read(whole));
         const bool isSacn = whole[0] == 0;
-        // A poll has had more than its first bytes only since Art-Net 4, and old nodes reply with less.
+        // A poll has had more than its first bytes only since Art-Net 4, and old nodes reply with
+        // less.
         const std::size_t least = isSacn ? whole.size() : whole.size() == 239 ? 207 : whole.size() == 14 ? 12 : whole.size();
         for (std::size_t size = 0; size < least; ++size) {
             // Of its own size, so that reading beyond it is seen by the address sanitizer.
@@ -310,7 +311,8 @@ TEST(Packets, that_end_too_early_are_not_read) {
     }
 }
 
-// Example failure: a length from the packet is trusted, and somebody's broken gateway ends the show. What is read must also be in range.
+// Example failure: a length from the packet is trusted, and somebody's broken gateway ends the
+// show. What is read must also be in range.
 TEST(Packets, that_are_damaged_at_random_never_harm) {
     Rng rng(1);
     const std::vector<Bytes> good = goodPackets();

@@ -50,7 +50,8 @@ TEST(WidgetParser, an_end_and_a_start_may_stand_in_the_data) {
     EXPECT_THAT(messages[0].data, ElementsAre(0xe7, 0x7e, 0xe7));
 }
 
-// A computer begins to listen in the middle of a message, or a byte is lost: whatever comes before, the next message is found.
+// A computer begins to listen in the middle of a message, or a byte is lost: whatever comes before,
+// the next message is found.
 TEST(WidgetParser, finds_its_way_back_after_whatever_came_before) {
     const Bytes good = encoded(WidgetLabel::Number, Bytes{1, 2, 3, 4});
     for (const Bytes& garbage :

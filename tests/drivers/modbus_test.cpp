@@ -22,7 +22,8 @@ using testing::StartsWith;
 
 ConfigNode parsed(const std::string& text) { return ConfigNode::parse(text, "site.yaml").value(); }
 
-// What a contact reports of values that come every 20 ms: "+3" closed at the fourth, "-" open, "?" as it was found.
+// What a contact reports of values that come every 20 ms: "+3" closed at the fourth, "-" open, "?"
+// as it was found.
 std::string reported(Contact& contact, const std::vector<int>& values) {
     std::string changes;
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -99,8 +100,8 @@ TEST(ModbusExceptions, are_told_in_words) {
 class ModbusKeys : public testing::Test {
 protected:
     std::string relays(const std::string& text, std::size_t count = 3, bool tcp = true) {
-        const auto read = (tcp ? ModbusRelayBank::readTcp : ModbusRelayBank::readRtu)(parsed(text), "relays",
-                                                                                                  std::vector<bool>(count));
+        const auto read =
+            (tcp ? ModbusRelayBank::readTcp : ModbusRelayBank::readRtu)(parsed(text), "relays", std::vector<bool>(count));
         return read ? "" : read.error().message();
     }
     std::string contacts(const std::string& text, std::size_t count = 3) {

@@ -15,7 +15,8 @@ class RegistryTest : public testing::Test {
 protected:
     static ConfigNode options(const std::string& text) { return ConfigNode::parse(text, "site.yaml").value(); }
 
-    // What each port's opener says to these options: the errors of the ports whose drivers have no key of their own.
+    // What each port's opener says to these options: the errors of the ports whose drivers have no
+    // key of their own.
     static std::vector<std::string> refusals(const std::string& text, const Surroundings& around) {
         const ConfigNode node = options(text);
         const auto message = [](const auto& opened) { return opened ? "accepted" : opened.error().message(); };
@@ -65,7 +66,8 @@ TEST_F(RegistryTest, a_key_that_the_driver_does_not_know_is_refused_with_its_pla
                 testing::Each(StartsWith("site.yaml:2:1: port: unknown key")));
 }
 
-// Example failure: the night is started with the rehearsal's site file, and the street stays dark with no word said.
+// Example failure: the night is started with the rehearsal's site file, and the street stays dark
+// with no word said.
 TEST_F(RegistryTest, a_simulated_driver_without_a_simulated_site_is_refused) {
     EXPECT_THAT(refusals("driver: simulated\n", night_),
                 testing::Each(AllOf(StartsWith("site.yaml:1:1: "), HasSubstr("needs a simulated site"))));

@@ -1,5 +1,5 @@
-// z_camera on the default site: what the simulated camera sees of shapes that sway on two keystoned pictures, against their
-// guides.
+// z_camera on the default site: what the simulated camera sees of shapes that sway on two keystoned
+// pictures, against their guides.
 
 #include "drivers/default_site.h"
 
@@ -51,8 +51,8 @@ GreyImage tree() {
     return guide;
 }
 
-// A pattern in the manner of the optimiser's: discs of either white or nothing that cover as much of every neighbourhood as the
-// guide is bright.
+// A pattern in the manner of the optimiser's: discs of either white or nothing that cover as much
+// of every neighbourhood as the guide is bright.
 struct Disc {
     glm::dvec2 centre;
     double radius;
@@ -74,7 +74,8 @@ std::vector<Disc> discsAfter(const GreyImage& guide, bool coloured) {
     return discs;
 }
 
-// The frame that a projector throws: the discs through its keystone, swaying, faded to `opacity` in linear light.
+// The frame that a projector throws: the discs through its keystone, swaying, faded to `opacity` in
+// linear light.
 std::shared_ptr<const RgbaImage> frameOf(const std::vector<Disc>& discs, const show::Output& output, double opacity,
                                          double phase) {
     constexpr int kSide = 3;  // samples across and down a pixel
@@ -112,7 +113,8 @@ std::shared_ptr<const RgbaImage> frameOf(const std::vector<Disc>& discs, const s
     return frame;
 }
 
-// The default site with a script of faults, and the two comparisons that know its nominal file alone.
+// The default site with a script of faults, and the two comparisons that know its nominal file
+// alone.
 class Night {
 public:
     explicit Night(const std::string& faults) {
@@ -167,8 +169,8 @@ private:
     std::vector<vision::GuideComparison> comparisons_;
 };
 
-// The measure of the whole thing. Each bump lasts from n.05 to n.75 s; the camera looks at n.4 during it, and at n.9 when it is
-// put back.
+// The measure of the whole thing. Each bump lasts from n.05 to n.75 s; the camera looks at n.4
+// during it, and at n.9 when it is put back.
 TEST(GuideComparisonOnSite, rises_while_a_projector_is_bumped_and_only_for_its_own_output) {
     const std::vector<std::pair<std::string, double>> bumps = {{"move: [0.06, 0, 0]", 1.05},
                                                                {"turn: [0, 0.5, 0]", 1.5},

@@ -48,8 +48,8 @@ TEST(Sensor, noise_has_the_deviation_that_was_asked_for) {
     }
 }
 
-// The table of normal values is read on by every row from a place of its own. Example failure: every frame or row has the same
-// noise, a pattern that averaging over time would never remove.
+// The table of normal values is read on by every row from a place of its own. Example failure:
+// every frame or row has the same noise, a pattern that averaging over time would never remove.
 TEST(Sensor, noise_differs_from_frame_to_frame_and_from_row_to_row) {
     const Sensor sensor({40, 0.02, 0}, 7);
     const RgbaImage one = sensor.expose(even(20), 1), two = sensor.expose(even(20), 2);

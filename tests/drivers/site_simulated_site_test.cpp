@@ -21,7 +21,8 @@ using testing::StartsWith;
 
 Pose facing(glm::dvec3 position, glm::dvec3 target) { return Pose::lookingAt(position, target).value(); }
 
-// A wall with two pictures side by side, a lamp of three colours and a street lamp, seen by a small camera.
+// A wall with two pictures side by side, a lamp of three colours and a street lamp, seen by a small
+// camera.
 NominalSite nominalSite() {
     const auto projectorAt = [](double x) {
         return vision::CameraModel::fromThrowRatio(facing({x, 0, 3}, {x, 0, 0}), {64, 64}, 2, {0, 0});
@@ -36,7 +37,8 @@ NominalSite nominalSite() {
     return site;
 }
 
-// The simulation's keys; `more` is added at the end, so that a test may add faults or what is wrong.
+// The simulation's keys; `more` is added at the end, so that a test may add faults or what is
+// wrong.
 std::string simulationText(const std::string& more = "", const std::string& camera = "white: 40") {
     return fmt::format(R"(ambient: [1, 1, 1]
 objects:
@@ -122,7 +124,8 @@ TEST(SimulatedSite, exposes_at_its_frame_rate_and_delivers_after_its_latency) {
     EXPECT_EQ(stage.world_.takeFromCamera()->exposed, Time(100ms));
 }
 
-// Whoever steps coarsely, or a machine that cannot keep up, gets the newest frame; a backlog would only grow.
+// Whoever steps coarsely, or a machine that cannot keep up, gets the newest frame; a backlog would
+// only grow.
 TEST(SimulatedSite, drops_frames_that_nobody_can_see_any_more) {
     Stage stage;
     stage.advanceTo(0ms);
@@ -198,7 +201,8 @@ TEST(SimulatedSite, gives_the_same_bytes_for_the_same_seed) {
     EXPECT_NE(first, night(2));
 }
 
-// The loop of the header, word for word, on a clock that its sleep moves; devices and console work beside it.
+// The loop of the header, word for word, on a clock that its sleep moves; devices and console work
+// beside it.
 TEST(SimulatedSite, runs_on_a_thread_of_its_own) {
     Stage stage(
         "faults: [{kind: bump, output: left, at: 0.5, until: 1, turn: [0, 1, 0]}, {kind: unplug, device: right, at: 1.5}]");
@@ -305,8 +309,8 @@ TEST(SimulatedSite, bumps_a_projector_and_puts_it_back_exactly) {
                                                 "3.0 projector left put back", "4.0 projector left put back"));
 }
 
-// It thickens from 1 s to 3 s and clears from 5 s to 7 s. Meanwhile pictures are fainter, and the dark wall between them is
-// lighter.
+// It thickens from 1 s to 3 s and clears from 5 s to 7 s. Meanwhile pictures are fainter, and the
+// dark wall between them is lighter.
 TEST(SimulatedSite, lets_fog_come_and_go) {
     Stage stage("faults: [{kind: fog, at: 1, until: 5, density: 0.2, rise: 2}]");
     stage.show("left", 255);

@@ -84,7 +84,8 @@ TEST_F(WorldTest, relays_are_safe_when_installed_and_when_their_plug_is_pulled) 
     EXPECT_THAT(world_.relays("road"), ElementsAre(true, false));
 }
 
-// Example failure: every switch by hand is a loss, and who tries the lamps one after the other is written about a dozen times.
+// Example failure: every switch by hand is a loss, and who tries the lamps one after the other is
+// written about a dozen times.
 TEST_F(WorldTest, a_hand_at_the_relays_is_a_loss_where_they_were_as_written) {
     world_.installRelays("road", {true, false});
     world_.installRelays("park", {true});
@@ -149,7 +150,8 @@ TEST_F(WorldTest, presses_wait_for_the_driver_but_not_over_a_loss) {
     EXPECT_EQ(world_.takePress(), std::nullopt);
 }
 
-// Example failure: a projector whose cable was pulled goes on lighting the simulated wall with its last frame.
+// Example failure: a projector whose cable was pulled goes on lighting the simulated wall with its
+// last frame.
 TEST_F(WorldTest, an_unplugged_projector_shows_nothing_until_its_next_frame) {
     const auto picture = std::make_shared<const RgbaImage>(2, 2);
     world_.setFrame("left", picture);
@@ -184,8 +186,8 @@ TEST_F(WorldTest, camera_frames_on_their_way_are_lost_with_the_plug) {
     EXPECT_EQ(world_.takeFromCamera(), nullptr);
 }
 
-// The lighting thread writes, the scene reads, the operator pulls the plug. A torn frame would mix two levels; races are for the
-// thread sanitizer.
+// The lighting thread writes, the scene reads, the operator pulls the plug. A torn frame would mix
+// two levels; races are for the thread sanitizer.
 TEST_F(WorldTest, frames_are_whole_whoever_looks) {
     std::jthread lighting([&] {
         for (int frame = 0; frame < 1000; ++frame)

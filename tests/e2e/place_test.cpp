@@ -1,4 +1,5 @@
-// The built program where nobody built it: it finds its own files, and holds no path of the machine that it was built on.
+// The built program where nobody built it: it finds its own files, and holds no path of the machine
+// that it was built on.
 
 #include "program.h"
 #include "source_folder.h"

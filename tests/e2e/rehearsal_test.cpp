@@ -1,6 +1,7 @@
-// Whole rehearsals of the default show with the built program, as a newcomer would run them; most of them on the stepped clock.
+// Whole rehearsals of the default show with the built program, as a newcomer would run them; most
+// of them on the stepped clock.
 
-#include "core/image.h"
+#include "media/image.h"
 #include "program.h"
 #include "source_folder.h"
 
@@ -41,8 +42,9 @@ Outcome rehearse(const fs::path& folder, std::vector<std::string> more,
     return runProgram(arguments, folder, environment);
 }
 
-// Every part on a thread of its own, for the thread sanitizer's eyes above all. How punctual they are, and how
-// much a camera sees beside them on a machine without time to spare, is for bench/rehearsal to say.
+// Every part on a thread of its own, for the thread sanitizer's eyes above all. How punctual they
+// are, and how much a camera sees beside them on a machine without time to spare, is for
+// bench/rehearsal to say.
 TEST(Rehearsal, in_real_time_reaches_every_cue) {
     const ScratchFolder folder;
     const Outcome outcome =
@@ -51,7 +53,8 @@ TEST(Rehearsal, in_real_time_reaches_every_cue) {
     const json report = json::parse(contentsOf(folder / "report.json"));
     EXPECT_EQ(report["cues"].size(), kCues.size());
     EXPECT_EQ(report["stop_reason"], "length");
-    // A refresh shows a frame of ours or was missed by us: one count must not hide what the other leaves out.
+    // A refresh shows a frame of ours or was missed by us: one count must not hide what the other
+    // leaves out.
     for (const char* output : {"left", "right"}) {
         const int frames = report["frames_by_output"][output], late = report["late_frames_by_output"][output];
         EXPECT_LE(frames, 6 * 30);
@@ -96,14 +99,15 @@ TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
     EXPECT_EQ(report["stop_reason"], "length");
     for (const char* file : {"left.mp4", "right.mp4", "contact-sheet.png", "dmx.csv", "relays.csv", "frames.csv"})
         EXPECT_GT(fs::file_size(folder / "rehearsal" / file), 0u) << file;
-    // The road lamps are on before and after the show and off during it; the sculpture's lamp follows the looks.
+    // The road lamps are on before and after the show and off during it; the sculpture's lamp
+    // follows the looks.
     const std::string relays = contentsOf(folder / "rehearsal/relays.csv");
     EXPECT_THAT(relays, testing::MatchesRegex("show_time_s,bank,states\n[0-9.]+,road,11\n[0-9.]+,road,00\n[0-9.]+,road,11\n"));
     EXPECT_THAT(contentsOf(folder / "rehearsal/dmx.csv"), HasSubstr(",1,255\n"));
 }
 
-// The operator's word is only worth something if a rehearsal can be repeated. Example failure: a part that reads the real clock, a result
-// that depends on which thread came first.
+// The operator's word is only worth something if a rehearsal can be repeated. Example failure: a
+// part that reads the real clock, a result that depends on which thread came first.
 TEST(Rehearsal, is_the_same_byte_for_byte_in_another_folder_and_with_other_threads) {
     const ScratchFolder one, other;
     ASSERT_THAT(rehearse(one.path(), {"--seconds", "6"}, {{"LP_NUM_THREADS", "0"}}), exits(0));
@@ -134,8 +138,9 @@ double meanScore(const json& series, double from, double to) {
     return sum / count;
 }
 
-// The camera's score tells a technician which projector was knocked, and that it stands right again. It knows the nominal site alone.
-// Example failure: the comparison reads the simulated truth, so that a bump moves both sides.
+// The camera's score tells a technician which projector was knocked, and that it stands right
+// again. It knows the nominal site alone. Example failure: the comparison reads the simulated
+// truth, so that a bump moves both sides.
 TEST(Rehearsal, the_cameras_score_rises_while_a_projector_is_bumped_and_only_for_its_output) {
     const ScratchFolder folder;
     const fs::path site = siteWith(
@@ -182,7 +187,8 @@ TEST(Rehearsal, an_outage_stands_in_the_report_with_its_length) {
     EXPECT_NEAR(noticed[0]["until"].get<double>(), 2, 0.15);
 }
 
-// The show ends in the middle of a cue: its pictures end, its lamps and relays go on to where they stay.
+// The show ends in the middle of a cue: its pictures end, its lamps and relays go on to where they
+// stay.
 // Example failure: the lamps keep their last level all night.
 TEST(Rehearsal, ends_with_its_lamps_at_the_end_levels_and_its_relays_safe) {
     const ScratchFolder folder;
@@ -199,7 +205,8 @@ TEST(Rehearsal, ends_with_its_lamps_at_the_end_levels_and_its_relays_safe) {
     EXPECT_EQ(std::count(recorded.begin(), recorded.end(), '\n'), 1 + 2 * 2 * 30);
 }
 
-// Each mistake ends with one message that says where and what to do, exit status 1, and nothing half written.
+// Each mistake ends with one message that says where and what to do, exit status 1, and nothing
+// half written.
 TEST(Rehearsal, bad_input_is_refused_before_anything_is_shown) {
     const ScratchFolder folder;
     const auto refused = [&](std::vector<std::string> arguments) {

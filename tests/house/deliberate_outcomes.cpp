@@ -1,4 +1,5 @@
-// Passes, skips, fails and hangs on purpose, for skips_test.cpp. ctest runs it under `-C deliberate` alone.
+// Passes, skips, fails and hangs on purpose, for skips_test.cpp. ctest runs it under `-C
+// deliberate` alone.
 
 #include <gmock/gmock.h>
 #include <unistd.h>

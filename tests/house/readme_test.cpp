@@ -1,4 +1,5 @@
-// A newcomer types what a README says, in its order: every file that a command reads is in the repository, or an earlier command made it.
+// A newcomer types what a README says, in its order: every file that a command reads is in the
+// repository, or an earlier command made it.
 
 #include "house/repository.h"
 #include "source_folder.h"
@@ -25,8 +26,8 @@ constexpr std::string_view kProgram = "fantascope";
 const std::set<std::string_view> kMakes = {"-o",      "--out",    "--image",    "--view",   "--each",   "--sheet",
                                            "--video", "--record", "--pictures", "--report", "--meshes", "--solutions"};
 
-// The words of each command of the program, with the line where it stands: whole lines of blocks, and what is between back quotes in the text. A
-// line that ends in a backslash goes on in the next.
+// The words of each command of the program, with the line where it stands: whole lines of blocks,
+// and what is between back quotes in the text. A line that ends in a backslash goes on in the next.
 struct Command {
     std::vector<std::string> words;
     std::size_t line;

@@ -1,5 +1,5 @@
-// Holds the rule of core/result.h: between braces that make a value, nothing comes before TRY. When TRY returns there, g++ does not destroy
-// the members that were made before it.
+// Holds the rule of core/result.h: between braces that make a value, nothing comes before TRY. When
+// TRY returns there, g++ does not destroy the members that were made before it.
 
 #include "house/repository.h"
 
@@ -27,8 +27,9 @@ std::string withoutWords(const TextFile& file) {
 
 bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-// Whether the brace at `at` begins a value, as in Type{...}, = {...}, return {...}, f({...}) and {{...}}; else it begins a block. The
-// house's format has a blank before a block's brace, and none after a type's name.
+// Whether the brace at `at` begins a value, as in Type{...}, = {...}, return {...}, f({...}) and
+// {{...}}; else it begins a block. The house's format has a blank before a block's brace, and none
+// after a type's name.
 bool beginsValue(std::string_view code, std::size_t at) {
     if (at > 0 && (isWord(code[at - 1]) || code[at - 1] == '>')) return true;
     std::string_view before = code.substr(0, at);

@@ -1,8 +1,8 @@
 #pragma once
 // What the tests of every search method need.
 
-#include "pattern/elemental_shape.h"
-#include "pattern/pattern_search.h"
+#include "pattern/search/pattern_search.h"
+#include "pattern/shape/elemental_shape.h"
 
 #include <algorithm>
 #include <initializer_list>

@@ -18,7 +18,8 @@ protected:
     }
 };
 
-// A universe goes out to the far end. Another one goes the same way, by which the rig knows how far its line has come.
+// A universe goes out to the far end. Another one goes the same way, by which the rig knows how far
+// its line has come.
 class NetworkDmxPortRig final : public contract::DmxPortRig {
 public:
     explicit NetworkDmxPortRig(const std::string& protocol) : protocol_(protocol), ear_(protocol) {
@@ -56,7 +57,8 @@ public:
             if (!ear_.listenUntil(seen)) ADD_FAILURE() << "the mark was not heard";
         }
     }
-    // What is heard anew; a line says nothing over and over when nothing came while another was kept alive twice.
+    // What is heard anew; a line says nothing over and over when nothing came while another was
+    // kept alive twice.
     std::optional<DmxFrame> line() override {
         ear_.forget();
         if (!isIn_) return std::nullopt;
@@ -100,7 +102,8 @@ TEST_P(NetworkContract, of_a_port_is_kept) {
                 IsEmpty());
 }
 
-// Desks at the far end, and one more universe by which the rig knows that everything before has come.
+// Desks at the far end, and one more universe by which the rig knows that everything before has
+// come.
 class NetworkDmxSourceRig final : public contract::DmxSourceRig {
 public:
     explicit NetworkDmxSourceRig(const std::string& protocol) : protocol_(protocol) {

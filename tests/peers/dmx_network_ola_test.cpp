@@ -1,4 +1,5 @@
-// sACN and Art-Net against OLA (the Open Lighting Architecture) as receiver and as sender, and against the decoder of Wireshark.
+// sACN and Art-Net against OLA (the Open Lighting Architecture) as receiver and as sender, and
+// against the decoder of Wireshark.
 
 #include "peers/dmx_network_rig.h"
 #include "scratch_folder.h"
@@ -79,7 +80,8 @@ public:
     bool isReady() const { return isReady_; }
     std::string log() const { return contentsOf(folder_ / "olad.log") + contentsOf(folder_ / "tools.log"); }
 
-    // Begins to record all universes that come in; the second one ends it and gives each universe's frames.
+    // Begins to record all universes that come in; the second one ends it and gives each universe's
+    // frames.
     void record() {
         std::string universes;
         for (int port = 0; port < kSacnUniverses; ++port) universes += fmt::format("{},", kSacnToOla + port);
@@ -256,7 +258,8 @@ TEST_F(DmxNetworkOla, gets_every_frame_of_sixteen_universes_and_we_get_all_of_it
         for (const Slots& slots : recorded.at(universe)) {
             const int number = numberOf(slots);
             ASSERT_EQ(slots, numbered(universe, number));
-            // The recorder takes up one universe after the other while the first frames are out already.
+            // The recorder takes up one universe after the other while the first frames are out
+            // already.
             constexpr int kUntilItListens = 20;
             ASSERT_TRUE(number == last || number == last + 1 || (last == 0 && number <= kUntilItListens))
                 << last << ", " << number;
@@ -284,7 +287,8 @@ TEST_F(DmxNetworkOla, gets_every_frame_of_sixteen_universes_and_we_get_all_of_it
     RecordProperty("frames", toOla + fromOla);
 }
 
-// OLA merges by priority as our own DmxMerge does, so what it carries tells whether it has read our priority and our goodbye.
+// OLA merges by priority as our own DmxMerge does, so what it carries tells whether it has read our
+// priority and our goodbye.
 TEST_F(DmxNetworkOla, takes_our_priority_and_our_goodbye_and_after_its_restart_our_levels) {
     Ola ola;
     ASSERT_TRUE(ola.isReady()) << ola.log();
@@ -399,7 +403,8 @@ TEST_F(DmxNetworkCapture, every_packet_is_decoded_by_wireshark_without_a_complai
     EXPECT_GE(decoded(ours + "artnet.header.opcode == 0x5200").size(), 30u) << "ArtSync";
     EXPECT_GE(decoded(ours + "artnet.header.opcode == 0x2000").size(), 1u) << "ArtPoll";
     EXPECT_GE(decoded(ours + "artnet.header.opcode == 0x2100").size(), 3u) << "ArtPollReply";
-    // Sync and discovery are beyond what this decoder knows of sACN; of the others it knows every one.
+    // Sync and discovery are beyond what this decoder knows of sACN; of the others it knows every
+    // one.
     const std::string known = ours + "(udp.port == 6454 || (udp.port == 5568 && frame.len == 680))";
     EXPECT_THAT(decoded(known + " && !acn && !artnet"), IsEmpty());
     EXPECT_THAT(decoded(ours + "(_ws.malformed || _ws.expert.severity >= 6291456)"), IsEmpty());

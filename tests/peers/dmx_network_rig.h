@@ -18,7 +18,8 @@
 
 namespace fantascope::peers {
 
-// Opens a port or a source on this program's own clock, and waits until it runs where that is wanted.
+// Opens a port or a source on this program's own clock, and waits until it runs where that is
+// wanted.
 inline SteadyClock& testClock() {
     static SteadyClock clock;
     return clock;
@@ -47,7 +48,8 @@ public:
     }
     void answer(bool yes) { answers_ = yes; }
 
-    // All that has arrived so far, and what arrives within `patience` milliseconds if that is nothing. Whether anything came.
+    // All that has arrived so far, and what arrives within `patience` milliseconds if that is
+    // nothing. Whether anything came.
     bool listen(int patience = 2) {
         bool any = false;
         std::string from;

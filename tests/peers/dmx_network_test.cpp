@@ -1,4 +1,5 @@
-// What sACN and Art-Net promise beyond the contracts of the ports, heard and spoken by plain sockets at the far end.
+// What sACN and Art-Net promise beyond the contracts of the ports, heard and spoken by plain
+// sockets at the far end.
 
 #include "drivers/dmx/dmx_nodes.h"
 
@@ -80,8 +81,8 @@ TEST_F(DmxNetwork, sacn_says_goodbye_three_times) {
         EXPECT_EQ(ear.heard[7][i].sequence, (ear.heard[7][i - 1].sequence + 1) & 255);
 }
 
-// What receivers of a goodbye have then are the levels before it, since its own mean nothing (ANSI E1.31, section 6.2.6).
-// Example failure: a test of a lamp leaves it at full.
+// What receivers of a goodbye have then are the levels before it, since its own mean nothing (ANSI
+// E1.31, section 6.2.6). Example failure: a test of a lamp leaves it at full.
 TEST_F(DmxNetwork, the_newest_levels_are_out_four_times_before_a_port_closes) {
     for (const std::string protocol : {"sacn", "artnet"}) {
         SCOPED_TRACE(protocol);
@@ -158,7 +159,8 @@ TEST_F(DmxNetwork, sacn_announces_its_universes) {
                 ElementsAre(0x70, 12, 0, 0, 0, 1, 0, 0, 0, 8, 300 >> 8, 300 & 255));
 }
 
-// Example failure (OLA 1850): datagrams to a device that is off fill the one socket, and every lamp stutters.
+// Example failure (OLA 1850): datagrams to a device that is off fill the one socket, and every lamp
+// stutters.
 TEST_F(DmxNetwork, devices_that_are_off_take_nothing_from_the_others) {
     constexpr int kFrames = 150;
     for (const std::string protocol : {"sacn", "artnet"}) {

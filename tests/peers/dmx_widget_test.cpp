@@ -1,5 +1,6 @@
-// The widget that our drivers are tested with, in the eyes of a program that we did not write: OLA takes it for a DMX USB PRO, sends by it
-// and receives by it. What OLA and the widget agree upon is the protocol.
+// The widget that our drivers are tested with, in the eyes of a program that we did not write: OLA
+// takes it for a DMX USB PRO, sends by it and receives by it. What OLA and the widget agree upon is
+// the protocol.
 
 #include "contract/eventually.h"
 #include "contract/widget_socket.h"

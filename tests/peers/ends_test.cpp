@@ -1,4 +1,5 @@
-// Every end of a run leaves its relays safe: `fantascope run` at a module that somebody else wrote, ended in every way that a program ends.
+// Every end of a run leaves its relays safe: `fantascope run` at a module that somebody else wrote,
+// ended in every way that a program ends.
 
 #include "core/check.h"
 #include "core/clock.h"
@@ -131,7 +132,8 @@ const std::vector<End>& allEnds() {
     return ends;
 }
 
-// How long after its end a run's relays were safe, as the module saw it; nothing: they were not within half a minute.
+// How long after its end a run's relays were safe, as the module saw it; nothing: they were not
+// within half a minute.
 std::optional<Time> safeAfter(Street& street, const End& end, std::string& wrong) {
     std::optional<Process> x;
     std::string display;
@@ -168,9 +170,11 @@ protected:
     }
 };
 
-// Ends in an order of chance, but for the first of each kind: as many as FANTASCOPE_ENDS says on each wire, or each kind once on one of the
-// two. Each run begins on the site that the one before has left, so no end keeps a claim.
-// Example failures: only SIGINT and SIGTERM make relays safe; a crash leaves the street dark until the morning.
+// Ends in an order of chance, but for the first of each kind: as many as FANTASCOPE_ENDS says on
+// each wire, or each kind once on one of the two. Each run begins on the site that the one before
+// has left, so no end keeps a claim.
+// Example failures: only SIGINT and SIGTERM make relays safe; a crash leaves the street dark until
+// the morning.
 TEST_F(Ends, leave_the_relays_safe_whatever_they_are) {
     const char* const asked = std::getenv("FANTASCOPE_ENDS");
     Rng rng(18);
@@ -200,7 +204,8 @@ TEST_F(Ends, leave_the_relays_safe_whatever_they_are) {
     }
 }
 
-// Example failure: with an X server that was stopped nothing but kill -9 ended the program, and no report was left.
+// Example failure: with an X server that was stopped nothing but kill -9 ended the program, and no
+// report was left.
 TEST_F(Ends, an_x_server_that_is_stopped_holds_up_no_end) {
     Street street(ModbusPeer::Wire::Tcp, "glfw");
     std::string display;
@@ -252,7 +257,8 @@ TEST_F(Ends, under_nohup_a_closed_terminal_ends_nothing) {
     EXPECT_TRUE(street.isSafe());
 }
 
-// Example failures: what is printed goes into the file that signals ring; the guard's own files replace the claims that it keeps.
+// Example failures: what is printed goes into the file that signals ring; the guard's own files
+// replace the claims that it keeps.
 TEST_F(Ends, a_run_without_standard_streams_ends_as_any_other) {
     Street street(ModbusPeer::Wire::Tcp);
     const auto withoutStreams = [] {
@@ -307,7 +313,8 @@ public:
         });
     }
     const std::string& shown() const { return shown_; }
-    // Whether the terminal shows each key and gives them by the line; the shell wants neither while it waits for keys.
+    // Whether the terminal shows each key and gives them by the line; the shell wants neither while
+    // it waits for keys.
     bool echoes() const {
         termios settings{};
         tcgetattr(terminal_.get(), &settings);
@@ -343,8 +350,8 @@ TEST_F(Ends, ctrl_z_does_not_stop_a_run) {
     EXPECT_TRUE(street.isSafe());
 }
 
-// Example failures: at its end it was stopped, since it gave back a terminal that was not its own any more, and left no report; the shell
-// got the settings that the run had found.
+// Example failures: at its end it was stopped, since it gave back a terminal that was not its own
+// any more, and left no report; the shell got the settings that the run had found.
 TEST_F(Ends, a_run_in_the_background_ends_with_its_report_and_leaves_the_terminal_to_the_shell) {
     Street street(ModbusPeer::Wire::Tcp);
     Shell shell(street.folder());
@@ -436,7 +443,8 @@ TEST_F(Claims, a_second_run_is_refused_and_told_who_holds_the_site_or_a_device_o
     EXPECT_EQ(first.wait(), 0);
 }
 
-// Example failure: the list was made by opening every bank, and closing them wrote all coils safe in the middle of a show.
+// Example failure: the list was made by opening every bank, and closing them wrote all coils safe
+// in the middle of a show.
 TEST_F(Claims, looking_at_the_devices_of_a_site_switches_nothing) {
     if (!whyNoNetwork().empty()) GTEST_SKIP() << whyNoNetwork();  // `devices` asks every network that there is
     Street street(ModbusPeer::Wire::Tcp);
@@ -468,7 +476,8 @@ TEST_F(Claims, what_a_run_has_is_looked_at_from_afar_and_not_tried) {
     EXPECT_EQ(run.wait(), 0) << run.said();
 }
 
-// Example failure: the guard reads the site file anew, which somebody saves in the middle of the show; it guards other relays, or none.
+// Example failure: the guard reads the site file anew, which somebody saves in the middle of the
+// show; it guards other relays, or none.
 TEST_F(Ends, a_guard_that_is_replaced_knows_the_site_that_the_run_has_read) {
     Street street(ModbusPeer::Wire::Tcp);
     Process run = street.run();
@@ -495,7 +504,8 @@ TEST_F(Ends, the_report_tells_of_a_guard_that_died) {
     EXPECT_TRUE(faults[0].contains("until"));
 }
 
-// Example failure: most lamps hold the last level that they got, the one of that moment, until the morning.
+// Example failure: most lamps hold the last level that they got, the one of that moment, until the
+// morning.
 TEST_F(Ends, an_impatient_operator_gets_the_end_levels_at_once_and_is_told_of_the_recording) {
     if (!whyNoNetwork().empty()) GTEST_SKIP() << whyNoNetwork();
     Street street(ModbusPeer::Wire::Tcp);

@@ -90,7 +90,8 @@ ModbusCampaign runModbusCampaign(ModbusPeer::Wire wire, int faults, std::uint64_
     const auto options = ConfigNode::parse(text, "site.yaml").value();
     const std::vector<Fault> kinds = faultsOn(wire);
 
-    // All states that were ever asked for, each with its number: a module may see them in that order alone.
+    // All states that were ever asked for, each with its number: a module may see them in that
+    // order alone.
     std::map<std::string, int> asked;
     const auto newStates = [&] {
         std::vector<bool> states;

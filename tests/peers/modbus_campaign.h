@@ -21,9 +21,10 @@ struct ModbusCampaign {
     std::size_t stalls = 0;                               // of a module's process, which began a fault anew that was over
 };
 
-// As the program does it (src/app/lighting.cpp): the wanted states are written when they change, after every loss, and again where a
-// write failed. A module's process that gets no processor for half a response time-out hangs like one that was stopped: such a fault is not
-// over before the process goes on.
+// As the program does it (src/app/live/lighting.cpp): the wanted states are written when they
+// change, after every loss, and again where a write failed. A module's process that gets no
+// processor for half a response time-out hangs like one that was stopped: such a fault is not over
+// before the process goes on.
 ModbusCampaign runModbusCampaign(ModbusPeer::Wire wire, int faults, std::uint64_t seed);
 
 }  // namespace fantascope

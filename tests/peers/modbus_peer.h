@@ -1,5 +1,6 @@
 #pragma once
-// Modbus modules that we did not write: pymodbus, in a process of its own (tests/peers/modbus_peer.py has its commands).
+// Modbus modules that we did not write: pymodbus, in a process of its own
+// (tests/peers/modbus_peer.py has its commands).
 
 #include "core/result.h"
 #include "scratch_folder.h"
@@ -25,7 +26,8 @@ public:
     ModbusPeer(const ModbusPeer&) = delete;
     ModbusPeer& operator=(const ModbusPeer&) = delete;
 
-    // What a site file says to use a line, but for what is of relays or contacts alone. Stays as it is over a restart.
+    // What a site file says to use a line, but for what is of relays or contacts alone. Stays as it
+    // is over a restart.
     std::string options(int line) const;
     std::string ask(const std::string& command) const;
 
@@ -34,7 +36,8 @@ public:
     void stop();     // it hangs: its lines are there and nobody answers
     void resume();
 
-    // What became of the coils, in order: by whom ("write", "struck") and all of them as they were then, a character each.
+    // What became of the coils, in order: by whom ("write", "struck") and all of them as they were
+    // then, a character each.
     struct Change {
         int line;  // 100 more for unit 2
         std::string by, coils;

@@ -1,6 +1,6 @@
 // The Modbus drivers against pymodbus, over TCP and over a serial line.
 
-#include "app/lighting.h"
+#include "app/live/lighting.h"
 #include "app/running_show.h"
 #include "drivers/common/file_handle.h"
 #include "drivers/registry.h"
@@ -74,8 +74,9 @@ public:
         plugged_ = true;
         peer_.ask(loss_ == Loss::LineIsCut ? "mend 0" : "unit 0 1");
     }
-    // Until the state is what the plug says, what was asked before is answered, and the module's watchdog has done what it has to. Of four
-    // answers one is under way already, one may be to the watchdog, one tells how the relays are, and after the next the driver knows.
+    // Until the state is what the plug says, what was asked before is answered, and the module's
+    // watchdog has done what it has to. Of four answers one is under way already, one may be to the
+    // watchdog, one tells how the relays are, and after the next the driver knows.
     void letTimePass() override {
         const int served = this->served();
         const bool passed = comesTrue(clock_, [&] {
@@ -318,7 +319,8 @@ TEST_P(OnModbus, a_silent_unit_is_named) {
         << bank->status().detail;
 }
 
-// Example failure: every look at the dead unit takes its whole time-out, and comes as often as a look at a living one.
+// Example failure: every look at the dead unit takes its whole time-out, and comes as often as a
+// look at a living one.
 TEST_P(OnModbus, a_dead_unit_leaves_the_line_to_the_others) {
     peer_->ask("dead 0.2");
     const auto dead = contacts(kPatient + "unit: 2\nrate: 50\n");
@@ -361,7 +363,8 @@ TEST_P(OnModbus, a_dead_bus_leaves_the_others_alone) {
     EXPECT_TRUE(comesTrue([&] { return runs(*dead); })) << dead->status().detail;
 }
 
-// A short interruption of its power changes a module's relays, and nothing else on a serial line tells of it.
+// A short interruption of its power changes a module's relays, and nothing else on a serial line
+// tells of it.
 TEST_P(OnModbus, relays_that_changed_by_themselves_are_a_loss) {
     const auto bank = relays("rate: 50\n");
     ASSERT_TRUE(comesTrue([&] { return runs(*bank); })) << bank->status().detail;

@@ -1,6 +1,6 @@
 #pragma once
-// sACN and Art-Net as the test itself speaks them, apart from the program's own packets: bytes and offsets written by hand from
-// ANSI E1.31-2018 and the Art-Net 4 specification.
+// sACN and Art-Net as the test itself speaks them, apart from the program's own packets: bytes and
+// offsets written by hand from ANSI E1.31-2018 and the Art-Net 4 specification.
 
 #include <array>
 #include <cstdint>

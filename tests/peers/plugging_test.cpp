@@ -1,6 +1,6 @@
-// A day's worth of plugging at the real drivers: `fantascope run` with widgets on serial lines, lamps on two networks, a desk, relays,
-// contacts, a hand controller and a camera, every one of which is pulled and put back over and over, in an order of chance, while the
-// show runs.
+// A day's worth of plugging at the real drivers: `fantascope run` with widgets on serial lines,
+// lamps on two networks, a desk, relays, contacts, a hand controller and a camera, every one of
+// which is pulled and put back over and over, in an order of chance, while the show runs.
 
 #include "contract/mock_usb.h"
 #include "contract/projectors.h"
@@ -126,7 +126,8 @@ camera:
                            inside(contacts_->options(0) + "response_timeout: 0.2\n"), camera_.kind().serial);
     }
 
-    // Takes what the program says next: a line may hold several sentences, of one device too. False: it says nothing more.
+    // Takes what the program says next: a line may hold several sentences, of one device too.
+    // False: it says nothing more.
     bool hear(RunningProgram& program) {
         const auto said = program.line();
         const std::string line = said.value_or("");
@@ -151,7 +152,8 @@ camera:
         return names;
     }
     static constexpr int kPatience = 60;  // lines of the program
-    // Every plug `times` times out and in again, in an order of chance: another one whenever the program has noticed.
+    // Every plug `times` times out and in again, in an order of chance: another one whenever the
+    // program has noticed.
     void plugAndUnplug(RunningProgram& program, int times) {
         for (Plug& plug : plugs_) plug.pulls = 0;
         const auto isDone = [&](const Plug& plug) { return plug.in && plug.pulls == times && isTold(plug); };

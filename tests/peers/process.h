@@ -25,7 +25,8 @@ namespace fantascope::peers {
 class Process {
 public:
     Process() = default;
-    // fantascope with these arguments; what it says goes through a pipe. `prepare` is the last that its process does before.
+    // fantascope with these arguments; what it says goes through a pipe. `prepare` is the last that
+    // its process does before.
     using Prepare = std::function<void()>;
     Process(const std::vector<std::string>& arguments, const std::filesystem::path& folder, const Prepare& prepare = {}) {
         start([&] {
@@ -63,7 +64,8 @@ public:
     void signal(int number) const {
         if (process_ > 0) ::kill(process_, number);
     }
-    // The same, and it has reached the program when this returns: two signals of a kind do not become one.
+    // The same, and it has reached the program when this returns: two signals of a kind do not
+    // become one.
     void signalAlone(int number) const {
         signal(number);
         const auto isPending = [&] {

@@ -46,15 +46,17 @@ std::size_t count(const RgbaImage& picture, Rgba8 colour) {
 const Rgba8 kFirst = stored(actorColour(0)), kSecond = stored(actorColour(1));
 bool isHatch(Rgba8 p) { return p.r > 200 && p.g < 110 && p.b < 110; }
 
-// The target fills the whole mask in its lower three quarters, so that a figure is not cut; one actor throws its left half, one what is
-// right of its middle but for the last quarter, and in the middle they overlap.
+// The target fills the whole mask in its lower three quarters, so that a figure is not cut; one
+// actor throws its left half, one what is right of its middle but for the last quarter, and in the
+// middle they overlap.
 struct Halves {
     BitMask target = rectangle(0, 16, 64, 64);
     std::vector<ActorShadow> actors{{rectangle(0, 16, 36, 64), "1.75 m", {"note of the first"}},
                                     {rectangle(28, 0, 48, 64), "1.60 m", {"note of the second"}}};
 };
 
-// In a figure's picture, which is the first thing on the page below and right of its margin: the colour of the middle of a square of pixels.
+// In a figure's picture, which is the first thing on the page below and right of its margin: the
+// colour of the middle of a square of pixels.
 Rgba8 inFigure(const RgbaImage& page, double x, double y) {
     return page.at(static_cast<int>(24 + 600 * x / 64), static_cast<int>(24 + 600 * y / 64));
 }
@@ -163,7 +165,8 @@ double area(const std::vector<glm::dvec2>& ring) {
     return sum;
 }
 
-// What touches the edge is closed there; pixels that touch at a corner are two rings; a hole runs the other way around.
+// What touches the edge is closed there; pixels that touch at a corner are two rings; a hole runs
+// the other way around.
 TEST(MaskOutline, finds_every_island_and_every_hole) {
     EXPECT_THAT(maskOutline(BitMask(6, 6)), SizeIs(0));
     BitMask full(6, 6);

@@ -1,5 +1,5 @@
-#include "pattern/elemental_shape.h"
-#include "pattern/excitation.h"
+#include "pattern/motion/excitation.h"
+#include "pattern/shape/elemental_shape.h"
 
 #include "core/file.h"
 #include "plot/chart.h"
@@ -20,7 +20,8 @@ using testing::DoubleEq;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// One square over the left half of a canvas of 80 x 40, large enough to reach beyond it at the left.
+// One square over the left half of a canvas of 80 x 40, large enough to reach beyond it at the
+// left.
 pattern::ShapePattern leftHalf() {
     pattern::ShapePattern pattern;
     pattern.guide = "half.png";
@@ -47,7 +48,8 @@ bool isBlue(Rgba8 colour) { return colour.b > 100 && colour.r < 60; }
 bool isRed(Rgba8 colour) { return colour.r > 100 && colour.b < 60; }
 bool isWhite(Rgba8 colour) { return colour == Rgba8{255, 255, 255, 255}; }
 
-// "Blue denotes pixels covered only by the guide image, red those covered only by the candidate shape pattern."
+// "Blue denotes pixels covered only by the guide image, red those covered only by the candidate
+// shape pattern."
 TEST(DifferencePicture, is_blue_where_the_guide_alone_is_and_red_where_the_pattern_alone_is) {
     const RgbaImage picture = differencePicture(leftHalf(), lowerHalf());
     ASSERT_EQ(picture.width(), 80);
@@ -134,8 +136,10 @@ TEST(PowerSpectrum, of_an_excitation_falls_by_two_beta) {
     EXPECT_NEAR(std::log(power[900] / power[9]) / std::log(100), -2, 1e-6);
 }
 
-// Two patterns of one seed and settings move alike, and their figures say so by seed, group and instance.
-// Example failure: the figures of two patterns are the same bytes, and nobody can tell which is whose.
+// Two patterns of one seed and settings move alike, and their figures say so by seed, group and
+// instance.
+// Example failure: the figures of two patterns are the same bytes, and nobody can tell which is
+// whose.
 TEST(Figures, a_spectrum_names_what_it_is_of) {
     const ScratchFolder folder;
     const auto drawnAs = [&](std::uint64_t seed, std::uint32_t id, std::uint32_t group) {

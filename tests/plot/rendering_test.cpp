@@ -68,7 +68,8 @@ TEST(Rendering, shows_the_nearer_before_the_farther_in_any_order) {
     }
 }
 
-// Half of the light comes through, whichever is listed first; what is behind something opaque is not seen.
+// Half of the light comes through, whichever is listed first; what is behind something opaque is
+// not seen.
 TEST(Rendering, blends_what_is_translucent) {
     const Surface veil = plain(square({0, 1, 1}, 0.5f), kRed, 0.5f), wall = plain(square({0, 1, 0}, 1), kBlue);
     const auto half = static_cast<std::uint8_t>(std::lround(255 * srgbFromLinear(0.5f)));

@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kWidth = 640, kHeight = 320;
 
-// A screen of 4 m x 2 m in pixels of 2 cm: the target is 1 m wide at its left, the shadow 1 m wide at its right, both 1 m high.
+// A screen of 4 m x 2 m in pixels of 2 cm: the target is 1 m wide at its left, the shadow 1 m wide
+// at its right, both 1 m high.
 StageView aView() {
     const theatre::Stage stage;
     StageView view{stage,
@@ -52,7 +53,8 @@ TEST(StageView, shows_shadow_and_target_where_they_are_on_the_screen) {
     }
 }
 
-// From behind the lamp and the right: the right of two people of one size is not the one at the left, and the nearer hides the farther.
+// From behind the lamp and the right: the right of two people of one size is not the one at the
+// left, and the nearer hides the farther.
 TEST(StageView, shows_people_in_their_colours_the_nearer_before_the_farther) {
     StageView view = aView();
     view.actors = {{box({-0.2f, 0, 2}, {0.2f, 1.7f, 2.2f}), kGreen}, {box({-1, 0, 1}, {1, 1.6f, 1.2f}), kBlue}};

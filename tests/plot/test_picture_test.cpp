@@ -53,8 +53,8 @@ Extent differenceOf(const RgbaImage& a, const RgbaImage& b) {
     return extentOf({a.width(), a.height()}, [&](int x, int y) { return !(a.at(x, y) == b.at(x, y)); });
 }
 
-// How far a line of the canvas is drawn from where the warp has it, at a point of it and across the pixels; `kNothing` if there is no light,
-// none if more than this line is near.
+// How far a line of the canvas is drawn from where the warp has it, at a point of it and across the
+// pixels; `kNothing` if there is no light, none if more than this line is near.
 constexpr double kNothing = 1e9;
 std::optional<double> missAt(const RgbaImage& picture, const Warp& warp, glm::dvec2 canvas, glm::dvec2 along) {
     constexpr double kReach = 0.04;
@@ -90,7 +90,8 @@ std::optional<double> missAt(const RgbaImage& picture, const Warp& warp, glm::dv
     return moment / light - wanted;
 }
 
-// A technician moves a mesh point until a line lies on a ledge: the line has to be where the show will be.
+// A technician moves a mesh point until a line lies on a ledge: the line has to be where the show
+// will be.
 TEST(TestPictureGrid, lies_where_the_warp_puts_the_canvas) {
     struct Case {
         const char* what;
@@ -294,7 +295,8 @@ TEST(EditView, has_its_handles_where_they_are_and_the_chosen_one_of_another_shap
     }
 }
 
-// Where light ends is seen while it is set, whichever way up the picture is; a picture as a mask has no outline.
+// Where light ends is seen while it is set, whichever way up the picture is; a picture as a mask
+// has no outline.
 TEST(EditView, outlines_the_masks_where_these_are_set) {
     for (const int turns : {0, 1}) {
         Projection output =
@@ -339,7 +341,8 @@ TEST(EditView, never_lays_its_words_over_the_chosen_handle) {
                 EditView view{.projection = output, .name = "tower", .picture = which};
                 const glm::dvec2 at = glm::dvec2(size) * glm::dvec2(0.1 + 0.2 * (i % 5), 0.1 + 0.2 * (i / 5));
                 view.handles = {{at, "", true}};
-                // Identify's number makes way for the words: the two must have it in the same place.
+                // Identify's number makes way for the words: the two must have it in the same
+                // place.
                 view.lines = {" "};
                 const RgbaImage silent = drawEditView(view);
                 view.lines = {"tower: the corner at the top right", "1811.0, 12.5   step 1 px", "arrows move, Tab next",
@@ -373,7 +376,8 @@ TEST(EditView, writes_upright_from_left_to_right) {
     EXPECT_LT(lightOf(picture, seen.to.x - 2, seen.from.y + 2), 128);
 }
 
-// From behind, from above or on its side: the wall shows the same. Turned are the pixels, so what is compared are all of them.
+// From behind, from above or on its side: the wall shows the same. Turned are the pixels, so what
+// is compared are all of them.
 TEST(EditView, reads_the_same_on_the_wall_whichever_way_the_picture_leaves_the_projector) {
     constexpr glm::ivec2 kUpright{640, 360};
     struct Way {

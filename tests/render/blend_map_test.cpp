@@ -1,4 +1,4 @@
-#include "render/blend_map.h"
+#include "render/canvas/blend_map.h"
 
 #include "core/random.h"
 
@@ -26,7 +26,8 @@ std::vector<Projection> sideBySide(double blackLevel = 0) {
             projectionOf({.part = {{0.4444, 0}, {1, 1}}, .corners = rectangleCorners(kSize.x, kSize.y)}, blackLevel)};
 }
 
-// Four crooked pictures over a canvas, two by two, one of them bent, one upside down, one mirrored, and no edge parallel to another.
+// Four crooked pictures over a canvas, two by two, one of them bent, one upside down, one mirrored,
+// and no edge parallel to another.
 std::vector<Projection> crookedFour(double blackLevel) {
     const auto corners = [](double a, double b, double c, double d) {
         return std::array<glm::dvec2, 4>{{{10 + a, 12}, {300, 6 + b}, {312 - c, 172}, {6, 170 - d}}};
@@ -54,7 +55,8 @@ std::vector<BlendMap> mapsOf(const std::vector<Projection>& projections) {
     return maps;
 }
 
-// Light on a point of the canvas, by all projectors, when the whole canvas is to have `wanted`: each pixel's, between the four nearest.
+// Light on a point of the canvas, by all projectors, when the whole canvas is to have `wanted`:
+// each pixel's, between the four nearest.
 double lightOn(glm::dvec2 canvas, double wanted, const std::vector<Projection>& projections, const std::vector<BlendMap>& maps) {
     double sum = 0;
     for (std::size_t i = 0; i < projections.size(); ++i) {
@@ -75,8 +77,9 @@ double lightOn(glm::dvec2 canvas, double wanted, const std::vector<Projection>& 
     return sum;
 }
 
-// How far from each other the brightest and the darkest place of the canvas are, but for places within a pixel or so of an edge, where black
-// levels step and pixels of two projectors cannot meet exactly.
+// How far from each other the brightest and the darkest place of the canvas are, but for places
+// within a pixel or so of an edge, where black levels step and pixels of two projectors cannot meet
+// exactly.
 double unevenness(double wanted, const std::vector<Projection>& projections, const std::vector<BlendMap>& maps) {
     double least = INFINITY, most = 0;
     for (int y = 0; y < 90; ++y)
@@ -107,12 +110,14 @@ TEST(BlendMap, shares_the_light_of_an_overlap_and_nothing_else) {
     const auto maps = mapsOf(projections);
     EXPECT_EQ(maps[0].at(10, 90), glm::vec2(1, 0));
     EXPECT_EQ(maps[1].at(310, 90), glm::vec2(1, 0));
-    // The overlap is a fifth of each picture: from 256 on. In its middle both give a half; it rises all the way.
+    // The overlap is a fifth of each picture: from 256 on. In its middle both give a half; it rises
+    // all the way.
     EXPECT_NEAR(maps[0].at(288, 90).x, 0.5, 0.03);
     EXPECT_LT(maps[0].at(319, 90).x, 0.01);
     EXPECT_GT(maps[0].at(257, 90).x, 0.99);
     for (int x = 257; x < 320; ++x) EXPECT_LE(maps[0].at(x, 90).x, maps[0].at(x - 1, 90).x + 1e-6f) << x;
-    // Top and bottom are edges of both: nothing is to be blended there. Example failure: the distance to the nearest edge of any kind.
+    // Top and bottom are edges of both: nothing is to be blended there. Example failure: the
+    // distance to the nearest edge of any kind.
     for (const int y : {0, 45, 179}) EXPECT_NEAR(maps[0].at(288, y).x, maps[0].at(288, 90).x, 1e-4) << y;
 }
 
@@ -127,7 +132,8 @@ TEST(BlendMap, makes_every_field_even_at_every_grey) {
         }
 }
 
-// Without the lift the overlap's black would be twice as bright as the rest; what is lifted is as bright as that, not brighter.
+// Without the lift the overlap's black would be twice as bright as the rest; what is lifted is as
+// bright as that, not brighter.
 TEST(BlendMap, lifts_the_blacks_around_an_overlap_to_its_own) {
     const auto projections = sideBySide(0.02);
     const auto maps = mapsOf(projections);

@@ -54,7 +54,8 @@ TEST(Composer, blends_layers_in_linear_light) {
     }
 }
 
-// The order counts, through as many layers as there are; what one pass cannot take is carried on without loss.
+// The order counts, through as many layers as there are; what one pass cannot take is carried on
+// without loss.
 TEST(Composer, keeps_the_order_of_any_number_of_layers) {
     DrawnOutput output(plain(), {SolidSource{glm::vec3(0.8f)}, square(0.5f), SolidSource{glm::vec3(0.25f)}, square(0.125f)});
     const OutputState state{
@@ -68,7 +69,8 @@ TEST(Composer, keeps_the_order_of_any_number_of_layers) {
     EXPECT_NEAR(pixels.uncovered, storedOf(around), 1);
 }
 
-// A crossfade of two composed looks, over a light that both have: each picture is composed by itself and then counts with its share.
+// A crossfade of two composed looks, over a light that both have: each picture is composed by
+// itself and then counts with its share.
 TEST(Composer, adds_pictures_with_their_shares) {
     DrawnOutput output(plain(), {SolidSource{glm::vec3(0.1f)}, SolidSource{glm::vec3(0.8f)}, square(0.5f), square(0.25f)});
     const OutputState state{{{0, 1.0f}, {1, 1.0f}, {2, 1.0f, Blend::Multiply}, {1, 0.5f}, {3, 1.0f, Blend::Over}},
@@ -118,13 +120,14 @@ TEST(Composer, looks_colours_up_in_the_table) {
     }
 }
 
-// A light between two stored values becomes a mixture of the two that has that light, in places that no eye makes a pattern of: no row and
-// no column has much more of the one than another.
+// A light between two stored values becomes a mixture of the two that has that light, in places
+// that no eye makes a pattern of: no row and no column has much more of the one than another.
 TEST(Composer, dithers_between_two_values_and_keeps_the_mean) {
     Projection projection = projectionTo({256, 256}, rectangleCorners(256, 256));
     projection.light.dither = true;
     for (const double between : {40.25, 40.5, 40.8}) {
-        // The layer's own 8 bits must not decide: half of a light of 1 is exact, the opacity does the rest.
+        // The layer's own 8 bits must not decide: half of a light of 1 is exact, the opacity does
+        // the rest.
         const float light = linearFromSrgb(static_cast<float>(between / 255));
         DrawnOutput output(projection, {SolidSource{glm::vec3(1)}});
         const RgbaImage& image = output.frame({{0, light}});
@@ -146,7 +149,8 @@ TEST(Composer, dithers_between_two_values_and_keeps_the_mean) {
     }
 }
 
-// What can be stored is not touched, black above all: a dark wall with a sparkling dot here and there is worse than any step.
+// What can be stored is not touched, black above all: a dark wall with a sparkling dot here and
+// there is worse than any step.
 TEST(Composer, leaves_what_can_be_stored_as_it_is) {
     Projection projection = plain();
     projection.light.dither = true;
@@ -156,7 +160,8 @@ TEST(Composer, leaves_what_can_be_stored_as_it_is) {
             ASSERT_EQ(pixel.g, value);
 }
 
-// A slow gradient, as of a wide penumbra: without the dither it is a stair of some steps, with it the mean over a few pixels follows the light.
+// A slow gradient, as of a wide penumbra: without the dither it is a stair of some steps, with it
+// the mean over a few pixels follows the light.
 TEST(Composer, hides_the_steps_of_a_gradient) {
     constexpr glm::ivec2 kWide{512, 64};
     const auto largestMiss = [&](bool dither) {
@@ -197,7 +202,8 @@ TEST(Composer, follows_new_settings_and_goes_back) {
     EXPECT_EQ(output.frame({{0, 1}}), before);
 }
 
-// What the technician sees lies on the signal itself: neither colours nor blends nor the warp touch it, and the show is seen around it.
+// What the technician sees lies on the signal itself: neither colours nor blends nor the warp touch
+// it, and the show is seen around it.
 TEST(SettingUp, lays_the_overlay_over_all_pixel_by_pixel) {
     Projection projection = projectionTo(kSize, keystone(kSize));
     projection.light.gamma = 2.2;
@@ -222,7 +228,8 @@ TEST(SettingUp, lays_the_overlay_over_all_pixel_by_pixel) {
     EXPECT_EQ(output.frame({{0, 1}}), shown);
 }
 
-// A grey ramp is there to judge the colours: it passes all of them, from edge to edge whatever the warp.
+// A grey ramp is there to judge the colours: it passes all of them, from edge to edge whatever the
+// warp.
 TEST(SettingUp, shows_a_card_through_the_colours_but_not_the_warp) {
     Projection projection = projectionTo(kSize, keystone(kSize));
     projection.light.gamma = 2.2;

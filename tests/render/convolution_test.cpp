@@ -1,11 +1,12 @@
-// The blur on the GPU against what it stands for: a sum over the filter, in double precision, on the CPU.
+// The blur on the GPU against what it stands for: a sum over the filter, in double precision, on
+// the CPU.
 
-#include "render/gpu/convolution.h"
+#include "render/gpu/paint/convolution.h"
 
+#include "render/canvas/fourier_plan.h"
 #include "render/drawn_source.h"
-#include "render/fourier_plan.h"
-#include "render/penumbra.h"
 #include "render/scene.h"
+#include "render/source/penumbra.h"
 
 #include "core/geometry.h"
 #include "core/random.h"
@@ -51,8 +52,12 @@ pattern::ShapePattern mosaic(const GreyImage& picture) {
 struct Gpu {
     DrawnOutput context{{16, 16}, rectangleCorners(16, 16), {}};
     static constexpr int kSamples = 4;
-    DrawingTools tools{gpu::ShapePainter::create(shaderFolder()).value(), gpu::ProgramCache(shaderFolder()), gpu::Bend(),
-                       gpu::Bend(), kSamples, Stopwatch(nullptr)};
+    DrawingTools tools{gpu::ShapePainter::create(shaderFolder()).value(),
+                       gpu::ProgramCache(shaderFolder()),
+                       gpu::Bend(),
+                       gpu::Bend(),
+                       kSamples,
+                       Stopwatch(nullptr)};
 
     // `picture` in black all round, painted, and blurred by the GPU.
     GreyImage blurred(const GreyImage& picture, const GreyImage& filter, glm::vec2 fromCoverage = {0, 1}, int block = 1) {
@@ -79,7 +84,8 @@ struct Gpu {
     }
 };
 
-// Each pixel: the sum of the filter's values times the pixels that it is turned over onto; nothing beyond the border.
+// Each pixel: the sum of the filter's values times the pixels that it is turned over onto; nothing
+// beyond the border.
 double convolved(const GreyImage& picture, const GreyImage& filter, int x, int y) {
     double sum = 0;
     for (int v = 0; v < filter.height(); ++v)
@@ -106,8 +112,10 @@ double sumOf(const GreyImage& image) {
     return sum;
 }
 
-// Odd and even sizes, primes, one pixel, wider filters than the picture, discs with fractional diameters.
-// Example failures: the quarters of an odd picture overlap or leave a gap; the border wraps around; the filter is off by a pixel.
+// Odd and even sizes, primes, one pixel, wider filters than the picture, discs with fractional
+// diameters.
+// Example failures: the quarters of an odd picture overlap or leave a gap; the border wraps around;
+// the filter is off by a pixel.
 TEST(Convolution, is_the_sum_over_the_filter_for_every_size_and_diameter) {
     Gpu gpu;
     for (const glm::ivec2 size : {glm::ivec2(1, 1), {2, 3}, {37, 23}, {64, 48}, {101, 7}}) {

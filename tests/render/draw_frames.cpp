@@ -1,4 +1,5 @@
-// draw_frames FILE: writes the stored values of some frames of a crossfade between two swaying patterns, for comparing processes.
+// draw_frames FILE: writes the stored values of some frames of a crossfade between two swaying
+// patterns, for comparing processes.
 
 #include "render/scene.h"
 

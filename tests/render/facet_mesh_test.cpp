@@ -1,4 +1,4 @@
-#include "render/facet_mesh.h"
+#include "render/canvas/facet_mesh.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>

@@ -5,7 +5,7 @@
 #include "render/output_renderer.h"
 #include "render/scene.h"
 #include "theatre/a_scene.h"
-#include "theatre/cast.h"
+#include "theatre/stage/cast.h"
 
 #include "core/geometry.h"
 #include "scratch_folder.h"
@@ -68,7 +68,8 @@ struct Kind {
     std::function<PictureSource()> make;
 };
 
-// What a disc of light leaves is measured as what it lights, and a square shadow as what it darkens.
+// What a disc of light leaves is measured as what it lights, and a square shadow as what it
+// darkens.
 class Fitting : public testing::Test {
 protected:
     std::vector<Kind> kinds() {
@@ -94,7 +95,8 @@ protected:
                 {"shadow", [] { return PictureSource(plate()); }}};
     }
 
-    // A square before a screen; its shadow is half as high as the picture. The actor stands far beside it.
+    // A square before a screen; its shadow is half as high as the picture. The actor stands far
+    // beside it.
     static ShadowSource plate() {
         theatre::Cast cast;
         cast.stage.light = {0, 1, 8};
@@ -121,7 +123,8 @@ protected:
     const ScratchFolder folder_;
 };
 
-// The middle and the spread, in pixels, of what is light; of a shadow, of what is dark within its light.
+// The middle and the spread, in pixels, of what is light; of a shadow, of what is dark within its
+// light.
 struct Moments {
     glm::dvec2 middle{0}, spread{0};
 };
@@ -144,7 +147,8 @@ Moments momentsOf(const RgbaImage& image, bool ofShadow) {
     return {middle, glm::sqrt(second / sum - middle * middle)};
 }
 
-// Example failures: a circle drawn on a square is an ellipse 1.8 times as wide as high; one kind of source is forgotten.
+// Example failures: a circle drawn on a square is an ellipse 1.8 times as wide as high; one kind of
+// source is forgotten.
 TEST_F(Fitting, what_is_round_on_a_square_is_round_on_a_wide_canvas_but_where_it_is_stretched) {
     for (const Kind& kind : kinds()) {
         const bool isShadow = kind.name == std::string("shadow");
@@ -166,7 +170,8 @@ TEST_F(Fitting, what_is_round_on_a_square_is_round_on_a_wide_canvas_but_where_it
     }
 }
 
-// Two projectors that share a canvas, one on its side, a keystone: the canvas's shape counts, not the output's.
+// Two projectors that share a canvas, one on its side, a keystone: the canvas's shape counts, not
+// the output's.
 TEST_F(Fitting, goes_by_the_canvas_whatever_part_an_output_shows_of_it) {
     WarpShape half{.corners = rectangleCorners(kSize.x, kSize.y)};
     half.part = {{0.25, 0}, {0.75, 1}};  // of a canvas twice as wide as the output

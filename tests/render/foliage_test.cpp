@@ -1,9 +1,9 @@
 // Light through leaves as an output shows it.
 
 #include "render/output_renderer.h"
-#include "render/penumbra.h"
 #include "render/reference_picture.h"
 #include "render/scene.h"
+#include "render/source/penumbra.h"
 
 #include "allocations.h"
 #include "core/geometry.h"
@@ -51,9 +51,11 @@ double lightAt(const RgbaImage& image, int x, int y) {
     return double{linearFromSrgb(static_cast<float>(image.at(x, y).g) / 255)};
 }
 
-// Fine and coarse grids, and a disc wider than a third of the picture: the light of every pixel against leaves drawn point by point and a
-// sum over the disc in double precision, white all around.
-// Example failures: a blur that darkens or shifts the picture; a border that repeats or wraps around; a blur of half the width.
+// Fine and coarse grids, and a disc wider than a third of the picture: the light of every pixel
+// against leaves drawn point by point and a sum over the disc in double precision, white all
+// around.
+// Example failures: a blur that darkens or shifts the picture; a border that repeats or wraps
+// around; a blur of half the width.
 TEST(Foliage, is_what_a_sum_over_the_suns_disc_gives) {
     const pattern::ShapePattern pattern = scatteredLeaves();
     std::vector<pattern::InstancePose> poses;
@@ -114,7 +116,8 @@ TEST(Foliage, shows_a_round_sun_behind_a_slit) {
     EXPECT_NEAR((least + most) / 2, kRadius, 1.5);
 }
 
-// An asymmetric filter through the whole renderer, on fine and coarse grids: a hole throws the picture as it is, neither mirrored nor upside down.
+// An asymmetric filter through the whole renderer, on fine and coarse grids: a hole throws the
+// picture as it is, neither mirrored nor upside down.
 TEST(Foliage, throws_a_filters_picture_upright) {
     GreyImage corner(16, 16);
     for (int y = 0; y < 8; ++y)
@@ -162,8 +165,8 @@ TEST(Foliage, goes_on_beyond_the_canvas) {
     for (const Rgba8 pixel : output.frame({{0, 1}}).pixels()) ASSERT_LE(pixel.g, 5);
 }
 
-// Sharp and blurred shadows have one centre, also on coarse grids: nothing shifts on the way over the canvas's picture.
-// Example failure: half a pixel of the coarse grid.
+// Sharp and blurred shadows have one centre, also on coarse grids: nothing shifts on the way over
+// the canvas's picture. Example failure: half a pixel of the coarse grid.
 TEST(Foliage, stays_in_place_when_it_is_blurred) {
     const pattern::ShapePattern square = rectangle({0.7, 0.35}, {1.0, 0.6});
     const std::array<glm::dvec2, 4> corners = {{{20.5, 10.25}, {300.25, 10.25}, {300.25, 171.5}, {20.5, 171.5}}};
@@ -203,7 +206,8 @@ TEST(Foliage, looks_the_same_on_two_outputs_at_once) {
     EXPECT_EQ(first.frame({{0, 1}}), one);
 }
 
-// Caustics and a mirror ball too: everything is a function of show time, and nothing is allocated while it runs.
+// Caustics and a mirror ball too: everything is a function of show time, and nothing is allocated
+// while it runs.
 TEST(Foliage, moves_with_show_time_alone_and_allocates_nothing) {
     const ShadowLayer swaying{moving(scatteredLeaves()), {heights(20), nullptr}}, sharp{moving(scatteredLeaves()), {}};
     DrawnOutput output(kSize, keystone(kSize),

@@ -51,7 +51,8 @@ void countedReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum f
     readPixels(x, y, width, height, format, type, pixels);
 }
 
-// A tap whose frames say which they are by their colour, on a display that shows each as long after it is published as the test says.
+// A tap whose frames say which they are by their colour, on a display that shows each as long after
+// it is published as the test says.
 class TapTest : public testing::Test {
 protected:
     TapTest() : display_(whiteSquareAtTheTopLeft()) {
@@ -146,7 +147,8 @@ TEST_F(TapTest, shows_no_reader_a_frame_before_its_refresh) {
 }
 
 // While the display holds a finished frame, the one before it is what people see.
-// Example failure: the slot has nothing but the frame to come, and the reader sees nothing although something is shown.
+// Example failure: the slot has nothing but the frame to come, and the reader sees nothing although
+// something is shown.
 TEST_F(TapTest, the_newest_frame_is_the_one_before_while_the_display_still_holds_the_next) {
     FrameReader& newest = tap_.addNewest(kEveryFrame);
     for (int number = 1; number <= 10; ++number) frame(number);
@@ -172,7 +174,8 @@ TEST_F(TapTest, a_queue_gives_all_frames_in_order_and_a_slot_the_newest) {
     EXPECT_THAT(all(newest), IsEmpty());
 }
 
-// Example failure: a recorder that the machine holds up stops the show, or its frames change while it reads them.
+// Example failure: a recorder that the machine holds up stops the show, or its frames change while
+// it reads them.
 TEST_F(TapTest, goes_on_without_readers_that_do_not_read) {
     FrameReader& stalled = tap_.addQueue();
     FrameReader& asleep = tap_.addNewest(kEveryFrame);
@@ -263,7 +266,8 @@ TEST_F(TapTest, one_that_asks_gets_one_frame_the_first_of_that_moment) {
     EXPECT_THAT(all(reader), ElementsAre(20)) << "a moment that has passed is now";
 }
 
-// Example failure: the operator asks for a picture while a projector is unplugged and never gets one.
+// Example failure: the operator asks for a picture while a projector is unplugged and never gets
+// one.
 TEST_F(TapTest, a_frame_that_was_not_shown_is_given_to_nobody_and_the_next_one_counts) {
     NewestFrame& asks = tap_.addNewest(kOnlyAsked);
     FrameReader& sometimes = tap_.addNewest(1);
@@ -284,7 +288,8 @@ GLenum slowClientWaitSync(GLsync sync, GLbitfield flags, GLuint64 timeout) {
     return clientWaitSync(sync, flags, timeout);
 }
 
-// Example failure: the render thread waits for a copy, and the show stutters because somebody looks.
+// Example failure: the render thread waits for a copy, and the show stutters because somebody
+// looks.
 TEST_F(TapTest, a_copy_that_is_not_done_is_handed_out_with_a_later_frame) {
     clientWaitSync = epoxy_glClientWaitSync;
     const Replaced<PFNGLCLIENTWAITSYNCPROC> slow(epoxy_glClientWaitSync, slowClientWaitSync);
@@ -334,7 +339,8 @@ TEST_F(TapTest, allocates_nothing_on_the_render_thread_once_it_is_prepared) {
     EXPECT_EQ(all(sleeps).size(), 1u);
 }
 
-// Real threads, for the thread sanitizer's eyes above all: whatever a reader gets is one whole frame, and it never goes back.
+// Real threads, for the thread sanitizer's eyes above all: whatever a reader gets is one whole
+// frame, and it never goes back.
 TEST_F(TapTest, readers_on_threads_of_their_own_get_whole_frames_and_the_newest_in_the_end) {
     constexpr std::int64_t kFrames = 600;
     struct Reading {

@@ -59,7 +59,8 @@ std::string framesOfAnotherProcess(const std::string& environment) {
 }
 
 // A night can be replayed byte by byte.
-// Example failure: the software renderer's threads blend in the order in which they happen to finish.
+// Example failure: the software renderer's threads blend in the order in which they happen to
+// finish.
 TEST(Frames, are_the_same_bytes_in_every_run_and_on_every_number_of_threads) {
     const std::string frames = framesOfAnotherProcess("LP_NUM_THREADS=0");
     EXPECT_GT(frames.size(), 1'000'000u) << frames;

@@ -3,7 +3,7 @@
 #include "render/drawn_mirror_ball.h"
 #include "render/output_renderer.h"
 #include "render/scene.h"
-#include "render/water.h"
+#include "render/source/water.h"
 
 #include "core/geometry.h"
 #include "core/random.h"
@@ -32,8 +32,10 @@ TEST(Caustics, are_even_light_under_still_water) {
         ASSERT_NEAR(linearFromSrgb(static_cast<float>(pixel.g) / 255), 0.08, 0.003);
 }
 
-// Rays thrown at the surface by chance, bent and counted where they land: the same light, tile by tile.
-// Example failures: a picture that is upside down; waves that scatter where they should gather; light that comes from nowhere.
+// Rays thrown at the surface by chance, bent and counted where they land: the same light, tile by
+// tile.
+// Example failures: a picture that is upside down; waves that scatter where they should gather;
+// light that comes from nowhere.
 TEST(Caustics, have_the_light_of_the_rays_that_land_there) {
     constexpr int kTile = 20, kColumns = kSize.x / kTile, kRows = kSize.y / kTile, kRays = 2'000'000;
     const Time time = std::chrono::seconds(5);

@@ -20,7 +20,8 @@ using testing::HasSubstr;
 
 constexpr glm::ivec2 kSize{320, 180};
 constexpr double kAspect = 16.0 / 9;
-// A colour passes an 8-bit square root and an 8-bit sRGB value on its way: at most one stored value is lost.
+// A colour passes an 8-bit square root and an 8-bit sRGB value on its way: at most one stored value
+// is lost.
 constexpr int kCoding = 1;
 
 std::array<glm::dvec2, 4> upright(glm::ivec2 size) { return rectangleCorners(size.x, size.y); }
@@ -57,7 +58,8 @@ glm::dvec2 centroid(const std::array<glm::dvec2, 4>& corners) {
     return sum / (3 * area);
 }
 
-// A solid fills exactly the quadrilateral that the technician asked for, and nothing is lit outside it.
+// A solid fills exactly the quadrilateral that the technician asked for, and nothing is lit outside
+// it.
 // Example failure: the corners' order is taken for OpenGL's, with y up.
 TEST(OutputRenderer, lights_the_warped_canvas_and_nothing_else) {
     const auto corners = keystone(kSize);
@@ -78,8 +80,9 @@ TEST(OutputRenderer, lights_the_warped_canvas_and_nothing_else) {
     EXPECT_LT(glm::distance(found, wanted), 0.05);
 }
 
-// A square marker around a corner of the canvas shows the quarter of it that is on the canvas, where the warp carries it.
-// Example failure: half a pixel off, because pixel centres were taken for corners.
+// A square marker around a corner of the canvas shows the quarter of it that is on the canvas,
+// where the warp carries it. Example failure: half a pixel off, because pixel centres were taken
+// for corners.
 TEST(OutputRenderer, carries_each_corner_of_the_canvas_to_the_asked_pixel) {
     const auto corners = keystone(kSize);
     const auto canvas = rectangleCorners(kAspect, 1);
@@ -112,8 +115,8 @@ glm::dvec3 bilinear(const RgbaImage& picture, glm::dvec2 point) {
                     glm::mix(lightAt(at + glm::ivec2(0, 1)), lightAt(at + glm::ivec2(1, 1)), part.x), part.y);
 }
 
-// Why shapes are drawn through the warp: the other way, a picture of the canvas that is then bent, blurs every edge. Both have as many
-// pixels and samples.
+// Why shapes are drawn through the warp: the other way, a picture of the canvas that is then bent,
+// blurs every edge. Both have as many pixels and samples.
 TEST(OutputRenderer, is_nearer_to_the_truth_than_a_bent_picture_of_the_canvas) {
     constexpr glm::ivec2 kLarge{640, 360};
     const pattern::ShapePattern pattern = smallPattern();
@@ -141,8 +144,9 @@ TEST(OutputRenderer, is_nearer_to_the_truth_than_a_bent_picture_of_the_canvas) {
     EXPECT_LT(through, 0.8 * bentApart);
 }
 
-// The whole definition at once: warp, order of instances, facets and their shading, edges, linear averaging, cut at the canvas's
-// edge. What four samples a pixel cannot tell stays at the edges; inside a facet the colour is right.
+// The whole definition at once: warp, order of instances, facets and their shading, edges, linear
+// averaging, cut at the canvas's edge. What four samples a pixel cannot tell stays at the edges;
+// inside a facet the colour is right.
 TEST(OutputRenderer, draws_what_a_point_by_point_reference_draws) {
     constexpr glm::ivec2 kLarge{640, 360};
     const pattern::ShapePattern pattern = smallPattern();
@@ -181,7 +185,8 @@ TEST(OutputRenderer, draws_the_mirror_image_through_mirrored_corners) {
     RgbaImage turnedBack(kSize.x, kSize.y);
     for (int y = 0; y < kSize.y; ++y)
         for (int x = 0; x < kSize.x; ++x) turnedBack.at(x, y) = drawn.at(kSize.x - 1 - x, y);
-    // The samples of a pixel do not mirror, so edges differ a little; a missing front would differ by far more.
+    // The samples of a pixel do not mirror, so edges differ a little; a missing front would differ
+    // by far more.
     EXPECT_LE(difference(seen.frame({{0, 1}}), turnedBack).rms, 8);
 }
 
@@ -204,7 +209,8 @@ TEST(OutputRenderer, is_black_without_layers) {
     for (const Rgba8 pixel : output.frame(std::vector<show::LayerState>{}).pixels()) ASSERT_EQ(pixel, (Rgba8{0, 0, 0, 255}));
 }
 
-// Two squares over each other in a layer that fades above another layer: neither shines through the other.
+// Two squares over each other in a layer that fades above another layer: neither shines through the
+// other.
 TEST(OutputRenderer, fades_a_pattern_as_one_picture) {
     pattern::ShapePattern pattern = squareAt({0.8, 0.5}, 0.3, glm::vec3(1));
     pattern.instances.push_back(pattern.instances[0]);
@@ -217,7 +223,8 @@ TEST(OutputRenderer, fades_a_pattern_as_one_picture) {
     EXPECT_NEAR(greyAt(0.2, 0.2), 137, 1) << "no square";
 }
 
-// Whatever their tilt: a later instance covers an earlier one as a whole, and instances never cut into each other.
+// Whatever their tilt: a later instance covers an earlier one as a whole, and instances never cut
+// into each other.
 TEST(OutputRenderer, puts_the_later_instance_on_top) {
     pattern::ShapePattern pattern = squareAt({0.8, 0.5}, 0.3, glm::vec3(1, 0, 0));
     pattern.instances.push_back(pattern.instances[0]);

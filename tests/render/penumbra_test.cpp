@@ -1,4 +1,4 @@
-#include "render/penumbra.h"
+#include "render/source/penumbra.h"
 
 #include "core/geometry.h"
 
@@ -64,7 +64,8 @@ TEST(PictureFilter, keeps_the_pictures_middle_its_proportions_and_its_light) {
     }
 }
 
-// Whatever the blur, its grid is fine enough for it, and no finer by far: that is what bounds the cost.
+// Whatever the blur, its grid is fine enough for it, and no finer by far: that is what bounds the
+// cost.
 TEST(BlurGrid, grows_with_the_blur) {
     constexpr double kAspect = 16.0 / 9, kRows = 360;
     for (double radius = 0.5; radius < 300; radius *= 1.1) {

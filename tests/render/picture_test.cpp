@@ -27,7 +27,8 @@ T valueOf(Result<T> result) {
 
 ImageSource image(RgbaImage picture) { return {std::make_shared<const RgbaImage>(std::move(picture))}; }
 
-// Something of all that a picture has: soft colours, hard discs, thin lines at several slants, fine grain.
+// Something of all that a picture has: soft colours, hard discs, thin lines at several slants, fine
+// grain.
 RgbaImage detailed(glm::ivec2 size) {
     RgbaImage picture(size.x, size.y);
     for (int y = 0; y < size.y; ++y)
@@ -47,8 +48,9 @@ RgbaImage detailed(glm::ivec2 size) {
     return picture;
 }
 
-// A picture as it should be drawn, point by point: each pixel is the mean light of 8 x 8 points, each of them the light of the picture's
-// pixel that the warp carries it back to, or, for a picture that is enlarged, between the four nearest; nothing beyond the picture.
+// A picture as it should be drawn, point by point: each pixel is the mean light of 8 x 8 points,
+// each of them the light of the picture's pixel that the warp carries it back to, or, for a picture
+// that is enlarged, between the four nearest; nothing beyond the picture.
 RgbaImage reference(const RgbaImage& picture, const std::array<glm::dvec2, 4>& corners, glm::ivec2 size, bool smooth) {
     constexpr int kPoints = 8;
     const int width = picture.width(), height = picture.height();
@@ -101,7 +103,8 @@ const Placed kPlaced[] = {
     {"enlarged", keystone(kSize), {160, 90}, true},
 };
 
-// Example failures: aliasing where the picture is far away, blur where it is near, half a pixel off, means of stored values instead of light.
+// Example failures: aliasing where the picture is far away, blur where it is near, half a pixel
+// off, means of stored values instead of light.
 TEST(Pictures, are_filtered_as_a_point_by_point_reference_is) {
     for (const Placed& placed : kPlaced) {
         SCOPED_TRACE(placed.name);
@@ -114,7 +117,8 @@ TEST(Pictures, are_filtered_as_a_point_by_point_reference_is) {
     }
 }
 
-// White that is cut out of whatever colour the painting program left where it is clear, drawn larger: neither a dark nor a coloured seam.
+// White that is cut out of whatever colour the painting program left where it is clear, drawn
+// larger: neither a dark nor a coloured seam.
 TEST(Pictures, have_no_seams_at_the_edges_of_their_alpha) {
     constexpr int kEdge = 32;  // of the picture; 10 pixels of the output each
     RgbaImage cutOut(64, 36, {255, 0, 0, 0});
@@ -174,7 +178,8 @@ protected:
     const ScratchFolder folder_;
 };
 
-// Example failures: the frame before, since the texture is drawn before it is filled; a frame that stays away after the first round.
+// Example failures: the frame before, since the texture is drawn before it is filled; a frame that
+// stays away after the first round.
 TEST_F(VideoOnAnOutput, shows_the_frame_of_the_moment) {
     for (const int rate : {24, 25, 30, 60}) {
         DrawnOutput output(kVideo, rectangleCorners(kVideo.x, kVideo.y), {video(rate, 31)});

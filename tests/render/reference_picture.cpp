@@ -36,7 +36,8 @@ std::vector<Facet> facetsOf(const TriangleMesh& mesh, const pattern::InstancePos
     std::vector<Facet> facets;
     for (const glm::uvec3 t : mesh.triangles) facets.push_back({placed(t.x), placed(t.y), placed(t.z), colour});
 
-    // Facets are lit from above, a little left, in front: three quarters of the colour, and up to the whole towards the light.
+    // Facets are lit from above, a little left, in front: three quarters of the colour, and up to
+    // the whole towards the light.
     const auto seenNormal = [](const Facet& facet) {
         const glm::dvec3 normal = glm::normalize(glm::cross(facet.b - facet.a, facet.c - facet.a));
         return normal.z < 0 ? -normal : normal;

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "pattern/shape_pattern.h"
+#include "pattern/shape/shape_pattern.h"
 
-#include "core/image.h"
 #include "core/warp.h"
+#include "media/image.h"
 
 #include <glm/vec2.hpp>
 
@@ -13,7 +13,8 @@
 
 namespace fantascope::render {
 
-// The points of the canvas under a projector's pixels: exact at the pixels' corners, straight in between.
+// The points of the canvas under a projector's pixels: exact at the pixels' corners, straight in
+// between.
 class CanvasUnderPixels {
 public:
     CanvasUnderPixels(const Warp& warp, glm::ivec2 size);
@@ -26,10 +27,11 @@ private:
     std::vector<std::optional<glm::dvec2>> corners_;  // (size.x + 1) x (size.y + 1)
 };
 
-// The picture that the renderer should draw of a pattern in the given poses, worked out point by point from the definitions
-// alone: each pixel is the mean light of samples x samples points, each point is carried back to the canvas, and there the last
-// instance that covers it shows its nearest facet. Slow and independent of OpenGL, matrices for clip space, depth buffers and
-// meshes for facets.
+// The picture that the renderer should draw of a pattern in the given poses, worked out point by
+// point from the definitions alone: each pixel is the mean light of samples x samples points, each
+// point is carried back to the canvas, and there the last instance that covers it shows its nearest
+// facet. Slow and independent of OpenGL, matrices for clip space, depth buffers and meshes for
+// facets.
 RgbaImage referencePicture(const pattern::ShapePattern& pattern, std::span<const pattern::InstancePose> poses, const Warp& warp,
                            glm::ivec2 size, int samples);
 

@@ -2,7 +2,7 @@
 
 #include "drivers/registry.h"
 
-#include "pattern/grouping.h"
+#include "pattern/shape/grouping.h"
 
 #include "core/check.h"
 #include "core/random.h"

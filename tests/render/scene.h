@@ -9,8 +9,8 @@
 #include "device/display_sink.h"
 
 #include "core/clock.h"
-#include "core/image.h"
-#include "core/projection.h"
+#include "media/image.h"
+#include "media/projection.h"
 
 #include <glm/vec2.hpp>
 
@@ -21,8 +21,9 @@
 
 namespace fantascope::render {
 
-// A small pattern with everything in it: flat triangles and squares, closed crystals, an open roof that shows both sides, in
-// overlapping clumps, some of them over the canvas's edge, in several colours and groups. 16:9.
+// A small pattern with everything in it: flat triangles and squares, closed crystals, an open roof
+// that shows both sides, in overlapping clumps, some of them over the canvas's edge, in several
+// colours and groups. 16:9.
 pattern::ShapePattern smallPattern();
 
 PatternSource resting(pattern::ShapePattern pattern);
@@ -65,7 +66,8 @@ private:
     FrameReader* newest_ = nullptr;
 };
 
-// How far two pictures of one size are apart, in stored values of 0 .. 255, over all colour channels.
+// How far two pictures of one size are apart, in stored values of 0 .. 255, over all colour
+// channels.
 struct Difference {
     double rms = 0;
     int most = 0;

@@ -3,9 +3,9 @@
 #include "render/output_renderer.h"
 #include "render/scene.h"
 #include "theatre/a_scene.h"
-#include "theatre/cast.h"
-#include "theatre/mesh_shadow.h"
-#include "theatre/moving_cast.h"
+#include "theatre/motion/moving_cast.h"
+#include "theatre/stage/cast.h"
+#include "theatre/stage/mesh_shadow.h"
 
 #include "core/geometry.h"
 
@@ -27,7 +27,8 @@ const glm::dvec2 kFrom{-0.5 * kSize.x * kPixel, -0.1}, kTo{0.5 * kSize.x * kPixe
 
 std::array<glm::dvec2, 4> upright() { return rectangleCorners(kSize.x, kSize.y); }
 
-// People in any poses that they can take, of three statures, turned to all sides; as many frames a step apart.
+// People in any poses that they can take, of three statures, turned to all sides; as many frames a
+// step apart.
 Cast aCast(std::size_t actors, std::size_t frames, std::uint64_t seed) {
     Cast cast;
     cast.stage.light = {0.2, 0.3, 7};
@@ -108,7 +109,8 @@ double agreement(const RgbaImage& image, const BitMask& mask) {
     return static_cast<double>(both) / static_cast<double>(either);
 }
 
-// Example failures: a skin that collapses at bent joints, a hand's prop left behind, somebody mirrored, half of a body not drawn.
+// Example failures: a skin that collapses at bent joints, a hand's prop left behind, somebody
+// mirrored, half of a body not drawn.
 TEST(Shadow, is_the_one_that_the_poses_were_found_for) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         Cast cast = aCast(9, 1, seed);
@@ -212,7 +214,8 @@ Cast aWall(double z) {
 }
 
 // The share of a lamp's disc that a straight edge hides is a segment of it.
-// Example failures: light that is not as wide as the lamp; one that is twice as wide for a radius taken as the diameter; steps.
+// Example failures: light that is not as wide as the lamp; one that is twice as wide for a radius
+// taken as the diameter; steps.
 TEST(Shadow, has_edges_as_soft_as_the_lamp_is_wide) {
     for (const double z : {0.5, 2.0, 3.5}) {
         ShadowSource source = sourceOf(aWall(z));
@@ -231,7 +234,8 @@ TEST(Shadow, has_edges_as_soft_as_the_lamp_is_wide) {
     }
 }
 
-// Two people in a row with the lamp: the one who is nearer to it gives the colour, whatever their order.
+// Two people in a row with the lamp: the one who is nearer to it gives the colour, whatever their
+// order.
 TEST(Shadow, has_the_colour_of_who_is_nearest_to_the_lamp) {
     for (const bool swapped : {false, true})
         for (const double size : {0.0, 0.02}) {
@@ -275,7 +279,8 @@ TEST(Shadow, of_several_lamps_is_where_each_of_them_is_kept_off) {
                 linearFromSrgb(static_cast<float>(std::array{pixel.r, pixel.g, pixel.b}[static_cast<std::size_t>(i)]) / 255);
         return light;
     };
-    // The wall is x 0 .. 0.8 at z = 2: from the middle its shadow is x 0 .. 1.2, from the left x 1 .. 2.2.
+    // The wall is x 0 .. 0.8 at z = 2: from the middle its shadow is x 0 .. 1.2, from the left x 1
+    // .. 2.2.
     const auto near = [](glm::vec3 a, glm::vec3 b) { return glm::distance(a, b) < 0.01f; };
     EXPECT_TRUE(near(colourAt(-1), {0.7f, 0.7f, 0.4f}));
     EXPECT_TRUE(near(colourAt(0.5), {0.2f, 0.4f, 0.35f}));
@@ -305,8 +310,9 @@ TEST(Shadow, is_seen_in_the_projectors_picture_alone) {
         }
 }
 
-// The screens of further beams, and curved ones, which the canvas shows unrolled: every pixel against the ray from the lamp to its place.
-// Example failures: a second screen that shows what is on the first; one turned the wrong way round; a curve of the wrong sign.
+// The screens of further beams, and curved ones, which the canvas shows unrolled: every pixel
+// against the ray from the lamp to its place. Example failures: a second screen that shows what is
+// on the first; one turned the wrong way round; a curve of the wrong sign.
 TEST(Shadow, falls_on_the_screen_of_its_beam) {
     for (const double radius : {0.0, 3.5, -4.0})
         for (const std::size_t beam : {std::size_t{0}, std::size_t{1}}) {
@@ -324,7 +330,8 @@ TEST(Shadow, falls_on_the_screen_of_its_beam) {
             DrawnOutput output(kSize, upright(), {source});
             const RgbaImage& image = output.frame({{0, 1}});
 
-            // A finer mask of the flat screen, looked up where the ray through the place on the curved one meets it.
+            // A finer mask of the flat screen, looked up where the ray through the place on the
+            // curved one meets it.
             constexpr double kFine = 0.004;
             const ScreenFrame flat(cast.stage, -6, 5, kFine, 3000, 1400, beam);
             const BitMask mask = solversShadow(cast, 0, false, flat);

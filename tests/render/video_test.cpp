@@ -1,5 +1,5 @@
-#include "render/picture_source.h"
-#include "render/video_stream.h"
+#include "render/source/picture_source.h"
+#include "render/source/video_stream.h"
 
 #include "allocations.h"
 #include "core/file.h"
@@ -64,8 +64,10 @@ struct Rate {
 };
 constexpr Rate kRates[] = {{24, 1}, {25, 1}, {30000, 1001}, {30, 1}, {24000, 1001}};
 
-// At every frame's first and last nanosecond, in files that keep exact times and in those that keep milliseconds.
-// Example failures: the frame after; frames in the order of decoding; one lost with the decoder's delay at the end.
+// At every frame's first and last nanosecond, in files that keep exact times and in those that keep
+// milliseconds.
+// Example failures: the frame after; frames in the order of decoding; one lost with the decoder's
+// delay at the end.
 TEST_F(Videos, show_exactly_the_frame_of_the_moment) {
     for (const auto& [rate, divisor] : kRates)
         for (const int bFrames : {0, 3})
@@ -107,7 +109,8 @@ TEST_F(Videos, show_each_frame_for_as_long_as_the_file_says) {
 }
 
 // The coder may have put its keyframes where it liked; whichever frame is asked for comes.
-// Example failure: a frame that is shown before the keyframe that it was coded after, with open groups of pictures.
+// Example failure: a frame that is shown before the keyframe that it was coded after, with open
+// groups of pictures.
 TEST_F(Videos, come_to_the_right_frame_from_any_other) {
     for (const char* name : {"a.mp4", "a.mkv", "a.ts", "a.mov"})
         for (const bool openGroups : {false, true}) {
@@ -140,7 +143,8 @@ TEST_F(Videos, of_other_coders_are_right_too) {
     }
 }
 
-// What a moment asks for never comes too late where the show waits, over many rounds: none twice, none missing, in either way of asking.
+// What a moment asks for never comes too late where the show waits, over many rounds: none twice,
+// none missing, in either way of asking.
 TEST_F(Videos, loop_without_a_gap) {
     const auto stream = open(make("a.mp4", {.rate = 30, .bFrames = 3, .keyEvery = 250}, 47));
     const VideoSource source{stream};
@@ -298,7 +302,8 @@ TEST_F(Videos, of_real_sizes_are_right_to_the_last_pixel) {
 // Of the formats that libav decodes, one that libswscale does not read.
 constexpr const char* kNotConverted = "uyyvyy411";
 
-// Example failure: a decoder counts the padding of an upright frame's rows as pixels, and finds too many.
+// Example failure: a decoder counts the padding of an upright frame's rows as pixels, and finds too
+// many.
 TEST_F(Videos, of_the_largest_size_are_shown_lying_and_upright) {
     for (const glm::ivec2 size : {glm::ivec2(8192, 4320), {4320, 8192}}) {
         writeVideo(folder_ / "a.mov", {.encoder = "qtrle", .pixels = "gray", .size = size}, 1, [](int) { return RgbaImage(); });
@@ -316,7 +321,8 @@ TEST_F(Videos, that_are_broken_are_refused_with_advice) {
     wave.resize(44 + 16000);
     EXPECT_THAT(refusal(folder_.file("sound.wav", wave)), HasSubstr("sound.wav: there is no video in it; "));
 
-    // 5 s, cut in the middle: with its table of contents before, as streams have it, after, and without one.
+    // 5 s, cut in the middle: with its table of contents before, as streams have it, after, and
+    // without one.
     const auto cut = [&](const std::filesystem::path& file) {
         const std::string bytes = readFile(file).value();
         return folder_.file("cut-" + file.filename().string(), std::string_view(bytes).substr(0, bytes.size() / 2));
@@ -345,7 +351,8 @@ TEST_F(Videos, that_are_broken_are_refused_with_advice) {
         EXPECT_THAT(refusal(folder_.file("list.mp4", list)), HasSubstr("list.mp4: ")) << list;
 }
 
-// Example failures: the show waits for ever for a frame that never comes; grey blocks on the wall; the rest is lost too.
+// Example failures: the show waits for ever for a frame that never comes; grey blocks on the wall;
+// the rest is lost too.
 TEST_F(Videos, leave_out_what_is_damaged_and_go_on) {
     for (const auto& [name, encoder, pixels] : {std::array{"a.mp4", "libx264", "yuv420p"}, {"a.mov", "png", "rgb24"}}) {
         SCOPED_TRACE(name);
@@ -376,7 +383,8 @@ TEST_F(Videos, leave_out_what_is_damaged_and_go_on) {
     }
 }
 
-// A format that a file comes to halfway, or another version of it, is met by the decoding thread of a running show.
+// A format that a file comes to halfway, or another version of it, is met by the decoding thread of
+// a running show.
 // Example failure: the program ends.
 TEST_F(Videos, leave_out_frames_whose_pixels_cannot_be_converted) {
     const auto file = folder_ / "a.mkv";
@@ -391,8 +399,8 @@ TEST_F(Videos, leave_out_frames_whose_pixels_cannot_be_converted) {
     EXPECT_THAT(decoder->damage(), HasSubstr("a.mkv: after frame 0: its pixels are stored as 'uyyvyy411'"));
 }
 
-// Somebody copies a new version over the file, or the disk goes: what was there stays on the wall, and whole again it goes on.
-// Example failure: the show waits for ever.
+// Somebody copies a new version over the file, or the disk goes: what was there stays on the wall,
+// and whole again it goes on. Example failure: the show waits for ever.
 TEST_F(Videos, whose_file_goes_away_stay_as_they_were) {
     const auto file = folder_ / "a.mov";
     writeVideo(file, {.encoder = "png", .pixels = "rgb24", .size = {128, 128}, .keyEvery = 1}, 100, [](int i) {

@@ -65,7 +65,8 @@ std::vector<pattern::InstancePose> restingPoses(const pattern::ShapePattern& pat
     return poses;
 }
 
-// Shapes go straight through each warp: 4/255 rms against 25 points a pixel, with the renderer's 4 samples.
+// Shapes go straight through each warp: 4/255 rms against 25 points a pixel, with the renderer's 4
+// samples.
 TEST(Warped, patterns_are_what_a_point_by_point_reference_draws) {
     const pattern::ShapePattern pattern = smallPattern();
     for (const auto& [name, shape] : warps()) {
@@ -91,8 +92,9 @@ GreyImage coverageOf(const Warp& warp) {
     return coverage;
 }
 
-// What is drawn as a picture of the canvas is bent as exactly: a plain colour lights the warped part, and its edges lie within a tenth of a
-// pixel. Example failure: a mesh whose patches are drawn as single quadrilaterals.
+// What is drawn as a picture of the canvas is bent as exactly: a plain colour lights the warped
+// part, and its edges lie within a tenth of a pixel. Example failure: a mesh whose patches are
+// drawn as single quadrilaterals.
 TEST(Warped, a_canvas_ends_where_its_warp_says) {
     for (const auto& [name, shape] : warps()) {
         const Projection projection = projectionBy(shape);
@@ -124,7 +126,8 @@ glm::dvec2 centroid(const std::vector<glm::dvec2>& polygon) {
     return sum / (3 * area);
 }
 
-// A small square that stands on a corner of what is shown: the quarter of it that is seen lies where the warp carries it.
+// A small square that stands on a corner of what is shown: the quarter of it that is seen lies
+// where the warp carries it.
 TEST(Warped, corners_land_within_a_tenth_of_a_pixel) {
     constexpr double kEdge = 0.12, kAspect = 16.0 / 9;
     for (const auto& [name, shape] : warps()) {
@@ -156,7 +159,8 @@ TEST(Warped, corners_land_within_a_tenth_of_a_pixel) {
     }
 }
 
-// A technician drags a corner while the show runs: what is drawn next is what a new renderer would draw.
+// A technician drags a corner while the show runs: what is drawn next is what a new renderer would
+// draw.
 TEST(Warped, a_renderer_follows_a_new_warp) {
     const FoliageSource foliage{
         glm::vec3(1), glm::vec3(0), {{moving(smallPattern()), {}}, {moving(smallPattern()), {0.1, nullptr}}}};
@@ -168,7 +172,8 @@ TEST(Warped, a_renderer_follows_a_new_warp) {
         ASSERT_TRUE(edited.renderer().follow(after, nullptr));
         for (const std::uint32_t source : {0u, 1u})
             EXPECT_EQ(edited.frame({{source, 1}}), made.frame({{source, 1}})) << warps()[to].name << ", source " << source;
-        // Its blurred pictures keep the size that they were made with, so the shadows' edges may be a little softer.
+        // Its blurred pictures keep the size that they were made with, so the shadows' edges may be
+        // a little softer.
         EXPECT_LE(difference(edited.frame({{2, 1}}), made.frame({{2, 1}})).rms, 6) << warps()[to].name;
     }
 }

@@ -7,7 +7,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A gate that starts the next cue, an emergency button, and in another bank a door that takes a cue back.
+// A gate that starts the next cue, an emergency button, and in another bank a door that takes a cue
+// back.
 Site site() {
     Site site;
     site.contacts = {{"gate", 0, 4, ContactAction::Go, {}},
@@ -33,10 +34,12 @@ TEST(ContactInputs, are_what_the_site_says_of_each_movement) {
     EXPECT_EQ(asked(1, true, true, 1), std::nullopt);
 }
 
-// Example failure: the gate stood closed while the program started, and the show begins in the afternoon.
+// Example failure: the gate stood closed while the program started, and the show begins in the
+// afternoon.
 TEST(ContactInputs, a_cue_needs_a_movement_that_was_seen) { EXPECT_EQ(asked(4, true, false), std::nullopt); }
 
-// Example failure: the emergency button was pressed while its module was away, and the lamps stay on.
+// Example failure: the emergency button was pressed while its module was away, and the lamps stay
+// on.
 TEST(ContactInputs, the_dark_holds_however_it_came_about) {
     EXPECT_EQ(asked(1, true, false), Input::Kind::Dark);
     EXPECT_EQ(asked(1, false, false), Input::Kind::Light);

@@ -18,7 +18,8 @@ TEST(CueButtons, each_button_asks_for_what_the_site_says) {
     EXPECT_EQ(CueButtons(kButtons).inputFor(1, true, 5s)->at, 5s);
 }
 
-// A finger that stays on the button, or a driver that repeats the press, must not run through the cues.
+// A finger that stays on the button, or a driver that repeats the press, must not run through the
+// cues.
 // Example failure: GO again with every repeat.
 TEST(CueButtons, a_button_must_be_let_go_of_before_it_counts_again) {
     CueButtons buttons(kButtons);

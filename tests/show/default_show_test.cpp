@@ -17,7 +17,8 @@ using testing::Each;
 
 const std::filesystem::path kSource = sourceFolder();
 
-// The default show as it stands, with files in the places of its patterns, which are made from its drawings.
+// The default show as it stands, with files in the places of its patterns, which are made from its
+// drawings.
 struct DefaultShow {
     ScratchFolder folder;
     Result<Show> show = Error("not loaded");
@@ -28,8 +29,8 @@ struct DefaultShow {
     }
 };
 
-// The evening of a rehearsal, GO every ten seconds: the street is lit before and after, dark between, and every picture is
-// reached.
+// The evening of a rehearsal, GO every ten seconds: the street is lit before and after, dark
+// between, and every picture is reached.
 TEST(DefaultShow, steps_through_its_evening_on_the_simulated_site) {
     const DefaultShow loaded;
     ASSERT_TRUE(loaded.show) << loaded.show.error().message();
@@ -60,7 +61,8 @@ TEST(DefaultShow, steps_through_its_evening_on_the_simulated_site) {
     EXPECT_EQ(seen.size(), loaded.show->sources.size());
 }
 
-// Every show that comes with the program plays on the simulated site, with all the files that it names.
+// Every show that comes with the program plays on the simulated site, with all the files that it
+// names.
 TEST(Shows, load_and_play_on_the_simulated_site) {
     const auto site = readSite(kSource / "config/simulated/site.yaml");
     ASSERT_TRUE(site) << site.error().message();

@@ -144,7 +144,8 @@ TEST(DmxMerge, each_sender_is_gone_after_its_own_silence) {
     EXPECT_EQ(universe.at(11001ms), Slots(10, 0));
 }
 
-// Example failure: a desk with a loose cable comes and goes every few seconds, and all lamps jump between two looks.
+// Example failure: a desk with a loose cable comes and goes every few seconds, and all lamps jump
+// between two looks.
 TEST(DmxMerge, a_higher_desk_that_fell_silent_holds_while_it_settles) {
     Universe universe({.settling = 1s});
     universe.sends("phone", levels(77), 1s, 120, 10s);

@@ -1,5 +1,5 @@
-// The documents of the two formats are read as their readers read them: the examples must load, and the tables must list the keys
-// that the program knows, no more and no fewer.
+// The documents of the two formats are read as their readers read them: the examples must load, and
+// the tables must list the keys that the program knows, no more and no fewer.
 
 #include "show/show.h"
 #include "show/site.h"
@@ -45,8 +45,8 @@ std::set<std::string> documentedKeys(const std::string& document) {
     return keys;
 }
 
-// Everything that the reader of a file knows: an unknown key is put into each map of an example in turn, and the refusal lists
-// the known ones.
+// Everything that the reader of a file knows: an unknown key is put into each map of an example in
+// turn, and the refusal lists the known ones.
 std::set<std::string> knownKeys(const std::string& example, const std::function<std::string(const std::string&)>& refusal) {
     static const std::string kUnknown = "unknown_to_everybody: 1";
     std::set<std::string> keys;
@@ -110,7 +110,8 @@ TEST(Docs, the_example_of_a_show_loads_and_plays_on_the_example_of_a_site) {
     EXPECT_TRUE(list) << list.error().message();
 }
 
-// `device` stands for the maps that only drivers read; `driver` is the one key of theirs that every reader knows.
+// `device` stands for the maps that only drivers read; `driver` is the one key of theirs that every
+// reader knows.
 TEST(Docs, every_key_of_a_site_is_documented_and_no_other) {
     const std::string document = documentOf("site-format.md");
     std::set<std::string> known = knownKeys(examplesIn(document)[0], siteRefusal);

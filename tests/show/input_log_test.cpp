@@ -1,4 +1,5 @@
-// One way in for everybody: inputs of many producers have one order, and whoever plays them sees the same show.
+// One way in for everybody: inputs of many producers have one order, and whoever plays them sees
+// the same show.
 
 #include "show/input_log.h"
 
@@ -64,8 +65,8 @@ struct Replica {
     std::vector<ShowState> seen;
 };
 
-// Example failures: a replica whose thread stood still for a while misses inputs and plays another show from then on; two producers get
-// one number.
+// Example failures: a replica whose thread stood still for a while misses inputs and plays another
+// show from then on; two producers get one number.
 TEST(InputLog, fifty_producers_and_every_replica_agree_on_one_sequence) {
     constexpr int kProducers = 50, kEach = 2000;
     InputLog log(fourCues());

@@ -38,7 +38,8 @@ TEST(Patch, levels_go_to_their_addresses_and_the_rest_is_zero) {
     EXPECT_THAT(slots(look, 3), Each(0));  // a universe without fixtures
 }
 
-// Example failure: truncation, which never reaches 255 by a rounding error and dims every lamp by half a step.
+// Example failure: truncation, which never reaches 255 by a rounding error and dims every lamp by
+// half a step.
 TEST(Patch, levels_are_rounded_to_the_nearest_step) {
     for (const auto& [level, slot] :
          {std::pair{0.0f, 0}, {0.499f / 255, 0}, {0.501f / 255, 1}, {0.5f, 128}, {254.4f / 255, 254}, {0.9999f, 255}})

@@ -41,7 +41,8 @@ CueList threeCues() {
     return list;
 }
 
-// Three cues that run by themselves: cue 1 three seconds after cue 0, cue 2 five seconds after that.
+// Three cues that run by themselves: cue 1 three seconds after cue 0, cue 2 five seconds after
+// that.
 CueList followingCues() {
     CueList list = threeCues();
     list.cues[0].follow = 3s;
@@ -122,7 +123,8 @@ TEST(Playback, says_how_long_a_cue_fades_and_when_the_next_one_comes_by_itself) 
     EXPECT_EQ(after(threeCues(), {go(10s)}).untilFollowAt(11s), std::nullopt);
 }
 
-// A source on both sides moves from its one opacity to its other. Example failure: it dips, since each look is faded as a whole.
+// A source on both sides moves from its one opacity to its other. Example failure: it dips, since
+// each look is faded as a whole.
 TEST(Playback, crossfade_matches_layers_by_their_source) {
     const Playback playback = after(threeCues(), {go(0s), go(10s)});
     EXPECT_THAT(lookOf(playback, 11s).outputs[0].layers, ElementsAre(LayerState{0, 0.875f}, LayerState{1, 0.25f}));
@@ -216,8 +218,8 @@ TEST(Playback, what_cannot_be_done_is_ignored_and_said) {
     EXPECT_EQ(nameOf(Outcome::AtLastCue), "ignored: this is the last cue");
 }
 
-// linux-show-player's users lost cues to a double press. Example failure: every GO restarts the interval, and a nervous operator
-// is locked out.
+// linux-show-player's users lost cues to a double press. Example failure: every GO restarts the
+// interval, and a nervous operator is locked out.
 TEST(Playback, go_right_after_a_cue_began_is_ignored) {
     Playback playback(threeCues());
     EXPECT_EQ(playback.apply(go(1s)), Outcome::Taken);
@@ -228,7 +230,8 @@ TEST(Playback, go_right_after_a_cue_began_is_ignored) {
     EXPECT_EQ(stateOf(playback, 2s).inputs, 2u);
 }
 
-// The operator's GO meets the cue that has just followed by itself. Example failure: it is skipped unseen.
+// The operator's GO meets the cue that has just followed by itself. Example failure: it is skipped
+// unseen.
 TEST(Playback, go_right_after_a_cue_followed_by_itself_is_ignored) {
     Playback playback(followingCues());
     EXPECT_EQ(playback.apply(go(0s)), Outcome::Taken);
@@ -245,7 +248,8 @@ TEST(Playback, blackout_and_back_are_taken_at_any_moment) {
     EXPECT_EQ(playback.apply(blackout(2s + 3ms)), Outcome::Taken);
 }
 
-// An emergency button must not turn the light on. Example failure: the operator has blacked out, the button is pressed, and it is light.
+// An emergency button must not turn the light on. Example failure: the operator has blacked out,
+// the button is pressed, and it is light.
 TEST(Playback, dark_and_light_are_so_whatever_was_before) {
     Playback playback(threeCues());
     const auto isDark = [&](Time at) {
@@ -266,7 +270,8 @@ TEST(Playback, dark_and_light_are_so_whatever_was_before) {
     }
 }
 
-// A blackout wins over everything in flight. Example failure: a fade started earlier lifts a channel afterwards.
+// A blackout wins over everything in flight. Example failure: a fade started earlier lifts a
+// channel afterwards.
 TEST(Playback, blackout_overrides_running_fades) {
     const Playback playback = after(threeCues(), {go(10s), blackout(11s)});
     EXPECT_THAT(lookOf(playback, 11s).levels, ElementsAre(0.5f, 0.0f));
@@ -279,7 +284,8 @@ TEST(Playback, blackout_overrides_running_fades) {
     }
 }
 
-// A dark picture is no reason for dark streets, and none for street lamps that light up the audience's darkness.
+// A dark picture is no reason for dark streets, and none for street lamps that light up the
+// audience's darkness.
 TEST(Playback, blackout_leaves_relays_to_the_cues) {
     const Playback playback = after(threeCues(), {go(10s), blackout(20s), jump(30s, 2)});
     EXPECT_THAT(lookOf(playback, 25s).relays, ElementsAre(0));
@@ -335,7 +341,8 @@ TEST(Playback, a_cue_entered_by_back_is_followed_too) {
     EXPECT_EQ(stateOf(playback, 7s).cue, 1);
 }
 
-// Two devices on two threads may stamp their inputs out of order by a hair; what was shown already stays true.
+// Two devices on two threads may stamp their inputs out of order by a hair; what was shown already
+// stays true.
 TEST(Playback, an_input_stamped_late_takes_effect_with_its_forerunner) {
     const Playback playback = after(threeCues(), {go(10s), blackout(9s)});
     EXPECT_FALSE(stateOf(playback, 9500ms).blackout);
@@ -389,8 +396,9 @@ std::vector<Input> randomInputs(Rng& rng, std::size_t count) {
     return inputs;
 }
 
-// A seek, a restart and a second machine show the same frame. Asks the same moments in order while the inputs come in, as a night
-// does, and in a random order afterwards. Example failure: a fade that is advanced from query to query.
+// A seek, a restart and a second machine show the same frame. Asks the same moments in order while
+// the inputs come in, as a night does, and in a random order afterwards. Example failure: a fade
+// that is advanced from query to query.
 TEST(Playback, the_state_depends_on_time_and_inputs_alone) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         Rng rng(seed);
@@ -417,8 +425,10 @@ TEST(Playback, the_state_depends_on_time_and_inputs_alone) {
     }
 }
 
-// Nothing jumps: between two moments no level and no opacity moves faster than the quickest fade allows.
-// Example failure: an interrupted fade or a blackout over one that starts from a look instead of from what is seen.
+// Nothing jumps: between two moments no level and no opacity moves faster than the quickest fade
+// allows.
+// Example failure: an interrupted fade or a blackout over one that starts from a look instead of
+// from what is seen.
 TEST(Playback, no_level_and_no_opacity_ever_steps) {
     for (std::uint64_t seed = 100; seed < 120; ++seed) {
         Rng rng(seed);
@@ -446,8 +456,9 @@ TEST(Playback, no_level_and_no_opacity_ever_steps) {
     }
 }
 
-// The wind goes without a jump, and without a jerk, through every cue, cuts among them, whatever it interrupts; and no wind
-// that was not asked for. Example failure: a wind that fades like a level, whose rate jumps; a cut that is a cut for the wind too.
+// The wind goes without a jump, and without a jerk, through every cue, cuts among them, whatever it
+// interrupts; and no wind that was not asked for. Example failure: a wind that fades like a level,
+// whose rate jumps; a cut that is a cut for the wind too.
 TEST(Playback, neither_a_wind_nor_its_rate_of_change_ever_steps) {
     for (std::uint64_t seed = 300; seed < 310; ++seed) {
         Rng rng(seed);
@@ -460,8 +471,8 @@ TEST(Playback, neither_a_wind_nor_its_rate_of_change_ever_steps) {
         for (const CueList::Cue& cue : list.cues)
             for (const WindWish& wish : cue.winds) strongest = std::max(strongest, wish.strength);
 
-        // Four numbers of two outputs. None changes by more than 4 within a fifth of a second or so, and its rate of change takes as
-        // long: a step would be all of that within 1 ms.
+        // Four numbers of two outputs. None changes by more than 4 within a fifth of a second or
+        // so, and its rate of change takes as long: a step would be all of that within 1 ms.
         using Numbers = std::vector<double>;
         const auto numbers = [&](Time time) {
             Numbers all;
@@ -506,7 +517,8 @@ TEST(Playback, without_a_wind_patterns_sway_as_they_are) {
     for (const Time time : {-1s, 0s, 2s, 60s}) EXPECT_THAT(stateOf(playback, time).winds, ElementsAre(Wind{}));
 }
 
-// The renderer is handed what it can draw: no source twice, no layer without light, nothing out of range.
+// The renderer is handed what it can draw: no source twice, no layer without light, nothing out of
+// range.
 TEST(Playback, every_state_is_well_formed) {
     for (std::uint64_t seed = 200; seed < 220; ++seed) {
         Rng rng(seed);
@@ -545,8 +557,9 @@ TEST(Playback, every_state_is_well_formed) {
 }
 
 // The render thread asks for a state with every frame and must not wait for the heap.
-// Cues that follow each other for ever are worked out as far as somebody asks. Example failures: the program never returns from the first
-// GO; at hour ten the list is a moment off, or its levels are.
+// Cues that follow each other for ever are worked out as far as somebody asks. Example failures:
+// the program never returns from the first GO; at hour ten the list is a moment off, or its levels
+// are.
 TEST(Playback, a_list_that_loops_goes_on_for_ever) {
     CueList list = followingCues();
     list.loops = true;

@@ -60,7 +60,8 @@ TEST(ShowClock, goes_at_the_rate_it_is_told) {
     EXPECT_EQ(clock.momentOf(18s, 0s), 22s);
 }
 
-// For any history: show time never goes back but by a seek, and momentOf() is where showTime() gets there first.
+// For any history: show time never goes back but by a seek, and momentOf() is where showTime() gets
+// there first.
 TEST(ShowClock, finds_the_moment_of_a_show_time) {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         Rng rng(seed);

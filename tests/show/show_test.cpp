@@ -35,7 +35,8 @@ cues:
   - {name: Farewell, look: dark, fade: 0}
 )";
 
-// Two outputs, two fixtures of four channels, a lamp that is safe when on and a fog machine that is safe when off.
+// Two outputs, two fixtures of four channels, a lamp that is safe when on and a fog machine that is
+// safe when off.
 Site testSite() {
     Site site;
     site.file = "site.yaml";
@@ -298,7 +299,8 @@ TEST(ShowFile, cues_are_found_by_name) {
     EXPECT_THAT(loaded.show->cueNamed("Intermission").error().message(), EndsWith("(known: Dusk, Night, Farewell)"));
 }
 
-// Playback, renderer and patch count; names are for people. Example failure: levels in the order of the show file.
+// Playback, renderer and patch count; names are for people. Example failure: levels in the order of
+// the show file.
 TEST(ShowBind, puts_looks_in_the_sites_order) {
     const Loaded loaded{std::string(kShow)};
     const auto list = loaded.show->bind(testSite());
@@ -314,7 +316,8 @@ TEST(ShowBind, puts_looks_in_the_sites_order) {
     EXPECT_EQ(list->blackoutFade, 300ms);
 }
 
-// What a look leaves out does not linger from the cue before. Example failure: a street lamp that stays off after the show.
+// What a look leaves out does not linger from the cue before. Example failure: a street lamp that
+// stays off after the show.
 TEST(ShowBind, what_a_look_does_not_name_is_dark_and_safe) {
     const Loaded loaded{std::string(kShow)};
     const auto list = loaded.show->bind(testSite());
@@ -381,7 +384,8 @@ TEST(ShowBind, layers_that_do_more_than_add_make_a_picture_in_their_order) {
               "'multply' (did you mean 'multiply'?)");
 }
 
-// Example failure: the wind of the one output that has its own is everybody's, or goes by the show's order instead of the site's.
+// Example failure: the wind of the one output that has its own is everybody's, or goes by the
+// show's order instead of the site's.
 TEST(ShowBind, gives_each_output_its_own_wind_or_that_of_the_look) {
     const Loaded loaded(replaced(
         replaced(std::string(kShow), "  bright:\n", "  bright:\n    wind: {strength: 2, gusts: 0.25, direction: 90}\n"),

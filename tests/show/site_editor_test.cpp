@@ -1,8 +1,8 @@
 #include "show/site_editor.h"
 
 #include "core/file.h"
-#include "core/image.h"
 #include "core/random.h"
+#include "media/image.h"
 #include "scratch_folder.h"
 
 #include <glm/geometric.hpp>
@@ -145,7 +145,8 @@ TEST(SiteEditor, sets_light_and_the_part_of_the_canvas) {
     EXPECT_EQ(edited.warp().part.high.x, 1) << "the canvas ends there";
 }
 
-// A window that must stay dark: four corners, one more, moved together and one by one, and its edge softened.
+// A window that must stay dark: four corners, one more, moved together and one by one, and its edge
+// softened.
 TEST(SiteEditor, sets_masks_point_by_point_and_as_a_whole) {
     Edited edited;
     edited.apply(edit::Choose{Tool::Masks});
@@ -179,7 +180,8 @@ TEST(SiteEditor, sets_masks_point_by_point_and_as_a_whole) {
     EXPECT_EQ(masks()[0].polygon.size(), 3u);
 }
 
-// A picture as a mask is the file's alone, and stays what and where it is when the mask before it goes and comes back.
+// A picture as a mask is the file's alone, and stays what and where it is when the mask before it
+// goes and comes back.
 TEST(SiteEditor, leaves_masks_that_are_pictures_alone) {
     Edited edited;
     const ScratchFolder& folder = edited.folder;
@@ -282,7 +284,8 @@ TEST(SiteEditor, writes_what_has_changed_and_leaves_every_remark) {
     EXPECT_THAT(edited.editor.lines().back(), "saved");
 }
 
-// Whatever is done, in whatever order: each step can be saved and read back exactly, and all of it can be taken back.
+// Whatever is done, in whatever order: each step can be saved and read back exactly, and all of it
+// can be taken back.
 TEST(SiteEditor, every_step_goes_through_the_file_and_back) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         Edited edited;

@@ -24,7 +24,8 @@ TEST(WindCourse, is_what_is_asked_for_once_that_has_come) {
     EXPECT_DOUBLE_EQ(after.direction.y, std::sin(radians(30)));
 }
 
-// Both lags in small steps, without the closed form: first' = (asked - first) / lag, second' = (first - second) / lag.
+// Both lags in small steps, without the closed form: first' = (asked - first) / lag, second' =
+// (first - second) / lag.
 TEST(WindCourse, follows_a_fade_through_two_lags_of_half_a_second) {
     for (const double fade : {0.0, 3.0}) {
         const WindCourse course(kUsual, {4, 0, std::nullopt}, 0s, fromSeconds(fade));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "theatre/body_mesh.h"
+#include "theatre/body/body_mesh.h"
 
 namespace fantascope::theatre {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "theatre/scene_energy.h"
+#include "theatre/energy/scene_energy.h"
 
 #include "core/random.h"
 
@@ -19,7 +19,8 @@ inline void setTarget(PoseProblem& problem, const BitMask& mask) {
     for (const glm::ivec2 pixel : sampled(outerContour(mask), kContourPoints)) target.contour.push_back(disc.at(mask, pixel));
 }
 
-// Actors of these statures on a stage, before a screen of some 7 m x 3.3 m; 128 rows are 2.5 m high. The target is yet to be set.
+// Actors of these statures on a stage, before a screen of some 7 m x 3.3 m; 128 rows are 2.5 m
+// high. The target is yet to be set.
 inline PoseProblem aScene(const std::vector<double>& statures) {
     const Stage stage{{0, 0.1, 7}};
     const double pixel = 2.5 / 128;

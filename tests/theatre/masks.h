@@ -1,6 +1,6 @@
 #pragma once
 
-#include "theatre/bit_mask.h"
+#include "theatre/mask/bit_mask.h"
 
 #include "core/random.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "theatre/joint.h"
+#include "theatre/body/joint.h"
 
 #include "core/random.h"
 

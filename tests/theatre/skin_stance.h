@@ -1,6 +1,6 @@
 #pragma once
 
-#include "theatre/body_mesh.h"
+#include "theatre/body/body_mesh.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -12,9 +12,11 @@
 
 namespace fantascope::theatre {
 
-// How a skin stands, by its mesh alone: what anybody would measure who has only the mesh. Nothing here is the program's.
+// How a skin stands, by its mesh alone: what anybody would measure who has only the mesh. Nothing
+// here is the program's.
 
-// The centre of what a closed mesh encloses, as if it were all alike: the sum over the tetrahedra between its triangles and one point.
+// The centre of what a closed mesh encloses, as if it were all alike: the sum over the tetrahedra
+// between its triangles and one point.
 inline glm::dvec3 centreOfVolume(const std::vector<glm::vec3>& vertices, const std::vector<glm::uvec3>& triangles) {
     const glm::dvec3 origin(vertices[0]);
     double volume = 0;
@@ -29,8 +31,8 @@ inline glm::dvec3 centreOfVolume(const std::vector<glm::vec3>& vertices, const s
     return origin + moment / volume;
 }
 
-// The signed distance, seen from above, from that centre to the boundary of the hull of the vertices that are no more than 2 cm above the
-// lowest one; metres, positive inside.
+// The signed distance, seen from above, from that centre to the boundary of the hull of the
+// vertices that are no more than 2 cm above the lowest one; metres, positive inside.
 inline double marginOfMesh(const std::vector<glm::vec3>& vertices, const std::vector<glm::uvec3>& triangles) {
     constexpr float kBears = 0.02f;
     float lowest = std::numeric_limits<float>::max();

@@ -16,8 +16,9 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 Pose somewhere() { return *Pose::lookingAt({1, 2, 9}, {-1, 1.5, 0}); }
 
-// A camera one metre from a wall that it looks at squarely sees the point half a metre to the right at its right edge (field of
-// view 2 atan(1/2)), and row 0 is up. Example failure: y up, or centres taken at whole numbers.
+// A camera one metre from a wall that it looks at squarely sees the point half a metre to the right
+// at its right edge (field of view 2 atan(1/2)), and row 0 is up. Example failure: y up, or centres
+// taken at whole numbers.
 TEST(CameraModel, pixels_of_a_hand_worked_view) {
     const Pose pose = *Pose::lookingAt({0, 0, 1}, {0, 0, 0});
     const CameraModel camera = *CameraModel::fromFieldOfView(pose, {200, 100}, 2 * std::atan(0.5));
@@ -49,7 +50,8 @@ TEST(CameraModel, the_ray_through_a_points_pixel_meets_the_point) {
     }
 }
 
-// Brown's formula at one point: half a focal length from the axis, 0.5 (1 - 0.1 0.25 + 0.02 0.0625) = 0.488125.
+// Brown's formula at one point: half a focal length from the axis, 0.5 (1 - 0.1 0.25 + 0.02 0.0625)
+// = 0.488125.
 TEST(CameraModel, distortion_moves_a_point_along_its_radius_by_browns_polynomial) {
     const Pose pose = *Pose::lookingAt({0, 0, 1}, {0, 0, 0});
     const CameraModel camera = *CameraModel::fromFieldOfView(pose, {1000, 1000}, 90 * kDegree, -0.1, 0.02);
@@ -69,7 +71,8 @@ TEST(CameraModel, a_distortion_that_folds_the_picture_is_refused) {
         << "far outside the picture the polynomial folds back into it";
 }
 
-// Throw ratio 2: a picture one metre wide at two metres. A lens shift of half a height puts the axis on the picture's lower edge.
+// Throw ratio 2: a picture one metre wide at two metres. A lens shift of half a height puts the
+// axis on the picture's lower edge.
 TEST(CameraModel, throw_ratio_and_lens_shift_place_the_projectors_picture) {
     const Pose pose = *Pose::lookingAt({0, 0, 2}, {0, 0, 0});
     const Plane wall{};
@@ -93,8 +96,9 @@ TEST(Plane, is_met_from_its_front_alone) {
     EXPECT_FALSE(wall.hitBy({{0, 0, -1}, {0, 0, 1}})) << "from behind";
 }
 
-// The technician's question: which corners put the canvas straight on the wall? The homography through them must carry the
-// canvas's middle to the quadrilateral's middle, and not only its corners.
+// The technician's question: which corners put the canvas straight on the wall? The homography
+// through them must carry the canvas's middle to the quadrilateral's middle, and not only its
+// corners.
 TEST(RectifyingCorners, put_the_canvas_on_the_quadrilateral) {
     const Pose pose = *Pose::lookingAt({3, 3, 6}, {0, 1, 0});
     const CameraModel projector = CameraModel::fromThrowRatio(pose, {640, 360}, 1.2, {0, 0});

@@ -1,4 +1,5 @@
-// Photographs of a wall made by hand, without the simulated site: pixel by pixel through the nominal geometry.
+// Photographs of a wall made by hand, without the simulated site: pixel by pixel through the
+// nominal geometry.
 
 #include "vision/guide_comparison.h"
 
@@ -18,7 +19,8 @@ namespace {
 
 constexpr double kAspect = 16.0 / 9;
 
-// A projector that looks at a wall from the side, its picture put straight, and a camera with a slightly barrel-shaped lens.
+// A projector that looks at a wall from the side, its picture put straight, and a camera with a
+// slightly barrel-shaped lens.
 NominalView nominalView() {
     const Pose eye = Pose::lookingAt({0.3, 1.6, 5}, {0, 1.2, 0}).value(),
                lamp = Pose::lookingAt({1.6, 2, 4}, {0, 1.2, 0}).value();
@@ -53,7 +55,8 @@ struct Photograph {
     double turned = 0;              // degrees that the projector has been turned to the side
 };
 
-// The light of one pixel of a projector on a square metre of the wall: its pixels there, over those at the picture's middle.
+// The light of one pixel of a projector on a square metre of the wall: its pixels there, over those
+// at the picture's middle.
 double falloff(const CameraModel& projector, glm::dvec3 point) {
     const auto pixelsPerArea = [&](glm::dvec3 at) {
         const glm::dvec3 toLens = projector.pose.position - at;
@@ -157,7 +160,8 @@ TEST(GuideComparison, has_no_value_where_there_is_nothing_to_compare) {
     EXPECT_FALSE(GuideComparison(nominalView(), black).compare(photographed(spiral(), {}))) << "a guide without a drawing";
 }
 
-// Only stored pictures count, wherever they come from: a night's frames, kept as PNG, give the same scores again.
+// Only stored pictures count, wherever they come from: a night's frames, kept as PNG, give the same
+// scores again.
 TEST(GuideComparison, gives_a_stored_sequence_the_same_scores) {
     const GuideComparison comparison(nominalView(), spiral());
     const auto file = std::filesystem::path(testing::TempDir()) / "guide_comparison_frame.png";

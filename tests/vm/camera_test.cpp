@@ -1,5 +1,6 @@
-// The camera driver against the kernel's own drivers: vivid, which is a camera in all but glass, and v4l2loopback, which is whatever a
-// program feeds it. tests/vm/camera.sh brings them up, on a machine of its own; elsewhere every test here is skipped.
+// The camera driver against the kernel's own drivers: vivid, which is a camera in all but glass,
+// and v4l2loopback, which is whatever a program feeds it. tests/vm/camera.sh brings them up, on a
+// machine of its own; elsewhere every test here is skipped.
 
 #include "drivers/camera/v4l2.h"
 #include "drivers/camera/video_node.h"
@@ -123,7 +124,8 @@ TEST_F(RealNodes, stamp_each_frame_by_our_clock_and_count_it) {
     }
 }
 
-// So the colours above came through DMABUFs; v4l2loopback offers none, and its film comes through memory that is mapped.
+// So the colours above came through DMABUFs; v4l2loopback offers none, and its film comes through
+// memory that is mapped.
 TEST_F(RealNodes, share_dmabufs) {
     int error = 0;
     auto node = VideoNode::open(vivid_, error);
@@ -273,7 +275,8 @@ private:
     std::unique_ptr<CameraSource> neighbour_ = open(11), port_;
 };
 
-// What a camera promises of its life; what it sees, and when, is told above and by cameras that are told when.
+// What a camera promises of its life; what it sees, and when, is told above and by cameras that are
+// told when.
 TEST(RealNodesTwo, keep_the_contract_of_their_lives) {
     if (!std::filesystem::exists("/dev/video11")) GTEST_SKIP() << "no two cameras here: tests/vm/camera.sh loads them";
     const auto serves = [](contract::CameraSourceRig& rig) -> std::string {

@@ -1,5 +1,6 @@
-// Serial widgets on the kernel's own driver of FTDI's adapters, pulled and plugged in again. The adapters are QEMU's; their far ends are
-// ports of the same machine. tests/vm/dmx_widgets brings it up; elsewhere every test here is skipped.
+// Serial widgets on the kernel's own driver of FTDI's adapters, pulled and plugged in again. The
+// adapters are QEMU's; their far ends are ports of the same machine. tests/vm/dmx_widgets brings it
+// up; elsewhere every test here is skipped.
 
 #include "drivers/byte_stream/serial.h"
 #include "drivers/registry.h"
@@ -68,7 +69,8 @@ protected:
     drivers::Surroundings around_{clock_};
 };
 
-// A widget behind one of the adapters. It has no memory of what was on the line before it was plugged in.
+// A widget behind one of the adapters. It has no memory of what was on the line before it was
+// plugged in.
 class AdapterSocket {
 public:
     explicit AdapterSocket(int number)

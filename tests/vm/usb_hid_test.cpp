@@ -1,5 +1,6 @@
-// The hand controller's driver against the kernel's own USB, down to its hot-plug and its HID driver. The device is the kernel's gadget;
-// tests/vm/usb_hid.sh brings it up, on a machine of its own; elsewhere every test here is skipped.
+// The hand controller's driver against the kernel's own USB, down to its hot-plug and its HID
+// driver. The device is the kernel's gadget; tests/vm/usb_hid.sh brings it up, on a machine of its
+// own; elsewhere every test here is skipped.
 
 #include "drivers/cue_controller/usb_hid.h"
 
@@ -152,8 +153,8 @@ TEST_F(UsbHidOnTheKernel, a_report_from_before_is_no_press) {
     EXPECT_EQ(given(1), "+2");
 }
 
-// The rhythm of an impatient operator who trips over the cable, for hours. What was reported while it was plugged in comes, in its order,
-// and nothing else.
+// The rhythm of an impatient operator who trips over the cable, for hours. What was reported while
+// it was plugged in comes, in its order, and nothing else.
 TEST_F(UsbHidOnTheKernel, ten_thousand_presses_come_through_and_none_is_invented) {
     open(", debounce: 0");
     Rng rng(10'000);
@@ -183,7 +184,8 @@ TEST_F(UsbHidOnTheKernel, ten_thousand_presses_come_through_and_none_is_invented
     EXPECT_FALSE(controller_->poll());
 }
 
-// What the device at the other end of the kernel's USB was told, and not what the program meant to tell it.
+// What the device at the other end of the kernel's USB was told, and not what the program meant to
+// tell it.
 TEST_F(UsbHidOnTheKernel, lights_the_lamps_of_a_device_again_after_a_loss_and_darkens_them_at_the_end) {
     const auto lampsBecome = [&](std::uint8_t wanted) {
         const FileHandle told(::open("/dev/hidg0", O_RDONLY | O_NONBLOCK | O_CLOEXEC));
@@ -210,7 +212,8 @@ TEST_F(UsbHidOnTheKernel, lights_the_lamps_of_a_device_again_after_a_loss_and_da
     EXPECT_TRUE(lampsBecome(0x00));
 }
 
-// Gives what the port gives, but the presses of the rig's own button, by which it sees how far the port has come.
+// Gives what the port gives, but the presses of the rig's own button, by which it sees how far the
+// port has come.
 class Marked final : public CueController {
 public:
     static constexpr int kMark = 8;
@@ -267,7 +270,8 @@ public:
         down_ = static_cast<std::uint8_t>(down ? down_ | bit : down_ & ~bit);
         if (gadget_.isIn()) gadget_.report(told_ = down_);
     }
-    // A mark in the first moment of a device's life is taken for one from before, so there may have to be several.
+    // A mark in the first moment of a device's life is taken for one from before, so there may have
+    // to be several.
     void letTimePass() override {
         contract::eventually("the port is as it was plugged", [&] { return runs(*port_) == gadget_.isIn(); });
         if (!gadget_.isIn()) return;

@@ -10,7 +10,8 @@
 namespace fantascope::render::gpu {
 namespace {
 
-// The warp is looked up in a lattice so fine that what lies between its points may be taken as straight.
+// The warp is looked up in a lattice so fine that what lies between its points may be taken as
+// straight.
 constexpr int kNodes = 129;
 
 // Of assets/shaders/bend.glsl.

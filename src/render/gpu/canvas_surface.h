@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/canvas_warp.h"
+#include "render/canvas/canvas_warp.h"
 #include "render/gpu/bend.h"
 #include "render/gpu/handles.h"
 #include "render/gpu/program_cache.h"
@@ -14,11 +14,13 @@
 
 namespace fantascope::render::gpu {
 
-// The shown part of a canvas as something to draw on, through the output's warp: one rectangle, or many small ones where a mesh bends it. A
-// fragment shader is given `onCanvas`, 0 .. 1 in both directions. Thread: the context's.
+// The shown part of a canvas as something to draw on, through the output's warp: one rectangle, or
+// many small ones where a mesh bends it. A fragment shader is given `onCanvas`, 0 .. 1 in both
+// directions. Thread: the context's.
 class CanvasSurface {
 public:
-    // `bend`: the mesh of the places that it follows. `programs` and `bend` outlive it. Error: the fragment shader does not compile.
+    // `bend`: the mesh of the places that it follows. `programs` and `bend` outlive it. Error: the
+    // fragment shader does not compile.
     static Result<CanvasSurface> create(const std::string& fragmentShader, const std::string& definitions, const Bend& bend,
                                         ProgramCache& programs);
 

@@ -6,7 +6,8 @@
 
 namespace fantascope::render::gpu {
 
-// While it lives, handles and fences on this thread are destroyed without OpenGL calls: their context is lost, and they with it.
+// While it lives, handles and fences on this thread are destroyed without OpenGL calls: their
+// context is lost, and they with it.
 class Forgetting {
 public:
     Forgetting() : before_(std::exchange(on_, true)) {}
@@ -20,8 +21,8 @@ private:
     bool before_;
 };
 
-// Owns one OpenGL object; typed, so that a buffer cannot pass for a framebuffer. Made and destroyed while its context is current;
-// it dies with the context at the latest. Thread: the context's.
+// Owns one OpenGL object; typed, so that a buffer cannot pass for a framebuffer. Made and destroyed
+// while its context is current; it dies with the context at the latest. Thread: the context's.
 template <class Kind>
 class Handle {
 public:
@@ -97,7 +98,8 @@ public:
     }
     // After all commands so far.
     void set();
-    // Whether that point is passed, and sees to it that it will be; never waits. An empty fence is passed.
+    // Whether that point is passed, and sees to it that it will be; never waits. An empty fence is
+    // passed.
     bool passed();
     // Returns once that point is passed and empties the fence; at once if it is empty.
     void wait();

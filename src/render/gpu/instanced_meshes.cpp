@@ -10,7 +10,8 @@ namespace {
 
 static_assert(std::is_trivially_copyable_v<Instance> && sizeof(Instance) == 22 * sizeof(float), "the shader reads packed floats");
 
-// The attribute locations of assets/shaders/shape.vert, and the buffer binding points of a vertex array.
+// The attribute locations of assets/shaders/shape.vert, and the buffer binding points of a vertex
+// array.
 enum : GLuint { kPosition = 0, kNormal = 1, kClipFromShape = 2, kTowardsLight = 6, kColour = 7 };
 enum : GLuint { kPerVertex = 0, kPerInstance = 1 };
 
@@ -67,7 +68,8 @@ void InstancedMeshes::draw() {
     glBindVertexArray(vertexArray_.name());
     glFrontFace(mirrored_ ? GL_CW : GL_CCW);
     for (const Part& part : parts_) {
-        // Half of a closed surface is turned away; a software OpenGL would spend half of its time on it.
+        // Half of a closed surface is turned away; a software OpenGL would spend half of its time
+        // on it.
         (part.closed ? glEnable : glDisable)(GL_CULL_FACE);
         glDrawElementsInstancedBaseVertexBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(part.indexCount), GL_UNSIGNED_INT,
                                                       reinterpret_cast<const void*>(part.firstIndex * sizeof(std::uint32_t)),

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/facet_mesh.h"
+#include "render/canvas/facet_mesh.h"
 #include "render/gpu/handles.h"
 
 #include <glm/mat4x4.hpp>
@@ -20,7 +20,8 @@ struct Instance {
     glm::vec3 colour{0};        // linear light
 };
 
-// Meshes with a fixed number of instances each, whose places change every frame. Thread: the context's.
+// Meshes with a fixed number of instances each, whose places change every frame. Thread: the
+// context's.
 class InstancedMeshes {
 public:
     struct Mesh {
@@ -31,10 +32,11 @@ public:
     InstancedMeshes(std::span<const Mesh> meshes, bool mirrored);
 
     void setMirrored(bool mirrored) { mirrored_ = mirrored; }
-    // The instances of the next draw(), those of the first mesh first; to be written whole. May wait for the drawing of three
-    // frames ago.
+    // The instances of the next draw(), those of the first mesh first; to be written whole. May
+    // wait for the drawing of three frames ago.
     std::span<Instance> place();
-    // Draws all instances as they were placed last, with the program and the depth test that are set.
+    // Draws all instances as they were placed last, with the program and the depth test that are
+    // set.
     void draw();
 
 private:

@@ -8,11 +8,12 @@
 
 namespace fantascope::render::gpu {
 
-// The picture of one layer while it is painted, at full opacity, with several samples a pixel for smooth edges and a depth for
-// each.
+// The picture of one layer while it is painted, at full opacity, with several samples a pixel for
+// smooth edges and a depth for each.
 //
-// A sample holds the square root of its linear light in 8 bits: nearly the spacing of sRGB, and cheap, where a software OpenGL
-// would spend most of a frame on encoding every sample. Its alpha is the square root of how much is covered: 1 where shapes are, else 0. Thread: the context's.
+// A sample holds the square root of its linear light in 8 bits: nearly the spacing of sRGB, and
+// cheap, where a software OpenGL would spend most of a frame on encoding every sample. Its alpha is
+// the square root of how much is covered: 1 where shapes are, else 0. Thread: the context's.
 class LayerPicture {
 public:
     // Error: more samples or pixels than this OpenGL has.

@@ -8,8 +8,8 @@
 
 namespace fantascope::render::gpu {
 
-// A picture of the canvas in which light adds up: one channel of half floats, of linear light, row 0 at the canvas's top. Thread: the
-// context's.
+// A picture of the canvas in which light adds up: one channel of half floats, of linear light, row
+// 0 at the canvas's top. Thread: the context's.
 class LightCanvas {
 public:
     // Error: more pixels than this OpenGL draws.

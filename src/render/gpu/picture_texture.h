@@ -2,8 +2,8 @@
 
 #include "render/gpu/handles.h"
 
-#include "core/image.h"
 #include "core/result.h"
+#include "media/image.h"
 
 #include <glm/vec2.hpp>
 
@@ -15,7 +15,8 @@ namespace fantascope::render::gpu {
 // Whether a picture has smaller copies of itself, for where it is drawn very small.
 enum class Mipmaps { None, All };
 
-// A picture to be looked up as light: sRGB values, colours multiplied by alpha as premultiply() does, row 0 at the top. Thread: the context's.
+// A picture to be looked up as light: sRGB values, colours multiplied by alpha as premultiply()
+// does, row 0 at the top. Thread: the context's.
 class PictureTexture {
 public:
     // Clear. Error: more pixels than this OpenGL has.
@@ -37,15 +38,15 @@ private:
     Texture pixels_;
 };
 
-// Changes a texture's picture from frame to frame without stopping the drawing: the pixels go by way of memory that both sides see. Thread:
-// the context's.
+// Changes a texture's picture from frame to frame without stopping the drawing: the pixels go by
+// way of memory that both sides see. Thread: the context's.
 class PictureUploader {
 public:
     // Error: OpenGL has no memory left.
     static Result<PictureUploader> create(glm::ivec2 size);
 
-    // Queues it; `picture` is not needed any longer afterwards. Both have the uploader's size. May wait for the upload of three pictures
-    // ago.
+    // Queues it; `picture` is not needed any longer afterwards. Both have the uploader's size. May
+    // wait for the upload of three pictures ago.
     void upload(const RgbaImage& picture, PictureTexture& texture);
 
 private:

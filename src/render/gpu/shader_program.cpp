@@ -31,7 +31,8 @@ std::string logOf(unsigned name, GetParameter getParameter, GetLog getLog) {
 template <GLenum kStage>
 Result<Handle<ShaderKind<kStage>>> compiled(const std::filesystem::path& file, const std::string& definitions) {
     std::string source = TRY(readFile(file));
-    // Nothing but comments may stand before #version; after it the compiler is told that line 2 of the file comes next.
+    // Nothing but comments may stand before #version; after it the compiler is told that line 2 of
+    // the file comes next.
     if (!definitions.empty()) source.insert(source.find('\n') + 1, definitions + "#line 2\n");
     Handle<ShaderKind<kStage>> shader;
     const char* text = source.data();

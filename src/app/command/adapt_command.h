@@ -1,0 +1,10 @@
+#pragma once
+
+#include "app/base/command.h"
+
+namespace fantascope::app {
+
+// `fantascope adapt`: principal poses follow a silhouette that moves.
+void addAdaptCommand(CLI::App& program, Action& action);
+
+}  // namespace fantascope::app

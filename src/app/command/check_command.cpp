@@ -1,0 +1,419 @@
+#include "app/command/check_command.h"
+
+#include "app/base/drawing.h"
+#include "app/base/silhouette_file.h"
+#include "app/live/programme.h"
+#include "app/site/site_file.h"
+
+#include "pattern/search/pattern_settings.h"
+#include "pattern/shape/elemental_shape.h"
+#include "pattern/shape/shape_pattern.h"
+#include "render/source/video_stream.h"
+#include "show/show.h"
+#include "show/site.h"
+#include "theatre/deform/handle_motion.h"
+#include "theatre/deform/silhouette_sequence.h"
+#include "theatre/energy/pose_hints.h"
+#include "theatre/energy/pose_problem.h"
+#include "theatre/energy/weights_file.h"
+#include "theatre/stage/cast.h"
+#include "theatre/stage/stage_file.h"
+
+#include "core/config.h"
+#include "core/file.h"
+#include "core/naming.h"
+#include "core/text.h"
+#include "media/image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <iostream>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What is known of a file that is right.
+struct Finding {
+    std::string summary;
+    std::vector<fs::path> names{};        // the files that it names
+    std::vector<std::string> oddities{};  // what is no fault, but perhaps not what was meant; each with its place
+    bool isPicture = false;               // that may be odd for good reason where another file names it
+};
+
+// "1 cue", "6 cues".
+std::string counted(std::size_t count, std::string_view thing) {
+    return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
+// "1.78 : 1"
+std::string shape(double aspect) { return fmt::format("{:.2f} : 1", aspect); }
+
+// What becomes of a source's picture on a canvas of another shape.
+std::string fitAdvice(const show::Source& source, double aspect, const show::Output& output) {
+    constexpr std::string_view kWhat[] = {"all of it is seen, with dark beside it (fit: contain)",
+                                          "what hangs over the canvas is cut off (fit: cover)",
+                                          "it is stretched, circles become ellipses (fit: stretch)"};
+    return source.at
+        .error(fmt::format("its picture is {}, and the canvas '{}' is {}: {}", shape(aspect), output.canvas,
+                           shape(output.projection.canvasAspect), kWhat[static_cast<std::size_t>(source.fit)]))
+        .message();
+}
+
+// What becomes of pictures on a canvas whose shape on the wall nobody has told.
+std::string unknownShape(const show::Site& site, const show::Output& output) {
+    return fmt::format(
+        "{}: the corners of '{}' do not tell the shape of the canvas '{}' on the wall: every picture fills it. Measure it and "
+        "write 'canvas_size: [WIDTH, HEIGHT]' in metres, so that circles stay round",
+        site.file.string(), output.name, output.canvas);
+}
+
+// Of every source and every canvas that it is shown on.
+void noteShapes(const show::Show& show, const show::CueList& cues, const std::vector<std::optional<double>>& aspects,
+                const show::Site& site, std::vector<std::string>& oddities) {
+    std::set<std::pair<std::size_t, std::string>> told;
+    std::set<std::string> unknown;
+    for (const auto& cue : cues.cues)
+        for (std::size_t i = 0; i < site.outputs.size(); ++i)
+            for (const show::LayerState& layer : cue.look.outputs[i].layers) {
+                const show::Output& output = site.outputs[i];
+                const auto aspect = aspects[layer.source];
+                const double canvas = output.projection.canvasAspect;
+                if (!aspect) continue;
+                if (canvas == 0) {
+                    if (unknown.insert(output.canvas).second) oddities.push_back(unknownShape(site, output));
+                    continue;
+                }
+                if (isSameShape(*aspect, canvas)) continue;
+                if (told.insert({layer.source, output.canvas}).second)
+                    oddities.push_back(fitAdvice(show.sources[layer.source], *aspect, output));
+            }
+}
+
+// Shapes that were made as light stand where the drawing is white; as leaves their shadows would
+// show its negative.
+void noteNegatives(const show::Source& source, std::vector<std::string>& oddities) {
+    const auto* foliage = std::get_if<show::FoliageSource>(&source.picture);
+    if (foliage == nullptr) return;
+    for (const show::FoliageSource::Layer& layer : foliage->layers) {
+        const auto pattern = pattern::readPattern(layer.pattern);
+        if (!pattern) continue;  // its own line says why
+        const bool madeForShadows = pattern->guide.filename().string().ends_with(".shadows.png");
+        if (madeForShadows != layer.holes) continue;
+        const std::string file = layer.pattern.filename().string();
+        oddities.push_back(
+            source.at
+                .error(layer.holes
+                           ? fmt::format("the holes of {} stand where the drawing is dark, so that its negative is seen; make "
+                                         "them without --shadows: 'fantascope pattern GUIDE -o {}'",
+                                         file, file)
+                           : fmt::format("the leaves of {} stand where the drawing is white, so that its negative is seen; make "
+                                         "them with 'fantascope pattern GUIDE -o {} --shadows'",
+                                         file, file))
+                .message());
+    }
+}
+
+Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>& site);
+
+Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>& site) {
+    const show::Show show = TRY(show::Show::load(path));
+    Finding finding{fmt::format("show, {}, {}, {}", counted(show.cues.size(), "cue"), counted(show.looks.size(), "look"),
+                                counted(show.sources.size(), "source"))};
+    ConfigFaults faults;
+    show::CueList cues;
+    if (site) faults.take(show.bind(*site), [&](show::CueList bound) { cues = std::move(bound); });
+    std::shared_ptr<render::PictureFeed> camera;
+    if (site && site->nominalCamera) camera = std::make_shared<render::PictureFeed>(site->nominalCamera->size);
+    std::vector<std::optional<double>> aspects;
+    for (const show::Source& source : show.sources) {
+        noteNegatives(source, finding.oddities);
+        const std::vector<fs::path> files = show::filesOf(source);
+        finding.names.insert(finding.names.end(), files.begin(), files.end());
+        aspects.emplace_back();
+        if (std::holds_alternative<show::CameraSource>(source.picture) && !camera) {
+            if (site) faults.add(source.at.error(fmt::format("{} has no camera", site->file.string())));
+            continue;
+        }
+        const auto read = readPictureSource(source, render::VideoStream::Pace::Exact, camera);
+        if (read)
+            aspects.back() = render::aspectOf(*read);
+        else if (std::all_of(files.begin(), files.end(), [&](const fs::path& file) { return checkFile(file, site).has_value(); }))
+            faults.add(read.error());  // each file is right, and they do not go together
+    }
+    TRY(faults.result());
+    if (site) {
+        noteShapes(show, cues, aspects, *site, finding.oddities);
+        finding.summary += fmt::format(", plays on {}", site->file.string());
+    }
+    return finding;
+}
+
+// A site of simulated devices is rehearsed, one of real ones is run; of a mixture `run` refuses the
+// simulated ones.
+void noteSimulated(const show::Site& site, std::vector<std::string>& oddities) {
+    std::vector<const show::DeviceConfig*> devices;
+    for (const show::Universe& universe : site.universes) {
+        devices.push_back(&universe.port);
+        if (universe.desk) devices.push_back(&universe.desk->device);
+    }
+    for (const auto* banks : {&site.relayBanks, &site.contactBanks})
+        for (const show::Bank& bank : *banks) devices.push_back(&bank.device);
+    for (const auto* device : {&site.cueController, &site.camera})
+        if (*device) devices.push_back(&**device);
+    const auto isReal = [](const show::DeviceConfig* device) { return device->driver != "simulated"; };
+    if (std::none_of(devices.begin(), devices.end(), isReal)) return;
+    for (const show::DeviceConfig* device : devices)
+        if (!isReal(device))
+            oddities.push_back(
+                device->options.error("is simulated beside real devices: it can be rehearsed, and 'run' refuses it").message());
+}
+
+Result<Finding> checkSite(const fs::path& path, const std::optional<show::Site>&) {
+    const show::Site site = TRY(readSite(path));
+    Finding finding{fmt::format("site, {}, {}, {}{}", counted(site.outputs.size(), "output"),
+                                counted(site.fixtures.size(), "fixture"), counted(site.relays.size(), "relay"),
+                                site.camera ? ", camera" : "")};
+    noteSimulated(site, finding.oddities);
+    return finding;
+}
+
+Result<Finding> checkPattern(const fs::path& path, const std::optional<show::Site>& site) {
+    const pattern::ShapePattern pattern = TRY(pattern::readPattern(path));
+    Finding finding{fmt::format("pattern, {}, {}", counted(pattern.instances.size(), "instance"),
+                                counted(pattern.triangleCount(), "triangle"))};
+    std::error_code ignored;
+    const bool isWatched = !site || site->camera;  // by a camera that compares the wall with the drawing
+    if (isWatched || fs::exists(pattern.guide, ignored))
+        finding.names.push_back(pattern.guide);
+    else
+        finding.oddities.push_back(
+            namedIn(path, pattern.guide,
+                    Error(fmt::format("{}: is missing; without a camera the show plays all the same", pattern.guide.string())))
+                .message());
+    return finding;
+}
+
+Result<Finding> checkPatternSettings(const fs::path& path, const std::optional<show::Site>&) {
+    const pattern::PatternSettings settings = TRY(pattern::readPatternSettings(path));
+    const std::string shapes = settings.shapes.empty() ? "" : ", " + counted(settings.shapes.size(), "shape");
+    return Finding{fmt::format("pattern settings, at most {}{}", counted(settings.search.instances, "instance"), shapes), {}};
+}
+
+// The drawing of a motion or of hints: NAME.png for NAME.motion.yaml. Without it white all over, so
+// that whatever it does not decide is looked at.
+struct Drawing {
+    GreyImage picture;
+    std::string note;  // of what was not looked at
+
+    static Result<Drawing> beside(const fs::path& path) {
+        const fs::path file = path.parent_path() / (path.stem().stem().string() + ".png");
+        std::error_code ignored;
+        if (fs::exists(file, ignored)) return Drawing{TRY(readSilhouette(file)), ""};
+        constexpr int kSide = 512;
+        GreyImage white(kSide, kSide);
+        for (int y = 1; y + 1 < kSide; ++y)
+            for (int x = 1; x + 1 < kSide; ++x) white.at(x, y) = 1;
+        return Drawing{std::move(white),
+                       fmt::format("; there is no {} to say whether its points are in the white", file.filename().string())};
+    }
+};
+
+Result<Finding> checkMotion(const fs::path& path, const std::optional<show::Site>&) {
+    using theatre::TriangulatedSilhouette;
+    const Drawing drawing = TRY(Drawing::beside(path));
+    const auto silhouette = TRY(TriangulatedSilhouette::of(drawing.picture, TriangulatedSilhouette::kVertices).in(path.string()));
+    const theatre::HandleMotion motion = TRY(theatre::readMotion(path, silhouette));
+    return Finding{fmt::format("motion, {}, {:g} s, {:g} frames a second{}{}", counted(motion.handles.size(), "handle"),
+                               motion.seconds, motion.framesPerSecond, motion.loops ? ", loops" : "", drawing.note),
+                   {}};
+}
+
+Result<Finding> checkSequence(const fs::path& path, const std::optional<show::Site>&) {
+    const theatre::SilhouetteSequence sequence = TRY(theatre::readSequence(path));
+    glm::ivec2 size(0);
+    for (const fs::path& file : sequence.pictures) {
+        const GreyImage picture = TRY(readSilhouette(file));
+        size = {picture.width(), picture.height()};
+    }
+    return Finding{fmt::format("sequence, {}, {} x {} px, {:g} a second{}{}", counted(sequence.pictures.size(), "frame"), size.x,
+                               size.y, sequence.framesPerSecond, sequence.loops ? ", loops" : "",
+                               sequence.interior ? ", " + counted(sequence.interior->triangles.size(), "triangle") : ""),
+                   {}};
+}
+
+Result<Finding> checkCast(const fs::path& path, const std::optional<show::Site>&) {
+    const theatre::Cast cast = TRY(theatre::readCast(path));
+    const std::size_t frames = cast.actors[0].poses.size();
+    const std::string motion =
+        cast.framesPerSecond > 0 ? fmt::format("{}, {:g} a second", counted(frames, "frame"), cast.framesPerSecond) : "still";
+    Finding finding{fmt::format("cast, {}, {}, {:g} m high", counted(cast.actors.size(), "actor"), motion, cast.height),
+                    {cast.target}};
+    if (cast.stageFile) finding.names.push_back(*cast.stageFile);
+    if (cast.sequence) finding.names.push_back(cast.sequence->file);
+    return finding;
+}
+
+Result<Finding> checkStage(const fs::path& path, const std::optional<show::Site>&) {
+    const theatre::Stage stage = TRY(theatre::readStage(path));
+    return Finding{fmt::format("stage, {}, {}, {}", stage.lit ? "projector" : "lamp", counted(stage.platforms.size(), "platform"),
+                               counted(stage.props.size(), "prop")),
+                   {}};
+}
+
+// With NAME.stage.yaml, where it is there, for the props that are meant.
+Result<Finding> checkHints(const fs::path& path, const std::optional<show::Site>&) {
+    const Drawing drawing = TRY(Drawing::beside(path));
+    const fs::path file = path.parent_path() / (path.stem().stem().string() + ".stage.yaml");
+    std::error_code ignored;
+    theatre::Stage stage;
+    if (fs::exists(file, ignored)) stage = TRY(theatre::readStage(file));
+    constexpr int kRows = 128;
+    const auto target = TRY(theatre::PoseTarget::from(drawing.picture, {}, 1, kRows).in(path.string()));
+    const auto hints = TRY(theatre::readHints(path, target, stage));
+    return Finding{fmt::format("hints, {}{}", counted(hints.size(), "point"), drawing.note), {}};
+}
+
+Result<Finding> checkWeights(const fs::path& path, const std::optional<show::Site>&) {
+    TRY(theatre::readWeights(path));
+    return Finding{"pose weights", {}};
+}
+
+Result<Finding> checkGuide(const fs::path& path) {
+    const GreyImage guide = TRY(readGrey(path));
+    Finding finding{fmt::format("guide, {} x {} px", guide.width(), guide.height())};
+    finding.isPicture = true;
+    if (isInkOnPaper(guide))
+        finding.oddities.push_back(
+            fmt::format("{}: looks like dark ink on white paper; as a guide or silhouette it needs --invert", path.string()));
+    return finding;
+}
+
+Result<Finding> checkVideo(const fs::path& path) {
+    const auto stream = TRY(render::VideoStream::open(path, render::VideoStream::Pace::Exact));
+    const render::VideoContent& video = stream->content();
+    return Finding{fmt::format("video, {} x {} px, {}, {:.2f} s, {}", video.size.x, video.size.y,
+                               counted(video.frames.size(), "frame"), seconds(video.length), video.codec),
+                   {}};
+}
+
+bool isVideoFile(const fs::path& path) {
+    static const std::set<std::string> kEndings = {".mp4",  ".m4v", ".mov",  ".mkv", ".webm", ".avi", ".mpg",
+                                                   ".mpeg", ".ts",  ".m2ts", ".mxf", ".ogv",  ".wmv"};
+    return kEndings.contains(endingOf(path));
+}
+
+// A picture may be a shape as well as a guide; it is taken for a guide.
+bool isShapeFile(const fs::path& path) {
+    static const std::set<std::string> kEndings = {".svg", ".fbx", ".obj", ".gltf", ".glb", ".ply", ".stl"};
+    return kEndings.contains(endingOf(path));
+}
+
+Result<Finding> checkShape(const fs::path& path) {
+    const pattern::ElementalShape shape = TRY(pattern::readShapeFile(path, path.string()));
+    return Finding{fmt::format("elemental shape, {}", counted(shape.mesh.triangles.size(), "triangle")), {}};
+}
+
+using Check = Result<Finding> (*)(const fs::path&, const std::optional<show::Site>&);
+
+// A YAML file says of itself of which kind it is.
+constexpr std::pair<std::string_view, Check> kKinds[] = {
+    {"show", checkShow},     {"site", checkSite},           {"pattern", checkPattern}, {"pattern-settings", checkPatternSettings},
+    {"motion", checkMotion}, {"sequence", checkSequence},   {"cast", checkCast},       {"stage", checkStage},
+    {"hints", checkHints},   {"pose-weights", checkWeights}};
+
+Result<Finding> checkYaml(const fs::path& path, const std::optional<show::Site>& site) {
+    std::vector<std::string> names;
+    for (const auto& kind : kKinds) names.emplace_back(kind.first);
+    const ConfigNode root = TRY(ConfigNode::load(path));
+    for (const auto& [key, value] : TRY(root.entries()))
+        if (key == "fantascope") return kKinds[TRY(value.choice(names))].second(path, site);
+    return root.error(fmt::format("'fantascope' is missing: the kind of file, one of {}", fmt::join(names, ", ")));
+}
+
+// The file that a folder stands for, or the file itself.
+fs::path fileOf(const fs::path& path) {
+    std::error_code ignored;
+    if (!fs::is_directory(path, ignored)) return path;
+    for (const char* name : {"sequence.yaml", "site.yaml"})
+        if (fs::exists(path / name, ignored)) return path / name;
+    return path / "show.yaml";
+}
+
+Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>& site) {
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) {
+        if (fs::exists(path / "sequence.yaml", ignored)) return checkSequence(path / "sequence.yaml", site);
+        return fs::exists(path / "site.yaml", ignored) ? checkSite(path / "site.yaml", site) : checkShow(path, site);
+    }
+    if (path.extension() == ".yaml") return checkYaml(path, site);
+    if (isVideoFile(path)) return checkVideo(path);
+    return isShapeFile(path) ? checkShape(path) : checkGuide(path);
+}
+
+void declareOptions(CLI::App& command, CheckOptions& options) {
+    command
+        .add_option("path", options.paths,
+                    "Show, site and sequence folders; show, site and pattern files; casts, stages, motions, hints and weights; "
+                    "guides and "
+                    "images, videos, shapes (SVG, meshes)")
+        ->required()
+        ->type_name("PATH");
+    command
+        .add_option("--site", options.site,
+                    "Look the shows' outputs, fixtures and relays up in this site: a folder or a site.yaml")
+        ->type_name("SITE");
+}
+
+Result<void> runCheck(const CheckOptions& options) { return checkFiles(options, std::cout); }
+
+}  // namespace
+
+Result<void> checkFiles(const CheckOptions& options, std::ostream& out) {
+    std::deque<fs::path> waiting(options.paths.begin(), options.paths.end());
+    std::optional<show::Site> site;
+    if (options.site) {
+        waiting.push_front(*options.site);
+        if (auto read = readSite(*options.site)) site = std::move(read).value();  // what is wrong with it is said in its turn
+    }
+    std::set<fs::path> seen, given;
+    for (const fs::path& path : options.paths) given.insert(path.lexically_normal());
+    std::map<fs::path, fs::path> namedBy;
+    std::size_t refused = 0;
+    for (; !waiting.empty(); waiting.pop_front()) {
+        const fs::path path = waiting.front();
+        if (!seen.insert(path.lexically_normal()).second) continue;
+        const auto finding = checkFile(path, site);
+        if (!finding) {
+            const auto by = namedBy.find(path);
+            out << printableLines((by == namedBy.end() ? finding.error() : namedIn(by->second, path, finding.error())).message())
+                << "\n";
+            ++refused;
+            continue;
+        }
+        out << printableLines(fmt::format("ok {}: {}\n", path.string(), finding->summary));
+        if (!finding->isPicture || given.contains(path.lexically_normal()))
+            for (const std::string& oddity : finding->oddities) out << printableLines("   note: " + oddity) << "\n";
+        for (const fs::path& name : finding->names) {
+            waiting.push_back(name);
+            namedBy.try_emplace(name, fileOf(path));
+        }
+    }
+    if (refused > 0) return Error(fmt::format("{} of {} refused", refused, counted(seen.size(), "file")));
+    return {};
+}
+
+void addCheckCommand(CLI::App& program, Action& action) {
+    addCommand<CheckOptions>(program, action, "check", "Read files as the program would and say what is wrong with them",
+                             declareOptions, runCheck);
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,94 @@
+#include "app/command/convert_command.h"
+
+#include "app/base/output.h"
+#include "app/export/motion_scene.h"
+
+#include "core/file.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fantascope::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    fs::path cast, output;
+    std::optional<double> frameRate;
+    std::optional<std::size_t> actor;
+};
+
+void declare(CLI::App& command, Options& options) {
+    command.add_option("CAST", options.cast, "The poses or their motion, *.cast.yaml")->required();
+    addOutOption(
+        command, options.output,
+        "What to write: .glb or .gltf (all actors with their skins, props, light and screen) or .bvh (one actor's skeleton "
+        "and motion)")
+        ->required()
+        ->check(CLI::Validator(
+            [](const std::string& file) {
+                const std::string ending = fs::path(file).extension().string();
+                return ending == ".glb" || ending == ".gltf" || ending == ".bvh"
+                           ? ""
+                           : fmt::format("'{}' does not end in .glb, .gltf or .bvh", file);
+            },
+            "GLB|GLTF|BVH"));
+    command.add_option("--fps", options.frameRate, "Frames a second, with poses in between (default: the cast's)")
+        ->check(CLI::Range(1.0, 1000.0));
+    command.add_option("--actor", options.actor, "of a .bvh, from 1 (default: all, each in a file of its own)");
+    command.footer("docs/converting.md tells what other programs make of it.");
+}
+
+// The actors that are wanted, each with his file.
+Result<std::vector<std::pair<std::size_t, fs::path>>> filesOf(const Options& options, std::size_t actors) {
+    std::vector<std::pair<std::size_t, fs::path>> files;
+    if (options.actor) {
+        if (*options.actor < 1 || *options.actor > actors)
+            return Error(fmt::format("--actor {}: the cast has actors 1 .. {}", *options.actor, actors));
+        files.emplace_back(*options.actor - 1, options.output);
+    } else if (actors == 1) {
+        files.emplace_back(0, options.output);
+    } else {
+        for (std::size_t i = 0; i < actors; ++i)
+            files.emplace_back(
+                i, options.output.parent_path() / fmt::format("{}-actor-{}.bvh", options.output.stem().string(), i + 1));
+    }
+    return files;
+}
+
+std::string lengthOf(const MotionScene& scene) {
+    if (scene.framesPerSecond == 0) return "a still";
+    return fmt::format("{} frames at {:g} a second", scene.frames(), scene.framesPerSecond);
+}
+
+Result<void> run(const Options& options) {
+    TRY(checkWritable(options.output));
+    const std::string ending = options.output.extension().string();
+    if (options.actor && ending != ".bvh") return Error("--actor is for a .bvh, which holds one; a glTF holds all");
+    const MotionScene scene = TRY(readMotionScene(options.cast, options.frameRate));
+    if (ending != ".bvh") {
+        TRY(writeFile(options.output, gltfOf(scene, ending == ".glb")));
+        fmt::print("{}: {} actor{}, {}\n", options.output.string(), scene.actors.size(), scene.actors.size() == 1 ? "" : "s",
+                   lengthOf(scene));
+        return {};
+    }
+    for (const auto& [actor, file] : TRY(filesOf(options, scene.actors.size()))) {
+        TRY(writeFile(file, bvhOf(scene, actor)));
+        fmt::print("{}: actor {}, {}\n", file.string(), actor + 1, lengthOf(scene));
+    }
+    return {};
+}
+
+}  // namespace
+
+void addConvertCommand(CLI::App& program, Action& action) {
+    addCommand<Options>(program, action, "convert", "Write a cast's poses or motion for other programs: glTF or BVH", declare,
+                        run);
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "app/base/command.h"
+
+namespace fantascope::app {
+
+// `deform SILHOUETTE --motion M.motion.yaml -o FOLDER`: a silhouette that moves with its handles.
+void addDeformCommand(CLI::App& program, Action& action);
+
+}  // namespace fantascope::app

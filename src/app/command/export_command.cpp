@@ -1,0 +1,73 @@
+#include "app/command/export_command.h"
+
+#include "app/base/frame_run.h"
+#include "app/base/geometry_options.h"
+#include "app/base/report.h"
+#include "app/export/film.h"
+#include "app/export/frame_file.h"
+
+#include <fmt/format.h>
+
+namespace fantascope::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    FilmRequest film;
+    fs::path file, report;
+    std::optional<Alpha> alpha;
+};
+
+void declare(CLI::App& command, Options& options) {
+    FilmRequest& film = options.film;
+    command.add_option("SHOW", film.what, "A show's folder, or a single P.pattern.yaml")->required();
+    declareFilmOptions(command, film);
+    addOutOption(command, options.file,
+                 "What to write: a folder of PNG pictures, FILE.mp4, FILE.mov (ProRes 4444) or FILE.mkv (FFV1)")
+        ->required();
+    command
+        .add_option("--seconds", film.seconds,
+                    "How much show time (default: a minute; a pattern or a single cue: one loop of the movement)")
+        ->check(CLI::Range(0.001, 1e6));
+    command.add_option("--fps", film.frameRate, "Frames a second of show time (default: the output's; a pattern: 30)")
+        ->check(CLI::Range(1.0, 1000.0));
+    addSizeOption(command, "--size", film.size, "Of a frame (default: the output's; a pattern or a canvas: 1080 rows)");
+    addChoice<Alpha>(
+        command, "--alpha", options.alpha, {{"none", Alpha::None}, {"stored", Alpha::Stored}, {"linear", Alpha::Linear}},
+        "Black becomes clear, for programs that composite in stored or in linear values; none: the frame as the projector "
+        "gets it (default: stored; none in an .mp4, which has no alpha)");
+    command.add_flag("--canvas", film.canvas, "The picture before the output's keystone, as a light mask wants it");
+    command.add_option("--report", options.report, "Also write figures, as JSON (docs/report.md)");
+    command.footer("Meanwhile the space bar pauses and goes on; escape, q and Ctrl-C end it with the frames so far.");
+}
+
+Result<void> run(const Options& options) {
+    Film film = TRY(Film::open(options.film));
+    const auto file = TRY(FrameFile::open(options.file, film.size(), film.frameRate(), options.alpha));
+    const std::int64_t made = TRY(makeFrames(
+        "export", film.frames(), [&](std::int64_t number) { return file->write(film.at(tickTime(number, film.frameRate()))); }));
+    if (made > 0) TRY(file->finish());
+    if (!options.report.empty()) {
+        Report report;
+        report["frames"] = made;
+        report["seconds"] = seconds(tickTime(made, film.frameRate()));
+        report["fps"] = film.frameRate();
+        report["size"] = {film.size().x, film.size().y};
+        report["alpha"] = name(file->alpha());
+        report["stop_reason"] = made == film.frames() ? "length" : "interrupted";
+        TRY(writeReport(options.report, report));
+    }
+    fmt::print("{}: {} x {}, {}\n", options.file.string(), film.size().x, film.size().y,
+               outcomeOf(made, film.frames(), film.frameRate()));
+    return {};
+}
+
+}  // namespace
+
+void addExportCommand(CLI::App& program, Action& action) {
+    addCommand<Options>(program, action, "export", "Write what an output shows as pictures with alpha or as a video", declare,
+                        run);
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,73 @@
+#include "app/base/command.h"
+#include "app/command/adapt_command.h"
+#include "app/command/check_command.h"
+#include "app/command/convert_command.h"
+#include "app/command/deform_command.h"
+#include "app/command/devices_command.h"
+#include "app/command/export_command.h"
+#include "app/command/fabricate_command.h"
+#include "app/command/guard_command.h"
+#include "app/command/pattern_command.h"
+#include "app/command/plot_command.h"
+#include "app/command/pose_command.h"
+#include "app/command/preview_command.h"
+#include "app/command/rehearse_command.h"
+#include "app/command/template_command.h"
+
+#include "core/text.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+
+namespace fantascope::app {
+namespace {
+
+// Every subcommand of the program.
+constexpr AddCommand kCommands[] = {addPatternCommand,   addPoseCommand,     addDeformCommand,   addAdaptCommand,
+                                    addFabricateCommand, addConvertCommand,  addRehearseCommand, addRunCommand,
+                                    addExportCommand,    addTemplateCommand, addPreviewCommand,  addPlotCommand,
+                                    addCheckCommand,     addDevicesCommand,  addGuardCommand};
+
+enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
+
+// Where a standard stream was closed before we started, the next file that is opened would take its
+// number, and what is printed would go into a device.
+void openMissingStreams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(stream, F_GETFD) == -1) (void)open("/dev/null", O_RDWR);  // takes the lowest number that is free: this one
+}
+
+int run(int argc, char** argv) {
+    openMissingStreams();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that grows over its limit is an error of its write, as on a full disk
+    CLI::App program("A live installation controller for night-time public projection.", "fantascope");
+    program.set_version_flag("--version", FANTASCOPE_VERSION);
+    program.require_subcommand(1);
+    program.failure_message([](const CLI::App* app, const CLI::Error& error) {
+        const auto chosen = app->get_subcommands();
+        const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+        return fmt::format("fantascope: error: {}\nSee 'fantascope{} --help'.\n", printableLines(error.what()), command);
+    });
+    Action action;
+    for (const AddCommand add : kCommands) add(program, action);
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {  // also thrown for --help, with exit code 0
+        return program.exit(error) == 0 ? Done : WrongUsage;
+    }
+    if (const auto done = action(); !done) {
+        // Whether or not it is read.
+        std::fputs(fmt::format("fantascope: error: {}\n", printableLines(done.error().message())).c_str(), stderr);
+        return Refused;
+    }
+    return Done;
+}
+
+}  // namespace
+}  // namespace fantascope::app
+
+int main(int argc, char** argv) { return fantascope::app::run(argc, argv); }

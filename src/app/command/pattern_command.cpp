@@ -1,0 +1,337 @@
+#include "app/command/pattern_command.h"
+
+#include "app/base/attendance.h"
+#include "app/base/drawing.h"
+#include "app/base/output.h"
+#include "app/base/progress.h"
+#include "app/base/report.h"
+#include "drivers/display/picture_window.h"
+
+#include "pattern/search/measure.h"
+#include "pattern/search/motion_fit.h"
+#include "pattern/search/pattern_search.h"
+#include "pattern/search/pattern_settings.h"
+#include "pattern/shape/built_in_shapes.h"
+#include "pattern/shape/elemental_shape.h"
+
+#include "core/clock.h"
+#include "core/file.h"
+#include "core/log.h"
+#include "core/parallel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <optional>
+#include <set>
+#include <vector>
+
+namespace fantascope::app {
+namespace {
+
+namespace fs = std::filesystem;
+using pattern::PatternSearch;
+using pattern::ShapePattern;
+
+constexpr double kDefaultSeconds = 30;
+constexpr int kLoopMoments = 200;  // of the animated loop are judged: one in ten of the default 2000 frames
+
+struct Options {
+    fs::path guide, output;
+    std::vector<std::string> shapes;
+    std::optional<fs::path> settings, image, report, start;
+    std::vector<double> region;  // left, top, right, bottom; or none
+    std::optional<std::uint32_t> instances;
+    std::optional<double> seconds, targetZ;
+    std::optional<int> iterations;
+    bool shadows = false, invert = false;
+    std::uint64_t seed = 1;
+    int threads = hardwareThreads();
+    PatternSearch::Method method = PatternSearch::Method::Refined;
+    bool watch = false;
+};
+
+void declare(CLI::App& command, Options& options) {
+    command.add_option("GUIDE", options.guide, "The grey drawing: PNG, JPEG or TIFF")->required();
+    addOutOption(command, options.output, "The pattern to write, P.pattern.yaml")->required()->check(onlyYaml("P.pattern.yaml"));
+    command
+        .add_option(
+            "--shapes", options.shapes,
+            fmt::format("Elemental shapes, separated by commas: {}, or files (FBX, OBJ, glTF, PLY, STL, SVG, PNG); without, "
+                        "those that the settings name, or else triangle",
+                        pattern::builtInShapeList()))
+        ->delimiter(',')
+        ->allow_extra_args(false);  // what follows the list is the next argument
+    command.add_option("--settings", options.settings, "The numerical parameters, *.pattern-settings.yaml");
+    command.add_option("--instances", options.instances, "The most instances")->check(CLI::Range(1, 100'000));
+    command
+        .add_option("--seconds", options.seconds,
+                    fmt::format("Stop after so long (default {} s, unless --iterations is given)", kDefaultSeconds))
+        ->check(CLI::Range(0.0, 1e6));
+    command.add_option("--iterations", options.iterations, "Stop after so many iterations; repeats a run exactly")
+        ->check(CLI::Range(0, std::numeric_limits<int>::max()));
+    command.add_option("--target-z", options.targetZ, "Stop once the mean difference from the guide is below this")
+        ->check(CLI::Range(0.0, 1.0));
+    addChoice<PatternSearch::Method>(command, "--method", options.method,
+                                     {{"refined", PatternSearch::Method::Refined}, {"paper", PatternSearch::Method::Paper}},
+                                     "refined: one exact move at a time; paper: Ji et al. 2015, section 4.1, as written")
+        ->default_str("refined");
+    auto* start = command.add_option("--start", options.start,
+                                     "Go on from this pattern, with its shapes, seed and movement; the refined method");
+    command
+        .add_option(
+            "--region", options.region,
+            "With --start: LEFT,TOP,RIGHT,BOTTOM in canvas heights; instances whose centre lies elsewhere stay as they are")
+        ->delimiter(',')
+        ->expected(4)
+        ->needs(start);
+    command.add_option("--image", options.image, "Also write the pattern white on black, in the guide's size, as PNG");
+    command.add_flag("--shadows", options.shadows,
+                     "The shapes are dark and stand where the drawing is dark, as leaves do in a show's foliage");
+    command.add_flag("--invert", options.invert, "The drawing is dark ink on white paper: what is dark is wanted light");
+    command.add_option("--seed", options.seed, "Another seed, another pattern; the same seed, the same pattern")
+        ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
+        ->capture_default_str();
+    command.add_option("--threads", options.threads, "How many to use; the pattern is the same for any number")
+        ->check(CLI::Range(1, 256));
+    command.add_option("--report", options.report, "Also write figures, as JSON");
+    command.add_flag("--watch", options.watch, "Show the pattern in a window while it is searched for");
+    command.footer("While it searches, the space bar pauses and goes on; escape, q and Ctrl-C end it with the best so far.");
+}
+
+// The drawing turned over, in the 8 bits of the file that it becomes: of the shadows that shapes
+// are to fill, or of ink that is to be light.
+GreyImage turnedOver(GreyImage guide) {
+    guide = inverted(std::move(guide));
+    for (float& value : guide.pixels()) value = std::round(value * 255) / 255;
+    return guide;
+}
+
+// Each with what the settings say of it alone.
+Result<std::vector<pattern::ShapeSettings>> chosenShapes(const Options& options, const pattern::PatternSettings& settings,
+                                                         const std::optional<ShapePattern>& start) {
+    if (start) {
+        std::vector<pattern::ShapeSettings> chosen;
+        for (const pattern::ElementalShape& shape : start->shapes) chosen.push_back({shape, settings.ownOf(shape)});
+        return chosen;
+    }
+    if (options.shapes.empty() && !settings.shapes.empty()) return settings.shapes;
+    std::vector<pattern::ShapeSettings> chosen;
+    for (const std::string& name : options.shapes.empty() ? std::vector<std::string>{"triangle"} : options.shapes) {
+        pattern::ElementalShape shape = TRY(pattern::loadShape(name));
+        pattern::PatternSearch::Options::Shape own = settings.ownOf(shape);
+        chosen.push_back({std::move(shape), std::move(own)});
+    }
+    return chosen;
+}
+
+// Whether a .gltf keeps its points in files of their own; one that holds them itself can be copied
+// alone.
+bool hasOtherFiles(const fs::path& file) {
+    const auto text = readFile(file);
+    const Report gltf = Report::parse(text ? *text : "", nullptr, false);
+    const auto buffers = gltf.find("buffers");
+    return buffers != gltf.end() && std::any_of(buffers->begin(), buffers->end(), [](const Report& buffer) {
+               const auto uri = buffer.find("uri");
+               return uri == buffer.end() || !uri->is_string() || !uri->get<std::string>().starts_with("data:");
+           });
+}
+
+// Names each file's shape as it will lie beside the pattern; what has to be put there is added to
+// `files`.
+Result<void> placeShapes(const fs::path& output, std::vector<pattern::ShapeSettings>& chosen, std::vector<Material>& files) {
+    std::set<std::string> names;
+    for (auto& [shape, own] : chosen) {
+        const std::string given = shape.file.empty() ? shape.name : shape.file.string();
+        if (!shape.file.empty()) {
+            const fs::path file = shape.file;
+            files.push_back(materialFor(output, file, file.filename().string()));
+            if (files.back().copied && endingOf(file) == ".gltf" && hasOtherFiles(file))
+                return Error(fmt::format(
+                    "{}: keeps its points in a second file and cannot be copied beside the pattern; export it as .glb", given));
+            shape.name = files.back().name;
+            shape.file = fs::absolute(output).parent_path() / shape.name;
+        }
+        if (!names.insert(shape.name).second)
+            return Error(fmt::format("the shape {}, or another of that name, is given twice", given));
+    }
+    return {};
+}
+
+Report reportOf(PatternSearch::Method method, const PatternSearch::Found& found, const pattern::PatternQuality& quality,
+                const pattern::LoopQuality& loop, Time took) {
+    Report report;
+    report["method"] = name(method);
+    report["z"] = quality.z;
+    report["z_bound"] = quality.zBound;
+    report["tone"] = quality.tone;
+    report["overlap"] = quality.overlap;
+    report["loop_z"] = loop.z;
+    report["loop_tone"] = loop.tone;
+    report["local_displacement"] = loop.localDisplacement;
+    report["instances"] = found.pattern.instances.size();
+    report["triangles"] = found.pattern.triangleCount();
+    report["iterations"] = found.summary.iterations;
+    report["evaluations"] = found.summary.evaluations;
+    report["seconds"] = seconds(took);
+    report["stop_reason"] = name(found.summary.reason);
+    report["seed"] = found.pattern.seed;
+    report["guide_transfer"] = name(found.pattern.guideTransfer);
+    Report& history = report["history"] = {{"z_min", Report::array()}, {"z_max", Report::array()}, {"accepted", Report::array()}};
+    for (const PatternSearch::Iteration& iteration : found.summary.history) {
+        history["z_min"].push_back(iteration.zMin);
+        history["z_max"].push_back(iteration.zMax);
+        history["accepted"].push_back(iteration.accepted);
+    }
+    return report;
+}
+
+// The pattern to go on from. Error: the file's; it cannot be gone on from as was asked.
+Result<ShapePattern> startingPattern(const Options& options, const GreyImage& guide) {
+    const std::string file = options.start->string();
+    if (options.method != PatternSearch::Method::Refined)
+        return Error("--start: the paper's method begins with a random pattern; leave --method out");
+    if (!options.shapes.empty()) return Error(fmt::format("--start: {} has its shapes; leave --shapes out", file));
+    ShapePattern pattern = TRY(pattern::readPattern(*options.start));
+    const double aspect = double(guide.width()) / guide.height();
+    // A pattern's own is rounded to whole pixels.
+    if (std::abs(aspect - pattern.aspect()) * pattern.height > 1)
+        return Error(fmt::format("{}: its canvas is {:.4f} times as wide as high, and {} {:.4f} times; they cannot be compared",
+                                 file, pattern.aspect(), options.guide.string(), aspect));
+    if (pattern.instances.empty()) return Error(fmt::format("{}: has no instances to go on from; leave --start out", file));
+    return pattern;
+}
+
+// How often a window shows the search.
+constexpr Time kShowEvery = std::chrono::milliseconds(50);
+constexpr glm::ivec2 kWindow{960, 540};
+
+// Searches until the settings, the clock or a person say stop. `window`: shows it; may be null.
+PatternSearch::Found search(const GreyImage& guide, ShapePattern pattern, const PatternSearch::Options& options,
+                            std::optional<double> limit, int threads, Clock& clock, drivers::PictureWindow* window) {
+    Attendance attendance(clock, [&] { return window != nullptr ? window->pollKey() : std::nullopt; });
+    Progress progress("pattern", clock, std::cerr, standardErrorIsTerminal());
+    const auto worked = [&] { return clock.now() - attendance.paused(); };
+    const Time start = worked();
+    std::optional<int> planned;
+    if (options.iterations < std::numeric_limits<int>::max()) planned = options.iterations;
+    // A search that cools by a plan is not stopped by the clock but by the plan: only then can it
+    // be repeated.
+    const bool planning = options.method == PatternSearch::Method::Refined;
+    std::optional<Time> shown;
+    const auto askStop = [&](const PatternSearch::Progress& now) -> std::optional<PatternSearch::StopReason> {
+        if (window != nullptr && (!shown || clock.now() - *shown >= kShowEvery)) {
+            window->show(now.picture());
+            shown = clock.now();
+        }
+        const auto tell = [&](const char* how) {
+            const double elapsed = seconds(worked() - start);
+            const double byTime = limit && elapsed < *limit ? elapsed / *limit : limit ? 1 : 0;
+            const double byCount = planned ? double(now.iterations) / *planned : 0;
+            progress.update(planning && planned ? byCount : std::max(byTime, byCount),
+                            fmt::format("z {:.4f}  {} instances{}", now.z, now.instances, how));
+        };
+        tell("");
+        if (!attendance.goesOn([&] { tell("  paused, space goes on"); })) return PatternSearch::StopReason::Interrupted;
+        if (limit && seconds(worked() - start) >= *limit && !(planning && planned)) return PatternSearch::StopReason::Time;
+        return std::nullopt;
+    };
+    // From the speed of the first tenth, once it runs.
+    std::optional<Time> running;
+    const auto plan = [&](const PatternSearch::Progress& now) -> std::optional<int> {
+        if (!running) running = worked();
+        const double elapsed = seconds(worked() - *running), left = limit ? *limit - seconds(*running - start) : 0;
+        if (limit) planned = PatternSearch::iterationsWithin(left, now.iterations, elapsed);
+        return planned;
+    };
+    return PatternSearch::run(guide, std::move(pattern), options, threads, askStop, plan);
+}
+
+Result<void> run(const Options& options) {
+    // Whatever can be refused is refused before the search begins.
+    TRY(checkWritable(options.output));
+    for (const auto& file : {options.image, options.report})
+        if (file) TRY(checkWritable(*file));
+    GreyImage guide = TRY(readGrey(options.guide));
+    TRY(checkDrawn(guide, options.guide));
+    if (isInkOnPaper(guide) && !options.invert)
+        log::warning("pattern",
+                     fmt::format("{}: looks like dark ink on white paper, and white is what becomes light; with --invert "
+                                 "the ink does",
+                                 options.guide.string()));
+    const bool isTurnedOver = options.shadows != options.invert;
+    if (isTurnedOver) guide = turnedOver(std::move(guide));
+    pattern::PatternSettings settings;
+    if (options.settings) settings = TRY(pattern::readPatternSettings(*options.settings));
+    settings.search.method = options.method;
+    if (options.instances) settings.search.instances = *options.instances;
+    if (options.targetZ) settings.search.targetZ = *options.targetZ;
+    if (options.iterations || options.seconds)
+        settings.search.iterations = options.iterations.value_or(std::numeric_limits<int>::max());
+    std::optional<ShapePattern> start;
+    if (options.start) start = TRY(startingPattern(options, guide));
+    if (!options.region.empty())
+        settings.search.region = {{options.region[0], options.region[1]}, {options.region[2], options.region[3]}};
+    TRY(settings.search.check());
+    const bool limited = settings.seconds || settings.search.iterations < std::numeric_limits<int>::max();
+    const std::optional<double> limit = options.seconds || options.iterations ? options.seconds
+                                        : limited                             ? settings.seconds
+                                                                              : kDefaultSeconds;
+    std::vector<pattern::ShapeSettings> shapes = TRY(chosenShapes(options, settings, start));
+    std::vector<Material> shapeFiles;
+    TRY(placeShapes(options.output, shapes, shapeFiles));
+    // Its name tells `check` what the shapes are for: shapes that were made as light are no leaves.
+    const std::string stem = options.output.stem().stem().string();
+    const Material guideFile = options.shadows ? Material{{}, stem + ".shadows.png", false}
+                               : options.invert
+                                   ? Material{{}, stem + ".inverted.png", false}
+                                   : materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
+
+    ShapePattern pattern;
+    if (start) {
+        pattern = *start;
+        pattern.shapes.clear();  // they come back by the names that they have beside the new file
+    } else {
+        pattern.guideTransfer = settings.guideTransfer;
+        pattern.seed = options.seed;
+        pattern.motion = settings.motion;
+    }
+    for (auto& [shape, own] : shapes) {
+        pattern.shapes.push_back(std::move(shape));
+        settings.search.shapes.push_back(std::move(own));
+    }
+    std::unique_ptr<drivers::PictureWindow> window;
+    if (options.watch) window = TRY(drivers::PictureWindow::open(options.output.filename().string(), kWindow));
+    SteadyClock clock;
+    PatternSearch::Found found = search(guide, std::move(pattern), settings.search, limit, options.threads, clock, window.get());
+    const Time took = clock.now();
+    if (settings.fitMotion && !start) found.pattern.motion = fittedMotion(found.pattern, guide, options.threads);
+
+    // What the pattern names first, so that it never names what is not there.
+    const fs::path folder = fs::absolute(options.output).parent_path();
+    if (options.shadows || options.invert) TRY(writePng(folder / guideFile.name, guide));
+    TRY(copyTo(folder, guideFile));
+    for (const Material& file : shapeFiles) TRY(copyTo(folder, file));
+    found.pattern.guide = folder / guideFile.name;
+    TRY(writePattern(options.output, found.pattern));
+    if (options.image) TRY(writePng(*options.image, drawWhiteOnBlack(found.pattern, guide.width(), guide.height())));
+
+    const pattern::PatternQuality quality = measure(found.pattern, guide);
+    const pattern::LoopQuality loop = pattern::LoopMeasure(found.pattern, guide, options.threads).in({}, kLoopMoments);
+    if (options.report) TRY(writeReport(*options.report, reportOf(settings.search.method, found, quality, loop, took)));
+    fmt::print("{}: {}, {} instances, tone {:.4f}, moving tone {:.4f}\n", options.output.string(), found.summary.brief(),
+               found.pattern.instances.size(), quality.tone, loop.tone);
+    return {};
+}
+
+}  // namespace
+
+void addPatternCommand(CLI::App& program, Action& action) {
+    addCommand<Options>(program, action, "pattern", "Find a light pattern that reads as a guide drawing", declare, run);
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "app/base/command.h"
+
+namespace fantascope::app {
+
+// `fantascope plot PATTERN|REPORT|CAST -o PNG|SVG`: pictures where people would rather look.
+void addPlotCommand(CLI::App& program, Action& action);
+
+}  // namespace fantascope::app

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "app/base/command.h"
+
+namespace fantascope::app {
+
+// `pose TARGET -o C.cast.yaml`: people whose shadow is a silhouette.
+void addPoseCommand(CLI::App& program, Action& action);
+
+}  // namespace fantascope::app

@@ -1,0 +1,125 @@
+#include "app/command/preview_command.h"
+
+#include "app/base/frame_run.h"
+#include "app/base/geometry_options.h"
+#include "app/base/video_writer.h"
+#include "app/export/film.h"
+#include "app/export/light_preview.h"
+
+#include "core/parallel.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace fantascope::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kFilmSeconds = 10, kFilmRate = 30;  // of a film without --seconds; frames a second
+
+struct Options {
+    FilmRequest mask;
+    fs::path scene, file;
+    std::optional<double> seconds, fieldOfView;
+    std::optional<glm::ivec2> size;
+    PreviewPlaces places;
+    bool zUp = false;
+    int threads = hardwareThreads();
+};
+
+void declare(CLI::App& command, Options& options) {
+    command
+        .add_option("PATTERN", options.mask.what,
+                    "A *.pattern.yaml; a picture, such as the guide itself; or a show's folder, with --output and --cue")
+        ->required();
+    command.add_option("--scene", options.scene, "The mesh that it falls on: FBX, OBJ, glTF, PLY or STL")->required();
+    declareFilmOptions(command, options.mask);
+    addOutOption(command, options.file, "The picture to write, PNG, or a film of the sway, FILE.mp4")->required();
+    command
+        .add_option("--seconds", options.seconds,
+                    fmt::format("The moment of the sway that is shown; of a film, where it ends (default: 0; {})", kFilmSeconds))
+        ->check(CLI::Range(0.0, 1e6));
+    const std::string unit = ", in the mesh's unit, y up ";
+    addPointOption(command, "--projector", options.places.projector,
+                   "Where the projector stands" + unit + "(default: before it, upper left); far away it is the sun");
+    addPointOption(command, "--look-at", options.places.lookAt, "Where it looks (default: the scene's middle)");
+    command
+        .add_option("--throw", options.places.throwRatio,
+                    "Its distance / picture width (default: the picture just holds the scene)")
+        ->check(CLI::Range(0.01, 1e5));
+    addPointOption(command, "--viewer", options.places.viewer, "Where the viewer stands" + unit + "(default: before it)");
+    addPointOption(command, "--viewer-look-at", options.places.viewerLookAt,
+                   "Where the viewer looks (default: the scene's middle)");
+    command.add_option("--field-of-view", options.fieldOfView, "Degrees across the viewer's picture (default: 35)")
+        ->check(CLI::Range(1.0, 150.0));
+    command.add_option("--ambient", options.places.ambient, "Other light, as a share of the projector's white")
+        ->check(CLI::Range(0.0, 100.0))
+        ->capture_default_str();
+    command.add_flag("--ground", options.places.ground, "Lay a floor under the scene");
+    command.add_flag("--z-up", options.zUp, "The mesh has z up; points above are given as for a mesh that was turned to y up");
+    addSizeOption(command, "--size", options.size, "Of the picture (default: 1280x720)");
+    command.add_option("--threads", options.threads, "How many to use; the picture is the same for any number")
+        ->check(CLI::Range(1, 256));
+}
+
+// What the projector is sent, at moments that rise.
+struct Mask {
+    std::optional<Film> film;                  // none: a picture that does not move
+    std::shared_ptr<const RgbaImage> picture;  // of which the mask consists then
+
+    static Result<Mask> open(const FilmRequest& request) {
+        if (fs::is_regular_file(request.what) && request.what.extension() != ".yaml") {
+            auto picture = std::make_shared<const RgbaImage>(TRY(readRgba(request.what)));
+            return Mask{std::nullopt, std::move(picture)};
+        }
+        if (!request.output.empty() && request.cue.empty())
+            return Error(fmt::format("{}: which cue? Add --cue NAME", request.what.string()));
+        return Mask{TRY(Film::open(request)), nullptr};
+    }
+    glm::ivec2 size() const { return film ? film->size() : glm::ivec2(picture->width(), picture->height()); }
+    std::shared_ptr<const RgbaImage> at(Time time) { return film ? std::make_shared<const RgbaImage>(film->at(time)) : picture; }
+};
+
+Result<void> run(const Options& options) {
+    const bool film = options.file.extension() == ".mp4";
+    if (!film && options.file.extension() != ".png")
+        return Error(fmt::format("{}: a preview is FILE.png, or FILE.mp4 for a film of the sway", options.file.string()));
+    TriangleMesh mesh = TRY(readMesh(options.scene));
+    if (options.zUp)
+        for (glm::vec3& vertex : mesh.vertices) vertex = {vertex.x, vertex.z, -vertex.y};
+    FilmRequest request = options.mask;
+    request.canvas = true;  // the scene's own shape bends the light
+    Mask mask = TRY(Mask::open(request));
+    PreviewPlaces places = options.places;
+    if (options.fieldOfView) places.fieldOfView = radians(*options.fieldOfView);
+    const glm::ivec2 size = options.size.value_or(glm::ivec2(1280, 720)), maskSize = mask.size();
+    if (std::min(maskSize.x, maskSize.y) < site::ProjectedLight::kLeastSide)
+        return Error(fmt::format("{}: a picture of {} x {} pixels cannot be projected", options.mask.what.string(), maskSize.x,
+                                 maskSize.y));
+    LightPreview preview = TRY(LightPreview::create(std::move(mesh), places, maskSize, size,
+                                                    film ? LightPreview::Use::Film : LightPreview::Use::Still, options.threads)
+                                   .in(options.scene.string()));
+    if (!film) {
+        TRY(writePng(options.file, preview.draw(mask.at(fromSeconds(options.seconds.value_or(0))))));
+        fmt::print("{}: {} x {}\n", options.file.string(), size.x, size.y);
+        return {};
+    }
+    const auto frames = std::max<std::int64_t>(1, std::llround(options.seconds.value_or(kFilmSeconds) * kFilmRate));
+    const auto writer = TRY(VideoWriter::open(options.file, size, kFilmRate, VideoKind::Film));
+    const std::int64_t made = TRY(makeFrames("preview", frames, [&](std::int64_t number) {
+        return writer->write(preview.draw(mask.at(tickTime(number, kFilmRate))), number);
+    }));
+    if (made > 0) TRY(writer->finish());
+    fmt::print("{}: {} x {}, {}\n", options.file.string(), size.x, size.y, outcomeOf(made, frames, kFilmRate));
+    return {};
+}
+
+}  // namespace
+
+void addPreviewCommand(CLI::App& program, Action& action) {
+    addCommand<Options>(program, action, "preview", "Show a pattern as a light mask on a 3D scene", declare, run);
+}
+
+}  // namespace fantascope::app

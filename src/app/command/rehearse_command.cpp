@@ -1,0 +1,110 @@
+#include "app/command/rehearse_command.h"
+
+#include "app/base/data_folder.h"
+#include "app/base/interrupt.h"
+#include "app/live/run_console.h"
+#include "app/live/run_keys.h"
+#include "app/live/show_run.h"
+#include "app/site/relay_guard.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <iostream>
+
+namespace fantascope::app {
+namespace {
+
+struct Options {
+    std::string show, site, fromCue, record;
+    std::string pictures = RunOptions{}.pictures;
+    std::optional<double> length;  // seconds
+    std::filesystem::path report;
+    std::uint64_t seed = 1;
+    bool window = false, asFastAsPossible = false, byHand = false;
+};
+
+Result<void> runAndReport(const RunOptions& run) {
+    const Interrupt interrupt(Interrupt::Second::IsCounted);
+    RunReport report;
+    {
+        const SteadyClock clock;
+        RunConsole console(clock, std::cerr, standardErrorIsTerminal() ? standardErrorColumns : std::function<int()>());
+        report = TRY(runShow(run, interrupt, [&](const RunStatus& status) { console.tell(status); }));
+    }
+    // Where nobody reads it any more it is lost, and that is no error.
+    std::fputs((summaryOf(report) + "\n").c_str(), stdout);
+    std::fflush(stdout);
+    if (!report.unsafe.empty())
+        return Error(sentenceOf(report.unsafe) +
+                     (run.backends == Backends::AsDeclared
+                          ? fmt::format(". The relay guard goes on trying for {:g} s", seconds(RelayGuard::kPatience))
+                          : ""));
+    return {};
+}
+
+void declareCommon(CLI::App& command, Options& options) {
+    command.add_option("--seconds", options.length, "end after this much show time")->check(CLI::Range(0.1, 1e6));
+    command.add_option("--from", options.fromCue, "enter this cue at once, by its name");
+    command.add_option("--record", options.record,
+                       "leave videos, traces and a contact sheet in this folder, or one video in FILE.mp4");
+    command.add_option("--pictures", options.pictures, "where the key s leaves a picture of every output")->capture_default_str();
+    command.add_option("--report", options.report, "write the run's figures to this JSON file (docs/report.md)");
+    command.footer(runKeysHelp());
+}
+
+RunOptions commonOf(const Options& options) {
+    RunOptions run;
+    run.show = options.show;
+    run.site = options.site;
+    if (options.length) run.length = fromSeconds(*options.length);
+    run.fromCue = options.fromCue;
+    run.recordTo = options.record;
+    run.pictures = options.pictures;
+    run.report = options.report;
+    run.seed = options.seed;
+    return run;
+}
+
+void declareRehearse(CLI::App& command, Options& options) {
+    command.add_option("show", options.show, "a show's folder (default: shows/light-movement)");
+    command.add_option("--site", options.site, "the site to simulate (default: config/simulated)");
+    declareCommon(command, options);
+    command.add_option("--seed", options.seed, "of the simulated site's noise")->capture_default_str();
+    command.add_flag("--window", options.window, "show the pictures in windows");
+    command.add_flag("--as-fast-as-possible", options.asFastAsPossible, "on a stepped clock: the same bytes every time");
+    command.add_flag("--by-hand", options.byHand, "press no GO: wait for the keys below");
+}
+
+Result<void> rehearse(const Options& options) {
+    RunOptions run = commonOf(options);
+    if (run.show.empty()) run.show = TRY(dataFolder()) / "shows/light-movement";
+    if (run.site.empty()) run.site = TRY(dataFolder()) / "config/simulated";
+    // Without an end there is nothing to spread the cues over; a minute is what a passer-by stays.
+    if (!run.length && !options.byHand) run.length = std::chrono::seconds(60);
+    if (!run.length && options.asFastAsPossible) return Error("--as-fast-as-possible needs an end: add --seconds T");
+    run.backends = options.window ? Backends::SimulatedWindows : Backends::SimulatedHeadless;
+    run.asFastAsPossible = options.asFastAsPossible;
+    run.handsOff = !options.byHand;
+    return runAndReport(run);
+}
+
+void declareRun(CLI::App& command, Options& options) {
+    command.add_option("show", options.show, "a show's folder")->required();
+    command.add_option("--site", options.site, "the site: a folder or a site.yaml")->required();
+    declareCommon(command, options);
+}
+
+Result<void> runNight(const Options& options) { return runAndReport(commonOf(options)); }
+
+}  // namespace
+
+void addRehearseCommand(CLI::App& program, Action& action) {
+    addCommand<Options>(program, action, "rehearse", "Plays a show on the simulated site", declareRehearse, rehearse);
+}
+
+void addRunCommand(CLI::App& program, Action& action) {
+    addCommand<Options>(program, action, "run", "Plays a show on the site's own devices", declareRun, runNight);
+}
+
+}  // namespace fantascope::app

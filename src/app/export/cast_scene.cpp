@@ -1,0 +1,77 @@
+#include "app/export/cast_scene.h"
+
+#include "theatre/deform/silhouette_sequence.h"
+
+#include "core/naming.h"
+#include "media/image.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMaskRows = 512;  // of the target
+
+// The frame of a cast's poses, from 0, that are the principal ones.
+std::size_t principalOf(const theatre::Cast::Sequence& sequence, std::size_t frames, std::size_t all) {
+    const std::size_t own = (sequence.representative + all - sequence.first % all) % all;
+    return own < frames ? own : 0;
+}
+
+Result<theatre::PoseTarget> targetOf(const theatre::Cast& cast, std::optional<std::size_t>& frame, const fs::path& file) {
+    if (!cast.sequence) {
+        frame = frame.value_or(0);
+        const auto silhouette = readGrey(cast.target);
+        if (!silhouette) return namedIn(file, cast.target, silhouette.error());
+        return theatre::PoseTarget::from(*silhouette, cast.stage, cast.height, kMaskRows).in(cast.target.string());
+    }
+    const auto& [name, representative, first] = *cast.sequence;
+    const auto read = theatre::readSequence(name);
+    if (!read) return namedIn(file, name, read.error());
+    const theatre::SilhouetteSequence& sequence = *read;
+    if (representative >= sequence.pictures.size())
+        return Error(
+            fmt::format("{}: has no frame {}, which the poses of {} are of", name.string(), representative + 1, file.string()));
+    if (!frame) frame = principalOf(*cast.sequence, cast.actors[0].poses.size(), sequence.pictures.size());
+    std::vector<GreyImage> pictures;
+    for (const fs::path& picture : sequence.pictures) {
+        auto grey = readGrey(picture);
+        if (!grey) return namedIn(name, picture, grey.error());
+        pictures.push_back(std::move(*grey));
+    }
+    auto targets =
+        TRY(theatre::PoseTarget::ofSequence(pictures, representative, cast.stage, cast.height, kMaskRows).in(name.string()));
+    return std::move(targets[(first + *frame) % targets.size()]);
+}
+
+}  // namespace
+
+Result<CastScene> readCastScene(const fs::path& file, std::optional<std::size_t> frame) {
+    theatre::Cast cast = TRY(theatre::readCast(file));
+    const std::size_t frames = cast.actors[0].poses.size();
+    if (frame && *frame >= frames)
+        return Error(fmt::format("{}: --frame {} is beyond its last, {}", file.string(), *frame, frames - 1));
+    theatre::PoseTarget target = TRY(targetOf(cast, frame, file));
+    theatre::PoseProblem problem{cast.stage, std::move(target), {}, {}};
+    for (const auto& [picture, height, middle] : cast.further) {
+        const auto silhouette = readGrey(picture);
+        if (!silhouette) return namedIn(file, picture, silhouette.error());
+        const theatre::TargetPlace place{1 + problem.further.size(), middle};
+        problem.further.push_back(
+            TRY(theatre::PoseTarget::from(*silhouette, cast.stage, height, kMaskRows, place).in(picture.string())));
+    }
+    std::vector<double> freedoms;
+    for (const theatre::Cast::Actor& actor : cast.actors) {
+        problem.actors.push_back(theatre::humanBody(actor.stature));
+        const std::vector<double> his = theatre::freedomsOf(problem.actors.back(), actor.poses[*frame]);
+        freedoms.insert(freedoms.end(), his.begin(), his.end());
+    }
+    problem.dress();
+    return CastScene{std::move(cast), *frame, std::move(problem), std::move(freedoms)};
+}
+
+}  // namespace fantascope::app

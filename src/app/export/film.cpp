@@ -1,0 +1,182 @@
+#include "app/export/film.h"
+
+#include "app/base/command.h"
+#include "app/base/data_folder.h"
+#include "app/live/hand.h"
+#include "app/live/programme.h"
+#include "app/site/site_models.h"
+
+#include "core/config.h"
+#include "core/file.h"
+#include "core/fit.h"
+#include "core/log.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fantascope::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kShowSeconds = 60;  // of a show without --seconds, as in a rehearsal
+constexpr double kPatternRate = 30;  // frames a second of a pattern without --fps
+constexpr int kCanvasRows = 1080;    // of a pattern or a canvas without --size
+constexpr double kMostFrames = 1e7;  // days of any show
+
+// The patterns that a picture is made of.
+std::vector<const render::PatternSource*> patternsIn(const render::PictureSource& source) {
+    std::vector<const render::PatternSource*> patterns;
+    if (const auto* pattern = std::get_if<render::PatternSource>(&source)) patterns.push_back(pattern);
+    if (const auto* foliage = std::get_if<render::FoliageSource>(&source))
+        for (const render::ShadowLayer& layer : foliage->layers) patterns.push_back(&layer.leaves);
+    return patterns;
+}
+
+// How long a picture takes to come round; 0 where nothing moves, or goes on for ever.
+double loopOf(const render::PictureSource& source) {
+    if (const auto* video = std::get_if<render::VideoSource>(&source))
+        return seconds(video->stream->content().length) / video->speed;
+    if (const auto* shadow = std::get_if<render::ShadowSource>(&source)) return seconds(render::lengthOf(*shadow));
+    double longest = 0;
+    for (const render::PatternSource* pattern : patternsIn(source))
+        longest = std::max(longest, seconds(pattern->motion->period()));
+    return longest;
+}
+
+// Of all movements the slowest.
+double loopOf(const std::vector<render::PictureSource>& sources) {
+    double longest = 0;
+    for (const render::PictureSource& source : sources) longest = std::max(longest, loopOf(source));
+    return longest;
+}
+
+// Of the first canvas that has one.
+std::optional<double> aspectOf(const std::vector<render::PictureSource>& sources) {
+    for (const render::PictureSource& source : sources)
+        if (const auto aspect = render::aspectOf(source)) return aspect;
+    return std::nullopt;
+}
+
+double shapeOf(glm::ivec2 size) { return static_cast<double>(size.x) / size.y; }
+
+// Even, for the sake of videos.
+glm::ivec2 sizeOfCanvas(int rows, double aspect) { return {2 * std::max(1L, std::lround(rows * aspect / 2)), rows}; }
+
+// Plays a show without its devices: GO is pressed as in a rehearsal.
+class ShowFrames {
+public:
+    ShowFrames(show::CueList cues, std::optional<show::Input> firstInput, std::size_t presses, Time length)
+        : playback_(std::move(cues)), schedule_(presses, firstInput.has_value(), length) {
+        if (firstInput) playback_.apply(*firstInput);
+    }
+    const show::ShowState& at(Time time) {
+        for (; tickTime(tick_, Hand::kRate) <= time; ++tick_)
+            if (const Time moment = tickTime(tick_, Hand::kRate); schedule_.due(moment))
+                playback_.apply({moment, show::Input::Kind::Go, 0});
+        playback_.stateAt(time, state_);
+        return state_;
+    }
+
+private:
+    show::Playback playback_;
+    GoSchedule schedule_;
+    std::int64_t tick_ = 0;
+    show::ShowState state_;
+};
+
+// Of what kind a file is it says itself.
+bool isPattern(const fs::path& path) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) return false;
+    const auto root = ConfigNode::load(path);
+    if (!root) return false;
+    if (const auto entries = root->entries())
+        for (const auto& [key, value] : *entries)
+            if (key == "fantascope") return value.text().has_value() && *value.text() == "pattern";
+    return false;
+}
+
+}  // namespace
+
+void declareFilmOptions(CLI::App& command, FilmRequest& request) {
+    addProjectorOption(command, request.output, "For a show: the projector whose picture is wanted");
+    command.add_option("--site", request.site, "For a show: the site that it plays on (default: config/simulated)");
+    CLI::Option* const cue =
+        command.add_option("--cue", request.cue, "For a show: this cue alone, faded in, the movement from its beginning");
+    command.add_option("--from", request.from, "For a show: enter this cue at once and play on from there")->excludes(cue);
+}
+
+Result<Film> Film::open(const FilmRequest& request) {
+    if (!fs::exists(request.what)) return readFile(request.what).error();
+    Film film = TRY(isPattern(request.what) ? ofPattern(request) : ofShow(request));
+    const double wanted = film.seconds_ * film.frameRate_;
+    if (wanted > kMostFrames) return Error(fmt::format("{:.0f} frames are too many; give a smaller --seconds or --fps", wanted));
+    film.frames_ = std::max<std::int64_t>(1, std::llround(wanted));
+    return film;
+}
+
+Result<Film> Film::ofPattern(const FilmRequest& request) {
+    if (!request.output.empty() || !request.cue.empty() || !request.from.empty() || !request.site.empty())
+        return Error(
+            fmt::format("{}: is a single pattern; --output, --site, --cue and --from are for shows", request.what.string()));
+    const std::vector<render::PictureSource> sources = {TRY(readPatternSource(request.what))};
+    Film film;
+    film.size_ = request.size.value_or(sizeOfCanvas(kCanvasRows, *aspectOf(sources)));
+    film.frameRate_ = request.frameRate.value_or(kPatternRate);
+    film.seconds_ = request.seconds.value_or(loopOf(sources));
+    film.screen_ = TRY(OffScreen::open(film.size_, sources));
+    film.seenAt_ = [state = show::OutputState{{{0, 1.0f}}}](Time) { return Seen{state, {}}; };
+    return film;
+}
+
+Result<Film> Film::ofShow(const FilmRequest& request) {
+    if (request.output.empty())
+        return Error(
+            fmt::format("{}: a show needs --output NAME, the output of the site whose picture is wanted", request.what.string()));
+    RunOptions run;
+    run.show = request.what;
+    run.site = request.site.empty() ? TRY(dataFolder()) / "config/simulated" : request.site;
+    run.asFastAsPossible = true;  // nobody watches: a frame may wait for its video
+    run.fromCue = request.cue.empty() ? request.from : request.cue;
+    Programme programme = TRY(readProgramme(run));
+    const std::size_t index = TRY(outputNamed(programme.site, request.output));
+    const show::Output& output = programme.site.outputs[index];
+
+    Film film;
+    film.size_ = request.size.value_or(output.size());
+    if (request.canvas) {
+        const double canvas = output.projection.canvasAspect;
+        const auto aspect = canvas > 0 ? std::optional(canvas) : aspectOf(programme.sources);
+        if (aspect && !request.size) film.size_ = sizeOfCanvas(kCanvasRows, *aspect);
+        film.screen_ = TRY(OffScreen::open(film.size_, programme.sources));
+    } else {
+        if (!isSameShape(shapeOf(film.size_), shapeOf(output.size())))
+            log::warning("app", fmt::format("the picture of '{}' is {:.2f} : 1 and is stretched to {:.2f} : 1, as --size says",
+                                            request.output, shapeOf(output.size()), shapeOf(film.size_)));
+        const show::Site scaled = programme.site.scaled(glm::dvec2(film.size_) / glm::dvec2(output.size()));
+        film.screen_ = TRY(OffScreen::open(scaled.outputs[index].projection, blendOf(scaled, index), programme.sources));
+    }
+    film.frameRate_ = request.frameRate.value_or(output.refreshRate);
+
+    show::CueList& cues = programme.cues;
+    std::size_t toCome = cues.cues.size() - (programme.firstInput ? static_cast<std::size_t>(programme.firstInput->cue) + 1 : 0);
+    film.seconds_ = request.seconds.value_or(kShowSeconds);
+    if (!request.cue.empty()) {  // it stands already, and nothing comes after it
+        show::CueList::Cue& cue = cues.cues[static_cast<std::size_t>(programme.firstInput->cue)];
+        programme.firstInput->at = -cue.fade;
+        cue.follow.reset();
+        toCome = 0;
+        if (const double loop = loopOf(programme.sources); !request.seconds && loop > 0) film.seconds_ = loop;
+    }
+    const auto played = std::make_shared<ShowFrames>(std::move(cues), programme.firstInput, toCome, fromSeconds(film.seconds_));
+    film.seenAt_ = [played, index](Time time) {
+        const show::ShowState& state = played->at(time);
+        return Seen{state.outputs[index], state.winds[index]};
+    };
+    return film;
+}
+
+}  // namespace fantascope::app

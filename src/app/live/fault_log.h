@@ -1,0 +1,77 @@
+#pragma once
+
+#include "app/live/run_report.h"
+
+#include "device/status.h"
+
+#include "core/clock.h"
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fantascope::app {
+
+// What fails while a show runs: each fault is told to the operator once and kept for the report. A
+// device has one fault of a topic at a time. Times are show time. Thread: any.
+class FaultLog {
+public:
+    enum class Topic { Missing, Trouble, Relays, Desk, SafeStates, EndLevels, Guard, Recording, RecordedFrames };
+
+    // After kBurst faults of a topic within kRestless the next one is told as coming and going, and
+    // nothing more until it was steady for so long.
+    static constexpr int kBurst = 10;
+    static constexpr Time kRestless = std::chrono::seconds(5);
+
+    // `tell` is called with a sentence for the operator, on the thread that reports the fault.
+    explicit FaultLog(std::function<void(const std::string&)> tell) : tell_(std::move(tell)) {}
+
+    // What is wrong at `at`. The same again changes nothing; something else takes its place.
+    void raise(Time at, const std::string& device, Topic topic, const std::string& what);
+    // Nothing is wrong at `at`. If something was, `news` is told with how long that lasted; empty:
+    // nothing is told.
+    void clear(Time at, const std::string& device, Topic topic, const std::string& news);
+
+    std::vector<FaultReport> faults() const;  // by their beginning
+
+private:
+    struct TopicState {
+        std::optional<std::size_t> open;  // index into faults_
+        std::vector<std::size_t> recent;  // the newest kBurst at most
+        bool restless = false;
+        Time raised{};  // last
+    };
+    void begin(TopicState& state, Time at, const std::string& device, const std::string& what);
+
+    const std::function<void(const std::string&)> tell_;
+    mutable std::mutex mutex_;
+    std::map<std::pair<std::string, Topic>, TopicState> topics_;
+    std::vector<FaultReport> faults_;
+};
+
+// Looks at all devices again and again, and reports each that is missing at the start, goes, or
+// comes back.
+// Thread: thread-bound.
+class DeviceWatch {
+public:
+    // `faults` outlives this. A relay bank that is there counts switching by others as a loss;
+    // Lighting reports that.
+    DeviceWatch(FaultLog& faults, std::vector<std::string> relayBanks) : faults_(faults), relayBanks_(std::move(relayBanks)) {}
+
+    static constexpr double kRate = 10;                          // Hz
+    static constexpr Time kPatience = std::chrono::seconds(10);  // with devices that are being looked for at the start
+    void look(Time at, std::span<const DeviceStatus> devices);
+
+private:
+    FaultLog& faults_;
+    const std::vector<std::string> relayBanks_;
+    std::map<std::string, int> losses_;  // of each device, as it was seen last
+};
+
+}  // namespace fantascope::app

@@ -1,0 +1,303 @@
+#include "app/live/frame_loop.h"
+
+#include "app/site/site_models.h"
+
+#include "render/gpu/handles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace fantascope::app {
+
+FrameLoop::FrameLoop(const show::Site& site, const show::InputLog& inputs, std::vector<render::PictureSource> sources,
+                     std::filesystem::path assets, Devices& devices, Clock& clock)
+    : sources_(std::move(sources)),
+      assets_(std::move(assets)),
+      clock_(clock),
+      replica_(inputs),
+      framesShownOn_(site.outputs.size()) {
+    for (std::size_t i = 0; i < site.outputs.size(); ++i) {
+        outputs_.push_back({site.outputs[i], *devices.displays[i], blendOf(site, i)});
+        outputs_.back().report.name = site.outputs[i].name;
+    }
+    faults_.resize(outputs_.size());
+    unfollowed_.resize(outputs_.size());
+}
+
+FrameLoop::~FrameLoop() {
+    // What belongs to a context goes while it is current.
+    for (Output& output : outputs_) {
+        if (output.display.context() != output.context || !output.display.makeCurrent()) forget(output);
+        output.tap.reset();
+        output.renderer.reset();
+    }
+}
+
+render::FrameTap& FrameLoop::tap(std::size_t output) {
+    std::unique_ptr<render::FrameTap>& tap = outputs_[output].tap;
+    if (!tap) tap = std::make_unique<render::FrameTap>(output, outputs_[output].site.size());
+    return *tap;
+}
+
+void FrameLoop::forget(Output& output) {
+    const render::gpu::Forgetting forgetting;
+    output.renderer.reset();
+    if (output.tap) output.tap->forget();
+}
+
+void FrameLoop::inHand(const Output& output) { inHand_ = static_cast<std::size_t>(&output - outputs_.data()); }
+
+void FrameLoop::look() {
+    for (Output& output : outputs_) {
+        inHand(output);
+        output.running = output.display.poll();
+        if (output.display.context() == output.context) continue;
+        forget(output);
+        output.context = output.display.context();
+        output.retryAt = Time{};  // another context is another chance
+    }
+}
+
+void FrameLoop::tell(std::vector<std::string>& faults, const Output& output, const std::string& fault) {
+    const std::lock_guard lock(faultsMutex_);
+    faults[static_cast<std::size_t>(&output - outputs_.data())] = fault;
+}
+
+std::vector<DeviceStatus> FrameLoop::withFaults(std::vector<DeviceStatus> statuses) const {
+    const std::lock_guard lock(faultsMutex_);
+    for (std::size_t i = 0; i < faults_.size(); ++i) {
+        DeviceStatus& display = statuses[i];  // Devices lists them first
+        if (display.state != DeviceState::Running) continue;
+        if (!unfollowed_[i].empty()) display.trouble = unfollowed_[i];
+        const bool hangs = i == inHand_ && clock_.now().count() > hangsFrom_;
+        if (!hangs && faults_[i].empty()) continue;
+        display.state = DeviceState::Faulted;
+        display.detail =
+            hangs ? "the X server or the graphics driver does not answer; every picture stands still, lights and relays go on. "
+                    "Restart the X server if that lasts"
+                  : faults_[i];
+    }
+    return statuses;
+}
+
+std::vector<OutputReport> FrameLoop::outputs() const {
+    std::vector<OutputReport> reports;
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        reports.push_back(outputs_[i].report);
+        reports.back().frames = framesShownOn_[i];
+    }
+    return reports;
+}
+
+FrameLoop::Output* FrameLoop::leader() {
+    const auto first =
+        std::find_if(outputs_.begin(), outputs_.end(), [](const Output& output) { return output.running && !output.faulted; });
+    return first == outputs_.end() ? nullptr : &*first;
+}
+
+Result<void> FrameLoop::makeRenderer(Output& output, const Projection& projection,
+                                     const std::shared_ptr<const render::BlendMap>& blend) {
+    const render::OutputRenderer::Options options{
+        .projection = projection, .blend = blend, .shaders = assets_ / "shaders", .clock = &clock_};
+    auto renderer = TRY(render::OutputRenderer::create(options, sources_));
+    TRY(renderer->warmUp(output.display.framebuffer()));
+    renderer->draw({}, Wind{}, Time{}, output.display.framebuffer());
+    output.renderer = std::move(renderer);
+    output.bends = projection.warp.bends();
+    return {};
+}
+
+Result<void> FrameLoop::beReady(Output& output) {
+    TRY(output.display.makeCurrent());
+    if (output.renderer) return {};
+    if (output.tap) TRY(output.tap->prepare());
+    TRY(makeRenderer(output, output.site.projection, output.blend));
+    output.fresh = true;
+    return {};
+}
+
+bool FrameLoop::ready(Output& output, Time now) {
+    if (output.faulted && now < output.retryAt) return false;
+    const auto made = beReady(output);
+    if (made) {
+        if (std::exchange(output.faulted, false)) tell(faults_, output, "");
+        output.pause = Time{};
+        return true;
+    }
+    output.faulted = true;
+    tell(faults_, output, "its picture cannot be drawn: " + made.error().message());
+    output.pause = std::clamp(2 * output.pause, kSoonestRetry, kLatestRetry);
+    output.retryAt = clock_.now() + output.pause;
+    return false;
+}
+
+Result<void> FrameLoop::prepare() {
+    look();
+    const Output *drawn = nullptr, *faulted = nullptr;
+    for (Output& output : outputs_) {
+        if (output.context == 0) continue;
+        (ready(output, clock_.now()) ? drawn : faulted) = &output;
+    }
+    if (faulted == nullptr || drawn != nullptr) return {};
+    return Error("output '" + faulted->site.name + "': " + faults_[static_cast<std::size_t>(faulted - outputs_.data())]);
+}
+
+void FrameLoop::followSettings(Output& output) {
+    if (!output.settings->update() && !output.fresh) return;
+    output.fresh = false;
+    if (!output.settings->value()) return;  // as the site file says
+    const OutputSettings& wanted = *output.settings->value();
+    const auto followed = [&]() -> Result<void> {
+        // Only a renderer that was made for a mesh bends exactly.
+        if (wanted.projection.warp.bends() && !output.bends)
+            TRY(makeRenderer(output, wanted.projection, wanted.blend));
+        else
+            TRY(output.renderer->follow(wanted.projection, wanted.blend));
+        return output.renderer->setUp(wanted.overlay.get(), wanted.card.get());
+    }();
+    tell(unfollowed_, output, followed ? "" : "it stays as it was set before: " + followed.error().message());
+}
+
+void FrameLoop::spend(Output& output, FramePart part, Time time) {
+    const auto index = static_cast<std::size_t>(part);
+    output.spent[index] += time;
+    spent_[index] += time;
+}
+
+void FrameLoop::draw(Output& output, const show::OutputState& state, const Wind& wind, Time showTime) {
+    output.drawn = false;
+    output.spent = {};
+    if (!output.running) return;  // its status says why, and it comes back by itself
+    inHand(output);
+    const Time began = clock_.now();
+    if (!ready(output, began)) return;
+    followSettings(output);
+    output.renderer->draw(state, wind, showTime, output.display.framebuffer());
+    if (output.tap) output.tap->capture(output.display.framebuffer(), showTime);
+    const Time uploading = output.renderer->uploading();
+    spend(output, FramePart::Upload, uploading);
+    spend(output, FramePart::Render, clock_.now() - began - uploading);
+    output.drawn = true;
+}
+
+void FrameLoop::finish(Output& output) {
+    if (!output.drawn) return;
+    inHand(output);
+    const Time began = clock_.now();
+    output.drawn = output.display.finish().has_value();
+    spend(output, FramePart::Render, clock_.now() - began);
+}
+
+Time FrameLoop::refreshFrom(Time moment) {
+    if (const Output* const leads = leader()) {
+        std::int64_t number = leads->display.nextRefresh();
+        while (leads->display.refreshTime(number) < moment) ++number;
+        return leads->display.refreshTime(number);
+    }
+    // Nothing is to be seen; the show goes on at its pace.
+    const double rate = outputs_.empty() ? 1.0 : outputs_[0].site.refreshRate;
+    return tickTime(tickAt(std::max(moment, clock_.now()), rate) + 1, rate);
+}
+
+void FrameLoop::begin(Time start) {
+    start_ = start;
+    hangsFrom_ = (start + kHangs).count();
+    for (Output& output : outputs_) output.shown = Shown{.at = start};  // every refresh after it is one to be met
+}
+
+void FrameLoop::countLate(Output& output, std::int64_t refreshes) {
+    if (refreshes <= 0) return;
+    PartTimes spent;
+    std::transform(spent_.begin(), spent_.end(), output.spentUntilShown.begin(), spent.begin(), std::minus());
+    const auto cause = causeOfDelay(spent, fromSeconds(1 / output.display.refreshRate()));
+    (cause ? output.report.lateBy[static_cast<std::size_t>(*cause)] : output.report.lateByMachine) += refreshes;
+    framesLate_ += refreshes;
+}
+
+void FrameLoop::finish(Time end) {
+    hangsFrom_ = kNotYet;
+    // A refresh right at the end belongs to the show, and a display tells its moments to a part of
+    // a period only.
+    constexpr double kTolerance = 0.1;
+    for (Output& output : outputs_) {
+        if (const std::optional<Shown> shown = std::exchange(output.shown, std::nullopt); shown && shown->at < end)
+            countLate(output, static_cast<std::int64_t>(
+                                  std::floor(seconds(end - shown->at) * output.display.refreshRate() + kTolerance)));
+        if (output.tap && output.display.makeCurrent()) output.tap->finish();
+    }
+}
+
+Time FrameLoop::nextDue() { return refreshFrom(Time{}); }
+
+void FrameLoop::show(Output& output, const Presenting& present) {
+    const std::optional<Shown> before = std::exchange(output.shown, std::nullopt);
+    if (!output.drawn) return;
+    inHand(output);
+    const Result<Shown> shown = present(output.display);
+    if (!shown) return;
+    output.shown = *shown;
+    spend(output, FramePart::Swap, shown->swap);
+    // Whatever kept us: every refresh since the last one that had a frame counts.
+    if (before) countLate(output, std::llround(seconds(shown->at - before->at) * output.display.refreshRate()) - 1);
+    output.spentUntilShown = spent_;
+    ++framesShownOn_[static_cast<std::size_t>(&output - outputs_.data())];
+    ++framesShown_;
+    for (std::size_t part = 0; part < kFrameParts; ++part) output.report.took[part].add(output.spent[part]);
+}
+
+void FrameLoop::giveToReaders(Output& output) {
+    if (!output.tap || !output.shown || !output.display.makeCurrent()) return;
+    const Time began = clock_.now();
+    output.tap->publish(*output.shown);
+    spend(output, FramePart::Render, clock_.now() - began);
+}
+
+void FrameLoop::measureSkew() {
+    Time first = Time::max(), last = Time::min();
+    int swaps = 0;
+    for (const Output& output : outputs_) {
+        if (!output.shown) continue;
+        first = std::min(first, output.shown->swapped);
+        last = std::max(last, output.shown->swapped);
+        ++swaps;
+    }
+    if (swaps > 1) swapSkew_.add(last - first);
+}
+
+void FrameLoop::step() {
+    look();
+    Output* const leads = leader();
+    // A display that takes the lead may hold no frame yet for a refresh that the others have theirs
+    // for.
+    if (nextDue() <= newest_) clock_.sleepUntil(newest_);
+    const Time due = newest_ = nextDue();
+    hangsFrom_ = (due + kHangs).count();
+    const Time showTime = due - start_;
+
+    Time oldestInput = Time::max();
+    replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput = std::min(oldestInput, input.at); });
+    for (std::size_t i = 0; i < outputs_.size(); ++i) draw(outputs_[i], state_.outputs[i], state_.winds[i], showTime);
+    for (Output& output : outputs_) finish(output);
+
+    // The leader waits as its refreshes ask, the others show with it.
+    if (leads != nullptr) show(*leads, [](DisplaySink& display) { return display.present(); });
+    const bool led = leads != nullptr && leads->shown;
+    if (!led) clock_.sleepUntil(due);
+    const Time leading = led ? leads->shown->at : due;
+    for (Output& output : outputs_)
+        if (&output != leads) show(output, [&](DisplaySink& display) { return display.presentWith(leading); });
+    measureSkew();
+    for (Output& output : outputs_) giveToReaders(output);
+
+    const auto seen =
+        std::find_if(outputs_.begin(), outputs_.end(), [](const Output& output) { return output.shown.has_value(); });
+    if (seen != outputs_.end() && oldestInput != Time::max()) inputToFrame_.add(seen->shown->at - start_ - oldestInput);
+    if (stateSlot_ != nullptr) {
+        stateSlot_->writable() = state_;
+        stateSlot_->publish();
+    }
+}
+
+}  // namespace fantascope::app

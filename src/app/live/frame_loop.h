@@ -1,0 +1,163 @@
+#pragma once
+
+#include "app/live/playback_replica.h"
+#include "app/live/run_report.h"
+#include "app/site/devices.h"
+
+#include "render/frame_tap.h"
+#include "render/output_renderer.h"
+#include "show/site.h"
+
+#include "core/latest_value.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fantascope::app {
+
+// How an output is set while somebody sets it up.
+struct OutputSettings {
+    Projection projection;
+    std::shared_ptr<const render::BlendMap> blend;
+    std::shared_ptr<const RgbaImage> overlay, card;  // as OutputRenderer::setUp() takes them; null: none
+};
+
+// The render thread's work: frame after frame it asks the playback what is to be seen when the next
+// refresh takes place, draws that on every output and shows it. The first running display leads:
+// its refresh paces the loop; the others follow within the same refresh. A display that is lost is
+// left out until it is back. All pictures of a frame are finished before the first is shown. A
+// display that holds a finished frame lets the loop be a frame ahead.
+//
+// An output that cannot be drawn (a shader is missing, OpenGL has no memory) is a fault of that
+// output alone: it is left out, and tried again with a back-off from kSoonestRetry to kLatestRetry.
+// A context that is lost takes the output's renderer along; the next one gets another.
+// Thread: bound to the render thread, but for the slots, counters and withFaults().
+class FrameLoop {
+public:
+    // An attempt to make a renderer costs every output some frames.
+    static constexpr Time kSoonestRetry = std::chrono::seconds(1), kLatestRetry = std::chrono::seconds(32);
+    // Without a frame for so long, the loop hangs in a display.
+    static constexpr Time kHangs = std::chrono::seconds(5);
+
+    // All outlive it. `assets`: the folder of the shaders.
+    FrameLoop(const show::Site& site, const show::InputLog& inputs, std::vector<render::PictureSource> sources,
+              std::filesystem::path assets, Devices& devices, Clock& clock);
+    ~FrameLoop();
+
+    // Where the frames that `output` shows are read. Readers come before the first frame, best
+    // before prepare().
+    render::FrameTap& tap(std::size_t output);
+    // The state of the newest frame goes into this slot too. Before the first frame.
+    void publishStateTo(LatestValue<show::ShowState>& slot) { stateSlot_ = &slot; }
+
+    // New settings of an output, from one other thread: they hold from the next frame on.
+    LatestValue<std::shared_ptr<const OutputSettings>>& settingsOf(std::size_t output) { return *outputs_[output].settings; }
+
+    // Makes the renderers, also of displays that are to come, and draws every source once, so that
+    // nothing is compiled while people watch. A display that has no context yet gets its renderer
+    // with that. Error: no output can be drawn that has a context, such as where the installation
+    // lacks a file. A fault of some outputs alone is no error: withFaults() tells of it.
+    Result<void> prepare();
+    // The first refresh at or after a moment; a show that begins with one has a whole period for
+    // its first frame.
+    Time refreshFrom(Time moment);
+    // Show time 0 is `start` on the clock. Before the first frame.
+    void begin(Time start);
+    // The moment that the next frame is for: the first refresh that can still be met.
+    Time nextDue();
+    // One frame on every output; returns when another can be made.
+    void step();
+    // The show is over: refreshes up to `end` that no frame was made for count as late, and the
+    // taps' readers get what is still on its way. After the last frame.
+    void finish(Time end);
+
+    // `statuses`, Devices::statuses(), with what the loop knows besides: a display that runs is
+    // Faulted where its picture cannot be drawn, or where it keeps the loop from going on, and in
+    // trouble where it could not follow its newest settings. Thread-safe; never waits for the
+    // render thread.
+    std::vector<DeviceStatus> withFaults(std::vector<DeviceStatus> statuses) const;
+
+    // Counters for the progress line. Thread-safe.
+    std::int64_t framesShown() const { return framesShown_; }  // on all outputs
+    std::int64_t framesShown(std::size_t output) const { return framesShownOn_[output]; }
+    std::int64_t framesLate() const { return framesLate_; }
+    // After the last frame.
+    std::vector<OutputReport> outputs() const;
+    const Durations& swapSkew() const { return swapSkew_; }
+    const Durations& inputToFrame() const { return inputToFrame_; }
+
+private:
+    struct Output {
+        const show::Output& site;
+        DisplaySink& display;
+        std::shared_ptr<const render::BlendMap> blend;  // by the site file
+        std::unique_ptr<LatestValue<std::shared_ptr<const OutputSettings>>> settings =
+            std::make_unique<LatestValue<std::shared_ptr<const OutputSettings>>>();
+        std::unique_ptr<render::OutputRenderer> renderer{};  // made when the display's context is first there
+        std::unique_ptr<render::FrameTap> tap{};             // where somebody reads
+        int context = 0;                                     // the display's, that they are in
+        bool fresh = false;                                  // the renderer knows the site file's settings alone
+        bool faulted = false;                                // it could not be drawn the last time
+        Time retryAt{}, pause{};                             // ... and is tried again then; after how long
+        bool bends = false;                                  // the renderer was made for a mesh
+        bool running = false;                                // when it was asked last
+        bool drawn = false;                                  // in the frame that is being made
+        PartTimes spent{};                                   // on that frame so far
+        std::optional<Shown> shown{};                        // the newest frame; none since it was lost
+        PartTimes spentUntilShown{};                         // spent_ then
+        OutputReport report{};
+    };
+    // In place of the one that is there, which stays where this fails.
+    Result<void> makeRenderer(Output& output, const Projection& projection, const std::shared_ptr<const render::BlendMap>& blend);
+    Result<void> beReady(Output& output);
+    // Whether it can be drawn now, or at least once its display is there. Tries it where that is
+    // due.
+    bool ready(Output& output, Time now);
+    // Tells, or takes back (""), why it cannot be drawn, or not follow its settings.
+    void tell(std::vector<std::string>& faults, const Output& output, const std::string& fault);
+    void forget(Output& output);
+    void inHand(const Output& output);
+    void followSettings(Output& output);
+    void draw(Output& output, const show::OutputState& state, const Wind& wind, Time showTime);
+    void finish(Output& output);
+    using Presenting = std::function<Result<Shown>(DisplaySink&)>;
+    void show(Output& output, const Presenting& present);
+    void giveToReaders(Output& output);
+    void measureSkew();
+    void look();
+    Output* leader();
+    void spend(Output& output, FramePart part, Time time);
+    void countLate(Output& output, std::int64_t refreshes);
+
+    std::vector<render::PictureSource> sources_;
+    std::filesystem::path assets_;
+    Clock& clock_;
+    Time start_{};
+    Time newest_{};  // the moment that the newest frame is for
+    PlaybackReplica replica_;
+    show::ShowState state_;
+    std::vector<Output> outputs_;
+    LatestValue<show::ShowState>* stateSlot_ = nullptr;
+    PartTimes spent_{};  // on all frames of all outputs
+    Durations swapSkew_;
+    Durations inputToFrame_;
+    std::atomic<std::int64_t> framesShown_ = 0, framesLate_ = 0;
+    std::vector<std::atomic<std::int64_t>> framesShownOn_;  // each output
+
+    mutable std::mutex faultsMutex_;
+    std::vector<std::string> faults_;             // by output; "": none
+    std::vector<std::string> unfollowed_;         // settings, by output: why not; "": followed
+    std::atomic<std::size_t> inHand_ = 0;         // the output that the loop works on
+    std::atomic<Time::rep> hangsFrom_ = kNotYet;  // on the clock: it hangs in that output unless it has gone on until then
+    static constexpr Time::rep kNotYet = Time::max().count();
+};
+
+}  // namespace fantascope::app

@@ -1,0 +1,106 @@
+#include "app/live/hand.h"
+
+#include "show/contact_inputs.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+// On a key, in the order of show::Button.
+constexpr std::array<std::string_view, 14> kWords = {"GO",   "BACK", "DARK",   "EDIT", "LEFT",    "RIGHT", "UP",
+                                                     "DOWN", "NEXT", "OUTPUT", "TOOL", "PICTURE", "UNDO",  "WRITE"};
+static_assert(kWords.size() == static_cast<std::size_t>(show::Button::Write) + 1);
+
+}  // namespace
+
+Hand::Hand(const show::Show& show, show::InputLog& inputs, const show::Site& site, Devices& devices, Time start)
+    : show_(show),
+      site_(site),
+      devices_(devices),
+      start_(start),
+      buttons_(site.buttons),
+      inputs_(inputs),
+      replica_(inputs),
+      outcomes_(inputs.reader()) {
+    entered_.reserve(show.cues.size());
+    lights_.resize(site.buttons.size());
+}
+
+void Hand::tick(Time moment) {
+    while (devices_.cueController) {
+        const auto event = devices_.cueController->poll();
+        if (!event) break;
+        if (const auto input = buttons_.inputFor(event->button, event->pressed, event->at - start_)) inputs_.submit(*input);
+        for (const auto& [number, button] : site_.buttons)
+            if (number == event->button && button >= show::Button::Edit) edit(button, event->pressed);
+    }
+    for (std::size_t bank = 0; bank < devices_.contactBanks.size(); ++bank)
+        while (const auto change = devices_.contactBanks[bank]->poll())
+            if (const auto input =
+                    show::inputFor(site_, bank, change->contact, change->closed, change->witnessed, change->at - start_))
+                inputs_.submit(*input);
+    while (const show::LoggedInput* const logged = outcomes_.next())
+        if (logged->outcome != show::Outcome::Taken) tell(std::string(show::nameOf(logged->outcome)));
+    replica_.stateAt(moment - start_, state_);
+    light(moment - start_);
+    if (std::exchange(blackout_, state_.blackout) != state_.blackout)
+        tell(state_.blackout ? "blackout: pictures and lamps are dark" : "light: the blackout is over");
+    if (state_.cue == cue_) return;
+    cue_ = state_.cue;
+    const std::string& name = show_.cues[static_cast<std::size_t>(cue_)].name;
+    entered_.push_back({name, moment - start_});
+    tell(fmt::format("cue {} of {}: {}", cue_ + 1, show_.cues.size(), name));
+}
+
+ButtonLight Hand::lightOf(show::Button button, Time showTime) const {
+    using State = ButtonLight::State;
+    const auto lit = [&](bool on, State state) { return on ? state : State::Off; };
+    const auto state = [&] {
+        switch (button) {
+            case show::Button::Go:
+                if (replica_.playback().fadesAt(showTime)) return State::Active;
+                return lit(state_.cue + 1 < static_cast<int>(show_.cues.size()), State::Ready);
+            case show::Button::Back:
+                return lit(state_.cue > 0, State::Ready);
+            case show::Button::Blackout:
+                return lit(state_.blackout, State::Alarm);
+            case show::Button::Edit:
+                return lit(editing(), State::Active);
+            default:  // of no use but there
+                return lit(editing(), State::Ready);
+        }
+    };
+    return {state(), std::string(kWords[static_cast<std::size_t>(button)])};
+}
+
+void Hand::light(Time showTime) {
+    if (!devices_.cueController) return;
+    for (std::size_t i = 0; i < site_.buttons.size(); ++i) {
+        const auto& [number, button] = site_.buttons[i];
+        ButtonLight light = lightOf(button, showTime);
+        if (light == lights_[i]) continue;
+        devices_.cueController->light(number, light);
+        lights_[i] = std::move(light);
+    }
+}
+
+Time GoSchedule::next() const {
+    if (ended()) return Time::max();
+    constexpr double kDarkness = 1.0 / 6;  // of a cue's share
+    const double share = seconds(length_) / (static_cast<double>(presses_) + (cueIsOn_ ? 1 : 0));
+    return fromSeconds(share * (static_cast<double>(pressed_) + (cueIsOn_ ? 1 : kDarkness)));
+}
+
+bool GoSchedule::due(Time showTime) {
+    if (showTime < next()) return false;
+    ++pressed_;
+    return true;
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "show/input_log.h"
+#include "show/playback.h"
+
+#include "core/check.h"
+
+namespace fantascope::app {
+
+// One thread's own copy of the playback. Playback is a pure function of the inputs and everybody
+// reads the same log of them, so all copies agree and no thread has to ask another one. Thread:
+// bound to the one that owns the copy.
+class PlaybackReplica {
+public:
+    // `inputs` outlives it.
+    explicit PlaybackReplica(const show::InputLog& inputs) : playback_(inputs.cues()), inputs_(inputs.reader()) {}
+
+    // What is seen at `time` given all inputs so far. `taken` is called with each input that is new
+    // since the last call.
+    void stateAt(Time time, show::ShowState& state, const auto& taken) {
+        while (const show::LoggedInput* const logged = inputs_.next()) {
+            FANTASCOPE_CHECK(playback_.apply(logged->input) == logged->outcome, "every copy of the playback comes to the same");
+            taken(logged->input);
+        }
+        playback_.foresee(time);
+        playback_.stateAt(time, state);
+    }
+    void stateAt(Time time, show::ShowState& state) {
+        stateAt(time, state, [](const show::Input&) {});
+    }
+
+    // With the inputs that the last stateAt() took.
+    const show::Playback& playback() const { return playback_; }
+
+private:
+    show::Playback playback_;
+    show::InputLog::Reader inputs_;
+};
+
+}  // namespace fantascope::app

@@ -1,0 +1,262 @@
+#include "app/live/programme.h"
+
+#include "app/site/site_file.h"
+#include "app/site/site_models.h"
+
+#include "pattern/shape/shape_pattern.h"
+#include "render/source/penumbra.h"
+#include "theatre/energy/pose_problem.h"
+#include "theatre/motion/moving_cast.h"
+#include "theatre/stage/cast.h"
+
+#include "core/naming.h"
+#include "media/image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The pictures of a show's sources, and for each the drawing that it should read as, where there is
+// one.
+struct Pictures {
+    struct Guide {
+        GreyImage drawing;  // stored values, as the pattern was compared with them
+        double aspect = 1;  // width / height of the source's picture
+        Fit fit = Fit::Contain;
+    };
+    std::vector<render::PictureSource> sources;
+    std::vector<std::optional<Guide>> guides;
+};
+
+struct Picture {
+    render::PictureSource source;
+    std::optional<Pictures::Guide> guide;
+};
+
+Result<Pictures::Guide> readGuide(const pattern::ShapePattern& pattern, const fs::path& file) {
+    auto drawing = readGrey(pattern.guide);
+    if (!drawing) return namedIn(file, pattern.guide, drawing.error());
+    return Pictures::Guide{std::move(*drawing), pattern.aspect()};
+}
+
+Result<Picture> readPicture(const show::PatternSource& source, bool isWatched) {
+    Picture picture{TRY(readPatternSource(source.file)), {}};
+    if (isWatched) picture.guide = TRY(readGuide(*std::get<render::PatternSource>(picture.source).pattern, source.file));
+    return picture;
+}
+
+Result<Picture> readPicture(const show::SolidSource& source) { return Picture{render::SolidSource{source.colour}, {}}; }
+
+// A picture of what a small hole throws, as linear light.
+Result<std::shared_ptr<const GreyImage>> readFilter(const fs::path& file) {
+    GreyImage picture = TRY(readGrey(file));
+    for (float& value : picture.pixels()) value = linearFromSrgb(value);
+    if (std::all_of(picture.pixels().begin(), picture.pixels().end(), [](float light) { return light == 0; }))
+        return Error(file.string() + ": a filter must not be all black");
+    return std::make_shared<const GreyImage>(std::move(picture));
+}
+
+Result<Picture> readPicture(const show::FoliageSource& source, bool isWatched) {
+    render::FoliageSource foliage{source.light, source.shadow, {}};
+    std::optional<Pictures::Guide> guide;
+    for (const show::FoliageSource::Layer& layer : source.layers) {
+        render::ShadowLayer shadow;
+        shadow.leaves = TRY(readPatternSource(layer.pattern));
+        shadow.holes = layer.holes;
+        shadow.filter.width = render::penumbraWidth(layer.distance, source.sun) / source.height;
+        if (layer.filter) shadow.filter.picture = TRY(readFilter(*layer.filter));
+        if (isWatched && !guide) {
+            guide = TRY(readGuide(*shadow.leaves.pattern, layer.pattern));
+            if (!layer.holes) guide->drawing = inverted(std::move(guide->drawing));
+        }
+        const double aspect = (foliage.layers.empty() ? shadow : foliage.layers[0]).leaves.pattern->aspect();
+        if (std::abs(shadow.leaves.pattern->aspect() - aspect) > 1e-6)
+            return Error(
+                fmt::format("{}: its picture is {:.4f} times as wide as high, and {} is {:.4f} times; the layers of one "
+                            "foliage need drawings of one shape",
+                            layer.pattern.string(), shadow.leaves.pattern->aspect(), source.layers[0].pattern.string(), aspect));
+        foliage.layers.push_back(std::move(shadow));
+    }
+    return Picture{std::move(foliage), std::move(guide)};
+}
+
+Result<Picture> readPicture(const show::CausticsSource& source) {
+    return Picture{
+        render::CausticsSource{source.light, source.size, source.depth, source.waveLength, source.waveHeight, source.seed}, {}};
+}
+
+Result<Picture> readPicture(const show::MirrorBallSource& source) {
+    return Picture{render::MirrorBallSource{source.light, source.size, source.ball, source.radius, source.facet, source.lamp,
+                                            source.lampRadius, source.turn},
+                   {}};
+}
+
+Result<Picture> readPicture(const show::ImageSource& source) {
+    return Picture{render::ImageSource{std::make_shared<const RgbaImage>(TRY(readRgba(source.file)))}, {}};
+}
+
+Result<Picture> readPicture(const show::VideoSource& source, render::VideoStream::Pace pace) {
+    return Picture{render::VideoSource{TRY(render::VideoStream::open(source.file, pace)), source.loop, source.speed}, {}};
+}
+
+Result<Picture> readPicture(const std::shared_ptr<render::PictureFeed>& camera) {
+    if (camera == nullptr) return Error("the site has no camera; take this source out, or declare a 'camera' in the site file");
+    return Picture{render::CameraSource{camera}, {}};
+}
+
+Result<render::ShadowSource::Play> playOf(const show::ShadowSource& source, const theatre::Cast& cast) {
+    using Asked = show::ShadowSource::Play;
+    using Play = render::ShadowSource::Play;
+    const bool loops = TRY(theatre::loops(cast));
+    if (!source.play) return loops ? Play::Loop : Play::Once;
+    if (*source.play == Asked::Loop && !loops)
+        return Error(
+            fmt::format("{}: its last frame does not lead to its first: as a loop it would jump; take 'to_and_fro', or a "
+                        "silhouette that moves in a loop",
+                        source.cast.string()));
+    return *source.play == Asked::Loop ? Play::Loop : *source.play == Asked::Once ? Play::Once : Play::ToAndFro;
+}
+
+Result<Picture> readPicture(const show::ShadowSource& source) {
+    constexpr int kRows = 64;  // nothing is compared here
+    auto cast = std::make_shared<const theatre::Cast>(TRY(theatre::readCast(source.cast)));
+    render::ShadowSource shadow;
+    shadow.cast = cast;
+    shadow.samples = source.samples;
+    shadow.play = TRY(playOf(source, *cast));
+    shadow.speed = source.speed;
+    if (static_cast<std::size_t>(source.beam) > cast->stage.beams())
+        return Error(
+            fmt::format("'beam' is {}, and the stage of {} has {}", source.beam, source.cast.string(), cast->stage.beams()));
+    shadow.beam = static_cast<std::size_t>(source.beam - 1);
+    const glm::dvec3 light = cast->stage.beam(shadow.beam).light;
+    for (const show::ShadowSource::Lamp& lamp : source.lamps) {
+        const glm::dvec3 place = lamp.at.value_or(light);
+        if (cast->stage.screenOf(shadow.beam).screenFromStage(place).z <= 0)
+            return Error(fmt::format("the lamp at [{}, {}, {}] is not before the screen, which it is to light", place.x, place.y,
+                                     place.z));
+        if (!lamp.actors.empty() && lamp.actors.size() != cast->actors.size())
+            return Error(fmt::format("{} colours of 'actors', and {} has {}; say one for each, in its order", lamp.actors.size(),
+                                     source.cast.string(), cast->actors.size()));
+        shadow.lamps.push_back(
+            {place, lamp.size, lamp.light, lamp.shadow, std::vector<glm::vec3>(lamp.actors.begin(), lamp.actors.end())});
+    }
+    if (source.picture) {
+        shadow.from = {source.picture->x.x, source.picture->y.x};
+        shadow.to = {source.picture->x.y, source.picture->y.y};
+        return Picture{std::move(shadow), {}};
+    }
+    if (shadow.beam > cast->further.size())
+        return Error(fmt::format("{} has no target for beam {}; say with 'picture' what of its screen is seen",
+                                 source.cast.string(), source.beam));
+    const theatre::Cast::Target own{cast->target, cast->height, 0},
+        &wanted = shadow.beam == 0 ? own : cast->further[shadow.beam - 1];
+    theatre::TargetPlace where;
+    if (shadow.beam > 0) where = {shadow.beam, wanted.middle};
+    auto read = readGrey(wanted.file);
+    if (!read) return namedIn(source.cast, wanted.file, read.error());
+    GreyImage drawing = std::move(*read);
+    auto target = theatre::PoseTarget::from(drawing, cast->stage, wanted.height, kRows, where);
+    if (!target) return target.error().in(wanted.file.string());
+    const theatre::ScreenFrame& given = target->given;
+    shadow.from = given.metresAt({0, given.height()});
+    shadow.to = given.metresAt({given.width(), 0});
+    std::optional<Pictures::Guide> guide;
+    // On a white screen a still reads as its drawing's negative.
+    if (cast->actors.front().poses.size() == 1)
+        guide = Pictures::Guide{inverted(std::move(drawing)), static_cast<double>(given.width()) / given.height()};
+    return Picture{std::move(shadow), std::move(guide)};
+}
+
+// `camera`: null if the site has none. `isWatched`: somebody compares what is seen with the
+// drawings.
+Result<Picture> readSource(const show::Source& source, render::VideoStream::Pace pace,
+                           const std::shared_ptr<render::PictureFeed>& camera, bool isWatched) {
+    const auto read = [&](const auto& kind) -> Result<Picture> {
+        using Kind = std::decay_t<decltype(kind)>;
+        if constexpr (std::is_same_v<Kind, show::VideoSource>)
+            return readPicture(kind, pace);
+        else if constexpr (std::is_same_v<Kind, show::CameraSource>)
+            return readPicture(camera);
+        else if constexpr (std::is_same_v<Kind, show::PatternSource> || std::is_same_v<Kind, show::FoliageSource>)
+            return readPicture(kind, isWatched);
+        else
+            return readPicture(kind);
+    };
+    auto made = std::visit(read, source.picture);
+    if (!made) return source.at.error(made.error());
+    made->source = render::fitted(std::move(made->source), source.fit);
+    if (made->guide) made->guide->fit = source.fit;
+    return made;
+}
+
+Result<Pictures> readPictures(const show::Show& show, render::VideoStream::Pace pace,
+                              const std::shared_ptr<render::PictureFeed>& camera, bool isWatched) {
+    Pictures pictures;
+    ConfigFaults faults;
+    for (const show::Source& source : show.sources)
+        faults.take(readSource(source, pace, camera, isWatched), [&](Picture picture) {
+            pictures.sources.push_back(std::move(picture.source));
+            pictures.guides.push_back(std::move(picture.guide));
+        });
+    TRY(faults.result());
+    return pictures;
+}
+
+Result<std::vector<Watch::Comparisons>> compareWith(const std::vector<std::optional<Pictures::Guide>>& guides,
+                                                    const show::Site& site) {
+    std::vector<Watch::Comparisons> comparisons(site.outputs.size());
+    for (std::size_t output = 0; output < site.outputs.size(); ++output)
+        for (const auto& guide : guides) {
+            std::optional<vision::NominalView> view;
+            if (guide) view = TRY(nominalViewOf(site, output, guide->aspect, guide->fit));
+            comparisons[output].push_back(view ? std::make_shared<const vision::GuideComparison>(*view, guide->drawing)
+                                               : nullptr);
+        }
+    return comparisons;
+}
+
+}  // namespace
+
+Result<render::PatternSource> readPatternSource(const fs::path& file) {
+    auto pattern = std::make_shared<const pattern::ShapePattern>(TRY(pattern::readPattern(file)));
+    auto motion = std::make_shared<const pattern::PatternMotion>(*pattern);
+    return render::PatternSource{std::move(pattern), std::move(motion)};
+}
+
+Result<render::PictureSource> readPictureSource(const show::Source& source, render::VideoStream::Pace pace,
+                                                const std::shared_ptr<render::PictureFeed>& camera) {
+    return TRY(readSource(source, pace, camera, false)).source;
+}
+
+Result<Programme> readProgramme(const RunOptions& options) {
+    Programme programme;
+    programme.show = TRY(show::Show::load(options.show));
+    programme.site = TRY(readSite(options.site));
+    programme.cues = TRY(programme.show.bind(programme.site));
+    if (!options.fromCue.empty()) {
+        const std::size_t cue = TRY(programme.show.cueNamed(options.fromCue));
+        programme.firstInput = show::Input{Time{}, show::Input::Kind::Jump, static_cast<int>(cue)};
+    }
+    if (programme.site.nominalCamera)
+        programme.camera = std::make_shared<render::PictureFeed>(programme.site.nominalCamera->size);
+    using Pace = render::VideoStream::Pace;
+    const bool isWatched =
+        programme.site.camera && std::any_of(programme.site.outputs.begin(), programme.site.outputs.end(),
+                                             [](const auto& output) { return output.projector && output.surface; });
+    Pictures pictures =
+        TRY(readPictures(programme.show, options.asFastAsPossible ? Pace::Exact : Pace::Live, programme.camera, isWatched));
+    programme.sources = std::move(pictures.sources);
+    programme.comparisons = TRY(compareWith(pictures.guides, programme.site));
+    return programme;
+}
+
+}  // namespace fantascope::app

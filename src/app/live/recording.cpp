@@ -1,0 +1,156 @@
+#include "app/live/recording.h"
+
+#include "app/base/contact_sheet.h"
+
+#include "core/file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace fantascope::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Of a video's clock, a refresh of its output: a display may refresh a little faster than its site
+// file says.
+constexpr int kTicks = 4;
+
+// FNV-1a, 64 bits, over the stored bytes: two runs that show the same give the same lines.
+std::uint64_t hashOf(const RgbaImage& picture) {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (const Rgba8& pixel : picture.pixels())
+        for (const std::uint8_t byte : {pixel.r, pixel.g, pixel.b}) hash = (hash ^ byte) * 0x100000001b3u;
+    return hash;
+}
+
+}  // namespace
+
+Recording::Recording(fs::path target, std::vector<Output> outputs)
+    : target_(std::move(target)), outputs_(std::move(outputs)), frames_(outputs_.size()) {}
+
+Result<std::unique_ptr<Recording>> Recording::open(const fs::path& target, std::vector<Output> outputs) {
+    std::unique_ptr<Recording> recording(new Recording(target, std::move(outputs)));
+    if (target.has_extension() && !recording->sideBySide())
+        return Error(
+            fmt::format("{}: a recording goes into a folder, or into one video file that ends in .mp4", target.string()));
+    const auto add = [&](const fs::path& file, const glm::ivec2& size, double rate) -> Result<void> {
+        recording->videos_.push_back({TRY(VideoWriter::open(file, size, rate, VideoKind::Recording, kTicks)), -1, {}});
+        return {};
+    };
+    if (recording->sideBySide()) {
+        glm::ivec2 size(0);
+        for (const Output& output : recording->outputs_) size = {size.x + output.size.x, std::max(size.y, output.size.y)};
+        recording->tiled_ = RgbaImage(size.x, size.y);
+        if (!recording->outputs_.empty()) TRY(add(target, size, recording->outputs_[0].frameRate));
+    } else {
+        for (const Output& output : recording->outputs_) TRY(add(target / (output.name + ".mp4"), output.size, output.frameRate));
+    }
+    return recording;
+}
+
+std::vector<std::vector<std::size_t>> Recording::videos() const {
+    std::vector<std::vector<std::size_t>> videos(videos_.size());
+    for (std::size_t output = 0; output < outputs_.size(); ++output) videos[sideBySide() ? 0 : output].push_back(output);
+    return videos;
+}
+
+// A video whose writing fails is given up at once: its bytes may be what the disk has no room for.
+Result<void> Recording::write(Video& video, const RgbaImage& picture, Time at) {
+    const double rate = outputs_[sideBySide() ? 0 : static_cast<std::size_t>(&video - videos_.data())].frameRate;
+    video.number = std::max<std::int64_t>(video.number + 1, std::llround(seconds(at - start_) * rate * kTicks));
+    Result<void> written = video.writer->write(picture, video.number);
+    if (!written) video.writer.reset();
+    return written;
+}
+
+Result<void> Recording::frame(std::size_t output, const RgbaImage& picture, const Shown& shown, Time showTime) {
+    Video& video = videos_[sideBySide() ? 0 : output];
+    if (!video.writer) return {};
+    if (!sideBySide()) {
+        TRY(write(video, picture, shown.at));
+        frames_[output].lines.push_back({shown.refresh, showTime, hashOf(picture)});
+    } else {
+        // What becomes visible within half a refresh is seen together. An output that refreshes
+        // more quickly may have its next frame within that time.
+        const bool together = video.tiled && shown.at - *video.tiled <= tickTime(1, 2 * outputs_[0].frameRate);
+        if (!together || frames_[output].tiled) TRY(writeTiled());
+        if (!video.tiled) video.tiled = shown.at;
+        frames_[output].tiled = true;
+        int left = 0;
+        for (std::size_t i = 0; i < output; ++i) left += outputs_[i].size.x;
+        for (int y = 0; y < picture.height(); ++y)
+            std::copy_n(picture.row(y).begin(), picture.width(), tiled_.row(y).begin() + left);
+    }
+    ++frames_[output].count;
+    return {};
+}
+
+Result<void> Recording::writeTiled() {
+    if (videos_.empty() || !videos_[0].tiled || !videos_[0].writer) return {};
+    for (Frames& frames : frames_) frames.tiled = false;
+    return write(videos_[0], tiled_, *std::exchange(videos_[0].tiled, std::nullopt));
+}
+
+void Recording::lighting(Time showTime, int universe, std::span<const std::uint8_t> slots) {
+    // The dark end of a universe says nothing.
+    while (!slots.empty() && slots.back() == 0) slots = slots.first(slots.size() - 1);
+    fmt::format_to(std::back_inserter(dmx_), "{:.6f},{},{}\n", seconds(showTime), universe, fmt::join(slots, " "));
+}
+
+void Recording::relays(Time showTime, const std::string& bank, const std::vector<bool>& states) {
+    const std::lock_guard lock(relaysMutex_);
+    relays_ += fmt::format("{:.6f},{},", seconds(showTime), bank);
+    for (const bool on : states) relays_ += on ? '1' : '0';
+    relays_ += '\n';
+}
+
+void Recording::cue(int index, const std::string& label, const RgbaImage& picture) { cues_[index] = {label, picture}; }
+
+// In the order in which they were shown.
+std::string Recording::framesTable() const {
+    std::vector<std::pair<std::size_t, Frames::Line>> lines;
+    for (std::size_t output = 0; output < outputs_.size(); ++output)
+        for (const Frames::Line& line : frames_[output].lines) lines.emplace_back(output, line);
+    std::stable_sort(lines.begin(), lines.end(),
+                     [](const auto& a, const auto& b) { return a.second.showTime < b.second.showTime; });
+    std::string table = "refresh,show_time_s,output,fnv1a64\n";
+    for (const auto& [output, line] : lines)
+        fmt::format_to(std::back_inserter(table), "{},{:.6f},{},{:016x}\n", line.refresh, seconds(line.showTime),
+                       outputs_[output].name, line.hash);
+    return table;
+}
+
+Result<void> Recording::finish() {
+    std::string refusals;
+    const auto note = [&](const Result<void>& done) {
+        if (!done) refusals += (refusals.empty() ? "" : "; ") + done.error().message();
+        return done.has_value();
+    };
+    if (sideBySide()) note(writeTiled());
+    const auto shown = videos();
+    for (std::size_t i = 0; i < videos_.size(); ++i) {
+        Video& video = videos_[i];
+        const bool isLeft = video.writer && (video.number < 0 || note(video.writer->finish()));
+        video.writer.reset();
+        if (!isLeft)
+            for (const std::size_t output : shown[i]) frames_[output].count = 0;
+    }
+    if (!sideBySide()) {
+        note(writeFile(target_ / "frames.csv", framesTable()));
+        note(writeFile(target_ / "dmx.csv", dmx_));
+        note(writeFile(target_ / "relays.csv", relays_));
+        std::vector<LabelledPicture> pictures;
+        for (const auto& [index, labelled] : cues_) pictures.push_back({labelled.first, labelled.second});
+        if (!pictures.empty()) note(writePng(target_ / "contact-sheet.png", contactSheet(pictures)));
+    }
+    if (!refusals.empty()) return Error(refusals);
+    return {};
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,130 @@
+#include "app/live/run_console.h"
+
+#include "app/live/run_keys.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+constexpr int kShortName = 16;  // columns
+constexpr int kAnyWidth = std::numeric_limits<int>::max();
+constexpr const char* kBetween = "  ";
+constexpr Time kRedraw = std::chrono::milliseconds(100), kRepeat = std::chrono::minutes(1);
+
+// The parts of the line from left to right, each in its forms from the longest to the shortest. An
+// empty form takes no room.
+enum Part { Blackout, SettingUp, Cue, Fade, Next, Left, Late, Rate, Scores, kParts };
+using Forms = std::vector<std::string>;
+
+// Which part becomes one form shorter when the line is too long, in this order.
+constexpr Part kShortening[] = {Scores, Rate, Next,      Cue, Cue,       Late,     Fade, Left,
+                                Next,   Next, SettingUp, Cue, SettingUp, Blackout, Cue};
+
+Forms cueForms(const RunStatus& status) {
+    if (status.cue < 0) return {"no cue yet", ""};
+    const std::string number = fmt::format("{}/{}", status.cue + 1, status.cues);
+    return {fmt::format("cue {} of {}: {}", status.cue + 1, status.cues, status.cueName), number + " " + status.cueName,
+            number + " " + fitted(status.cueName, kShortName), number, ""};
+}
+
+Forms nextForms(const RunStatus& status) {
+    if (status.nextName.empty()) return {"last cue", ""};
+    const std::string in = status.untilNext ? " in " + shortDuration(*status.untilNext) : "";
+    return {"next: " + status.nextName + in, "next: " + fitted(status.nextName, kShortName) + in, in.empty() ? "" : "next" + in,
+            ""};
+}
+
+std::string scoresOf(const RunStatus& status) {
+    std::string text;
+    for (const auto& [output, z] : status.zCamera)
+        text += fmt::format("{}z {} {}", text.empty() ? "" : kBetween, output, z < 0 ? "-" : fmt::format("{:.3f}", z));
+    return text;
+}
+
+std::array<Forms, kParts> partsOf(const RunStatus& status) {
+    std::array<Forms, kParts> parts;
+    const auto ended = [](const char* what, RunKey::Action by, const char* how) {
+        return fmt::format("{}, {} {} it", what, keyFor(by), how);
+    };
+    if (status.blackout && status.keys && !status.settingUp)
+        parts[Blackout] = {ended("BLACKOUT", RunKey::Action::Blackout, "lifts")};
+    if (status.blackout) parts[Blackout].push_back("BLACKOUT");
+    if (status.settingUp) parts[SettingUp] = {ended("SETTING UP", RunKey::Action::SetUp, "ends"), "SETTING UP", ""};
+    parts[Cue] = cueForms(status);
+    if (status.fadeLeft > Time{}) parts[Fade] = {"fading " + shortDuration(status.fadeLeft), ""};
+    parts[Next] = nextForms(status);
+    parts[Left] = {status.left ? shortDuration(*status.left) + " left" : "at " + shortDuration(status.showTime), ""};
+    parts[Late] = {fmt::format("{} late", status.lateFrames), ""};
+    if (status.framesPerSecond) parts[Rate] = {fmt::format("{:.1f} frames/s", *status.framesPerSecond), ""};
+    parts[Scores] = {scoresOf(status), ""};
+    return parts;
+}
+
+}  // namespace
+
+std::string statusLine(const RunStatus& status, int columns) {
+    const std::array<Forms, kParts> parts = partsOf(status);
+    std::array<std::size_t, kParts> form{};
+    const auto line = [&] {
+        std::string text;
+        for (std::size_t part = 0; part < kParts; ++part)
+            if (form[part] < parts[part].size() && !parts[part][form[part]].empty())
+                text += (text.empty() ? "" : kBetween) + parts[part][form[part]];
+        return text;
+    };
+    std::string text = line();
+    for (const Part part : kShortening) {
+        if (columnsOf(text) <= columns) break;
+        if (form[part] + 1 < parts[part].size()) ++form[part];
+        text = line();
+    }
+    return fitted(text, columns);
+}
+
+std::string summaryOf(const RunReport& report) {
+    std::int64_t frames = 0, late = 0, byMachine = 0;
+    for (const OutputReport& output : report.outputs) {
+        frames += output.frames;
+        late += output.lateFrames();
+        byMachine += output.lateByMachine;
+    }
+    std::string text = fmt::format("{:.1f} s, {} cue{} entered, ", seconds(report.length), report.cues.size(),
+                                   report.cues.size() == 1 ? "" : "s");
+    if (frames == 0) return text + "no frame shown";
+    text += fmt::format("{} frames shown, ", frames);
+    if (late == 0) return text + "none late";
+    text += fmt::format("{} late: {}", late, lateFramesByCause(report.outputs));
+    if (byMachine > 0 && report.yardstickLate > 0)
+        text += fmt::format("; the machine was too busy even for a thread that does nothing, {} times in {}",
+                            report.yardstickLate, report.yardstickTicks);
+    return text;
+}
+
+RunConsole::RunConsole(const Clock& clock, std::ostream& out, std::function<int()> columns) : clock_(clock), out_(out) {
+    if (columns) line_.emplace(out, std::move(columns));
+}
+
+void RunConsole::tell(const RunStatus& status) {
+    if (!status.said.empty()) {
+        const std::string news = fitted(fmt::format("{:6.1f} s  {}", seconds(status.showTime), status.said), kAnyWidth);
+        if (line_)
+            line_->say(news);
+        else
+            out_ << news << std::endl;
+    }
+    const Time now = clock_.now();
+    const bool due = !told_ || now - *told_ >= (line_ ? kRedraw : kRepeat) || (line_ && !status.said.empty());
+    if (!due) return;
+    told_ = now;
+    if (line_)
+        line_->draw(statusLine(status, line_->columns()));
+    else
+        out_ << fmt::format("{:6.1f} s  {}", seconds(status.showTime), statusLine(status, kAnyWidth)) << std::endl;
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,29 @@
+#include "app/live/run_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace fantascope::app {
+
+std::optional<RunKey::Action> actionOf(char letter) {
+    const auto key = std::ranges::find(kRunKeys, letter, &RunKey::letter);
+    return key == kRunKeys.end() ? std::nullopt : std::optional(key->action);
+}
+
+std::string_view keyFor(RunKey::Action action) { return std::ranges::find(kRunKeys, action, &RunKey::action)->name; }
+
+std::string runKeysHelp() {
+    std::string text = "Keys while the show runs:\n";
+    for (const RunKey& key : kRunKeys) text += fmt::format("  {:<7}{}\n", key.name, key.does);
+    text += "  Ctrl-C end at once\n  Ctrl-Z nothing: it would leave the relays as they are\n";
+    return text;
+}
+
+bool QuitKey::press(Time moment) {
+    const std::optional<Time> before = std::exchange(pressed_, moment);
+    return !asks_ || (before && moment - *before <= kPatience);
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "core/clock.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace fantascope::app {
+
+// What a key of the terminal, or of a display's window, does while a show runs.
+struct RunKey {
+    enum class Action { Go, Back, Blackout, Pictures, SetUp, Quit };
+    char letter;
+    std::string_view name;  // on the keyboard
+    std::string_view does;
+    Action action;
+};
+
+// All of them. README.md has the same table.
+constexpr std::array<RunKey, 6> kRunKeys = {{{' ', "space", "GO: the next cue", RunKey::Action::Go},
+                                             {'b', "b", "back: the cue before", RunKey::Action::Back},
+                                             {'0', "0", "blackout; again: light", RunKey::Action::Blackout},
+                                             {'s', "s", "take a picture of every output", RunKey::Action::Pictures},
+                                             {'e', "e", "set the outputs up; again: done", RunKey::Action::SetUp},
+                                             {'q', "q", "end; `run` asks for it twice", RunKey::Action::Quit}}};
+
+std::optional<RunKey::Action> actionOf(char letter);
+std::string_view keyFor(RunKey::Action action);
+
+// For --help: a line for each key.
+std::string runKeysHelp();
+
+// The key that ends a run. A rehearsal ends at once, as it is easily begun again; a night with an
+// audience only when the key is pressed twice, so that a slip of the finger does not end it.
+// Thread: one at a time.
+class QuitKey {
+public:
+    static constexpr Time kPatience = std::chrono::seconds(3);
+    explicit QuitKey(bool asks) : asks_(asks) {}
+    // Whether the run ends now, at show time `moment`.
+    bool press(Time moment);
+
+private:
+    const bool asks_;
+    std::optional<Time> pressed_;
+};
+
+}  // namespace fantascope::app

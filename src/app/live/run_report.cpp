@@ -1,0 +1,103 @@
+#include "app/live/run_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace fantascope::app {
+namespace {
+
+constexpr std::array<const char*, kFrameParts> kPartNames = {"upload", "render", "swap"};
+constexpr const char* kMachine = "machine";
+
+Report jsonOf(const Durations& durations) {
+    return {{"count", durations.count()},
+            {"p50", durations.quantileMs(0.5)},
+            {"p99", durations.quantileMs(0.99)},
+            {"max", durations.maxMs()}};
+}
+
+}  // namespace
+
+std::optional<FramePart> causeOfDelay(const PartTimes& spent, Time period) {
+    if (std::accumulate(spent.begin(), spent.end(), Time{}) <= period) return std::nullopt;
+    return static_cast<FramePart>(std::max_element(spent.begin(), spent.end()) - spent.begin());
+}
+
+std::string lateFramesByCause(const std::vector<OutputReport>& outputs) {
+    std::string text;
+    const auto add = [&](const char* cause, auto countOf) {
+        std::int64_t late = 0;
+        for (const OutputReport& output : outputs) late += countOf(output);
+        if (late > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", late, cause);
+    };
+    for (std::size_t part = 0; part < kFrameParts; ++part)
+        add(kPartNames[part], [&](const OutputReport& output) { return output.lateBy[part]; });
+    add(kMachine, [](const OutputReport& output) { return output.lateByMachine; });
+    return text;
+}
+
+std::string sentenceOf(const std::vector<UnsafeBank>& unsafe) {
+    std::string banks;
+    for (const auto& [bank, why] : unsafe) banks += fmt::format("{}'{}' ({})", banks.empty() ? "" : ", ", bank, why);
+    return fmt::format("RELAYS MAY BE UNSAFE: {} did not confirm the safe states. Switch them at the module", banks);
+}
+
+std::string sentenceOf(const UnendedLine& line) {
+    return fmt::format("the lamps of universe {} did not get their end levels ({}). Look yourself", line.universe, line.why);
+}
+
+Report jsonOf(const RunReport& report) {
+    Report json, frameMs = Report::object(), late = Report::object(), lateBy = Report::object(), framesBy = Report::object();
+    for (const OutputReport& output : report.outputs) {
+        framesBy[output.name] = output.frames;
+        late[output.name] = output.lateFrames();
+        for (std::size_t part = 0; part < kFrameParts; ++part) {
+            lateBy[output.name][kPartNames[part]] = output.lateBy[part];
+            frameMs[output.name][kPartNames[part]] = jsonOf(output.took[part]);
+        }
+        lateBy[output.name][kMachine] = output.lateByMachine;
+        if (!output.recorded) continue;
+        json["recorded"][output.name] = *output.recorded;
+        json["not_recorded"][output.name] = output.frames - *output.recorded;
+    }
+    for (const auto& [output, frames] : report.lostFrames) {
+        json["recorded"][output] = 0;
+        json["not_recorded"][output] = frames;
+    }
+    json["seconds"] = seconds(report.length);
+    json["seed"] = report.seed;
+    json["stop_reason"] = report.stopReason;
+    if (!report.hung.empty()) json["hung"] = report.hung;
+    json["unsafe_relays"] = Report::array();
+    for (const auto& [bank, why] : report.unsafe) json["unsafe_relays"].push_back({{"bank", bank}, {"why", why}});
+    json["frames"] = report.frames;
+    json["late_frames"] = report.lateFrames;
+    json["frames_by_output"] = framesBy;
+    json["late_frames_by_output"] = late;
+    json["late_frames_by_cause"] = lateBy;
+    json["yardstick"] = {{"ticks", report.yardstickTicks}, {"late", report.yardstickLate}};
+    json["frame_ms"] = frameMs;
+    json["swap_skew_ms"] = jsonOf(report.swapSkew);
+    json["late_video_frames"] = Report(report.lateVideoFrames);
+    json["damaged_video_frames"] = Report(report.damagedVideoFrames);
+    json["input_to_frame_ms"] = jsonOf(report.inputToFrame);
+    json["dmx_interval_ms"] = jsonOf(report.dmxInterval);
+    json["cues"] = Report::array();
+    for (const CueReport& cue : report.cues) json["cues"].push_back({{"name", cue.name}, {"entered", seconds(cue.entered)}});
+    json["faults"] = Report::array();
+    for (const FaultReport& fault : report.faults) {
+        Report entry = {{"at", seconds(fault.at)}, {"what", fault.what}};
+        if (!fault.device.empty()) entry["device"] = fault.device;
+        if (fault.until) entry["until"] = seconds(*fault.until);
+        json["faults"].push_back(std::move(entry));
+    }
+    json["z_camera"] = Report::object();
+    for (const auto& [output, series] : report.zCamera) {
+        json["z_camera"][output] = Report::array();
+        for (const auto& [time, z] : series) json["z_camera"][output].push_back({seconds(time), z});
+    }
+    return json;
+}
+
+}  // namespace fantascope::app

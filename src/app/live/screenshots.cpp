@@ -1,0 +1,78 @@
+#include "app/live/screenshots.h"
+
+#include "media/image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+// Frames that are under way when somebody asks are for a moment before this: every output gets its
+// picture of the same one.
+constexpr Time kAhead = std::chrono::milliseconds(100);
+constexpr Time kPatience = std::chrono::seconds(3);  // for an output that is drawn at all
+
+// A cue's name as part of a file's: letters of any alphabet, and '-' for all that a shell or
+// another system might read its own way.
+std::string inFileName(std::string text) {
+    for (char& letter : text) {
+        const auto byte = static_cast<unsigned char>(letter);
+        const bool plain = (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') || (byte >= '0' && byte <= '9') ||
+                           byte == '_' || byte >= 0x80;
+        if (!plain) letter = '-';
+    }
+    return text;
+}
+
+}  // namespace
+
+Screenshots::Screenshots(std::filesystem::path folder, const show::Show& show, const show::InputLog& inputs,
+                         const std::vector<std::string>& outputs, const std::vector<render::NewestFrame*>& frames, Time start)
+    : folder_(std::move(folder)), show_(show), start_(start), replica_(inputs) {
+    for (std::size_t i = 0; i < outputs.size(); ++i) outputs_.push_back({outputs[i], frames[i]});
+}
+
+void Screenshots::tick(Time moment) {
+    const Time showTime = moment - start_;
+    replica_.stateAt(showTime, state_);  // takes what was pressed, whether or not there is a picture to name
+    if (std::ranges::none_of(outputs_, &Output::awaited) && wanted_.exchange(false)) {
+        from_ = showTime + kAhead;
+        for (Output& output : outputs_) {
+            output.frames->ask(from_);
+            output.awaited = true;
+        }
+    }
+    for (Output& output : outputs_) {
+        if (!output.awaited) continue;
+        const render::ShownFrame* const frame = output.frames->next(moment);
+        // One that was asked for in vain may come after all.
+        if (frame != nullptr && frame->showTime >= from_) {
+            const Result<std::filesystem::path> file = write(output.name, *frame);
+            tell(file ? "picture: " + file->string() : "no picture: " + file.error().message());
+            output.awaited = false;
+        } else if (showTime > from_ + kPatience) {
+            tell(fmt::format("no picture: '{}' shows nothing", output.name));
+            output.awaited = false;
+        }
+    }
+}
+
+Result<std::filesystem::path> Screenshots::write(const std::string& output, const render::ShownFrame& frame) {
+    replica_.stateAt(frame.showTime, state_);
+    const std::string cue =
+        state_.cue < 0 ? "before-the-first-cue"
+                       : fmt::format("{}-{}", state_.cue + 1, inFileName(show_.cues[static_cast<std::size_t>(state_.cue)].name));
+    const std::string name = fmt::format("{:09.3f}s-{}-{}", seconds(frame.showTime), cue, output);
+    // Pictures of another night stay.
+    std::error_code unknown;  // writing will tell
+    std::filesystem::path file = folder_ / (name + ".png");
+    for (int copy = 2; std::filesystem::exists(file, unknown); ++copy) file = folder_ / fmt::format("{}-{}.png", name, copy);
+    TRY(writePng(file, frame.image));
+    return file;
+}
+
+}  // namespace fantascope::app

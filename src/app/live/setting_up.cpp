@@ -1,0 +1,266 @@
+#include "app/live/setting_up.h"
+
+#include "app/live/edit_keys.h"
+#include "app/site/site_models.h"
+
+#include "plot/test_picture.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+namespace edit = show::edit;
+
+// A direction that is held on the hand controller goes on by itself after this long, with every
+// tick.
+constexpr Time kHold = std::chrono::milliseconds(400);
+// Terminal keys that come closer together than this belong to one movement: a little more than what
+// comes before a held key is repeated.
+constexpr Time kPause = std::chrono::milliseconds(600);
+
+bool isCard(TestPicture picture) { return picture == TestPicture::Bars || picture == TestPicture::Ramp; }
+// Where light is judged, blends belong to it; where places are, all of every picture is to be seen.
+bool blendsShow(TestPicture picture) { return picture == TestPicture::None || isCard(picture); }
+
+}  // namespace
+
+SettingUp::SettingUp(const show::Site& site, FrameLoop& frames, Devices& devices, std::function<void(const std::string&)> tell)
+    : frames_(frames),
+      devices_(devices),
+      tell_(std::move(tell)),
+      editor_(site),
+      drawn_(site.outputs.size()),
+      blends_(site.outputs.size()) {
+    for (std::size_t i = 0; i < drawn_.size(); ++i) {
+        drawn_[i].warp = site.outputs[i].projection.warp.shape();
+        drawn_[i].canvasAspect = site.outputs[i].projection.canvasAspect;
+        drawn_[i].light = site.outputs[i].projection.light;
+        drawn_[i].masks = site.outputs[i].projection.masks;
+    }
+    // From here on somebody else's changes of the file are noticed. One that cannot be changed says
+    // so when it is to be written.
+    if (auto document = ConfigDocument::load(site.file)) document_ = std::move(*document);
+}
+
+bool SettingUp::unsaved() const { return !editor_.unsaved().empty(); }
+
+bool SettingUp::key(const Key& key) {
+    const bool begins = key == Key{.letter = 'e'};
+    if (!on_ && !begins) return false;
+    presses_.append(Press{.key = key});
+    return true;
+}
+
+void SettingUp::button(show::Button button, bool pressed) { presses_.append(Press{.button = button, .pressed = pressed}); }
+
+void SettingUp::tick(Time moment, const std::function<void(const Key&)>& other) {
+    moved_ = false;
+    while (const Press* const press = pressed_.next()) {
+        // A terminal tells of no key's release.
+        if (press->key && moment - std::exchange(lastKey_, moment) > kPause) run(edit::Release{});
+        if (press->key)
+            take(*press->key);
+        else
+            take(press->button, press->pressed, moment);
+    }
+    for (std::size_t output = 0; output < devices_.displays.size(); ++output)
+        while (const auto event = devices_.displays[output]->pollEvent()) {
+            const bool begins = event->kind == ScreenEvent::Kind::KeyDown && event->key == Key{.letter = 'e'};
+            if (on_ || begins)
+                take(*event, output);
+            else if (event->kind == ScreenEvent::Kind::KeyDown)
+                other(event->key);
+        }
+    repeatHeld(moment);
+    show();
+}
+
+void SettingUp::begin() {
+    on_ = true;
+    legend_ = true;
+    message_.clear();
+    run(edit::Show{TestPicture::Grid});
+    tell_("setting up the outputs: the keys stand on the picture, e ends it");
+}
+
+void SettingUp::end() {
+    on_ = false;
+    held_.reset();
+    grip_.reset();
+    run(edit::Show{TestPicture::None});
+    tell_(!unsaved() ? "the outputs are set up" : "the outputs are set up but not written to the file: e, then w");
+}
+
+void SettingUp::take(const Key& key) {
+    if (!on_) return begin();
+    if (key == Key{.letter = 'e'} || key.name == Key::Name::Escape) return end();
+    if (key == Key{.letter = 'w'} || key.name == Key::Name::Enter) return save();
+    if (key == Key{.letter = 'h'}) {
+        legend_ = !legend_;
+        return;
+    }
+    const auto& mesh = editor_.site().outputs[editor_.output()].projection.warp.shape().mesh;
+    if (const auto command = editCommandFor(key, editor_.tool(), mesh.points)) run(*command);
+}
+
+void SettingUp::take(show::Button button, bool pressed, Time moment) {
+    using show::Button;
+    for (const auto& [which, direction] : {std::pair(Button::Left, glm::dvec2(-1, 0)),
+                                           {Button::Right, glm::dvec2(1, 0)},
+                                           {Button::Up, glm::dvec2(0, -1)},
+                                           {Button::Down, glm::dvec2(0, 1)}}) {
+        if (which != button || !on_) continue;
+        if (pressed) {
+            run(edit::Move{direction});
+            held_ = direction;
+            heldUntil_ = moment + kHold;
+        } else {
+            held_.reset();
+            run(edit::Release{});
+        }
+    }
+    if (!pressed) return;
+    if (button == Button::Edit) return on_ ? end() : begin();
+    if (!on_) return;
+    if (button == Button::Next) run(edit::Handle{1});
+    if (button == Button::Output) run(edit::Output{1});
+    if (button == Button::Tool) run(edit::NextTool{});
+    if (button == Button::Picture) run(edit::Picture{1});
+    if (button == Button::Undo) run(edit::Undo{});
+    if (button == Button::Write) save();
+}
+
+void SettingUp::repeatHeld(Time moment) {
+    if (on_ && held_ && moment >= heldUntil_) run(edit::Move{*held_});
+}
+
+void SettingUp::take(const ScreenEvent& event, std::size_t output) {
+    using Kind = ScreenEvent::Kind;
+    if (event.kind == Kind::KeyDown) return take(event.key);
+    if (event.kind == Kind::KeyUp) return run(edit::Release{});
+    if (event.kind == Kind::ButtonDown) {
+        run(edit::OutputNumber{output});
+        run(edit::Grasp{event.at});
+        const show::EditHandle handle = editor_.handles()[editor_.handle()];
+        if (handle.at) grip_ = *handle.at - event.at;
+    }
+    if (event.kind == Kind::ButtonUp) {
+        grip_.reset();
+        run(edit::Release{});
+    }
+    if (output != editor_.output()) return;
+    pointer_ = event.at;
+    if (grip_ && event.kind == Kind::PointerMoved) run(edit::MoveTo{event.at + *grip_});
+}
+
+void SettingUp::run(const show::EditCommand& command) {
+    const std::size_t output = editor_.output();
+    const Result<void> done = editor_.apply(command);
+    if (editor_.output() != output) pointer_.reset();
+    // What a key has brought about stays to be read when it is let go of.
+    if (!std::holds_alternative<edit::Release>(command)) message_ = done ? "" : done.error().message();
+    moved_ |= std::holds_alternative<edit::Move>(command) || std::holds_alternative<edit::MoveTo>(command);
+}
+
+Result<ConfigPath> SettingUp::inFile(const ConfigPath& path) const {
+    const show::Site& site = editor_.site();
+    const std::string& name = site.outputs[*path[1].index()].name;
+    const auto place = document_->itemNamed("outputs", name);
+    if (!place) return Error(fmt::format("{}: there is no output '{}' any more", site.file.string(), name));
+    ConfigPath there{"outputs", *place};
+    there.insert(there.end(), path.begin() + 2, path.end());
+    return there;
+}
+
+void SettingUp::save() {
+    const std::filesystem::path& file = editor_.site().file;
+    const auto written = [&]() -> Result<void> {
+        if (!document_) document_ = TRY(ConfigDocument::load(file));
+        for (const show::SiteEditor::Change& change : editor_.unsaved()) {
+            const ConfigPath path = TRY(inFile(change.path));
+            TRY(change.value ? document_->set(path, *change.value) : document_->erase(path));
+        }
+        return document_->save();
+    }();
+    if (written) {
+        editor_.saved();
+        message_.clear();
+        tell_(fmt::format("{} is written; as it was before: {}.previous", file.string(), file.string()));
+    } else {
+        document_.reset();  // it may hold a part of the changes
+        message_ = written.error().message();
+        tell_("not written: " + message_);
+    }
+}
+
+void SettingUp::show() {
+    const show::Site& site = editor_.site();
+    bool warpsMoved = false;
+    for (std::size_t i = 0; i < site.outputs.size(); ++i) {
+        const Projection& projection = site.outputs[i].projection;
+        warpsMoved |= drawn_[i].warp != projection.warp.shape();
+        blendsDue_ |= drawn_[i].masks != projection.masks || drawn_[i].light.blackLevel != projection.light.blackLevel;
+    }
+    // Blends take long: they are worked out once what moves has come to rest.
+    blendsDue_ |= warpsMoved;
+    const bool newBlends = blendsDue_ && !moved_ && blendsShow(editor_.picture());
+    if (newBlends) {
+        for (std::size_t i = 0; i < site.outputs.size(); ++i) blends_[i] = blendOf(site, i);
+        blendsDue_ = false;
+    }
+    for (std::size_t i = 0; i < site.outputs.size(); ++i) {
+        Projection projection = site.outputs[i].projection;
+        projection.canvasAspect = warpsMoved ? canvasAspectOf(site, site.outputs[i].canvas) : drawn_[i].canvasAspect;
+        Drawn now{.warp = projection.warp.shape(),
+                  .canvasAspect = projection.canvasAspect,
+                  .picture = editor_.picture(),
+                  .on = on_,
+                  .chosen = i == editor_.output(),
+                  .light = projection.light,
+                  .masks = projection.masks};
+        if (on_ && now.chosen) {
+            now.lines = editor_.lines();
+            if (!message_.empty()) now.lines.push_back(message_);
+            if (legend_)
+                for (const std::string& line : editKeyLegend()) now.lines.push_back(line);
+            now.handle = editor_.handle();
+            now.tool = editor_.tool();
+            now.pointer = pointer_;
+        }
+        if (now == drawn_[i] && !newBlends) continue;
+        auto settings = std::make_shared<OutputSettings>();
+        settings->projection = projection;
+        if (blendsShow(editor_.picture())) settings->blend = blends_[i];
+        if (on_) {
+            std::vector<plot::EditView::Handle> handles;
+            if (now.chosen) {
+                const auto all = editor_.handles();
+                for (std::size_t handle = 0; handle < all.size(); ++handle)
+                    if (all[handle].at) handles.push_back({*all[handle].at, all[handle].label, handle == now.handle});
+            }
+            const plot::EditView view{.projection = projection,
+                                      .aspect = canvasAspectInPixels(site, site.outputs[i].canvas),
+                                      .name = site.outputs[i].name,
+                                      .number = static_cast<int>(i) + 1,
+                                      .picture = now.picture,
+                                      .handles = std::move(handles),
+                                      .pointer = now.pointer,
+                                      .lines = now.lines,
+                                      .masks = now.chosen && now.tool == edit::Tool::Masks,
+                                      .chosen = now.chosen};
+            settings->overlay = std::make_shared<const RgbaImage>(plot::drawEditView(view));
+            if (isCard(now.picture))
+                settings->card = std::make_shared<const RgbaImage>(plot::drawColourCard(now.picture, projection.size));
+        }
+        drawn_[i] = std::move(now);
+        frames_.settingsOf(i).writable() = std::move(settings);
+        frames_.settingsOf(i).publish();
+    }
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,67 @@
+#include "app/live/watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace fantascope::app {
+
+Watch::Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
+             render::PictureFeed* pictures, Time start, Recording* recording)
+    : show_(show),
+      outputs_(std::move(outputs)),
+      comparisons_(std::move(comparisons)),
+      camera_(camera),
+      pictures_(pictures),
+      start_(start),
+      recording_(recording),
+      scores_(outputs_.size()) {
+    for (std::atomic<double>& score : scores_) score = -1;
+    for (const std::string& output : outputs_) series_[output];
+}
+
+const vision::GuideComparison* Watch::comparisonOf(std::size_t output) const {
+    // In a crossfade of two drawings neither is what should be seen, and what is nearly dark cannot
+    // be told from the night.
+    constexpr float kAlone = 0.05f, kBright = 0.5f;
+    if (shown_.value().blackout || output >= shown_.value().outputs.size()) return nullptr;
+    const vision::GuideComparison* comparison = nullptr;
+    for (const show::LayerState& layer : shown_.value().outputs[output].layers) {
+        if (layer.opacity < kAlone) continue;
+        if (comparison != nullptr || layer.opacity < kBright) return nullptr;
+        comparison = comparisons_[output][layer.source].get();
+    }
+    return comparison;
+}
+
+void Watch::tick(Time) {
+    if (camera_ == nullptr) return;
+    shown_.update();
+    const auto frame = camera_->newest();
+    if (!frame) return;
+    if (pictures_ != nullptr) pictures_->publish({frame, &frame->image});
+    const Time showTime = frame->exposed - start_;
+    for (std::size_t output = 0; output < outputs_.size(); ++output) {
+        const vision::GuideComparison* comparison = comparisonOf(output);
+        if (comparison == nullptr) continue;
+        if (const auto z = comparison->compare(frame->image)) {
+            series_[outputs_[output]].emplace_back(showTime, *z);
+            scores_[output] = *z;
+        }
+    }
+    keepForCue(shown_.value().cue, frame, showTime);
+}
+
+void Watch::keepForCue(int cue, std::shared_ptr<const CameraFrame> frame, Time showTime) {
+    // Lamps and relays may be a moment ahead of the pictures, so a cue's last frame may show the
+    // next cue already: the one before counts.
+    if (recording_ != nullptr && last_.frame && cue >= 0 && cue == last_.cue) {
+        const std::string& name = show_.cues[static_cast<std::size_t>(cue)].name;
+        recording_->cue(cue, fmt::format("{} {}  ({:.1f} s)", cue + 1, name, seconds(last_.showTime)), last_.frame->image);
+    }
+    last_ = {cue, std::move(frame), showTime};
+}
+
+std::vector<double> Watch::newestScores() const { return {scores_.begin(), scores_.end()}; }
+
+}  // namespace fantascope::app

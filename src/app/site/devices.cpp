@@ -1,0 +1,112 @@
+#include "app/site/devices.h"
+
+#include "drivers/registry.h"
+
+#include "show/patch.h"
+
+namespace fantascope::app {
+namespace {
+
+// A driver without keys of its own in the place of the declared one.
+Result<ConfigNode> plain(const std::string& driver, const show::DeviceConfig& declared) {
+    return ConfigNode::parse("driver: " + driver + "\n", declared.options.file());
+}
+
+// The declared options, or those of the simulated driver.
+Result<ConfigNode> optionsOf(const show::DeviceConfig& declared, Backends backends) {
+    constexpr const char* kSimulated = "simulated";
+    if (backends == Backends::AsDeclared || declared.driver == kSimulated) return declared.options;
+    return plain(kSimulated, declared);
+}
+
+// Of a display: at home there are none of the site's monitors, so that even of its own driver it
+// keeps no keys.
+Result<ConfigNode> displayOptions(const show::DeviceConfig& declared, Backends backends) {
+    if (backends == Backends::AsDeclared) return declared.options;
+    return plain(backends == Backends::SimulatedWindows ? "glfw" : "headless", declared);
+}
+
+}  // namespace
+
+Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::Surroundings& around) {
+    // All are read before the first opens, so that what is wrong with any is told at once and
+    // nothing has lit up.
+    ConfigFaults faults;
+    const auto read = [&](auto opening, const ConfigNode& options, auto& all) {
+        faults.take(std::move(opening), [&](auto good) {
+            if (good.simulated && around.world == nullptr)
+                faults.add(
+                    options.error("driver 'simulated' needs a simulated site and here is none; rehearse, or name a real driver"));
+            all.push_back(std::move(good));
+        });
+    };
+    std::vector<drivers::Opening<DisplaySink>> displays;
+    for (const show::Output& output : site.outputs) {
+        const ConfigNode options = TRY(displayOptions(output.display, backends));
+        read(drivers::readDisplay(options, {output.name, output.size(), output.refreshRate}), options, displays);
+    }
+    std::vector<drivers::Opening<DmxPort>> ports;
+    std::vector<drivers::Opening<DmxSource>> desks;
+    for (const show::Universe& universe : site.universes) {
+        const ConfigNode options = TRY(optionsOf(universe.port, backends));
+        read(drivers::readDmxPort(options, universe.number), options, ports);
+        if (!universe.desk) continue;
+        const ConfigNode desk = TRY(optionsOf(universe.desk->device, backends));
+        read(drivers::readDmxSource(desk, universe.number), desk, desks);
+    }
+    std::vector<drivers::Opening<RelayBank>> relayBanks;
+    for (std::size_t bank = 0; bank < site.relayBanks.size(); ++bank) {
+        const ConfigNode options = TRY(optionsOf(site.relayBanks[bank].device, backends));
+        read(drivers::readRelayBank(options, site.relayBanks[bank].name, show::safeCoils(site, bank)), options, relayBanks);
+    }
+    std::vector<drivers::Opening<CueController>> controllers;
+    if (site.cueController) {
+        const ConfigNode options = TRY(optionsOf(*site.cueController, backends));
+        read(drivers::readCueController(options), options, controllers);
+    }
+    std::vector<drivers::Opening<InputBank>> contactBanks;
+    for (std::size_t bank = 0; bank < site.contactBanks.size(); ++bank) {
+        const ConfigNode options = TRY(optionsOf(site.contactBanks[bank].device, backends));
+        read(drivers::readInputBank(options, site.contactBanks[bank].name, site.inputCount(bank)), options, contactBanks);
+    }
+    std::vector<drivers::Opening<CameraSource>> cameras;
+    if (site.camera) {
+        const ConfigNode options = TRY(optionsOf(*site.camera, backends));
+        read(drivers::readCamera(options), options, cameras);
+    }
+    TRY(faults.result());
+
+    Devices devices;
+    for (const auto& display : displays) devices.displays.push_back(TRY(display.open(around)));
+    auto desk = desks.begin();
+    for (std::size_t i = 0; i < site.universes.size(); ++i) {
+        auto port = TRY(ports[i].open(around));
+        Devices::Line line{site.universes[i].number, std::move(port), nullptr};
+        if (site.universes[i].desk) line.desk = TRY((desk++)->open(around));
+        devices.lines.push_back(std::move(line));
+    }
+    for (const auto& bank : relayBanks) devices.relayBanks.push_back(TRY(bank.open(around)));
+    for (const auto& controller : controllers) devices.cueController = TRY(controller.open(around));
+    for (const auto& bank : contactBanks) devices.contactBanks.push_back(TRY(bank.open(around)));
+    for (const auto& camera : cameras) devices.camera = TRY(camera.open(around));
+    return devices;
+}
+
+std::vector<DeviceStatus> Devices::statuses() const {
+    std::vector<DeviceStatus> statuses;
+    const auto add = [&](const auto& device) {
+        if (device) statuses.push_back(device->status());
+    };
+    for (const auto& display : displays) add(display);
+    for (const Line& line : lines) {
+        add(line.port);
+        add(line.desk);
+    }
+    for (const auto& bank : relayBanks) add(bank);
+    add(cueController);
+    for (const auto& bank : contactBanks) add(bank);
+    add(camera);
+    return statuses;
+}
+
+}  // namespace fantascope::app

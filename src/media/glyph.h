@@ -1,0 +1,12 @@
+#pragma once
+
+#include "core/result.h"
+#include "media/outline.h"
+
+namespace fantascope {
+
+// A character as DejaVu Sans Bold draws it, which Debian has in fonts-dejavu-core; an em is 1.
+// Error: the font is not installed, has no such character, or draws nothing for it.
+Result<Outline> glyphOutline(char32_t character);
+
+}  // namespace fantascope

@@ -1,0 +1,273 @@
+#include "pattern/search/refined_method.h"
+
+#include "pattern/search/running_score.h"
+#include "pattern/shape/streams.h"
+
+#include "core/check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fantascope::pattern {
+namespace {
+
+constexpr int kMoves = 1000;  // an iteration
+// The share of the run before the temperature begins to fall; the caller has so long to say how
+// long the run will be.
+constexpr double kWarm = 0.12;
+// How far the temperature falls until the polish.
+constexpr double kCoolest = 0.03;
+// Of how many places the best is taken when the search begins.
+constexpr int kTries = 4;
+// How often the search looks where light is lacking: while it begins, and then in iterations.
+constexpr std::size_t kLooks = 50;
+constexpr int kLookEvery = 4;
+// Pixels that an instance must be worth: one that lies hidden under others is not.
+constexpr double kWorth = 0.5;
+
+// How far the moves of one kind go: farther when more of them are accepted than one in three, less
+// far when fewer are.
+class Step {
+public:
+    explicit Step(double most) : step_(most), most_(most) {}
+    double amount(Rng& rng) const { return step_ * rng.uniform(-kReach, kReach); }
+    void learn(bool accepted) { step_ = std::clamp(step_ * (accepted ? kGrow : kShrink), kLeast * most_, most_); }
+
+private:
+    static constexpr double kReach = 1.7;                                 // of a standard deviation of 1, nearly
+    static constexpr double kGrow = 1.02, kShrink = 0.99, kLeast = 0.02;  // kGrow * kShrink^2 is 1, nearly
+    double step_, most_;
+};
+
+class RefinedSearch {
+public:
+    RefinedSearch(const SearchSpace& space, std::vector<ShapeInstance> given)
+        : space_(space),
+          scanner_(space.pixels().x, space.pixels().y),
+          score_(space),
+          rng_(streamSeed(space.seed(), {Stream::RefinedMoves})),
+          most_(std::min<std::size_t>(space.options().instances, LayerCounts::kMost)),
+          counts_(space.shapeCount()) {
+        const glm::dvec2 sizes = space.sizes();
+        typicalArea_ = std::pow(space.meanSide() * space.pixels().y, 2) * sizes.x * sizes.y;
+        continues_ = !given.empty();
+        if (continues_)
+            resume(std::move(given));
+        else
+            start();
+    }
+
+    PatternSearch::Summary run(std::vector<ShapeInstance>& instances, const PatternSearch::AskStop& askStop,
+                               const PatternSearch::Plan& plan) {
+        PatternSearch::Summary summary;
+        const PatternSearch::Options& options = space_.options();
+        std::optional<int> planned;
+        if (options.iterations < std::numeric_limits<int>::max()) planned = options.iterations;
+        for (;; ++summary.iterations) {
+            const PatternSearch::Progress progress{summary.iterations, score_.z(), instances_.size() + kept_.size(),
+                                                   [this] { return score_.picture(); }};
+            if (const auto reason = whyStop(progress, planned, askStop)) {
+                summary.reason = *reason;
+                break;
+            }
+            if (!planned && plan)
+                if (const auto total = plan(progress))
+                    // Nothing has cooled yet: the run is the one that --iterations with this number
+                    // gives.
+                    planned = std::max(*total, static_cast<int>(std::ceil(summary.iterations / kWarm)));
+            temperature_ = temperatureAt(summary.iterations, planned);
+            const double before = score_.z();
+            if (summary.iterations % kLookEvery == 0) score_.findDarkPlaces();
+            for (int i = 0; i < kMoves; ++i) move();
+            summary.history.push_back({score_.z(), score_.z(), score_.z() < before});
+        }
+        summary.z = score_.z();
+        summary.evaluations = evaluations_;
+        instances = std::move(instances_);
+        instances.insert(instances.end(), kept_.begin(), kept_.end());
+        // In the order of their ids: the order in which they lie on each other does not depend on
+        // deletions.
+        std::sort(instances.begin(), instances.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+        return summary;
+    }
+
+private:
+    std::optional<PatternSearch::StopReason> whyStop(const PatternSearch::Progress& progress, std::optional<int> planned,
+                                                     const PatternSearch::AskStop& askStop) const {
+        if (progress.z < space_.options().targetZ) return PatternSearch::StopReason::TargetReached;
+        if (progress.iterations >= space_.options().iterations) return PatternSearch::StopReason::Iterations;
+        if (planned && progress.iterations >= *planned) return PatternSearch::StopReason::Time;
+        return askStop(progress);
+    }
+
+    // In pixels of full difference.
+    double temperatureAt(int iteration, std::optional<int> planned) const {
+        const PatternSearch::Options::Refined& refined = space_.options().refined;
+        const double hot = refined.temperature * typicalArea_;
+        const double progress = planned ? double(iteration) / *planned : 0;
+        if (progress >= 1 - refined.polish) return 0;
+        const double cooled = continues_ ? 1 : std::max(0.0, (progress - kWarm) / (1 - refined.polish - kWarm));
+        return hot * std::pow(kCoolest, cooled);
+    }
+
+    // As many instances as would light as much as the guide is white, each where light is lacking.
+    void start() {
+        const double light = space_.goal().mean() * space_.pixels().x * space_.pixels().y;
+        const auto most = std::min(most_, static_cast<std::size_t>(std::ceil(light / typicalArea_)));
+        for (std::size_t count = 0; count < most; ++count) {
+            if (count % std::max<std::size_t>(1, most / kLooks) == 0) score_.findDarkPlaces();
+            double least = std::numeric_limits<double>::max();
+            ShapeInstance best;
+            for (int i = 0; i < kTries; ++i) {
+                place(newInstance());
+                if (const double change = score_.propose(kNothing, mask_); change < least) least = change, best = proposed_;
+            }
+            place(best);
+            score_.propose(kNothing, mask_);
+            keepNew();
+        }
+    }
+
+    void resume(std::vector<ShapeInstance> given) {
+        for (const ShapeInstance& instance : given) {
+            place(instance);
+            score_.propose(kNothing, mask_);
+            score_.accept(kNothing, mask_);
+            nextId_ = std::max(nextId_, instance.id + 1);
+            ++counts_[instance.shape];
+            if (isInRegion(instance)) {
+                instances_.push_back(instance);
+                drawn_.push_back(mask_);
+            } else {
+                kept_.push_back(instance);
+            }
+        }
+    }
+
+    bool isInRegion(const ShapeInstance& instance) const {
+        const auto& region = space_.options().region;
+        return !region || region->contains(instance.centre);
+    }
+
+    ShapeInstance newInstance() {
+        const glm::ivec2 pixel = score_.darkPlace(rng_);
+        return space_.randomInstance({pixel, pixel + 1}, rng_, counts_);
+    }
+
+    void move() {
+        ++evaluations_;
+        const double kind = rng_.uniform();
+        if (kind < 0.03 || instances_.empty()) {
+            if (instances_.size() + kept_.size() >= most_) return;
+            place(newInstance());
+            if (isGood(kNothing, mask_, -kWorth)) keepNew();
+            return;
+        }
+        const std::size_t index = rng_.below(static_cast<std::uint32_t>(instances_.size()));
+        if (kind < 0.06) {
+            if (isGood(drawn_[index], kNothing, kWorth)) forget(index);
+        } else if (kind < 0.10) {
+            ShapeInstance elsewhere = newInstance();
+            elsewhere.id = instances_[index].id;
+            replace(index, elsewhere);
+        } else if (kind < 0.40) {
+            ShapeInstance shifted = instances_[index];
+            shifted.centre += shifted.size * glm::dvec2(shift_.amount(rng_), shift_.amount(rng_));
+            shift_.learn(replace(index, shifted));
+        } else if (kind < 0.55) {
+            ShapeInstance turned = instances_[index];
+            const double angle = turn_.amount(rng_);
+            turned.rotation.z += angle;
+            aboutPivot(turned, index, glm::dmat2(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle)));
+            turn_.learn(replace(index, turned));
+        } else if (kind < 0.70) {
+            ShapeInstance tilted = instances_[index];
+            tilted.rotation.x += tilt_.amount(rng_);
+            tilted.rotation.y += tilt_.amount(rng_);
+            tilt_.learn(replace(index, tilted));
+        } else {
+            ShapeInstance scaled = instances_[index];
+            const glm::dvec2 sizes = space_.sizes(scaled.shape);
+            scaled.size = std::clamp(scaled.size * std::exp(scale_.amount(rng_)), sizes.x, sizes.y);
+            aboutPivot(scaled, index, glm::dmat2(scaled.size / instances_[index].size));
+            scale_.learn(replace(index, scaled));
+        }
+    }
+
+    // One of its points stays where it is: what fits there goes on to fit.
+    void aboutPivot(ShapeInstance& instance, std::size_t index, const glm::dmat2& change) {
+        if (drawn_[index].empty()) return;
+        const glm::dvec2 pivot = (glm::dvec2(drawn_[index].randomPixel(rng_)) + 0.5) / double(space_.pixels().y);
+        instance.centre = pivot + change * (instance.centre - pivot);
+    }
+
+    // Puts another instance in the place of one, if that is good.
+    bool replace(std::size_t index, const ShapeInstance& instance) {
+        place(space_.allowed(instance));
+        if (!isInRegion(proposed_) || !isGood(drawn_[index], mask_, 0)) return false;
+        score_.accept(drawn_[index], mask_);
+        std::swap(drawn_[index], mask_);
+        --counts_[instances_[index].shape], ++counts_[proposed_.shape];
+        instances_[index] = proposed_;
+        return true;
+    }
+
+    // Whether a move is kept: one that makes the pattern worse by c with probability exp(-c /
+    // temperature). `bonus` pixels may be lost besides. How much worse it may be is drawn first, so
+    // that a move beyond it can be given up early.
+    bool isGood(const PixelMask& out, const PixelMask& in, double bonus) {
+        const double most = bonus + (temperature_ > 0 ? -temperature_ * std::log(1 - rng_.uniform()) : 0);
+        return score_.propose(out, in, most) <= most;
+    }
+
+    // Draws the instance that is proposed into mask_.
+    void place(const ShapeInstance& instance) {
+        proposed_ = instance;
+        mask_.draw(scanner_, space_.silhouette(instance.shape), {instance.centre, instance.size, instance.rotation});
+    }
+    void keepNew() {
+        score_.accept(kNothing, mask_);
+        instances_.push_back(proposed_);
+        instances_.back().id = nextId_++;
+        ++counts_[proposed_.shape];
+        drawn_.push_back(mask_);
+    }
+    void forget(std::size_t index) {
+        score_.accept(drawn_[index], kNothing);
+        --counts_[instances_[index].shape];
+        std::swap(instances_[index], instances_.back());
+        std::swap(drawn_[index], drawn_.back());
+        instances_.pop_back();
+        drawn_.pop_back();
+    }
+
+    const SearchSpace& space_;
+    SilhouetteScanner scanner_;
+    RunningScore score_;
+    Rng rng_;
+    const std::size_t most_;  // instances
+    double typicalArea_ = 1;  // of an instance, pixels
+    bool continues_ = false;  // from given instances
+    double temperature_ = 0;
+    // In sizes of the instance; radians; natural logarithms.
+    Step shift_{0.3}, turn_{0.8}, tilt_{0.3}, scale_{0.3};
+    std::vector<ShapeInstance> instances_;  // those that may change
+    std::vector<PixelMask> drawn_;          // of each
+    std::vector<ShapeInstance> kept_;       // those that may not
+    std::vector<std::uint32_t> counts_;     // of each shape, among both
+    std::uint32_t nextId_ = 1;
+    std::int64_t evaluations_ = 0;
+    ShapeInstance proposed_;
+    PixelMask mask_;  // of proposed_
+    const PixelMask kNothing;
+};
+
+}  // namespace
+
+PatternSearch::Summary searchRefined(const SearchSpace& space, std::vector<ShapeInstance>& instances,
+                                     const PatternSearch::AskStop& askStop, const PatternSearch::Plan& plan) {
+    return RefinedSearch(space, std::move(instances)).run(instances, askStop, plan);
+}
+
+}  // namespace fantascope::pattern

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "pattern/shape/shape_pattern.h"
+
+#include <glm/vec2.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace fantascope::pattern {
+
+// A mesh prepared for SilhouetteScanner: its edges, each with the triangles beside it.
+class Silhouette {
+public:
+    explicit Silhouette(const TriangleMesh& mesh);
+
+private:
+    friend class SilhouetteScanner;
+    struct Side {
+        std::uint32_t triangle;
+        int direction;  // 1: the triangle's corners run along the edge from `from` to `to`; -1: the other way
+    };
+    struct Edge {
+        std::uint32_t from, to;             // vertices, from < to
+        std::uint32_t firstSide, sidesEnd;  // range in sides_
+    };
+
+    std::vector<glm::dvec3> vertices_;
+    std::vector<glm::uvec3> triangles_;
+    std::vector<Edge> edges_;
+    std::vector<Side> sides_;
+    // Of a flat convex shape, the corners of its outline in order; else empty.
+    std::vector<std::uint32_t> convexOutline_;
+};
+
+// Turns silhouettes into runs of pixels, as an orthographic view sees them whose height is one
+// canvas unit. A pixel belongs to a silhouette when its centre is inside a triangle; of two
+// triangles with a common edge each pixel goes to one. What lies off the picture is cut off. This
+// is the inner loop of every search: of a mesh only the edges of its outline are followed, and
+// after the first few silhouettes nothing is allocated. Thread: thread-bound.
+class SilhouetteScanner {
+public:
+    SilhouetteScanner(int width, int height);  // of the picture, pixels
+
+    // Calls use(y, begin, end) for runs begin <= x < end of the silhouette of one instance, from
+    // the top left on; no pixel is in two of them.
+    template <class Use>
+    void scan(const Silhouette& shape, const InstancePose& pose, Use use) {
+        project(shape, pose);
+        top_ = height_, bottom_ = 0;
+        if (!shape.convexOutline_.empty()) {
+            followConvexOutline(shape.convexOutline_);
+            for (int y = top_; y < bottom_; ++y)
+                if (const Row& row = convexRows_[static_cast<std::size_t>(y)]; row.begin < row.end) use(y, row.begin, row.end);
+            return;
+        }
+        followOutline(shape);
+        for (int y = top_; y < bottom_; ++y) {
+            int layers = 0, begin = 0;
+            for (int i = std::exchange(rows_[static_cast<std::size_t>(y)], -1); i >= 0;) {
+                const Crossing& crossing = crossings_[static_cast<std::size_t>(i)];
+                if (layers > 0 && begin < crossing.x) use(y, begin, crossing.x);
+                begin = crossing.x;
+                layers += crossing.change;
+                i = crossing.next;
+            }
+        }
+    }
+
+private:
+    struct Crossing {
+        int x;       // the first pixel whose centre is right of the edge
+        int change;  // of the number of triangles above each other, from there on
+        int next;    // in the same row, x ascending; -1: none
+    };
+    struct Row {
+        int begin, end;
+    };
+    void project(const Silhouette& shape, const InstancePose& pose);
+    void followOutline(const Silhouette& shape);
+    void followConvexOutline(const std::vector<std::uint32_t>& outline);
+    template <class Cross>
+    void followEdge(glm::dvec2 upper, glm::dvec2 lower, Cross cross);
+
+    int width_, height_;
+    // The silhouette at hand.
+    std::vector<glm::dvec2> projected_;  // vertices, in pixels
+    std::vector<int> facing_;            // triangles: 1 clockwise as seen, -1 anticlockwise, 0 edge-on
+    std::vector<Crossing> crossings_;    // the first crossingCount_ of them
+    int crossingCount_ = 0;
+    std::vector<int> rows_;  // the first crossing of each row; -1: none
+    std::vector<Row> convexRows_;
+    int top_ = 0, bottom_ = 0;  // rows with crossings
+};
+
+}  // namespace fantascope::pattern

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "render/gpu/handles.h"
+#include "render/gpu/program_cache.h"
+
+#include "core/result.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include <span>
+
+namespace fantascope::render::gpu {
+
+// Paints the light under waves into the LightCanvas that has begun. Thread: the context's.
+class CausticsPainter {
+public:
+    // In canvas heights: how far the rays' grid reaches over the canvas, and its largest step.
+    // `waves`: how many paint() is given. `programs` outlives it. Error: a shader does not compile.
+    static Result<CausticsPainter> create(double aspect, double margin, double step, int waves, ProgramCache& programs);
+
+    // `waves`: as Water::at() gives them.
+    void paint(std::span<const glm::vec4> waves);
+
+private:
+    CausticsPainter(unsigned program, float aspect) : program_(program), aspect_(aspect) {}
+
+    unsigned program_;
+    float aspect_;
+    glm::ivec2 points_{0};
+    glm::vec4 grid_{0};
+    int indexCount_ = 0;
+    VertexArray noVertices_;
+    Buffer indices_;
+};
+
+}  // namespace fantascope::render::gpu

@@ -1,0 +1,105 @@
+#include "render/source/picture_source.h"
+
+#include "theatre/stage/cast.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace fantascope::render {
+
+Time positionAt(const VideoSource& source, Time time) {
+    // Neither a display's refreshes nor a file's time stamps are exact: a frame that begins within
+    // so much is on.
+    constexpr Time kTolerance = std::chrono::milliseconds(1);
+    const Time length = source.stream->content().length;
+    const Time played(std::llround(static_cast<double>((time + kTolerance).count()) * source.speed));
+    if (source.loop) return (played % length + length) % length;
+    return std::clamp(played, Time{}, length - Time(1));
+}
+
+namespace {
+
+// A motion in frames, there and back where it plays so: it begins to move within a frame and comes
+// to rest within one, at either end.
+double framesOf(const ShadowSource& source) {
+    const std::size_t count = source.cast->actors.front().poses.size();
+    const auto last = static_cast<double>(count - 1);
+    switch (source.play) {
+        case ShadowSource::Play::Once:
+            break;
+        case ShadowSource::Play::Loop:
+            return last > 0 ? last + 1 : 0;
+        case ShadowSource::Play::ToAndFro:
+            return last > 0 ? 2 * (last + 1) : 0;
+    }
+    return last;
+}
+
+}  // namespace
+
+double frameAt(const ShadowSource& source, Time time) {
+    const double whole = framesOf(source);
+    if (whole <= 0) return 0;
+    const double played =
+        std::max(0.0, std::chrono::duration<double>(time).count()) * source.speed * source.cast->framesPerSecond;
+    if (source.play == ShadowSource::Play::Once) return std::min(played, whole);
+    const double frame = std::fmod(played, whole);
+    if (source.play == ShadowSource::Play::Loop) return frame;
+    const double half = whole / 2, way = std::min(frame, whole - frame), left = half - way;
+    return way < 1 ? 0.5 * way * way : left < 1 ? half - 1 - 0.5 * left * left : way - 0.5;
+}
+
+Time lengthOf(const ShadowSource& source) {
+    const double frames = framesOf(source);
+    return frames > 0 ? std::chrono::duration_cast<Time>(
+                            std::chrono::duration<double>(frames / (source.cast->framesPerSecond * source.speed)))
+                      : Time{};
+}
+
+namespace {
+
+double ratio(glm::dvec2 size) { return size.x / size.y; }
+
+std::optional<double> shapeOf(const SolidSource&) { return std::nullopt; }
+std::optional<double> shapeOf(const PatternSource& source) { return source.pattern->aspect(); }
+std::optional<double> shapeOf(const FoliageSource& source) { return source.layers.front().leaves.pattern->aspect(); }
+std::optional<double> shapeOf(const CausticsSource& source) { return ratio(source.size); }
+std::optional<double> shapeOf(const MirrorBallSource& source) { return ratio(source.size); }
+std::optional<double> shapeOf(const ImageSource& source) {
+    return ratio(glm::dvec2(source.picture->width(), source.picture->height()));
+}
+std::optional<double> shapeOf(const VideoSource& source) { return ratio(source.stream->content().size); }
+std::optional<double> shapeOf(const CameraSource& source) { return ratio(source.feed->size()); }
+std::optional<double> shapeOf(const ShadowSource& source) { return ratio(source.to - source.from); }
+
+}  // namespace
+
+std::optional<double> aspectOf(const PictureSource& source) {
+    return std::visit([](const auto& kind) { return shapeOf(kind); }, source);
+}
+
+CanvasPart placeOf(const PictureSource& source, double canvasAspect) {
+    const auto aspect = aspectOf(source);
+    if (!aspect || canvasAspect <= 0) return {};
+    const Fit fit = std::visit(
+        [](const auto& kind) {
+            if constexpr (requires { kind.fit; })
+                return kind.fit;
+            else
+                return Fit::Stretch;
+        },
+        source);
+    return placeOnCanvas(*aspect, canvasAspect, fit);
+}
+
+PictureSource fitted(PictureSource source, Fit fit) {
+    std::visit(
+        [&](auto& kind) {
+            if constexpr (requires { kind.fit; }) kind.fit = fit;
+        },
+        source);
+    return source;
+}
+
+}  // namespace fantascope::render

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "theatre/body/body.h"
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+#include <span>
+#include <vector>
+
+namespace fantascope::theatre {
+
+// M_n = (v_0, q_0, q_1 .. q_M) of Won & Lee 2016, section 3: where the root is and how it is
+// turned, in the stage's frame (metres), and how each further joint is turned against its parent,
+// in the body's order.
+struct ActorPose {
+    glm::dvec3 root{0};
+    std::vector<glm::dquat> turns;  // of all joints, the root's first
+};
+ActorPose poseOf(const Body& body, std::span<const double> freedoms);
+// The freedoms nearest to a pose, within the joints' limits.
+std::vector<double> freedomsOf(const Body& body, const ActorPose& pose);
+void freedomsOf(const Body& body, const ActorPose& pose, std::vector<double>& freedoms);
+
+}  // namespace fantascope::theatre

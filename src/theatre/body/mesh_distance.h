@@ -1,0 +1,43 @@
+#pragma once
+
+#include "media/mesh.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <vector>
+
+namespace fantascope::theatre {
+
+// The signed distance to a mesh, negative inside, on a grid that is made once and read between its
+// nodes (Bridson 2015, Fluid Simulation for Computer Graphics, section 4.3: exact near the surface,
+// the nearest triangles carried on from there). Inside is what an odd number of triangles lies
+// before, by two of the three axes, so that a small hole in the mesh does no harm. Metres, the
+// mesh's frame. Thread: reentrant.
+class MeshDistance {
+public:
+    // The grid reaches `around` beyond the mesh and has kCells cells along its longest side; `mesh`
+    // has a triangle.
+    MeshDistance(const TriangleMesh& mesh, double around);
+    static constexpr int kCells = 64;
+
+    // The distance, and in `outward` the unit direction in which it grows. Outside the grid it is
+    // no more than the true one and more than `around`.
+    double at(const glm::dvec3& point, glm::dvec3& outward) const;
+
+private:
+    std::size_t index(int x, int y, int z) const {
+        return (static_cast<std::size_t>(z) * static_cast<std::size_t>(nodes_[1]) + static_cast<std::size_t>(y)) *
+                   static_cast<std::size_t>(nodes_[0]) +
+               static_cast<std::size_t>(x);
+    }
+    void measure(const TriangleMesh& mesh);
+    void sign(const TriangleMesh& mesh);
+
+    glm::dvec3 least_{0};  // the first node
+    double cell_ = 0, around_ = 0;
+    std::array<int, 3> nodes_{};
+    std::vector<float> values_;  // x fastest
+};
+
+}  // namespace fantascope::theatre

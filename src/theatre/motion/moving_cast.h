@@ -1,0 +1,43 @@
+#pragma once
+
+#include "theatre/motion/pose_spline.h"
+#include "theatre/stage/cast.h"
+#include "theatre/stage/surroundings.h"
+
+#include <span>
+#include <vector>
+
+namespace fantascope::theatre {
+
+// Whether a cast's last frame leads to its first: it is the whole of a silhouette's motion that
+// loops. Error: as readSequence().
+Result<bool> loops(const Cast& cast);
+
+// A cast's people as they move, at any moment between its frames: what a show plays live. Thread:
+// thread-bound.
+class MovingCast {
+public:
+    // `loops`: after the last frame comes the first. `cast` must live on.
+    MovingCast(const Cast& cast, bool loops);
+    MovingCast(const MovingCast&) = delete;
+    MovingCast& operator=(const MovingCast&) = delete;
+
+    // Poses everybody as they are at a moment, in frames from the first; of a loop any moment, else
+    // the ends are held. No allocation after the first.
+    void pose(double frame);
+
+    std::size_t actors() const { return bodies_.size(); }
+    const Body& body(std::size_t actor) const { return bodies_[actor]; }
+    // In the pose last given.
+    const PosedBody& posed(std::size_t actor) const { return posed_[actor]; }
+    std::span<const PlacedProp> held(std::size_t actor) const { return held_[actor]; }
+
+private:
+    const Cast& cast_;
+    std::vector<Body> bodies_;
+    std::vector<PoseSpline> splines_;
+    std::vector<PosedBody> posed_;
+    std::vector<std::vector<PlacedProp>> held_;
+};
+
+}  // namespace fantascope::theatre

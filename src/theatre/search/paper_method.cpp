@@ -1,0 +1,120 @@
+#include "theatre/search/paper_method.h"
+
+#include "theatre/energy/scene_energy.h"
+#include "theatre/search/artefacts.h"
+#include "theatre/search/freedom_search.h"
+#include "theatre/search/streams.h"
+
+#include "core/random.h"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace fantascope::theatre {
+namespace {
+
+constexpr double kGlobalShare = 0.85;  // of the evaluations, for all freedoms at once
+constexpr double kSigma = 0.5, kRefinedSigma = 0.3;
+constexpr int kRefinedGenerations = 25;
+constexpr double kPapersStiffness = 0.1;  // of physics, as in Table 1; then what holds people up
+constexpr double kConverged = 0.1;        // energies that differ by less than nobody sees
+
+class TrialRun {
+public:
+    TrialRun(const PoseProblem& problem, std::uint64_t seed, const PoseSearch::Options& options,
+             const PoseSearch::AskStop& askStop)
+        : options_(options), askStop_(askStop), fine_(simpler(in256Rows(problem))), rng_(streamSeed(seed, {Stream::Moves})) {
+        trial_.seed = seed;
+        trial_.freedoms = PoseSearch::start(problem);
+    }
+
+    PoseSearch::Trial run() {
+        trial_.reason = PoseSearch::StopReason::Evaluations;
+        PoseProblem coarse = forFirstLook(fine_);
+        coarse.weights.stiffen(kPapersStiffness);
+        searchAll(coarse);
+        refine(fine_);
+        return std::move(trial_);
+    }
+
+private:
+    bool goesOn(double energy) {
+        if (askStop_ && askStop_({trial_.evaluations, energy})) trial_.reason = PoseSearch::StopReason::Interrupted;
+        return trial_.reason != PoseSearch::StopReason::Interrupted;
+    }
+
+    // CMA-ES over these freedoms, from where the poses are.
+    double search(const PoseProblem& problem, SceneEnergy& energy, std::vector<double>& freedoms, const Freedoms& which,
+                  double sigma, std::int64_t evaluations) {
+        FreedomSearch search(problem);
+        const auto generations = static_cast<int>(std::max<std::int64_t>(1, evaluations / options_.population));
+        const double found =
+            search.run(energy, freedoms, which, {sigma, options_.population, generations, kConverged, options_.fullCovariance},
+                       rng_, [&](int) { return goesOn(energy.lastEnergy()); });
+        trial_.evaluations += search.evaluations();
+        return found;
+    }
+
+    void searchAll(const PoseProblem& problem) {
+        SceneEnergy energy(problem);
+        Freedoms all(trial_.freedoms.size());
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        search(problem, energy, trial_.freedoms, all, kSigma,
+               static_cast<std::int64_t>(kGlobalShare * static_cast<double>(options_.evaluations)));
+    }
+
+    void refine(const PoseProblem& problem) {
+        SceneEnergy energy(problem);
+        energy.pose(trial_.freedoms);
+        double best = energy.energy();
+        // Whether these freedoms could make it better.
+        const auto improves = [&](const Freedoms& which) {
+            const std::int64_t left = options_.evaluations - trial_.evaluations;
+            if (which.empty() || left <= 0 || trial_.reason != PoseSearch::StopReason::Evaluations) return false;
+            std::vector<double> next = trial_.freedoms;
+            const double found = search(problem, energy, next, which, kRefinedSigma,
+                                        std::min<std::int64_t>(left, kRefinedGenerations * options_.population));
+            const bool isBetter = trial_.reason == PoseSearch::StopReason::Evaluations && found < best;
+            if (isBetter) best = found, trial_.freedoms = std::move(next);
+            trial_.history.push_back(best);
+            energy.pose(trial_.freedoms);
+            energy.terms();
+            return isBetter;
+        };
+        while (trial_.evaluations < options_.evaluations && goesOn(best)) {
+            const std::vector<BitMask> artefacts = visibleArtefacts(energy);
+            const bool areNone =
+                std::all_of(artefacts.begin(), artefacts.end(), [](const BitMask& mask) { return mask.count() == 0; });
+            if (best <= options_.residual && areNone) {
+                trial_.reason = PoseSearch::StopReason::Satisfied;
+                break;
+            }
+            bool isBetter = false;
+            for (const Freedoms& chain : occludedChains(problem, energy)) isBetter |= improves(chain);
+            if (isBetter) continue;
+            // Without artefacts what remains is to be had from anybody.
+            Freedoms beside = freedomsBeside(problem, energy, artefacts);
+            if (beside.empty()) {
+                beside.resize(trial_.freedoms.size());
+                std::iota(beside.begin(), beside.end(), std::size_t{0});
+            }
+            improves(beside);
+        }
+    }
+
+    const PoseSearch::Options& options_;
+    const PoseSearch::AskStop& askStop_;
+    const PoseProblem fine_;
+    Rng rng_;
+    PoseSearch::Trial trial_;
+};
+
+}  // namespace
+
+PoseSearch::Trial paperMethod(const PoseProblem& problem, std::uint64_t seed, const PoseSearch::Options& options,
+                              const PoseSearch::AskStop& askStop) {
+    return TrialRun(problem, seed, options, askStop).run();
+}
+
+}  // namespace fantascope::theatre

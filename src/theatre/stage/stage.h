@@ -1,0 +1,119 @@
+#pragma once
+
+#include "theatre/stage/prop.h"
+#include "theatre/stage/screen.h"
+
+#include "core/geometry.h"
+#include "core/result.h"
+#include "media/image.h"
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace fantascope::theatre {
+
+// Where the theatre plays: metres, +y up, the floor at y = 0, the screen upright at z = 0, the
+// light before it at +z; +x is to the right as seen from the light, and so in the picture. It may
+// have further beams, each a light and the screen that its shadows fall on: the same, or one that
+// stands elsewhere.
+struct Stage {
+    // A box that people may stand on, turned about its upright axis (radians, right-handed).
+    struct Platform {
+        std::string name;
+        glm::dvec3 centre{0}, size{1};
+        double turn = 0;
+
+        // Of its box, which is from -0.5 to 0.5 along each axis.
+        glm::dvec3 point(const glm::dvec3& share) const;
+        double top() const { return centre.y + 0.5 * size.y; }
+        bool isUnder(double x, double z) const;  // seen from above
+        // The signed distance to it, negative inside, and the unit direction in which it grows. One
+        // that stands on the floor goes on below it.
+        double distance(const glm::dvec3& point, glm::dvec3& outward) const;
+    };
+    // An area of the floor, or of the screen; a side without a limit is infinite.
+    struct Area {
+        static constexpr double kFar = std::numeric_limits<double>::infinity();
+        glm::dvec2 from{-kFar}, to{kFar};
+        // How far a point is outside, 0 within.
+        double outside(glm::dvec2 point) const;
+    };
+
+    struct Beam {
+        glm::dvec3 light{0};
+        std::size_t screen = 0;     // of Stage::screens
+        std::optional<Area> lit{};  // as Stage::lit, on its (flat) screen
+    };
+
+    glm::dvec3 light{0, 0, 7};  // of the first beam
+    std::optional<Area> lit{};  // (x, y) of the screen that a projector lights, the light being its lens; none: a lamp lights all
+    std::optional<Area> standing{};  // (x, z) of the floor where people may stand; none: anywhere
+    std::vector<Platform> platforms{};
+    std::vector<Prop> props{};
+    std::vector<Screen> screens{Screen{}};  // the first beam's first, whose frame is the stage's
+    std::vector<Beam> further{};            // beams after the first
+
+    std::size_t beams() const { return 1 + further.size(); }
+    Beam beam(std::size_t index) const { return index == 0 ? Beam{light, 0, lit} : further[index - 1]; }
+    const Screen& screenOf(std::size_t beam) const { return screens[beam == 0 ? 0 : further[beam - 1].screen]; }
+    // Into the frame of a beam's screen, which for the first is the stage's; there the beam's light
+    // is.
+    glm::dmat4 screenFromStage(std::size_t beam) const;
+    glm::dvec3 lightOnScreen(std::size_t beam) const { return screenOf(beam).screenFromStage(this->beam(beam).light); }
+
+    // The height of the floor, or of the highest platform whose top is not above a point, under it.
+    double groundUnder(const glm::dvec3& point) const;
+    // Error: a prop is held by an actor that is not among so many.
+    Result<void> checkHolders(std::size_t actors) const;
+};
+
+// A picture laid on the flat screen of a beam: target, shadow and masks share its pixels. Pixel
+// (column, row), row 0 at the top, is centred at half-integers.
+class ScreenFrame {
+public:
+    // `left`, `top`: of the picture, metres in the screen's frame; `pixel`: the side of a pixel,
+    // metres.
+    ScreenFrame(const Stage& stage, double left, double top, double pixel, int width, int height, std::size_t beam = 0);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    double pixel() const { return pixel_; }
+    glm::dvec2 pixelAt(double x, double y) const { return {(x - left_) / pixel_, (top_ - y) / pixel_}; }
+    glm::dvec2 metresAt(glm::dvec2 pixel) const { return {left_ + pixel.x * pixel_, top_ - pixel.y * pixel_}; }
+    // Where the shadow of a point of the stage falls; the point is nearer to the screen than the
+    // light is.
+    glm::dvec2 shadow(const glm::dvec3& point) const {
+        const glm::dvec3 d = fromLight(point);
+        return foot_ + focus_ / d.z * glm::dvec2(d);
+    }
+
+    // As a pinhole camera at the light that looks at the screen: pixels from metres by foot + focus
+    // * (x, y) / z.
+    glm::dvec2 foot() const { return foot_; }              // the pixel before the light
+    double focus() const { return focus_; }                // the light's distance from the screen, pixels
+    glm::dvec3 fromLight(const glm::dvec3& point) const {  // x right, y down, z towards the screen
+        const glm::dvec3 way(point.x - light_.x, light_.y - point.y, light_.z - point.z);
+        return {cosine_ * way.x + sine_ * way.z, way.y, cosine_ * way.z - sine_ * way.x};
+    }
+    // A direction of that camera, on the stage.
+    glm::dvec3 onStage(const glm::dvec3& way) const {
+        return {cosine_ * way.x - sine_ * way.z, -way.y, -sine_ * way.x - cosine_ * way.z};
+    }
+    const glm::dvec3& light() const { return light_; }  // on the stage
+
+private:
+    glm::dvec3 light_;
+    double cosine_, sine_;  // of the screen's turn
+    double left_, top_, pixel_;
+    int width_, height_;
+    glm::dvec2 foot_;
+    double focus_;
+};
+
+}  // namespace fantascope::theatre

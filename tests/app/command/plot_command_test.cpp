@@ -1,0 +1,91 @@
+#include "theatre/stage/cast.h"
+
+#include "core/file.h"
+#include "media/image.h"
+#include "program.h"
+#include "scratch_folder.h"
+
+#include <gmock/gmock.h>
+
+namespace fantascope {
+namespace {
+
+using testing::HasSubstr;
+
+// A folder with a small pattern, its drawing and the report of its search.
+class PlotCommand : public testing::Test {
+protected:
+    PlotCommand() {
+        GreyImage guide(64, 36);
+        for (int y = 8; y < 28; ++y)
+            for (int x = 8; x < 40; ++x) guide.at(x, y) = 1;
+        EXPECT_TRUE(writePng(folder_ / "guide.png", guide));
+        EXPECT_EQ(
+            run({"pattern", "guide.png", "-o", "p.pattern.yaml", "--instances", "40", "--iterations", "3", "--report", "p.json"})
+                .status,
+            0);
+    }
+    Outcome run(const std::vector<std::string>& arguments) const { return runProgram(arguments, folder_ / "."); }
+    int width(const std::string& picture) const { return readRgba(folder_ / picture).value().width(); }
+
+    const ScratchFolder folder_;
+};
+
+TEST_F(PlotCommand, draws_a_pattern_or_a_report_by_what_it_is) {
+    for (const char* figure : {"difference", "trajectories", "spectrum"})
+        EXPECT_THAT(run({"plot", "p.pattern.yaml", "--figure", figure, "-o", std::string(figure) + ".png"}), exits(0)) << figure;
+    EXPECT_THAT(run({"plot", "p.json", "--figure", "search", "-o", "search.png"}), exits(0));
+    EXPECT_THAT(run({"plot", "p.pattern.yaml", "-o", "pattern.png"}), exits(0));
+    EXPECT_THAT(run({"plot", "p.json", "-o", "report.svg"}), exits(0));
+    EXPECT_EQ(readFile(folder_ / "pattern.png").value(), readFile(folder_ / "difference.png").value());
+    EXPECT_NE(readFile(folder_ / "trajectories.png").value(), readFile(folder_ / "spectrum.png").value());
+    EXPECT_GT(width("search.png"), 500);
+    EXPECT_THAT(readFile(folder_ / "report.svg").value(), HasSubstr("<svg"));
+}
+
+// Two people in T-poses, the first as in the first frame, the second raised in the second one.
+theatre::Cast aCast(const std::filesystem::path& target) {
+    theatre::Cast cast{target, 1.8, {}, {}, 10, 1, {}};
+    for (const double x : {-0.6, 0.6}) {
+        const theatre::Body body = theatre::humanBody(1.7);
+        const glm::dvec3 root(x, body.joints[0].offset.y, 1.5);
+        cast.actors.push_back({1.7, {}});
+        for (const double height : {0.0, x > 0 ? 0.3 : 0.0})
+            cast.actors.back().poses.push_back(
+                theatre::poseOf(body, body.restPose(root + glm::dvec3(0, height, 0), {1, 0, 0, 0})));
+    }
+    return cast;
+}
+
+TEST_F(PlotCommand, draws_a_cast) {
+    ASSERT_TRUE(theatre::writeCast(folder_ / "c.cast.yaml", aCast(folder_ / "guide.png")));
+    for (const char* figure : {"stage", "side", "shadow", "actors"})
+        EXPECT_THAT(run({"plot", "c.cast.yaml", "--figure", figure, "-o", std::string(figure) + ".png"}), exits(0)) << figure;
+    EXPECT_THAT(run({"plot", "c.cast.yaml", "-o", "cast.png"}), exits(0));
+    const auto height = [&](const std::string& picture) { return readRgba(folder_ / picture).value().height(); };
+    EXPECT_EQ(height("cast.png"), height("stage.png") + height("shadow.png") + height("actors.png"));
+    EXPECT_NE(readFile(folder_ / "stage.png").value(), readFile(folder_ / "side.png").value());
+    EXPECT_THAT(run({"plot", "c.cast.yaml", "--frame", "1", "-o", "second.png"}), exits(0));
+    EXPECT_NE(readFile(folder_ / "second.png").value(), readFile(folder_ / "cast.png").value());
+    EXPECT_THAT(run({"plot", "c.cast.yaml", "--frame", "2", "-o", "x.png"}).errors, HasSubstr("--frame 2 is beyond its last, 1"));
+    EXPECT_THAT(run({"plot", "c.cast.yaml", "--figure", "search", "-o", "x.png"}).errors, HasSubstr("needs the report"));
+    EXPECT_THAT(run({"plot", "p.pattern.yaml", "--figure", "stage", "-o", "x.png"}).errors, HasSubstr("needs a cast"));
+}
+
+TEST_F(PlotCommand, says_what_it_cannot_draw) {
+    EXPECT_TRUE(writeFile(folder_ / "other.json", "{\"history\": 3}"));
+    EXPECT_TRUE(writeFile(folder_ / "broken.json", "{"));
+    for (const char* file : {"other.json", "broken.json"}) {
+        const Outcome refused = run({"plot", file, "-o", "x.png"});
+        EXPECT_THAT(refused, exits(1));
+        EXPECT_THAT(refused.errors, HasSubstr(std::string(file) + ": is no report of a search"));
+    }
+    EXPECT_THAT(run({"plot", "p.json", "--figure", "spectrum", "-o", "x.png"}).errors, HasSubstr("needs a pattern"));
+    EXPECT_THAT(run({"plot", "p.pattern.yaml", "--figure", "search", "-o", "x.png"}).errors, HasSubstr("needs the report"));
+    EXPECT_THAT(run({"plot", "absent.pattern.yaml", "-o", "x.png"}).errors, HasSubstr("absent.pattern.yaml"));
+    EXPECT_THAT(run({"plot", "p.pattern.yaml", "-o", "x.jpg"}), exits(2));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "x.png"));
+}
+
+}  // namespace
+}  // namespace fantascope

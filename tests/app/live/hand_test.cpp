@@ -1,0 +1,226 @@
+#include "app/live/hand.h"
+
+#include "app/running_show.h"
+
+#include <gmock/gmock.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace fantascope::app {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class HandPart : public testing::Test {
+protected:
+    HandPart() {
+        hand_.tell = [this](const std::string& sentence) { told_.push_back(sentence); };
+    }
+    void press(show::Button button) {
+        for (const bool down : {true, false}) run_.world.press(run_.buttonOf(button), down);
+        hand_.tick(run_.clock.now());
+    }
+    show::ShowState stateOfLamps() {
+        show::ShowState state;
+        lamps_.stateAt(run_.clock.now(), state);
+        return state;
+    }
+
+    RunningShow run_;
+    PlaybackReplica lamps_{run_.inputs};
+    Hand hand_{run_.show, run_.inputs, run_.site, run_.devices, Time{}};
+    std::vector<std::string> told_;
+};
+
+TEST_F(HandPart, a_press_reaches_every_part_of_the_show_and_the_operator) {
+    run_.clock.advance(2s);
+    press(show::Button::Go);
+    EXPECT_EQ(stateOfLamps().cue, 0);
+    EXPECT_THAT(told_, ElementsAre("cue 1 of 6: Dusk"));
+    run_.clock.advance(2s);
+    press(show::Button::Blackout);
+    EXPECT_TRUE(stateOfLamps().blackout);
+    EXPECT_THAT(told_, Contains("blackout: pictures and lamps are dark"));
+    press(show::Button::Blackout);
+    EXPECT_EQ(told_.back(), "light: the blackout is over");
+    ASSERT_EQ(hand_.cues().size(), 1u);
+    EXPECT_EQ(hand_.cues()[0].name, "Dusk");
+    EXPECT_EQ(hand_.cues()[0].entered, 2s);
+}
+
+// Example failure: a part whose thread stood still for a while stays in a cue that the others have
+// left.
+TEST_F(HandPart, a_part_that_has_not_looked_for_long_misses_no_input) {
+    for (int input = 0; input < 999; ++input) run_.inputs.submit({2s, show::Input::Kind::Blackout});
+    run_.inputs.submit(run_.jumpTo("Full"));
+    run_.clock.advance(3s);
+    const show::ShowState state = stateOfLamps();
+    EXPECT_EQ(state.inputs, 1000u);
+    EXPECT_TRUE(state.blackout);
+    EXPECT_EQ(run_.show.cues[static_cast<std::size_t>(state.cue)].name, "Full");
+}
+
+// Otherwise the operator presses again, harder.
+TEST_F(HandPart, says_why_a_press_did_nothing) {
+    run_.clock.advance(2s);
+    press(show::Button::Back);
+    EXPECT_THAT(told_, Contains(HasSubstr("ignored")));
+    EXPECT_EQ(stateOfLamps().cue, -1);
+}
+
+TEST_F(HandPart, a_controller_that_is_pulled_out_and_put_back_presses_nothing) {
+    run_.clock.advance(2s);
+    run_.world.press(run_.buttonOf(show::Button::Go), true);
+    run_.world.setPlugged("cue controller", false);
+    hand_.tick(run_.clock.now());
+    run_.clock.advance(2s);
+    run_.world.setPlugged("cue controller", true);
+    hand_.tick(run_.clock.now());
+    EXPECT_EQ(stateOfLamps().cue, -1);
+    press(show::Button::Go);
+    EXPECT_EQ(stateOfLamps().cue, 0);
+}
+
+// What a button of the default show is good for, as its lamp says it. Cue 1 (Dusk) takes some
+// seconds to come.
+TEST_F(HandPart, lights_the_buttons_by_what_a_press_would_do) {
+    using enum ButtonLight::State;
+    bool editing = false;
+    hand_.editing = [&] { return editing; };
+    const auto lit = [&](show::Button button) {
+        hand_.tick(run_.clock.now());
+        return run_.world.light(run_.buttonOf(button)).state;
+    };
+    EXPECT_EQ(lit(show::Button::Go), Ready);
+    EXPECT_EQ(lit(show::Button::Back), Off) << "there is no cue before";
+    EXPECT_EQ(lit(show::Button::Blackout), Off);
+    EXPECT_EQ(run_.world.light(run_.buttonOf(show::Button::Blackout)).word, "DARK");
+
+    run_.clock.advance(2s);
+    press(show::Button::Go);
+    EXPECT_EQ(lit(show::Button::Go), Active) << "it fades";
+    run_.clock.advance(run_.cues.cues[0].fade);
+    EXPECT_EQ(lit(show::Button::Go), Ready);
+    EXPECT_EQ(lit(show::Button::Back), Off);
+    press(show::Button::Go);
+    EXPECT_EQ(lit(show::Button::Back), Ready);
+
+    press(show::Button::Blackout);
+    EXPECT_EQ(lit(show::Button::Blackout), Alarm);
+    press(show::Button::Blackout);
+    EXPECT_EQ(lit(show::Button::Blackout), Off);
+
+    run_.inputs.submit(run_.jumpTo(run_.show.cues.back().name));
+    run_.clock.advance(run_.cues.cues.back().fade);
+    EXPECT_EQ(lit(show::Button::Go), Off) << "this is the last cue";
+    EXPECT_EQ(lit(show::Button::Back), Ready);
+}
+
+// Counts what it is told, and is otherwise not there.
+class CountingController final : public CueController {
+public:
+    explicit CountingController(std::vector<std::pair<int, ButtonLight>>& told) : told_(told) {}
+    DeviceStatus status() const override { return {}; }
+    std::optional<ButtonEvent> poll() override { return std::nullopt; }
+    void light(int button, const ButtonLight& light) override { told_.emplace_back(button, light); }
+
+private:
+    std::vector<std::pair<int, ButtonLight>>& told_;
+};
+
+TEST(HandLights, are_told_once_a_change_and_of_editing_too) {
+    using enum ButtonLight::State;
+    using testing::Pair;
+    RunningShow run;
+    std::vector<std::pair<int, ButtonLight>> told;
+    run.site.buttons = {{4, show::Button::Go}, {7, show::Button::Edit}, {9, show::Button::Left}};
+    run.devices.cueController = std::make_unique<CountingController>(told);
+    Hand hand{run.show, run.inputs, run.site, run.devices, Time{}};
+    bool editing = false;
+    hand.editing = [&] { return editing; };
+    const auto toldIn = [&](Time length) {
+        told.clear();
+        for (const Time end = run.clock.now() + length; run.clock.now() < end; run.clock.advance(5ms)) hand.tick(run.clock.now());
+        return told;
+    };
+    EXPECT_THAT(toldIn(1s), ElementsAre(Pair(4, ButtonLight{Ready, "GO"}), Pair(7, ButtonLight{Off, "EDIT"}),
+                                        Pair(9, ButtonLight{Off, "LEFT"})));
+    EXPECT_THAT(toldIn(1s), ElementsAre());
+    editing = true;
+    EXPECT_THAT(toldIn(1s), ElementsAre(Pair(7, ButtonLight{Active, "EDIT"}), Pair(9, ButtonLight{Ready, "LEFT"})));
+    run.inputs.submit({run.clock.now(), show::Input::Kind::Go});
+    EXPECT_THAT(toldIn(run.cues.cues[0].fade + 1s),
+                ElementsAre(Pair(4, ButtonLight{Active, "GO"}), Pair(4, ButtonLight{Ready, "GO"})));
+}
+
+// The default site's, with a gate that starts the next cue and an emergency button, each the second
+// contact of a bank of its own.
+TEST(ContactsPart, a_gate_steps_the_cues_and_an_emergency_button_darkens_the_show) {
+    RunningShow run;
+    const show::DeviceConfig simulated{"simulated", valueOf(ConfigNode::parse("driver: simulated\n", "site.yaml"))};
+    run.site.contactBanks = {{"doors", simulated}, {"desk", simulated}};
+    run.site.contacts = {{"gate", 0, 1, show::ContactAction::Go, {}},
+                         {"emergency", 1, 1, show::ContactAction::Dark, show::ContactAction::Light}};
+    run.devices = valueOf(openDevices(run.site, Backends::SimulatedHeadless, {run.clock, &run.world}));
+    PlaybackReplica lamps{run.inputs};
+    Hand hand{run.show, run.inputs, run.site, run.devices, Time{}};
+    const auto stateAfter = [&](const char* bank, bool closed) {
+        run.world.setContact(bank, 1, closed);
+        hand.tick(run.clock.now());
+        run.clock.advance(2s);
+        show::ShowState state;
+        lamps.stateAt(run.clock.now(), state);
+        return state;
+    };
+    hand.tick(run.clock.now());
+    EXPECT_EQ(stateAfter("doors", true).cue, 0);
+    EXPECT_EQ(stateAfter("doors", false).cue, 0);
+    EXPECT_EQ(stateAfter("doors", true).cue, 1);
+    EXPECT_TRUE(stateAfter("desk", true).blackout);
+    EXPECT_FALSE(stateAfter("desk", false).blackout);
+    for (const char* bank : {"doors", "desk"}) run.world.setPlugged(bank, false);
+    EXPECT_FALSE(stateAfter("desk", true).blackout) << "nobody can know";
+    EXPECT_EQ(stateAfter("doors", false).cue, 1);
+    for (const char* bank : {"doors", "desk"}) run.world.setPlugged(bank, true);
+    EXPECT_TRUE(stateAfter("doors", true).blackout) << "it was pressed meanwhile";
+    EXPECT_EQ(stateAfter("doors", true).cue, 1) << "the gate moved while nobody saw it";
+}
+
+std::vector<Time> pressesOf(GoSchedule schedule) {
+    std::vector<Time> presses;
+    for (Time time{}; time < 70s; time += 10ms)
+        while (schedule.due(time)) presses.push_back(time);
+    return presses;
+}
+
+TEST(GoSchedule, reaches_every_cue_in_an_equal_share_of_the_length) {
+    EXPECT_THAT(pressesOf({3, false, 60s}), ElementsAre(3340ms, 23340ms, 43340ms)) << "after a moment of darkness";
+    EXPECT_THAT(pressesOf({2, true, 60s}), ElementsAre(20s, 40s)) << "the cue that is on has its share first";
+    EXPECT_THAT(pressesOf({0, true, 60s}), ElementsAre());
+}
+
+TEST(GoSchedule, says_when_the_next_press_is) {
+    GoSchedule schedule(2, true, 60s);
+    EXPECT_EQ(schedule.next(), 20s);
+    EXPECT_TRUE(schedule.due(20s));
+    EXPECT_EQ(schedule.next(), 40s);
+    EXPECT_TRUE(schedule.due(40s));
+    EXPECT_EQ(schedule.next(), Time::max());
+}
+
+TEST(GoSchedule, ends_when_the_operator_takes_over) {
+    GoSchedule schedule(3, false, 60s);
+    EXPECT_TRUE(schedule.due(10s));
+    schedule.end();
+    EXPECT_FALSE(schedule.due(50s));
+    EXPECT_TRUE(schedule.ended());
+}
+
+}  // namespace
+}  // namespace fantascope::app
