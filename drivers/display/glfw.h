@@ -5,10 +5,10 @@
 #include "drivers/display/glfw_library.h"
 #include "drivers/display/monitor_watch.h"
 #include "drivers/display/refresh_train.h"
+#include "drivers/display/screen_events.h"
 
 #include "device/display_sink.h"
 
-#include "core/bounded_queue.h"
 #include "core/config.h"
 
 #include <memory>
@@ -58,7 +58,7 @@ public:
     Result<void> finish() override;
     Result<Shown> present() override;
     Result<Shown> presentWith(Time leading) override;
-    std::optional<ScreenEvent> pollEvent() override { return events_.pop(); }
+    std::optional<ScreenEvent> pollEvent() override { return events_.take(); }
 
 private:
     GlfwDisplay(const DisplayRequest& request, const Surroundings& around, std::optional<MonitorClaim> wanted);
@@ -105,7 +105,7 @@ private:
     int swapInterval_ = -1;     // not set yet
     Time retryAt_{};
     glm::dvec2 pointer_{0.0};
-    BoundedQueue<ScreenEvent, 256> events_;  // what does not fit is lost: nobody has asked for a long time
+    ScreenEvents events_;
 
     mutable std::mutex mutex_;                       // status() reads what the render thread writes:
     std::string absence_ = "it was not opened yet";  // empty: Running

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/clock.h"
+
 #include <glm/vec2.hpp>
 
 namespace fantascope {
@@ -19,6 +21,7 @@ struct ScreenEvent {
     Kind kind = Kind::KeyDown;
     Key key{};
     glm::dvec2 at{0.0};  // of the pointer, in the surface's pixels, y down
+    Time moment{};       // on the display's clock
 };
 
 }  // namespace fantascope
