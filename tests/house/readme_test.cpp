@@ -119,6 +119,52 @@ TEST(Readme, names_files_that_are_there) {
     EXPECT_GT(commands, 30u) << "the commands were not found";
 }
 
+// A newcomer sees what to type and what comes of it on the first screen, and no wall of text after.
+class FirstPage : public testing::Test {
+protected:
+    FirstPage() {
+        for (const TextFile& file : repositoryFiles())
+            if (file.path == "README.md") lines_ = file.lines;
+    }
+    std::size_t lineOf(std::string_view beginning) const {
+        const auto found = std::ranges::find_if(lines_, [&](const std::string& line) { return line.starts_with(beginning); });
+        return static_cast<std::size_t>(found - lines_.begin());
+    }
+    std::vector<std::string> lines_;
+};
+
+TEST_F(FirstPage, begins_with_the_two_commands_and_a_picture) {
+    EXPECT_LT(lineOf("tools/rehearse"), lineOf("tools/test"));
+    EXPECT_LT(lineOf("tools/test"), lineOf("!["));
+    EXPECT_LT(lineOf("!["), 15u);
+    EXPECT_LT(lineOf("!["), lineOf("## "));
+}
+
+// Of each paragraph that is no list, table, heading or code.
+TEST_F(FirstPage, has_paragraphs_of_at_most_three_sentences) {
+    std::vector<std::string> walls;
+    std::string paragraph;
+    bool inBlock = false;
+    std::size_t paragraphs = 0;
+    const auto end = [&] {
+        std::size_t sentences = 0;
+        for (std::size_t at = 0; (at = paragraph.find(". ", at)) != std::string::npos; ++at) ++sentences;
+        if (sentences > 3) walls.push_back(paragraph);
+        if (sentences > 0) ++paragraphs;
+        paragraph.clear();
+    };
+    for (const std::string& line : lines_) {
+        if (line.starts_with("```")) inBlock = !inBlock;
+        if (line.empty() || inBlock || line.find_first_of("#|-!`") == 0)
+            end();
+        else
+            paragraph += line + " ";
+    }
+    end();
+    EXPECT_THAT(walls, IsEmpty());
+    EXPECT_GT(paragraphs, 5u) << "the paragraphs were not found";
+}
+
 std::vector<std::string> told(const std::vector<std::string>& lines) {
     return missingIn({"README.md", lines}, [](const std::string& path) { return path == "shows/a"; });
 }
