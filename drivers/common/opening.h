@@ -16,39 +16,39 @@ class World;
 
 namespace fantascope::drivers {
 
-// What every driver's open() is handed besides its own part of the site file. Outlives the device.
-struct Surroundings {
+// What every driver's open() gets besides its own part of the site file. It outlives the device.
+struct DriverContext {
     Clock& clock;
-    site::World* world = nullptr;  // the simulated site's state; null where nothing is simulated
+    site::World* world = nullptr;  // the simulated site's state; null: nothing is simulated
 };
 
-// What a display driver is asked for.
+// The request to a display driver.
 struct DisplayRequest {
-    std::string name;  // the output's
+    std::string name;  // of the output
     glm::ivec2 size{1920, 1080};
-    double refreshRate = 60;  // Hz; what a display without a rate of its own runs at
+    double refreshRate = 60;  // Hz; for displays without a rate of their own
 };
 
-// A thing outside that a device needs, such as a serial line or an address on a network.
+// A resource that a device needs, such as a serial line or a network address.
 struct Use {
     std::string what;  // "/dev/ttyUSB0", "10.0.0.5:502"
-    std::string how;   // devices that use one thing alike share it; empty: each needs it for itself
+    std::string how;   // devices that use a resource in the same way share it; empty: exclusive use
 };
 
-// A device as its driver has read it from the site file. A driver's fromConfig() refuses every
-// wrong key and value and touches no device, so that a file can be checked anywhere; what it gives
+// A device that its driver has read from the site file. A driver's fromConfig() refuses every wrong
+// key and value without touching the device, so a file can be checked on any machine. Opening::open
 // is the only way to open the device.
 template <class Port>
 struct Opening {
-    // Error: no simulated site for a simulated driver, or no OpenGL. A device that is not there is
-    // Absent.
-    std::function<Result<std::unique_ptr<Port>>(const Surroundings&)> open;
+    // Error: a simulated driver without a simulated site, or no OpenGL. A missing device is no
+    // error: it is Absent.
+    std::function<Result<std::unique_ptr<Port>>(const DriverContext&)> open;
     std::vector<Use> uses{};
-    bool simulated = false;  // it needs Surroundings::world
-    // The name of what the device takes for one program alone (Claim), "Modbus module 10.0.0.5:502
-    // unit 1"; "" where any number of programs may use it. Of the device that open() would take
-    // now, so that two files which tell it by other words agree; of the words where none is there.
-    // It may look for the device and changes nothing of it.
+    bool simulated = false;  // needs DriverContext::world
+    // The name of the Claim on what the device uses exclusively: "Modbus module 10.0.0.5:502 unit
+    // 1". "" if any number of programs may use it. It names the device that open() would use now,
+    // so two files that describe one device differently agree. If no such device is there, it
+    // repeats the description. It may search for the device, but changes nothing on it.
     std::function<std::string()> claim = [] { return std::string(); };
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/common/surroundings.h"
+#include "drivers/common/opening.h"
 
 #include "show/site.h"
 
@@ -45,6 +45,6 @@ enum class Backends {
 
 // Error: what a driver says of its part of the site file. A device that is not there is no error.
 // Thread: the render thread, since displays are bound to it.
-Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::Surroundings& around);
+Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::DriverContext& context);
 
 }  // namespace fantascope::app
