@@ -216,7 +216,8 @@ int VideoNode::setFormat(FrameCoding coding, glm::ivec2 size, double rate, Grant
     const bool pairs = coding == FrameCoding::Yuyv || coding == FrameCoding::Uyvy || coding == FrameCoding::Nv12;
     constexpr std::uint32_t kMaxSide = 16384;  // pixels
     if (granted.fourcc != fourcc || granted.width < 2 || granted.height < 2 || granted.width > kMaxSide ||
-        granted.height > kMost || (pairs && granted.width % 2 != 0) || (coding == FrameCoding::Nv12 && granted.height % 2 != 0))
+        granted.height > kMaxSide || (pairs && granted.width % 2 != 0) ||
+        (coding == FrameCoding::Nv12 && granted.height % 2 != 0))
         return ENOTSUP;
     const int width = static_cast<int>(granted.width);
     // Some drivers report 0 for rows without padding, and some report nonsense for coded rows.

@@ -82,7 +82,7 @@ bool Outgoing::takeChange() {
     return true;
 }
 
-bool Outgoing::isDue(Time now) {
+bool Outgoing::takeDue(Time now) {
     if (takeChange()) {
         sent_ = now;
         return true;
@@ -306,7 +306,7 @@ void DmxNetwork::receiveAll(Time now) {
 void DmxNetwork::tick(Time now) {
     bool sent = false;
     for (Outgoing* const out : wire_.outgoing) {
-        if (!out->status.isRunning() || !out->isDue(now)) continue;
+        if (!out->status.isRunning() || !out->takeDue(now)) continue;
         protocol_->send(wire_, *out);
         sent = true;
     }

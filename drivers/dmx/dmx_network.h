@@ -67,9 +67,9 @@ public:
 
     // For the network's thread.
     bool isFresh() const { return fresh_; }
-    // Whether something must be sent at this tick: new levels, one of the three repeats after them,
-    // or the keep-alive.
-    bool isDue(Time now);
+    // Takes the frame of this tick: new levels, one of the three repeats after them, or the
+    // keep-alive. False: nothing must be sent.
+    bool takeDue(Time now);
     // Takes the next unsent frame before the port closes: the newest levels, or one of their
     // repeats. False: nothing is left.
     bool takePending();
@@ -204,7 +204,7 @@ private:
     std::mutex mutex_;  // guards wire_ and protocol_
     DmxWire wire_;
     bool connected_ = false;          // the wire exists
-    Time nextLinkCheck_{};            // at the interface
+    Time nextLinkCheck_{};            // of the interface
     Time nextTick_{};                 // when the thread wakes to send
     std::atomic<bool> idle_ = false;  // it sleeps for longer than one tick
     Service service_;

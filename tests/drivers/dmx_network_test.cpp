@@ -25,7 +25,7 @@ Time tick(int number) { return tickTime(number, DmxNetwork::kRate); }
 std::vector<int> sentTicks(Outgoing& out, int first, int last) {
     std::vector<int> ticks;
     for (int number = first; number <= last; ++number)
-        if (out.isDue(tick(number))) ticks.push_back(number);
+        if (out.takeDue(tick(number))) ticks.push_back(number);
     return ticks;
 }
 
@@ -53,9 +53,9 @@ TEST_F(OutgoingUniverse, sends_changing_levels_at_every_tick_and_the_newest_alon
     for (int number = 1; number < 100; ++number) {
         out_.setLevels(filled(0));
         out_.setLevels(filled(number));
-        ASSERT_TRUE(out_.isDue(tick(number)));
+        ASSERT_TRUE(out_.takeDue(tick(number)));
         ASSERT_EQ(out_.slots, filled(number));
-        ASSERT_FALSE(out_.isDue(tick(number))) << "once a tick";
+        ASSERT_FALSE(out_.takeDue(tick(number))) << "once a tick";
     }
 }
 
@@ -63,7 +63,7 @@ TEST_F(OutgoingUniverse, takes_the_same_levels_for_no_change) {
     std::vector<int> ticks;
     for (int number = 0; number < 60; ++number) {
         out_.setLevels(filled(7));
-        if (out_.isDue(tick(number))) ticks.push_back(number);
+        if (out_.takeDue(tick(number))) ticks.push_back(number);
     }
     EXPECT_THAT(ticks, ElementsAre(0, 1, 2, 3, 43));
 }
@@ -77,8 +77,8 @@ TEST_F(OutgoingUniverse, owes_the_newest_levels_and_what_is_left_of_their_repeat
     };
     EXPECT_EQ(owed(), 0);
     out_.setLevels(filled(1));
-    out_.isDue(tick(1));
-    out_.isDue(tick(2));
+    out_.takeDue(tick(1));
+    out_.takeDue(tick(2));
     EXPECT_EQ(owed(), 2);
     out_.setLevels(filled(0));
     EXPECT_EQ(owed(), 4);
@@ -88,18 +88,18 @@ TEST_F(OutgoingUniverse, owes_the_newest_levels_and_what_is_left_of_their_repeat
 
 TEST_F(OutgoingUniverse, keeps_to_the_ticks_when_one_is_late) {
     out_.setLevels(filled(1));
-    ASSERT_TRUE(out_.isDue(tick(5) + 20ms)) << "made up for at once";
+    ASSERT_TRUE(out_.takeDue(tick(5) + 20ms)) << "made up for at once";
     EXPECT_EQ(out_.nextDue(), tick(6));
 }
 
 TEST_F(OutgoingUniverse, forgets_levels_of_before_a_loss) {
     out_.setLevels(filled(1));
-    out_.isDue(tick(1));
+    out_.takeDue(tick(1));
     out_.setLevels(filled(2));
     out_.forget();
     EXPECT_THAT(sentTicks(out_, 2, 100), IsEmpty());
     out_.setLevels(filled(1));
-    EXPECT_TRUE(out_.isDue(tick(101))) << "the same levels as before the loss are new to the line";
+    EXPECT_TRUE(out_.takeDue(tick(101))) << "the same levels as before the loss are new to the line";
 }
 
 class IncomingUniverse : public testing::Test {

@@ -131,7 +131,7 @@ TEST_F(RealNodes, share_dmabufs) {
     auto node = VideoNode::open(vivid_, error);
     ASSERT_TRUE(node) << error;
     VideoNode::Grant grant;
-    ASSERT_EQ(node->ask(FrameCoding::Yuyv, {640, 360}, 30, grant), 0);
+    ASSERT_EQ(node->setFormat(FrameCoding::Yuyv, {640, 360}, 30, grant), 0);
     EXPECT_FALSE(node->sharesDmabufs()) << "before it streams";
     ASSERT_EQ(node->start(), 0);
     EXPECT_TRUE(node->sharesDmabufs());
