@@ -144,7 +144,7 @@ Result<cv::Mat> decode(const fs::path& path) {
     const auto refused = [&](std::string_view why) {
         return Error(fmt::format("{}: {}; save it again as a PNG, 8 or 16 bits a channel", path.string(), why));
     };
-    constexpr std::string_view kNoPicture = "not a readable picture, or a damaged one";
+    constexpr std::string_view kNoPicture = "not a picture that can be read, or a damaged one";
     constexpr std::size_t kKind = 12;  // bytes that identify the format
     const auto kind = readStart(path, kKind);
     if (!kind) return kind.error();

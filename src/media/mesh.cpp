@@ -127,7 +127,7 @@ Result<TriangleMesh> readMesh(const std::filesystem::path& path) {
                                                                 aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
     if (files->refusal) return *files->refusal;
     if (scene == nullptr)
-        return refused(fmt::format("not a readable mesh: {}; export it as FBX, OBJ or glTF", importer.GetErrorString()));
+        return refused(fmt::format("not a mesh that can be read: {}; export it as FBX, OBJ or glTF", importer.GetErrorString()));
     TriangleMesh mesh;
     append(*scene, *scene->mRootNode, sceneFromFile(*scene), mesh);
     if (!std::all_of(mesh.vertices.begin(), mesh.vertices.end(), isFinite))

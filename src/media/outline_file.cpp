@@ -103,7 +103,7 @@ Result<Outline> readOutline(const fs::path& path) {
             fmt::format("is too intricate: it has {} parts and holes; the maximum is {}", rings.rings.size(), kMaxRings));
     const double pixel = 1.0 / std::max(picture.width(), picture.height());
     Outline outline = simplified(rings, std::max(kTolerance, kStairs * pixel), kMaxPoints);
-    if (outline.rings.empty()) return refused("shows nothing with an area; fill the shape, or draw it larger");
+    if (outline.rings.empty()) return refused("shows nothing that has an area; fill the shape, or draw it larger");
     return outline;
 }
 

@@ -26,7 +26,7 @@ using Owned = std::unique_ptr<Thing, Free>;
 Error notReadable(const std::string& file, GError* error) {
     const Owned<GError> owned(error);
     const std::string why = owned ? owned->message : "unknown error";
-    return Error(fmt::format("{}: not a readable SVG: {}", file, why.substr(0, why.find('\n'))));
+    return Error(fmt::format("{}: not an SVG that can be read: {}", file, why.substr(0, why.find('\n'))));
 }
 
 // cairo's colours are premultiplied by alpha.
@@ -85,7 +85,7 @@ Result<RgbaImage> readSvg(const std::filesystem::path& path, int side) {
                 end = glm::max(end, glm::ivec2(x + 1, y + 1));
             }
     if (begin.x >= end.x)
-        return Error(fmt::format("{}: draws nothing with an area; fill the shape, or give it a stroke", path.string()));
+        return Error(fmt::format("{}: draws nothing that has an area; fill the shape, or give it a stroke", path.string()));
     return draw(handle.get(), side, {begin, end, double(side) / std::max(end.x - begin.x, end.y - begin.y)}, path.string());
 }
 

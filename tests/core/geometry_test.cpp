@@ -128,8 +128,8 @@ TEST(Pose, looks_along_z_with_x_to_the_right_and_y_down) {
 
 TEST(Pose, a_view_without_a_direction_or_a_top_is_refused) {
     EXPECT_THAT(Pose::lookingAt({1, 2, 3}, {1, 2, 3}).error().message(), HasSubstr("target and position are the same point"));
-    EXPECT_THAT(Pose::lookingAt({0, 5, 0}, {0, 0, 0}).error().message(), HasSubstr("up direction"));
-    EXPECT_THAT(Pose::lookingAt({0, 5, 0}, {0, 0, 1}, {0, 0, 0}).error().message(), HasSubstr("up direction"));
+    EXPECT_THAT(Pose::lookingAt({0, 5, 0}, {0, 0, 0}).error().message(), HasSubstr("'up' is zero"));
+    EXPECT_THAT(Pose::lookingAt({0, 5, 0}, {0, 0, 1}, {0, 0, 0}).error().message(), HasSubstr("'up' is zero"));
 }
 
 }  // namespace

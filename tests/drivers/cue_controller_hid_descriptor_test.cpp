@@ -127,7 +127,7 @@ TEST(HidDescriptor, refuses_what_is_broken_and_says_where) {
     EXPECT_THAT(refusalOf("fe 04 00 00"), HasSubstr("long item"));
     EXPECT_THAT(refusalOf("fe"), HasSubstr("long item"));
     EXPECT_THAT(refusalOf("a1 01"), HasSubstr("no end"));
-    EXPECT_THAT(refusalOf("c0"), HasSubstr("no collection"));
+    EXPECT_THAT(refusalOf("c0"), HasSubstr("without a collection"));
     EXPECT_THAT(refusalOf("b4"), HasSubstr("pop without a push"));
     EXPECT_THAT(refusalOf("85 00"), HasSubstr("report id 0"));
     EXPECT_THAT(refusalOf("86 00 01"), HasSubstr("report id 256"));

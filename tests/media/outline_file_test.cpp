@@ -189,12 +189,12 @@ TEST_F(OutlineFileTest, points_are_few_however_intricate_the_drawing) {
 
 TEST_F(OutlineFileTest, what_shows_no_shape_is_refused_with_the_reason) {
     EXPECT_THAT(refusal(RgbaImage(40, 30, {200, 10, 10, 255})), HasSubstr("a.png: is of one colour; draw the shape on"));
-    EXPECT_THAT(refusal(RgbaImage(40, 30, {200, 10, 10, 0})), HasSubstr("a.png: shows nothing with an area"));
+    EXPECT_THAT(refusal(RgbaImage(40, 30, {200, 10, 10, 0})), HasSubstr("a.png: shows nothing that has an area"));
     EXPECT_THAT(refusal(RgbaImage(1, 1)), HasSubstr("of one colour"));
-    EXPECT_THAT(refusal("a.svg", svgOf("")), HasSubstr("a.svg: draws nothing with an area"));
-    EXPECT_THAT(refusal("a.svg", svgOf(R"(<path d="M10 10 H90"/>)")), HasSubstr("a.svg: draws nothing with an area"));
+    EXPECT_THAT(refusal("a.svg", svgOf("")), HasSubstr("a.svg: draws nothing that has an area"));
+    EXPECT_THAT(refusal("a.svg", svgOf(R"(<path d="M10 10 H90"/>)")), HasSubstr("a.svg: draws nothing that has an area"));
     EXPECT_THAT(refusal("a.svg", svgOf(R"(<path d="M1 1 H9" stroke="red" stroke-width=".001"/>)")),
-                HasSubstr("nothing with an area"));
+                HasSubstr("nothing that has an area"));
     EXPECT_THAT(refusal("a.svg", svgOf(R"(<path d="MNaN inf LZ"/>)")), HasSubstr("draws nothing"));
 
     RgbaImage noise(400, 400);
@@ -204,9 +204,9 @@ TEST_F(OutlineFileTest, what_shows_no_shape_is_refused_with_the_reason) {
 }
 
 TEST_F(OutlineFileTest, what_is_no_drawing_is_refused_with_its_name) {
-    EXPECT_THAT(refusal("a.svg", ""), HasSubstr("a.svg: not a readable SVG"));
-    EXPECT_THAT(refusal("a.svg", "words"), HasSubstr("a.svg: not a readable SVG"));
-    EXPECT_THAT(refusal("a.svg", "<html><body/></html>"), HasSubstr("a.svg: not a readable SVG"));
+    EXPECT_THAT(refusal("a.svg", ""), HasSubstr("a.svg: not an SVG that can be read"));
+    EXPECT_THAT(refusal("a.svg", "words"), HasSubstr("a.svg: not an SVG that can be read"));
+    EXPECT_THAT(refusal("a.svg", "<html><body/></html>"), HasSubstr("a.svg: not an SVG that can be read"));
     const std::string whole = svgOf(R"(<circle cx="3" cy="190" r=".5"/>)");
     EXPECT_THAT(refusal("a.svg", whole.substr(0, whole.size() - 8)),
                 AllOf(HasSubstr("a.svg: not an SVG"), testing::Not(HasSubstr("\n"))));

@@ -235,7 +235,7 @@ TEST_F(PatternCommand, bad_input_is_refused_with_one_message_and_leaves_nothing)
     folder_.file("floor.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
     EXPECT_THAT(refusal("guide.png", {"--shapes", "floor.obj"}), HasSubstr("floor.obj: seen from the front"));
     folder_.file("empty.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>");
-    EXPECT_THAT(refusal("guide.png", {"--shapes", "empty.svg"}), HasSubstr("empty.svg: draws nothing with an area"));
+    EXPECT_THAT(refusal("guide.png", {"--shapes", "empty.svg"}), HasSubstr("empty.svg: draws nothing that has an area"));
     ASSERT_TRUE(writePng(folder_ / "white.png", GreyImage(9, 9, 1)));
     EXPECT_THAT(refusal("guide.png", {"--shapes", "white.png"}), HasSubstr("white.png: is of one colour"));
     EXPECT_THAT(refusal("guide.png", {"--shapes", "circel"}), HasSubstr("did you mean 'circle'?"));
