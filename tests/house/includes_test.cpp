@@ -1,6 +1,6 @@
-// Holds the table of docs/design.md that says which folder may include what. Every include under
-// src and drivers is read; what no line of the tables here allows is refused, so a new library or a
-// new neighbour takes a line here, which somebody reads.
+// Checks the table of docs/design.md that says which folder may include what. It reads every
+// include under src and drivers and refuses whatever no line of these tables allows, so a new
+// library or neighbour needs a line here, which somebody reviews.
 
 #include "house/repository.h"
 
@@ -22,7 +22,7 @@ using testing::SizeIs;
 
 using Names = std::vector<std::string_view>;
 
-// The outside libraries by the headers that they are seen by: a folder, or a whole name.
+// Outside libraries by their headers: a folder, or a whole name.
 const std::map<std::string_view, Names> kLibraries = {
     {"fmt", {"fmt/"}},
     {"GLM", {"glm/"}},
@@ -55,13 +55,13 @@ const std::map<std::string_view, Names> kLibraries = {
 const Names kEverywhere = {"fmt", "GLM"};  // besides the standard library
 
 struct Row {
-    std::string_view folder;  // or the beginning of a file's name; the longest row that fits a file is its row
+    std::string_view folder;  // or the beginning of a file's name; the longest row that matches a file is its row
     Names ours;               // what it may include of ours besides its own folder
     Names others;             // libraries
     Names othersInCpp;        // libraries that no header may show
 };
 
-// A driver knows its own family and the simulated site's state; its vendor's library stays in its
+// A driver may use its own family and the simulated site's state; its vendor's library stays in its
 // .cpp.
 const Names kOfDrivers = {"core", "media", "device", "drivers/common", "drivers/site/world.h", "drivers/site/plug.h"};
 // A protocol on a serial line has the line from next door.
@@ -155,7 +155,7 @@ bool liesInAny(const Names& folders, std::string_view path) {
 
 std::string_view folderOf(std::string_view path) { return path.substr(0, path.rfind('/')); }
 
-// As the includes name it: without "src/".
+// A file's path as in includes, without "src/".
 std::string_view includeName(std::string_view file) { return file.starts_with("src/") ? file.substr(4) : file; }
 
 const Row* rowOf(std::string_view name) {
@@ -176,7 +176,7 @@ std::optional<std::string_view> libraryOf(const std::string& header) {
     return std::nullopt;
 }
 
-// Why the file that includes name so may not include <header>, or "".
+// Why a file named so in includes may not include <header>, or "".
 std::string whyNotOther(const Row& row, std::string_view name, const std::string& header) {
     const auto library = libraryOf(header);
     if (!library) return fmt::format("<{}> belongs to no library of the table", header);
@@ -229,7 +229,7 @@ TEST(Includes, are_those_of_the_design) {
     EXPECT_GT(files, 40u) << "the sources were not found";
 }
 
-// The reader itself can fail, and says what stands where.
+// Tests of the reader itself.
 std::vector<std::string> told(const std::string& path, const std::vector<std::string>& lines) {
     return forbiddenIncludes({path, lines});
 }

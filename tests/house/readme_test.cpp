@@ -22,12 +22,12 @@ using testing::IsEmpty;
 
 constexpr std::string_view kProgram = "fantascope";
 
-// What stands after these is made, or is no file.
+// Whatever follows these options is written, or is not a file.
 const std::set<std::string_view> kMakes = {"-o",      "--out",    "--image",    "--view",   "--each",   "--sheet",
                                            "--video", "--record", "--pictures", "--report", "--meshes", "--solutions"};
 
-// The words of each command of the program, with the line where it stands: whole lines of blocks,
-// and what is between back quotes in the text. A line that ends in a backslash goes on in the next.
+// The words of each command of the program, with its line: whole lines of code blocks, and text
+// between back quotes. A line that ends in a backslash continues on the next.
 struct Command {
     std::vector<std::string> words;
     std::size_t line;
@@ -80,7 +80,7 @@ bool isPath(const std::string& word) {
     return (path.has_extension() || word.find('/') != std::string::npos) && std::any_of(word.begin(), word.end(), isLower);
 }
 
-// The paths that no command before has made and `exists` does not know, each with its place.
+// The paths that no earlier command has made and that do not exist, each with its place.
 std::vector<std::string> missingIn(const TextFile& file, const auto& exists) {
     std::vector<std::string> missing;
     std::vector<std::string> made;

@@ -253,7 +253,7 @@ Result<std::optional<drivers::Claim>> claimForTest(const std::string& name, cons
 // Tries a device of the site, by the name in its status.
 Result<void> testDeclared(const Options& options, const show::Site& site, const std::optional<drivers::Claim>& claim,
                           DeviceTrial& trial, Clock& clock) {
-    const drivers::Surroundings around{clock};
+    const drivers::DriverContext context{clock};
     std::vector<std::string> names;
     const auto isIt = [&](const std::string& name) {
         names.push_back(name);
@@ -261,7 +261,7 @@ Result<void> testDeclared(const Options& options, const show::Site& site, const 
     };
     for (const show::Universe& universe : site.universes)
         if (isIt(fmt::format("universe {}", universe.number))) {
-            const auto port = TRY(drivers::openDmxPort(universe.port.options, universe.number, around));
+            const auto port = TRY(drivers::openDmxPort(universe.port.options, universe.number, context));
             const auto names = slotNames(site, universe.number);
             std::vector<std::size_t> slots;
             for (const auto& [slot, name] : names) slots.push_back(slot);
@@ -269,23 +269,23 @@ Result<void> testDeclared(const Options& options, const show::Site& site, const 
         }
     for (const show::Universe& universe : site.universes)
         if (universe.desk && isIt(fmt::format("desk {}", universe.number)))
-            return trial.tellDesk(*TRY(drivers::openDmxSource(universe.desk->device.options, universe.number, around)),
+            return trial.tellDesk(*TRY(drivers::openDmxSource(universe.desk->device.options, universe.number, context)),
                                   slotNames(site, universe.number));
     for (std::size_t bank = 0; bank < site.relayBanks.size(); ++bank)
         if (const auto& [name, device] = site.relayBanks[bank]; isIt(name)) {
             const auto safe = show::safeCoils(site, bank);
             const auto guard = TRY(RelayGuard::start(site, claim ? std::vector{claim->file()} : std::vector<int>(), name));
-            return trial.click(*TRY(drivers::openRelayBank(device.options, name, safe, around)), safe, relayNames(site, bank),
+            return trial.click(*TRY(drivers::openRelayBank(device.options, name, safe, context)), safe, relayNames(site, bank),
                                guard.get());
         }
     if (site.cueController && isIt("cue controller"))
-        return trial.tellPresses(*TRY(drivers::openCueController(site.cueController->options, around)), buttonNames(site));
+        return trial.tellPresses(*TRY(drivers::openCueController(site.cueController->options, context)), buttonNames(site));
     for (std::size_t bank = 0; bank < site.contactBanks.size(); ++bank)
         if (const auto& [name, device] = site.contactBanks[bank]; isIt(name))
-            return trial.tellContacts(*TRY(drivers::openInputBank(device.options, name, site.inputCount(bank), around)),
+            return trial.tellContacts(*TRY(drivers::openInputBank(device.options, name, site.inputCount(bank), context)),
                                       contactNames(site, bank));
     if (site.camera && isIt("camera"))
-        return trial.snapshot(*TRY(drivers::openCamera(site.camera->options, around)), options.picture);
+        return trial.snapshot(*TRY(drivers::openCamera(site.camera->options, context)), options.picture);
     for (const show::Output& output : site.outputs)
         if (output.name == options.test)
             return Error(
@@ -297,7 +297,7 @@ Result<void> testDeclared(const Options& options, const show::Site& site, const 
 
 // Tries a device that was found, by its place, its kind or its identity.
 Result<void> testFound(const Options& options, DeviceTrial& trial, Clock& clock) {
-    const drivers::Surroundings around{clock};
+    const drivers::DriverContext context{clock};
     const auto found = drivers::findDevices();
     std::vector<std::string> names;
     for (const drivers::FoundDevice& device : found) {
@@ -308,7 +308,7 @@ Result<void> testFound(const Options& options, DeviceTrial& trial, Clock& clock)
         const ConfigNode node = TRY(ConfigNode::parse(device.options, "the device that was found"));
         const auto alone = [&](const auto& opening, const auto& tryIt) -> Result<void> {
             const auto claim = TRY(claimForTest(device.what, opening.claim()));
-            return tryIt(*TRY(opening.open(around)));
+            return tryIt(*TRY(opening.open(context)));
         };
         if (device.family == "dmx")
             return alone(TRY(drivers::readDmxPort(node, 1)), [&](DmxPort& port) { return trial.chase(port, firstSlots()); });

@@ -28,13 +28,13 @@ Result<ConfigNode> displayOptions(const show::DeviceConfig& declared, Backends b
 
 }  // namespace
 
-Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::Surroundings& around) {
+Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::DriverContext& context) {
     // All are read before the first is opened, so that a fault in any is reported before anything
     // lights up.
     ConfigFaults faults;
     const auto read = [&](auto opening, const ConfigNode& options, auto& all) {
         faults.take(std::move(opening), [&](auto good) {
-            if (good.simulated && around.world == nullptr)
+            if (good.simulated && context.world == nullptr)
                 faults.add(options.error(
                     "driver 'simulated' needs a simulated site, and there is none; rehearse, or name a real driver"));
             all.push_back(std::move(good));
@@ -77,18 +77,18 @@ Result<Devices> openDevices(const show::Site& site, Backends backends, const dri
     TRY(faults.result());
 
     Devices devices;
-    for (const auto& display : displays) devices.displays.push_back(TRY(display.open(around)));
+    for (const auto& display : displays) devices.displays.push_back(TRY(display.open(context)));
     auto desk = desks.begin();
     for (std::size_t i = 0; i < site.universes.size(); ++i) {
-        auto port = TRY(ports[i].open(around));
+        auto port = TRY(ports[i].open(context));
         Devices::Line line{site.universes[i].number, std::move(port), nullptr};
-        if (site.universes[i].desk) line.desk = TRY((desk++)->open(around));
+        if (site.universes[i].desk) line.desk = TRY((desk++)->open(context));
         devices.lines.push_back(std::move(line));
     }
-    for (const auto& bank : relayBanks) devices.relayBanks.push_back(TRY(bank.open(around)));
-    for (const auto& controller : controllers) devices.cueController = TRY(controller.open(around));
-    for (const auto& bank : contactBanks) devices.contactBanks.push_back(TRY(bank.open(around)));
-    for (const auto& camera : cameras) devices.camera = TRY(camera.open(around));
+    for (const auto& bank : relayBanks) devices.relayBanks.push_back(TRY(bank.open(context)));
+    for (const auto& controller : controllers) devices.cueController = TRY(controller.open(context));
+    for (const auto& bank : contactBanks) devices.contactBanks.push_back(TRY(bank.open(context)));
+    for (const auto& camera : cameras) devices.camera = TRY(camera.open(context));
     return devices;
 }
 

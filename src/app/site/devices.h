@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/common/surroundings.h"
+#include "drivers/common/opening.h"
 
 #include "show/site.h"
 
@@ -45,6 +45,6 @@ enum class Backends {
 
 // Error: a driver's, about its part of the site file. A missing device is no error. Thread: the
 // render thread, because displays are bound to it.
-Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::Surroundings& around);
+Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::DriverContext& context);
 
 }  // namespace fantascope::app
