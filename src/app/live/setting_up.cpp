@@ -1,6 +1,6 @@
 #include "app/live/setting_up.h"
 
-#include "app/live/edit_keys.h"
+#include "app/keys/edit_keys.h"
 #include "app/site/site_models.h"
 
 #include "plot/test_picture.h"

@@ -2,12 +2,12 @@
 
 #include "app/base/data_folder.h"
 #include "app/base/terminal_keys.h"
+#include "app/keys/operator_keys.h"
 #include "app/live/fault_log.h"
 #include "app/live/frame_loop.h"
 #include "app/live/frame_recorder.h"
 #include "app/live/hand.h"
 #include "app/live/lighting.h"
-#include "app/live/operator_keys.h"
 #include "app/live/part.h"
 #include "app/live/programme.h"
 #include "app/live/recording.h"

@@ -119,8 +119,7 @@ TEST_F(WatchOfDevices, reports_one_that_does_not_get_beyond_its_start) {
 TEST_F(Faults, of_a_start_are_waited_for_from_the_runs_start) {
     log_.begin(show::ShowClock(50s, 3h));
     DeviceWatch watch(log_, {}, 50s);
-    const std::vector<DeviceStatus> starting{
-        {"left", "glfw", DeviceState::Starting, LossAction::Dark, "looking for it", 0}};
+    const std::vector<DeviceStatus> starting{{"left", "glfw", DeviceState::Starting, LossAction::Dark, "looking for it", 0}};
     watch.look(50s + DeviceWatch::kPatience - 1ns, starting);
     EXPECT_TRUE(told().empty());
     watch.look(50s + DeviceWatch::kPatience, starting);
@@ -144,7 +143,7 @@ TEST_F(WatchOfDevices, reports_what_a_device_does_not_do_although_it_is_there) {
         watch_.look(at, std::vector{status});
     }
     EXPECT_THAT(told(), ElementsAre("cue controller (usb_hid): it refuses lights",
-                                     "cue controller (usb_hid) is all right again after 3.0 s"));
+                                    "cue controller (usb_hid) is all right again after 3.0 s"));
     EXPECT_THAT(reported(), ElementsAre("1-4 cue controller: cue controller (usb_hid): it refuses lights"));
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "app/base/terminal_keys.h"
-#include "app/live/edit_keys.h"
-#include "app/live/go_schedule.h"
-#include "app/live/run_keys.h"
+#include "app/keys/edit_keys.h"
+#include "app/keys/go_schedule.h"
+#include "app/keys/run_keys.h"
 
 #include "show/event.h"
 #include "show/input_log.h"

@@ -1,4 +1,4 @@
-#include "app/live/operator_keys.h"
+#include "app/keys/operator_keys.h"
 
 #include <string>
 #include <utility>

@@ -1,6 +1,6 @@
 // The keys at the windows, without a terminal: what they ask for, and when.
 
-#include "app/live/operator_keys.h"
+#include "app/keys/operator_keys.h"
 
 #include "app/running_show.h"
 

@@ -1,4 +1,4 @@
-#include "app/live/go_schedule.h"
+#include "app/keys/go_schedule.h"
 
 namespace fantascope::app {
 
