@@ -15,8 +15,8 @@ namespace fantascope::plot {
 struct CastPicture {
     // A beam's image on its screen.
     struct Image {
-        // Each actor's notes say how he stands. A last entry is for all platforms and
-        // props, if there are any.
+        // Each actor's notes say how he stands. A last entry is for all platforms and props, if
+        // there are any.
         std::vector<ActorShadow> actors;
         theatre::BitMask target;
         std::vector<std::string> lines;  // how well the shadow fits, and whether everyone can stand like that

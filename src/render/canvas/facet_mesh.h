@@ -12,8 +12,8 @@ namespace fantascope::render {
 // A vertex whose normal is that of a whole facet.
 struct FacetVertex {
     glm::vec3 position{0};
-    // Unit normal of the facet whose last corner this is. Zero: that facet is not shaded, or
-    // there is no such facet.
+    // Unit normal of the facet whose last corner this is. Zero: that facet is not shaded, or there
+    // is no such facet.
     glm::vec3 normal{0};
 };
 

@@ -38,8 +38,8 @@ public:
     };
     // One point of light and the screen in front of it.
     struct Light {
-        // To (X, Y, W): the shadow falls at X / W, Y / W on the screen; W is the distance
-        // from the light along its axis, metres.
+        // To (X, Y, W): the shadow falls at X / W, Y / W on the screen; W is the distance from the
+        // light along its axis, metres.
         glm::mat4x3 screenFromStage{1};
         glm::mat3 clipFromScreen{1};  // to (x, y, w), w >= 1 where W is 1; from the unrolled screen if it is curved
         glm::vec4 curve{0};           // of a curved screen: the light's place in its frame, and the cylinder's radius; metres
