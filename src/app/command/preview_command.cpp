@@ -98,7 +98,7 @@ Result<void> run(const Options& options) {
     PreviewPlaces places = options.places;
     if (options.fieldOfView) places.fieldOfView = radians(*options.fieldOfView);
     const glm::ivec2 size = options.size.value_or(glm::ivec2(1280, 720)), maskSize = mask.size();
-    if (std::min(maskSize.x, maskSize.y) < site::ProjectedLight::kLeastSide)
+    if (std::min(maskSize.x, maskSize.y) < site::ProjectedLight::kMinSide)
         return Error(fmt::format("{}: a picture of {} x {} pixels cannot be projected", options.mask.what.string(), maskSize.x,
                                  maskSize.y));
     LightPreview preview = TRY(LightPreview::create(std::move(mesh), places, maskSize, size,
