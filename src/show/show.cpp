@@ -1,5 +1,6 @@
 #include "show/show.h"
 
+#include "core/config.h"
 #include "core/geometry.h"
 
 #include <fmt/format.h>
@@ -112,7 +113,7 @@ Result<std::vector<Named<Wish>>> readNamed(const ConfigNode& node, Read read) {
     std::vector<Named<Wish>> wishes;
     ConfigFaults faults;
     for (const auto& [name, value] : TRY(node.entries()))
-        faults.take(Result<Wish>(read(value)), [&](Wish wish) { wishes.push_back({name, value, std::move(wish)}); });
+        faults.take(Result<Wish>(read(value)), [&](Wish wish) { wishes.push_back({name, value.here(), std::move(wish)}); });
     TRY(faults.result());
     return wishes;
 }

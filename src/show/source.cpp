@@ -218,7 +218,7 @@ Result<ShadowSource> readShadow(const ConfigNode& node) {
 }  // namespace
 
 Result<Source> readSource(const std::string& name, const ConfigNode& node) {
-    Source source{name, {}, node};
+    Source source{name, {}, node.here()};
     int kinds = 0;
     ConfigFields fields(node);
     const auto kind = [&](std::string_view key, auto read) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/config.h"
+#include "core/file_place.h"
 #include "core/fit.h"
 #include "core/result.h"
 
@@ -95,7 +96,7 @@ struct Source {
     std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource, ImageSource, VideoSource,
                  CameraSource, ShadowSource>
         picture;
-    ConfigNode at;  // for whoever has to refuse what is in its files
+    FilePlace at;  // for whoever has to refuse what is in its files
     Fit fit = Fit::Contain;
 };
 
