@@ -205,7 +205,7 @@ std::unique_ptr<OutputRenderer> rendererOf(const Settings& settings, const Patte
         .projection = {size, Warp::straight(size)}, .samples = settings.samples, .shaders = sourceFolder() + "/assets/shaders"};
     options.projection.light.dither = false;
     variant.set(options);
-    return valueOf(OutputRenderer::create(options, std::vector<PictureSource>{source}));
+    return valueOf(OutputRenderer::create(options, PictureSources::numbered({source})));
 }
 
 const show::OutputState kLook{{{0, 1.0f}}};

@@ -18,8 +18,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <span>
-#include <vector>
 
 namespace fantascope::render {
 
@@ -45,7 +43,7 @@ public:
     };
     // Error: a shader that does not compile (its file and the compiler's log); more pixels or
     // samples than this OpenGL has.
-    static Result<std::unique_ptr<OutputRenderer>> create(const Options& options, std::span<const PictureSource> sources);
+    static Result<std::unique_ptr<OutputRenderer>> create(const Options& options, const PictureSources& sources);
 
     // The projector is set otherwise from now on, its size aside. A mesh that comes where there was
     // none bends the corners of triangles that were made for a straight canvas: make another
@@ -60,8 +58,8 @@ public:
     // compiled while people watch. Error: OpenGL has no memory left.
     Result<void> warmUp(unsigned framebuffer);
     // Draws what the show shows on this output at show time `time`, in the wind of then, into
-    // `framebuffer`, the display's. Layers name sources by their index in create()'s. No allocation
-    // once every source has been shown.
+    // `framebuffer`, the display's. Layers show sources of create()'s. No allocation once every
+    // source has been shown.
     void draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer);
     // How much of the draw() before was spent on bringing instances and pictures to the GPU.
     Time uploading() const { return tools_.uploads.sum(); }
@@ -69,10 +67,14 @@ public:
 private:
     explicit OutputRenderer(DrawingTools tools) : tools_(std::move(tools)) {}
 
+    struct Shown {
+        PictureSource source;  // for its place on the canvas
+        std::unique_ptr<DrawnSource> drawn;
+    };
+
     DrawingTools tools_;
     std::optional<gpu::Composer> composer_;
-    std::vector<std::unique_ptr<DrawnSource>> sources_;
-    std::vector<PictureSource> pictures_;  // of sources_, for their places on the canvas
+    show::BySource<Shown> sources_;
     glm::ivec2 size_{0};
     std::optional<gpu::Overlay> overlay_;
     std::unique_ptr<DrawnSource> card_;  // null: the show

@@ -26,9 +26,9 @@ public:
     // have.
     static Result<std::unique_ptr<OffScreen>> open(const Projection& projection,
                                                    const std::shared_ptr<const render::BlendMap>& blend,
-                                                   const std::vector<render::PictureSource>& sources);
+                                                   const render::PictureSources& sources);
     // The whole canvas from edge to edge of `size` pixels, as it is before any projector.
-    static Result<std::unique_ptr<OffScreen>> open(glm::ivec2 size, const std::vector<render::PictureSource>& sources);
+    static Result<std::unique_ptr<OffScreen>> open(glm::ivec2 size, const render::PictureSources& sources);
     ~OffScreen();
 
     // Stored values as they would go to a projector. Valid until the next call.
