@@ -335,7 +335,8 @@ TEST(FrameLoopWind, each_output_sways_in_its_own) {
     cues.cues[0].fade = Time{};
     cues.cues[0].winds = {{.strength = 0}, {.strength = 4}};
     show::InputLog inputs(cues);
-    FrameLoop loop(run.site, inputs, {source}, sourceFolder() + "/assets", run.devices, run.clock);
+    FrameLoop loop(run.site, inputs, render::PictureSources::numbered({source}), sourceFolder() + "/assets", run.devices,
+                   run.clock);
     const std::array<render::FrameReader*, 2> readers{&loop.tap(0).addQueue(), &loop.tap(1).addQueue()};
     ASSERT_TRUE(loop.prepare());
     loop.begin(run.clock.now());
