@@ -50,7 +50,7 @@ void playShow(const Settings& settings) {
     const PictureSource source = settings.people > 0 ? PictureSource(swayingPeople({settings.people}))
                                                      : PictureSource(swayingCrystals({settings.crystals}));
     show::InputLog inputs(cues);
-    app::FrameLoop loop(site, inputs, {source}, sourceFolder() + "/assets", devices, clock);
+    app::FrameLoop loop(site, inputs, PictureSources::numbered({source}), sourceFolder() + "/assets", devices, clock);
     must(loop.prepare());
     const Time start = loop.refreshFrom(clock.now() + std::chrono::milliseconds(200)),
                end = start + fromSeconds(settings.seconds);

@@ -71,7 +71,7 @@ std::unique_ptr<OutputRenderer> rendererOf(const Settings& settings, const Patte
         .projection = {size, Warp::straight(size)}, .samples = settings.samples, .shaders = sourceFolder() + "/assets/shaders"};
     options.projection.light.dither = false;
     variant.set(options);
-    return valueOf(OutputRenderer::create(options, std::vector<PictureSource>{source}));
+    return valueOf(OutputRenderer::create(options, PictureSources::numbered({source})));
 }
 
 }  // namespace fantascope::render

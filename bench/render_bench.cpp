@@ -57,7 +57,7 @@ void drawFrame(
         options.projection = {size, Warp::of(keystone.scaled(glm::dvec2(size) / glm::dvec2(kSize))).value(), {}, light};
         options.samples = kSamples;
         options.shaders = sourceFolder() + "/assets/shaders";
-        output.renderer = valueOf(OutputRenderer::create(options, sources));
+        output.renderer = valueOf(OutputRenderer::create(options, PictureSources::numbered(sources)));
         all.push_back(std::move(output));
     }
     show::OutputState look;

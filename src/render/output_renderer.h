@@ -18,8 +18,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <span>
-#include <vector>
 
 namespace fantascope::render {
 
@@ -45,7 +43,7 @@ public:
     };
     // Error: a shader does not compile (names its file and gives the compiler's log), or more
     // pixels or samples than OpenGL allows here.
-    static Result<std::unique_ptr<OutputRenderer>> create(const Options& options, std::span<const PictureSource> sources);
+    static Result<std::unique_ptr<OutputRenderer>> create(const Options& options, const PictureSources& sources);
 
     // Applies new settings of the projector; its size must stay. If the warp had no mesh when the
     // renderer was made, a new mesh bends only the corners of large triangles; make a new renderer
@@ -61,7 +59,7 @@ public:
     // the show. Error: OpenGL has no memory left.
     Result<void> warmUp(unsigned framebuffer);
     // Draws the output's state at show time `time`, in the wind of that time, into the display's
-    // `framebuffer`. Layers name sources by their index in create()'s. Does not allocate once every
+    // `framebuffer`. Layers name sources of create()'s. Does not allocate once every
     // source has been shown.
     void draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer);
     // How long the last draw() spent on sending instances and pictures to the GPU.
@@ -70,10 +68,14 @@ public:
 private:
     explicit OutputRenderer(DrawingTools tools) : tools_(std::move(tools)) {}
 
+    struct Shown {
+        PictureSource source;  // for its place on the canvas
+        std::unique_ptr<DrawnSource> drawn;
+    };
+
     DrawingTools tools_;
     std::optional<gpu::Composer> composer_;
-    std::vector<std::unique_ptr<DrawnSource>> sources_;
-    std::vector<PictureSource> pictures_;  // of sources_, for their places on the canvas
+    show::BySource<Shown> sources_;
     glm::ivec2 size_{0};
     std::optional<gpu::Overlay> overlay_;
     std::unique_ptr<DrawnSource> card_;  // null: the show

@@ -112,10 +112,14 @@ protected:
         return shadow;
     }
 
+    static PictureSource fitted(PictureSource source, Fit fit) {
+        source.fit = fit;
+        return source;
+    }
     static RgbaImage drawn(const Projection& projection, const PictureSource& source) {
         DrawnOutput output(projection, {source});
         const show::OutputState state{{{0, 1.0f}}};
-        if (const auto* camera = std::get_if<CameraSource>(&source))
+        if (const auto* camera = std::get_if<CameraSource>(&source.picture))
             camera->feed->publish(std::make_shared<const RgbaImage>(discPicture()));
         return output.frame(state);
     }
@@ -198,7 +202,7 @@ TEST_F(Fitting, follows_the_canvass_shape) {
     for (const Kind& kind : kinds()) {
         const PictureSource source = kind.make();
         DrawnOutput output(wide, {source});
-        if (const auto* camera = std::get_if<CameraSource>(&source))
+        if (const auto* camera = std::get_if<CameraSource>(&source.picture))
             camera->feed->publish(std::make_shared<const RgbaImage>(discPicture()));
         const show::OutputState state{{{0, 1.0f}}};
         (void)output.frame(state);

@@ -302,7 +302,7 @@ TEST(OutputRenderer, allocates_nothing_once_it_runs) {
 TEST(OutputRenderer, leaves_no_opengl_error_and_refuses_what_cannot_be_drawn) {
     DrawnOutput output({64, 36}, upright({64, 36}), {});
     const auto refusal = [&](const OutputRenderer::Options& options) {
-        const std::vector<PictureSource> sources = {SolidSource{}};
+        const auto sources = PictureSources::numbered({SolidSource{}});
         const auto renderer = OutputRenderer::create(options, sources);
         return renderer ? "accepted" : renderer.error().message();
     };

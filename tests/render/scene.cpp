@@ -122,7 +122,8 @@ DrawnOutput::DrawnOutput(const Projection& projection, const std::vector<Picture
     sink_ = valueOf(drivers::openDisplay(options, {"output", size, 30}, {clock_}));
     const Result<void> current = sink_->makeCurrent();
     FANTASCOPE_CHECK(current.has_value(), current.error().message());
-    renderer_ = valueOf(OutputRenderer::create({projection, std::move(blend), 4, shaderFolder()}, sources));
+    renderer_ =
+        valueOf(OutputRenderer::create({projection, std::move(blend), 4, shaderFolder()}, PictureSources::numbered(sources)));
     tap_ = std::make_unique<FrameTap>(0, size);
     newest_ = &tap_->addNewest(std::numeric_limits<double>::infinity());
 }

@@ -26,36 +26,32 @@ constexpr double kPatternRate = 30;  // frames per second of a pattern without -
 constexpr int kCanvasRows = 1080;    // of a pattern or a canvas without --size
 constexpr double kMaxFrames = 1e7;   // four days at 30 Hz
 
-// The patterns in a source.
-std::vector<const render::PatternSource*> patternsIn(const render::PictureSource& source) {
-    std::vector<const render::PatternSource*> patterns;
-    if (const auto* pattern = std::get_if<render::PatternSource>(&source)) patterns.push_back(pattern);
-    if (const auto* foliage = std::get_if<render::FoliageSource>(&source))
-        for (const render::ShadowLayer& layer : foliage->layers) patterns.push_back(&layer.leaves);
-    return patterns;
-}
-
 // The length of a source's loop, seconds; 0 if it does not move or does not loop.
-double loopOf(const render::PictureSource& source) {
-    if (const auto* video = std::get_if<render::VideoSource>(&source))
-        return seconds(video->stream->content().length) / video->speed;
-    if (const auto* shadow = std::get_if<render::ShadowSource>(&source)) return seconds(render::lengthOf(*shadow));
+double loopOf(const render::PatternSource& source) { return seconds(source.motion->period()); }
+double loopOf(const render::SolidSource&) { return 0; }
+double loopOf(const render::FoliageSource& source) {
     double longest = 0;
-    for (const render::PatternSource* pattern : patternsIn(source))
-        longest = std::max(longest, seconds(pattern->motion->period()));
+    for (const render::ShadowLayer& layer : source.layers) longest = std::max(longest, loopOf(layer.leaves));
     return longest;
 }
+double loopOf(const render::CausticsSource&) { return 0; }
+double loopOf(const render::MirrorBallSource&) { return 0; }
+double loopOf(const render::ImageSource&) { return 0; }
+double loopOf(const render::VideoSource& source) { return seconds(source.stream->content().length) / source.speed; }
+double loopOf(const render::CameraSource&) { return 0; }
+double loopOf(const render::ShadowSource& source) { return seconds(render::lengthOf(source)); }
 
 // The length of the longest loop.
-double loopOf(const std::vector<render::PictureSource>& sources) {
+double loopOf(const render::PictureSources& sources) {
     double longest = 0;
-    for (const render::PictureSource& source : sources) longest = std::max(longest, loopOf(source));
+    for (const auto& [id, source] : sources)
+        longest = std::max(longest, std::visit([](const auto& kind) { return loopOf(kind); }, source.picture));
     return longest;
 }
 
 // The aspect of the first source that has one.
-std::optional<double> aspectOf(const std::vector<render::PictureSource>& sources) {
-    for (const render::PictureSource& source : sources)
+std::optional<double> aspectOf(const render::PictureSources& sources) {
+    for (const auto& [id, source] : sources)
         if (const auto aspect = render::aspectOf(source)) return aspect;
     return std::nullopt;
 }
@@ -122,7 +118,7 @@ Result<Film> Film::ofPattern(const FilmRequest& request) {
     if (!request.output.empty() || !request.cue.empty() || !request.from.empty() || !request.site.empty())
         return Error(
             fmt::format("{}: is a single pattern; --output, --site, --cue and --from are for shows only", request.what.string()));
-    const std::vector<render::PictureSource> sources = {TRY(readPatternSource(request.what))};
+    const auto sources = render::PictureSources::numbered({TRY(readPatternSource(request.what))});
     Film film;
     film.size_ = request.size.value_or(sizeOfCanvas(kCanvasRows, *aspectOf(sources)));
     film.frameRate_ = request.frameRate.value_or(kPatternRate);
@@ -160,7 +156,7 @@ Result<Film> Film::ofShow(const FilmRequest& request) {
     }
     film.frameRate_ = request.frameRate.value_or(output.refreshRate);
 
-    show::CueList& cues = programme.cues;
+    show::CueList cues = *programme.cues;
     std::size_t toCome = cues.cues.size() - (programme.firstInput ? static_cast<std::size_t>(programme.firstInput->cue) + 1 : 0);
     film.seconds_ = request.seconds.value_or(kShowSeconds);
     if (!request.cue.empty()) {  // it is entered at once and nothing follows it

@@ -26,9 +26,9 @@ public:
     // it.
     static Result<std::unique_ptr<OffScreen>> open(const Projection& projection,
                                                    const std::shared_ptr<const render::BlendMap>& blend,
-                                                   const std::vector<render::PictureSource>& sources);
+                                                   const render::PictureSources& sources);
     // Fills `size` pixels with the whole canvas, without a projector's warp and colours.
-    static Result<std::unique_ptr<OffScreen>> open(glm::ivec2 size, const std::vector<render::PictureSource>& sources);
+    static Result<std::unique_ptr<OffScreen>> open(glm::ivec2 size, const render::PictureSources& sources);
     ~OffScreen();
 
     // Returns stored values, as they would be sent to a projector. Valid until the next call.

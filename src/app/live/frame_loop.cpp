@@ -11,7 +11,7 @@
 
 namespace fantascope::app {
 
-FrameLoop::FrameLoop(const show::Site& site, const show::InputLog& inputs, std::vector<render::PictureSource> sources,
+FrameLoop::FrameLoop(const show::Site& site, const show::InputLog& inputs, render::PictureSources sources,
                      std::filesystem::path assets, Devices& devices, Clock& clock)
     : sources_(std::move(sources)),
       assets_(std::move(assets)),

@@ -48,8 +48,8 @@ public:
     static constexpr Time kHangs = std::chrono::seconds(5);
 
     // All outlive it. `assets`: the folder of the shaders.
-    FrameLoop(const show::Site& site, const show::InputLog& inputs, std::vector<render::PictureSource> sources,
-              std::filesystem::path assets, Devices& devices, Clock& clock);
+    FrameLoop(const show::Site& site, const show::InputLog& inputs, render::PictureSources sources, std::filesystem::path assets,
+              Devices& devices, Clock& clock);
     ~FrameLoop();
 
     // Where the frames that `output` shows are read. Readers come before the first frame, best
@@ -137,7 +137,7 @@ private:
     void spend(Output& output, FramePart part, Time time);
     void countLate(Output& output, std::int64_t refreshes);
 
-    std::vector<render::PictureSource> sources_;
+    render::PictureSources sources_;
     std::filesystem::path assets_;
     Clock& clock_;
     Time start_{};

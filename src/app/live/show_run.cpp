@@ -250,9 +250,9 @@ public:
         report.yardstickTicks = yardstickTicks_;
         report.yardstickLate = yardstickLate_;
         report.zCamera = watch_.series();
-        for (std::size_t i = 0; i < programme_.sources.size(); ++i)
-            if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources[i])) {
-                const std::string& name = programme_.show.sources[i].name;
+        for (const show::Source& source : programme_.show.sources)
+            if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources.find(source.id)->picture)) {
+                const std::string& name = source.name;
                 report.lateVideoFrames[name] = video->stream->lateFrames();
                 report.damagedVideoFrames[name] = video->stream->damagedFrames();
             }

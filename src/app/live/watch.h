@@ -23,13 +23,12 @@ namespace fantascope::app {
 // on, the camera's frames and the nominal site, and nothing of what really happens.
 class Watch {
 public:
-    // What an output is compared with, for each source of the show; null where there is nothing to
-    // compare.
-    using Comparisons = std::vector<std::shared_ptr<const vision::GuideComparison>>;
+    // What an output is compared with, for each source of the show that can be compared.
+    using Comparisons = show::BySource<std::shared_ptr<const vision::GuideComparison>>;
 
     // All outlive it; `camera`, `pictures` and `recording` may be null.
-    // `comparisons[output][source]`. What the camera sees goes on into `pictures`. Show time 0 is
-    // `start` on the clock.
+    // `comparisons[output]`. What the camera sees goes on into `pictures`. Show time 0 is `start`
+    // on the clock.
     Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
           render::PictureFeed* pictures, Time start, Recording* recording);
 

@@ -76,30 +76,13 @@ std::optional<double> shapeOf(const ShadowSource& source) { return ratio(source.
 }  // namespace
 
 std::optional<double> aspectOf(const PictureSource& source) {
-    return std::visit([](const auto& kind) { return shapeOf(kind); }, source);
+    return std::visit([](const auto& kind) { return shapeOf(kind); }, source.picture);
 }
 
 CanvasPart placeOf(const PictureSource& source, double canvasAspect) {
     const auto aspect = aspectOf(source);
     if (!aspect || canvasAspect <= 0) return {};
-    const Fit fit = std::visit(
-        [](const auto& kind) {
-            if constexpr (requires { kind.fit; })
-                return kind.fit;
-            else
-                return Fit::Stretch;
-        },
-        source);
-    return placeOnCanvas(*aspect, canvasAspect, fit);
-}
-
-PictureSource fitted(PictureSource source, Fit fit) {
-    std::visit(
-        [&](auto& kind) {
-            if constexpr (requires { kind.fit; }) kind.fit = fit;
-        },
-        source);
-    return source;
+    return placeOnCanvas(*aspect, canvasAspect, source.fit);
 }
 
 }  // namespace fantascope::render

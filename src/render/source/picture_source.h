@@ -4,6 +4,8 @@
 #include "pattern/shape/shape_pattern.h"
 #include "render/source/picture_feed.h"
 #include "render/source/video_stream.h"
+#include "show/source_id.h"
+#include "show/source_kinds.h"
 
 #include "core/clock.h"
 #include "core/fit.h"
@@ -12,9 +14,10 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include <cstdint>
 #include <memory>
 #include <optional>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -27,14 +30,13 @@ namespace fantascope::render {
 // A light pattern, shared by the outputs that show it.
 struct PatternSource {
     std::shared_ptr<const pattern::ShapePattern> pattern;
-    std::shared_ptr<const pattern::PatternMotion> motion;  // null: the shapes stand still
-    Fit fit = Fit::Contain;
+    std::shared_ptr<const pattern::PatternMotion> motion;  // null: the shapes rest
 };
 
-// The whole canvas in one colour.
-struct SolidSource {
-    glm::vec3 colour{1};  // linear light, 0..1
-};
+// These need nothing beside what the author says.
+using show::CausticsSource;
+using show::MirrorBallSource;
+using show::SolidSource;
 
 // The picture that a small hole throws, with which every edge is blurred.
 struct ShadowFilter {
@@ -53,41 +55,14 @@ struct ShadowLayer {
 // there is no shape, also beyond the canvas, a layer of leaves transmits everything and a layer of
 // holes nothing. Source: Ji et al. 2015, section 5.
 struct FoliageSource {
-    glm::vec3 light{1};               // without shadow: linear light; may exceed 1, since holes let little of it through
-    glm::vec3 shadow{0};              // in full shadow: linear light
-    std::vector<ShadowLayer> layers;  // at least one; all patterns have the same aspect; layers of holes are blurred
-    Fit fit = Fit::Contain;           // of all layers together
-};
-
-// Caustics: sunlight that waves focus and scatter on the floor under water.
-struct CausticsSource {
-    glm::vec3 light{1};     // under still water: linear light; the bright lines are several times brighter
-    glm::dvec2 size{1};     // of the canvas on the floor, metres
-    double depth = 0;       // of the water, metres
-    double waveLength = 1;  // metres, on average
-    double waveHeight = 0;  // metres, root mean square
-    std::uint64_t seed = 1;
-    Fit fit = Fit::Contain;
-};
-
-// The spots that a mirror ball turning in a lamp's beam throws on a wall. Places are in metres from
-// the canvas's middle: right, up, out of the wall.
-struct MirrorBallSource {
-    glm::vec3 light{1};     // of a spot at the same distance as the wall behind the ball, at normal incidence: linear light
-    glm::dvec2 size{1};     // of the canvas on the wall, metres
-    glm::dvec3 ball{0};     // its centre; in front of the wall
-    double radius = 0;      // metres
-    double facet = 0;       // a mirror's edge, metres
-    glm::dvec3 lamp{0};     // outside the ball, in front of the wall
-    double lampRadius = 0;  // metres
-    double turn = 1;        // seconds per turn; negative: the other way round
-    Fit fit = Fit::Contain;
+    glm::vec3 light{1};               // where nothing keeps it off: linear light, may exceed 1 where holes make little of it
+    glm::vec3 shadow{0};              // what is left in full shadow
+    std::vector<ShadowLayer> layers;  // at least one; all patterns of one aspect; holes are blurred
 };
 
 // A still picture.
 struct ImageSource {
     std::shared_ptr<const RgbaImage> picture;  // stored sRGB values, straight alpha
-    Fit fit = Fit::Contain;
 };
 
 // A video, whose stream is shared by the outputs that show it. After its end, its last frame stays.
@@ -95,7 +70,6 @@ struct VideoSource {
     std::shared_ptr<VideoStream> stream;
     bool loop = true;
     double speed = 1;  // positive
-    Fit fit = Fit::Contain;
 };
 // The position in the video at layer time `time`.
 Time positionAt(const VideoSource& source, Time time);
@@ -121,7 +95,6 @@ struct ShadowSource {
     int samples = 16;           // points of light per lamp that has a size
     Play play = Play::Once;
     double speed = 1;  // positive
-    Fit fit = Fit::Contain;
 };
 // The position in the cast's motion at layer time `time`, in frames since the first.
 double frameAt(const ShadowSource& source, Time time);
@@ -131,20 +104,57 @@ Time lengthOf(const ShadowSource& source);
 // A camera's picture; nothing before the first one.
 struct CameraSource {
     std::shared_ptr<PictureFeed> feed;
-    Fit fit = Fit::Contain;
 };
 
-// What a layer can show, in the order of Show::sources.
-using PictureSource = std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource, ImageSource,
-                                   VideoSource, CameraSource, ShadowSource>;
+// What a kind of the show's is once its files are read. A new kind needs its line here.
+template <class Kind>
+struct LoadedKind;
+template <>
+struct LoadedKind<show::PatternSource> : std::type_identity<PatternSource> {};
+template <>
+struct LoadedKind<show::SolidSource> : std::type_identity<SolidSource> {};
+template <>
+struct LoadedKind<show::FoliageSource> : std::type_identity<FoliageSource> {};
+template <>
+struct LoadedKind<show::CausticsSource> : std::type_identity<CausticsSource> {};
+template <>
+struct LoadedKind<show::MirrorBallSource> : std::type_identity<MirrorBallSource> {};
+template <>
+struct LoadedKind<show::ImageSource> : std::type_identity<ImageSource> {};
+template <>
+struct LoadedKind<show::VideoSource> : std::type_identity<VideoSource> {};
+template <>
+struct LoadedKind<show::CameraSource> : std::type_identity<CameraSource> {};
+template <>
+struct LoadedKind<show::ShadowSource> : std::type_identity<ShadowSource> {};
+
+template <class Kinds>
+struct LoadedKinds;
+template <class... Kinds>
+struct LoadedKinds<std::variant<Kinds...>> {
+    using Variant = std::variant<typename LoadedKind<Kinds>::type...>;
+    template <class Kind>
+    static constexpr bool kHas = (std::is_same_v<Kind, typename LoadedKind<Kinds>::type> || ...);
+};
+
+// What a layer can show, and how it fits on a canvas of another shape.
+struct PictureSource {
+    using Kinds = LoadedKinds<show::SourceKind>;
+
+    template <class Kind>
+    requires Kinds::kHas<Kind> PictureSource(Kind kind, Fit fit = Fit::Contain) : picture(std::move(kind)), fit(fit) {}
+
+    Kinds::Variant picture;
+    Fit fit;
+};
+
+// All that an output can show.
+using PictureSources = show::BySource<PictureSource>;
 
 // Width / height of a source's own picture; nothing for a source without an aspect.
 std::optional<double> aspectOf(const PictureSource& source);
 
 // The part of a canvas that a source covers. `canvasAspect`: width / height; 0: the source's own.
 CanvasPart placeOf(const PictureSource& source, double canvasAspect);
-
-// The source with another fit. A source without an aspect is returned as it is.
-PictureSource fitted(PictureSource source, Fit fit);
 
 }  // namespace fantascope::render

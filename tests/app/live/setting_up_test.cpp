@@ -62,7 +62,7 @@ protected:
             screens_.push_back(attended.get());
             display = std::move(attended);
         }
-        const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{glm::vec3(0.5f)});
+        const auto sources = render::PictureSources::numbered({run_.show.sources.size(), render::SolidSource{glm::vec3(0.5f)}});
         loop_.emplace(run_.site, run_.inputs, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output).addQueue());
         EXPECT_TRUE(loop_->prepare());
