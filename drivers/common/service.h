@@ -18,7 +18,7 @@ namespace fantascope::drivers {
 
 // The thread that attends to one real device, and what the device says of itself. A driver hands it
 // one function that lives through one life of the device; the service calls it again and again,
-// with a back-off from kSoonest to kLatest between, at once when called.
+// with a back-off from kSoonest to kLatest between, at once when called. An exception is an outage.
 //
 //     Outage MyDriver::attend(Service& service) {
 //         if (cannot be opened) return whyNotOpened(path, errno);
