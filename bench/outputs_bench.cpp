@@ -51,6 +51,7 @@ struct Settings {
     std::string driver = "headless";
     int outputs = 3, width = 640, height = 360, crystals = 333, people = 0, samples = 4, frames = 150;
     double rate = 30, seconds = 30;  // Hz; of each run
+    bool broken = false, aside = true;
 };
 
 void must(const Result<void>& result) { FANTASCOPE_CHECK(result.has_value(), result.error().message()); }
@@ -466,12 +467,12 @@ void playShow(const Settings& settings) {
     SteadyClock clock;
     app::setThreadRank(app::Rank::Render);
     std::string text = "fantascope: site\nversion: 1\noutputs:\n";
-    for (int i = 0; i < settings.outputs; ++i)
+    for (int i = 0; i < settings.outputs + (settings.broken ? 1 : 0); ++i)
         text += fmt::format("  - {{name: output-{}, display: {{driver: {}}}, size: [{}, {}], refresh_rate: {}}}\n", i,
                             settings.driver, settings.width, settings.height, settings.rate);
     const std::filesystem::path file = std::filesystem::temp_directory_path() / fmt::format("outputs-bench-{}.yaml", ::getpid());
     must(writeFile(file, text));
-    const show::Site site = valueOf(show::readSite(file));
+    show::Site site = valueOf(show::readSite(file));
     std::filesystem::remove(file);
     show::CueList cues;
     cues.dark.outputs.resize(site.outputs.size());
@@ -480,11 +481,13 @@ void playShow(const Settings& settings) {
     cues.cues.push_back({look, Time{}, std::nullopt});
 
     app::Devices devices = valueOf(app::openDevices(site, app::Backends::AsDeclared, {clock}));
+    if (settings.broken) site.outputs[0].projection.size = {100'000, 100'000};  // more than any OpenGL draws
     const PictureSource source = settings.people > 0 ? PictureSource(swayingPeople({settings.people}))
                                                      : PictureSource(swayingCrystals({settings.crystals}));
     show::InputLog inputs(cues);
     app::FrameLoop loop(site, inputs, {source}, sourceFolder() + "/assets", devices, clock);
     must(loop.prepare());
+    if (settings.aside) loop.makeRenderersAside();
     const Time start = loop.refreshFrom(clock.now() + std::chrono::milliseconds(200)),
                end = start + fromSeconds(settings.seconds);
     loop.begin(start);
@@ -516,6 +519,8 @@ void playShow(const Settings& settings) {
                settings.rate, shown, settings.driver, settings.seconds);
     for (const char* key : {"frames_by_output", "late_frames_by_cause", "yardstick", "frame_ms", "swap_skew_ms"})
         fmt::print("{}: {}\n", key, json[key].dump());
+    for (const DeviceStatus& display : loop.withFaults(devices.statuses()))
+        if (!display.detail.empty()) fmt::print("{}: {}\n", display.name, display.detail);
 }
 
 int runBench(int argc, char** argv) {
@@ -537,6 +542,8 @@ int runBench(int argc, char** argv) {
     show->add_option("--driver", settings.driver, "headless, or glfw on an X server")->capture_default_str();
     show->add_option("--seconds", settings.seconds)->capture_default_str();
     show->add_option("--rate", settings.rate, "Hz")->capture_default_str();
+    show->add_flag("--broken", settings.broken, "one output more, whose renderer can never be made");
+    show->add_flag("!--not-aside", settings.aside, "missing renderers are made on the render thread");
     show->add_option("--people", settings.people, "shadows of so many, of 5,000 triangles each, instead of crystals");
     CLI11_PARSE(program, argc, argv);
     if (show->parsed()) playShow(settings);

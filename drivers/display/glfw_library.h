@@ -4,6 +4,7 @@
 
 #include <glm/vec2.hpp>
 
+#include <atomic>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -53,7 +54,7 @@ private:
     struct RefusedRequest;
     GlfwLibrary() = default;
 
-    bool lost_ = false;
+    std::atomic<bool> lost_ = false;        // by whichever thread finds out
     std::set<unsigned long> destroyed_;     // windows, whoever did it
     std::set<std::pair<int, int>> logged_;  // errors of the X server and the requests that they were of
     glm::ivec2 free_{0};                    // pixels of the X screen: where the next window goes

@@ -42,7 +42,9 @@ struct Shown {
 // the next poll(). Until then memory that was mapped from it can be read. A new context comes when
 // the display does, and has a number of its own.
 // Thread: all methods but status() and pollEvent() are bound to the render thread, the context with
-// them.
+// them. The render thread may lend the context: after its release() another thread may call
+// makeCurrent(), framebuffer(), finish() and, at its end, release(). Until then the render thread
+// calls nothing of this display.
 class DisplaySink : public Device {
 public:
     // Pixels of the surface, constant while Running.
@@ -63,6 +65,8 @@ public:
     virtual int context() const = 0;
     // Makes this surface's context current, Running or not. Error: there is none.
     virtual Result<void> makeCurrent() = 0;
+    // Its context is current on the calling thread no longer, so that another thread may have it.
+    virtual void release() = 0;
     // The GL name of the framebuffer to draw into; its colours are stored sRGB values, row 0 of GL
     // at the bottom of the picture.
     virtual unsigned framebuffer() const = 0;
