@@ -43,12 +43,12 @@ std::vector<std::uint8_t> frameOf(const std::string& format, int number) {
 
 void measure(const std::string& format) {
     SteadyClock clock;
-    const drivers::Surroundings around{clock};
+    const drivers::DriverContext context{clock};
     MockMachine machine;
     MockCamera mock(machine, {.formats = {format}, .rates = {{format, kRate}}, .size = kSize});
     mock.plugIn(0);
     const auto options = ConfigNode::parse(fmt::format("driver: v4l2\nrate: {}\n", kRate), "bench.yaml").value();
-    const auto camera = drivers::V4l2Camera::fromConfig(options).value().open(around).value();
+    const auto camera = drivers::V4l2Camera::fromConfig(options).value().open(context).value();
     if (!mock.waitUntilTaken()) return;
 
     std::vector<std::vector<std::uint8_t>> frames;

@@ -47,9 +47,9 @@ public:
     ~Listener() { close(file_); }
     bool isOpen() const { return isOpen_; }
 
-    void listen(int patience) {
+    void listen(int timeout) {
         pollfd waited{file_, POLLIN, 0};
-        if (poll(&waited, 1, patience) <= 0) return;
+        if (poll(&waited, 1, timeout) <= 0) return;
         std::array<std::uint8_t, 1500> bytes;
         std::array<char, 256> control;
         iovec part{bytes.data(), bytes.size()};
@@ -103,11 +103,11 @@ int run(double length, const std::string& deadNode) {
         fmt::print(stderr, "UDP port {} is taken by a program that does not share it\n", kArtnetPort);
         return 1;
     }
-    const drivers::Surroundings around{clock};
+    const drivers::DriverContext context{clock};
     std::vector<std::unique_ptr<DmxPort>> ports;
     const auto send = [&](int universe, const std::string& keys) {
         const auto options = ConfigNode::parse("driver: artnet\n" + keys + "poll: false\n", "bench.yaml").value();
-        ports.push_back(drivers::openDmxPort(options, universe, around).value());
+        ports.push_back(drivers::openDmxPort(options, universe, context).value());
     };
     for (int i = 0; i < kUniverses; ++i) send(kFirst + i, "interface: lo\nnode: 127.0.0.1\n");
     if (!deadNode.empty()) send(kFirst + kUniverses, "interface: near\nnode: " + deadNode + "\n");

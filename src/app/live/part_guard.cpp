@@ -43,7 +43,7 @@ void PartGuard::tellFailure(Time moment, const char* why) noexcept {
 }
 
 void PartGuard::tellRecovery(Time moment) noexcept {
-    backOff_.began(moment);
+    backOff_.succeeded(moment);
     try {
         faults_.clear(showTimeOf_(moment), part_, FaultLog::Topic::Part, fmt::format("the part '{}' works again", part_));
     } catch (...) {

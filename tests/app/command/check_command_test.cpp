@@ -180,7 +180,7 @@ TEST(Check, what_the_theatre_reads_is_checked_as_it_would_be_read) {
               "ok free.motion.yaml: motion, 1 handle, 1.3 s, 12 frames a second, loops; there is no free.png to say whether its "
               "points are in the white\n"
               "ok moves.yaml: sequence, 2 frames, 80 x 60 px, 10 a second\n"
-              "ok bar.stage.yaml: stage, lamp, 0 platforms, 1 prop\n"
+              "ok bar.stage.yaml: stage, light, 0 platforms, 1 prop\n"
               "ok bar.hints.yaml: hints, 1 point\n"
               "ok w.yaml: pose weights\n");
 
@@ -312,7 +312,7 @@ TEST(Check, a_cast_is_checked_with_what_it_is_of) {
     EXPECT_EQ(check(folder, {{folder / "c.cast.yaml"}, std::nullopt}).lines,
               "ok c.cast.yaml: cast, 1 actor, 2 frames, 10 a second, 1.7 m high\n"
               "ok t.png: guide, 80 x 60 px\n"
-              "ok a.stage.yaml: stage, lamp, 0 platforms, 0 props\n"
+              "ok a.stage.yaml: stage, light, 0 platforms, 0 props\n"
               "ok s.yaml: sequence, 2 frames, 80 x 60 px, 10 a second\n");
 }
 

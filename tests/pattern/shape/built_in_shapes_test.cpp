@@ -145,7 +145,7 @@ TEST(BuiltInShapes, what_is_none_is_refused_with_the_list) {
                 AllOf(HasSubstr("'triangel' is not one of triangle, square"), HasSubstr("did you mean 'triangle'?")));
     EXPECT_THAT(refusal("letter-AB"), HasSubstr("letter-A (any character)"));
     EXPECT_THAT(refusal("letter-\u6f22"),
-                HasSubstr("letter-\u6f22: the font of the letters, DejaVu Sans Bold, has no such character"));
+                HasSubstr("letter-\u6f22: the font for letters, DejaVu Sans Bold, has no such character"));
     EXPECT_THAT(refusal("letter- "), HasSubstr("draws nothing for this character"));
 }
 
