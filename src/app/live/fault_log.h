@@ -22,7 +22,7 @@ namespace fantascope::app {
 // device has one fault of a topic at a time. Times are show time. Thread: any.
 class FaultLog {
 public:
-    enum class Topic { Missing, Trouble, Relays, Desk, SafeStates, EndLevels, Guard, Recording, RecordedFrames };
+    enum class Topic { Missing, Trouble, Relays, Desk, SafeStates, EndLevels, Guard, Recording, RecordedFrames, Part };
 
     // After kBurst faults of a topic within kRestless the next one is told as coming and going, and
     // nothing more until it was steady for so long.

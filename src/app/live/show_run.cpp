@@ -9,6 +9,7 @@
 #include "app/live/hand.h"
 #include "app/live/lighting.h"
 #include "app/live/part.h"
+#include "app/live/part_guard.h"
 #include "app/live/programme.h"
 #include "app/live/recording.h"
 #include "app/live/run_keys.h"
@@ -121,6 +122,7 @@ public:
           quitKey_(options.backends == Backends::AsDeclared),
           told_(inputs_) {
         frames_.begin(start_);
+        if (!options.asFastAsPossible) frames_.makeRenderersAside();
         if (recorder_) recorder_->begin(start_);
         frames_.publishStateTo(watch_.shown());
         hand_.edit = [this](show::Button button, bool pressed) { settingUp_.button(button, pressed); };
@@ -146,7 +148,7 @@ public:
         parts.push_back({"input", Hand::kRate, start_, [this](Time moment) { takeInput(moment); }, Rank::Input});
         parts.push_back({"lighting", Lighting::kRate, start_, [this](Time moment) { lighting_.tick(moment); }, Rank::Lighting});
         for (Part& relays : lighting_.relayParts()) parts.push_back(std::move(relays));
-        return parts;
+        return guardedParts(std::move(parts));
     }
     std::vector<Part> otherParts(const std::function<void(const RunStatus&)>& progress) {
         std::vector<Part> parts;
@@ -154,6 +156,7 @@ public:
         parts.push_back({"watch", Watch::kRate, start_, [this](Time moment) { watch_.tick(moment); }, Rank::Watch});
         if (recorder_ && !options_.asFastAsPossible)
             for (Part& video : recorder_->parts()) parts.push_back(std::move(video));
+        if (recorder_) parts.push_back(recorder_->tables());
         if (screenshots_)
             parts.push_back(
                 {"pictures", Screenshots::kRate, start_, [this](Time moment) { screenshots_->tick(moment); }, Rank::Watch});
@@ -167,7 +170,7 @@ public:
                  Rank::Watch});
             parts.push_back(yardstick());
         }
-        return parts;
+        return guardedParts(std::move(parts));
     }
 
     // The lights' parts, on threads that end with closeLights(); the stepped clock has them
@@ -180,9 +183,12 @@ public:
         clock_.sleepUntil(start_);
         const Time end = options_.length ? start_ + *options_.length : Time::max();
         const auto stopped = [&] { return supervisor_.ending(); };
+        PartGuard pictures("pictures", Rank::Lighting, faults_, showTimeOf()),
+            recording("recording", Rank::Watch, faults_, showTimeOf());
         while (!stopped() && frames_.nextDue() <= end) {
-            frames_.step();
-            if (recorder_ && options_.asFastAsPossible) recorder_->record(clock_.now());
+            if (!pictures.run(clock_.now(), [this](Time) { frames_.step(); })) clock_.sleepUntil(frames_.nextDue());
+            if (recorder_ && options_.asFastAsPossible)
+                recording.run(clock_.now(), [this](Time moment) { recorder_->record(moment); });
         }
         if (!stopped()) clock_.sleepUntil(end);  // the last frame is seen
         const bool inTime = !stopped();
@@ -230,7 +236,8 @@ public:
     // nobody was told yet. Once the lights are closed.
     void tellTheRest(const std::function<void(const RunStatus&)>& progress) {
         raiseLastFaults(length_);
-        if (news_.isThere()) progress(statusAt(start_ + length_));
+        PartGuard guard("progress", Rank::Input, faults_, showTimeOf());
+        if (news_.isThere()) guard.run(start_ + length_, [&](Time moment) { progress(statusAt(moment)); });
     }
 
     // Once all parts have ended.
@@ -266,6 +273,13 @@ public:
     const std::vector<UnsafeBank>& unsafe() const { return unsafe_; }  // once the lights are closed
 
 private:
+    PartGuard::ShowTimeOf showTimeOf() const {
+        return [this](Time moment) { return moment - start_; };
+    }
+    std::vector<Part> guardedParts(std::vector<Part> parts) {
+        for (Part& part : parts) part = guarded(std::move(part), faults_, showTimeOf());
+        return parts;
+    }
     void raiseLastFaults(Time at) {
         for (const auto& [bank, why] : unsafe_) {
             std::vector<std::string> relays;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 namespace fantascope::render {
@@ -55,7 +56,19 @@ void VideoStream::run() {
         if (missing == wanted_.end())
             wishes_.wait(wishes, std::memory_order_acquire);
         else
-            fetch(*missing);
+            fetchOrLeaveOut(*missing);
+    }
+}
+
+// A frame whose decoding fails by an exception is a damaged one.
+void VideoStream::fetchOrLeaveOut(std::uint32_t frame) {
+    try {
+        fetch(frame);
+    } catch (const std::exception& failure) {
+        if (!std::exchange(failureTold_, true))
+            log::warning("render", fmt::format("{}: a frame cannot be decoded: {}; it is left out", content_->file.string(),
+                                               failure.what()));
+        if (!has(frame)) publish(frame, nullptr);
     }
 }
 

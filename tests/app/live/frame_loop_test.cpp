@@ -39,6 +39,7 @@ public:
         clock_.advance(std::exchange(nextTakes, Time{}));
         return display_->makeCurrent();
     }
+    void release() override { display_->release(); }
     bool poll() override { return display_->poll(); }
     int context() const override { return display_->context(); }
     unsigned framebuffer() const override { return display_->framebuffer(); }
@@ -431,6 +432,7 @@ public:
     }
     int context() const override { return context_; }
     Result<void> makeCurrent() override { return display_ ? display_->makeCurrent() : Error("it is dead"); }
+    void release() override { display_->release(); }
     unsigned framebuffer() const override { return display_->framebuffer(); }
     Result<void> finish() override { return display_->finish(); }
     Result<Shown> present() override { return display_->present(); }

@@ -36,6 +36,7 @@ public:
     bool poll() override { return display_->poll(); }
     int context() const override { return display_->context(); }
     Result<void> makeCurrent() override { return display_->makeCurrent(); }
+    void release() override { display_->release(); }
     unsigned framebuffer() const override { return display_->framebuffer(); }
     Result<void> finish() override { return display_->finish(); }
     Result<Shown> present() override { return display_->present(); }
