@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
+#include <exception>
 #include <utility>
 #include <vector>
 
@@ -67,9 +68,24 @@ bool Service::wait(Time timeout, std::initializer_list<int> files) {
     return std::any_of(waited.begin() + 1, waited.end(), [](const pollfd& file) { return file.revents != 0; });
 }
 
+namespace {
+
+// One life of the device.
+Outage lifeOf(const Service::RunOnce& runOnce, Service& service) {
+    try {
+        return runOnce(service);
+    } catch (const std::exception& failure) {
+        return {DeviceState::Faulted, std::string("its driver failed: ") + failure.what()};
+    } catch (...) {
+        return {DeviceState::Faulted, "its driver failed"};
+    }
+}
+
+}  // namespace
+
 void Service::run() {
     for (Time pause = kMinPause; !ending_; pause = std::min(2 * pause, kMaxPause)) {
-        Outage outage = runOnce_(*this);
+        Outage outage = lifeOf(runOnce_, *this);
         if (ending_) return;
         {
             const std::lock_guard lock(mutex_);

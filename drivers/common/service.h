@@ -18,7 +18,7 @@ namespace fantascope::drivers {
 
 // The thread of one real device, and the device's status. The driver passes a function that runs
 // one life of the device, from opening it to losing it. The service calls it again and again, with
-// pauses that grow from kMinPause to kMaxPause; wake() ends a pause.
+// pauses that grow from kMinPause to kMaxPause; wake() ends a pause. An exception is an outage.
 //
 //     Outage MyDriver::runOnce(Service& service) {
 //         if (cannot be opened) return whyNotOpened(path, errno);

@@ -285,6 +285,10 @@ Result<void> GlfwDisplay::makeCurrent() {
     return {};
 }
 
+void GlfwDisplay::release() {
+    if (window_ != nullptr && glfwGetCurrentContext() == window_) glfwMakeContextCurrent(nullptr);
+}
+
 Result<void> GlfwDisplay::ensureRunning() {
     TRY(cable_.check());
     if (const auto lost = whyLost()) return Error(fmt::format("{} is absent: {}", request_.name, *lost));

@@ -51,6 +51,7 @@ public:
     bool poll() override;
     int context() const override { return context_; }
     Result<void> makeCurrent() override;
+    void release() override;
     // The window itself (0) if it can hold stored sRGB values, else a picture that finish() copies
     // there.
     unsigned framebuffer() const override { return framebuffer_; }

@@ -52,7 +52,7 @@ Result<std::shared_ptr<GlfwLibrary>> GlfwLibrary::shared() {
     }
     int opened = GLFW_FALSE;
     if (_XDisplay* const connection = lostDuring([](void* result) { *static_cast<int*>(result) = glfwInit(); }, &opened)) {
-        bool lost = false;
+        std::atomic<bool> lost = false;
         surviveLoss(connection, lost);
         XCloseDisplay(connection);
         return Error("the X server has ended");

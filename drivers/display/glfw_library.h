@@ -4,6 +4,7 @@
 
 #include <glm/vec2.hpp>
 
+#include <atomic>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -52,7 +53,7 @@ private:
     struct RefusedRequest;
     GlfwLibrary() = default;
 
-    bool lost_ = false;
+    std::atomic<bool> lost_ = false;        // set by whichever thread finds out
     std::set<unsigned long> destroyed_;     // windows, by whatever program
     std::set<std::pair<int, int>> logged_;  // errors of the X server, each with its request
     glm::ivec2 free_{0};                    // where the next window goes, pixels of the X screen

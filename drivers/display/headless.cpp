@@ -104,7 +104,7 @@ HeadlessDisplay::HeadlessDisplay(const DisplayRequest& request, const DriverCont
       context_(context) {}
 
 HeadlessDisplay::~HeadlessDisplay() {
-    if (eglGetCurrentContext() == context_) eglMakeCurrent(egl_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    release();
     eglDestroyContext(egl_, context_);
 }
 
@@ -117,9 +117,14 @@ Time HeadlessDisplay::refreshTime(std::int64_t number) const { return refreshes_
 Result<void> HeadlessDisplay::makeCurrent() {
     // Making the current context current again would make EGL flush.
     if (eglGetCurrentContext() == context_) return {};
+    eglBindAPI(EGL_OPENGL_API);  // each thread has its own, at first another
     if (!eglMakeCurrent(egl_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
         return Error(fmt::format("{}: its OpenGL context is current on another thread; use one render thread", request_.name));
     return {};
+}
+
+void HeadlessDisplay::release() {
+    if (eglGetCurrentContext() == context_) eglMakeCurrent(egl_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
 Result<void> HeadlessDisplay::finish() {

@@ -33,6 +33,7 @@ public:
     bool poll() override { return cable_.in(); }
     int context() const override { return 1; }
     Result<void> makeCurrent() override;
+    void release() override;
     unsigned framebuffer() const override { return framebuffer_; }
     Result<void> finish() override;
     Result<Shown> present() override;

@@ -3,6 +3,7 @@
 #include <X11/Xlib.h>
 #include <X11/Xlibint.h>  // the buffer of requests; its macros come last
 
+#include <atomic>
 #include <csetjmp>
 #include <utility>
 
@@ -14,7 +15,7 @@ struct Work {
     std::jmp_buf abandoned;
     Display* connection = nullptr;
 };
-Work* running = nullptr;
+thread_local Work* running = nullptr;  // another thread may find out about another connection
 
 // Replaces Xlib's own handler, which writes to the terminal. What follows is up to the connection's
 // own handler.
@@ -36,12 +37,12 @@ void makeRoomForRequests(Display* connection) {
 
 }  // namespace
 
-void surviveLoss(_XDisplay* connection, bool& lost) {
+void surviveLoss(_XDisplay* connection, std::atomic<bool>& lost) {
     XSetIOErrorHandler(onLoss);
     XSetIOErrorExitHandler(
         connection,
         [](Display* ended, void* flag) {
-            *static_cast<bool*>(flag) = true;
+            *static_cast<std::atomic<bool>*>(flag) = true;
             makeRoomForRequests(ended);
         },
         &lost);

@@ -1,15 +1,18 @@
 #pragma once
 
+#include <atomic>
+
 struct _XDisplay;  // Xlib's Display
 
 namespace fantascope::drivers {
 
 // Xlib ends the program when a connection to the X server ends; these functions prevent that.
-// Thread: one thread, that of all connections.
+// Thread: one thread, that of all connections. Whoever uses a connection finds out about its end,
+// which may be a thread that an OpenGL context was lent to.
 
 // When `connection` ends, `lost` becomes true and later requests are discarded. `lost` outlives the
 // connection.
-void surviveLoss(_XDisplay* connection, bool& lost);
+void surviveLoss(_XDisplay* connection, std::atomic<bool>& lost);
 
 // Calls `work(data)`, which waits for the X server, and abandons it if a connection ends meanwhile.
 // So `work` must be C code, or hold nothing that needs a destructor. Returns the connection that

@@ -5,9 +5,15 @@
 #include <unistd.h>
 
 #include <array>
+#include <exception>
 #include <utility>
 
 namespace fantascope::drivers {
+namespace {
+
+constexpr int kRetry = 1000;  // ms
+
+}  // namespace
 
 Result<std::shared_ptr<MonitorWatch>> MonitorWatch::shared() {
     static std::mutex mutex;
@@ -129,8 +135,20 @@ std::string MonitorWatch::follow() {
     return {};
 }
 
+// An exception is as good as the end of the connection: it is opened anew.
 void MonitorWatch::run() {
-    constexpr int kRetry = 1000;  // ms
+    while (!ending()) {
+        try {
+            attend();
+        } catch (const std::exception& failure) {
+            deny(std::string("the monitors cannot be looked at: ") + failure.what(), Whom::All);
+            screen_.reset();
+            wait(-1, kRetry);
+        }
+    }
+}
+
+void MonitorWatch::attend() {
     while (!ending()) {
         if (!screen_) {
             if (auto opened = XScreen::open())

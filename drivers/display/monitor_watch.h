@@ -53,6 +53,7 @@ public:
 private:
     MonitorWatch(std::unique_ptr<XScreen> screen, int wake);
     void run();
+    void attend();
     // Follows the monitors until the X server ends or this object is destroyed. Returns why the X
     // server ended.
     std::string follow();

@@ -1,6 +1,7 @@
 #include "core/config.h"
 
 #include "core/clock.h"
+#include "core/config_tree.h"
 #include "core/file.h"
 #include "core/geometry.h"
 #include "core/text.h"
@@ -12,38 +13,14 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <set>
-#include <sstream>
 #include <tuple>
 
 namespace fantascope {
 
 namespace fs = std::filesystem;
 
-struct ConfigNode::Impl {
-    std::shared_ptr<const fs::path> file;
-    YAML::Node node;
-    std::string path;  // "outputs[1].warp"
-
-    ConfigNode child(const YAML::Node& value, std::string childPath) const {
-        return ConfigNode(std::make_shared<Impl>(Impl{file, value, std::move(childPath)}));
-    }
-    std::string childPath(std::string_view key) const {
-        const std::string shown = printable(key);  // a path is for messages alone
-        return path.empty() ? shown : fmt::format("{}.{}", path, shown);
-    }
-    // What stands in the file, for a message.
-    std::string seen() const {
-        if (node.IsScalar()) return fmt::format("'{}'", printable(node.Scalar()));
-        return node.IsMap() ? "a map" : node.IsSequence() ? "a list" : "nothing";
-    }
-};
-
 namespace {
-
-// Names that a file's author chose are quoted in messages; no more than this of them.
-constexpr std::size_t kLongestMessage = 2000;
 
 // More than any name or path has.
 constexpr std::size_t kLongestName = 4096;
@@ -54,8 +31,6 @@ Result<std::string> shortText(const ConfigNode& node) {
     if (text.size() <= kLongestName) return text;
     return node.error(fmt::format("'{}' is {} bytes long, {} are the most", printable(text), text.size(), kLongestName));
 }
-
-std::pair<int, int> lineAndColumn(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
 
 std::string range(double low, double high, std::string_view unit) {
     const std::string space = unit.empty() ? "" : " ";
@@ -72,105 +47,76 @@ bool parseNumber(const std::string& text, Number& value) {
 
 }  // namespace
 
-namespace {
-
-// Line and column, in characters, of the first byte that is not UTF-8, if there is one.
-std::optional<std::pair<int, int>> placeOfNoUtf8(std::string_view text) {
-    std::pair place{1, 1};
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t length = utf8Length(text, at);
-        if (length == 0) return place;
-        place = text[at] == '\n' ? std::pair(place.first + 1, 1) : std::pair(place.first, place.second + 1);
-        at += length;
-    }
-    return std::nullopt;
-}
-
-}  // namespace
-
-namespace {
-
-// The line in which a document begins that is not the first: that of its '---', or its own.
-int beginningOf(const YAML::Node& document, const std::string& text) {
-    int line = 0, begin = 0;
-    std::istringstream lines(text);
-    for (std::string each; std::getline(lines, each) && line <= document.Mark().line;) {
-        ++line;
-        if (each.starts_with("---")) begin = line;
-    }
-    return std::max(begin, 1);
-}
-
-}  // namespace
-
 Result<ConfigNode> ConfigNode::load(const fs::path& path) { return parse(TRY(readFile(path)), path); }
 
 Result<ConfigNode> ConfigNode::parse(const std::string& text, const fs::path& name) {
-    if (const auto place = placeOfNoUtf8(text))
-        return Error(
-            fmt::format("{}:{}:{}: not UTF-8; save the file in that encoding", name.string(), place->first, place->second));
-    try {
-        std::vector<YAML::Node> documents = YAML::LoadAll(text);
-        if (documents.empty()) documents.emplace_back();
-        auto impl = std::make_shared<Impl>(Impl{std::make_shared<const fs::path>(name), documents[0], ""});
-        if (documents.size() > 1)
-            return Error(fmt::format("{}:{}:1: a second document begins here; put it in a file of its own", name.string(),
-                                     beginningOf(documents[1], text)));
-        if (!impl->node.IsMap())
-            return Error(fmt::format("{}:1:1: a map of 'key: value' lines is needed, here is {}", name.string(), impl->seen()));
-        return ConfigNode(std::move(impl));
-    } catch (const YAML::ParserException& problem) {
-        return Error(fmt::format("{}:{}:{}: not YAML: {}", name.string(), problem.mark.line + 1, problem.mark.column + 1,
-                                 printable(problem.msg)));
-    }
+    return ConfigNode(TRY(ConfigTree::parse(text, name)), 0, "");
 }
 
-const fs::path& ConfigNode::file() const { return *impl_->file; }
+const fs::path& ConfigNode::file() const { return tree_->file; }
 
-std::string ConfigNode::place() const {
-    const auto [line, column] = lineAndColumn(impl_->node.Mark());
-    return fmt::format("{}:{}:{}", impl_->file->string(), line, column);
+FilePlace ConfigNode::here() const {
+    const auto [line, column] = position();
+    return {tree_->file, line, column, key_};
 }
 
-Error ConfigNode::error(const std::string& message) const { return error(Error(printable(message, kLongestMessage))); }
+bool ConfigNode::isMap() const { return tree_->nodes[node_].kind == ConfigTree::Kind::Map; }
+bool ConfigNode::isList() const { return tree_->nodes[node_].kind == ConfigTree::Kind::List; }
 
-Error ConfigNode::error(const Error& cause) const {
-    return Error(fmt::format("{}: {}{}{}", place(), impl_->path, impl_->path.empty() ? "" : ": ", cause.message()));
+std::string ConfigNode::childKey(std::string_view name) const {
+    const std::string shown = printable(name);
+    return key_.empty() ? shown : fmt::format("{}.{}", key_, shown);
 }
 
-bool ConfigNode::isMap() const { return impl_->node.IsMap(); }
-bool ConfigNode::isList() const { return impl_->node.IsSequence(); }
+std::string ConfigNode::seen() const { return describe(tree_->nodes[node_]); }
+
+const std::string* ConfigNode::scalar() const {
+    const ConfigTree::Node& node = tree_->nodes[node_];
+    return node.kind == ConfigTree::Kind::Scalar ? &node.text : nullptr;
+}
+
+std::pair<int, int> ConfigNode::position() const {
+    const ConfigTree::Node& node = tree_->nodes[node_];
+    return {node.line, node.column};
+}
+
+bool operator==(const ConfigNode& a, const ConfigNode& b) {
+    if (a.tree_ == nullptr || b.tree_ == nullptr) return a.tree_ == b.tree_;
+    return readsAs(*a.tree_, a.node_, *b.tree_, b.node_);
+}
 
 Result<double> ConfigNode::number(double low, double high, std::string_view unit) const {
     double value = 0;
-    if (!impl_->node.IsScalar() || !parseNumber(impl_->node.Scalar(), value) || !std::isfinite(value))
-        return error(fmt::format("a number in {} is needed, here is {}", range(low, high, unit), impl_->seen()));
+    const std::string* const text = scalar();
+    if (text == nullptr || !parseNumber(*text, value) || !std::isfinite(value))
+        return error(fmt::format("a number in {} is needed, here is {}", range(low, high, unit), seen()));
     if (value < low || value > high)
-        return error(fmt::format("{} is out of range, {} is allowed", printable(impl_->node.Scalar()), range(low, high, unit)));
+        return error(fmt::format("{} is out of range, {} is allowed", printable(*text), range(low, high, unit)));
     return value;
 }
 
 Result<std::int64_t> ConfigNode::integer(std::int64_t low, std::int64_t high) const {
     std::int64_t value = 0;
-    if (!impl_->node.IsScalar() || !parseNumber(impl_->node.Scalar(), value))
-        return error(fmt::format("a whole number in {} .. {} is needed, here is {}", low, high, impl_->seen()));
+    const std::string* const text = scalar();
+    if (text == nullptr || !parseNumber(*text, value))
+        return error(fmt::format("a whole number in {} .. {} is needed, here is {}", low, high, seen()));
     if (value < low || value > high) return error(fmt::format("{} is out of range, {} .. {} is allowed", value, low, high));
     return value;
 }
 
 Result<bool> ConfigNode::boolean() const {
-    if (impl_->node.IsScalar() && impl_->node.Scalar() == "true") return true;
-    if (impl_->node.IsScalar() && impl_->node.Scalar() == "false") return false;
-    return error(fmt::format("true or false is needed, here is {}", impl_->seen()));
+    const std::string* const text = scalar();
+    if (text != nullptr && *text == "true") return true;
+    if (text != nullptr && *text == "false") return false;
+    return error(fmt::format("true or false is needed, here is {}", seen()));
 }
 
 Result<std::string> ConfigNode::text() const {
-    if (!impl_->node.IsScalar() || impl_->node.Scalar().empty())
-        return error(fmt::format("a text is needed, here is {}", impl_->seen()));
-    const std::string& text = impl_->node.Scalar();
-    if (printable(text, text.size()) != text)  // these texts end up on terminals
-        return error(fmt::format("a text on one line without control characters is needed, here is {}", impl_->seen()));
-    return text;
+    const std::string* const text = scalar();
+    if (text == nullptr || text->empty()) return error(fmt::format("a text is needed, here is {}", seen()));
+    if (printable(*text, text->size()) != *text)  // these texts end up on terminals
+        return error(fmt::format("a text on one line without control characters is needed, here is {}", seen()));
+    return *text;
 }
 
 Result<std::size_t> ConfigNode::choice(std::initializer_list<std::string_view> names) const {
@@ -178,12 +124,12 @@ Result<std::size_t> ConfigNode::choice(std::initializer_list<std::string_view> n
 }
 
 Result<std::size_t> ConfigNode::choice(const std::vector<std::string>& names) const {
-    const std::string word = impl_->node.IsScalar() ? impl_->node.Scalar() : "";
+    const std::string word = scalar() != nullptr ? *scalar() : "";
     const auto found = std::find(names.begin(), names.end(), word);
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
     const std::string nearest = nearestName(word, names);
     return error(fmt::format("one of {} is needed, here is {}{}", names.empty() ? "nothing (none is declared)" : listed(names),
-                             impl_->seen(), nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest)));
+                             seen(), nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest)));
 }
 
 Result<fs::path> ConfigNode::path() const {
@@ -194,7 +140,7 @@ Result<fs::path> ConfigNode::path() const {
     const fs::path normal = given.lexically_normal();
     if (*normal.begin() == "..")
         return error(fmt::format("'{}' leaves this file's folder; copy the file into it", given.string()));
-    return impl_->file->parent_path() / normal;
+    return tree_->file.parent_path() / normal;
 }
 
 Result<glm::dvec2> ConfigNode::vector2(double low, double high, std::string_view unit) const {
@@ -209,8 +155,9 @@ Result<glm::dvec3> ConfigNode::vector3(double low, double high, std::string_view
 }
 
 Result<std::vector<ConfigNode>> ConfigNode::items(std::size_t least, std::size_t most) const {
-    if (!isList()) return error(fmt::format("a list is needed, here is {}", impl_->seen()));
-    const std::size_t count = impl_->node.size();
+    if (!isList()) return error(fmt::format("a list is needed, here is {}", seen()));
+    const std::vector<std::uint32_t>& parts = tree_->nodes[node_].parts;
+    const std::size_t count = parts.size();
     if (count < least || count > most) {
         const std::string wanted = least == most                                     ? fmt::format("exactly {}", least)
                                    : most == std::numeric_limits<std::size_t>::max() ? fmt::format("at least {}", least)
@@ -219,27 +166,27 @@ Result<std::vector<ConfigNode>> ConfigNode::items(std::size_t least, std::size_t
     }
     std::vector<ConfigNode> nodes;
     nodes.reserve(count);
-    for (const auto& item : impl_->node) nodes.push_back(impl_->child(item, fmt::format("{}[{}]", impl_->path, nodes.size())));
+    for (const std::uint32_t item : parts) nodes.push_back(child(item, fmt::format("{}[{}]", key_, nodes.size())));
     return nodes;
 }
 
 Result<std::vector<std::pair<std::string, ConfigNode>>> ConfigNode::entries() const {
-    if (!isMap()) return error(fmt::format("a map is needed, here is {}", impl_->seen()));
+    if (!isMap()) return error(fmt::format("a map is needed, here is {}", seen()));
     std::vector<std::pair<std::string, ConfigNode>> result;
     std::set<std::string> names;
-    for (const auto& entry : impl_->node) {
-        const ConfigNode key = impl_->child(entry.first, impl_->path);
-        if (!entry.first.IsScalar()) return key.error("a key must be a plain word");
+    const std::vector<std::uint32_t>& parts = tree_->nodes[node_].parts;
+    for (std::size_t i = 0; i < parts.size(); i += 2) {
+        const ConfigNode key = child(parts[i], key_);
+        if (key.scalar() == nullptr) return key.error("a key must be a plain word");
         const std::string name = TRY(shortText(key));
         if (!names.insert(name).second) return key.error(fmt::format("'{}' is given twice", name));
-        result.emplace_back(name, impl_->child(entry.second, impl_->childPath(name)));
+        result.emplace_back(name, child(parts[i + 1], childKey(name)));
     }
     return result;
 }
 
 ConfigFields::ConfigFields(ConfigNode node) : node_(std::move(node)) {
-    if (!node_.isMap())
-        fail({0, 0}, node_.error(fmt::format("a map of 'key: value' lines is needed, here is {}", node_.impl_->seen())));
+    if (!node_.isMap()) fail({0, 0}, node_.error(fmt::format("a map of 'key: value' lines is needed, here is {}", node_.seen())));
 }
 
 void ConfigFields::fail(std::pair<int, int> place, Error error) { failures_.emplace_back(place, std::move(error)); }
@@ -248,17 +195,20 @@ void ConfigFields::visit(std::string_view key, const std::function<Result<void>(
     known_.emplace_back(key);
     const bool mayBeAbsent = std::exchange(nextOptional_, false);
     if (!node_.isMap()) return;
-    const YAML::Node value = node_.impl_->node[std::string(key)];
-    if (!value.IsDefined()) {
+    const std::vector<ConfigTree::Node>& nodes = node_.tree_->nodes;
+    const std::vector<std::uint32_t>& parts = nodes[node_.node_].parts;
+    std::size_t at = 0;
+    while (at < parts.size() && (nodes[parts[at]].kind != ConfigTree::Kind::Scalar || nodes[parts[at]].text != key)) at += 2;
+    if (at == parts.size()) {
         if (!mayBeAbsent) missing_.emplace_back(key);
         return;
     }
-    const ConfigNode child = node_.impl_->child(value, node_.impl_->childPath(key));
-    if (auto used = use(child); !used) fail(lineAndColumn(value.Mark()), used.error());
+    const ConfigNode value = node_.child(parts[at + 1], node_.childKey(key));
+    if (auto used = use(value); !used) fail(value.position(), used.error());
 }
 
 void ConfigFields::check(const ConfigNode& at, const Result<void>& checked) {
-    if (!checked) fail(lineAndColumn(at.impl_->node.Mark()), checked.error());
+    if (!checked) fail(at.position(), checked.error());
 }
 
 void ConfigFields::number(std::string_view key, double& target, double low, double high, std::string_view unit) {
@@ -312,10 +262,12 @@ void ConfigFields::header(std::string_view kind, std::int64_t newestVersion) {
 Result<void> ConfigFields::finish() {
     if (node_.isMap()) {
         std::set<std::string> seen;
-        for (const auto& entry : node_.impl_->node) {
-            const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
-            const ConfigNode at = node_.impl_->child(entry.first, node_.impl_->childPath(key));
-            const auto place = lineAndColumn(entry.first.Mark());
+        const std::vector<std::uint32_t>& parts = node_.tree_->nodes[node_.node_].parts;
+        for (std::size_t i = 0; i < parts.size(); i += 2) {
+            const ConfigTree::Node& keyNode = node_.tree_->nodes[parts[i]];  // its text is empty if it is no scalar
+            const std::string& key = keyNode.text;
+            const ConfigNode at = node_.child(parts[i], node_.childKey(key));
+            const auto place = at.position();
             if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
                 const std::string nearest = nearestName(key, known_);
                 const std::string advice =
@@ -326,8 +278,7 @@ Result<void> ConfigFields::finish() {
                 fail(place, at.error("this key is given twice"));
             }
         }
-        for (const std::string& key : missing_)
-            fail(lineAndColumn(node_.impl_->node.Mark()), node_.error(fmt::format("'{}' is missing", key)));
+        for (const std::string& key : missing_) fail(node_.position(), node_.error(fmt::format("'{}' is missing", key)));
     }
     std::stable_sort(failures_.begin(), failures_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     ConfigFaults faults;

@@ -5,6 +5,7 @@
 // A reader goes on after a fault, so that an error tells all faults of a file, a line for each, in
 // the file's order.
 
+#include "core/file_place.h"
 #include "core/result.h"
 
 #include <glm/vec2.hpp>
@@ -24,8 +25,10 @@
 
 namespace fantascope {
 
-// One node of a loaded file; cheap to copy, keeps the file alive. Thread: thread-bound (a copy
-// shares its file's tree).
+struct ConfigTree;
+
+// One node of a loaded file. Value type: cheap to copy, never changes, keeps what was read of the
+// file alive. Thread: any.
 class ConfigNode {
 public:
     ConfigNode() = default;  // no node yet: only to be assigned to
@@ -37,9 +40,10 @@ public:
     static Result<ConfigNode> parse(const std::string& text, const std::filesystem::path& name);
 
     const std::filesystem::path& file() const;
-    std::string place() const;                      // "file:line:column"
-    Error error(const std::string& message) const;  // "file:line:column: path.to.key: message", control characters escaped
-    Error error(const Error& cause) const;          // the same of a file that this node names: the file's own error, as it is
+    FilePlace here() const;
+    std::string place() const { return here().text(); }
+    Error error(const std::string& message) const { return here().error(message); }
+    Error error(const Error& cause) const { return here().error(cause); }
     bool isMap() const;
     bool isList() const;
 
@@ -61,11 +65,22 @@ public:
     // name given twice is refused.
     Result<std::vector<std::pair<std::string, ConfigNode>>> entries() const;
 
+    // Whether they read the same, keys and items in the same order, wherever they stand.
+    friend bool operator==(const ConfigNode& a, const ConfigNode& b);
+
 private:
     friend class ConfigFields;
-    struct Impl;
-    explicit ConfigNode(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
-    std::shared_ptr<const Impl> impl_;
+    ConfigNode(std::shared_ptr<const ConfigTree> tree, std::uint32_t node, std::string key)
+        : tree_(std::move(tree)), node_(node), key_(std::move(key)) {}
+    ConfigNode child(std::uint32_t node, std::string key) const { return {tree_, node, std::move(key)}; }
+    std::string childKey(std::string_view name) const;
+    std::string seen() const;              // what stands here, for a message
+    const std::string* scalar() const;     // null: something else stands here
+    std::pair<int, int> position() const;  // line and column
+
+    std::shared_ptr<const ConfigTree> tree_;  // null: no node yet
+    std::uint32_t node_ = 0;                  // of the tree's
+    std::string key_;                         // "outputs[1].warp", for messages alone
 };
 
 // What is wrong with a file so far. Readers that go on after a fault collect here.

@@ -42,7 +42,9 @@ struct Shown {
 // next poll(). Until then, memory that was mapped from it can be read. A new context is made when
 // the display comes back; it has a new number.
 // Thread: all methods but status() and pollEvent(), and the context, are bound to the render
-// thread.
+// thread. The render thread may lend the context: after its release() another thread may call
+// makeCurrent(), framebuffer(), finish() and, at its end, release(). Until then the render thread
+// calls nothing of this display.
 class DisplaySink : public Device {
 public:
     // Pixels of the surface; constant while Running.
@@ -63,6 +65,8 @@ public:
     virtual int context() const = 0;
     // Makes this surface's context current, Running or not. Error: no context.
     virtual Result<void> makeCurrent() = 0;
+    // Its context is no longer current on the calling thread, so that another thread may have it.
+    virtual void release() = 0;
     // The GL name of the framebuffer to draw into. It holds stored sRGB values; GL's row 0 is the
     // bottom of the picture.
     virtual unsigned framebuffer() const = 0;

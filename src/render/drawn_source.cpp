@@ -81,7 +81,7 @@ Made makeDrawn(const ShadowSource& source, const CanvasPlace& place, DrawingTool
 }  // namespace
 
 Result<std::unique_ptr<DrawnSource>> makeDrawnSource(const PictureSource& source, const CanvasPlace& place, DrawingTools& tools) {
-    return std::visit([&](const auto& kind) { return makeDrawn(kind, place, tools); }, source);
+    return std::visit([&](const auto& kind) { return makeDrawn(kind, place, tools); }, source.picture);
 }
 
 DrawnInstances::DrawnInstances(const PatternSource& source, const CanvasPlace& place, const gpu::Bend& bend)

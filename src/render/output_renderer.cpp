@@ -9,14 +9,14 @@
 namespace fantascope::render {
 namespace {
 
-// Of a picture that lies on a part of the canvas.
+// The place of a picture that lies on a part of the canvas.
 CanvasPlace placeOn(const CanvasPlace& canvas, const CanvasPart& part) {
     return {canvas.size, part == CanvasPart() ? canvas.warp : canvas.warp.ofPictureOn(part)};
 }
 
 }  // namespace
 
-Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& options, std::span<const PictureSource> sources) {
+Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& options, const PictureSources& sources) {
     const CanvasPlace place{options.projection.size, options.projection.warp};
     auto painter = TRY(gpu::ShapePainter::create(options.shaders));
     DrawingTools tools{std::move(painter),      gpu::ProgramCache(options.shaders), gpu::Bend(), gpu::Bend(), options.samples,
@@ -28,10 +28,10 @@ Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& op
     renderer->size_ = place.size;
     renderer->overlay_ = TRY(gpu::Overlay::create(place.size, renderer->tools_.programs));
     TRY(renderer->composer_->follow(options.projection.light, options.blend));
-    renderer->pictures_.assign(sources.begin(), sources.end());
-    for (const PictureSource& source : sources) {
+    for (const auto& [id, source] : sources) {
         const CanvasPart on = placeOf(source, options.projection.canvasAspect);
-        renderer->sources_.push_back(TRY(makeDrawnSource(source, placeOn(place, on), renderer->tools_)));
+        auto drawn = TRY(makeDrawnSource(source, placeOn(place, on), renderer->tools_));
+        renderer->sources_.add(id, {source, std::move(drawn)});
     }
     return renderer;
 }
@@ -39,8 +39,7 @@ Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& op
 Result<void> OutputRenderer::follow(const Projection& projection, const std::shared_ptr<const BlendMap>& blend) {
     const CanvasPlace place{projection.size, projection.warp};
     tools_.bend.follow(place);
-    for (std::size_t i = 0; i < sources_.size(); ++i)
-        sources_[i]->follow(placeOn(place, placeOf(pictures_[i], projection.canvasAspect)));
+    for (const auto& [id, shown] : sources_) shown.drawn->follow(placeOn(place, placeOf(shown.source, projection.canvasAspect)));
     return composer_->follow(projection.light, blend);
 }
 
@@ -53,7 +52,7 @@ Result<void> OutputRenderer::setUp(const RgbaImage* overlay, const RgbaImage* ca
 
 Result<void> OutputRenderer::warmUp(unsigned framebuffer) {
     composer_->begin();
-    for (const auto& source : sources_) source->paint(Moment{}, composer_->nextPicture());
+    for (const auto& [id, shown] : sources_) shown.drawn->paint(Moment{}, composer_->nextPicture());
     composer_->warmUp(framebuffer);
     return gpu::checkMemory();
 }
@@ -71,9 +70,10 @@ void OutputRenderer::draw(const show::OutputState& state, const Wind& wind, Time
     const auto lay = [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const show::LayerState& layer = state.layers[i];
-            FANTASCOPE_CHECK(layer.source < sources_.size(), "a layer shows a source that the renderer was not given");
+            const Shown* const shown = sources_.find(layer.source);
+            FANTASCOPE_CHECK(shown != nullptr, "a layer shows a source that the renderer was not given");
             if (layer.opacity <= 0) continue;
-            sources_[layer.source]->paint({time, time - layer.begun, wind}, composer_->nextPicture());
+            shown->drawn->paint({time, time - layer.begun, wind}, composer_->nextPicture());
             composer_->lay(layer.opacity, layer.blend);
         }
     };

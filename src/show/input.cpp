@@ -11,9 +11,9 @@
 namespace fantascope::show {
 namespace {
 
-constexpr std::array<std::string_view, 6> kKinds = {"go", "back", "jump", "blackout", "dark", "light"};
+constexpr std::array<std::string_view, 7> kKinds = {"go", "back", "jump", "blackout", "dark", "light", "revise"};
 constexpr std::array<std::string_view, 6> kSources = {"start", "controller", "contact", "terminal", "screen", "schedule"};
-static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Light) + 1);
+static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Revise) + 1);
 static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::Schedule) + 1);
 
 std::vector<std::string_view> wordsOf(std::string_view line) {
@@ -56,12 +56,17 @@ std::string_view nameOf(Outcome outcome) {
             return "ignored: there is no cue before";
         case Outcome::NoSuchCue:
             return "ignored: there is no such cue";
+        case Outcome::NoSuchRevision:
+            return "ignored: there is no such revision";
+        case Outcome::OtherSite:
+            return "ignored: it is for other outputs, lamps or relays";
     }
     return "unknown";
 }
 
 std::string lineOf(const Input& input) {
-    return fmt::format("{} {} {} {} {}", input.at.count(), kKinds[static_cast<std::size_t>(input.kind)], input.cue,
+    return fmt::format("{} {} {} {} {}", input.at.count(), kKinds[static_cast<std::size_t>(input.kind)],
+                       input.kind == Input::Kind::Revise ? input.revision : input.cue,
                        kSources[static_cast<std::size_t>(input.source)], input.which);
 }
 
@@ -71,7 +76,7 @@ Result<Input> inputOf(std::string_view line) {
     Input input;
     input.at = Time(TRY(numberOf<Time::rep>(words[0])));
     input.kind = TRY(choiceOf<Input::Kind>(words[1], kKinds));
-    input.cue = TRY(numberOf<int>(words[2]));
+    (input.kind == Input::Kind::Revise ? input.revision : input.cue) = TRY(numberOf<int>(words[2]));
     input.source = TRY(choiceOf<Input::Source>(words[3], kSources));
     input.which = TRY(numberOf<int>(words[4]));
     return input;

@@ -18,7 +18,8 @@ struct Input {
         Jump,      // enter cue `cue`, also the one that is running
         Blackout,  // hold pictures and lamps dark, or give them back
         Dark,      // hold them dark, whether they are or not
-        Light      // give them back, whether they are dark or not
+        Light,     // give them back, whether they are dark or not
+        Revise     // go on with cue list `revision`
     };
     // Where it came from.
     enum class Source {
@@ -34,16 +35,17 @@ struct Input {
     int cue = 0;  // for Jump alone: index into CueList::cues
     Source source = Source::Start;
     int which = 0;
+    int revision = 0;  // for Revise alone: a number of InputLog::add
     friend bool operator==(const Input&, const Input&) = default;
 };
 
 // What became of an input.
-enum class Outcome { Taken, TooSoonAfterCue, AtLastCue, AtFirstCue, NoSuchCue };
+enum class Outcome { Taken, TooSoonAfterCue, AtLastCue, AtFirstCue, NoSuchCue, NoSuchRevision, OtherSite };
 // In words for the operator: "taken", "ignored: ...".
 std::string_view nameOf(Outcome outcome);
 
-// One line, without its end: show time in nanoseconds, kind, cue, source, which: "12500000000 jump
-// 3 terminal 0".
+// One line, without its end: show time in nanoseconds, kind, cue (of Revise: the revision), source,
+// which: "12500000000 jump 3 terminal 0".
 std::string lineOf(const Input& input);
 // Reads what lineOf() has written. Error: what is wrong with the line.
 Result<Input> inputOf(std::string_view line);

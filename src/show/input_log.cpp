@@ -2,9 +2,23 @@
 
 namespace fantascope::show {
 
+std::shared_ptr<const CueList> InputLog::cues() const {
+    const std::lock_guard lock(mutex_);
+    return revisions_[0];
+}
+
+int InputLog::add(std::shared_ptr<const CueList> cues) {
+    const std::lock_guard lock(mutex_);
+    revisions_.push_back(std::move(cues));
+    return static_cast<int>(revisions_.size()) - 1;
+}
+
 LoggedInput InputLog::submit(const Input& input) {
     const std::lock_guard lock(mutex_);
-    const LoggedInput logged{count_++, input, playback_.apply(input)};
+    LoggedInput logged{.number = count_++, .input = input};
+    const auto revision = static_cast<std::size_t>(input.revision);  // below 0 is beyond all
+    if (input.kind == Input::Kind::Revise && revision < revisions_.size()) logged.revision = revisions_[revision];
+    logged.outcome = playback_.apply(input, logged.revision);
     inputs_.append(logged);
     return logged;
 }

@@ -7,7 +7,10 @@
 #include "core/append_log.h"
 
 #include <cstdint>
+#include <memory>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 namespace fantascope::show {
 
@@ -16,28 +19,34 @@ struct LoggedInput {
     std::uint64_t number = 0;  // 0, 1, 2, ...
     Input input;
     Outcome outcome = Outcome::Taken;
+    std::shared_ptr<const CueList> revision{};  // of an Input::Kind::Revise: what it names, if it is there
 };
 
 // The one way into the show: whoever asks for something submits it here. The log puts all inputs in
 // one order, says what becomes of each, and hands the same sequence to everybody who reads it.
 // Nothing is lost, however late somebody reads.
 //
-// Thread: submit() from any, which waits for other submissions alone; readers as AppendLog says.
+// Thread: submit() and add() from any, which wait for each other alone; readers as AppendLog says.
 class InputLog {
 public:
     using Reader = AppendLog<LoggedInput>::Reader;
 
-    explicit InputLog(const CueList& cues) : playback_(cues) {}
+    explicit InputLog(std::shared_ptr<const CueList> cues) : revisions_{std::move(cues)}, playback_(revisions_[0]) {}
+    explicit InputLog(const CueList& cues) : InputLog(std::make_shared<const CueList>(cues)) {}
 
-    // What the inputs step through.
-    const CueList& cues() const { return playback_.cues(); }
+    // What the first input finds.
+    std::shared_ptr<const CueList> cues() const;
+    // Another list, for an Input::Kind::Revise to come: 1, 2, 3, ...; 0 is the one that it began
+    // with. It changes nothing by itself.
+    int add(std::shared_ptr<const CueList> cues);
 
     LoggedInput submit(const Input& input);
     // From the first input on. The log outlives it.
     Reader reader() const { return inputs_.reader(); }
 
 private:
-    std::mutex mutex_;  // of:
+    mutable std::mutex mutex_;  // of:
+    std::vector<std::shared_ptr<const CueList>> revisions_;
     Playback playback_;
     std::uint64_t count_ = 0;
     AppendLog<LoggedInput> inputs_;

@@ -22,7 +22,7 @@ const Event* lastBy(Time time, const std::vector<Event>& events) {
 
 using Layers = std::span<const LayerState>;
 
-const LayerState* layerOf(std::uint32_t source, Layers layers) {
+const LayerState* layerOf(SourceId source, Layers layers) {
     const auto found =
         std::find_if(layers.begin(), layers.end(), [&](const LayerState& layer) { return layer.source == source; });
     return found == layers.end() ? nullptr : &*found;
@@ -43,6 +43,31 @@ bool sameComposition(Layers a, Layers b) {
     });
 }
 
+bool isOfOneSite(const Look& a, const Look& b) {
+    return a.outputs.size() == b.outputs.size() && a.levels.size() == b.levels.size() && a.relays.size() == b.relays.size();
+}
+
+// When the next cue comes by itself after one that was entered at `at`.
+std::optional<Time> followerAt(const CueList& list, int cue, Time at) {
+    const std::optional<Time>& follow = list.cues[static_cast<std::size_t>(cue)].follow;
+    const bool hasNext = list.loops || static_cast<std::size_t>(cue) + 1 < list.cues.size();
+    return follow && hasNext ? std::optional(at + *follow) : std::nullopt;
+}
+
+// A cue of the list `old` in another one: that of its name, or else that of the nearest before it
+// that is still there; -1: before the first.
+struct FoundCue {
+    int cue = -1;
+    bool isThere = false;  // the cue itself
+};
+FoundCue foundAgain(int cue, const CueList& old, const CueList& list) {
+    for (int before = cue; before >= 0; --before) {
+        const auto found = std::ranges::find(list.cues, old.cues[static_cast<std::size_t>(before)].name, &CueList::Cue::name);
+        if (found != list.cues.end()) return {static_cast<int>(found - list.cues.begin()), before == cue};
+    }
+    return {-1, cue < 0};
+}
+
 void dim(Look& look, float light) {
     for (OutputState& output : look.outputs) {
         if (light == 0) {
@@ -58,38 +83,38 @@ void dim(Look& look, float light) {
 
 }  // namespace
 
-Playback::Playback(CueList list) : list_(std::move(list)), gusts_(list_.seed) {
-    const std::size_t outputs = list_.dark.outputs.size();
-    const auto examine = [&](const Look& look) {
-        FANTASCOPE_CHECK(look.outputs.size() == list_.dark.outputs.size() && look.levels.size() == list_.dark.levels.size() &&
-                             look.relays.size() == list_.dark.relays.size(),
-                         "all looks of a cue list are for one site");
-        for (const OutputState& output : look.outputs) {
-            for (const LayerState& layer : output.layers) sources_ = std::max<std::size_t>(sources_, layer.source + 1);
+Playback::Playback(std::shared_ptr<const CueList> list) : gusts_(list->seed) {
+    examine(*list);
+    Entry& dark = entries_.emplace_back(Entry{.list = list, .left = {}});
+    for (const OutputState& output : list->dark.outputs) dark.outputs.push_back(courseOf(output, output, Time{}, Time{}));
+    for (const float level : list->dark.levels) dark.levels.push_back(Course::at(level));
+    dark.relays = list->dark.relays;
+}
+
+// What the looks of another list need besides.
+void Playback::examine(const CueList& list) {
+    for (const CueList::Cue& cue : list.cues) {
+        FANTASCOPE_CHECK(isOfOneSite(cue.look, list.dark), "all looks of a cue list are for one site");
+        for (const OutputState& output : cue.look.outputs) {
+            for (const LayerState& layer : output.layers) sources_.insert(layer.source);
             composed_.layers += output.pictures.empty() ? 0 : output.layers.size();
             composed_.pictures += output.pictures.size();
         }
-    };
-    for (CueList::Cue& cue : list_.cues) {
-        examine(cue.look);
-        cue.winds.resize(outputs);
     }
     const auto waits = [](const CueList::Cue& cue) { return !cue.follow || *cue.follow > Time{}; };
-    FANTASCOPE_CHECK(!list_.loops || std::ranges::any_of(list_.cues, waits), "a pass of a list that loops takes time");
-    Entry& dark = entries_.emplace_back();
-    for (const OutputState& output : list_.dark.outputs) dark.outputs.push_back(courseOf(output, output, Time{}, Time{}));
-    for (const float level : list_.dark.levels) dark.levels.push_back(Course::at(level));
+    FANTASCOPE_CHECK(!list.loops || std::ranges::any_of(list.cues, waits), "a pass of a list that loops takes time");
 }
 
-Outcome Playback::apply(Input input) {
+Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revision) {
     newest_ = std::max(newest_, input.at);
     const Time at = newest_;
     foresee(at);
-    const int cue = cueAt(at), last = static_cast<int>(list_.cues.size()) - 1;
+    const Entry& now = entryAt(at);
+    const int cue = now.cue, last = static_cast<int>(now.list->cues.size()) - 1;
     switch (input.kind) {
         case Input::Kind::Go: {
-            if (cue >= 0 && at - entryAt(at).at < list_.goInterval) return Outcome::TooSoonAfterCue;
-            if (cue == last && !list_.loops) return Outcome::AtLastCue;
+            if (cue >= 0 && at - now.entered < now.list->goInterval) return Outcome::TooSoonAfterCue;
+            if (cue == last && !now.list->loops) return Outcome::AtLastCue;
             enter((cue + 1) % (last + 1), at);
             break;
         }
@@ -107,68 +132,98 @@ Outcome Playback::apply(Input input) {
             const Shutter* shutter = lastBy(at, shutters_);
             const bool isDark = shutter && shutter->dark;
             const bool dark = input.kind == Input::Kind::Blackout ? !isDark : input.kind == Input::Kind::Dark;
-            if (dark != isDark) shutters_.push_back({at, dark, lightAt(at)});
+            if (dark != isDark) shutters_.push_back({at, dark, lightAt(at), now.list->blackoutFade});
             break;
         }
+        case Input::Kind::Revise:
+            if (const Outcome outcome = revise(std::move(revision), at); outcome != Outcome::Taken) return outcome;
+            break;
     }
     taken_.push_back(at);
     return Outcome::Taken;
 }
 
-// Enters a cue, and after it those that follow by themselves. What would have followed otherwise is
-// off.
-void Playback::enter(int cue, Time at) {
-    while (entries_.back().at > at) entries_.pop_back();
-    entries_.push_back(entered(cue, at));
-    followOn(list_.cues.size());
+void Playback::enter(int cue, Time at) { put(entered(entryAt(at).list, cue, at)); }
+
+// Adds an entry, and after it those that follow by themselves. What would have followed otherwise
+// is off.
+void Playback::put(Entry entry) {
+    while (entries_.back().at > entry.at) entries_.pop_back();
+    entries_.push_back(std::move(entry));
+    followOn();
 }
 
-std::optional<int> Playback::followerOf(int cue) const {
-    if (cue < 0 || !list_.cues[static_cast<std::size_t>(cue)].follow) return std::nullopt;
-    const int next = cue + 1, count = static_cast<int>(list_.cues.size());
-    if (next < count) return next;
-    return list_.loops ? std::optional(0) : std::nullopt;
-}
-
-// Adds the cues that follow by themselves after the last entry, at most so many.
-void Playback::followOn(std::size_t most) {
+// Adds the cues that follow by themselves after the last entry, one pass of the list at most.
+void Playback::followOn() {
+    const std::size_t most = cues().cues.size();
     for (std::size_t added = 0; added < most; ++added) {
         const Entry& last = entries_.back();
-        const std::optional<int> next = followerOf(last.cue);
-        if (!next) return;
-        entries_.push_back(entered(*next, last.at + *list_.cues[static_cast<std::size_t>(last.cue)].follow));
+        if (!last.left) return;
+        const int next = (last.cue + 1) % static_cast<int>(most);
+        entries_.push_back(entered(last.list, next, *last.left));
     }
 }
 
 void Playback::foresee(Time time) {
-    while (entries_.back().at <= time && followerOf(entries_.back().cue)) followOn(list_.cues.size());
+    while (entries_.back().at <= time && entries_.back().left) followOn();
 }
 
-// The courses from what is seen at `at` to a cue's look.
-Playback::Entry Playback::entered(int cue, Time at) const {
-    const CueList::Cue& wanted = list_.cues[static_cast<std::size_t>(cue)];
-    Look from;
-    lookAt(at, from);
-    Entry entry{at, cue, {}, {}};
-    const std::vector<OutputCourse>& before = entryAt(at).outputs;
-    for (std::size_t i = 0; i < wanted.look.outputs.size(); ++i) {
-        entry.outputs.push_back(courseOf(from.outputs[i], wanted.look.outputs[i], at, wanted.fade));
-        entry.outputs.back().wind = WindCourse(before[i].wind, wanted.winds[i], at, wanted.fade);
-    }
-    for (std::size_t i = 0; i < wanted.look.levels.size(); ++i)
-        entry.levels.push_back({from.levels[i], wanted.look.levels[i], at, wanted.fade});
+// A cue with the courses from what is seen at `at` to its look.
+Playback::Entry Playback::entered(const std::shared_ptr<const CueList>& list, int cue, Time at) const {
+    const CueList::Cue& wanted = list->cues[static_cast<std::size_t>(cue)];
+    Entry entry{.at = at, .list = list, .cue = cue, .entered = at, .whole = at + wanted.fade, .left = followerAt(*list, cue, at)};
+    setOut(entry, wanted.look, wanted.winds, wanted.fade);
     return entry;
+}
+
+// Gives an entry the courses to a look. Winds that are missing are the usual one.
+void Playback::setOut(Entry& entry, const Look& look, const std::vector<WindWish>& winds, Time fade) const {
+    Look from;
+    lookAt(entry.at, from);
+    const std::vector<OutputCourse>& before = entryAt(entry.at).outputs;
+    for (std::size_t i = 0; i < look.outputs.size(); ++i) {
+        entry.outputs.push_back(courseOf(from.outputs[i], look.outputs[i], entry.at, fade));
+        entry.outputs.back().wind = WindCourse(before[i].wind, i < winds.size() ? winds[i] : WindWish(), entry.at, fade);
+    }
+    for (std::size_t i = 0; i < look.levels.size(); ++i) entry.levels.push_back({from.levels[i], look.levels[i], entry.at, fade});
+    entry.relays = look.relays;
+}
+
+Outcome Playback::revise(std::shared_ptr<const CueList> list, Time at) {
+    if (list == nullptr) return Outcome::NoSuchRevision;
+    const Entry& now = entryAt(at);
+    if (!isOfOneSite(list->dark, now.list->dark)) return Outcome::OtherSite;
+    examine(*list);
+    const auto [cue, isThere] = foundAgain(now.cue, *now.list, *list);
+    Entry entry{.at = at, .list = list, .cue = cue, .entered = now.entered, .whole = now.whole, .left = {}};
+    if (!isThere || now.isGone) {
+        entry.isGone = true;
+        entry.outputs = now.outputs;
+        entry.levels = now.levels;
+        entry.relays = now.relays;
+    } else if (cue < 0) {
+        setOut(entry, list->dark, {}, list->blackoutFade);
+    } else {
+        const CueList::Cue& wanted = list->cues[static_cast<std::size_t>(cue)];
+        const Time fade = std::max(now.entered + wanted.fade - at, list->blackoutFade);
+        setOut(entry, wanted.look, wanted.winds, fade);
+        entry.whole = at + fade;
+        entry.left = followerAt(*list, cue, now.entered);
+        if (entry.left) entry.left = std::max(at, *entry.left);
+    }
+    put(std::move(entry));
+    return Outcome::Taken;
 }
 
 // A source goes on where both pictures have it.
 Playback::OutputCourse Playback::courseOf(const OutputState& from, const OutputState& to, Time at, Time fade) {
     OutputCourse course;
-    const auto begunOf = [&](std::uint32_t source) {
+    const auto begunOf = [&](SourceId source) {
         const LayerState* const before = layerOf(source, from.layers);
         return before != nullptr ? before->begun : at;
     };
     const Layers before = addedLayers(from), after = addedLayers(to);
-    const auto add = [&](std::uint32_t source) {
+    const auto add = [&](SourceId source) {
         const LayerState *first = layerOf(source, before), *second = layerOf(source, after);
         course.layers.push_back({source, {first ? first->opacity : 0, second ? second->opacity : 0, at, fade}, begunOf(source)});
     };
@@ -194,7 +249,7 @@ Playback::OutputCourse Playback::courseOf(const OutputState& from, const OutputS
 Time Playback::fadeLeftAt(Time time) const {
     const Entry& entry = entryAt(time);
     if (entry.cue < 0) return Time{};
-    return std::max(Time{}, entry.at + list_.cues[static_cast<std::size_t>(entry.cue)].fade - time);
+    return std::max(Time{}, entry.whole - time);
 }
 
 std::optional<Time> Playback::untilFollowAt(Time time) const {
@@ -226,7 +281,7 @@ void Playback::lookAt(Time time, Look& out) const {
     out.outputs.resize(entry.outputs.size());
     for (std::size_t i = 0; i < entry.outputs.size(); ++i) {
         OutputState& output = out.outputs[i];
-        output.layers.reserve(sources_ + composed_.layers);
+        output.layers.reserve(sources_.size() + composed_.layers);
         output.pictures.reserve(composed_.pictures);
         output.layers.clear();
         output.pictures.clear();
@@ -243,7 +298,7 @@ void Playback::lookAt(Time time, Look& out) const {
     }
     out.levels.resize(entry.levels.size());
     std::ranges::transform(entry.levels, out.levels.begin(), [&](const Course& level) { return level.valueAt(time); });
-    out.relays = entry.cue < 0 ? list_.dark.relays : list_.cues[static_cast<std::size_t>(entry.cue)].look.relays;
+    out.relays = entry.relays;
 }
 
 // The factor of pictures and levels that blackout leaves: it moves at a constant rate, so that a
@@ -251,7 +306,7 @@ void Playback::lookAt(Time time, Look& out) const {
 float Playback::lightAt(Time time) const {
     const Shutter* shutter = lastBy(time, shutters_);
     if (!shutter) return 1;
-    const float moved = Course{0, 1, shutter->at, list_.blackoutFade}.shareAt(time);
+    const float moved = Course{0, 1, shutter->at, shutter->fade}.shareAt(time);
     return shutter->dark ? std::max(0.0f, shutter->from - moved) : std::min(1.0f, shutter->from + moved);
 }
 

@@ -9,7 +9,11 @@
 #include "core/clock.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
 namespace fantascope::show {
@@ -31,19 +35,26 @@ namespace fantascope::show {
 // - Blackout dims pictures and levels to nothing in `blackoutFade`, over whatever is running; a second one, or Light, gives them
 // back. The
 //   cues go on underneath. Relays do not heed it: a dark picture is no reason for dark streets.
+// - With a revision the cue of the same name goes on: what is seen goes to its new look in what is left of its fade, at least
+//   in the new `blackoutFade`, and it follows on as if it had always been so. If the cue is gone, what is seen stays until an
+//   input comes; GO then enters what follows the nearest cue before it that is still there. What was seen before the input
+//   stays as it was.
 //
 // Thread: what is const is reentrant; the rest is bound to one thread at a time and may not run
 // beside it.
 class Playback {
 public:
-    explicit Playback(CueList list);
+    explicit Playback(std::shared_ptr<const CueList> list);
+    explicit Playback(CueList list) : Playback(std::make_shared<const CueList>(std::move(list))) {}
 
-    const CueList& cues() const { return list_; }
+    // The list that the inputs so far step through.
+    const CueList& cues() const { return *entries_.back().list; }
 
     // Takes one input, or says why not. Inputs take effect in the order in which they are given:
     // one whose time is before that of its forerunner takes effect at its forerunner's time. It
     // changes what is seen from then on and nothing before.
-    Outcome apply(Input input);
+    // `revision`: of an Input::Kind::Revise the list to go on with; null: there is none.
+    Outcome apply(const Input& input, std::shared_ptr<const CueList> revision = nullptr);
 
     // Works out which cues follow by themselves until `time`. Every input does so for one pass of
     // the list, so only a list that loops needs more; the others do nothing here.
@@ -63,7 +74,7 @@ public:
 
 private:
     struct LayerCourse {
-        std::uint32_t source = 0;
+        SourceId source;
         Course opacity;
         Time begun{};
     };
@@ -81,30 +92,39 @@ private:
     // that it has begun.
     struct Entry {
         Time at = Time::min();
-        int cue = -1;
-        std::vector<OutputCourse> outputs;
-        std::vector<Course> levels;
+        std::shared_ptr<const CueList> list;
+        int cue = -1;                // of `list`
+        Time entered = Time::min();  // of the cue; before `at` if a revision has come since
+        Time whole = Time::min();    // when all of its look is seen
+        std::optional<Time> left;    // when the next cue comes by itself
+        bool isGone = false;         // what is seen is of a cue that `list` has not; `cue` is the nearest before
+        std::vector<OutputCourse> outputs{};
+        std::vector<Course> levels{};
+        std::vector<std::uint8_t> relays{};
     };
     // The operator took the light away or gave it back.
     struct Shutter {
         Time at{};
         bool dark = false;
         float from = 1;  // the light's factor then
+        Time fade{};     // from full light to none
     };
 
     const Entry& entryAt(Time time) const;
     int cueAt(Time time) const { return entryAt(time).cue; }
+    void examine(const CueList& list);
     void enter(int cue, Time at);
-    void followOn(std::size_t most);
-    std::optional<int> followerOf(int cue) const;
-    Entry entered(int cue, Time at) const;
+    void put(Entry entry);
+    void followOn();
+    Outcome revise(std::shared_ptr<const CueList> list, Time at);
+    Entry entered(const std::shared_ptr<const CueList>& list, int cue, Time at) const;
+    void setOut(Entry& entry, const Look& look, const std::vector<WindWish>& winds, Time fade) const;
     static OutputCourse courseOf(const OutputState& from, const OutputState& to, Time at, Time fade);
     void lookAt(Time time, Look& out) const;
     float lightAt(Time time) const;
 
-    CueList list_;
-    Gusts gusts_;
-    std::size_t sources_ = 0;  // that looks show: as many layers add as light on one output at most
+    Gusts gusts_;                 // of the first list's seed: they go on
+    std::set<SourceId> sources_;  // that looks show: as many layers add as light on one output at most
     struct {
         std::size_t layers = 0, pictures = 0;
     } composed_;                     // of all looks and outputs, more than one output can show in a chain of fades

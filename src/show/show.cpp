@@ -1,5 +1,6 @@
 #include "show/show.h"
 
+#include "core/config.h"
 #include "core/geometry.h"
 
 #include <fmt/format.h>
@@ -47,24 +48,31 @@ Result<std::size_t> find(std::string_view name, const std::vector<std::string>& 
     return Error(fmt::format("no {} is called '{}' ({})", what, name, advice));
 }
 
+// The sources that a look may name, those that are wrong as well: they are no fault of who names
+// them.
+struct KnownSources {
+    std::vector<std::string> names;
+    std::vector<SourceId> ids;  // of `names`
+};
+
 // The layers of one output of a look.
-Result<OutputState> readLayers(const ConfigNode& node, const std::vector<std::string>& sources) {
+Result<OutputState> readLayers(const ConfigNode& node, const KnownSources& sources) {
     OutputState output;
     for (const ConfigNode& item : TRY(node.items())) {
         LayerState layer;
         double opacity = 1;
         ConfigFields fields(item);
-        fields.read("source", layer.source, [&](const ConfigNode& value) -> Result<std::uint32_t> {
-            return static_cast<std::uint32_t>(TRY(value.choice(sources)));
-        });
+        std::size_t source = 0;
+        fields.read("source", source, [&](const ConfigNode& value) { return value.choice(sources.names); });
         fields.optional().number("opacity", opacity, 0, 1);
         fields.optional().choice("blend", layer.blend, {"add", "over", "multiply", "screen"});
         TRY(fields.finish());
+        layer.source = sources.ids[source];
         layer.opacity = static_cast<float>(opacity);
         const auto same = [&](const LayerState& other) { return other.source == layer.source; };
         if (std::any_of(output.layers.begin(), output.layers.end(), same))
             return item.error(
-                fmt::format("'{}' is on this output already; one layer of a source is enough", sources[layer.source]));
+                fmt::format("'{}' is on this output already; one layer of a source is enough", sources.names[source]));
         output.layers.push_back(layer);
     }
     // Light that is only added needs no order, so that a fade can take each source for itself.
@@ -87,7 +95,7 @@ Result<WindWish> readWind(const ConfigNode& node) {
 }
 
 // An output of a look: its layers, or a map with them and a wind of its own.
-Result<NamedLook::OutputWish> readOutput(const ConfigNode& node, const std::vector<std::string>& sources) {
+Result<NamedLook::OutputWish> readOutput(const ConfigNode& node, const KnownSources& sources) {
     NamedLook::OutputWish output;
     if (!node.isMap()) {
         output.layers = TRY(readLayers(node, sources));
@@ -112,7 +120,7 @@ Result<std::vector<Named<Wish>>> readNamed(const ConfigNode& node, Read read) {
     std::vector<Named<Wish>> wishes;
     ConfigFaults faults;
     for (const auto& [name, value] : TRY(node.entries()))
-        faults.take(Result<Wish>(read(value)), [&](Wish wish) { wishes.push_back({name, value, std::move(wish)}); });
+        faults.take(Result<Wish>(read(value)), [&](Wish wish) { wishes.push_back({name, value.here(), std::move(wish)}); });
     TRY(faults.result());
     return wishes;
 }
@@ -122,7 +130,7 @@ Result<NamedLook::Levels> readLevels(const ConfigNode& node) {
     return NamedLook::Levels(TRY(readLevel(node)));
 }
 
-Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, const std::vector<std::string>& sources) {
+Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, const KnownSources& sources) {
     NamedLook look;
     look.name = name;
     ConfigFields fields(node);
@@ -241,6 +249,11 @@ std::vector<WindWish> bindWinds(const NamedLook& named, const Site& site) {
 }  // namespace
 
 Result<Show> Show::load(const std::filesystem::path& fileOrFolder) {
+    SourceNames names;
+    return load(fileOrFolder, names);
+}
+
+Result<Show> Show::load(const std::filesystem::path& fileOrFolder, SourceNames& names) {
     Show show;
     std::error_code ignored;
     show.file = std::filesystem::is_directory(fileOrFolder, ignored) ? fileOrFolder / "show.yaml" : fileOrFolder;
@@ -253,13 +266,15 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder) {
     fields.optional().time("go_interval", show.goInterval, 0, kLongestGoInterval);
     fields.optional().time("blackout_fade", show.blackoutFade, 0, kLongestBlackoutFade);
     fields.optional().integer("seed", show.seed, 0, std::numeric_limits<std::int64_t>::max());
-    std::vector<std::string> sourceNames, lookNames;  // also of those that are wrong: they are no fault of who names them
+    KnownSources known;
+    std::vector<std::string> lookNames;  // also of those that are wrong: they are no fault of who names them
     fields.read("sources", show.sources, [&](const ConfigNode& node) -> Result<std::vector<Source>> {
         std::vector<Source> sources;
         ConfigFaults faults;
         for (const auto& [name, source] : TRY(node.entries())) {
-            sourceNames.push_back(name);
-            faults.take(readSource(name, source), [&](Source read) { sources.push_back(std::move(read)); });
+            known.names.push_back(name);
+            known.ids.push_back(names.idOf(name));
+            faults.take(readSource(name, known.ids.back(), source), [&](Source read) { sources.push_back(std::move(read)); });
         }
         TRY(faults.result());
         return sources;
@@ -269,7 +284,7 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder) {
         ConfigFaults faults;
         for (const auto& [name, look] : TRY(node.entries())) {
             lookNames.push_back(name);
-            faults.take(readLook(name, look, sourceNames), [&](NamedLook read) { looks.push_back(std::move(read)); });
+            faults.take(readLook(name, look, known), [&](NamedLook read) { looks.push_back(std::move(read)); });
         }
         TRY(faults.result());
         return looks;
@@ -286,7 +301,8 @@ Result<CueList> Show::bind(const Site& site) const {
     TRY(faults.result());
 
     CueList list;
-    for (const Cue& cue : cues) list.cues.push_back({bound[cue.look], cue.fade, cue.follow, bindWinds(looks[cue.look], site)});
+    for (const Cue& cue : cues)
+        list.cues.push_back({bound[cue.look], cue.fade, cue.follow, bindWinds(looks[cue.look], site), cue.name});
     list.dark = darkLook(site);
     list.goInterval = goInterval;
     list.blackoutFade = blackoutFade;

@@ -6,7 +6,7 @@
 #include "show/source.h"
 #include "show/wind.h"
 
-#include "core/config.h"
+#include "core/file_place.h"
 #include "core/result.h"
 
 #include <cstdint>
@@ -23,7 +23,7 @@ namespace fantascope::show {
 template <class Wish>
 struct Named {
     std::string name;
-    ConfigNode at;  // for whoever has to refuse the name
+    FilePlace at;  // for whoever has to refuse the name
     Wish wish;
 };
 
@@ -61,12 +61,15 @@ struct Show {
     std::vector<NamedLook> looks;
     std::vector<Cue> cues;
 
-    // Reads a show.yaml, or the one in a folder. Strict; the files that it names must exist. Error:
-    // file, line, column, key, advice.
+    // Reads a show.yaml, or the one in a folder. Strict; the files that it names must exist.
+    // Sources get their ids from `names`: the same as those of whatever was read with them before.
+    // Error: file, line, column, key, advice.
+    static Result<Show> load(const std::filesystem::path& fileOrFolder, SourceNames& names);
+    // The same of a show that is the only one: its sources have the ids 0, 1, 2, ... in their
+    // order.
     static Result<Show> load(const std::filesystem::path& fileOrFolder);
 
     // Looks every name up in `site`. Error: place in the show file, and what the site has instead.
-    // Thread: the one that loaded it.
     Result<CueList> bind(const Site& site) const;
 
     // The index of a cue. Error: no cue has this name; says which one was perhaps meant.

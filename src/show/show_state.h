@@ -2,6 +2,8 @@
 // The one value that the show gives out: what is to be seen at one moment. Renderer and lighting
 // read it; nothing flows back.
 
+#include "show/source_id.h"
+
 #include "core/clock.h"
 #include "core/wind.h"
 
@@ -20,8 +22,8 @@ enum class Blend {
 
 // One picture source on one output.
 struct LayerState {
-    std::uint32_t source = 0;  // index into Show::sources
-    float opacity = 0;         // 0..1, in linear light
+    SourceId source;
+    float opacity = 0;  // 0..1, in linear light
     Blend blend = Blend::Add;
     Time begun{};  // show time at which the source came onto the output: where a video begins
     friend bool operator==(const LayerState&, const LayerState&) = default;

@@ -28,6 +28,7 @@ constexpr double kBrightestBlack = 0.1;  // of a projector: 10 : 1, in bright su
 struct DeviceConfig {
     std::string driver;
     ConfigNode options;  // the whole map, `driver:` included
+    friend bool operator==(const DeviceConfig&, const DeviceConfig&) = default;
 };
 
 // The plane that an output's picture falls on.

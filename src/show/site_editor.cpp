@@ -1,5 +1,8 @@
 #include "show/site_editor.h"
 
+#include "show/mask_handles.h"
+#include "show/projection_changes.h"
+
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -28,7 +31,6 @@ glm::dvec2 rounded(glm::dvec2 value, double grain) { return {rounded(value.x, gr
 constexpr std::string_view kCornerNames[] = {"top left", "top right", "bottom right", "bottom left", "whole picture"};
 constexpr std::string_view kEdgeNames[] = {"left edge", "top edge", "right edge", "bottom edge"};
 constexpr std::string_view kToolNames[] = {"corners", "mesh", "part of the canvas", "masks", "light"};
-constexpr std::string_view kFlipNames[] = {"none", "horizontal", "vertical"};
 constexpr std::size_t kWhole = 4;  // of the corners' handles
 constexpr const char* kNoMaskChosen = "choose a mask first";
 
@@ -80,8 +82,6 @@ constexpr LightValue kLightValues[] = {
      [](ProjectorLight& light, double value) { light.white.b = value; }},
 };
 
-std::string pointOf(glm::dvec2 point) { return fmt::format("{:.2f}, {:.2f}", point.x, point.y); }
-
 // `index` + `step`, round a circle of `count`.
 std::size_t stepped(std::size_t index, int step, std::size_t count) {
     const auto size = static_cast<std::ptrdiff_t>(count);
@@ -98,84 +98,6 @@ glm::dvec2 edgeMiddle(const CanvasPart& part, std::size_t edge) {
 double& edgeOf(CanvasPart& part, std::size_t edge) {
     double* const edges[] = {&part.low.x, &part.low.y, &part.high.x, &part.high.y};
     return *edges[edge];
-}
-
-// What can be moved of the masks. Images are the file's alone.
-struct MaskHandle {
-    enum class Kind { Point, Whole, Feather };
-    Kind kind = Kind::Point;
-    std::size_t mask = 0, point = 0;
-};
-
-std::vector<MaskHandle> maskHandles(const std::vector<Mask>& masks) {
-    std::vector<MaskHandle> handles;
-    for (std::size_t mask = 0; mask < masks.size(); ++mask) {
-        if (masks[mask].polygon.empty()) continue;
-        for (std::size_t point = 0; point < masks[mask].polygon.size(); ++point)
-            handles.push_back({MaskHandle::Kind::Point, mask, point});
-        handles.push_back({MaskHandle::Kind::Whole, mask});
-        handles.push_back({MaskHandle::Kind::Feather, mask});
-    }
-    return handles;
-}
-
-// The one that a handle belongs to. Error: there is none.
-Result<MaskHandle> chosenOf(const std::vector<Mask>& masks, std::size_t handle) {
-    const std::vector<MaskHandle> handles = maskHandles(masks);
-    if (handles.empty()) return Error("there is no mask that can be moved; add one");
-    return handles[handle];
-}
-
-EditHandle editHandle(const std::vector<Mask>& masks, const MaskHandle& handle) {
-    const std::vector<glm::dvec2>& polygon = masks[handle.mask].polygon;
-    switch (handle.kind) {
-        case MaskHandle::Kind::Point:
-            return {polygon[handle.point], fmt::format("{} | {}", handle.mask + 1, handle.point + 1)};
-        case MaskHandle::Kind::Whole: {
-            glm::dvec2 sum(0);
-            for (const glm::dvec2 point : polygon) sum += point;
-            return {sum / static_cast<double>(polygon.size()), fmt::format("mask {}", handle.mask + 1)};
-        }
-        case MaskHandle::Kind::Feather:
-            break;
-    }
-    return {std::nullopt, fmt::format("feather of mask {}", handle.mask + 1)};
-}
-
-std::string valueText(const Mask& mask, const MaskHandle& handle) {
-    if (handle.kind == MaskHandle::Kind::Point) return pointOf(mask.polygon[handle.point]);
-    if (handle.kind == MaskHandle::Kind::Feather) return fmt::format("{:.2f}", mask.feather);
-    return mask.hidesOutside ? "hides its outside" : "hides its inside";
-}
-
-ConfigValue valueOf(const Mask& mask) {
-    if (mask.polygon.empty()) return ConfigValue::Map{{"image", mask.imageFile}};
-    ConfigValue::Map map{{"polygon", mask.polygon}};
-    if (mask.hidesOutside) map.emplace_back("hides", "outside");
-    if (mask.feather > 0) map.emplace_back("feather", mask.feather);
-    return map;
-}
-
-// What makes one list of masks of another, as calls of set(differs, path, value): what differs is
-// written at its place, and what goes is taken from the end of that.
-template <class Set>
-void maskChanges(const std::vector<Mask>& then, const std::vector<Mask>& now, const Set& set) {
-    if (now.empty()) return set(!then.empty(), {"masks"}, std::nullopt);
-    std::size_t behind = 0;  // which moves up as it is, with its remarks
-    while (now.size() < then.size() && behind < now.size() && now[now.size() - 1 - behind] == then[then.size() - 1 - behind])
-        ++behind;
-    const std::size_t written = now.size() - behind;
-    for (std::size_t i = 0; i < written; ++i) {
-        if (i >= then.size() || then[i].polygon.empty() || now[i].polygon.empty()) {
-            set(i >= then.size() || now[i] != then[i], {"masks", i}, valueOf(now[i]));
-            continue;
-        }
-        set(now[i].polygon != then[i].polygon, {"masks", i, "polygon"}, now[i].polygon);
-        set(now[i].hidesOutside != then[i].hidesOutside, {"masks", i, "hides"}, now[i].hidesOutside ? "outside" : "inside");
-        set(now[i].feather != then[i].feather, {"masks", i, "feather"}, now[i].feather);
-    }
-    for (std::size_t i = written + then.size() - std::min(then.size(), now.size()); i-- > written;)
-        set(true, {"masks", i}, std::nullopt);
 }
 
 }  // namespace
@@ -516,35 +438,8 @@ void SiteEditor::swapWith(std::vector<Step>& from, std::vector<Step>& to) {
 
 std::vector<SiteEditor::Change> SiteEditor::unsaved() const {
     std::vector<Change> changes;
-    for (std::size_t i = 0; i < site_.outputs.size(); ++i) {
-        const Projection &now = site_.outputs[i].projection, &then = saved_[i];
-        const WarpShape &warp = now.warp.shape(), &before = then.warp.shape();
-        const auto set = [&](bool differs, ConfigPath path, std::optional<ConfigValue> value) {
-            if (!differs) return;
-            path.insert(path.begin(), {"outputs", i});
-            changes.push_back({std::move(path), std::move(value)});
-        };
-        set(warp.part != before.part, {"part"},
-            std::vector<double>{warp.part.low.x, warp.part.low.y, warp.part.high.x, warp.part.high.y});
-        set(warp.orientation.flip != before.orientation.flip, {"flip"},
-            std::string(kFlipNames[static_cast<std::size_t>(warp.orientation.flip)]));
-        set(warp.orientation.quarterTurns != before.orientation.quarterTurns, {"turn"}, 90.0 * warp.orientation.quarterTurns);
-        set(warp.corners != before.corners, {"corners"}, warp.corners);
-        if (warp.mesh != before.mesh) {
-            std::optional<ConfigValue> mesh;
-            if (!warp.mesh.offsets.empty())
-                mesh = ConfigValue::Map{{"points", glm::dvec2(warp.mesh.points)},
-                                        {"between", warp.mesh.between == WarpMesh::Between::Smooth ? "smooth" : "straight"},
-                                        {"offsets", warp.mesh.offsets}};
-            set(true, {"mesh"}, std::move(mesh));
-        }
-        maskChanges(then.masks, now.masks, set);
-        std::optional<ConfigValue> gamma = now.light.gamma ? ConfigValue(*now.light.gamma) : ConfigValue("srgb");
-        set(now.light.gamma != then.light.gamma, {"light", "gamma"}, std::move(gamma));
-        set(now.light.blackLevel != then.light.blackLevel, {"light", "black_level"}, now.light.blackLevel);
-        set(now.light.white != then.light.white, {"light", "white"}, now.light.white);
-        set(now.light.brightness != then.light.brightness, {"light", "brightness"}, now.light.brightness);
-    }
+    for (std::size_t i = 0; i < site_.outputs.size(); ++i)
+        for (Change& change : projectionChanges(saved_[i], site_.outputs[i].projection, i)) changes.push_back(std::move(change));
     return changes;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 // Setting up the outputs in the dark: what a technician may ask for, and what becomes of the site.
 
+#include "show/mask_handles.h"
+#include "show/projection_changes.h"
 #include "show/site.h"
 
 #include "core/config_edit.h"
@@ -75,12 +77,6 @@ using EditCommand =
                  edit::MoveTo, edit::Release, edit::StepSize, edit::MeshPoints, edit::AddMask, edit::MaskPoints, edit::TurnMask,
                  edit::Flip, edit::Turn, edit::Reset, edit::Picture, edit::Show, edit::Undo, edit::Redo>;
 
-// Something that can be moved.
-struct EditHandle {
-    std::optional<glm::dvec2> at;  // projector pixels, for what has a place there
-    std::string label;
-};
-
 // A site while somebody sets its outputs up. Every state of it could be saved and loaded: what
 // could not is refused and changes nothing, so that the last good picture stays on the wall.
 // Thread: thread-bound.
@@ -102,11 +98,7 @@ public:
     // saved.
     std::vector<std::string> lines() const;
 
-    // One entry of the site file that is to read otherwise.
-    struct Change {
-        ConfigPath path;
-        std::optional<ConfigValue> value;  // none: the key goes
-    };
+    using Change = SiteChange;
     // What has changed since it was loaded or last saved, and the word that it was.
     std::vector<Change> unsaved() const;
     void saved();

@@ -7,6 +7,11 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
 namespace fantascope::show {
 namespace {
@@ -41,6 +46,25 @@ Result<fs::path> readPatternFile(const ConfigNode& node) {
     return readFile(node, fmt::format("make it with 'fantascope pattern GUIDE -o {}'", TRY(node.path()).string()));
 }
 
+// What stands behind a kind's key.
+template <class Kind>
+Result<Kind> readAs(const ConfigNode& node) = delete;
+
+template <>
+Result<PatternSource> readAs(const ConfigNode& node) {
+    return PatternSource{TRY(readPatternFile(node))};
+}
+
+template <>
+Result<SolidSource> readAs(const ConfigNode& node) {
+    return SolidSource{glm::vec3(TRY(node.vector3(0, 1)))};
+}
+
+template <>
+Result<ImageSource> readAs(const ConfigNode& node) {
+    return ImageSource{TRY(readFile(node, "it is a picture (PNG, JPEG or TIFF)"))};
+}
+
 Result<FoliageSource::Layer> readLeaves(const ConfigNode& node, const FoliageSource& foliage) {
     FoliageSource::Layer layer;
     std::optional<fs::path> leaves, holes;
@@ -66,7 +90,8 @@ Result<FoliageSource::Layer> readLeaves(const ConfigNode& node, const FoliageSou
     return layer;
 }
 
-Result<FoliageSource> readFoliage(const ConfigNode& node) {
+template <>
+Result<FoliageSource> readAs(const ConfigNode& node) {
     FoliageSource foliage;
     foliage.sun = kSun;
     std::vector<ConfigNode> layers;
@@ -84,10 +109,13 @@ Result<FoliageSource> readFoliage(const ConfigNode& node) {
     return foliage;
 }
 
-Result<CausticsSource> readCaustics(const ConfigNode& node) {
+Result<glm::vec3> readLight(const ConfigNode& node) { return glm::vec3(TRY(node.vector3(0, kBrightest))); }
+
+template <>
+Result<CausticsSource> readAs(const ConfigNode& node) {
     CausticsSource caustics;
     ConfigFields fields(node);
-    fields.optional().vector3("light", caustics.light, 0, kBrightest);
+    fields.optional().read("light", caustics.light, readLight);
     fields.optional().vector2("size", caustics.size, kSmallest, kLargest, "m");
     fields.optional().number("depth", caustics.depth, 0, kLargest, "m");
     fields.optional().number("wave_length", caustics.waveLength, kSmallest, kLargest, "m");
@@ -108,10 +136,11 @@ Result<CausticsSource> readCaustics(const ConfigNode& node) {
     return caustics;
 }
 
-Result<MirrorBallSource> readMirrorBall(const ConfigNode& node) {
+template <>
+Result<MirrorBallSource> readAs(const ConfigNode& node) {
     MirrorBallSource mirrors;
     ConfigFields fields(node);
-    fields.optional().vector3("light", mirrors.light, 0, kBrightest);
+    fields.optional().read("light", mirrors.light, readLight);
     fields.optional().vector2("size", mirrors.size, kSmallest, kLargest, "m");
     fields.optional().vector3("ball", mirrors.ball, -kLargest, kLargest, "m");
     fields.optional().number("radius", mirrors.radius, kSmallest, kLargest, "m");
@@ -133,7 +162,8 @@ Result<MirrorBallSource> readMirrorBall(const ConfigNode& node) {
 Result<fs::path> readVideoFile(const ConfigNode& node) { return readFile(node, "it is a video (MP4, MOV, MKV, WebM)"); }
 
 // A file, or a map with it.
-Result<VideoSource> readVideo(const ConfigNode& node) {
+template <>
+Result<VideoSource> readAs(const ConfigNode& node) {
     VideoSource video;
     if (!node.isMap()) {
         video.file = TRY(readVideoFile(node));
@@ -147,7 +177,8 @@ Result<VideoSource> readVideo(const ConfigNode& node) {
     return video;
 }
 
-Result<CameraSource> readCamera(const ConfigNode& node) {
+template <>
+Result<CameraSource> readAs(const ConfigNode& node) {
     TRY(ConfigFields(node).finish());
     return CameraSource{};
 }
@@ -189,7 +220,8 @@ Result<std::optional<ShadowSource::Picture>> readScreenPart(const ConfigNode& no
 }
 
 // A file, or a map with it.
-Result<ShadowSource> readShadow(const ConfigNode& node) {
+template <>
+Result<ShadowSource> readAs(const ConfigNode& node) {
     const auto readCastFile = [](const ConfigNode& file) {
         return readFile(file, "make it with 'fantascope pose SILHOUETTE.png' or 'fantascope adapt'");
     };
@@ -215,48 +247,58 @@ Result<ShadowSource> readShadow(const ConfigNode& node) {
     return shadow;
 }
 
-}  // namespace
-
-Result<Source> readSource(const std::string& name, const ConfigNode& node) {
-    Source source{name, {}, node};
-    int kinds = 0;
-    ConfigFields fields(node);
-    const auto kind = [&](std::string_view key, auto read) {
-        fields.optional().read(key, source.picture, [&kinds, read](const ConfigNode& value) -> Result<decltype(Source::picture)> {
-            ++kinds;
-            return decltype(Source::picture)(TRY(read(value)));
+// Declares the keys of all kinds. `given` counts those that are there.
+template <class... Kinds>
+void declareKinds(ConfigFields& fields, std::variant<Kinds...>& picture, int& given) {
+    const auto declare = [&]<class Kind>(std::type_identity<Kind>) {
+        fields.optional().read(Kind::kKey, picture, [&](const ConfigNode& value) -> Result<std::variant<Kinds...>> {
+            ++given;
+            return std::variant<Kinds...>(TRY(readAs<Kind>(value)));
         });
     };
-    kind("pattern", [](const ConfigNode& file) -> Result<PatternSource> { return PatternSource{TRY(readPatternFile(file))}; });
-    kind("solid",
-         [](const ConfigNode& colour) -> Result<SolidSource> { return SolidSource{glm::vec3(TRY(colour.vector3(0, 1)))}; });
-    kind("foliage", readFoliage);
-    kind("caustics", readCaustics);
-    kind("mirror_ball", readMirrorBall);
-    kind("image", [](const ConfigNode& file) -> Result<ImageSource> {
-        return ImageSource{TRY(readFile(file, "it is a picture (PNG, JPEG or TIFF)"))};
-    });
-    kind("video", readVideo);
-    kind("camera", readCamera);
-    kind("shadow", readShadow);
+    (declare(std::type_identity<Kinds>()), ...);
+}
+
+// "'a', 'b' or 'c'"
+template <class... Kinds>
+std::string keysOf(const std::variant<Kinds...>&) {
+    std::vector<std::string> keys{fmt::format("'{}'", Kinds::kKey)...};
+    const std::string last = std::move(keys.back());
+    keys.pop_back();
+    return fmt::format("{} or {}", fmt::join(keys, ", "), last);
+}
+
+using Files = std::vector<fs::path>;
+
+Files filesIn(const PatternSource& source) { return {source.file}; }
+Files filesIn(const SolidSource&) { return {}; }
+Files filesIn(const FoliageSource& source) {
+    Files files;
+    for (const FoliageSource::Layer& layer : source.layers) files.push_back(layer.pattern);
+    return files;
+}
+Files filesIn(const CausticsSource&) { return {}; }
+Files filesIn(const MirrorBallSource&) { return {}; }
+Files filesIn(const ImageSource& source) { return {source.file}; }
+Files filesIn(const VideoSource& source) { return {source.file}; }
+Files filesIn(const CameraSource&) { return {}; }
+Files filesIn(const ShadowSource& source) { return {source.cast}; }
+
+}  // namespace
+
+Result<Source> readSource(const std::string& name, SourceId id, const ConfigNode& node) {
+    Source source{name, id, {}, node.here()};
+    int kinds = 0;
+    ConfigFields fields(node);
+    declareKinds(fields, source.picture, kinds);
     fields.optional().choice("fit", source.fit, {"contain", "cover", "stretch"});
     TRY(fields.finish());
-    if (kinds != 1)
-        return node.error(
-            "exactly one kind of source is needed: 'pattern', 'solid', 'foliage', 'caustics', 'mirror_ball', 'image', 'video', "
-            "'camera' or 'shadow'");
+    if (kinds != 1) return node.error(fmt::format("exactly one kind of source is needed: {}", keysOf(source.picture)));
     return source;
 }
 
 std::vector<fs::path> filesOf(const Source& source) {
-    if (const auto* pattern = std::get_if<PatternSource>(&source.picture)) return {pattern->file};
-    if (const auto* image = std::get_if<ImageSource>(&source.picture)) return {image->file};
-    if (const auto* video = std::get_if<VideoSource>(&source.picture)) return {video->file};
-    if (const auto* shadow = std::get_if<ShadowSource>(&source.picture)) return {shadow->cast};
-    std::vector<fs::path> files;
-    if (const auto* foliage = std::get_if<FoliageSource>(&source.picture))
-        for (const FoliageSource::Layer& layer : foliage->layers) files.push_back(layer.pattern);
-    return files;
+    return std::visit([](const auto& kind) { return filesIn(kind); }, source.picture);
 }
 
 }  // namespace fantascope::show

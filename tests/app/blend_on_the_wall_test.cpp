@@ -60,9 +60,9 @@ protected:
         const auto simulated = site::SimulatedSite::open(*read.simulation, simulationOf(read).value(), 1, world).value();
         simulated->begin(Time{});
         for (std::size_t output = 0; output < read.outputs.size(); ++output) {
-            const auto screen =
-                OffScreen::open(read.outputs[output].projection, blendOf(read, output), {render::SolidSource{glm::vec3(1)}})
-                    .value();
+            const auto screen = OffScreen::open(read.outputs[output].projection, blendOf(read, output),
+                                                render::PictureSources::numbered({render::SolidSource{glm::vec3(1)}}))
+                                    .value();
             world.setFrame(read.outputs[output].name, std::make_shared<const RgbaImage>(screen->draw({{{0, grey}}}, {}, Time{})));
         }
         clock.advance(fromSeconds(0.1));  // a camera frame

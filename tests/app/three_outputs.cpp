@@ -113,16 +113,12 @@ ThreeOutputs::ThreeOutputs(const std::array<std::string, 3>& displays)
         for (int x = 0; x < picture->width(); ++x)
             picture->at(x, y) = {static_cast<std::uint8_t>(4 * x), static_cast<std::uint8_t>(7 * y), 90,
                                  static_cast<std::uint8_t>(x < 32 ? 255 : 128)};
-    sources = {pattern,
-               render::SolidSource{{0.2f, 0.05f, 0.3f}},
-               foliage,
-               render::CausticsSource{glm::vec3(0.1f, 0.15f, 0.17f), {16.0 / 3, 3}, 1.2, 0.55, 0.02, 1},
-               render::MirrorBallSource{glm::vec3(3), {16.0 / 3, 3}, {0, 0.5, 2.2}, 0.25, 0.03, {2.6, 1.8, 1}, 0.05, 60},
-               render::ImageSource{picture},
-               render::VideoSource{videoIn(folder)},
-               render::CameraSource{camera},
-               turning(),
-               softly(turning())};
+    sources = render::PictureSources::numbered(
+        {pattern, render::SolidSource{{0.2f, 0.05f, 0.3f}}, foliage,
+         render::CausticsSource{glm::vec3(0.1f, 0.15f, 0.17f), {16.0 / 3, 3}, 1.2, 0.55, 0.02, 1},
+         render::MirrorBallSource{glm::vec3(3), {16.0 / 3, 3}, {0, 0.5, 2.2}, 0.25, 0.03, {2.6, 1.8, 1}, 0.05, 60},
+         render::ImageSource{picture}, render::VideoSource{videoIn(folder)}, render::CameraSource{camera}, turning(),
+         softly(turning())});
 
     using show::Blend;
     constexpr Time kFade = std::chrono::milliseconds(40);
@@ -141,7 +137,7 @@ ThreeOutputs::ThreeOutputs(const std::array<std::string, 3>& displays)
     }
     // Shapes over a colour, a picture and both, none of which moves.
     const std::uint32_t resting = count;
-    sources.push_back(render::resting(render::smallPattern()));
+    sources.add({count}, render::resting(render::smallPattern()));
     show::Look look = cues.dark;
     look.outputs[0].layers = {{1, 1.0f}, {resting, 0.9f, Blend::Over}};
     look.outputs[1].layers = {{5, 1.0f}, {resting, 0.7f, Blend::Screen}};

@@ -28,7 +28,7 @@ struct ThreeOutputs {
 
     const ScratchFolder folder;
     show::Site site;
-    std::vector<render::PictureSource> sources;
+    render::PictureSources sources;
     std::shared_ptr<render::PictureFeed> camera;  // what one of them shows
     RgbaImage seen;                               // a picture for it
     show::CueList cues;                           // between them every source is on every output, in every blend

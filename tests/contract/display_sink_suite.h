@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <thread>
 #include <utility>
 
 namespace fantascope::contract {
@@ -194,6 +195,25 @@ inline Suite<DisplaySinkRig> displaySinkSuite() {
                  CONTRACT_REQUIRE(glIsBuffer(buffer), "after present() another display's context is current");
                  const GLenum error = glGetError();
                  CONTRACT_REQUIRE(error == GL_NO_ERROR, "it leaves the OpenGL error {:#x} behind", error);
+                 return "";
+             }},
+            {"its context can be lent to another thread",
+             [](DisplaySinkRig& rig) -> std::string {
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 rig.port().release();
+                 std::string failure;
+                 std::thread([&] {
+                     failure = [&]() -> std::string {
+                         CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                         fill(rig.port(), 1);
+                         CONTRACT_SUCCEEDS(rig.port().finish());
+                         return "";
+                     }();
+                     rig.port().release();
+                 }).join();
+                 if (!failure.empty()) return failure;
+                 CONTRACT_SUCCEEDS(rig.port().makeCurrent());
+                 CONTRACT_REQUIRE(storedRed(rig.port(), 0, 0) == 255, "what the other thread has drawn is not there");
                  return "";
              }},
             {"outputs keep their own pictures",

@@ -76,6 +76,7 @@ class AlmostGood : public Between<DisplaySink> {
     bool poll() override { return good_->poll(); }
     int context() const override { return good_->context(); }
     Result<void> makeCurrent() override { return good_->makeCurrent(); }
+    void release() override { good_->release(); }
     unsigned framebuffer() const override { return good_->framebuffer(); }
     Result<void> finish() override { return good_->finish(); }
     Result<Shown> present() override { return good_->present(); }
@@ -193,6 +194,14 @@ class TakesAnyContext : public AlmostGood {
 };
 TEST(DisplaySinkContract, finds_a_present_that_leaves_another_context_current) {
     EXPECT_THAT(brokenBy<TakesAnyContext>(), Contains("finish() and present() make their own context current"));
+}
+
+class KeepsItsContext : public AlmostGood {
+    using AlmostGood::AlmostGood;
+    void release() override {}
+};
+TEST(DisplaySinkContract, finds_a_context_that_is_not_released) {
+    EXPECT_THAT(brokenBy<KeepsItsContext>(), Contains("its context can be lent to another thread"));
 }
 
 class DeniesItsLoss : public AlmostGood {

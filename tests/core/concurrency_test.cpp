@@ -166,5 +166,19 @@ TEST(ParallelFor, uses_no_thread_but_the_callers_when_one_is_asked_for) {
     EXPECT_GE(hardwareThreads(), 1);
 }
 
+// Example failure: an exception on a thread that was made for the call ends the program.
+TEST(ParallelFor, hands_an_exception_on_to_the_caller) {
+    for (const int threads : {1, 3}) {
+        std::atomic<int> done = 0;
+        EXPECT_THROW(parallelFor(1000, threads,
+                                 [&](int index) {
+                                     if (index >= 10) throw std::runtime_error("broken");
+                                     ++done;
+                                 }),
+                     std::runtime_error);
+        EXPECT_EQ(done, 10);
+    }
+}
+
 }  // namespace
 }  // namespace fantascope

@@ -1,6 +1,12 @@
 #include "core/config.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+
+#include <array>
+#include <string>
+#include <thread>
+#include <vector>
 
 namespace fantascope {
 namespace {
@@ -61,7 +67,68 @@ TEST(Config, what_is_not_yaml_is_refused_with_its_place) {
     EXPECT_THAT(refusal(""), HasSubstr("a map"));
 }
 
-// Example failure: to fix a file, one starts the program once per mistake.
+// Example failure: a list that is written once and meant twice is read as nothing at its second
+// place.
+TEST(Config, an_alias_reads_as_what_it_stands_for_and_so_does_its_key) {
+    const auto root = ConfigNode::parse("lenses:\n  - &wide {a: [1, 2]}\n  - *wide\n&b b: *wide\n*b : 3\n", "f");
+    ASSERT_TRUE(root) << root.error().message();
+    const auto entries = root->entries();
+    EXPECT_EQ(entries.error().message(), "f:4:1: 'b' is given twice");
+    std::vector<ConfigNode> lenses;
+    ConfigFields fields(*root);
+    fields.read("lenses", lenses, [](const ConfigNode& list) { return list.items(); });
+    ASSERT_EQ(lenses.size(), 2u);
+    EXPECT_EQ(lenses[0].entries().value().at(0).second.items().value().at(1).integer(0, 9).value(), 2);
+    EXPECT_TRUE(lenses[0] == lenses[1]);
+    EXPECT_EQ(lenses[1].error("dark").message(), "f:2:5: lenses[1]: dark") << "the place where it is written";
+}
+
+// Example failure: a reader of nested lists never ends.
+TEST(Config, an_alias_of_something_that_it_is_in_is_refused) {
+    EXPECT_EQ(refusal("name: &a [1, [*a]]\n"), "folder/lens.yaml:1:15: not YAML: an alias stands for something that it is in");
+    EXPECT_THAT(refusal("&a name: a\nfocal: *b\n"), StartsWith("folder/lens.yaml:2:8: not YAML:"));
+}
+
+// A device that stands on another line of a file's new version is the same device.
+TEST(Config, nodes_are_equal_that_read_the_same_wherever_they_stand) {
+    const auto deviceOf = [](const std::string& text) {
+        const auto entries = ConfigNode::parse(text, "f").value().entries().value();
+        return entries.back().second;
+    };
+    const ConfigNode one = deviceOf("device: {driver: sacn, to: [1, 2]}\n");
+    EXPECT_TRUE(one == deviceOf("# moved\nother: 1\ndevice:\n  driver: 'sacn'\n  to:\n  - 1\n  - 2\n"));
+    EXPECT_FALSE(one == deviceOf("device: {driver: sacn, to: [1, 3]}\n"));
+    EXPECT_FALSE(one == deviceOf("device: {driver: sacn, to: [1, 2, 2]}\n"));
+    EXPECT_FALSE(one == deviceOf("device: {driver: sacn, to: '[1, 2]'}\n"));
+    EXPECT_FALSE(one == deviceOf("device: {to: [1, 2], driver: sacn}\n")) << "in another order";
+    EXPECT_FALSE(one == ConfigNode());
+    EXPECT_TRUE(ConfigNode() == ConfigNode());
+}
+
+// Each alias doubles what is read. Example failure: comparing two such files takes years.
+TEST(Config, a_short_text_that_reads_as_a_huge_tree_is_compared_at_once) {
+    std::string text = "a0: &a0 [x, x]\n";
+    for (int i = 1; i < 60; ++i) text += fmt::format("a{0}: &a{0} [*a{1}, *a{1}]\n", i, i - 1);
+    EXPECT_TRUE(ConfigNode::parse(text, "f").value() == ConfigNode::parse("# the same\n" + text, "g").value());
+}
+
+// Drivers and playback read what was loaded on threads of their own; tsan sees a node that changes
+// as it is read.
+TEST(Config, a_node_may_be_read_on_any_thread) {
+    const ConfigNode root = ConfigNode::parse("list: [1, 2, 3, 4]\n", "f").value();
+    std::vector<std::jthread> readers;
+    std::array<std::int64_t, 4> sums{};
+    for (std::int64_t& sum : sums)
+        readers.emplace_back([&sum, root] {
+            const ConfigNode list = root.entries().value().front().second;
+            const std::vector<ConfigNode> items = list.items().value();
+            for (const ConfigNode& item : items) sum += item.integer(0, 9).value();
+        });
+    readers.clear();
+    EXPECT_THAT(sums, testing::Each(10));
+}
+
+// Example failure: whoever mends a file starts the program once for each mistake.
 TEST(Config, all_mistakes_are_told_in_the_files_order) {
     EXPECT_EQ(refusal("zoom: 2\nblades: 1\nfocal: 0\n"),
               "folder/lens.yaml:1:1: zoom: unknown key (known here: name, focal, blades)\n"

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <future>
+#include <stdexcept>
 #include <vector>
 
 namespace fantascope::drivers {
@@ -47,6 +48,22 @@ TEST(Service, is_starting_until_the_first_attempt_has_ended) {
     EXPECT_EQ(service.status().state, DeviceState::Absent);
     EXPECT_EQ(service.status().losses, 0) << "what never ran was not lost";
     EXPECT_THAT(service.refusal().message(), HasSubstr("lamp is absent: it is not there"));
+}
+
+// Example failure: one driver's exception ends the whole show.
+TEST(Service, a_driver_that_throws_is_faulted_and_called_again) {
+    std::promise<void> again;
+    Service service("lamp", "test", LossAction::Hold,
+                    once([](Service&) -> Outage { throw std::runtime_error("out of order"); },
+                         [&](Service& device) {
+                             EXPECT_EQ(device.status().state, DeviceState::Faulted);
+                             EXPECT_EQ(device.status().detail, "its driver failed: out of order");
+                             device.setRunning();
+                             again.set_value();
+                             return untilTheEnd(device);
+                         }));
+    again.get_future().wait();
+    EXPECT_TRUE(service.isRunning());
 }
 
 TEST(Service, counts_a_loss_for_every_life_that_ends) {

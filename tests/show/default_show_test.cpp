@@ -48,7 +48,7 @@ TEST(DefaultShow, steps_through_its_evening_on_the_simulated_site) {
         EXPECT_EQ(playback.apply({.at = at}), Outcome::Taken);
         playback.stateAt(at + 10s - 1ns, ends[i]);
     }
-    std::set<std::uint32_t> seen;
+    std::set<SourceId> seen;
     for (std::size_t i = 0; i < cues; ++i) {
         EXPECT_EQ(ends[i].cue, static_cast<int>(i));
         const bool street = i == 0 || i == cues - 1;
@@ -73,7 +73,7 @@ TEST(Shows, load_and_play_on_the_simulated_site) {
         ASSERT_TRUE(show) << show.error().message();
         const auto list = show->bind(*site);
         ASSERT_TRUE(list) << list.error().message();
-        std::set<std::uint32_t> seen;
+        std::set<SourceId> seen;
         for (const auto& cue : list->cues)
             for (const OutputState& output : cue.look.outputs)
                 for (const LayerState& layer : output.layers) seen.insert(layer.source);

@@ -79,10 +79,10 @@ float opacity(const Look& look, std::size_t output, std::uint32_t source) {
     const OutputState& state = look.outputs[output];
     float sum = 0;
     for (std::size_t i = 0; i < addedOnes(state); ++i)
-        if (state.layers[i].source == source) sum += state.layers[i].opacity;
+        if (state.layers[i].source.value == source) sum += state.layers[i].opacity;
     for (const ComposedPicture& picture : state.pictures)
         for (std::size_t i = picture.first; i < picture.last; ++i)
-            if (state.layers[i].source == source) sum += picture.share * state.layers[i].opacity;
+            if (state.layers[i].source.value == source) sum += picture.share * state.layers[i].opacity;
     return sum;
 }
 
@@ -154,7 +154,7 @@ TEST(Playback, a_layer_begins_when_its_source_comes_onto_the_output) {
     const auto begun = [&](Time time, std::uint32_t source) -> std::optional<Time> {
         const ShowState state = stateOf(playback, time);
         for (const LayerState& layer : state.outputs[0].layers)
-            if (layer.source == source) return layer.begun;
+            if (layer.source.value == source) return layer.begun;
         return std::nullopt;
     };
     EXPECT_EQ(begun(15s, 0), 10s);
@@ -532,7 +532,7 @@ TEST(Playback, every_state_is_well_formed) {
                     EXPECT_LE(layer.opacity, 1);
                 }
                 const auto allDiffer = [&](std::size_t first, std::size_t last) {
-                    std::set<std::uint32_t> sources;
+                    std::set<SourceId> sources;
                     for (std::size_t i = first; i < last; ++i) sources.insert(output.layers[i].source);
                     return sources.size() == last - first;
                 };

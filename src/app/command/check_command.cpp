@@ -76,25 +76,31 @@ std::string unknownShape(const show::Site& site, const show::Output& output) {
         site.file.string(), output.name, output.canvas);
 }
 
+// A source whose picture has a shape of its own.
+struct Shaped {
+    const show::Source* source;
+    double aspect;
+};
+
 // For every source, on every canvas that shows it.
-void noteShapes(const show::Show& show, const show::CueList& cues, const std::vector<std::optional<double>>& aspects,
-                const show::Site& site, std::vector<std::string>& oddities) {
-    std::set<std::pair<std::size_t, std::string>> told;
+void noteShapes(const show::CueList& cues, const show::BySource<Shaped>& shaped, const show::Site& site,
+                std::vector<std::string>& oddities) {
+    std::set<std::pair<show::SourceId, std::string>> told;
     std::set<std::string> unknown;
     for (const auto& cue : cues.cues)
         for (std::size_t i = 0; i < site.outputs.size(); ++i)
             for (const show::LayerState& layer : cue.look.outputs[i].layers) {
                 const show::Output& output = site.outputs[i];
-                const auto aspect = aspects[layer.source];
+                const Shaped* const shown = shaped.find(layer.source);
                 const double canvas = output.projection.canvasAspect;
-                if (!aspect) continue;
+                if (shown == nullptr) continue;
                 if (canvas == 0) {
                     if (unknown.insert(output.canvas).second) oddities.push_back(unknownShape(site, output));
                     continue;
                 }
-                if (isSameShape(*aspect, canvas)) continue;
+                if (isSameShape(shown->aspect, canvas)) continue;
                 if (told.insert({layer.source, output.canvas}).second)
-                    oddities.push_back(fitAdvice(show.sources[layer.source], *aspect, output));
+                    oddities.push_back(fitAdvice(*shown->source, shown->aspect, output));
             }
 }
 
@@ -133,25 +139,26 @@ Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>&
     if (site) faults.take(show.bind(*site), [&](show::CueList bound) { cues = std::move(bound); });
     std::shared_ptr<render::PictureFeed> camera;
     if (site && site->nominalCamera) camera = std::make_shared<render::PictureFeed>(site->nominalCamera->size);
-    std::vector<std::optional<double>> aspects;
+    show::BySource<Shaped> shaped;
     for (const show::Source& source : show.sources) {
         noteNegatives(source, finding.oddities);
         const std::vector<fs::path> files = show::filesOf(source);
         finding.names.insert(finding.names.end(), files.begin(), files.end());
-        aspects.emplace_back();
         if (std::holds_alternative<show::CameraSource>(source.picture) && !camera) {
             if (site) faults.add(source.at.error(fmt::format("{} has no camera", site->file.string())));
             continue;
         }
         const auto read = readPictureSource(source, render::VideoStream::Pace::Exact, camera);
-        if (read)
-            aspects.back() = render::aspectOf(*read);
-        else if (std::all_of(files.begin(), files.end(), [&](const fs::path& file) { return checkFile(file, site).has_value(); }))
+        if (read) {
+            if (const auto aspect = render::aspectOf(*read)) shaped.add(source.id, {&source, *aspect});
+        } else if (std::all_of(files.begin(), files.end(),
+                               [&](const fs::path& file) { return checkFile(file, site).has_value(); })) {
             faults.add(read.error());  // each file is valid, but they do not fit together
+        }
     }
     TRY(faults.result());
     if (site) {
-        noteShapes(show, cues, aspects, *site, finding.oddities);
+        noteShapes(cues, shaped, *site, finding.oddities);
         finding.summary += fmt::format(", plays on {}", site->file.string());
     }
     return finding;

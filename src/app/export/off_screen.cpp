@@ -10,7 +10,7 @@
 
 namespace fantascope::app {
 
-Result<std::unique_ptr<OffScreen>> OffScreen::open(glm::ivec2 size, const std::vector<render::PictureSource>& sources) {
+Result<std::unique_ptr<OffScreen>> OffScreen::open(glm::ivec2 size, const render::PictureSources& sources) {
     Projection straight{size, Warp::straight(size)};
     straight.light.dither = false;
     straight.canvasAspect = static_cast<double>(size.x) / size.y;
@@ -19,7 +19,7 @@ Result<std::unique_ptr<OffScreen>> OffScreen::open(glm::ivec2 size, const std::v
 
 Result<std::unique_ptr<OffScreen>> OffScreen::open(const Projection& projection,
                                                    const std::shared_ptr<const render::BlendMap>& blend,
-                                                   const std::vector<render::PictureSource>& sources) {
+                                                   const render::PictureSources& sources) {
     const glm::ivec2 size = projection.size;
     std::unique_ptr<OffScreen> screen(new OffScreen);
     const ConfigNode options = TRY(ConfigNode::parse("driver: headless\n", "off screen"));
@@ -40,7 +40,7 @@ OffScreen::~OffScreen() {
 }
 
 const RgbaImage& OffScreen::draw(const show::OutputState& state, const Wind& wind, Time showTime) {
-    FANTASCOPE_CHECK(display_->makeCurrent().has_value(), "nobody unplugs it");
+    FANTASCOPE_CHECK(display_->makeCurrent().has_value(), "a headless display is never lost");
     renderer_->draw(state, wind, showTime, display_->framebuffer());
     tap_->capture(display_->framebuffer(), showTime);
     tap_->publish({});

@@ -25,7 +25,7 @@ namespace fantascope::app {
 // long while the show stands still; events and report have show time. Thread: any.
 class FaultLog {
 public:
-    enum class Topic { Missing, Trouble, Relays, Desk, SafeStates, EndLevels, Guard, Recording, RecordedFrames };
+    enum class Topic { Missing, Trouble, Relays, Desk, SafeStates, EndLevels, Guard, Recording, RecordedFrames, Part };
 
     // After kBurst faults of a topic within kRestless the next one is told as coming and going, and
     // nothing more until it was steady for so long.

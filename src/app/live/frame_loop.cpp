@@ -1,17 +1,19 @@
 #include "app/live/frame_loop.h"
 
+#include "app/live/part.h"
 #include "app/site/site_models.h"
 
 #include "render/gpu/handles.h"
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <functional>
 #include <utility>
 
 namespace fantascope::app {
 
-FrameLoop::FrameLoop(const show::Site& site, const show::InputLog& inputs, std::vector<render::PictureSource> sources,
+FrameLoop::FrameLoop(const show::Site& site, const show::InputLog& inputs, render::PictureSources sources,
                      std::filesystem::path assets, Devices& devices, Clock& clock)
     : sources_(std::move(sources)),
       assets_(std::move(assets)),
@@ -24,12 +26,14 @@ FrameLoop::FrameLoop(const show::Site& site, const show::InputLog& inputs, std::
     }
     faults_.resize(outputs_.size());
     unfollowed_.resize(outputs_.size());
+    madeSince_.assign(outputs_.size(), kNever);
 }
 
 FrameLoop::~FrameLoop() {
     // What belongs to a context goes while it is current.
     for (Output& output : outputs_) {
-        if (output.display.context() != output.context || !output.display.makeCurrent()) forget(output);
+        output.making.reset();  // when the attempt has ended
+        if (!becomesCurrent(output)) forget(output);
         output.tap.reset();
         output.renderer.reset();
     }
@@ -39,6 +43,15 @@ render::FrameTap& FrameLoop::tap(std::size_t output) {
     std::unique_ptr<render::FrameTap>& tap = outputs_[output].tap;
     if (!tap) tap = std::make_unique<render::FrameTap>(output, outputs_[output].site.size());
     return *tap;
+}
+
+// Whether what it has in OpenGL can be given back.
+bool FrameLoop::becomesCurrent(Output& output) noexcept {
+    try {
+        return output.display.context() == output.context && output.display.makeCurrent();
+    } catch (...) {
+        return false;
+    }
 }
 
 void FrameLoop::forget(Output& output) {
@@ -51,13 +64,37 @@ void FrameLoop::inHand(const Output& output) { inHand_ = static_cast<std::size_t
 
 void FrameLoop::look() {
     for (Output& output : outputs_) {
+        output.running = false;
+        if (!isHere(output)) continue;
         inHand(output);
-        output.running = output.display.poll();
-        if (output.display.context() == output.context) continue;
-        forget(output);
-        output.context = output.display.context();
-        output.retryAt = Time{};  // another context is another chance
+        alone(output, [&] {
+            output.running = output.display.poll();
+            if (output.display.context() == output.context) return;
+            forget(output);
+            output.context = output.display.context();
+            output.retryAt = Time{};  // another context is another chance
+        });
     }
+}
+
+template <class Work>
+void FrameLoop::alone(Output& output, const Work& work) {
+    try {
+        work();
+    } catch (const std::exception& failure) {
+        giveUp(output, failure.what());
+    } catch (...) {
+        giveUp(output, "an exception of unknown kind");
+    }
+}
+
+// What an exception has left of the renderer is not known.
+void FrameLoop::giveUp(Output& output, const char* why) {
+    output.running = output.drawn = false;
+    output.shown.reset();
+    if (!becomesCurrent(output)) forget(output);
+    output.renderer.reset();
+    settle(output, Error(why));
 }
 
 void FrameLoop::tell(std::vector<std::string>& faults, const Output& output, const std::string& fault) {
@@ -72,12 +109,15 @@ std::vector<DeviceStatus> FrameLoop::withFaults(std::vector<DeviceStatus> status
         if (display.state != DeviceState::Running) continue;
         if (!unfollowed_[i].empty()) display.trouble = unfollowed_[i];
         const bool hangs = i == inHand_ && clock_.now().count() > hangsFrom_;
-        if (!hangs && faults_[i].empty()) continue;
+        const bool hangsAside = clock_.now() - madeSince_[i] > kHangs;
+        if (!hangs && !hangsAside && faults_[i].empty()) continue;
         display.state = DeviceState::Faulted;
-        display.detail =
-            hangs ? "the X server or the graphics driver does not answer; every picture stands still, lights and relays go on. "
-                    "Restart the X server if that lasts"
-                  : faults_[i];
+        display.detail = faults_[i];
+        if (hangsAside) display.detail = "the graphics driver does not answer while this picture is prepared; all else plays on";
+        if (hangs)
+            display.detail =
+                "the X server or the graphics driver does not answer; every picture stands still, lights and relays go on. "
+                "Restart the X server if that lasts";
     }
     return statuses;
 }
@@ -115,12 +155,53 @@ Result<void> FrameLoop::beReady(Output& output) {
     if (output.tap) TRY(output.tap->prepare());
     TRY(makeRenderer(output, output.site.projection, output.blend));
     output.fresh = true;
-    return {};
+    return output.display.finish();  // whoever draws next does not wait for this
+}
+
+Result<void> FrameLoop::attempt(Output& output) {
+    try {
+        return beReady(output);
+    } catch (const std::exception& failure) {
+        return Error(failure.what());
+    } catch (...) {
+        return Error("an exception of unknown kind");
+    }
+}
+
+void FrameLoop::makeAside(Output& output) {
+    output.running = false;  // it is lent
+    output.display.release();
+    auto making = std::make_unique<Making>();
+    making->thread = std::jthread([this, &output, &making = *making] {
+        setThreadRank(Rank::Input);  // what is shown goes first
+        making.made = attempt(output);
+        output.display.release();
+        making.ended = true;
+    });
+    output.making = std::move(making);
+    const std::lock_guard lock(faultsMutex_);
+    madeSince_[static_cast<std::size_t>(&output - outputs_.data())] = clock_.now();
+}
+
+bool FrameLoop::isHere(Output& output) {
+    if (!output.making) return true;
+    if (!output.making->ended) return false;
+    output.making->thread.join();
+    settle(output, output.making->made);
+    output.making.reset();
+    const std::lock_guard lock(faultsMutex_);
+    madeSince_[static_cast<std::size_t>(&output - outputs_.data())] = kNever;
+    return true;
 }
 
 bool FrameLoop::ready(Output& output, Time now) {
     if (output.faulted && now < output.retryAt) return false;
-    const auto made = beReady(output);
+    if (output.renderer || !makesAside_) return settle(output, attempt(output));
+    makeAside(output);
+    return false;
+}
+
+bool FrameLoop::settle(Output& output, const Result<void>& made) {
     if (made) {
         if (std::exchange(output.faulted, false)) tell(faults_, output, "");
         output.pause = Time{};
@@ -225,7 +306,10 @@ void FrameLoop::finish(Time end) {
         if (const std::optional<Shown> shown = std::exchange(output.shown, std::nullopt); shown && shown->at < end)
             countLate(output, static_cast<std::int64_t>(
                                   std::floor(seconds(end - shown->at) * output.display.refreshRate() + kTolerance)));
-        if (output.tap && output.display.makeCurrent()) output.tap->finish();
+        if (output.tap && !output.making)
+            alone(output, [&] {
+                if (output.display.makeCurrent()) output.tap->finish();
+            });
     }
 }
 
@@ -283,18 +367,20 @@ void FrameLoop::step() {
 
     Time oldestInput = Time::max();
     replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput = std::min(oldestInput, input.at); });
-    for (std::size_t i = 0; i < outputs_.size(); ++i) draw(outputs_[i], state_.outputs[i], state_.winds[i], showTime);
-    for (Output& output : outputs_) finish(output);
+    for (std::size_t i = 0; i < outputs_.size(); ++i)
+        alone(outputs_[i], [&] { draw(outputs_[i], state_.outputs[i], state_.winds[i], showTime); });
+    for (Output& output : outputs_) alone(output, [&] { finish(output); });
 
     // The leader waits as its refreshes ask, the others show with it.
-    if (leads != nullptr) show(*leads, [](DisplaySink& display) { return display.present(); });
+    const auto showOn = [&](Output& output, const Presenting& present) { alone(output, [&] { show(output, present); }); };
+    if (leads != nullptr) showOn(*leads, [](DisplaySink& display) { return display.present(); });
     const bool led = leads != nullptr && leads->shown;
     if (!led) clock_.sleepUntil(due);
     const Time leading = led ? leads->shown->at : due;
     for (Output& output : outputs_)
-        if (&output != leads) show(output, [&](DisplaySink& display) { return display.presentWith(leading); });
+        if (&output != leads) showOn(output, [&](DisplaySink& display) { return display.presentWith(leading); });
     measureSkew();
-    for (Output& output : outputs_) giveToReaders(output);
+    for (Output& output : outputs_) alone(output, [&] { giveToReaders(output); });
 
     const auto seen =
         std::find_if(outputs_.begin(), outputs_.end(), [](const Output& output) { return output.shown.has_value(); });

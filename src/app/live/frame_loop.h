@@ -20,6 +20,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace fantascope::app {
@@ -37,20 +38,20 @@ struct OutputSettings {
 // left out until it is back. All pictures of a frame are finished before the first is shown. A
 // display that holds a finished frame lets the loop be a frame ahead.
 //
-// An output that cannot be drawn (a shader is missing, OpenGL has no memory) is a fault of that
-// output alone: it is left out, and tried again with a back-off from kSoonestRetry to kLatestRetry.
-// A context that is lost takes the output's renderer along; the next one gets another.
+// An output that cannot be drawn (a shader is missing, OpenGL has no memory, an exception) is a
+// fault of that output alone: it is left out, and tried again with a back-off from kSoonestRetry to
+// kLatestRetry. A context that is lost takes the output's renderer along; the next one gets
+// another.
 // Thread: bound to the render thread, but for the slots, counters and withFaults().
 class FrameLoop {
 public:
-    // An attempt to make a renderer costs every output some frames.
     static constexpr Time kSoonestRetry = std::chrono::seconds(1), kLatestRetry = std::chrono::seconds(32);
     // Without a frame for so long, the loop hangs in a display.
     static constexpr Time kHangs = std::chrono::seconds(5);
 
     // All outlive it. `assets`: the folder of the shaders.
-    FrameLoop(const show::Site& site, const show::InputLog& inputs, std::vector<render::PictureSource> sources,
-              std::filesystem::path assets, Devices& devices, Clock& clock);
+    FrameLoop(const show::Site& site, const show::InputLog& inputs, render::PictureSources sources, std::filesystem::path assets,
+              Devices& devices, Clock& clock);
     ~FrameLoop();
 
     // Where the frames that `output` shows are read. Readers come before the first frame, best
@@ -67,6 +68,11 @@ public:
     // with that. Error: no output can be drawn that has a context, such as where the installation
     // lacks a file. A fault of some outputs alone is no error: withFaults() tells of it.
     Result<void> prepare();
+    // From now on a renderer that is missing is made on a thread of its own, to which the display
+    // lends its context: the other outputs miss no frame, however long that takes and whether it
+    // succeeds. Otherwise all wait for it, which a stepped clock does not notice, and the bytes are
+    // the same every time. Before the first frame.
+    void makeRenderersAside() { makesAside_ = true; }
     // The first refresh at or after a moment; a show that begins with one has a whole period for
     // its first frame.
     Time refreshFrom(Time moment);
@@ -96,6 +102,12 @@ public:
     const Durations& inputToFrame() const { return inputToFrame_; }
 
 private:
+    // An attempt to make an output's renderer while the others are shown.
+    struct Making {
+        Result<void> made;
+        std::atomic<bool> ended = false;  // the context is free again
+        std::jthread thread;              // last, so that it ends before the rest goes
+    };
     struct Output {
         const show::Output& site;
         DisplaySink& display;
@@ -114,16 +126,29 @@ private:
         PartTimes spent{};                                   // on that frame so far
         std::optional<Shown> shown{};                        // the newest frame; none since it was lost
         PartTimes spentUntilShown{};                         // spent_ then
+        std::unique_ptr<Making> making{};                    // while it is there the display is lent, and so is all else here
         OutputReport report{};
     };
     // In place of the one that is there, which stays where this fails.
     Result<void> makeRenderer(Output& output, const Projection& projection, const std::shared_ptr<const render::BlendMap>& blend);
     Result<void> beReady(Output& output);
-    // Whether it can be drawn now, or at least once its display is there. Tries it where that is
-    // due.
-    bool ready(Output& output, Time now);
+    // beReady(), where an exception is an error, too.
+    Result<void> attempt(Output& output);
+    void makeAside(Output& output);
+    // What became of the newest attempt: whether it can be drawn now, or at least once its display
+    // is there.
+    bool settle(Output& output, const Result<void>& made);
+    bool ready(Output& output, Time now);  // settles an attempt where one is due
+    // Takes an output back whose attempt has ended. Whether it is here, and not lent.
+    bool isHere(Output& output);
+    // Does something for one output. An exception is a fault of that output alone: it is taken for
+    // one that cannot be drawn, and gets another renderer.
+    template <class Work>
+    void alone(Output& output, const Work& work);
+    void giveUp(Output& output, const char* why);
     // Tells, or takes back (""), why it cannot be drawn, or not follow its settings.
     void tell(std::vector<std::string>& faults, const Output& output, const std::string& fault);
+    bool becomesCurrent(Output& output) noexcept;
     void forget(Output& output);
     void inHand(const Output& output);
     void followSettings(Output& output);
@@ -139,7 +164,7 @@ private:
     void spend(Output& output, FramePart part, Time time);
     void countLate(Output& output, std::int64_t refreshes);
 
-    std::vector<render::PictureSource> sources_;
+    render::PictureSources sources_;
     std::filesystem::path assets_;
     Clock& clock_;
     show::ShowClock showClock_;
@@ -148,6 +173,7 @@ private:
     show::ShowState state_;
     std::vector<Output> outputs_;
     LatestValue<show::ShowState>* stateSlot_ = nullptr;
+    bool makesAside_ = false;
     PartTimes spent_{};  // on all frames of all outputs
     Durations swapSkew_;
     Durations inputToFrame_;
@@ -157,9 +183,11 @@ private:
     mutable std::mutex faultsMutex_;
     std::vector<std::string> faults_;             // by output; "": none
     std::vector<std::string> unfollowed_;         // settings, by output: why not; "": followed
+    std::vector<Time> madeSince_;                 // by output: since when its renderer is made aside; kNever: it is not
     std::atomic<std::size_t> inHand_ = 0;         // the output that the loop works on
     std::atomic<Time::rep> hangsFrom_ = kNotYet;  // on the clock: it hangs in that output unless it has gone on until then
     static constexpr Time::rep kNotYet = Time::max().count();
+    static constexpr Time kNever = Time::max();
 };
 
 }  // namespace fantascope::app

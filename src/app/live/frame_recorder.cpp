@@ -10,6 +10,7 @@ namespace {
 
 // Of each output, frames that a recording may be behind: so many bytes of them, but a few at least.
 constexpr std::size_t kQueueBytes = std::size_t{256} << 20, kLeastQueue = 4, kMostQueue = 240;
+constexpr double kTablesRate = 1;  // Hz
 
 }  // namespace
 
@@ -35,6 +36,16 @@ std::vector<Part> FrameRecorder::parts() {
     for (const Video& video : recording_.videos())
         parts.push_back({"recording", rate_, phase, [this, video](Time moment) { record(video, moment); }, Rank::Watch});
     return parts;
+}
+
+Part FrameRecorder::tables() {
+    return {"tables", kTablesRate, runStart_,
+            [this](Time moment) {
+                for (const Error& error : recording_.writeTables())
+                    faults_.raise(moment, "", FaultLog::Topic::Recording,
+                                  "recording: " + error.message() + "; the show goes on without this table");
+            },
+            Rank::Watch};
 }
 
 void FrameRecorder::record(Time moment) {

@@ -33,8 +33,10 @@ public:
     void begin(Time runStart);
     // In real time: one for each video, so that one that is slow does not hold up the others.
     std::vector<Part> parts();
-    // On the stepped clock instead, after each frame: whatever became visible until `moment`. The
-    // show waits for it, so that nothing is left out.
+    // On either clock: brings the recording's tables to the disk now and then.
+    Part tables();
+    // On the stepped clock instead of parts(), after each frame: whatever became visible until
+    // `moment`. The show waits for it, so that nothing is left out.
     void record(Time moment);
     // Ends the files at `moment`, and tells what is not in them; `outputs`, the outputs' reports,
     // get their counts.

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <memory>
 #include <utility>
 
@@ -65,7 +66,7 @@ void Lighting::tick(Time moment) {
     replica_.stateAt(showClock_.showTime(std::min(moment, endsAt)), state_);
     const bool atEnd = moment >= endsAt && (hurried_ || moment - endsAt >= site_.endFade);
     if (moment >= endsAt) fadeToEnd(atEnd ? 1 : seconds(moment - endsAt) / seconds(site_.endFade));
-    for (std::size_t i = 0; i < devices_.lines.size(); ++i) {
+    const auto sendTo = [&](std::size_t i) {
         Devices::Line& line = devices_.lines[i];
         std::array<std::uint8_t, kDmxSlots> slots;
         show::slotsOf(site_, state_, line.universe, slots);
@@ -74,9 +75,19 @@ void Lighting::tick(Time moment) {
         // levels go out at the next tick.
         const Result<void> sent = line.port->send(slots);
         if (sent && recording_ != nullptr) recording_->lighting(showTime, line.universe, slots);
-        if (!atEnd) continue;
+        if (!atEnd) return;
         const std::lock_guard lock(linesMutex_);
         whyUnended_[i] = sent ? "" : sent.error().message();
+    };
+    // A line whose driver throws stops neither the other lines nor the relays; the part's guard
+    // tells.
+    std::exception_ptr failure;
+    for (std::size_t i = 0; i < devices_.lines.size(); ++i) {
+        try {
+            sendTo(i);
+        } catch (...) {
+            failure = std::current_exception();
+        }
     }
     lampsEnded_ = atEnd;
     const Time now = clock_.now();
@@ -86,6 +97,7 @@ void Lighting::tick(Time moment) {
         banks_[bank].wanted.writable() = show::coilsOf(site_, state_, bank);
         banks_[bank].wanted.publish();
     }
+    if (failure) std::rethrow_exception(failure);
 }
 
 std::vector<Part> Lighting::relayParts() {

@@ -19,7 +19,8 @@ public:
     // since the last call.
     void stateAt(Time time, show::ShowState& state, const auto& taken) {
         while (const show::LoggedInput* const logged = inputs_.next()) {
-            FANTASCOPE_CHECK(playback_.apply(logged->input) == logged->outcome, "every copy of the playback comes to the same");
+            FANTASCOPE_CHECK(playback_.apply(logged->input, logged->revision) == logged->outcome,
+                             "every copy of the playback comes to the same");
             taken(logged->input);
         }
         playback_.foresee(time);

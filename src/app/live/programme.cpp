@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <utility>
 
 namespace fantascope::app {
@@ -32,13 +31,20 @@ struct Pictures {
         double aspect = 1;  // width / height of the source's picture
         Fit fit = Fit::Contain;
     };
-    std::vector<render::PictureSource> sources;
-    std::vector<std::optional<Guide>> guides;
+    render::PictureSources sources;
+    show::BySource<std::optional<Guide>> guides;
 };
 
 struct Picture {
     render::PictureSource source;
     std::optional<Pictures::Guide> guide;
+};
+
+// How sources are read.
+struct Reading {
+    render::VideoStream::Pace pace;
+    const std::shared_ptr<render::PictureFeed>& camera;  // null: the site has none
+    bool isWatched = false;                              // somebody compares what is seen with the drawings
 };
 
 Result<Pictures::Guide> readGuide(const pattern::ShapePattern& pattern, const fs::path& file) {
@@ -47,13 +53,14 @@ Result<Pictures::Guide> readGuide(const pattern::ShapePattern& pattern, const fs
     return Pictures::Guide{std::move(*drawing), pattern.aspect()};
 }
 
-Result<Picture> readPicture(const show::PatternSource& source, bool isWatched) {
-    Picture picture{TRY(readPatternSource(source.file)), {}};
-    if (isWatched) picture.guide = TRY(readGuide(*std::get<render::PatternSource>(picture.source).pattern, source.file));
-    return picture;
+Result<Picture> readPicture(const show::PatternSource& source, const Reading& reading) {
+    render::PatternSource pattern = TRY(readPatternSource(source.file));
+    std::optional<Pictures::Guide> guide;
+    if (reading.isWatched) guide = TRY(readGuide(*pattern.pattern, source.file));
+    return Picture{std::move(pattern), std::move(guide)};
 }
 
-Result<Picture> readPicture(const show::SolidSource& source) { return Picture{render::SolidSource{source.colour}, {}}; }
+Result<Picture> readPicture(const show::SolidSource& source, const Reading&) { return Picture{source, {}}; }
 
 // A picture of what a small hole throws, as linear light.
 Result<std::shared_ptr<const GreyImage>> readFilter(const fs::path& file) {
@@ -64,7 +71,7 @@ Result<std::shared_ptr<const GreyImage>> readFilter(const fs::path& file) {
     return std::make_shared<const GreyImage>(std::move(picture));
 }
 
-Result<Picture> readPicture(const show::FoliageSource& source, bool isWatched) {
+Result<Picture> readPicture(const show::FoliageSource& source, const Reading& reading) {
     render::FoliageSource foliage{source.light, source.shadow, {}};
     std::optional<Pictures::Guide> guide;
     for (const show::FoliageSource::Layer& layer : source.layers) {
@@ -73,7 +80,7 @@ Result<Picture> readPicture(const show::FoliageSource& source, bool isWatched) {
         shadow.holes = layer.holes;
         shadow.filter.width = render::penumbraWidth(layer.distance, source.sun) / source.height;
         if (layer.filter) shadow.filter.picture = TRY(readFilter(*layer.filter));
-        if (isWatched && !guide) {
+        if (reading.isWatched && !guide) {
             guide = TRY(readGuide(*shadow.leaves.pattern, layer.pattern));
             if (!layer.holes) guide->drawing = inverted(std::move(guide->drawing));
         }
@@ -88,28 +95,22 @@ Result<Picture> readPicture(const show::FoliageSource& source, bool isWatched) {
     return Picture{std::move(foliage), std::move(guide)};
 }
 
-Result<Picture> readPicture(const show::CausticsSource& source) {
-    return Picture{
-        render::CausticsSource{source.light, source.size, source.depth, source.waveLength, source.waveHeight, source.seed}, {}};
-}
+Result<Picture> readPicture(const show::CausticsSource& source, const Reading&) { return Picture{source, {}}; }
 
-Result<Picture> readPicture(const show::MirrorBallSource& source) {
-    return Picture{render::MirrorBallSource{source.light, source.size, source.ball, source.radius, source.facet, source.lamp,
-                                            source.lampRadius, source.turn},
-                   {}};
-}
+Result<Picture> readPicture(const show::MirrorBallSource& source, const Reading&) { return Picture{source, {}}; }
 
-Result<Picture> readPicture(const show::ImageSource& source) {
+Result<Picture> readPicture(const show::ImageSource& source, const Reading&) {
     return Picture{render::ImageSource{std::make_shared<const RgbaImage>(TRY(readRgba(source.file)))}, {}};
 }
 
-Result<Picture> readPicture(const show::VideoSource& source, render::VideoStream::Pace pace) {
-    return Picture{render::VideoSource{TRY(render::VideoStream::open(source.file, pace)), source.loop, source.speed}, {}};
+Result<Picture> readPicture(const show::VideoSource& source, const Reading& reading) {
+    return Picture{render::VideoSource{TRY(render::VideoStream::open(source.file, reading.pace)), source.loop, source.speed}, {}};
 }
 
-Result<Picture> readPicture(const std::shared_ptr<render::PictureFeed>& camera) {
-    if (camera == nullptr) return Error("the site has no camera; take this source out, or declare a 'camera' in the site file");
-    return Picture{render::CameraSource{camera}, {}};
+Result<Picture> readPicture(const show::CameraSource&, const Reading& reading) {
+    if (reading.camera == nullptr)
+        return Error("the site has no camera; take this source out, or declare a 'camera' in the site file");
+    return Picture{render::CameraSource{reading.camera}, {}};
 }
 
 Result<render::ShadowSource::Play> playOf(const show::ShadowSource& source, const theatre::Cast& cast) {
@@ -125,7 +126,7 @@ Result<render::ShadowSource::Play> playOf(const show::ShadowSource& source, cons
     return *source.play == Asked::Loop ? Play::Loop : *source.play == Asked::Once ? Play::Once : Play::ToAndFro;
 }
 
-Result<Picture> readPicture(const show::ShadowSource& source) {
+Result<Picture> readPicture(const show::ShadowSource& source, const Reading&) {
     constexpr int kRows = 64;  // nothing is compared here
     auto cast = std::make_shared<const theatre::Cast>(TRY(theatre::readCast(source.cast)));
     render::ShadowSource shadow;
@@ -176,50 +177,34 @@ Result<Picture> readPicture(const show::ShadowSource& source) {
     return Picture{std::move(shadow), std::move(guide)};
 }
 
-// `camera`: null if the site has none. `isWatched`: somebody compares what is seen with the
-// drawings.
-Result<Picture> readSource(const show::Source& source, render::VideoStream::Pace pace,
-                           const std::shared_ptr<render::PictureFeed>& camera, bool isWatched) {
-    const auto read = [&](const auto& kind) -> Result<Picture> {
-        using Kind = std::decay_t<decltype(kind)>;
-        if constexpr (std::is_same_v<Kind, show::VideoSource>)
-            return readPicture(kind, pace);
-        else if constexpr (std::is_same_v<Kind, show::CameraSource>)
-            return readPicture(camera);
-        else if constexpr (std::is_same_v<Kind, show::PatternSource> || std::is_same_v<Kind, show::FoliageSource>)
-            return readPicture(kind, isWatched);
-        else
-            return readPicture(kind);
-    };
-    auto made = std::visit(read, source.picture);
+Result<Picture> readSource(const show::Source& source, const Reading& reading) {
+    auto made = std::visit([&](const auto& kind) { return readPicture(kind, reading); }, source.picture);
     if (!made) return source.at.error(made.error());
-    made->source = render::fitted(std::move(made->source), source.fit);
+    made->source.fit = source.fit;
     if (made->guide) made->guide->fit = source.fit;
     return made;
 }
 
-Result<Pictures> readPictures(const show::Show& show, render::VideoStream::Pace pace,
-                              const std::shared_ptr<render::PictureFeed>& camera, bool isWatched) {
+Result<Pictures> readPictures(const show::Show& show, const Reading& reading) {
     Pictures pictures;
     ConfigFaults faults;
     for (const show::Source& source : show.sources)
-        faults.take(readSource(source, pace, camera, isWatched), [&](Picture picture) {
-            pictures.sources.push_back(std::move(picture.source));
-            pictures.guides.push_back(std::move(picture.guide));
+        faults.take(readSource(source, reading), [&](Picture picture) {
+            pictures.sources.add(source.id, std::move(picture.source));
+            pictures.guides.add(source.id, std::move(picture.guide));
         });
     TRY(faults.result());
     return pictures;
 }
 
-Result<std::vector<Watch::Comparisons>> compareWith(const std::vector<std::optional<Pictures::Guide>>& guides,
+Result<std::vector<Watch::Comparisons>> compareWith(const show::BySource<std::optional<Pictures::Guide>>& guides,
                                                     const show::Site& site) {
     std::vector<Watch::Comparisons> comparisons(site.outputs.size());
     for (std::size_t output = 0; output < site.outputs.size(); ++output)
-        for (const auto& guide : guides) {
+        for (const auto& [source, guide] : guides) {
             std::optional<vision::NominalView> view;
             if (guide) view = TRY(nominalViewOf(site, output, guide->aspect, guide->fit));
-            comparisons[output].push_back(view ? std::make_shared<const vision::GuideComparison>(*view, guide->drawing)
-                                               : nullptr);
+            if (view) comparisons[output].add(source, std::make_shared<const vision::GuideComparison>(*view, guide->drawing));
         }
     return comparisons;
 }
@@ -234,14 +219,13 @@ Result<render::PatternSource> readPatternSource(const fs::path& file) {
 
 Result<render::PictureSource> readPictureSource(const show::Source& source, render::VideoStream::Pace pace,
                                                 const std::shared_ptr<render::PictureFeed>& camera) {
-    return TRY(readSource(source, pace, camera, false)).source;
+    return TRY(readSource(source, {pace, camera})).source;
 }
 
 Result<Programme> readProgramme(const RunOptions& options) {
-    Programme programme;
-    programme.show = TRY(show::Show::load(options.show));
-    programme.site = TRY(readSite(options.site));
-    programme.cues = TRY(programme.show.bind(programme.site));
+    show::Show show = TRY(show::Show::load(options.show));
+    show::Site site = TRY(readSite(options.site));
+    Programme programme(TRY(show::Revision::of(std::move(show), std::move(site))));
     if (!options.fromCue.empty()) {
         const std::size_t cue = TRY(programme.show.cueNamed(options.fromCue));
         programme.firstInput = show::Input{Time{}, show::Input::Kind::Jump, static_cast<int>(cue)};
@@ -253,7 +237,7 @@ Result<Programme> readProgramme(const RunOptions& options) {
         programme.site.camera && std::any_of(programme.site.outputs.begin(), programme.site.outputs.end(),
                                              [](const auto& output) { return output.projector && output.surface; });
     Pictures pictures =
-        TRY(readPictures(programme.show, options.asFastAsPossible ? Pace::Exact : Pace::Live, programme.camera, isWatched));
+        TRY(readPictures(programme.show, {options.asFastAsPossible ? Pace::Exact : Pace::Live, programme.camera, isWatched}));
     programme.sources = std::move(pictures.sources);
     programme.comparisons = TRY(compareWith(pictures.guides, programme.site));
     return programme;

@@ -5,14 +5,14 @@
 
 #include "render/source/picture_source.h"
 #include "show/playback.h"
-#include "show/show.h"
-#include "show/site.h"
+#include "show/revision.h"
 
 #include "core/result.h"
 
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace fantascope::app {
@@ -20,13 +20,17 @@ namespace fantascope::app {
 // Everything that a run reads from files, before anything lights up. Constant afterwards, but for
 // what moves in its pictures.
 struct Programme {
-    show::Show show;
-    show::Site site;
-    show::CueList cues;
+    explicit Programme(std::shared_ptr<const show::Revision> played)
+        : revision(std::move(played)), show(revision->show), site(revision->site), cues(show::Revision::cuesOf(revision)) {}
+
+    std::shared_ptr<const show::Revision> revision;
+    const show::Show& show;  // of `revision`, as these:
+    const show::Site& site;
+    std::shared_ptr<const show::CueList> cues;
     std::optional<show::Input> firstInput;        // the cue to start from
-    std::vector<render::PictureSource> sources;   // in the order of Show::sources
+    render::PictureSources sources;               // in the order of Show::sources
     std::shared_ptr<render::PictureFeed> camera;  // what the camera's sources show; null where the site has none
-    std::vector<Watch::Comparisons> comparisons;  // [output][source]
+    std::vector<Watch::Comparisons> comparisons;  // [output]
 };
 
 // A pattern with its movement, ready to be drawn. Error: as pattern::readPattern.

@@ -2,13 +2,10 @@
 
 #include "app/base/contact_sheet.h"
 
-#include "core/file.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 namespace fantascope::app {
@@ -32,7 +29,13 @@ std::uint64_t hashOf(const RgbaImage& picture) {
 }  // namespace
 
 Recording::Recording(fs::path target, std::vector<Output> outputs)
-    : target_(std::move(target)), outputs_(std::move(outputs)), frames_(outputs_.size()) {}
+    : target_(std::move(target)),
+      outputs_(std::move(outputs)),
+      frames_(outputs_.size()),
+      newestLine_(outputs_.size(), Time::min()),
+      framesTable_(target_ / "frames.csv", "refresh,show_time_s,output,fnv1a64\n"),
+      dmx_(target_ / "dmx.csv", "show_time_s,universe,slots\n"),
+      relays_(target_ / "relays.csv", "show_time_s,bank,states\n") {}
 
 Result<std::unique_ptr<Recording>> Recording::open(const fs::path& target, std::vector<Output> outputs) {
     std::unique_ptr<Recording> recording(new Recording(target, std::move(outputs)));
@@ -74,7 +77,7 @@ Result<void> Recording::frame(std::size_t output, const RgbaImage& picture, cons
     if (!video.writer) return {};
     if (!sideBySide()) {
         TRY(write(video, picture, shown.at));
-        frames_[output].lines.push_back({shown.refresh, showTime, hashOf(picture)});
+        addLine({showTime, output, frames_[output].count, shown.refresh, hashOf(picture)});
     } else {
         // What becomes visible within half a refresh is seen together. An output that refreshes
         // more quickly may have its next frame within that time.
@@ -100,30 +103,40 @@ Result<void> Recording::writeTiled() {
 void Recording::lighting(Time showTime, int universe, std::span<const std::uint8_t> slots) {
     // The dark end of a universe says nothing.
     while (!slots.empty() && slots.back() == 0) slots = slots.first(slots.size() - 1);
-    fmt::format_to(std::back_inserter(dmx_), "{:.6f},{},{}\n", seconds(showTime), universe, fmt::join(slots, " "));
+    if (!sideBySide()) dmx_.add(fmt::format("{:.6f},{},{}\n", seconds(showTime), universe, fmt::join(slots, " ")));
 }
 
 void Recording::relays(Time showTime, const std::string& bank, const std::vector<bool>& states) {
-    const std::lock_guard lock(relaysMutex_);
-    relays_ += fmt::format("{:.6f},{},", seconds(showTime), bank);
-    for (const bool on : states) relays_ += on ? '1' : '0';
-    relays_ += '\n';
+    if (sideBySide()) return;
+    std::string line = fmt::format("{:.6f},{},", seconds(showTime), bank);
+    for (const bool on : states) line += on ? '1' : '0';
+    relays_.add(line + '\n');
 }
 
 void Recording::cue(int index, const std::string& label, const RgbaImage& picture) { cues_[index] = {label, picture}; }
 
-// In the order in which they were shown.
-std::string Recording::framesTable() const {
-    std::vector<std::pair<std::size_t, Frames::Line>> lines;
-    for (std::size_t output = 0; output < outputs_.size(); ++output)
-        for (const Frames::Line& line : frames_[output].lines) lines.emplace_back(output, line);
-    std::stable_sort(lines.begin(), lines.end(),
-                     [](const auto& a, const auto& b) { return a.second.showTime < b.second.showTime; });
-    std::string table = "refresh,show_time_s,output,fnv1a64\n";
-    for (const auto& [output, line] : lines)
-        fmt::format_to(std::back_inserter(table), "{},{:.6f},{},{:016x}\n", line.refresh, seconds(line.showTime),
-                       outputs_[output].name, line.hash);
-    return table;
+// In the order in which they were shown, once no output can have an older one.
+void Recording::addLine(const Line& line) {
+    const std::lock_guard lock(linesMutex_);
+    lines_.insert(line);
+    newestLine_[line.output] = line.showTime;
+    const Time certain = *std::ranges::min_element(newestLine_);
+    while (!lines_.empty() && (lines_.size() > kMostLines || lines_.begin()->showTime < certain)) putOldestLine();
+}
+
+void Recording::putOldestLine() {
+    const Line& line = *lines_.begin();
+    framesTable_.add(
+        fmt::format("{},{:.6f},{},{:016x}\n", line.refresh, seconds(line.showTime), outputs_[line.output].name, line.hash));
+    lines_.erase(lines_.begin());
+}
+
+std::vector<Error> Recording::writeTables() {
+    std::vector<Error> errors;
+    if (!sideBySide())
+        for (TableFile* const table : {&framesTable_, &dmx_, &relays_})
+            if (const auto written = table->write(); !written) errors.push_back(written.error());
+    return errors;
 }
 
 Result<void> Recording::finish() {
@@ -142,9 +155,11 @@ Result<void> Recording::finish() {
             for (const std::size_t output : shown[i]) frames_[output].count = 0;
     }
     if (!sideBySide()) {
-        note(writeFile(target_ / "frames.csv", framesTable()));
-        note(writeFile(target_ / "dmx.csv", dmx_));
-        note(writeFile(target_ / "relays.csv", relays_));
+        {
+            const std::lock_guard lock(linesMutex_);
+            while (!lines_.empty()) putOldestLine();
+        }
+        for (TableFile* const table : {&framesTable_, &dmx_, &relays_}) note(table->finish());
         std::vector<LabelledPicture> pictures;
         for (const auto& [index, labelled] : cues_) pictures.push_back({labelled.first, labelled.second});
         if (!pictures.empty()) note(writePng(target_ / "contact-sheet.png", contactSheet(pictures)));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/base/video_writer.h"
+#include "app/live/table_file.h"
 
 #include "device/display_sink.h"
 
@@ -17,8 +18,10 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace fantascope::app {
@@ -32,9 +35,11 @@ namespace fantascope::app {
 // The pictures end with the show; dmx.csv and relays.csv hold the lamps' fade to the end levels and
 // the relays' safe states, too. Or, where the target is a file that ends in .mp4, one video with
 // the outputs side by side.
-// A video that cannot be written any further, as on a full disk, is left out; all else goes on.
+// A video or a table that cannot be written any further, as on a full disk, ends there; all else
+// goes on. Videos have no name before finish(). Tables grow on the disk and are called
+// NAME.csv.unfinished until then, so that a sudden end of the program leaves them.
 // Thread: frame() from one thread for each video, lighting() from one, cue() from one, relays()
-// from any; begin() before and finish() after these.
+// from any, writeTables() from one; begin() before and finish() after these.
 class Recording {
 public:
     struct Output {
@@ -56,6 +61,9 @@ public:
     Result<void> frame(std::size_t output, const RgbaImage& picture, const Shown& shown, Time showTime);
     void lighting(Time showTime, int universe, std::span<const std::uint8_t> slots);
     void relays(Time showTime, const std::string& bank, const std::vector<bool>& states);
+    // Writes the lines that the tables were given since the last call; no other call waits for the
+    // disk with them. Errors: why a table ends here, each once.
+    std::vector<Error> writeTables();
     // The newest camera picture of a cue; the last one given for a cue goes onto the contact sheet.
     void cue(int index, const std::string& label, const RgbaImage& picture);
 
@@ -68,12 +76,17 @@ private:
     struct Frames {
         std::int64_t count = 0;
         bool tiled = false;  // side by side: the newest is not written yet
-        struct Line {
-            std::int64_t refresh;
-            Time showTime;
-            std::uint64_t hash;
-        };
-        std::vector<Line> lines;
+    };
+    // Of frames.csv. Where show times meet, the order of the outputs decides, then that in which an
+    // output showed them.
+    struct Line {
+        Time showTime;
+        std::size_t output;
+        std::int64_t number, refresh;
+        std::uint64_t hash;
+        bool operator<(const Line& other) const {
+            return std::tie(showTime, output, number) < std::tie(other.showTime, other.output, other.number);
+        }
     };
     struct Video {
         std::unique_ptr<VideoWriter> writer;  // null once it has failed
@@ -84,7 +97,8 @@ private:
     bool sideBySide() const { return target_.extension() == ".mp4"; }
     Result<void> write(Video& video, const RgbaImage& picture, Time at);
     Result<void> writeTiled();
-    std::string framesTable() const;
+    void addLine(const Line& line);
+    void putOldestLine();  // into frames.csv; with linesMutex_
 
     std::filesystem::path target_;
     std::vector<Output> outputs_;
@@ -92,9 +106,13 @@ private:
     std::vector<Frames> frames_;  // of each output
     std::vector<Video> videos_;   // one for each output, or one for all
     RgbaImage tiled_;             // the outputs side by side
-    std::string dmx_ = "show_time_s,universe,slots\n";
-    std::mutex relaysMutex_;
-    std::string relays_ = "show_time_s,bank,states\n";
+    // Lines of frames.csv that an output which is behind may still have to come before. One that
+    // shows nothing is not waited for beyond so many.
+    static constexpr std::size_t kMostLines = 4096;
+    std::mutex linesMutex_;  // of:
+    std::set<Line> lines_;
+    std::vector<Time> newestLine_;  // show time, of each output
+    TableFile framesTable_, dmx_, relays_;
     std::map<int, std::pair<std::string, RgbaImage>> cues_;
 };
 

@@ -9,6 +9,7 @@
 #include "app/live/hand.h"
 #include "app/live/lighting.h"
 #include "app/live/part.h"
+#include "app/live/part_guard.h"
 #include "app/live/programme.h"
 #include "app/live/recording.h"
 #include "app/live/run_lights.h"
@@ -86,6 +87,7 @@ public:
           lights_(programme.site, openSite.devices, lighting_, faults_, clock, guard) {
         faults_.begin(showClock_);
         frames_.begin(showClock_);
+        if (!options.asFastAsPossible) frames_.makeRenderersAside();
         if (recorder_) recorder_->begin(showClock_.runStart());
         frames_.publishStateTo(watch_.shown());
         hand_.edit = [this](show::Button button, bool pressed) { settingUp_.button(button, pressed); };
@@ -114,7 +116,7 @@ public:
                          Rank::Input});
         parts.push_back({"lighting", Lighting::kRate, start, [this](Time moment) { lighting_.tick(moment); }, Rank::Lighting});
         for (Part& relays : lighting_.relayParts()) parts.push_back(std::move(relays));
-        return parts;
+        return guardedParts(std::move(parts));
     }
     std::vector<Part> otherParts(const std::function<void(const RunStatus&)>& progress) {
         const Time start = showClock_.runStart();
@@ -123,6 +125,7 @@ public:
         parts.push_back({"watch", Watch::kRate, start, [this](Time moment) { watch_.tick(moment); }, Rank::Watch});
         if (recorder_ && !options_.asFastAsPossible)
             for (Part& video : recorder_->parts()) parts.push_back(std::move(video));
+        if (recorder_) parts.push_back(recorder_->tables());
         if (screenshots_)
             parts.push_back(
                 {"pictures", Screenshots::kRate, start, [this](Time moment) { screenshots_->tick(moment); }, Rank::Watch});
@@ -137,7 +140,7 @@ public:
                              Rank::Watch});
             parts.push_back(yardstick_.part());
         }
-        return parts;
+        return guardedParts(std::move(parts));
     }
 
     // On the stepped clock the lights' parts are with the others.
@@ -149,9 +152,11 @@ public:
         clock_.sleepUntil(showClock_.runStart());
         const Time end = options_.length ? showClock_.runStart() + *options_.length : Time::max();
         const auto stopped = [&] { return supervisor_.ending(); };
+        PartGuard pictures("pictures", Rank::Lighting, faults_), recording("recording", Rank::Watch, faults_);
         while (!stopped() && frames_.nextDue() <= end) {
-            frames_.step();
-            if (recorder_ && options_.asFastAsPossible) recorder_->record(clock_.now());
+            if (!pictures.run(clock_.now(), [this](Time) { frames_.step(); })) clock_.sleepUntil(frames_.nextDue());
+            if (recorder_ && options_.asFastAsPossible)
+                recording.run(clock_.now(), [this](Time moment) { recorder_->record(moment); });
         }
         if (!stopped()) clock_.sleepUntil(end);  // the last frame is seen
         const bool inTime = !stopped();
@@ -186,7 +191,8 @@ public:
     void tellTheRest(const std::function<void(const RunStatus&)>& progress) {
         const Time end = showClock_.runStart() + length_;
         lights_.raiseFaults(end);
-        if (view_.hasNews()) progress(statusAt(end));
+        PartGuard guard("progress", Rank::Input, faults_);
+        if (view_.hasNews()) guard.run(end, [&](Time moment) { progress(statusAt(moment)); });
     }
 
     // Once all parts have ended.
@@ -206,9 +212,9 @@ public:
         report.yardstickTicks = yardstick_.ticks();
         report.yardstickLate = yardstick_.late();
         report.zCamera = watch_.series();
-        for (std::size_t i = 0; i < programme_.sources.size(); ++i)
-            if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources[i])) {
-                const std::string& name = programme_.show.sources[i].name;
+        for (const show::Source& source : programme_.show.sources)
+            if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources.find(source.id)->picture)) {
+                const std::string& name = source.name;
                 report.lateVideoFrames[name] = video->stream->lateFrames();
                 report.damagedVideoFrames[name] = video->stream->damagedFrames();
             }
@@ -222,6 +228,10 @@ public:
     const std::vector<UnsafeBank>& unsafe() const { return lights_.unsafe(); }  // once the lights are closed
 
 private:
+    std::vector<Part> guardedParts(std::vector<Part> parts) {
+        for (Part& part : parts) part = guarded(std::move(part), faults_);
+        return parts;
+    }
     void tellGuardDied(const Result<void>& another) {
         const Time now = clock_.now();
         if (!std::exchange(guardIsAway_, !another))

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <exception>
 #include <utility>
 
 namespace fantascope::app {
@@ -110,20 +111,30 @@ void Supervisor::live(const std::stop_token& stop) {
         pollfd request{ending() ? -1 : interrupt_.file(), POLLIN, 0};
         const timespec patience{0, kLook.count()};
         ppoll(&request, 1, &patience, nullptr);
-        const Time now = clock_.now();
-        keepGuard(now);
-        if (!outputIsRead()) requested_ = true;
-        const std::lock_guard lock(mutex_);
-        if (!ending()) {
-            tellOfSlowSetUp(now);
-            continue;
+        try {
+            look(stop);
+        } catch (const std::exception& failure) {  // at the next look it may have memory again
+            std::fputs("\nfantascope: error: the supervisor failed: ", stderr);
+            std::fputs(failure.what(), stderr);
+            std::fputs("\n", stderr);
         }
-        if (stop.stop_requested()) return;
-        begin(now);
-        // Some programs that start others hand a signal on that they all got.
-        if (interrupt_.count() > std::exchange(signals_, interrupt_.count()) && now - *began_ > kOnePress) pressedAgain_ = true;
-        if (const auto why = hung(now)) leave(*why);
     }
+}
+
+void Supervisor::look(const std::stop_token& stop) {
+    const Time now = clock_.now();
+    keepGuard(now);
+    if (!outputIsRead()) requested_ = true;
+    const std::lock_guard lock(mutex_);
+    if (!ending()) {
+        tellOfSlowSetUp(now);
+        return;
+    }
+    if (stop.stop_requested()) return;
+    begin(now);
+    // Some programs that start others hand a signal on that they all got.
+    if (interrupt_.count() > std::exchange(signals_, interrupt_.count()) && now - *began_ > kOnePress) pressedAgain_ = true;
+    if (const auto why = hung(now)) leave(*why);
 }
 
 void Supervisor::leave(const std::string& why) {

@@ -62,6 +62,7 @@ public:
 
 private:
     void live(const std::stop_token& stop);
+    void look(const std::stop_token& stop);
     bool outputIsRead();
     void keepGuard(Time now);
     void begin(Time now);            // of the end; with the mutex held

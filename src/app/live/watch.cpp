@@ -29,7 +29,8 @@ const vision::GuideComparison* Watch::comparisonOf(std::size_t output) const {
     for (const show::LayerState& layer : shown_.value().outputs[output].layers) {
         if (layer.opacity < kAlone) continue;
         if (comparison != nullptr || layer.opacity < kBright) return nullptr;
-        comparison = comparisons_[output][layer.source].get();
+        const auto* const found = comparisons_[output].find(layer.source);
+        comparison = found != nullptr ? found->get() : nullptr;
     }
     return comparison;
 }

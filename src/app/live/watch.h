@@ -24,12 +24,11 @@ namespace fantascope::app {
 // on, the camera's frames and the nominal site, and nothing of what really happens.
 class Watch {
 public:
-    // What an output is compared with, for each source of the show; null where there is nothing to
-    // compare.
-    using Comparisons = std::vector<std::shared_ptr<const vision::GuideComparison>>;
+    // What an output is compared with, for each source of the show that can be compared.
+    using Comparisons = show::BySource<std::shared_ptr<const vision::GuideComparison>>;
 
     // All outlive it, but for the clock; `camera`, `pictures` and `recording` may be null.
-    // `comparisons[output][source]`. What the camera sees goes on into `pictures`.
+    // `comparisons[output]`. What the camera sees goes on into `pictures`.
     Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
           render::PictureFeed* pictures, const show::ShowClock& showClock, Recording* recording);
 

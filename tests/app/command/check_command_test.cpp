@@ -148,7 +148,7 @@ TEST(Check, a_shape_is_checked_as_a_pattern_would_take_it) {
     const Checked checked = check(folder, {{drawing, empty, floor, settings, broken}, std::nullopt});
     EXPECT_THAT(checked.lines, HasSubstr("ok a.svg: elemental shape, 2 triangles\n"));
     EXPECT_THAT(checked.lines, HasSubstr("\nb.SVG: draws nothing that has an area"));
-    EXPECT_THAT(checked.lines, HasSubstr("\nc.obj: seen from the front"));
+    EXPECT_THAT(checked.lines, HasSubstr("\nc.obj: has no area seen from the front"));
     EXPECT_THAT(checked.lines, HasSubstr("\nok s.yaml: pattern settings, at most 1000 instances, 2 shapes\n"));
     EXPECT_THAT(checked.lines, HasSubstr("\nt.yaml:3:24: shapes.each[0].file: b.SVG: draws nothing"));
     EXPECT_EQ(checked.refusal, "3 of 5 files refused");

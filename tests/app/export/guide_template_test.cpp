@@ -91,7 +91,7 @@ TEST_F(TemplateTest, what_is_drawn_over_a_thing_lights_that_thing) {
     dot.shapes = {pattern::loadShape("circle").value()};
     dot.instances = {{.centre = pixel / static_cast<double>(kSize.y), .size = 0.06}};
     const render::PatternSource source{std::make_shared<const pattern::ShapePattern>(dot), nullptr};
-    const auto screen = OffScreen::open(site_.outputs[0].projection, nullptr, {source}).value();
+    const auto screen = OffScreen::open(site_.outputs[0].projection, nullptr, render::PictureSources::numbered({source})).value();
 
     ManualClock clock;
     site::World world(clock);

@@ -159,8 +159,9 @@ TEST_F(PreviewCommand, a_wall_that_faces_the_projector_shows_the_pattern_as_it_i
     ASSERT_THAT(done, exits(0));
     const RgbaImage picture = readRgba(folder_ / "p.png").value();
     const auto source = readPatternSource(kPattern).value();
-    const RgbaImage pattern =
-        OffScreen::open(glm::ivec2(320, 180), {source}).value()->draw({{{0, 1.0f}}}, {}, std::chrono::seconds(3));
+    const RgbaImage pattern = OffScreen::open(glm::ivec2(320, 180), render::PictureSources::numbered({source}))
+                                  .value()
+                                  ->draw({{{0, 1.0f}}}, {}, std::chrono::seconds(3));
     const auto apart = [&](auto columnOf) {
         double sum = 0;
         for (int y = 0; y < 180; ++y)

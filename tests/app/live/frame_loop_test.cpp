@@ -39,6 +39,7 @@ public:
         clock_.advance(std::exchange(nextTakes, Time{}));
         return display_->makeCurrent();
     }
+    void release() override { display_->release(); }
     bool poll() override { return display_->poll(); }
     int context() const override { return display_->context(); }
     unsigned framebuffer() const override { return display_->framebuffer(); }
@@ -75,7 +76,7 @@ protected:
         auto slow = std::make_unique<SlowDisplay>(std::move(run_.devices.displays[0]), run_.clock);
         left_ = slow.get();
         run_.devices.displays[0] = std::move(slow);
-        const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{});
+        const auto sources = render::PictureSources::numbered({run_.show.sources.size(), render::SolidSource{}});
         loop_.emplace(run_.site, run_.inputs, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output).addQueue());
         EXPECT_TRUE(loop_->prepare());
@@ -283,8 +284,9 @@ TEST(FrameUploads, are_told_apart_from_drawing) {
     cues.cues[0].look.outputs[0].layers = {{0, 1.0f}};
     cues.cues[0].look.outputs[1].layers = {{1, 1.0f}};
     show::InputLog inputs(cues);
-    FrameLoop loop(run.site, inputs, {render::PatternSource{pattern, nullptr}, render::SolidSource{}}, sourceFolder() + "/assets",
-                   run.devices, clock);
+    FrameLoop loop(run.site, inputs,
+                   render::PictureSources::numbered({render::PatternSource{pattern, nullptr}, render::SolidSource{}}),
+                   sourceFolder() + "/assets", run.devices, clock);
     ASSERT_TRUE(loop.prepare());
     loop.begin(show::ShowClock(run.clock.now()));
     inputs.submit({Time{}, show::Input::Kind::Go});
@@ -361,7 +363,8 @@ TEST(FrameLoopWind, each_output_sways_in_its_own) {
     cues.cues[0].fade = Time{};
     cues.cues[0].winds = {{.strength = 0}, {.strength = 4}};
     show::InputLog inputs(cues);
-    FrameLoop loop(run.site, inputs, {source}, sourceFolder() + "/assets", run.devices, run.clock);
+    FrameLoop loop(run.site, inputs, render::PictureSources::numbered({source}), sourceFolder() + "/assets", run.devices,
+                   run.clock);
     const std::array<render::FrameReader*, 2> readers{&loop.tap(0).addQueue(), &loop.tap(1).addQueue()};
     ASSERT_TRUE(loop.prepare());
     loop.begin(show::ShowClock(run.clock.now()));
@@ -386,7 +389,7 @@ TEST(FrameLoop, keeps_its_renderer_where_a_new_one_cannot_be_made) {
     std::filesystem::copy(sourceFolder() + "/assets/shaders", folder / "assets/shaders",
                           std::filesystem::copy_options::recursive);
     RunningShow run;
-    const std::vector<render::PictureSource> sources(run.show.sources.size(), render::SolidSource{});
+    const auto sources = render::PictureSources::numbered({run.show.sources.size(), render::SolidSource{}});
     FrameLoop loop(run.site, run.inputs, sources, folder / "assets", run.devices, run.clock);
     render::FrameReader& reader = loop.tap(0).addQueue();
     ASSERT_TRUE(loop.prepare());
@@ -456,6 +459,7 @@ public:
     }
     int context() const override { return context_; }
     Result<void> makeCurrent() override { return display_ ? display_->makeCurrent() : Error("it is dead"); }
+    void release() override { display_->release(); }
     unsigned framebuffer() const override { return display_->framebuffer(); }
     Result<void> finish() override { return display_->finish(); }
     Result<Shown> present() override { return display_->present(); }
@@ -480,7 +484,7 @@ protected:
         });
         left_ = mortal.get();
         run_.devices.displays[0] = std::move(mortal);
-        const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{});
+        const auto sources = render::PictureSources::numbered({run_.show.sources.size(), render::SolidSource{}});
         loop_.emplace(run_.site, run_.inputs, sources, folder_ / "assets", run_.devices, run_.clock);
         for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output).addQueue());
     }
@@ -594,7 +598,7 @@ TEST_F(FrameLoopFaults, an_installation_without_a_shader_is_told_before_the_show
 TEST(FrameLoop, begins_without_an_output_that_cannot_be_drawn) {
     RunningShow run;
     run.site.outputs[0].projection.size = {100'000, 100'000};
-    const std::vector<render::PictureSource> sources(run.show.sources.size(), render::SolidSource{});
+    const auto sources = render::PictureSources::numbered({run.show.sources.size(), render::SolidSource{}});
     FrameLoop loop(run.site, run.inputs, sources, sourceFolder() + "/assets", run.devices, run.clock);
     const auto prepared = loop.prepare();
     ASSERT_TRUE(prepared) << prepared.error().message();

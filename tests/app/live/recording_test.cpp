@@ -16,6 +16,7 @@
 #include <csignal>
 #include <filesystem>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -27,6 +28,14 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using testing::AllOf;
 using testing::HasSubstr;
+
+nlohmann::json reportOf(const std::vector<std::string>& more, const ScratchFolder& folder) {
+    std::vector<std::string> arguments{"rehearse", "--record", "videos", "--report", "report.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = runProgram(arguments, folder.path());
+    EXPECT_THAT(outcome, exits(0));
+    return nlohmann::json::parse(contentsOf(folder / "report.json"));
+}
 
 class RecordingTest : public testing::Test {
 protected:
@@ -74,6 +83,57 @@ TEST_F(RecordingTest, the_same_pictures_give_the_same_bytes) {
     record(folder_ / "b");
     for (const char* name : {"left.mp4", "frames.csv", "contact-sheet.png"})
         EXPECT_EQ(*readFile(folder_ / "a" / name), *readFile(folder_ / "b" / name)) << name;
+}
+
+// The right video's thread was away for a while.
+TEST_F(RecordingTest, frames_stand_in_the_order_in_which_they_were_shown_whichever_video_is_behind) {
+    auto recording = Recording::open(folder_, {{"left", {64, 48}, 30}, {"right", {64, 48}, 30}}).value();
+    constexpr int kFrames = 20;
+    for (const std::size_t output : {0u, 1u})
+        for (int refresh = 0; refresh < kFrames; ++refresh) {
+            const Time at = tickTime(refresh, 30);
+            ASSERT_TRUE(recording->frame(output, RgbaImage(64, 48), {.refresh = refresh, .at = at}, at));
+        }
+    ASSERT_TRUE(recording->finish());
+    std::istringstream table(*readFile(folder_ / "frames.csv"));
+    std::string line;
+    std::getline(table, line);
+    for (int refresh = 0; refresh < kFrames; ++refresh)
+        for (const char* output : {"left", "right"}) {
+            ASSERT_TRUE(std::getline(table, line));
+            EXPECT_THAT(line, testing::StartsWith(fmt::format("{},{:.6f},{},", refresh, seconds(tickTime(refresh, 30)), output)));
+        }
+    EXPECT_FALSE(std::getline(table, line)) << line;
+}
+
+// Example failure: a night's lamps are in memory until its end, and lost with the power.
+TEST_F(RecordingTest, a_run_that_ends_suddenly_leaves_its_tables) {
+    {
+        auto recording = Recording::open(folder_, {{"left", {64, 48}, 30}}).value();
+        for (int refresh = 0; refresh < 3; ++refresh)
+            ASSERT_TRUE(recording->frame(0, RgbaImage(64, 48), {.refresh = refresh, .at = 1s * refresh}, 1s * refresh));
+        recording->lighting(1s, 1, std::vector<std::uint8_t>{7, 0, 9, 0, 0});
+        recording->relays(1s, "road", {true, false});
+        EXPECT_THAT(recording->writeTables(), testing::IsEmpty());
+    }
+    EXPECT_THAT(*readFile(folder_ / "dmx.csv.unfinished"), HasSubstr("\n1.000000,1,7 0 9\n"));
+    EXPECT_THAT(*readFile(folder_ / "relays.csv.unfinished"), HasSubstr("\n1.000000,road,10\n"));
+    EXPECT_THAT(*readFile(folder_ / "frames.csv.unfinished"), HasSubstr("\n1,1.000000,left,"));
+    EXPECT_FALSE(fs::exists(folder_ / "dmx.csv")) << "what has its name is whole";
+}
+
+// Example failure: the lamps' table takes the videos along, or ends the show.
+TEST_F(RecordingTest, a_table_that_the_disk_has_no_room_for_ends_alone_and_is_told) {
+    const ScratchFolder folder;
+    fs::create_directories(folder / "videos");
+    fs::create_symlink("/dev/full", folder / "videos/dmx.csv.unfinished");
+    const nlohmann::json report = reportOf({"--seconds", "3", "--as-fast-as-possible"}, folder);
+    EXPECT_EQ(report["frames"], 2 * 3 * 30);
+    EXPECT_EQ(report["recorded"], report["frames_by_output"]);
+    EXPECT_THAT(report["faults"].dump(),
+                HasSubstr("dmx.csv: cannot be written: No space left on device; the show goes on without this table"));
+    EXPECT_TRUE(fs::exists(folder / "videos/relays.csv"));
+    EXPECT_FALSE(fs::exists(folder / "videos/dmx.csv"));
 }
 
 TEST_F(RecordingTest, one_video_file_holds_the_outputs_side_by_side) {
@@ -195,14 +255,6 @@ TEST_F(RecordingTest, a_video_that_the_disk_has_no_room_for_ends_alone_and_says_
     EXPECT_EQ(recording->recorded(1), 60);
     EXPECT_FALSE(fs::exists(folder_ / "left.mp4"));
     EXPECT_EQ(readVideo(folder_ / "right.mp4").frames.size(), 60u);
-}
-
-nlohmann::json reportOf(const std::vector<std::string>& more, const ScratchFolder& folder) {
-    std::vector<std::string> arguments{"rehearse", "--record", "videos", "--report", "report.json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = runProgram(arguments, folder.path());
-    EXPECT_THAT(outcome, exits(0));
-    return nlohmann::json::parse(contentsOf(folder / "report.json"));
 }
 
 // What is missing is counted, however busy the machine is: every frame that was shown is in the

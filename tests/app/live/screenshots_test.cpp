@@ -29,7 +29,7 @@ using testing::IsEmpty;
 class ScreenshotsTest : public testing::Test {
 protected:
     ScreenshotsTest() {
-        const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{});
+        const auto sources = render::PictureSources::numbered({run_.show.sources.size(), render::SolidSource{}});
         loop_.emplace(run_.site, run_.inputs, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         std::vector<std::string> names;
         std::vector<render::NewestFrame*> frames;

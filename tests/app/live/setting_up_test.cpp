@@ -36,6 +36,7 @@ public:
     bool poll() override { return display_->poll(); }
     int context() const override { return display_->context(); }
     Result<void> makeCurrent() override { return display_->makeCurrent(); }
+    void release() override { display_->release(); }
     unsigned framebuffer() const override { return display_->framebuffer(); }
     Result<void> finish() override { return display_->finish(); }
     Result<Shown> present() override { return display_->present(); }
@@ -62,7 +63,7 @@ protected:
             screens_.push_back(attended.get());
             display = std::move(attended);
         }
-        const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{glm::vec3(0.5f)});
+        const auto sources = render::PictureSources::numbered({run_.show.sources.size(), render::SolidSource{glm::vec3(0.5f)}});
         loop_.emplace(run_.site, run_.inputs, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output).addQueue());
         EXPECT_TRUE(loop_->prepare());
