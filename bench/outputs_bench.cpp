@@ -54,7 +54,7 @@ void playShow(const Settings& settings) {
     must(loop.prepare());
     const Time start = loop.refreshFrom(clock.now() + std::chrono::milliseconds(200)),
                end = start + fromSeconds(settings.seconds);
-    loop.begin(start);
+    loop.begin(show::ShowClock(start));
     inputs.submit({Time{}, show::Input::Kind::Go});
     app::RunReport report;
     {

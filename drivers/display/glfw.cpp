@@ -22,7 +22,7 @@ constexpr const char* kDriver = "glfw";
 constexpr const char* kClosed = "its window was closed; start Fantascope again to show it";
 constexpr const char* kEnded = "the X server has ended or closed the connection; the picture is back once the X server is";
 constexpr const char* kDestroyed = "another program has destroyed its window; it is made again";
-constexpr Time kRetry = std::chrono::seconds(1);
+constexpr Time kRetry = std::chrono::seconds(1), kTellsOfLost = std::chrono::seconds(10);
 // With vertical sync, a swap that takes longer than this share of a period waited for a refresh; a
 // shorter one found room in a queue.
 constexpr double kWaitOfSwap = 0.25;
@@ -128,6 +128,8 @@ DeviceStatus GlfwDisplay::status() const {
         status.state = DeviceState::Absent;
         status.detail = absence_;
     }
+    if (const auto lost = events_.lastLost(); lost && clock_.now() - *lost < kTellsOfLost)
+        status.trouble = "keys or clicks at its window were lost: nobody took them in time. Press them again";
     return status;
 }
 
@@ -177,17 +179,19 @@ void GlfwDisplay::installCallbacks() {
     static constexpr auto of = [](GLFWwindow* window) { return static_cast<GlfwDisplay*>(glfwGetWindowUserPointer(window)); };
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scanCode, int action, int modifiers) {
         if (const auto known = keyOf(key, scanCode, modifiers))
-            of(window)->events_.push(
-                {action == GLFW_RELEASE ? ScreenEvent::Kind::KeyUp : ScreenEvent::Kind::KeyDown, *known, of(window)->pointer_});
+            of(window)->events_.give({action == GLFW_RELEASE ? ScreenEvent::Kind::KeyUp : ScreenEvent::Kind::KeyDown, *known,
+                                      of(window)->pointer_, of(window)->clock_.now()});
     });
     glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
         of(window)->pointer_ = {x, y};
-        of(window)->events_.push({ScreenEvent::Kind::PointerMoved, {}, {x, y}});
+        of(window)->events_.give({ScreenEvent::Kind::PointerMoved, {}, {x, y}, of(window)->clock_.now()});
     });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
         if (button != GLFW_MOUSE_BUTTON_LEFT) return;
-        of(window)->events_.push(
-            {action == GLFW_PRESS ? ScreenEvent::Kind::ButtonDown : ScreenEvent::Kind::ButtonUp, {}, of(window)->pointer_});
+        of(window)->events_.give({action == GLFW_PRESS ? ScreenEvent::Kind::ButtonDown : ScreenEvent::Kind::ButtonUp,
+                                  {},
+                                  of(window)->pointer_,
+                                  of(window)->clock_.now()});
     });
 }
 
@@ -240,6 +244,7 @@ void GlfwDisplay::destroyRemains() {
 
 bool GlfwDisplay::poll() {
     if (glfw_) glfw_->pollEvents();
+    events_.flush();
     if (const auto lost = whyLost()) {
         if (std::exchange(context_, 0) == 0) destroyRemains();  // only at the second call: until then, mapped memory may be read
         setAbsence(closed_ ? kClosed : *lost);

@@ -5,10 +5,10 @@
 #include "drivers/display/glfw_library.h"
 #include "drivers/display/monitor_watch.h"
 #include "drivers/display/refresh_train.h"
+#include "drivers/display/screen_events.h"
 
 #include "device/display_sink.h"
 
-#include "core/bounded_queue.h"
 #include "core/config.h"
 
 #include <memory>
@@ -58,7 +58,7 @@ public:
     Result<void> finish() override;
     Result<Shown> present() override;
     Result<Shown> presentWith(Time leading) override;
-    std::optional<ScreenEvent> pollEvent() override { return events_.pop(); }
+    std::optional<ScreenEvent> pollEvent() override { return events_.take(); }
 
 private:
     GlfwDisplay(const DisplayRequest& request, const DriverContext& driverContext, std::optional<MonitorClaim> wanted);
@@ -106,7 +106,7 @@ private:
     int swapInterval_ = -1;     // not set yet
     Time retryAt_{};
     glm::dvec2 pointer_{0.0};
-    BoundedQueue<ScreenEvent, 256> events_;  // further events are lost: nobody has polled for a long time
+    ScreenEvents events_;
 
     mutable std::mutex mutex_;                    // guards the following, which status() reads and the render thread writes
     std::string absence_ = "it is not open yet";  // empty: Running

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/clock.h"
+
 #include <glm/vec2.hpp>
 
 namespace fantascope {
@@ -19,6 +21,7 @@ struct ScreenEvent {
     Kind kind = Kind::KeyDown;
     Key key{};
     glm::dvec2 at{0.0};  // position of the pointer in pixels of the surface, y down
+    Time moment{};       // when it happened, on the display's clock
 };
 
 }  // namespace fantascope

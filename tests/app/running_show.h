@@ -2,9 +2,11 @@
 // The default show on the simulated default site, its devices open, on a clock that stands still:
 // what the tests of a run's parts need.
 
+#include "app/live/fault_log.h"
 #include "app/site/devices.h"
 #include "drivers/site/world.h"
 
+#include "show/event.h"
 #include "show/input_log.h"
 #include "show/show.h"
 #include "show/site.h"
@@ -13,7 +15,9 @@
 #include "core/clock.h"
 #include "source_folder.h"
 
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace fantascope::app {
 
@@ -23,15 +27,27 @@ T valueOf(Result<T> result) {
     return std::move(result).value();
 }
 
+// What a person at the terminal has been told of a run's events.
+inline std::vector<std::string> toldOf(const show::EventLog& events) {
+    std::vector<std::string> told;
+    show::EventLog::Reader reader = events.reader();
+    while (const show::Event* const event = reader.next())
+        if (const std::string sentence = show::sentenceOf(*event); !sentence.empty()) told.push_back(sentence);
+    return told;
+}
+
 struct RunningShow {
     show::Site site = valueOf(show::readSite(sourceFolder() + "/config/simulated/site.yaml"));
     show::Show show = valueOf(show::Show::load(sourceFolder() + "/shows/light-movement"));
     show::CueList cues = valueOf(show.bind(site));
     show::InputLog inputs{cues};
+    show::EventLog events;
+    FaultLog faults{events};
     ManualClock clock;
     site::World world{clock};
     Devices devices = valueOf(openDevices(site, Backends::SimulatedHeadless, {clock, &world}));
 
+    std::vector<std::string> told() const { return toldOf(events); }
     show::Input jumpTo(std::string_view cue) const {
         return {clock.now(), show::Input::Kind::Jump, static_cast<int>(valueOf(show.cueNamed(cue)))};
     }

@@ -55,7 +55,7 @@ protected:
         loop_.emplace(show_->site, *inputs_, show_->sources, sourceFolder() + "/assets", devices_, clock_);
         const auto prepared = loop_->prepare();
         ASSERT_TRUE(prepared) << prepared.error().message();
-        loop_->begin(clock_.now());
+        loop_->begin(show::ShowClock(clock_.now()));
     }
     void TearDown() override {
         loop_.reset();

@@ -152,6 +152,8 @@ TEST_F(GlfwDisplay, hears_the_keys_that_are_pressed_at_it) {
         ASSERT_TRUE(event) << pressed;
         EXPECT_EQ(event->kind, ScreenEvent::Kind::KeyDown);
         EXPECT_EQ(event->key, wanted) << pressed;
+        EXPECT_EQ(event->moment, clock_.now()) << "when it was pressed, whenever it is asked for";
+        clock_.advance(std::chrono::seconds(1));
     }
 }
 

@@ -40,7 +40,7 @@ const std::vector<Ban> kBans = {
      "chance comes from core/random.h, the same on every machine"},
     {{"steady_clock", "system_clock", "high_resolution_clock", "clock_gettime", "gettimeofday", "std::time("},
      kProgram,
-     {"src/core/clock.", "src/app/"},
+     {"src/core/clock.", "src/core/wall_clock.", "src/app/"},
      "time is handed in as a Clock"},
     {{"sleep_for", "sleep_until", "usleep("}, kAllCode, {"src/core/clock.", "src/app/"}, "nobody sleeps but a Clock"},
     {{"SKIP_REGULAR_EXPRESSION"},

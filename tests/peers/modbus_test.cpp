@@ -237,9 +237,9 @@ private:
     app::RunningShow show_;
 
 public:
-    std::vector<std::string> told;
-    app::FaultLog faults{[this](const std::string& sentence) { told.push_back(sentence); }};
-    app::Lighting lighting{show_.site, show_.inputs, show_.devices, show_.clock, Time{}, nullptr, &faults};
+    std::vector<std::string> told() const { return show_.told(); }
+    app::Lighting lighting{show_.site,        show_.inputs, show_.devices, show_.clock,
+                           show::ShowClock(), nullptr,      show_.faults,  show_.events};
 
 private:
     const std::vector<app::Part> relays_ = lighting.relayParts();
@@ -252,7 +252,8 @@ TEST_P(OnModbus, a_relay_that_sticks_is_told_once_and_written_ever_more_rarely) 
     peer_->ask("stuck 0 1");
     street.pass(std::chrono::seconds(10));
     EXPECT_THAT(peer_->journal(), testing::SizeIs(testing::Le(9)));
-    EXPECT_THAT(street.told, testing::ElementsAre(AllOf(HasSubstr("road-south of 'road' did not switch"), HasSubstr("say 1 0"))));
+    EXPECT_THAT(street.told(),
+                testing::ElementsAre(AllOf(HasSubstr("road-south of 'road' did not switch"), HasSubstr("say 1 0"))));
     EXPECT_TRUE(runs(street.bank())) << street.bank().status().detail;
 
     street.lighting.end(street.now());
@@ -271,12 +272,12 @@ TEST_P(OnModbus, a_module_that_refuses_is_told_once_and_asked_ever_more_rarely) 
     const int before = std::stoi(peer_->ask("asked 0"));
     street.pass(std::chrono::seconds(10));
     EXPECT_LE(std::stoi(peer_->ask("asked 0")) - before, 9 * 2 + 50) << "a write and a read each, and the looks of the meantime";
-    EXPECT_THAT(street.told, testing::ElementsAre(HasSubstr("road-north, road-south of 'road' did not switch (relays: ")));
+    EXPECT_THAT(street.told(), testing::ElementsAre(HasSubstr("road-north, road-south of 'road' did not switch (relays: ")));
     EXPECT_EQ(street.bank().status().losses, 0);
     peer_->ask("refuse 0 0");
     street.enter("Farewell");
     street.pass(std::chrono::seconds(20));
-    EXPECT_THAT(street.told, testing::ElementsAre(testing::_, HasSubstr("the relays of 'road' are as they should be after")));
+    EXPECT_THAT(street.told(), testing::ElementsAre(testing::_, HasSubstr("the relays of 'road' are as they should be after")));
     EXPECT_EQ(peer_->ask("get 0 c 0 2"), "1 1");
 }
 

@@ -3,7 +3,10 @@
 
 #include "show/input_log.h"
 
+#include "show/input_journal.h"
+
 #include "core/random.h"
+#include "scratch_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -69,7 +72,10 @@ struct Replica {
 // show from then on; two producers get one number.
 TEST(InputLog, fifty_producers_and_every_replica_agree_on_one_sequence) {
     constexpr int kProducers = 50, kEach = 2000;
+    const ScratchFolder folder;
     InputLog log(fourCues());
+    auto journal = InputJournal::create(folder / "inputs", log);
+    ASSERT_TRUE(journal) << journal.error().message();
     std::atomic<int> working = kProducers;
     std::vector<std::jthread> threads;
     for (int producer = 0; producer < kProducers; ++producer)
@@ -87,8 +93,14 @@ TEST(InputLog, fifty_producers_and_every_replica_agree_on_one_sequence) {
         while (working > 0 || beside.take())
             while (beside.take()) continue;
     });
+    bool isWritten = true;
+    std::jthread writing([&] {
+        while (working > 0) isWritten = journal->write().has_value() && isWritten;
+    });
     threads.clear();
     reading.join();
+    writing.join();
+    EXPECT_TRUE(isWritten && journal->write());
     while (beside.take()) continue;
     while (late.take()) continue;  // it has not looked until now
     EXPECT_EQ(beside.count, kProducers * kEach);
@@ -97,24 +109,22 @@ TEST(InputLog, fifty_producers_and_every_replica_agree_on_one_sequence) {
     ASSERT_EQ(beside.seen.size(), kProducers * kEach / 100);
     EXPECT_TRUE(beside.seen == late.seen);
 
-    // Written down and read back.
-    std::string written;
+    // Written down as they came, and read back.
+    const auto written = readJournal(folder / "inputs");
+    ASSERT_TRUE(written) << written.error().message();
+    ASSERT_EQ(written->size(), kProducers * kEach);
     InputLog::Reader reader = log.reader();
     std::map<int, Time> ofProducer;
-    while (const LoggedInput* const logged = reader.next()) {
-        written += lineOf(logged->input) + '\n';
-        EXPECT_GE(logged->input.at, ofProducer[logged->input.which]) << "a producer's own inputs keep their order";
-        ofProducer[logged->input.which] = logged->input.at;
+    bool isWhatCame = true;
+    for (const Input& input : *written) {
+        isWhatCame = isWhatCame && input == reader.next()->input;
+        EXPECT_GE(input.at, ofProducer[input.which]) << "a producer's own inputs keep their order";
+        ofProducer[input.which] = input.at;
     }
+    EXPECT_TRUE(isWhatCame);
     InputLog again(fourCues());
     Replica replayed(again);
-    for (std::size_t begin = 0; begin < written.size();) {
-        const std::size_t end = written.find('\n', begin);
-        const auto input = inputOf(std::string_view(written).substr(begin, end - begin));
-        ASSERT_TRUE(input) << input.error().message();
-        again.submit(*input);
-        begin = end + 1;
-    }
+    for (const Input& input : *written) again.submit(input);
     while (replayed.take()) continue;
     EXPECT_TRUE(replayed.seen == late.seen);
 }

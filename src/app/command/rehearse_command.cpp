@@ -2,8 +2,8 @@
 
 #include "app/base/data_folder.h"
 #include "app/base/interrupt.h"
+#include "app/keys/run_keys.h"
 #include "app/live/run_console.h"
-#include "app/live/run_keys.h"
 #include "app/live/show_run.h"
 #include "app/site/relay_guard.h"
 

@@ -2,6 +2,7 @@
 
 #include "app/base/command.h"
 #include "app/base/data_folder.h"
+#include "app/keys/go_schedule.h"
 #include "app/live/hand.h"
 #include "app/live/programme.h"
 #include "app/site/site_models.h"

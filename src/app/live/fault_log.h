@@ -2,12 +2,14 @@
 
 #include "app/live/run_report.h"
 
+#include "show/event.h"
+#include "show/show_clock.h"
+
 #include "device/status.h"
 
 #include "core/clock.h"
 
 #include <cstddef>
-#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -18,8 +20,9 @@
 
 namespace fantascope::app {
 
-// What fails while a show runs: each fault is told to the operator once and kept for the report. A
-// device has one fault of a topic at a time. Times are show time. Thread: any.
+// What fails while a show runs: each fault is an event, once, and kept for the report. A device has
+// one fault of a topic at a time. It is told the machine's moments, since a device is missing as
+// long while the show stands still; events and report have show time. Thread: any.
 class FaultLog {
 public:
     enum class Topic { Missing, Trouble, Relays, Desk, SafeStates, EndLevels, Guard, Recording, RecordedFrames, Part };
@@ -29,14 +32,16 @@ public:
     static constexpr int kBurst = 10;
     static constexpr Time kRestless = std::chrono::seconds(5);
 
-    // `tell` is called with a sentence for the operator, on the thread that reports the fault.
-    explicit FaultLog(std::function<void(const std::string&)> tell) : tell_(std::move(tell)) {}
+    // `events` outlives it.
+    explicit FaultLog(show::EventLog& events) : events_(events) {}
+    // By which moments are show times. Before the first fault.
+    void begin(const show::ShowClock& showClock) { showClock_ = showClock; }
 
-    // What is wrong at `at`. The same again changes nothing; something else takes its place.
-    void raise(Time at, const std::string& device, Topic topic, const std::string& what);
-    // Nothing is wrong at `at`. If something was, `news` is told with how long that lasted; empty:
-    // nothing is told.
-    void clear(Time at, const std::string& device, Topic topic, const std::string& news);
+    // What is wrong at `moment`. The same again changes nothing; something else takes its place.
+    void raise(Time moment, const std::string& device, Topic topic, const std::string& what);
+    // Nothing is wrong at `moment`. If something was, `news` is told with how long that lasted;
+    // empty: nothing is told.
+    void clear(Time moment, const std::string& device, Topic topic, const std::string& news);
 
     std::vector<FaultReport> faults() const;  // by their beginning
 
@@ -47,12 +52,18 @@ private:
         bool restless = false;
         Time raised{};  // last
     };
-    void begin(TopicState& state, Time at, const std::string& device, const std::string& what);
+    struct Fault {
+        Time moment{};
+        std::string what, device;
+        std::optional<Time> until{};
+    };
+    void add(TopicState& state, Time moment, const std::string& device, const std::string& what);
 
-    const std::function<void(const std::string&)> tell_;
+    show::EventLog& events_;
+    show::ShowClock showClock_;
     mutable std::mutex mutex_;
     std::map<std::pair<std::string, Topic>, TopicState> topics_;
-    std::vector<FaultReport> faults_;
+    std::vector<Fault> faults_;
 };
 
 // Looks at all devices again and again, and reports each that is missing at the start, goes, or
@@ -62,15 +73,17 @@ class DeviceWatch {
 public:
     // `faults` outlives this. A relay bank that is there counts switching by others as a loss;
     // Lighting reports that.
-    DeviceWatch(FaultLog& faults, std::vector<std::string> relayBanks) : faults_(faults), relayBanks_(std::move(relayBanks)) {}
+    DeviceWatch(FaultLog& faults, std::vector<std::string> relayBanks, Time runStart)
+        : faults_(faults), relayBanks_(std::move(relayBanks)), runStart_(runStart) {}
 
     static constexpr double kRate = 10;                          // Hz
     static constexpr Time kPatience = std::chrono::seconds(10);  // with devices that are being looked for at the start
-    void look(Time at, std::span<const DeviceStatus> devices);
+    void look(Time moment, std::span<const DeviceStatus> devices);
 
 private:
     FaultLog& faults_;
     const std::vector<std::string> relayBanks_;
+    const Time runStart_;
     std::map<std::string, int> losses_;  // of each device, as it was seen last
 };
 

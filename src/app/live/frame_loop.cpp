@@ -282,10 +282,10 @@ Time FrameLoop::refreshFrom(Time moment) {
     return tickTime(tickAt(std::max(moment, clock_.now()), rate) + 1, rate);
 }
 
-void FrameLoop::begin(Time start) {
-    start_ = start;
-    hangsFrom_ = (start + kHangs).count();
-    for (Output& output : outputs_) output.shown = Shown{.at = start};  // every refresh after it is one to be met
+void FrameLoop::begin(const show::ShowClock& showClock) {
+    showClock_ = showClock;
+    hangsFrom_ = (showClock.runStart() + kHangs).count();
+    for (Output& output : outputs_) output.shown = Shown{.at = showClock.runStart()};  // every refresh after it is one to be met
 }
 
 void FrameLoop::countLate(Output& output, std::int64_t refreshes) {
@@ -350,6 +350,11 @@ void FrameLoop::measureSkew() {
     if (swaps > 1) swapSkew_.add(last - first);
 }
 
+void FrameLoop::measureInputToFrame(Time input, Time seen) {
+    // An input from before this run has no moment in it.
+    if (const auto given = showClock_.momentOf(input, showClock_.runStart())) inputToFrame_.add(seen - *given);
+}
+
 void FrameLoop::step() {
     look();
     Output* const leads = leader();
@@ -358,7 +363,7 @@ void FrameLoop::step() {
     if (nextDue() <= newest_) clock_.sleepUntil(newest_);
     const Time due = newest_ = nextDue();
     hangsFrom_ = (due + kHangs).count();
-    const Time showTime = due - start_;
+    const Time showTime = showClock_.showTime(due);
 
     Time oldestInput = Time::max();
     replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput = std::min(oldestInput, input.at); });
@@ -379,7 +384,7 @@ void FrameLoop::step() {
 
     const auto seen =
         std::find_if(outputs_.begin(), outputs_.end(), [](const Output& output) { return output.shown.has_value(); });
-    if (seen != outputs_.end() && oldestInput != Time::max()) inputToFrame_.add(seen->shown->at - start_ - oldestInput);
+    if (seen != outputs_.end() && oldestInput != Time::max()) measureInputToFrame(oldestInput, seen->shown->at);
     if (stateSlot_ != nullptr) {
         stateSlot_->writable() = state_;
         stateSlot_->publish();

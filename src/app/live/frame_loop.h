@@ -6,6 +6,7 @@
 
 #include "render/frame_tap.h"
 #include "render/output_renderer.h"
+#include "show/show_clock.h"
 #include "show/site.h"
 
 #include "core/latest_value.h"
@@ -75,8 +76,8 @@ public:
     // The first refresh at or after a moment; a show that begins with one has a whole period for
     // its first frame.
     Time refreshFrom(Time moment);
-    // Show time 0 is `start` on the clock. Before the first frame.
-    void begin(Time start);
+    // Refreshes after the run's start are to be met. Before the first frame.
+    void begin(const show::ShowClock& showClock);
     // The moment that the next frame is for: the first refresh that can still be met.
     Time nextDue();
     // One frame on every output; returns when another can be made.
@@ -157,6 +158,7 @@ private:
     void show(Output& output, const Presenting& present);
     void giveToReaders(Output& output);
     void measureSkew();
+    void measureInputToFrame(Time input, Time seen);  // show time of the one, the other's moment
     void look();
     Output* leader();
     void spend(Output& output, FramePart part, Time time);
@@ -165,7 +167,7 @@ private:
     render::PictureSources sources_;
     std::filesystem::path assets_;
     Clock& clock_;
-    Time start_{};
+    show::ShowClock showClock_;
     Time newest_{};  // the moment that the newest frame is for
     PlaybackReplica replica_;
     show::ShowState state_;

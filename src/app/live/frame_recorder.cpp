@@ -25,14 +25,14 @@ FrameRecorder::FrameRecorder(Recording& recording, const show::Site& site, Frame
     }
 }
 
-void FrameRecorder::begin(Time start) {
-    start_ = start;
-    recording_.begin(start);
+void FrameRecorder::begin(Time runStart) {
+    runStart_ = runStart;
+    recording_.begin(runStart);
 }
 
 std::vector<Part> FrameRecorder::parts() {
     std::vector<Part> parts;
-    const Time phase = start_ + tickTime(1, 2 * rate_);  // half a refresh after the frames became visible
+    const Time phase = runStart_ + tickTime(1, 2 * rate_);  // half a refresh after the frames became visible
     for (const Video& video : recording_.videos())
         parts.push_back({"recording", rate_, phase, [this, video](Time moment) { record(video, moment); }, Rank::Watch});
     return parts;
@@ -68,34 +68,34 @@ void FrameRecorder::record(const Video& video, Time moment) {
         if (frame == nullptr) continue;  // its context was lost meanwhile
         const Result<void> written = recording_.frame(frame->output, frame->image, frame->shown, frame->showTime);
         if (!written)
-            tell(frame->showTime, frame->output, FaultLog::Topic::Recording,
+            tell(frame->shown.at, frame->output, FaultLog::Topic::Recording,
                  written.error().message() + "; the show goes on without this video");
         advanced_();
     }
     for (const std::size_t output : video) {
         Output& recorded = outputs_[output];
         if (recorded.frames->missed() == 0 || std::exchange(recorded.saidMissing, true)) continue;
-        tell(clock_.now() - start_, output, FaultLog::Topic::RecordedFrames,
+        tell(clock_.now(), output, FaultLog::Topic::RecordedFrames,
              fmt::format("this machine is too busy to record every frame of '{}'; the show goes on", recorded.name));
     }
 }
 
-void FrameRecorder::finish(Time length, std::vector<OutputReport>& outputs) {
+void FrameRecorder::finish(Time moment, std::vector<OutputReport>& outputs) {
     record(Time::max());  // the last frame's moment came with the end of the parts
     if (const Result<void> finished = recording_.finish(); !finished)
-        faults_.raise(length, "", FaultLog::Topic::Recording, "recording: " + finished.error().message());
+        faults_.raise(moment, "", FaultLog::Topic::Recording, "recording: " + finished.error().message());
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         OutputReport& output = outputs[i];
         output.recorded = recording_.recorded(i);
         if (*output.recorded < output.frames)
             tell(
-                length, i, FaultLog::Topic::RecordedFrames,
+                moment, i, FaultLog::Topic::RecordedFrames,
                 fmt::format("{} of {} frames of '{}' are missing", output.frames - *output.recorded, output.frames, output.name));
     }
 }
 
-void FrameRecorder::tell(Time showTime, std::size_t output, FaultLog::Topic topic, const std::string& what) {
-    faults_.raise(showTime, outputs_[output].name, topic, "recording: " + what);
+void FrameRecorder::tell(Time moment, std::size_t output, FaultLog::Topic topic, const std::string& what) {
+    faults_.raise(moment, outputs_[output].name, topic, "recording: " + what);
 }
 
 }  // namespace fantascope::app

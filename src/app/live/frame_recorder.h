@@ -29,8 +29,8 @@ public:
     FrameRecorder(Recording& recording, const show::Site& site, FrameLoop& frames, Clock& clock, FaultLog& faults,
                   std::function<void()> advanced);
 
-    // Show time 0 is `start` on the clock. Before the first frame.
-    void begin(Time start);
+    // The videos begin with the run. Before the first frame.
+    void begin(Time runStart);
     // In real time: one for each video, so that one that is slow does not hold up the others.
     std::vector<Part> parts();
     // On either clock: brings the recording's tables to the disk now and then.
@@ -38,9 +38,9 @@ public:
     // On the stepped clock instead of parts(), after each frame: whatever became visible until
     // `moment`. The show waits for it, so that nothing is left out.
     void record(Time moment);
-    // Ends the files after `length` of show time, and tells what is not in them; `outputs`, the
-    // outputs' reports, get their counts.
-    void finish(Time length, std::vector<OutputReport>& outputs);
+    // Ends the files at `moment`, and tells what is not in them; `outputs`, the outputs' reports,
+    // get their counts.
+    void finish(Time moment, std::vector<OutputReport>& outputs);
 
 private:
     // An output's frames on their way.
@@ -51,14 +51,14 @@ private:
     };
     using Video = std::vector<std::size_t>;  // the outputs that it shows
     void record(const Video& video, Time moment);
-    void tell(Time showTime, std::size_t output, FaultLog::Topic topic, const std::string& what);
+    void tell(Time moment, std::size_t output, FaultLog::Topic topic, const std::string& what);
 
     Recording& recording_;
     Clock& clock_;
     FaultLog& faults_;
     const std::function<void()> advanced_;
     const double rate_;  // Hz, the leading output's
-    Time start_{};
+    Time runStart_{};
     std::vector<Output> outputs_;  // each its video's thread's
 };
 

@@ -2,8 +2,6 @@
 
 #include "show/contact_inputs.h"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <cstddef>
 #include <string_view>
@@ -19,16 +17,17 @@ static_assert(kWords.size() == static_cast<std::size_t>(show::Button::Write) + 1
 
 }  // namespace
 
-Hand::Hand(const show::Show& show, show::InputLog& inputs, const show::Site& site, Devices& devices, Time start)
+Hand::Hand(const show::Show& show, show::InputLog& inputs, const show::Site& site, Devices& devices,
+           const show::ShowClock& showClock, show::EventLog& events)
     : show_(show),
       site_(site),
       devices_(devices),
-      start_(start),
+      showClock_(showClock),
+      events_(events),
       buttons_(site.buttons),
       inputs_(inputs),
       replica_(inputs),
       outcomes_(inputs.reader()) {
-    entered_.reserve(show.cues.size());
     lights_.resize(site.buttons.size());
 }
 
@@ -36,26 +35,27 @@ void Hand::tick(Time moment) {
     while (devices_.cueController) {
         const auto event = devices_.cueController->poll();
         if (!event) break;
-        if (const auto input = buttons_.inputFor(event->button, event->pressed, event->at - start_)) inputs_.submit(*input);
+        if (const auto input = buttons_.inputFor(event->button, event->pressed, showClock_.showTime(event->at)))
+            inputs_.submit(*input);
         for (const auto& [number, button] : site_.buttons)
             if (number == event->button && button >= show::Button::Edit) edit(button, event->pressed);
     }
     for (std::size_t bank = 0; bank < devices_.contactBanks.size(); ++bank)
         while (const auto change = devices_.contactBanks[bank]->poll())
-            if (const auto input =
-                    show::inputFor(site_, bank, change->contact, change->closed, change->witnessed, change->at - start_))
+            if (const auto input = show::inputFor(site_, bank, change->contact, change->closed, change->witnessed,
+                                                  showClock_.showTime(change->at)))
                 inputs_.submit(*input);
+    const Time showTime = showClock_.showTime(moment);
     while (const show::LoggedInput* const logged = outcomes_.next())
-        if (logged->outcome != show::Outcome::Taken) tell(std::string(show::nameOf(logged->outcome)));
-    replica_.stateAt(moment - start_, state_);
-    light(moment - start_);
+        events_.append({showTime, show::event::InputDecided{*logged}});
+    replica_.stateAt(showTime, state_);
+    light(showTime);
     if (std::exchange(blackout_, state_.blackout) != state_.blackout)
-        tell(state_.blackout ? "blackout: pictures and lamps are dark" : "light: the blackout is over");
+        events_.append({showTime, show::event::BlackoutChanged{state_.blackout}});
     if (state_.cue == cue_) return;
     cue_ = state_.cue;
     const std::string& name = show_.cues[static_cast<std::size_t>(cue_)].name;
-    entered_.push_back({name, moment - start_});
-    tell(fmt::format("cue {} of {}: {}", cue_ + 1, show_.cues.size(), name));
+    events_.append({showTime, show::event::CueEntered{cue_, static_cast<int>(show_.cues.size()), name}});
 }
 
 ButtonLight Hand::lightOf(show::Button button, Time showTime) const {
@@ -88,19 +88,6 @@ void Hand::light(Time showTime) {
         devices_.cueController->light(number, light);
         lights_[i] = std::move(light);
     }
-}
-
-Time GoSchedule::next() const {
-    if (ended()) return Time::max();
-    constexpr double kDarkness = 1.0 / 6;  // of a cue's share
-    const double share = seconds(length_) / (static_cast<double>(presses_) + (cueIsOn_ ? 1 : 0));
-    return fromSeconds(share * (static_cast<double>(pressed_) + (cueIsOn_ ? 1 : kDarkness)));
-}
-
-bool GoSchedule::due(Time showTime) {
-    if (showTime < next()) return false;
-    ++pressed_;
-    return true;
 }
 
 }  // namespace fantascope::app

@@ -22,14 +22,15 @@ constexpr const char* kNotSent = "they were not sent any more";
 
 }  // namespace
 
-Lighting::Lighting(const show::Site& site, const show::InputLog& inputs, Devices& devices, const Clock& clock, Time start,
-                   Recording* recording, FaultLog* faults)
+Lighting::Lighting(const show::Site& site, const show::InputLog& inputs, Devices& devices, const Clock& clock,
+                   const show::ShowClock& showClock, Recording* recording, FaultLog& faults, show::EventLog& events)
     : site_(site),
       devices_(devices),
       clock_(clock),
-      start_(start),
+      showClock_(showClock),
       recording_(recording),
       faults_(faults),
+      events_(events),
       replica_(inputs),
       banks_(site.relayBanks.size()),
       endLevels_(show::endLevels(site)),
@@ -50,22 +51,19 @@ void Lighting::mergeWithDesk(Devices::Line& line, Shared& shared, Time now, std:
     if (std::ranges::equal(charges, shared.inCharge, {}, &show::DmxMerge::Charge::sender)) return;
     shared.inCharge.clear();
     for (const show::DmxMerge::Charge& charge : charges) shared.inCharge.emplace_back(charge.sender);
-    std::vector<std::string> names;
-    for (const std::string& sender : shared.inCharge) names.push_back(sender.empty() ? "the show" : "'" + sender + "'");
-    const std::string news = fmt::format("universe {} is now sent by {}", line.universe, fmt::join(names, " and "));
+    const show::event::SendersChanged change{line.universe, shared.inCharge};
     const std::string device = fmt::format("universe {}", line.universe);
     const bool isTaken = shared.inCharge.front() != "";
-    if (isTaken && faults_ != nullptr) {
-        faults_->raise(now - start_, device, FaultLog::Topic::Desk, news);
-        return;
-    }
-    if (faults_ != nullptr) faults_->clear(now - start_, device, FaultLog::Topic::Desk, "");
-    tell(news);
+    if (isTaken)
+        faults_.raise(now, device, FaultLog::Topic::Desk, show::sentenceOf(change));
+    else
+        faults_.clear(now, device, FaultLog::Topic::Desk, "");
+    events_.append({showClock_.showTime(now), change});
 }
 
 void Lighting::tick(Time moment) {
-    const Time showTime = moment - start_, endsAt = endsAt_.load();
-    replica_.stateAt(std::min(moment, endsAt) - start_, state_);
+    const Time showTime = showClock_.showTime(moment), endsAt = endsAt_.load();
+    replica_.stateAt(showClock_.showTime(std::min(moment, endsAt)), state_);
     const bool atEnd = moment >= endsAt && (hurried_ || moment - endsAt >= site_.endFade);
     if (moment >= endsAt) fadeToEnd(atEnd ? 1 : seconds(moment - endsAt) / seconds(site_.endFade));
     const auto sendTo = [&](std::size_t i) {
@@ -105,7 +103,7 @@ void Lighting::tick(Time moment) {
 std::vector<Part> Lighting::relayParts() {
     std::vector<Part> parts;
     for (std::size_t bank = 0; bank < banks_.size(); ++bank)
-        parts.push_back({"relays " + site_.relayBanks[bank].name, kRelayRate, start_,
+        parts.push_back({"relays " + site_.relayBanks[bank].name, kRelayRate, showClock_.runStart(),
                          [this, bank](Time moment) { relayTick(bank, moment); }, Rank::Lighting});
     return parts;
 }
@@ -154,7 +152,7 @@ Result<void> Lighting::bringTo(const Coils& wanted, std::size_t number, Time mom
     bank.written = wanted;
     bank.backOff.succeeded(clock_.now());
     bank.confirmed = clock_.now();
-    if (recording_ != nullptr) recording_->relays(moment - start_, site_.relayBanks[number].name, bank.written);
+    if (recording_ != nullptr) recording_->relays(showClock_.showTime(moment), site_.relayBanks[number].name, bank.written);
     return {};
 }
 
@@ -180,14 +178,13 @@ void Lighting::reportRefusal(std::size_t number, const Error& error, Time moment
 
 void Lighting::reportFault(std::size_t number, Time moment, const std::string& what) {
     banks_[number].isFaulty = true;
-    if (faults_ != nullptr) faults_->raise(moment - start_, site_.relayBanks[number].name, FaultLog::Topic::Relays, what);
+    faults_.raise(moment, site_.relayBanks[number].name, FaultLog::Topic::Relays, what);
 }
 
 void Lighting::reportRecovery(std::size_t number, Time moment) {
     banks_[number].isFaulty = false;
     const std::string& name = site_.relayBanks[number].name;
-    if (faults_ != nullptr)
-        faults_->clear(moment - start_, name, FaultLog::Topic::Relays, "the relays of '" + name + "' are as they should be");
+    faults_.clear(moment, name, FaultLog::Topic::Relays, "the relays of '" + name + "' are as they should be");
 }
 
 std::string Lighting::differing(std::size_t number, const Coils& wanted) {

@@ -9,6 +9,8 @@
 #include "drivers/common/back_off.h"
 
 #include "show/dmx_merge.h"
+#include "show/event.h"
+#include "show/show_clock.h"
 #include "show/site.h"
 
 #include "core/latest_value.h"
@@ -34,9 +36,9 @@ namespace fantascope::app {
 // their safe states.
 class Lighting {
 public:
-    // All outlive it; `recording` and `faults` may be null. Show time 0 is `start` on the clock.
-    Lighting(const show::Site& site, const show::InputLog& inputs, Devices& devices, const Clock& clock, Time start,
-             Recording* recording, FaultLog* faults = nullptr);
+    // All outlive it, but for the show's clock; `recording` may be null.
+    Lighting(const show::Site& site, const show::InputLog& inputs, Devices& devices, const Clock& clock,
+             const show::ShowClock& showClock, Recording* recording, FaultLog& faults, show::EventLog& events);
 
     // DMX512 allows up to 44 full frames a second; this leaves the line some rest (ANSI E1.11).
     static constexpr double kRate = 40;
@@ -63,10 +65,6 @@ public:
     // The lines that have not taken the end levels since end(), and why. Thread: any; waits for no
     // device.
     std::vector<UnendedLine> unendedLines() const;
-
-    // Called on the lighting thread with a sentence for the operator: who is in charge of a
-    // universe.
-    std::function<void(const std::string&)> tell = [](const std::string&) {};
 
     // Once both parts have ended.
     const Durations& dmxInterval() const { return dmxInterval_; }
@@ -107,9 +105,10 @@ private:
     const show::Site& site_;
     Devices& devices_;
     const Clock& clock_;
-    const Time start_;
+    const show::ShowClock showClock_;
     Recording* recording_;
-    FaultLog* faults_;
+    FaultLog& faults_;
+    show::EventLog& events_;
     PlaybackReplica replica_;
     show::ShowState state_;
     std::vector<std::optional<Shared>> shared_;  // of each line

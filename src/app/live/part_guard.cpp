@@ -8,11 +8,10 @@
 
 namespace fantascope::app {
 
-PartGuard::PartGuard(std::string part, Rank rank, FaultLog& faults, ShowTimeOf showTimeOf)
+PartGuard::PartGuard(std::string part, Rank rank, FaultLog& faults)
     : part_(std::move(part)),
       rank_(rank),
       faults_(faults),
-      showTimeOf_(std::move(showTimeOf)),
       backOff_(kSoonest, rank == Rank::Input ? kLatestInput : kLatest) {}
 
 bool PartGuard::run(Time moment, const std::function<void(Time)>& work) {
@@ -36,7 +35,7 @@ void PartGuard::tellFailure(Time moment, const char* why) noexcept {
     nextTry_ = rank_ == Rank::Lighting ? Time::min() : moment + pause;
     failed_ = true;
     try {
-        faults_.raise(showTimeOf_(moment), part_, FaultLog::Topic::Part,
+        faults_.raise(moment, part_, FaultLog::Topic::Part,
                       fmt::format("the part '{}' failed: {}; it is tried again, and the rest plays on", part_, why));
     } catch (...) {
     }
@@ -45,13 +44,13 @@ void PartGuard::tellFailure(Time moment, const char* why) noexcept {
 void PartGuard::tellRecovery(Time moment) noexcept {
     backOff_.succeeded(moment);
     try {
-        faults_.clear(showTimeOf_(moment), part_, FaultLog::Topic::Part, fmt::format("the part '{}' works again", part_));
+        faults_.clear(moment, part_, FaultLog::Topic::Part, fmt::format("the part '{}' works again", part_));
     } catch (...) {
     }
 }
 
-Part guarded(Part part, FaultLog& faults, PartGuard::ShowTimeOf showTimeOf) {
-    auto guard = std::make_shared<PartGuard>(part.name, part.rank, faults, std::move(showTimeOf));
+Part guarded(Part part, FaultLog& faults) {
+    auto guard = std::make_shared<PartGuard>(part.name, part.rank, faults);
     part.work = [guard = std::move(guard), work = std::move(part.work)](Time moment) { guard->run(moment, work); };
     return part;
 }

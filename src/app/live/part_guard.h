@@ -22,10 +22,9 @@ class PartGuard {
 public:
     static constexpr Time kSoonest = std::chrono::milliseconds(50), kLatestInput = std::chrono::seconds(1),
                           kLatest = std::chrono::seconds(10);
-    using ShowTimeOf = std::function<Time(Time moment)>;
 
     // `faults` outlives it.
-    PartGuard(std::string part, Rank rank, FaultLog& faults, ShowTimeOf showTimeOf);
+    PartGuard(std::string part, Rank rank, FaultLog& faults);
 
     // Does the work for a moment, unless it failed a short time ago. Whether it was done.
     bool run(Time moment, const std::function<void(Time)>& work);
@@ -37,13 +36,12 @@ private:
     const std::string part_;
     const Rank rank_;
     FaultLog& faults_;
-    const ShowTimeOf showTimeOf_;
     drivers::BackOff backOff_;
     Time nextTry_ = Time::min();
     bool failed_ = false;  // the last time
 };
 
 // The part with a guard around its work.
-Part guarded(Part part, FaultLog& faults, PartGuard::ShowTimeOf showTimeOf);
+Part guarded(Part part, FaultLog& faults);
 
 }  // namespace fantascope::app

@@ -66,7 +66,7 @@ std::vector<std::vector<std::size_t>> Recording::videos() const {
 // A video whose writing fails is given up at once: its bytes may be what the disk has no room for.
 Result<void> Recording::write(Video& video, const RgbaImage& picture, Time at) {
     const double rate = outputs_[sideBySide() ? 0 : static_cast<std::size_t>(&video - videos_.data())].frameRate;
-    video.number = std::max<std::int64_t>(video.number + 1, std::llround(seconds(at - start_) * rate * kTicks));
+    video.number = std::max<std::int64_t>(video.number + 1, std::llround(seconds(at - runStart_) * rate * kTicks));
     Result<void> written = video.writer->write(picture, video.number);
     if (!written) video.writer.reset();
     return written;

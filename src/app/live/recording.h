@@ -50,8 +50,8 @@ public:
     // Error: the target cannot be written, or is a file with another ending.
     static Result<std::unique_ptr<Recording>> open(const std::filesystem::path& target, std::vector<Output> outputs);
 
-    // All videos begin at `start` on the clock.
-    void begin(Time start) { start_ = start; }
+    // All videos begin with the run.
+    void begin(Time runStart) { runStart_ = runStart; }
     // Which outputs a video shows; of each video in turn. Every frame of these is given on one
     // thread.
     std::vector<std::vector<std::size_t>> videos() const;
@@ -102,7 +102,7 @@ private:
 
     std::filesystem::path target_;
     std::vector<Output> outputs_;
-    Time start_{};
+    Time runStart_{};
     std::vector<Frames> frames_;  // of each output
     std::vector<Video> videos_;   // one for each output, or one for all
     RgbaImage tiled_;             // the outputs side by side

@@ -1,6 +1,6 @@
 #include "app/live/run_console.h"
 
-#include "app/live/run_keys.h"
+#include "app/keys/run_keys.h"
 
 #include <fmt/format.h>
 

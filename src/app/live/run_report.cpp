@@ -37,6 +37,15 @@ std::string lateFramesByCause(const std::vector<OutputReport>& outputs) {
     return text;
 }
 
+std::vector<CueReport> cuesOf(const show::EventLog& events) {
+    std::vector<CueReport> cues;
+    show::EventLog::Reader reader = events.reader();
+    while (const show::Event* const event = reader.next())
+        if (const auto* const entered = std::get_if<show::event::CueEntered>(&event->what))
+            cues.push_back({entered->name, event->at});
+    return cues;
+}
+
 std::string sentenceOf(const std::vector<UnsafeBank>& unsafe) {
     std::string banks;
     for (const auto& [bank, why] : unsafe) banks += fmt::format("{}'{}' ({})", banks.empty() ? "" : ", ", bank, why);

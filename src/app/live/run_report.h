@@ -3,6 +3,8 @@
 #include "app/base/durations.h"
 #include "app/base/report.h"
 
+#include "show/event.h"
+
 #include "core/clock.h"
 
 #include <array>
@@ -47,6 +49,9 @@ struct CueReport {
     std::string name;
     Time entered{};
 };
+
+// The cues as they were entered.
+std::vector<CueReport> cuesOf(const show::EventLog& events);
 
 struct FaultReport {
     Time at{};

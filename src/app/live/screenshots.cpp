@@ -31,16 +31,18 @@ std::string inFileName(std::string text) {
 }  // namespace
 
 Screenshots::Screenshots(std::filesystem::path folder, const show::Show& show, const show::InputLog& inputs,
-                         const std::vector<std::string>& outputs, const std::vector<render::NewestFrame*>& frames, Time start)
-    : folder_(std::move(folder)), show_(show), start_(start), replica_(inputs) {
+                         const std::vector<std::string>& outputs, const std::vector<render::NewestFrame*>& frames,
+                         const show::ShowClock& showClock, show::EventLog& events)
+    : folder_(std::move(folder)), show_(show), showClock_(showClock), events_(events), replica_(inputs) {
     for (std::size_t i = 0; i < outputs.size(); ++i) outputs_.push_back({outputs[i], frames[i]});
 }
 
 void Screenshots::tick(Time moment) {
-    const Time showTime = moment - start_;
+    const Time showTime = showClock_.showTime(moment);
     replica_.stateAt(showTime, state_);  // takes what was pressed, whether or not there is a picture to name
     if (std::ranges::none_of(outputs_, &Output::awaited) && wanted_.exchange(false)) {
-        from_ = showTime + kAhead;
+        from_ = showClock_.showTime(moment + kAhead);
+        until_ = moment + kAhead + kPatience;
         for (Output& output : outputs_) {
             output.frames->ask(from_);
             output.awaited = true;
@@ -52,10 +54,13 @@ void Screenshots::tick(Time moment) {
         // One that was asked for in vain may come after all.
         if (frame != nullptr && frame->showTime >= from_) {
             const Result<std::filesystem::path> file = write(output.name, *frame);
-            tell(file ? "picture: " + file->string() : "no picture: " + file.error().message());
+            if (file)
+                events_.append({showTime, show::event::PictureTaken{*file}});
+            else
+                events_.append({showTime, show::event::PictureMissed{file.error().message()}});
             output.awaited = false;
-        } else if (showTime > from_ + kPatience) {
-            tell(fmt::format("no picture: '{}' shows nothing", output.name));
+        } else if (moment > until_) {
+            events_.append({showTime, show::event::PictureMissed{fmt::format("'{}' shows nothing", output.name)}});
             output.awaited = false;
         }
     }

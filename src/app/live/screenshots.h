@@ -3,14 +3,15 @@
 #include "app/live/playback_replica.h"
 
 #include "render/frame_tap.h"
+#include "show/event.h"
 #include "show/show.h"
+#include "show/show_clock.h"
 
 #include "core/clock.h"
 #include "core/result.h"
 
 #include <atomic>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,10 +23,12 @@ namespace fantascope::app {
 // one.
 class Screenshots {
 public:
-    // All outlive it. `frames` of each output: those alone that are asked for. The folder is made
-    // with the first picture. Show time 0 is `start` on the clock.
+    // All outlive it, but for the clock. `frames` of each output: those alone that are asked for.
+    // The folder is made with the first picture. Where a picture is, or why there is none, goes to
+    // `events`.
     Screenshots(std::filesystem::path folder, const show::Show& show, const show::InputLog& inputs,
-                const std::vector<std::string>& outputs, const std::vector<render::NewestFrame*>& frames, Time start);
+                const std::vector<std::string>& outputs, const std::vector<render::NewestFrame*>& frames,
+                const show::ShowClock& showClock, show::EventLog& events);
 
     // How often it looks for what was asked for.
     static constexpr double kRate = 20;
@@ -33,10 +36,6 @@ public:
     // takes another one.
     void take() { wanted_ = true; }
     void tick(Time moment);
-
-    // Called on the thread of tick() with a sentence for the operator: where a picture is, or why
-    // there is none.
-    std::function<void(const std::string&)> tell = [](const std::string&) {};
 
 private:
     struct Output {
@@ -48,11 +47,13 @@ private:
 
     const std::filesystem::path folder_;
     const show::Show& show_;
-    const Time start_;
+    const show::ShowClock showClock_;
+    show::EventLog& events_;
     PlaybackReplica replica_;  // names the cue of a frame
     show::ShowState state_;
     std::vector<Output> outputs_;
-    Time from_{};  // show time of the frames that were asked for
+    Time from_{};   // show time of the frames that were asked for
+    Time until_{};  // the moment at which nobody waits for them any more
     std::atomic<bool> wanted_ = false;
 };
 

@@ -1,6 +1,6 @@
 #include "app/live/setting_up.h"
 
-#include "app/live/edit_keys.h"
+#include "app/keys/edit_keys.h"
 #include "app/site/site_models.h"
 
 #include "plot/test_picture.h"
@@ -29,10 +29,12 @@ bool blendsShow(TestPicture picture) { return picture == TestPicture::None || is
 
 }  // namespace
 
-SettingUp::SettingUp(const show::Site& site, FrameLoop& frames, Devices& devices, std::function<void(const std::string&)> tell)
+SettingUp::SettingUp(const show::Site& site, FrameLoop& frames, Devices& devices, const show::ShowClock& showClock,
+                     show::EventLog& events)
     : frames_(frames),
       devices_(devices),
-      tell_(std::move(tell)),
+      showClock_(showClock),
+      events_(events),
       editor_(site),
       drawn_(site.outputs.size()),
       blends_(site.outputs.size()) {
@@ -58,7 +60,8 @@ bool SettingUp::key(const Key& key) {
 
 void SettingUp::button(show::Button button, bool pressed) { presses_.append(Press{.button = button, .pressed = pressed}); }
 
-void SettingUp::tick(Time moment, const std::function<void(const Key&)>& other) {
+void SettingUp::tick(Time moment, const std::function<void(const Key&, Time)>& other) {
+    now_ = moment;
     moved_ = false;
     while (const Press* const press = pressed_.next()) {
         // A terminal tells of no key's release.
@@ -74,7 +77,7 @@ void SettingUp::tick(Time moment, const std::function<void(const Key&)>& other) 
             if (on_ || begins)
                 take(*event, output);
             else if (event->kind == ScreenEvent::Kind::KeyDown)
-                other(event->key);
+                other(event->key, event->moment);
         }
     repeatHeld(moment);
     show();
@@ -85,7 +88,7 @@ void SettingUp::begin() {
     legend_ = true;
     message_.clear();
     run(edit::Show{TestPicture::Grid});
-    tell_("setting up the outputs: the keys stand on the picture, e ends it");
+    tell(show::event::SettingUpBegan{});
 }
 
 void SettingUp::end() {
@@ -93,7 +96,7 @@ void SettingUp::end() {
     held_.reset();
     grip_.reset();
     run(edit::Show{TestPicture::None});
-    tell_(!unsaved() ? "the outputs are set up" : "the outputs are set up but not written to the file: e, then w");
+    tell(show::event::SettingUpEnded{!unsaved()});
 }
 
 void SettingUp::take(const Key& key) {
@@ -190,11 +193,11 @@ void SettingUp::save() {
     if (written) {
         editor_.saved();
         message_.clear();
-        tell_(fmt::format("{} is written; as it was before: {}.previous", file.string(), file.string()));
+        tell(show::event::SiteSaved{file, file.string() + ".previous"});
     } else {
         document_.reset();  // it may hold a part of the changes
         message_ = written.error().message();
-        tell_("not written: " + message_);
+        tell(show::event::SiteNotSaved{message_});
     }
 }
 

@@ -3,6 +3,8 @@
 #include "app/live/frame_loop.h"
 #include "app/site/devices.h"
 
+#include "show/event.h"
+#include "show/show_clock.h"
 #include "show/site_editor.h"
 
 #include "device/screen_event.h"
@@ -27,8 +29,9 @@ namespace fantascope::app {
 // Thread: key() and button() from the input thread, tick() from its part's.
 class SettingUp {
 public:
-    // All outlive it. `tell`: sentences for the operator, on the part's thread.
-    SettingUp(const show::Site& site, FrameLoop& frames, Devices& devices, std::function<void(const std::string&)> tell);
+    // All outlive it, but for the clock.
+    SettingUp(const show::Site& site, FrameLoop& frames, Devices& devices, const show::ShowClock& showClock,
+              show::EventLog& events);
 
     static constexpr double kRate = 30;  // Hz
 
@@ -38,8 +41,9 @@ public:
     bool key(const Key& key);
     // A button of the hand controller with a meaning here.
     void button(show::Button button, bool pressed);
-    // Does what was asked for. `other`: keys at the displays that are none of this.
-    void tick(Time moment, const std::function<void(const Key&)>& other);
+    // Does what was asked for. `other`: keys at the displays that are none of this, and when they
+    // were pressed.
+    void tick(Time moment, const std::function<void(const Key&, Time)>& other);
     // Whether something was set that the file does not have. When the part has ended.
     bool unsaved() const;
 
@@ -64,6 +68,7 @@ private:
         bool pressed = false;
     };
 
+    void tell(const show::event::What& what) { events_.append({showClock_.showTime(now_), what}); }
     void begin();
     void end();
     void take(const Key& key);
@@ -79,7 +84,8 @@ private:
 
     FrameLoop& frames_;
     Devices& devices_;
-    std::function<void(const std::string&)> tell_;
+    const show::ShowClock showClock_;
+    show::EventLog& events_;
     std::atomic<bool> on_ = false;
     AppendLog<Press> presses_;
     AppendLog<Press>::Reader pressed_ = presses_.reader();
@@ -91,7 +97,7 @@ private:
     std::optional<glm::dvec2> grip_;          // from the mouse to the handle that it drags
     bool legend_ = true, moved_ = false;
     std::optional<glm::dvec2> held_;  // a direction of the hand controller
-    Time heldUntil_{}, lastKey_{};
+    Time heldUntil_{}, lastKey_{}, now_{};
     std::vector<Drawn> drawn_;
     std::vector<std::shared_ptr<const render::BlendMap>> blends_;
     bool blendsDue_ = true;

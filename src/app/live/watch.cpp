@@ -7,13 +7,13 @@
 namespace fantascope::app {
 
 Watch::Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
-             render::PictureFeed* pictures, Time start, Recording* recording)
+             render::PictureFeed* pictures, const show::ShowClock& showClock, Recording* recording)
     : show_(show),
       outputs_(std::move(outputs)),
       comparisons_(std::move(comparisons)),
       camera_(camera),
       pictures_(pictures),
-      start_(start),
+      showClock_(showClock),
       recording_(recording),
       scores_(outputs_.size()) {
     for (std::atomic<double>& score : scores_) score = -1;
@@ -41,7 +41,7 @@ void Watch::tick(Time) {
     const auto frame = camera_->newest();
     if (!frame) return;
     if (pictures_ != nullptr) pictures_->publish({frame, &frame->image});
-    const Time showTime = frame->exposed - start_;
+    const Time showTime = showClock_.showTime(frame->exposed);
     for (std::size_t output = 0; output < outputs_.size(); ++output) {
         const vision::GuideComparison* comparison = comparisonOf(output);
         if (comparison == nullptr) continue;

@@ -4,6 +4,7 @@
 
 #include "render/source/picture_feed.h"
 #include "show/show.h"
+#include "show/show_clock.h"
 #include "vision/guide_comparison.h"
 
 #include "device/camera_source.h"
@@ -26,11 +27,10 @@ public:
     // What an output is compared with, for each source of the show that can be compared.
     using Comparisons = show::BySource<std::shared_ptr<const vision::GuideComparison>>;
 
-    // All outlive it; `camera`, `pictures` and `recording` may be null.
-    // `comparisons[output]`. What the camera sees goes on into `pictures`. Show time 0 is `start`
-    // on the clock.
+    // All outlive it, but for the clock; `camera`, `pictures` and `recording` may be null.
+    // `comparisons[output]`. What the camera sees goes on into `pictures`.
     Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
-          render::PictureFeed* pictures, Time start, Recording* recording);
+          render::PictureFeed* pictures, const show::ShowClock& showClock, Recording* recording);
 
     // How often the camera is asked for a new frame.
     static constexpr double kRate = 50;
@@ -57,7 +57,7 @@ private:
     std::vector<Comparisons> comparisons_;
     CameraSource* camera_;
     render::PictureFeed* pictures_;
-    const Time start_;
+    const show::ShowClock showClock_;
     Recording* recording_;
     LatestValue<show::ShowState> shown_;
     std::vector<std::atomic<double>> scores_;

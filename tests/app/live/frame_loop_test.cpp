@@ -80,7 +80,7 @@ protected:
         loop_.emplace(run_.site, run_.inputs, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output).addQueue());
         EXPECT_TRUE(loop_->prepare());
-        loop_->begin(run_.clock.now());
+        loop_->begin(show::ShowClock(run_.clock.now()));
     }
     void step(int frames = 1) {
         for (int frame = 0; frame < frames; ++frame) {
@@ -105,6 +105,33 @@ protected:
     std::optional<FrameLoop> loop_;
     std::vector<render::FrameReader*> readers_;
 };
+
+// Example failure: lateness counts from the show's beginning, and a show that was resumed after
+// three hours was late all that time.
+TEST_F(FrameLoopPart, of_a_show_resumed_after_three_hours_counts_none_of_them_as_late) {
+    LatestValue<show::ShowState> shown;
+    loop_->publishStateTo(shown);
+    run_.inputs.submit({3h - 1s, show::Input::Kind::Jump, 0});  // before this run
+    const Time start = run_.clock.now();
+    loop_->begin(show::ShowClock(start, 3h));
+    step(10);
+    slowStep(4.5);
+    run_.inputs.submit({3h + (run_.clock.now() - start), show::Input::Kind::Jump, 1});
+    step(10);
+    EXPECT_EQ(loop_->framesLate(), 6);
+    shown.update();
+    EXPECT_EQ(shown.value().cue, 1);
+    EXPECT_EQ(loop_->inputToFrame().count(), 1u);
+    EXPECT_LT(loop_->inputToFrame().maxMs(), 100);
+    loop_->finish(run_.clock.now());
+    EXPECT_EQ(loop_->framesLate(), 6);
+}
+TEST_F(FrameLoopPart, of_a_resumed_show_is_late_where_no_frame_came_at_all) {
+    loop_->begin(show::ShowClock(run_.clock.now(), 3h));
+    run_.clock.advance(1s);
+    loop_->finish(run_.clock.now());
+    EXPECT_EQ(loop_->framesLate(), 60) << "a second of both outputs, and no hours";
+}
 
 TEST_F(FrameLoopPart, shows_every_refresh_once_on_every_output) {
     for (std::int64_t refresh = 1; refresh <= 10; ++refresh) {
@@ -261,7 +288,7 @@ TEST(FrameUploads, are_told_apart_from_drawing) {
                    render::PictureSources::numbered({render::PatternSource{pattern, nullptr}, render::SolidSource{}}),
                    sourceFolder() + "/assets", run.devices, clock);
     ASSERT_TRUE(loop.prepare());
-    loop.begin(run.clock.now());
+    loop.begin(show::ShowClock(run.clock.now()));
     inputs.submit({Time{}, show::Input::Kind::Go});
     for (int frame = 0; frame < 5; ++frame) loop.step();
     constexpr auto kUpload = static_cast<std::size_t>(FramePart::Upload);
@@ -340,7 +367,7 @@ TEST(FrameLoopWind, each_output_sways_in_its_own) {
                    run.clock);
     const std::array<render::FrameReader*, 2> readers{&loop.tap(0).addQueue(), &loop.tap(1).addQueue()};
     ASSERT_TRUE(loop.prepare());
-    loop.begin(run.clock.now());
+    loop.begin(show::ShowClock(run.clock.now()));
     inputs.submit({run.clock.now(), show::Input::Kind::Go});
     std::array<RgbaImage, 2> before;
     std::array<int, 2> changes{};
@@ -366,7 +393,7 @@ TEST(FrameLoop, keeps_its_renderer_where_a_new_one_cannot_be_made) {
     FrameLoop loop(run.site, run.inputs, sources, folder / "assets", run.devices, run.clock);
     render::FrameReader& reader = loop.tap(0).addQueue();
     ASSERT_TRUE(loop.prepare());
-    loop.begin(run.clock.now() - 30s);  // the cue is faded in
+    loop.begin(show::ShowClock(run.clock.now(), 30s));  // the cue is faded in
     run.inputs.submit(run.jumpTo("Both"));
     const auto shown = [&] {
         loop.step();
@@ -464,7 +491,7 @@ protected:
     void begin() {
         const auto prepared = loop_->prepare();
         ASSERT_TRUE(prepared) << prepared.error().message();
-        loop_->begin(run_.clock.now() - 30s);  // the cue is faded in
+        loop_->begin(show::ShowClock(run_.clock.now(), 30s));  // the cue is faded in
         run_.inputs.submit(run_.jumpTo("Both"));
     }
     struct Seen {
@@ -575,7 +602,7 @@ TEST(FrameLoop, begins_without_an_output_that_cannot_be_drawn) {
     FrameLoop loop(run.site, run.inputs, sources, sourceFolder() + "/assets", run.devices, run.clock);
     const auto prepared = loop.prepare();
     ASSERT_TRUE(prepared) << prepared.error().message();
-    loop.begin(run.clock.now());
+    loop.begin(show::ShowClock(run.clock.now()));
     for (int frame = 0; frame < 5; ++frame) loop.step();
     const auto told = loop.withFaults(run.devices.statuses());
     EXPECT_EQ(told[0].state, DeviceState::Faulted);

@@ -1,5 +1,6 @@
 #include "app/live/hand.h"
 
+#include "app/live/run_report.h"
 #include "app/running_show.h"
 
 #include <gmock/gmock.h>
@@ -19,9 +20,6 @@ using testing::HasSubstr;
 
 class HandPart : public testing::Test {
 protected:
-    HandPart() {
-        hand_.tell = [this](const std::string& sentence) { told_.push_back(sentence); };
-    }
     void press(show::Button button) {
         for (const bool down : {true, false}) run_.world.press(run_.buttonOf(button), down);
         hand_.tick(run_.clock.now());
@@ -34,24 +32,37 @@ protected:
 
     RunningShow run_;
     PlaybackReplica lamps_{run_.inputs};
-    Hand hand_{run_.show, run_.inputs, run_.site, run_.devices, Time{}};
-    std::vector<std::string> told_;
+    Hand hand_{run_.show, run_.inputs, run_.site, run_.devices, show::ShowClock(), run_.events};
 };
 
 TEST_F(HandPart, a_press_reaches_every_part_of_the_show_and_the_operator) {
     run_.clock.advance(2s);
     press(show::Button::Go);
     EXPECT_EQ(stateOfLamps().cue, 0);
-    EXPECT_THAT(told_, ElementsAre("cue 1 of 6: Dusk"));
+    EXPECT_THAT(run_.told(), ElementsAre("cue 1 of 6: Dusk"));
     run_.clock.advance(2s);
     press(show::Button::Blackout);
     EXPECT_TRUE(stateOfLamps().blackout);
-    EXPECT_THAT(told_, Contains("blackout: pictures and lamps are dark"));
+    EXPECT_THAT(run_.told(), Contains("blackout: pictures and lamps are dark"));
     press(show::Button::Blackout);
-    EXPECT_EQ(told_.back(), "light: the blackout is over");
-    ASSERT_EQ(hand_.cues().size(), 1u);
-    EXPECT_EQ(hand_.cues()[0].name, "Dusk");
-    EXPECT_EQ(hand_.cues()[0].entered, 2s);
+    EXPECT_EQ(run_.told().back(), "light: the blackout is over");
+    const std::vector<CueReport> cues = cuesOf(run_.events);
+    ASSERT_EQ(cues.size(), 1u);
+    EXPECT_EQ(cues[0].name, "Dusk");
+    EXPECT_EQ(cues[0].entered, 2s);
+}
+
+// Example failure: a press of a show that was resumed after three hours counts as one from before
+// its cues.
+TEST_F(HandPart, of_a_resumed_show_stamps_presses_with_show_time) {
+    Hand hand{run_.show, run_.inputs, run_.site, run_.devices, show::ShowClock(1s, 3h), run_.events};
+    run_.clock.advance(2s);
+    run_.world.press(run_.buttonOf(show::Button::Go), true);
+    run_.clock.advance(5ms);
+    hand.tick(run_.clock.now());
+    show::InputLog::Reader inputs = run_.inputs.reader();
+    EXPECT_EQ(inputs.next()->input.at, 3h + 1s) << "when it was pressed, and not when it was asked for";
+    EXPECT_EQ(cuesOf(run_.events)[0].entered, 3h + 1s + 5ms);
 }
 
 // Example failure: a part whose thread stood still for a while stays in a cue that the others have
@@ -70,7 +81,7 @@ TEST_F(HandPart, a_part_that_has_not_looked_for_long_misses_no_input) {
 TEST_F(HandPart, says_why_a_press_did_nothing) {
     run_.clock.advance(2s);
     press(show::Button::Back);
-    EXPECT_THAT(told_, Contains(HasSubstr("ignored")));
+    EXPECT_THAT(run_.told(), Contains(HasSubstr("ignored")));
     EXPECT_EQ(stateOfLamps().cue, -1);
 }
 
@@ -141,7 +152,7 @@ TEST(HandLights, are_told_once_a_change_and_of_editing_too) {
     std::vector<std::pair<int, ButtonLight>> told;
     run.site.buttons = {{4, show::Button::Go}, {7, show::Button::Edit}, {9, show::Button::Left}};
     run.devices.cueController = std::make_unique<CountingController>(told);
-    Hand hand{run.show, run.inputs, run.site, run.devices, Time{}};
+    Hand hand{run.show, run.inputs, run.site, run.devices, show::ShowClock(), run.events};
     bool editing = false;
     hand.editing = [&] { return editing; };
     const auto toldIn = [&](Time length) {
@@ -169,7 +180,7 @@ TEST(ContactsPart, a_gate_steps_the_cues_and_an_emergency_button_darkens_the_sho
                          {"emergency", 1, 1, show::ContactAction::Dark, show::ContactAction::Light}};
     run.devices = valueOf(openDevices(run.site, Backends::SimulatedHeadless, {run.clock, &run.world}));
     PlaybackReplica lamps{run.inputs};
-    Hand hand{run.show, run.inputs, run.site, run.devices, Time{}};
+    Hand hand{run.show, run.inputs, run.site, run.devices, show::ShowClock(), run.events};
     const auto stateAfter = [&](const char* bank, bool closed) {
         run.world.setContact(bank, 1, closed);
         hand.tick(run.clock.now());
@@ -190,36 +201,6 @@ TEST(ContactsPart, a_gate_steps_the_cues_and_an_emergency_button_darkens_the_sho
     for (const char* bank : {"doors", "desk"}) run.world.setPlugged(bank, true);
     EXPECT_TRUE(stateAfter("doors", true).blackout) << "it was pressed meanwhile";
     EXPECT_EQ(stateAfter("doors", true).cue, 1) << "the gate moved while nobody saw it";
-}
-
-std::vector<Time> pressesOf(GoSchedule schedule) {
-    std::vector<Time> presses;
-    for (Time time{}; time < 70s; time += 10ms)
-        while (schedule.due(time)) presses.push_back(time);
-    return presses;
-}
-
-TEST(GoSchedule, reaches_every_cue_in_an_equal_share_of_the_length) {
-    EXPECT_THAT(pressesOf({3, false, 60s}), ElementsAre(3340ms, 23340ms, 43340ms)) << "after a moment of darkness";
-    EXPECT_THAT(pressesOf({2, true, 60s}), ElementsAre(20s, 40s)) << "the cue that is on has its share first";
-    EXPECT_THAT(pressesOf({0, true, 60s}), ElementsAre());
-}
-
-TEST(GoSchedule, says_when_the_next_press_is) {
-    GoSchedule schedule(2, true, 60s);
-    EXPECT_EQ(schedule.next(), 20s);
-    EXPECT_TRUE(schedule.due(20s));
-    EXPECT_EQ(schedule.next(), 40s);
-    EXPECT_TRUE(schedule.due(40s));
-    EXPECT_EQ(schedule.next(), Time::max());
-}
-
-TEST(GoSchedule, ends_when_the_operator_takes_over) {
-    GoSchedule schedule(3, false, 60s);
-    EXPECT_TRUE(schedule.due(10s));
-    schedule.end();
-    EXPECT_FALSE(schedule.due(50s));
-    EXPECT_TRUE(schedule.ended());
 }
 
 }  // namespace

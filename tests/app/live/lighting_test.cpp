@@ -47,7 +47,7 @@ protected:
     int sculpture() const { return run_.world.slots(1)[0]; }
 
     RunningShow run_;
-    Lighting lighting_{run_.site, run_.inputs, run_.devices, run_.clock, Time{}, nullptr};
+    Lighting lighting_{run_.site, run_.inputs, run_.devices, run_.clock, show::ShowClock(), nullptr, run_.faults, run_.events};
     const std::vector<Part> relays_ = lighting_.relayParts();
 };
 
@@ -125,7 +125,7 @@ TEST_F(LightingPart, writes_no_relay_before_the_show_has_decided) {
 TEST_F(LightingPart, fades_the_lamps_to_the_end_levels_and_makes_the_relays_safe_at_once) {
     run_.site.fixtures[0].end = {0.2f};
     run_.site.endFade = 2s;
-    Lighting lighting(run_.site, run_.inputs, run_.devices, run_.clock, Time{}, nullptr);
+    Lighting lighting(run_.site, run_.inputs, run_.devices, run_.clock, show::ShowClock(), nullptr, run_.faults, run_.events);
     const std::vector<Part> relays = lighting.relayParts();
     const auto work = [&] {
         lighting.tick(run_.clock.now());
@@ -163,7 +163,7 @@ TEST_F(LightingPart, hurried_jumps_to_the_end_levels_with_one_frame_and_says_whi
     run_.site.fixtures[0].end = {0.2f};
     run_.site.endFade = 60s;
     for (const bool isThere : {true, false}) {
-        Lighting lighting(run_.site, run_.inputs, run_.devices, run_.clock, Time{}, nullptr);
+        Lighting lighting(run_.site, run_.inputs, run_.devices, run_.clock, show::ShowClock(), nullptr, run_.faults, run_.events);
         const std::vector<Part> relays = lighting.relayParts();
         const auto work = [&] {
             lighting.tick(run_.clock.now());
@@ -223,7 +223,7 @@ TEST_F(LightingPart, asks_relays_that_are_safe_already_whether_they_are) {
     EXPECT_TRUE(lighting_.ended());
     EXPECT_TRUE(written.empty());
 
-    Lighting another(run_.site, run_.inputs, run_.devices, run_.clock, Time{}, nullptr);
+    Lighting another(run_.site, run_.inputs, run_.devices, run_.clock, show::ShowClock(), nullptr, run_.faults, run_.events);
     const std::vector<Part> relays = another.relayParts();
     another.tick(run_.clock.now());
     relays[0].work(run_.clock.now());
@@ -255,10 +255,10 @@ private:
 
 class LightingWithFaults : public LightingPart {
 protected:
-    std::vector<std::string> told_;
-    FaultLog faults_{[this](const std::string& sentence) { told_.push_back(sentence); }};
+    std::vector<std::string> told() const { return run_.told(); }
+
     std::vector<std::vector<bool>> written_;
-    Lighting watched_{run_.site, run_.inputs, run_.devices, run_.clock, Time{}, nullptr, &faults_};
+    Lighting watched_{run_.site, run_.inputs, run_.devices, run_.clock, show::ShowClock(), nullptr, run_.faults, run_.events};
     const std::vector<Part> watchedRelays_ = watched_.relayParts();
 
     void runWatched(Time time) {
@@ -275,10 +275,10 @@ TEST_F(LightingWithFaults, relays_that_do_not_follow_are_told_once_and_tried_eve
     runWatched(60s);
     EXPECT_LE(written_.size(), 20u);
     EXPECT_GE(written_.size(), 60u / 5u);
-    ASSERT_THAT(told_, testing::SizeIs(1));
-    EXPECT_THAT(told_[0], testing::StartsWith("road-south of 'road' did not switch (road: its read-back differs)"));
-    EXPECT_EQ(faults_.faults()[0].device, "road");
-    EXPECT_EQ(faults_.faults()[0].until, std::nullopt);
+    ASSERT_THAT(told(), testing::SizeIs(1));
+    EXPECT_THAT(told()[0], testing::StartsWith("road-south of 'road' did not switch (road: its read-back differs)"));
+    EXPECT_EQ(run_.faults.faults()[0].device, "road");
+    EXPECT_EQ(run_.faults.faults()[0].until, std::nullopt);
 
     written_.clear();
     show::Input cue = run_.jumpTo("Full");
@@ -286,7 +286,8 @@ TEST_F(LightingWithFaults, relays_that_do_not_follow_are_told_once_and_tried_eve
     runWatched(25ms);
     EXPECT_THAT(written_, testing::ElementsAre(std::vector<bool>{false, false})) << "a new cue is written at once";
     runWatched(6s);
-    EXPECT_THAT(told_, testing::ElementsAre(testing::_, testing::StartsWith("the relays of 'road' are as they should be after")));
+    EXPECT_THAT(told(),
+                testing::ElementsAre(testing::_, testing::StartsWith("the relays of 'road' are as they should be after")));
 
     written_.clear();
     watched_.end(run_.clock.now());
@@ -306,16 +307,16 @@ TEST_F(LightingWithFaults, relays_that_somebody_else_switches_are_switched_back_
         run_.world.switchRelaysByHand("road", {true, false});
     }
     EXPECT_LE(written_.size(), 20u);
-    EXPECT_THAT(told_, testing::ElementsAre(testing::StartsWith("road-north of 'road' switched without the show")));
+    EXPECT_THAT(told(), testing::ElementsAre(testing::StartsWith("road-north of 'road' switched without the show")));
     runWatched(20s);
-    EXPECT_THAT(told_, testing::ElementsAre(testing::_, testing::StartsWith("the relays of 'road' are as they should be after")));
+    EXPECT_THAT(told(),
+                testing::ElementsAre(testing::_, testing::StartsWith("the relays of 'road' are as they should be after")));
 }
 
 TEST_F(LightingWithFaults, a_universe_that_a_desk_takes_is_a_fault_until_it_gives_it_back) {
     run_.site.universes[0].desk = show::Desk{run_.site.universes[0].port, {.ownPriority = 100}};
     run_.devices = valueOf(openDevices(run_.site, Backends::SimulatedHeadless, {run_.clock, &run_.world}));
-    Lighting lighting{run_.site, run_.inputs, run_.devices, run_.clock, Time{}, nullptr, &faults_};
-    lighting.tell = [this](const std::string& sentence) { told_.push_back(sentence); };
+    Lighting lighting{run_.site, run_.inputs, run_.devices, run_.clock, show::ShowClock(), nullptr, run_.faults, run_.events};
     for (const bool ended : {false, true}) {
         DmxInput frame;
         frame.source = "FOH";
@@ -325,10 +326,10 @@ TEST_F(LightingWithFaults, a_universe_that_a_desk_takes_is_a_fault_until_it_give
         lighting.tick(run_.clock.now());
         run_.clock.advance(2s);
     }
-    EXPECT_THAT(told_, testing::ElementsAre("universe 1 is now sent by 'FOH'", "universe 1 is now sent by the show"));
-    ASSERT_THAT(faults_.faults(), testing::SizeIs(1));
-    EXPECT_EQ(faults_.faults()[0].device, "universe 1");
-    EXPECT_EQ(faults_.faults()[0].until, 2s);
+    EXPECT_THAT(told(), testing::ElementsAre("universe 1 is now sent by 'FOH'", "universe 1 is now sent by the show"));
+    ASSERT_THAT(run_.faults.faults(), testing::SizeIs(1));
+    EXPECT_EQ(run_.faults.faults()[0].device, "universe 1");
+    EXPECT_EQ(run_.faults.faults()[0].until, 2s);
 }
 
 // The default show, whose road lamps hang on a module each.
@@ -343,7 +344,7 @@ struct OnTwoBanks : RunningShow {
 
 TEST(LightingWithSeveralBanks, gives_each_bank_its_own_relays_and_loses_one_alone) {
     OnTwoBanks run;
-    Lighting lighting{run.site, run.inputs, run.devices, run.clock, Time{}, nullptr};
+    Lighting lighting{run.site, run.inputs, run.devices, run.clock, show::ShowClock(), nullptr, run.faults, run.events};
     const std::vector<Part> parts = lighting.relayParts();
     ASSERT_EQ(parts.size(), 2u);
     const auto enter = [&](const char* cue) {
@@ -408,7 +409,7 @@ TEST(LightingWithSeveralBanks, a_bank_that_hangs_holds_up_no_other) {
     run.devices.relayBanks[0] = std::move(made);
     SteadyClock clock;
     const Time start = clock.now();
-    Lighting lighting{run.site, run.inputs, run.devices, clock, start, nullptr};
+    Lighting lighting{run.site, run.inputs, run.devices, clock, show::ShowClock(start), nullptr, run.faults, run.events};
     std::vector<Part> parts = lighting.relayParts();
     parts.push_back({"lighting", Lighting::kRate, start, [&](Time moment) { lighting.tick(moment); }, Rank::Lighting});
     const PartThreads threads(clock, std::move(parts));
@@ -439,9 +440,7 @@ TEST(LightingWithADesk, gives_the_universe_away_and_takes_it_back) {
     RunningShow run;
     run.site.universes[0].desk = show::Desk{run.site.universes[0].port, {.ownPriority = 100}};
     run.devices = valueOf(openDevices(run.site, Backends::SimulatedHeadless, {run.clock, &run.world}));
-    Lighting lighting{run.site, run.inputs, run.devices, run.clock, Time{}, nullptr};
-    std::vector<std::string> told;
-    lighting.tell = [&](const std::string& sentence) { told.push_back(sentence); };
+    Lighting lighting{run.site, run.inputs, run.devices, run.clock, show::ShowClock(), nullptr, run.faults, run.events};
     run.inputs.submit(run.jumpTo("Full"));
     std::vector<int> seen;
     const auto pass = [&](Time time, std::optional<int> level, bool ended = false) {
@@ -465,7 +464,7 @@ TEST(LightingWithADesk, gives_the_universe_away_and_takes_it_back) {
     pass(50ms, 40, true);
     pass(1s, {});
     EXPECT_THAT(seen, testing::ElementsAre(40, 255));
-    EXPECT_THAT(told, testing::ElementsAre("universe 1 is now sent by 'FOH'", "universe 1 is now sent by the show"));
+    EXPECT_THAT(run.told(), testing::ElementsAre("universe 1 is now sent by 'FOH'", "universe 1 is now sent by the show"));
 }
 
 // Who moved a slot last has it: the show must not take it in order to darken it.
@@ -473,7 +472,7 @@ TEST(LightingWithADesk, leaves_a_desk_what_it_has_when_the_show_ends) {
     RunningShow run;
     run.site.universes[0].desk = show::Desk{run.site.universes[0].port, {.rule = show::DmxMerge::Rule::Latest}};
     run.devices = valueOf(openDevices(run.site, Backends::SimulatedHeadless, {run.clock, &run.world}));
-    Lighting lighting{run.site, run.inputs, run.devices, run.clock, Time{}, nullptr};
+    Lighting lighting{run.site, run.inputs, run.devices, run.clock, show::ShowClock(), nullptr, run.faults, run.events};
     run.inputs.submit(run.jumpTo("Full"));
     const auto pass = [&](Time time) {
         for (const Time end = run.clock.now() + time; run.clock.now() < end; run.clock.advance(tickTime(1, Lighting::kRate))) {

@@ -40,9 +40,8 @@ protected:
         }
         EXPECT_TRUE(loop_->prepare());
         start_ = run_.clock.now();
-        loop_->begin(start_);
-        screenshots_.emplace(folder_ / "pictures", run_.show, run_.inputs, names, frames, start_);
-        screenshots_->tell = [this](const std::string& sentence) { told_.push_back(sentence); };
+        loop_->begin(show::ShowClock(start_));
+        screenshots_.emplace(folder_ / "pictures", run_.show, run_.inputs, names, frames, show::ShowClock(start_), run_.events);
     }
     void play(Time length) {
         for (const Time end = run_.clock.now() + length; run_.clock.now() < end;) {
@@ -69,7 +68,6 @@ protected:
     std::optional<Screenshots> screenshots_;
     Time start_{};
     std::map<std::pair<Time, std::size_t>, RgbaImage> shown_;  // every frame
-    std::vector<std::string> told_;
 };
 
 // Example failure: the outputs are pictures of two moments, or of a cue that came later than the
@@ -97,8 +95,8 @@ TEST_F(ScreenshotsTest, every_output_at_one_moment_as_its_display_got_it_and_nam
         ASSERT_NE(frame, shown_.end());
         EXPECT_EQ(*picture, frame->second) << names[output];
     }
-    EXPECT_THAT(told_, ElementsAre(AllOf(HasSubstr("picture: "), HasSubstr((folder_ / "pictures" / names[0]).string())),
-                                   HasSubstr((folder_ / "pictures" / names[1]).string())));
+    EXPECT_THAT(run_.told(), ElementsAre(AllOf(HasSubstr("picture: "), HasSubstr((folder_ / "pictures" / names[0]).string())),
+                                         HasSubstr((folder_ / "pictures" / names[1]).string())));
     play(1s);
     EXPECT_EQ(files().size(), 2u) << "one picture a press";
 }
@@ -109,7 +107,7 @@ TEST_F(ScreenshotsTest, says_which_output_shows_nothing_and_takes_the_others) {
     screenshots_->take();
     play(4s);
     EXPECT_THAT(files(), ElementsAre(HasSubstr("s-before-the-first-cue-right.png")));
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("right.png"), AllOf(HasSubstr("no picture"), HasSubstr("'left'"))));
+    EXPECT_THAT(run_.told(), ElementsAre(HasSubstr("right.png"), AllOf(HasSubstr("no picture"), HasSubstr("'left'"))));
     run_.world.setPlugged("left", true);
     play(500ms);
     EXPECT_EQ(files().size(), 1u) << "what was given up does not come later";
@@ -122,7 +120,7 @@ TEST_F(ScreenshotsTest, says_why_a_picture_cannot_be_written_and_the_show_goes_o
     folder_.file("pictures", "a file, no folder");
     screenshots_->take();
     play(500ms);
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("no picture: "), HasSubstr("no picture: ")));
+    EXPECT_THAT(run_.told(), ElementsAre(HasSubstr("no picture: "), HasSubstr("no picture: ")));
     EXPECT_EQ(loop_->framesLate(), 0);
 }
 

@@ -67,9 +67,9 @@ protected:
         loop_.emplace(run_.site, run_.inputs, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         for (std::size_t output = 0; output < 2; ++output) readers_.push_back(&loop_->tap(output).addQueue());
         EXPECT_TRUE(loop_->prepare());
-        loop_->begin(run_.clock.now() - 30s);  // the cue is faded in
+        loop_->begin(show::ShowClock(run_.clock.now(), 30s));  // the cue is faded in
         run_.inputs.submit(run_.jumpTo("Both"));
-        setting_.emplace(run_.site, *loop_, run_.devices, [this](const std::string& sentence) { told_ += sentence + "\n"; });
+        setting_.emplace(run_.site, *loop_, run_.devices, show::ShowClock(), run_.events);
         step();
     }
     void step() {
@@ -80,13 +80,18 @@ protected:
     // What the outputs show once the part has worked; the second frame is the first one that was
     // drawn afterwards.
     void work() {
-        setting_->tick(run_.clock.now(), [this](const Key& key) { others_.push_back(key); });
+        setting_->tick(run_.clock.now(), [this](const Key& key, Time at) { others_.emplace_back(key, at); });
         step();
         step();
     }
     void press(const Key& key) {
         setting_->key(key);
         work();
+    }
+    std::string told() const {
+        std::string text;
+        for (const std::string& sentence : run_.told()) text += sentence + "\n";
+        return text;
     }
     // Stored green at a place of an output's picture.
     int at(std::size_t output, glm::ivec2 pixel) { return shown_[output].at(pixel.x, pixel.y).g; }
@@ -99,8 +104,7 @@ protected:
     std::optional<SettingUp> setting_;
     std::vector<render::FrameReader*> readers_;
     RgbaImage shown_[2];
-    std::string told_;
-    std::vector<Key> others_;
+    std::vector<std::pair<Key, Time>> others_;
 };
 
 constexpr glm::ivec2 kInside(300, 180), kOutside(20, 20);
@@ -129,7 +133,7 @@ TEST_F(SettingUpPart, moves_the_picture_on_the_wall) {
     EXPECT_EQ(at(0, justInside), 0) << "the corner has moved inwards by 30 pixels both ways";
     EXPECT_GT(at(0, kInside), 100);
     EXPECT_EQ(readFile(file_).value(), readFile(sourceFolder() + "/config/simulated/site.yaml").value()) << "nothing was written";
-    EXPECT_THAT(told_, HasSubstr("not written to the file"));
+    EXPECT_THAT(told(), HasSubstr("not written to the file"));
 }
 
 // Example failure: the picture has another shape after the next start than while its corners were
@@ -154,12 +158,12 @@ TEST_F(SettingUpPart, writes_the_file_on_demand_and_keeps_the_one_before) {
     wanted.replace(wanted.find("[123.07, 48.35]"), 15, "[124.07, 48.35]");
     EXPECT_EQ(readFile(file_).value(), wanted);
     EXPECT_EQ(readFile(file_.string() + ".previous").value(), before);
-    EXPECT_THAT(told_, HasSubstr("site.yaml is written"));
+    EXPECT_THAT(told(), HasSubstr("site.yaml is written"));
     for (int i = 0; i < 10; ++i) work();  // a hand that rests
     press({Name::Right});
     press({.letter = 'u'});
     press({.letter = 'e'});
-    EXPECT_THAT(told_, HasSubstr("the outputs are set up\n")) << "what was taken back need not be written";
+    EXPECT_THAT(told(), HasSubstr("the outputs are set up\n")) << "what was taken back need not be written";
 }
 
 // Somebody else has moved the same corner in an editor meanwhile: neither loses work unseen.
@@ -170,8 +174,8 @@ TEST_F(SettingUpPart, does_not_write_over_somebody_elses_change_at_once) {
     press({.letter = 'e'});
     press({Name::Right});
     press({.letter = 'w'});
-    EXPECT_THAT(told_, HasSubstr("not written: "));
-    EXPECT_THAT(told_, HasSubstr("changed in the file by somebody else"));
+    EXPECT_THAT(told(), HasSubstr("not written: "));
+    EXPECT_THAT(told(), HasSubstr("changed in the file by somebody else"));
     EXPECT_EQ(readFile(file_).value(), theirs);
     EXPECT_TRUE(setting_->unsaved());
     press({.letter = 'w'});
@@ -191,7 +195,7 @@ TEST_F(SettingUpPart, writes_to_the_output_of_the_same_name_wherever_it_stands_i
     press({.letter = 'e'});
     press({Name::Right});
     press({.letter = 'w'});
-    EXPECT_THAT(told_, HasSubstr("not written: "));
+    EXPECT_THAT(told(), HasSubstr("not written: "));
     EXPECT_EQ(readFile(file_).value(), theirs);
     press({.letter = 'w'});
     std::string wanted = theirs;
@@ -206,7 +210,7 @@ TEST_F(SettingUpPart, does_not_write_an_output_that_is_gone_from_the_file) {
     press({.letter = 'e'});
     press({Name::Right});
     for (int i = 0; i < 2; ++i) press({.letter = 'w'});
-    EXPECT_THAT(told_, HasSubstr("there is no output 'left' any more"));
+    EXPECT_THAT(told(), HasSubstr("there is no output 'left' any more"));
     EXPECT_EQ(readFile(file_).value(), theirs);
 }
 
@@ -215,8 +219,8 @@ TEST_F(SettingUpPart, says_why_it_could_not_write) {
     press({Name::Right});
     std::filesystem::remove(file_);
     press({.letter = 'w'});
-    EXPECT_THAT(told_, HasSubstr("not written: "));
-    EXPECT_THAT(told_, HasSubstr("site.yaml"));
+    EXPECT_THAT(told(), HasSubstr("not written: "));
+    EXPECT_THAT(told(), HasSubstr("site.yaml"));
 }
 
 TEST_F(SettingUpPart, drags_a_corner_with_the_mouse_on_any_output) {
@@ -259,9 +263,9 @@ TEST_F(SettingUpPart, a_refusal_stays_to_be_read) {
 
 // A key at an output is as good as one on the terminal.
 TEST_F(SettingUpPart, passes_the_shows_keys_on) {
-    screens_[0]->events = {{ScreenEvent::Kind::KeyDown, {.letter = ' '}}, {ScreenEvent::Kind::KeyUp, {.letter = ' '}}};
+    screens_[0]->events = {{ScreenEvent::Kind::KeyDown, {.letter = ' '}, {}, 70ms}, {ScreenEvent::Kind::KeyUp, {.letter = ' '}}};
     work();
-    EXPECT_EQ(others_, std::vector<Key>{Key{.letter = ' '}});
+    EXPECT_THAT(others_, testing::ElementsAre(testing::Pair(Key{.letter = ' '}, 70ms))) << "with the moment of the press";
 }
 
 // On the ladder there are only the buttons. A direction that is held goes on by itself after a
@@ -304,7 +308,7 @@ TEST_F(SettingUpPart, blends_follow_the_warps) {
         WarpShape shape{.part = {{0.5 * i, 0}, {0.5 + 0.5 * i, 1}}, .corners = rectangleCorners(640, 360)};
         site.outputs[i].projection.warp = Warp::of(shape).value();
     }
-    setting_.emplace(site, *loop_, run_.devices, [](const std::string&) {});
+    setting_.emplace(site, *loop_, run_.devices, show::ShowClock(), run_.events);
     press({.letter = 'e'});
     press({.letter = 'p'});
     press({.name = Name::Tab});

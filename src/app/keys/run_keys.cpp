@@ -1,4 +1,4 @@
-#include "app/live/run_keys.h"
+#include "app/keys/run_keys.h"
 
 #include <fmt/format.h>
 

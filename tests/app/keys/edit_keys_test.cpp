@@ -1,4 +1,4 @@
-#include "app/live/edit_keys.h"
+#include "app/keys/edit_keys.h"
 
 #include <gmock/gmock.h>
 

@@ -39,7 +39,7 @@ class QuitKey {
 public:
     static constexpr Time kPatience = std::chrono::seconds(3);
     explicit QuitKey(bool asks) : asks_(asks) {}
-    // Whether the run ends now, at show time `moment`.
+    // Whether the run ends now, at `moment` on the machine's clock.
     bool press(Time moment);
 
 private:

@@ -1,4 +1,4 @@
-#include "app/live/run_keys.h"
+#include "app/keys/run_keys.h"
 
 #include "app/base/command.h"
 #include "app/command/rehearse_command.h"

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "app/base/terminal_keys.h"
+#include "app/keys/edit_keys.h"
+#include "app/keys/go_schedule.h"
+#include "app/keys/run_keys.h"
+
+#include "show/event.h"
+#include "show/input_log.h"
+#include "show/show_clock.h"
+
+#include "device/screen_event.h"
+
+#include "core/append_log.h"
+#include "core/clock.h"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+
+namespace fantascope::app {
+
+// The keys that work a running show, at the terminal and at the displays' windows; and the schedule
+// that presses GO until a person takes over.
+// Thread: all on the input thread, but for what says otherwise.
+class OperatorKeys {
+public:
+    // What a key does beside inputs. Called on the input thread.
+    struct Actions {
+        std::function<bool(const Key&)> setUp;  // true: the key was taken to set the outputs up
+        std::function<bool()> pressGo;          // the schedule's, at the hand controller; false: there is none
+        std::function<void()> takePictures;
+        std::function<void()> end;
+    };
+    // The logs outlive it. `terminal`: null where nobody can press a key.
+    OperatorKeys(show::InputLog& inputs, show::EventLog& events, const show::ShowClock& showClock,
+                 std::unique_ptr<TerminalKeys> terminal, GoSchedule schedule, QuitKey quitKey, Actions actions);
+
+    void tick(Time moment);  // as often as Hand::tick()
+    // A key was pressed at a window at that moment. Thread: any.
+    void pressedAtScreen(const Key& key, Time moment) { screenKeys_.append({key, moment}); }
+
+    // The run time of the schedule's next press; Time::max(): none is to come. Thread: any.
+    Time nextGo() const { return nextGo_; }
+    // The terminal is as it was before. After the last tick.
+    void close() { terminal_.reset(); }
+
+private:
+    struct Press {
+        Key key{};
+        Time moment{};
+    };
+    void press(const Key& key, show::Input::Source source, Time moment);
+    void takeOver(const show::Input& input);
+
+    show::InputLog& inputs_;
+    show::EventLog& events_;
+    const show::ShowClock showClock_;
+    std::unique_ptr<TerminalKeys> terminal_;
+    TerminalKeyParser parser_;
+    AppendLog<Press> screenKeys_;
+    AppendLog<Press>::Reader pressedAtScreens_ = screenKeys_.reader();
+    GoSchedule schedule_;
+    std::atomic<Time> nextGo_ = Time::max();
+    QuitKey quitKey_;
+    const Actions actions_;
+};
+
+}  // namespace fantascope::app

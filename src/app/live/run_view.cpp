@@ -1,0 +1,37 @@
+#include "app/live/run_view.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace fantascope::app {
+
+RunStatus RunView::at(Time moment, Time nextGo) {
+    const Time time = showClock_.showTime(moment), runTime = showClock_.runTime(moment);
+    replica_.stateAt(time, state_);
+    const auto& cues = show_.cues;
+    const auto next = static_cast<std::size_t>(state_.cue + 1);
+    RunStatus status;
+    status.showTime = time;
+    status.cue = state_.cue;
+    status.cues = static_cast<int>(cues.size());
+    if (next > 0) status.cueName = cues[next - 1].name;
+    if (next < cues.size()) status.nextName = cues[next].name;
+    status.fadeLeft = replica_.playback().fadeLeftAt(time);
+    status.untilNext = replica_.playback().untilFollowAt(time);
+    if (nextGo != Time::max())
+        status.untilNext = std::min(status.untilNext.value_or(Time::max()), std::max(Time{}, nextGo - runTime));
+    if (length_) status.left = std::max(Time{}, *length_ - runTime);
+    status.blackout = state_.blackout;
+    if (hasNews()) status.said = std::exchange(news_, {});
+    return status;
+}
+
+bool RunView::hasNews() {
+    while (const show::Event* const event = events_.next())
+        if (const std::string sentence = show::sentenceOf(*event); !sentence.empty())
+            news_ += (news_.empty() ? "" : "; ") + sentence;
+    return !news_.empty();
+}
+
+}  // namespace fantascope::app

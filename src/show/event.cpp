@@ -1,0 +1,62 @@
+#include "show/event.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace fantascope::show {
+namespace {
+
+std::string durationText(Time time) {
+    const double whole = seconds(time);
+    if (whole < 60) return fmt::format("{:.1f} s", whole);
+    return fmt::format("{:.0f} min {:02.0f} s", std::floor(whole / 60), std::fmod(whole, 60));
+}
+
+struct Teller {
+    std::string operator()(const event::InputDecided& decided) const {
+        return decided.input.outcome == Outcome::Taken ? "" : std::string(nameOf(decided.input.outcome));
+    }
+    std::string operator()(const event::CueEntered& entered) const {
+        return fmt::format("cue {} of {}: {}", entered.cue + 1, entered.cues, entered.name);
+    }
+    std::string operator()(const event::BlackoutChanged& change) const {
+        return change.dark ? "blackout: pictures and lamps are dark" : "light: the blackout is over";
+    }
+    std::string operator()(const event::ScheduleEnded&) const { return "you have the controller"; }
+    std::string operator()(const event::QuitAsked& asked) const {
+        return fmt::format("the show goes on; {} again within {:.0f} s ends it", asked.key, seconds(asked.patience));
+    }
+    std::string operator()(const event::FaultBegan& fault) const { return fault.what; }
+    std::string operator()(const event::FaultEnded& fault) const {
+        return fault.news.empty() ? "" : fmt::format("{} after {}", fault.news, durationText(fault.lasted));
+    }
+    std::string operator()(const event::SendersChanged& change) const {
+        return change.senders.front().empty() ? sentenceOf(change) : "";
+    }
+    std::string operator()(const event::PictureTaken& picture) const { return "picture: " + picture.file.string(); }
+    std::string operator()(const event::PictureMissed& picture) const { return "no picture: " + picture.why; }
+    std::string operator()(const event::SettingUpBegan&) const {
+        return "setting up the outputs: the keys stand on the picture, e ends it";
+    }
+    std::string operator()(const event::SettingUpEnded& end) const {
+        return end.saved ? "the outputs are set up" : "the outputs are set up but not written to the file: e, then w";
+    }
+    std::string operator()(const event::SiteSaved& site) const {
+        return fmt::format("{} is written; as it was before: {}", site.file.string(), site.previous.string());
+    }
+    std::string operator()(const event::SiteNotSaved& site) const { return "not written: " + site.why; }
+};
+
+}  // namespace
+
+std::string sentenceOf(const event::SendersChanged& change) {
+    std::string names;
+    for (const std::string& sender : change.senders)
+        names += (names.empty() ? "" : " and ") + (sender.empty() ? "the show" : "'" + sender + "'");
+    return fmt::format("universe {} is now sent by {}", change.universe, names);
+}
+
+std::string sentenceOf(const Event& event) { return std::visit(Teller(), event.what); }
+
+}  // namespace fantascope::show

@@ -1,0 +1,114 @@
+// The keys at the windows, without a terminal: what they ask for, and when.
+
+#include "app/keys/operator_keys.h"
+
+#include "app/running_show.h"
+
+#include <gmock/gmock.h>
+
+#include <memory>
+#include <vector>
+
+namespace fantascope::app {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using Kind = show::Input::Kind;
+using Source = show::Input::Source;
+
+class Keys : public testing::Test {
+protected:
+    std::unique_ptr<OperatorKeys> keysWith(GoSchedule schedule, bool quitAsks = false, bool hasController = false) {
+        return std::make_unique<OperatorKeys>(
+            run_.inputs, run_.events, show::ShowClock(10s, 3h), nullptr, schedule, QuitKey(quitAsks),
+            OperatorKeys::Actions{[this](const Key&) { return settingUp_; }, [hasController] { return hasController; },
+                                  [this] { ++pictures_; }, [this] { ++ends_; }});
+    }
+    std::vector<show::Input> inputs() const {
+        std::vector<show::Input> inputs;
+        show::InputLog::Reader reader = run_.inputs.reader();
+        while (const show::LoggedInput* const logged = reader.next()) inputs.push_back(logged->input);
+        return inputs;
+    }
+
+    RunningShow run_;
+    bool settingUp_ = false;
+    int pictures_ = 0, ends_ = 0;
+};
+
+// Example failure: a press at a window counts from when the program came to look, up to a thirtieth
+// of a second later.
+TEST_F(Keys, at_a_window_ask_for_what_the_hand_controller_does_at_the_moment_of_the_press) {
+    const auto keys = keysWith({0, false, {}});
+    keys->pressedAtScreen({.letter = ' '}, 12s);
+    keys->pressedAtScreen({.letter = 'b'}, 12s + 1ms);
+    keys->pressedAtScreen({.letter = '0'}, 12s + 2ms);
+    keys->pressedAtScreen({.letter = 's'}, 12s + 3ms);
+    keys->pressedAtScreen({.letter = 'z'}, 12s + 3ms);
+    EXPECT_THAT(inputs(), IsEmpty());
+    keys->tick(12s + 33ms);
+    EXPECT_THAT(inputs(), ElementsAre(show::Input{.at = 3h + 2s, .kind = Kind::Go, .source = Source::Screen},
+                                      show::Input{.at = 3h + 2s + 1ms, .kind = Kind::Back, .source = Source::Screen},
+                                      show::Input{.at = 3h + 2s + 2ms, .kind = Kind::Blackout, .source = Source::Screen}));
+    EXPECT_EQ(pictures_, 1);
+    EXPECT_EQ(ends_, 0);
+}
+
+// Example failure: the seventeenth key of somebody in a hurry does nothing.
+TEST_F(Keys, are_all_taken_however_many_came_before_anybody_looked) {
+    const auto keys = keysWith({0, false, {}});
+    for (int press = 0; press < 1000; ++press) keys->pressedAtScreen({.letter = '0'}, 12s);
+    keys->tick(13s);
+    EXPECT_EQ(inputs().size(), 1000u);
+}
+
+TEST_F(Keys, belong_to_the_setting_up_while_that_takes_them) {
+    const auto keys = keysWith({0, false, {}});
+    settingUp_ = true;
+    keys->pressedAtScreen({.letter = 'q'}, 12s);
+    keys->pressedAtScreen({.letter = ' '}, 12s);
+    keys->tick(12s);
+    EXPECT_THAT(inputs(), IsEmpty());
+    EXPECT_EQ(ends_, 0);
+}
+
+TEST_F(Keys, end_a_night_only_when_they_are_pressed_twice) {
+    const auto keys = keysWith({0, false, {}}, true);
+    keys->pressedAtScreen({.letter = 'q'}, 12s);
+    keys->tick(12s);
+    EXPECT_EQ(ends_, 0);
+    EXPECT_THAT(run_.told(), ElementsAre("the show goes on; q again within 3 s ends it"));
+    keys->pressedAtScreen({.letter = 'q'}, 14s);
+    keys->tick(14s);
+    EXPECT_EQ(ends_, 1);
+}
+
+// The schedule's shares are of the run: a show that is resumed after three hours presses its first
+// GO after a moment of darkness, and not all of them at once.
+TEST_F(Keys, take_over_from_a_schedule_that_counts_from_the_runs_start) {
+    const auto keys = keysWith({3, false, 60s});
+    keys->tick(10s);
+    EXPECT_THAT(inputs(), IsEmpty());
+    EXPECT_EQ(keys->nextGo(), 3'333'333'333ns);
+    keys->tick(13340ms);
+    EXPECT_THAT(inputs(), ElementsAre(show::Input{.at = 3h + 3340ms, .kind = Kind::Go, .source = Source::Schedule}));
+    keys->pressedAtScreen({.letter = '0'}, 20s);
+    keys->pressedAtScreen({.letter = '0'}, 21s);
+    keys->tick(21s);
+    EXPECT_THAT(run_.told(), ElementsAre("you have the controller"));
+    EXPECT_EQ(keys->nextGo(), Time::max());
+    keys->tick(60s);
+    EXPECT_EQ(inputs().size(), 3u);
+}
+
+TEST_F(Keys, leave_the_schedules_press_to_the_controller_where_there_is_one) {
+    const auto keys = keysWith({3, false, 60s}, false, true);
+    keys->tick(13340ms);
+    EXPECT_THAT(inputs(), IsEmpty());
+    EXPECT_EQ(keys->nextGo(), 23'333'333'333ns);
+}
+
+}  // namespace
+}  // namespace fantascope::app

@@ -1,0 +1,46 @@
+#include "app/live/run_view.h"
+
+#include "app/running_show.h"
+
+#include <gmock/gmock.h>
+
+namespace fantascope::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+// The default show after three hours, of which this run has seen two seconds.
+class View : public testing::Test {
+protected:
+    RunningShow run_;
+    const show::ShowClock clock_{10s, 3h};
+    RunView view_{run_.show, run_.inputs, run_.events, clock_, 60s};
+};
+
+TEST_F(View, counts_cues_in_show_time_and_what_is_left_in_run_time) {
+    run_.inputs.submit({3h + 1s, show::Input::Kind::Go});
+    const RunStatus status = view_.at(12s, 20s);
+    EXPECT_EQ(status.showTime, 3h + 2s);
+    EXPECT_EQ(status.cue, 0);
+    EXPECT_EQ(status.cueName, "Dusk");
+    EXPECT_EQ(status.nextName, "First light");
+    EXPECT_EQ(status.fadeLeft, run_.cues.cues[0].fade - 1s);
+    EXPECT_EQ(status.left, 58s);
+    EXPECT_EQ(status.untilNext, 18s) << "the schedule's press";
+}
+
+// Example failure: the report has read a sentence, and the terminal never shows it.
+TEST_F(View, says_what_happened_once_whoever_else_listens) {
+    EXPECT_FALSE(view_.hasNews());
+    run_.events.append({3h, show::event::BlackoutChanged{true}});
+    run_.events.append({3h, show::event::InputDecided{}});
+    run_.events.append({3h, show::event::ScheduleEnded{}});
+    EXPECT_EQ(run_.told().size(), 2u);
+    EXPECT_TRUE(view_.hasNews());
+    EXPECT_EQ(view_.at(12s, Time::max()).said, "blackout: pictures and lamps are dark; you have the controller");
+    EXPECT_FALSE(view_.hasNews());
+    EXPECT_EQ(view_.at(12s, Time::max()).said, "");
+}
+
+}  // namespace
+}  // namespace fantascope::app

@@ -1,0 +1,65 @@
+// One stream of what happens, and everybody who listens hears all of it.
+
+#include "show/event.h"
+
+#include <gmock/gmock.h>
+
+#include <string>
+#include <vector>
+
+namespace fantascope::show {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+
+std::vector<std::string> heard(EventLog::Reader& reader) {
+    std::vector<std::string> sentences;
+    while (const Event* const event = reader.next()) sentences.push_back(sentenceOf(*event));
+    return sentences;
+}
+
+// Example failure: the console takes the news, and the terminal never hears of it.
+TEST(Events, are_heard_by_every_listener_whenever_it_listens) {
+    EventLog events;
+    auto terminal = events.reader(), console = events.reader();
+    events.append({1s, event::CueEntered{0, 3, "Dusk"}});
+    EXPECT_THAT(heard(terminal), ElementsAre("cue 1 of 3: Dusk"));
+    events.append({2s, event::BlackoutChanged{true}});
+    EXPECT_THAT(heard(console), ElementsAre("cue 1 of 3: Dusk", "blackout: pictures and lamps are dark"));
+    EXPECT_THAT(heard(terminal), ElementsAre("blackout: pictures and lamps are dark"));
+    EXPECT_THAT(heard(terminal), ElementsAre());
+    auto late = events.reader();
+    EXPECT_EQ(late.next()->at, 1s);
+}
+
+TEST(Events, say_one_sentence_each) {
+    const auto said = [](const event::What& what) { return sentenceOf(Event{{}, what}); };
+    EXPECT_EQ(said(event::InputDecided{{0, {}, Outcome::AtLastCue}}), "ignored: this is the last cue");
+    EXPECT_EQ(said(event::BlackoutChanged{false}), "light: the blackout is over");
+    EXPECT_EQ(said(event::ScheduleEnded{}), "you have the controller");
+    EXPECT_EQ(said(event::QuitAsked{"q", 3s}), "the show goes on; q again within 3 s ends it");
+    EXPECT_EQ(said(event::FaultBegan{"road", "'road' is missing"}), "'road' is missing");
+    EXPECT_EQ(said(event::FaultEnded{"road", "'road' is back", 3200ms}), "'road' is back after 3.2 s");
+    EXPECT_EQ(said(event::FaultEnded{"road", "'road' is back", 125s}), "'road' is back after 2 min 05 s");
+    EXPECT_EQ(said(event::SendersChanged{1, {"", "FOH"}}), "universe 1 is now sent by the show and 'FOH'");
+    EXPECT_EQ(said(event::PictureTaken{"pictures/a.png"}), "picture: pictures/a.png");
+    EXPECT_EQ(said(event::PictureMissed{"'left' shows nothing"}), "no picture: 'left' shows nothing");
+    EXPECT_EQ(said(event::SettingUpBegan{}), "setting up the outputs: the keys stand on the picture, e ends it");
+    EXPECT_EQ(said(event::SettingUpEnded{true}), "the outputs are set up");
+    EXPECT_EQ(said(event::SettingUpEnded{false}), "the outputs are set up but not written to the file: e, then w");
+    EXPECT_EQ(said(event::SiteSaved{"site.yaml", "site.yaml.previous"}),
+              "site.yaml is written; as it was before: site.yaml.previous");
+    EXPECT_EQ(said(event::SiteNotSaved{"the disk is full"}), "not written: the disk is full");
+}
+
+// Example failure: the operator reads "taken" with every press, and misses what matters.
+TEST(Events, of_which_nobody_needs_to_be_told_say_nothing) {
+    const auto said = [](const event::What& what) { return sentenceOf(Event{{}, what}); };
+    EXPECT_EQ(said(event::InputDecided{{0, {}, Outcome::Taken}}), "");
+    EXPECT_EQ(said(event::FaultEnded{"universe 1", "", 3s}), "");
+    EXPECT_EQ(said(event::SendersChanged{1, {"FOH", ""}}), "") << "the fault says it";
+}
+
+}  // namespace
+}  // namespace fantascope::show
