@@ -28,7 +28,7 @@ struct CastPicture {
     Page each() const;
 };
 
-// `freedoms`: of all actors, one after the other.
-CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const double> freedoms);
+// `dofs`: of all actors, one after the other.
+CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const double> dofs);
 
 }  // namespace fantascope::plot

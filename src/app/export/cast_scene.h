@@ -18,7 +18,7 @@ struct CastScene {
     theatre::Cast cast;
     std::size_t frame;  // from 0
     theatre::PoseProblem problem;
-    std::vector<double> freedoms;  // of all actors, one after the other
+    std::vector<double> dofs;  // of all actors, one after the other
 };
 // Without a frame that of the principal poses. Error: as readCast() and readSequence(); there is no
 // such frame; no picture of the silhouette.
