@@ -1,5 +1,5 @@
-// How long a camera's frame takes from where the kernel's driver has it to where the program sees
-// it, on a camera of umockdev.
+// Measures the time from a camera frame's arrival in the kernel's driver until the program has it,
+// with a camera simulated by umockdev.
 
 #include "drivers/camera/v4l2.h"
 
@@ -22,7 +22,7 @@ constexpr int kFrames = 600;
 constexpr double kRate = 60;
 const glm::ivec2 kSize{640, 480};
 
-// As hard to code as what a camera sees at night: soft shapes, and noise on all of it.
+// About as hard to encode as a camera's picture at night: soft shapes with noise.
 std::vector<std::uint8_t> frameOf(const std::string& format, int number) {
     cv::Mat picture(kSize.y, kSize.x, CV_8UC3);
     std::uint32_t noise = static_cast<std::uint32_t>(number) + 1;
@@ -37,18 +37,18 @@ std::vector<std::uint8_t> frameOf(const std::string& format, int number) {
     if (format == "MJPG")
         cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, 85});
     else
-        bytes.assign(picture.data, picture.data + 2 * kSize.x * kSize.y);  // whatever colours these are
+        bytes.assign(picture.data, picture.data + 2 * kSize.x * kSize.y);  // the colours do not matter
     return bytes;
 }
 
 void measure(const std::string& format) {
     SteadyClock clock;
-    const drivers::Surroundings around{clock};
+    const drivers::DriverContext context{clock};
     MockMachine machine;
     MockCamera mock(machine, {.formats = {format}, .rates = {{format, kRate}}, .size = kSize});
     mock.plugIn(0);
     const auto options = ConfigNode::parse(fmt::format("driver: v4l2\nrate: {}\n", kRate), "bench.yaml").value();
-    const auto camera = drivers::V4l2Camera::fromConfig(options).value().open(around).value();
+    const auto camera = drivers::V4l2Camera::fromConfig(options).value().open(context).value();
     if (!mock.waitUntilTaken()) return;
 
     std::vector<std::vector<std::uint8_t>> frames;
@@ -69,7 +69,7 @@ void measure(const std::string& format) {
         delays.push_back(1e3 * seconds(clock.now() - sent));
     }
     std::ranges::sort(delays);
-    fmt::print("{} {} x {}, {} bytes: p50 {:.2f} ms, p99 {:.2f}, most {:.2f}, of {} frames at {} Hz\n", format, kSize.x, kSize.y,
+    fmt::print("{} {} x {}, {} bytes: p50 {:.2f} ms, p99 {:.2f}, max {:.2f}, of {} frames at {} Hz\n", format, kSize.x, kSize.y,
                frames[0].size(), delays[kFrames / 2], delays[kFrames * 99 / 100], delays.back(), kFrames, kRate);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the benches draw: crystals that sway, as many and as fine as one likes.
+// Swaying crystals for benchmarks, of any number and fineness.
 
 #include "render/source/picture_source.h"
 
@@ -15,7 +15,7 @@
 
 namespace fantascope::render {
 
-// Ends on a refusal: a bench has nobody to tell.
+// The value; a benchmark ends on an error.
 template <class T>
 T valueOf(Result<T> result) {
     FANTASCOPE_CHECK(result.has_value(), result.error().message());
@@ -48,10 +48,10 @@ inline TriangleMesh crystal(std::uint32_t segments, std::uint32_t rings) {
 
 struct Crystals {
     int count;
-    std::uint32_t segments = 6, rings = 6;  // of 60 facets
+    std::uint32_t segments = 6, rings = 6;  // 60 facets
     double largest = 0.06;                  // canvas heights
 };
-// Of a canvas of 16:9.
+// On a canvas of 16:9.
 inline PatternSource swayingCrystals(const Crystals& crystals) {
     pattern::ShapePattern pattern;
     pattern.width = 640;

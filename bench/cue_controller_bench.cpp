@@ -1,7 +1,7 @@
-// How long a press takes from the USB to whoever polls: through usbfs (umockdev's in its place,
-// which talks over a socket and is slower than a kernel), libusb, the descriptor, the debounce and
-// the queue. Prints percentiles in milliseconds; what a host controller's polling adds (bInterval,
-// 1 to 10 ms on common devices) is not in them.
+// Measures the latency of a press from USB to poll(): through usbfs (replaced by umockdev, which
+// uses a socket and is slower than the kernel), libusb, the descriptor, the debounce and the queue.
+// Prints percentiles in milliseconds. They do not include the host controller's polling interval
+// (bInterval, 1 to 10 ms on common devices).
 
 #include "drivers/cue_controller/usb_hid.h"
 
@@ -41,12 +41,12 @@ void pressToEvent(int presses) {
     std::vector<double> arrived, polled;
     for (int press = 0; press < presses; ++press)
         for (const bool down : {true, false}) {
-            clock.sleepUntil(clock.now() + std::chrono::milliseconds(6));  // beyond the debounce
+            clock.sleepUntil(clock.now() + std::chrono::milliseconds(6));  // longer than the debounce
             const Time start = clock.now();
             usb.report("1-1", 0, {static_cast<std::uint8_t>(down)});
             std::optional<ButtonEvent> event;
             while (!(event = controller->poll())) std::this_thread::yield();
-            FANTASCOPE_CHECK(event->pressed == down, "events alternate");
+            FANTASCOPE_CHECK(event->pressed == down, "presses and releases alternate");
             if (!down) continue;
             arrived.push_back(1e3 * seconds(event->at - start));
             polled.push_back(1e3 * seconds(clock.now() - start));

@@ -1,6 +1,6 @@
-// How evenly levels leave this machine over the loopback: packets of ours, of every other Art-Net
-// sender that is heard meanwhile, and, beside them, an idle timer of the same rate. Each packet's
-// time is the kernel's. bench/dmx runs it with QLC+ playing.
+// Measures how evenly levels leave this machine over the loopback: our packets, those of every
+// other Art-Net sender heard meanwhile, and for comparison a latency probe, an idle timer of the
+// same rate. Packet times are the kernel's. bench/dmx runs it with QLC+ playing.
 
 #include "drivers/registry.h"
 
@@ -25,18 +25,17 @@
 namespace fantascope {
 namespace {
 
-constexpr int kFirst = 100, kUniverses = 4;  // ours, as port-addresses
+constexpr int kFirst = 100, kUniverses = 4;  // our universes, as port-addresses
 constexpr int kArtnetPort = 6454;
 
-// When each packet of levels came, by its port-address.
+// Records when each packet of levels arrives, by port-address.
 class Listener {
 public:
     Listener() : file_(socket(AF_INET, SOCK_DGRAM, 0)) {
         const int yes = 1;
         setsockopt(file_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
         setsockopt(file_, SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof yes);
-        // Of all sockets on the port the one that is bound most narrowly gets what is sent to this
-        // machine.
+        // Of all sockets on a port, the most narrowly bound one gets unicast packets.
         setsockopt(file_, SOL_SOCKET, SO_BINDTODEVICE, "lo", 2);
         sockaddr_in here{};
         here.sin_family = AF_INET;
@@ -47,9 +46,9 @@ public:
     ~Listener() { close(file_); }
     bool isOpen() const { return isOpen_; }
 
-    void listen(int patience) {
+    void listen(int timeout) {
         pollfd waited{file_, POLLIN, 0};
-        if (poll(&waited, 1, patience) <= 0) return;
+        if (poll(&waited, 1, timeout) <= 0) return;
         std::array<std::uint8_t, 1500> bytes;
         std::array<char, 256> control;
         iovec part{bytes.data(), bytes.size()};
@@ -77,7 +76,7 @@ private:
 
 double milliseconds(Time time) { return 1e3 * seconds(time); }
 
-// How far the intervals are from their own median.
+// Prints the intervals' deviation from their median.
 void report(const std::string& name, const std::vector<Time>& times) {
     std::vector<Time> intervals, deviations;
     for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
@@ -100,20 +99,20 @@ int run(double length, const std::string& deadNode) {
     SteadyClock clock;
     Listener listener;
     if (!listener.isOpen()) {
-        fmt::print(stderr, "UDP port {} is taken by a program that does not share it\n", kArtnetPort);
+        fmt::print(stderr, "UDP port {} is in use by a program that does not share it\n", kArtnetPort);
         return 1;
     }
-    const drivers::Surroundings around{clock};
+    const drivers::DriverContext context{clock};
     std::vector<std::unique_ptr<DmxPort>> ports;
     const auto send = [&](int universe, const std::string& keys) {
         const auto options = ConfigNode::parse("driver: artnet\n" + keys + "poll: false\n", "bench.yaml").value();
-        ports.push_back(drivers::openDmxPort(options, universe, around).value());
+        ports.push_back(drivers::openDmxPort(options, universe, context).value());
     };
     for (int i = 0; i < kUniverses; ++i) send(kFirst + i, "interface: lo\nnode: 127.0.0.1\n");
     if (!deadNode.empty()) send(kFirst + kUniverses, "interface: near\nnode: " + deadNode + "\n");
     const Time end = clock.now() + fromSeconds(length);
 
-    // Levels that change all the time, at the rate of the lighting thread.
+    // Changes levels at the rate of the lighting thread.
     std::jthread lighting([&] {
         constexpr double kRate = 40;
         std::array<std::uint8_t, kDmxSlots> slots{};
@@ -123,12 +122,12 @@ int run(double length, const std::string& deadNode) {
             for (const auto& port : ports) (void)port->send(slots);
         }
     });
-    std::vector<Time> idle;
+    std::vector<Time> idleTimes;
     std::jthread timer([&] {
         constexpr double kRate = 44;
         for (std::int64_t tick = tickAt(clock.now(), kRate) + 1; tickTime(tick, kRate) < end; ++tick) {
             clock.sleepUntil(tickTime(tick, kRate));
-            idle.push_back(clock.now());
+            idleTimes.push_back(clock.now());
         }
     });
     while (clock.now() < end) listener.listen(10);
@@ -138,7 +137,7 @@ int run(double length, const std::string& deadNode) {
         const bool ours = portAddress >= kFirst && portAddress < kFirst + kUniverses;
         report(fmt::format("{} {}", ours ? "ours" : "another sender's", portAddress), times);
     }
-    report("an idle timer", idle);
+    report("latency probe", idleTimes);
     return 0;
 }
 
@@ -146,11 +145,11 @@ int run(double length, const std::string& deadNode) {
 }  // namespace fantascope
 
 int main(int count, char** arguments) {
-    CLI::App app("How evenly levels leave this machine");
+    CLI::App app("Measures how evenly levels leave this machine");
     double length = 20;
-    app.add_option("--seconds", length, "how long")->check(CLI::Range(1.0, 3600.0));
+    app.add_option("--seconds", length, "Length of the measurement")->check(CLI::Range(1.0, 3600.0));
     std::string deadNode;
-    app.add_option("--dead-node", deadNode, "the address of nobody behind the interface 'near', who is sent a universe too");
+    app.add_option("--dead-node", deadNode, "An unused address behind the interface 'near', which is sent a universe too");
     CLI11_PARSE(app, count, arguments);
     return fantascope::run(length, deadNode);
 }

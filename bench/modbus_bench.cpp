@@ -1,5 +1,5 @@
-// How soon relays are what they should be after a fault of their module or its line has ended
-// (tests/peers/modbus_campaign.h), against pymodbus.
+// Measures the time from the end of a fault of a relay module or its line until the relays have the
+// wanted states (tests/peers/modbus_campaign.h), against pymodbus.
 
 #include "core/check.h"
 #include "peers/modbus_campaign.h"
@@ -25,9 +25,9 @@ int run(int argc, char** argv) {
     int faults = 1000;
     std::uint64_t seed = 1;
     ModbusPeer::Wire wire = ModbusPeer::Wire::Tcp;
-    CLI::App arguments("Faults of Modbus relays: how soon they are over.");
-    arguments.add_option("--faults", faults, "how many")->capture_default_str();
-    arguments.add_option("--seed", seed, "of which faults and states")->capture_default_str();
+    CLI::App arguments("Recovery times of Modbus relays after faults");
+    arguments.add_option("--faults", faults, "Number of faults")->capture_default_str();
+    arguments.add_option("--seed", seed, "Random seed of faults and states")->capture_default_str();
     arguments.add_option("--wire", wire, "tcp or rtu")
         ->transform(CLI::CheckedTransformer(
             std::map<std::string, ModbusPeer::Wire>{{"tcp", ModbusPeer::Wire::Tcp}, {"rtu", ModbusPeer::Wire::Rtu}}));
@@ -37,16 +37,15 @@ int run(int argc, char** argv) {
         return 1;
     }
     const ModbusCampaign campaign = runModbusCampaign(wire, faults, seed);
-    fmt::print("s from a fault's end to the wanted states\n{:<14}{:>7}{:>9}{:>9}{:>9}\n", "fault", "times", "p50", "p99", "most");
+    fmt::print("s from a fault's end to the wanted states\n{:<14}{:>7}{:>9}{:>9}{:>9}\n", "fault", "times", "p50", "p99", "max");
     std::vector<double> all;
     for (const auto& [name, times] : campaign.recovery) {
         tell(name, times);
         all.insert(all.end(), times.begin(), times.end());
     }
     tell("all", all);
-    fmt::print(
-        "{} writes, {} stalls of the module's process, {} faults mended in more than {} s, {} things that may never happen\n",
-        campaign.writes, campaign.stalls, campaign.slow.size(), seconds(ModbusCampaign::kSoon), campaign.wrong.size());
+    fmt::print("{} writes, {} stalls of the module's process, {} recoveries that took more than {} s, {} violations\n",
+               campaign.writes, campaign.stalls, campaign.slow.size(), seconds(ModbusCampaign::kSoon), campaign.wrong.size());
     for (const std::string& slow : campaign.slow) fmt::print("  {}\n", slow);
     for (const std::string& wrong : campaign.wrong) fmt::print("  {}\n", wrong);
     return campaign.wrong.empty() ? 0 : 1;

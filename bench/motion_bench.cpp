@@ -1,5 +1,5 @@
-// What the movement of a pattern costs: groups once when it is made, construction once when it is
-// loaded, posesAt once a frame. Yardsticks of the machine stand beside them.
+// Measures the cost of a pattern's movement: grouping once when it is made, construction once when
+// it is loaded, posesAt() once per frame. Yardsticks show the machine's speed.
 
 #include "pattern/motion/pattern_motion.h"
 #include "pattern/shape/grouping.h"
@@ -40,7 +40,7 @@ void construct(benchmark::State& state) {
 }
 BENCHMARK(construct)->Arg(50)->Arg(350)->Unit(benchmark::kMillisecond);
 
-// Steps of 60 Hz, as a projector asks for them, in a wind that turns.
+// Steps of 60 Hz, as for a projector, in a turning wind.
 void posesAt(benchmark::State& state) {
     const ShapePattern pattern = scattered(state.range(0));
     const PatternMotion motion(pattern);
@@ -63,7 +63,7 @@ void group(benchmark::State& state) {
 }
 BENCHMARK(group)->Arg(350)->Arg(3000)->Unit(benchmark::kMillisecond);
 
-// Yardstick: writes as many bytes as posesAt and computes nothing.
+// Yardstick: writes as many bytes as posesAt() and computes nothing.
 void yardstickCopyOfPoses(benchmark::State& state) {
     const std::vector<InstancePose> from(static_cast<std::size_t>(state.range(0)));
     std::vector<InstancePose> to(from.size());
@@ -75,7 +75,7 @@ void yardstickCopyOfPoses(benchmark::State& state) {
 }
 BENCHMARK(yardstickCopyOfPoses)->Arg(350)->Arg(3000)->Unit(benchmark::kMicrosecond);
 
-// Yardstick: the cheapest sway there could be, one sine an axis.
+// Yardstick: the cheapest possible movement, one sine per axis.
 void yardstickFiveSines(benchmark::State& state) {
     std::vector<double> moved(static_cast<std::size_t>(state.range(0)) * 5);
     double time = 0;

@@ -1,7 +1,7 @@
-// What the search for a pattern reaches, both methods side by side: one row for each guide, method
-// and time, with the work done beside the seconds. Seconds are those of the processor, on one
-// thread. "redraw": whether the search's own z is that of a fresh drawing; "strays": how far local
-// movement carries the shapes' corners over the loop, in mean sizes (LoopQuality).
+// Measures the results of the search for a pattern, with both methods: one row per guide, method
+// and time limit, with the number of evaluations. Times are CPU seconds on one thread. "redraw":
+// whether the search's own z equals that of a fresh drawing. "strays": how far local movement
+// displaces the shapes' vertices, in mean sizes (LoopQuality::localDisplacement).
 
 #include "pattern/search/measure.h"
 #include "pattern/search/motion_fit.h"
@@ -34,7 +34,7 @@ double processorSeconds() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// Yardstick: counts the bits of as many words as a picture of 1280x720 has, a thousand times.
+// Yardstick: counts the bits of a 1280x720 picture's words, a thousand times.
 double yardstick() {
     std::vector<std::uint64_t> words(1280 * 720 / 64);
     Rng rng(1);
@@ -47,8 +47,8 @@ double yardstick() {
     return bits > 0 ? took : 0;
 }
 
-// A picture of 1280x720 from what each of its points is, with 4 x 4 samples a pixel. Points in
-// pixels.
+// Renders a picture of 1280x720 from a function of the point, in pixels, with 4 x 4 samples per
+// pixel.
 GreyImage picture(const std::function<double(glm::dvec2)>& valueAt) {
     GreyImage image(1280, 720);
     constexpr int kSamples = 4;
@@ -97,7 +97,7 @@ GreyImage soft() {
     return picture([&](glm::dvec2 p) { return std::min(1.0, 0.95 * blob(p, {420, 330}, 130) + 0.8 * blob(p, {900, 420}, 160)); });
 }
 
-// Somebody walks, in greys, on a patch of ground.
+// A walking person in greys, on a patch of ground.
 GreyImage figure() {
     const std::vector<Limb> limbs = {{{640, 380}, {560, 520}, 60, 0.59},  {{560, 520}, {480, 640}, 48, 0.59},
                                      {{650, 220}, {740, 330}, 44, 0.63},  {{740, 330}, {800, 300}, 36, 0.63},
@@ -111,7 +111,7 @@ GreyImage figure() {
                    2);
 }
 
-// A pebble of 288 triangles: an ellipsoid, dented.
+// A pebble of 288 triangles: a dented ellipsoid.
 ElementalShape pebble() {
     constexpr int kAround = 16, kRings = 9;
     TriangleMesh mesh;
@@ -144,9 +144,9 @@ using Method = PatternSearch::Method;
 struct Task {
     std::string name;
     GreyImage guide;
-    std::string shape;                   // of an instance: built in, or "pebble"
+    std::string shape;                   // a built-in shape, or "pebble"
     std::vector<double> refined, paper;  // seconds
-    bool isBlackAndWhite;                // so that z says how well it reads
+    bool isBlackAndWhite;                // then z says how well the pattern reads
 };
 
 struct Options {
@@ -181,7 +181,8 @@ PatternSearch::Found search(const Task& task, Method method, double limit, std::
     return PatternSearch::run(task.guide, blank(task, seed), options, 1, askStop, plan);
 }
 
-// Prints what a search reaches, and what the loop with fitted movement does to it; returns its z.
+// Prints the quality of a search's result, at rest and over the loop with fitted movement; returns
+// its z.
 double row(const Task& task, Method method, double limit, const Options& options) {
     const double start = processorSeconds();
     PatternSearch::Found found = search(task, method, limit, options.seed);
@@ -205,16 +206,16 @@ double row(const Task& task, Method method, double limit, const Options& options
     return quality.z;
 }
 
-// How much sooner the refined method is where the paper's was at last.
+// Prints how much sooner the refined method reaches the paper's method's final z.
 void compare(const Task& task, double paperZ, double limit, const Options& options) {
     const double start = processorSeconds();
     const PatternSearch::Found found = search(task, Method::Refined, task.refined.front(), options.seed, paperZ);
     const double took = processorSeconds() - start;
     if (found.summary.reason == PatternSearch::StopReason::TargetReached)
-        fmt::print("{}: below the z of the paper's method after {:g} s ({:.4f}) after {:.3f} s, {:.0f} times sooner\n", task.name,
+        fmt::print("{}: reaches the paper's method's z after {:g} s ({:.4f}) within {:.3f} s, {:.0f} times sooner\n", task.name,
                    limit, paperZ, took, limit / took);
     else
-        fmt::print("{}: not below the z of the paper's method after {:g} s ({:.4f})\n", task.name, limit, paperZ);
+        fmt::print("{}: does not reach the paper's method's z after {:g} s ({:.4f})\n", task.name, limit, paperZ);
 }
 
 int run(const Options& options) {
@@ -246,13 +247,13 @@ int run(const Options& options) {
 }  // namespace fantascope::pattern
 
 int main(int argc, char** argv) {
-    CLI::App program("What the search for a pattern reaches");
+    CLI::App program("Measures the results of the search for a pattern");
     fantascope::pattern::Options options;
-    program.add_option("--only", options.only, "These guides")->delimiter(',');
-    program.add_option("--seconds", options.seconds, "Instead of the times of the table")->delimiter(',');
-    program.add_option("--images", options.images, "A folder for the pictures found");
-    program.add_option("--seed", options.seed, "Of every search");
-    program.add_flag("--refined", options.refinedAlone, "The refined method alone");
+    program.add_option("--only", options.only, "Only these guides")->delimiter(',');
+    program.add_option("--seconds", options.seconds, "Time limits instead of the table's")->delimiter(',');
+    program.add_option("--images", options.images, "A folder to write the results' pictures to");
+    program.add_option("--seed", options.seed, "Random seed of every search");
+    program.add_flag("--refined", options.refinedAlone, "Only the refined method");
     CLI11_PARSE(program, argc, argv);
     return fantascope::pattern::run(options);
 }

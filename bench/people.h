@@ -1,6 +1,5 @@
 #pragma once
-// What the benches throw shadows of: people of some 5,000 triangles each who stand in a row and
-// sway.
+// People for shadow benchmarks: they stand in a row and sway, with some 5,000 triangles each.
 
 #include "render/source/picture_source.h"
 #include "theatre/stage/cast.h"
@@ -15,7 +14,7 @@ namespace fantascope::render {
 struct People {
     int count;
     double lampSize = 0;  // metres
-    int samples = 16;     // of a lamp that has a size
+    int samples = 16;     // points of light per lamp that has a size
 };
 
 // On a screen of 16:9, 2.7 m high.

@@ -1,6 +1,6 @@
-// How long a frame takes: a pattern of as many triangles as the default show's on every output, or
-// of three times as many, in software OpenGL or on whatever GPU EGL offers. Compare with the
-// yardstick of the same run, since machines and their neighbours differ.
+// Measures how long a frame takes, in software OpenGL or on whatever GPU EGL offers: a pattern with
+// as many triangles as the default show's on every output, or three times as many. Compare with the
+// yardstick of the same run, since machines differ and may be shared.
 
 #include "drivers/display/headless.h"
 
@@ -41,7 +41,7 @@ struct Output {
     std::unique_ptr<OutputRenderer> renderer;
 };
 
-// One frame on `outputs` displays: drawn one after the other, presented together.
+// One frame on `outputs` displays, drawn one after the other and presented together.
 void drawFrame(
     benchmark::State& state, int outputs, int layers, const std::vector<PictureSource>& sources, glm::ivec2 size = kSize,
     const std::function<void()>& before = [] {}, const ProjectorLight& light = kPlain) {
@@ -66,17 +66,18 @@ void drawFrame(
         clock.advance(tickTime(1, 30));
         before();
         for (Output& output : all) {
-            FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "nobody unplugs it");
+            FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "a headless display is never lost");
             output.renderer->draw(look, {}, clock.now(), output.sink->framebuffer());
         }
-        for (Output& output : all) FANTASCOPE_CHECK(output.sink->finish().has_value(), "nobody unplugs it");
-        for (Output& output : all) FANTASCOPE_CHECK(output.sink->presentWith(clock.now()).has_value(), "nobody unplugs it");
+        for (Output& output : all) FANTASCOPE_CHECK(output.sink->finish().has_value(), "a headless display is never lost");
+        for (Output& output : all)
+            FANTASCOPE_CHECK(output.sink->presentWith(clock.now()).has_value(), "a headless display is never lost");
     };
-    frame();  // OpenGL compiles its shaders at the first use
+    frame();  // OpenGL compiles shaders at their first use
     for (auto _ : state) frame();
-    // OpenGL objects go while their context is current.
+    // OpenGL objects are destroyed while their context is current.
     for (Output& output : all) {
-        FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "nobody unplugs it");
+        FANTASCOPE_CHECK(output.sink->makeCurrent().has_value(), "a headless display is never lost");
         output.renderer.reset();
     }
 }
@@ -99,14 +100,14 @@ void drawMirrorBall(benchmark::State& state) {
     drawFrame(state, 1, 1, {MirrorBallSource{glm::vec3(1), {16.0 / 3, 3}, {0, 0.4, 2.4}, 0.25, 0.02, {3.6, 1.6, 1.2}, 0.04, 40}});
 }
 
-// So many people's shadows, by so many points of light.
+// The shadows of `people` people, by `points` points of light.
 void drawShadow(benchmark::State& state) {
     const auto samples = static_cast<int>(state.range(1));
     drawFrame(state, 1, 1, {swayingPeople({static_cast<int>(state.range(0)), samples > 1 ? 0.1 : 0, samples})});
 }
 
-// A picture of so many rows that stands still; one that is another every frame, as a video's or a
-// camera's.
+// A still picture, and one that changes every frame like a video's or a camera's. `rows`: its
+// height.
 RgbaImage noise(int rows) {
     RgbaImage picture(rows * 16 / 9, rows);
     Rng rng(5);
@@ -123,7 +124,7 @@ void drawChangingPicture(benchmark::State& state) {
     drawFrame(state, 1, 1, {CameraSource{feed}}, kSize, [&] { feed->publish(picture); });
 }
 
-// One frame of a video that the caller names by FANTASCOPE_VIDEO, decoded and converted.
+// Decodes and converts one frame of the video named by FANTASCOPE_VIDEO.
 void decodeVideo(benchmark::State& state) {
     const char* const file = std::getenv("FANTASCOPE_VIDEO");
     if (file == nullptr) return state.SkipWithError("name a video in FANTASCOPE_VIDEO");
@@ -157,8 +158,8 @@ BENCHMARK(drawImage)->ArgName("rows")->Arg(360)->Arg(720)->Arg(1080)->Arg(2160)-
 BENCHMARK(drawChangingPicture)->ArgName("rows")->Arg(360)->Arg(720)->Arg(1080)->Arg(2160)->Apply(settings);
 BENCHMARK(decodeVideo)->ArgName("converted")->Arg(0)->Arg(1)->Apply(settings);
 
-// The yardstick: what one multisampled picture needs at least, on one core: every sample's colour
-// and depth cleared, then averaged.
+// Yardstick: the minimum work for one multisampled picture on one core: every sample's colour and
+// depth is cleared, then averaged.
 void yardstick(benchmark::State& state) {
     constexpr std::size_t kPixels = static_cast<std::size_t>(kSize.x) * kSize.y;
     std::vector<std::uint32_t> colour(kPixels * kSamples), depth(kPixels * kSamples), picture(kPixels);

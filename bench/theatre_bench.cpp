@@ -1,5 +1,5 @@
-// What a search for poses spends its time on: a generation of CMA-ES, the skin of an actor,
-// evaluations of the energy. Yardsticks of the machine stand beside them.
+// Measures the parts of a search for poses: a generation of CMA-ES, the skin of an actor,
+// evaluations of the energy. Yardsticks show the machine's speed.
 
 #include "theatre/energy/scene_energy.h"
 #include "theatre/search/cma_es.h"
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kPopulation = 40;
 
-// blocks x size coordinates.
+// One generation of CMA-ES with blocks x size coordinates.
 void generation(benchmark::State& state) {
     const auto blocks = static_cast<std::size_t>(state.range(0)), size = static_cast<std::size_t>(state.range(1));
     const std::size_t n = blocks * size;
@@ -37,7 +37,7 @@ BENCHMARK(generation)
     ->ArgsProduct({{1}, {135, 270}})
     ->Unit(benchmark::kMicrosecond);
 
-// Yardstick: the normal variables of a generation.
+// Yardstick: draws the normal random numbers of a generation.
 void yardstickNormals(benchmark::State& state) {
     Rng rng(1);
     std::vector<double> normals(static_cast<std::size_t>(state.range(0) * kPopulation));
@@ -48,8 +48,8 @@ void yardstickNormals(benchmark::State& state) {
 }
 BENCHMARK(yardstickNormals)->Arg(45)->Arg(135)->Arg(270)->Unit(benchmark::kMicrosecond);
 
-// Yardstick: a plain product of a size x size matrix and the population; a generation has about one
-// and a half of them a block.
+// Yardstick: a plain product of a size x size matrix and the population. A generation has about 1.5
+// of them per block.
 void yardstickProduct(benchmark::State& state) {
     const auto size = static_cast<std::size_t>(state.range(0));
     std::vector<double> matrix(size * size, 0.5), population(size * kPopulation, 0.25), product(size * kPopulation);
@@ -65,7 +65,7 @@ void yardstickProduct(benchmark::State& state) {
 }
 BENCHMARK(yardstickProduct)->Arg(45)->Arg(135)->Arg(270)->Unit(benchmark::kMicrosecond);
 
-// An actor of 1.75 m, 2 m before the screen, in the frame of a search: 256 rows.
+// An actor of 1.75 m, 2 m in front of the screen, in a search's frame of 256 rows.
 void skinAndShadow(benchmark::State& state) {
     const Body body = humanBody(1.75);
     const BodyMesh mesh = humanMesh(body);
@@ -84,8 +84,8 @@ void skinAndShadow(benchmark::State& state) {
 }
 BENCHMARK(skinAndShadow)->ArgName("shadow")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
-// One evaluation of the energy: one of three actors moves, as in a local search; with and without
-// skins.
+// One evaluation of the energy after one of three actors has moved, as in a local search; with and
+// without skins.
 void evaluation(benchmark::State& state) {
     PoseProblem problem = aScene({1.75, 1.75, 1.75});
     if (state.range(0) != 0) problem.buildSkins(), problem = simpler(std::move(problem));

@@ -28,14 +28,13 @@
 namespace fantascope::drivers {
 namespace {
 
-// A driver reads what the port's read function below takes.
+// A driver's `read` has the signature of its port's read function below.
 template <class Read>
 struct Driver {
     std::string_view name;
     Read* read;
 };
 
-// Every driver of the project.
 constexpr Driver<decltype(readDisplay)> kDisplays[] = {{"headless", &HeadlessDisplay::fromConfig},
                                                        {"glfw", &GlfwDisplay::fromConfig}};
 constexpr Driver<decltype(readDmxPort)> kDmxPorts[] = {{"artnet", &ArtnetPort::fromConfig},
@@ -58,7 +57,7 @@ constexpr Driver<decltype(readCueController)> kCueControllers[] = {{"simulated",
 constexpr Driver<decltype(readCamera)> kCameras[] = {{"simulated", &SimulatedCamera::fromConfig},
                                                      {"v4l2", &V4l2Camera::fromConfig}};
 
-// What reads for the driver that the map's `driver` key names.
+// The read function of the driver that the map's `driver` key names.
 template <class Read, std::size_t kCount>
 Result<Read*> chosenFrom(const Driver<Read> (&table)[kCount], const ConfigNode& options) {
     std::vector<std::string> names;
@@ -68,7 +67,7 @@ Result<Read*> chosenFrom(const Driver<Read> (&table)[kCount], const ConfigNode& 
     return options.error(fmt::format("'driver' is missing, one of {} is needed", fmt::join(names, ", ")));
 }
 
-// What looks for the devices of each family.
+// The search of each family.
 using Find = std::vector<FoundDevice> (*)();
 constexpr Find kFinds[] = {&findMonitors,    &findWidgets,     [] { return findDmxNodes(); },
                            &findModbusLines, &findControllers, &findCameras};
@@ -108,7 +107,7 @@ Result<void> SharedUses::add(const ConfigNode& options, const std::vector<Use>& 
         if (isFirst || (!use.how.empty() && use.how == user->second.how)) continue;
         if (use.how.empty() || user->second.how.empty())
             return options.error(
-                fmt::format("{} is taken by the device at {}; each needs its own", use.what, user->second.place));
+                fmt::format("{} is already used by the device at {}; each needs its own", use.what, user->second.place));
         return options.error(
             fmt::format("{} is used here with {}, and by the device at {} with {}; all on one line need the same", use.what,
                         use.how, user->second.place, user->second.how));
@@ -117,34 +116,34 @@ Result<void> SharedUses::add(const ConfigNode& options, const std::vector<Use>& 
 }
 
 Result<std::unique_ptr<DisplaySink>> openDisplay(const ConfigNode& options, const DisplayRequest& request,
-                                                 const Surroundings& around) {
-    return TRY(readDisplay(options, request)).open(around);
+                                                 const DriverContext& context) {
+    return TRY(readDisplay(options, request)).open(context);
 }
 
-Result<std::unique_ptr<DmxPort>> openDmxPort(const ConfigNode& options, int universe, const Surroundings& around) {
-    return TRY(readDmxPort(options, universe)).open(around);
+Result<std::unique_ptr<DmxPort>> openDmxPort(const ConfigNode& options, int universe, const DriverContext& context) {
+    return TRY(readDmxPort(options, universe)).open(context);
 }
 
-Result<std::unique_ptr<DmxSource>> openDmxSource(const ConfigNode& options, int universe, const Surroundings& around) {
-    return TRY(readDmxSource(options, universe)).open(around);
+Result<std::unique_ptr<DmxSource>> openDmxSource(const ConfigNode& options, int universe, const DriverContext& context) {
+    return TRY(readDmxSource(options, universe)).open(context);
 }
 
 Result<std::unique_ptr<RelayBank>> openRelayBank(const ConfigNode& options, const std::string& name,
-                                                 const std::vector<bool>& safeStates, const Surroundings& around) {
-    return TRY(readRelayBank(options, name, safeStates)).open(around);
+                                                 const std::vector<bool>& safeStates, const DriverContext& context) {
+    return TRY(readRelayBank(options, name, safeStates)).open(context);
 }
 
 Result<std::unique_ptr<InputBank>> openInputBank(const ConfigNode& options, const std::string& name, std::size_t size,
-                                                 const Surroundings& around) {
-    return TRY(readInputBank(options, name, size)).open(around);
+                                                 const DriverContext& context) {
+    return TRY(readInputBank(options, name, size)).open(context);
 }
 
-Result<std::unique_ptr<CueController>> openCueController(const ConfigNode& options, const Surroundings& around) {
-    return TRY(readCueController(options)).open(around);
+Result<std::unique_ptr<CueController>> openCueController(const ConfigNode& options, const DriverContext& context) {
+    return TRY(readCueController(options)).open(context);
 }
 
-Result<std::unique_ptr<CameraSource>> openCamera(const ConfigNode& options, const Surroundings& around) {
-    return TRY(readCamera(options)).open(around);
+Result<std::unique_ptr<CameraSource>> openCamera(const ConfigNode& options, const DriverContext& context) {
+    return TRY(readCamera(options)).open(context);
 }
 
 Result<std::vector<DeviceStatus>> lookForDisplays(const std::vector<DisplayQuestion>& questions) {

@@ -18,10 +18,10 @@
 namespace fantascope::drivers {
 namespace {
 
-// More than any protocol here leaves lying; what does not fit waits in the kernel.
+// More than any protocol here leaves unread. The rest waits in the kernel.
 constexpr std::size_t kCapacity = std::size_t{1} << 16;
 
-// How often a line that is full is looked at: for room, and whether it is still there.
+// How often a full line is checked for room and for a loss.
 constexpr Time kLookAgain = std::chrono::milliseconds(20);
 constexpr Time kUntilSomethingHappens = std::chrono::hours(1);
 
@@ -38,8 +38,8 @@ std::string described(const std::vector<UsbFile>& lines) {
 
 bool fits(const std::string& wanted, const std::string& is) { return wanted.empty() || wanted == is; }
 
-// Bytes as they are, at the settings' rate. Whether the line runs so now: of what an adapter cannot
-// do the kernel says nothing.
+// Sets raw mode and the rate. Returns whether the line runs at that rate now: the kernel does not
+// report what an adapter cannot do.
 bool arrange(int file, const SerialSettings& settings) {
     termios2 line{};
     if (ioctl(file, TCGETS2, &line) != 0) return false;
@@ -49,16 +49,16 @@ bool arrange(int file, const SerialSettings& settings) {
     if (settings.parity != Parity::None) line.c_cflag |= PARENB | (settings.parity == Parity::Odd ? PARODD : 0u);
     if (settings.stopBits == 2) line.c_cflag |= CSTOPB;
     line.c_ispeed = line.c_ospeed = static_cast<speed_t>(settings.rate);
-    line.c_cc[VMIN] = 1;  // a read of 0 bytes then means that the line is gone
+    line.c_cc[VMIN] = 1;  // so a read of 0 bytes means that the line is lost
     line.c_cc[VTIME] = 0;
     if (ioctl(file, TCSETS2, &line) != 0 || ioctl(file, TCGETS2, &line) != 0) return false;
     const int rate = static_cast<int>(line.c_ospeed);
-    return std::abs(rate - settings.rate) <= settings.rate * 3 / 100;  // both ends of a byte still fall into their bits
+    return std::abs(rate - settings.rate) <= settings.rate * 3 / 100;  // within 3 %, all bits of a byte are sampled correctly
 }
 
 FileHandle opened(const std::filesystem::path& path, const SerialSettings& settings, Outage& why) {
     FileHandle file(open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-    // The exclusive mode turns other programs away, the lock those that are privileged.
+    // Exclusive mode keeps out ordinary programs; the lock keeps out privileged ones.
     const bool free =
         file.isOpen() ? flock(file.get(), LOCK_EX | LOCK_NB) == 0 && ioctl(file.get(), TIOCEXCL) == 0 : errno != EBUSY;
     if (!free && (!file.isOpen() || errno == EWOULDBLOCK)) {
@@ -75,8 +75,8 @@ FileHandle opened(const std::filesystem::path& path, const SerialSettings& setti
         why = {DeviceState::Faulted, fmt::format("{} cannot do {} bits a second", path.string(), settings.rate)};
         return {};
     }
-    // What an adapter does without these is a little later, or the same: what drives no modem has
-    // no RTS.
+    // Failures are ignored: without these an adapter is only a little slower, and one without a
+    // modem has no RTS.
     serial_struct speed{};
     if (ioctl(file.get(), TIOCGSERIAL, &speed) == 0) {
         speed.flags |= ASYNC_LOW_LATENCY;
@@ -84,7 +84,7 @@ FileHandle opened(const std::filesystem::path& path, const SerialSettings& setti
     }
     const int rts = TIOCM_RTS;
     ioctl(file.get(), settings.requestToSend ? TIOCMBIS : TIOCMBIC, &rts);
-    ioctl(file.get(), TCFLSH, TCIOFLUSH);  // what is left of another life
+    ioctl(file.get(), TCFLSH, TCIOFLUSH);  // bytes from before this life
     return file;
 }
 
@@ -104,7 +104,7 @@ Result<std::filesystem::path> findSerialLine(const SerialIdentity& which) {
     const std::vector<UsbFile> lines = serialLines(which);
     if (lines.size() == 1) return lines[0].file;
     if (lines.size() > 1)
-        return Error(fmt::format("several serial adapters fit, say which by its serial number: {}", described(lines)));
+        return Error(fmt::format("several serial adapters match; choose one by its serial number: {}", described(lines)));
     const std::vector<UsbFile> others = serialLines({});
     const std::string wanted = which.serial.empty() ? "no such serial adapter is" : "no serial adapter " + which.serial + " is";
     return Error(others.empty() ? wanted + " plugged in" : wanted + " plugged in; there is " + described(others));
@@ -113,13 +113,13 @@ Result<std::filesystem::path> findSerialLine(const SerialIdentity& which) {
 SerialStream::SerialStream(std::string name, Find find, SerialSettings settings)
     : find_(std::move(find)),
       settings_(settings),
-      outage_({DeviceState::Starting, "it is being looked for"}),
-      service_(std::move(name), "serial", LossAction::Hold, [this](Service& service) { return attend(service); }) {}
+      outage_({DeviceState::Starting, "looking for it"}),
+      service_(std::move(name), "serial", LossAction::Hold, [this](Service& service) { return runOnce(service); }) {}
 
 DeviceStatus SerialStream::status() const {
     DeviceStatus status = service_.status();
     const std::lock_guard lock(mutex_);
-    if (outage_ && status.state == DeviceState::Running) {  // its thread is about to say so
+    if (outage_ && status.state == DeviceState::Running) {  // its thread has not reported it yet
         status.state = outage_->state;
         status.detail = outage_->why;
         ++status.losses;
@@ -136,9 +136,9 @@ Result<std::size_t> SerialStream::write(std::span<const std::uint8_t> bytes) {
     return failed("write");
 }
 
-Result<std::size_t> SerialStream::read(std::span<std::uint8_t> bytes, Time patience) {
+Result<std::size_t> SerialStream::read(std::span<std::uint8_t> bytes, Time timeout) {
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, patience, [&] { return !arrived_.empty() || outage_; });
+    changed_.wait_for(lock, timeout, [&] { return !arrived_.empty() || outage_; });
     if (arrived_.empty() && outage_) return refusal();
     const std::size_t count = std::min(bytes.size(), arrived_.size());
     const auto end = arrived_.begin() + static_cast<std::ptrdiff_t>(count);
@@ -154,7 +154,7 @@ Result<void> SerialStream::setBreak(bool on) {
     return {};
 }
 
-Result<std::size_t> SerialStream::waiting() {
+Result<std::size_t> SerialStream::unsent() {
     const std::lock_guard lock(mutex_);
     if (outage_) return refusal();
     int count = 0;
@@ -169,20 +169,20 @@ Result<bool> SerialStream::isDrained() {
     return ioctl(file_.get(), TIOCSERGETLSR, &state) == 0 && (state & TIOCSER_TEMT) != 0;
 }
 
-std::optional<Outage> SerialStream::await(Service& driver) {
+std::optional<Outage> SerialStream::awaitRunning(Service& driver) {
     for (DeviceStatus line = status(); line.state != DeviceState::Running; line = status()) {
-        if (line.detail != std::exchange(told_, line.detail)) return Outage{line.state, line.detail};
+        if (line.detail != std::exchange(reported_, line.detail)) return Outage{line.state, line.detail};
         driver.wait(kLookAgain);
         if (driver.ending()) break;
     }
     return std::nullopt;
 }
 
-Outage SerialStream::end(const Error& why, DeviceState state) {
+Outage SerialStream::drop(const Error& why, DeviceState state) {
     const std::lock_guard lock(mutex_);
     lose({state, fmt::format("{}: {}", path_.string(), why.message())});
     arrived_.clear();
-    told_ = outage_->why;
+    reported_ = outage_->why;
     return *outage_;
 }
 
@@ -190,20 +190,20 @@ void SerialStream::lose(Outage why) {
     if (outage_) return;
     outage_ = std::move(why);
     changed_.notify_all();
-    service_.call();
+    service_.wake();
 }
 
 Error SerialStream::refusal() const { return Error(outage_->why); }
 
 Error SerialStream::failed(const char* what) {
     const int error = errno;
-    const bool gone = error == EIO || error == ENODEV || error == ENXIO || error == EPIPE;  // as each driver says it
+    const bool gone = error == EIO || error == ENODEV || error == ENXIO || error == EPIPE;  // kernel drivers differ
     lose(gone ? Outage{DeviceState::Absent, fmt::format("{} was unplugged", path_.string())}
               : Outage{DeviceState::Faulted, fmt::format("{}: {}: {}", path_.string(), what, systemMessage(error))});
     return refusal();
 }
 
-Outage SerialStream::attend(Service& service) {
+Outage SerialStream::runOnce(Service& service) {
     const auto path = find_();
     Outage why{DeviceState::Absent, path ? "" : path.error().message()};
     FileHandle file = path ? opened(*path, settings_, why) : FileHandle();
@@ -220,7 +220,7 @@ Outage SerialStream::attend(Service& service) {
         arrived_.clear();
         outage_.reset();
     }
-    service.running();
+    service.setRunning();
     for (bool room = true; !service.ending(); room = fill(number)) {
         {
             const std::lock_guard lock(mutex_);

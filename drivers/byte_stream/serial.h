@@ -21,64 +21,64 @@ namespace fantascope::drivers {
 
 enum class Parity { None, Even, Odd };
 
-// How a byte stands on a serial line: always with eight bits.
+// The format of bytes on a serial line; always eight data bits.
 struct SerialSettings {
-    int rate = 9600;  // bits a second; any that the adapter can make to 3 %
+    int rate = 9600;  // bits a second; the adapter must achieve it within 3 %
     Parity parity = Parity::None;
     int stopBits = 1;           // 1 or 2
-    bool requestToSend = true;  // the RTS line; some adapters drive theirs only while it is off
+    bool requestToSend = true;  // the RTS line; some RS-485 adapters drive the line only while RTS is off
 };
 
-// Which serial line: a file, or the USB adapter behind it, whatever file it is given today. What is
-// empty fits every adapter.
+// Identifies a serial line: by its file, or by its USB adapter under whatever file it has today.
+// Empty fields match any adapter.
 struct SerialIdentity {
-    std::filesystem::path file;           // "/dev/ttyS0"; where it is given nothing else is looked at
+    std::filesystem::path file;           // "/dev/ttyS0"; if given, the other fields are ignored
     std::string vendor, product, serial;  // as in UsbIdentity
 };
 
-// The lines on USB adapters that fit, sorted by where they are plugged in.
+// The matching lines on USB adapters, sorted by USB path.
 std::vector<UsbFile> serialLines(const SerialIdentity& which);
 
-// The one line that fits; a file as it is. Error: none fits, or several do: which they are.
+// The only matching line; a given file as it is. Error: none matches, or several do; it lists them.
 Result<std::filesystem::path> findSerialLine(const SerialIdentity& which);
 
-// A serial line of this machine, for this program alone while it is open. It is looked for again
-// whenever it is lost, so that an adapter is found under whatever name it comes back. Everything
-// that arrives is read at once: what the kernel holds is gone with the adapter. What has not left
-// when the line closes is dropped: a far end that takes nothing would hold the program for half a
-// minute.
-// Thread: as ByteStream; the further methods as read() and write().
+// A serial line of this machine, exclusive to this program while open. When it is lost, it is
+// searched again, so an adapter is found under whatever name it comes back. Everything that arrives
+// is read at once, because what the kernel holds is lost with the adapter. Bytes that were not sent
+// when the line closes are dropped: otherwise a far end that accepts nothing would block the
+// program for half a minute.
+// Thread: as ByteStream; the other methods as read() and write().
 class SerialStream final : public ByteStream {
 public:
-    // The line's file as of now. Called on the stream's own thread before each attempt. Error:
-    // Absent, and why.
+    // Finds the line's file. Called on the stream's own thread before each attempt. Error: the line
+    // is Absent, and why.
     using Find = std::function<Result<std::filesystem::path>()>;
     SerialStream(std::string name, Find find, SerialSettings settings);
 
     DeviceStatus status() const override;
     Result<std::size_t> write(std::span<const std::uint8_t> bytes) override;
-    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time patience) override;
+    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time timeout) override;
 
-    // Holds the line in the break state, or ends it. Takes as long as the adapter does: about a
-    // millisecond on USB. A pseudo-terminal knows no break and says nothing. Error: not Running, or
-    // it has no break.
+    // Starts or ends the break state. On USB this takes about a millisecond. A pseudo-terminal
+    // ignores it. Error: not Running, or the line cannot send a break.
     Result<void> setBreak(bool on);
-    // How many bytes the kernel has not handed to the adapter yet. Error: not Running.
-    Result<std::size_t> waiting();
-    // Whether the adapter says that its own store is empty; some never do. Error: not Running.
+    // How many bytes the kernel still holds back from the adapter. Error: not Running.
+    Result<std::size_t> unsent();
+    // Whether the adapter reports an empty buffer; some never do. Error: not Running.
     Result<bool> isDrained();
 
-    // For the service of the driver that owns the line. Returns once the line runs or the service
-    // is ending: nothing; or once there is something new to tell of a line that does not run.
-    std::optional<Outage> await(Service& driver);
-    // What ended a life of the driver: the line's own loss, or else `why`, which names the file and
-    // is what the line says from then on, given back and looked for again; so that what broke off,
-    // and what is not what it should be, begins anew.
-    Outage end(const Error& why, DeviceState state);
+    // For the service of the driver that owns the line. Returns nothing once the line is Running or
+    // the service is ending. Returns an outage whenever the reason why the line is not Running has
+    // changed.
+    std::optional<Outage> awaitRunning(Service& driver);
+    // Closes the line after a failure of its driver, and searches it again. Discards what has
+    // arrived, so the next life starts clean. Returns the line's own outage if it was lost, else
+    // `state` and `why`, led by the file's name; this becomes the line's status.
+    Outage drop(const Error& why, DeviceState state);
 
 private:
-    Outage attend(Service& service);
-    bool fill(int file);             // with what has arrived; whether there is room for more
+    Outage runOnce(Service& service);
+    bool fill(int file);             // arrived_; returns whether there is room for more
     void lose(Outage why);           // with mutex_ held
     Error refusal() const;           // with mutex_ held
     Error failed(const char* what);  // with mutex_ held; from errno
@@ -90,8 +90,8 @@ private:
     FileHandle file_;
     std::filesystem::path path_;
     std::optional<Outage> outage_;      // nothing while the line can be used
-    std::deque<std::uint8_t> arrived_;  // and not read yet
-    std::string told_;                  // why the line does not run, as the driver knows it
+    std::deque<std::uint8_t> arrived_;  // but not read yet
+    std::string reported_;              // the outage that awaitRunning() returned last
     Service service_;
 };
 

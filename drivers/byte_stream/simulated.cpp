@@ -13,8 +13,8 @@
 namespace fantascope::drivers {
 namespace {
 
-// How often a reader that waits looks again: far finer than any protocol's time-out, far coarser
-// than a busy loop.
+// How often a waiting reader checks: far finer than any protocol's timeout, far coarser than a busy
+// loop.
 constexpr Time kLookAgain = std::chrono::milliseconds(1);
 
 // More than any script replies before its driver reads.
@@ -23,7 +23,7 @@ constexpr std::size_t kScriptCapacity = std::size_t{1} << 20;
 struct Line {
     std::size_t capacity;
     std::mutex mutex;
-    std::array<std::deque<std::uint8_t>, 2> arrived;  // at each end, and not read yet
+    std::array<std::deque<std::uint8_t>, 2> arrived;  // at each end, not read yet
 };
 
 class LoopbackEnd final : public ByteStream {
@@ -42,8 +42,8 @@ public:
         return count;
     }
 
-    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time patience) override {
-        const Time deadline = clock_.now() + patience;
+    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time timeout) override {
+        const Time deadline = clock_.now() + timeout;
         for (;;) {
             if (const std::size_t count = take(bytes)) return count;
             if (!plug_.in()) return plug_.absent();
@@ -72,19 +72,19 @@ private:
 
 }  // namespace
 
-std::array<std::unique_ptr<ByteStream>, 2> openLoopback(const Surroundings& around, const std::string& device,
+std::array<std::unique_ptr<ByteStream>, 2> openLoopback(const DriverContext& context, const std::string& device,
                                                         std::size_t capacity) {
-    FANTASCOPE_CHECK(around.world != nullptr, "a loopback has its plug in a world");
+    FANTASCOPE_CHECK(context.world != nullptr, "a loopback needs a simulated world");
     const auto line = std::make_shared<Line>();
     line->capacity = capacity;
     const auto end = [&](std::size_t side) {
-        return std::make_unique<LoopbackEnd>(line, side, site::Plug(*around.world, device, LossAction::Hold), around.clock);
+        return std::make_unique<LoopbackEnd>(line, side, site::Plug(*context.world, device, LossAction::Hold), context.clock);
     };
     return {end(0), end(1)};
 }
 
-ScriptedStream::ScriptedStream(const Surroundings& around, const std::string& device) {
-    auto ends = openLoopback(around, device, kScriptCapacity);
+ScriptedStream::ScriptedStream(const DriverContext& context, const std::string& device) {
+    auto ends = openLoopback(context, device, kScriptCapacity);
     nearEnd_ = std::move(ends[0]);
     farEnd_ = std::move(ends[1]);
 }
@@ -134,7 +134,7 @@ void ScriptedStream::play() {
                                      expected[matched_], received_[played_]);
             return;
         }
-        const auto sent = farEnd_->write(reply);  // an unplugged line carries nothing, as in life
+        const auto sent = farEnd_->write(reply);  // fails on an unplugged line, like a real one
         FANTASCOPE_CHECK(!sent || *sent == reply.size(), "a script's replies fit into the line");
     }
 }

@@ -20,15 +20,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A video node as the kernel lists it, not opened yet.
+// A video node as listed by the kernel, not open yet.
 struct Listed {
     fs::path file;
-    std::string name;  // mostly its card
+    std::string name;  // usually its card
     UsbIdentity usb;
     int interface = 0;
 };
 
-// All of this machine, cameras or not, sorted by where they are plugged in.
+// All video nodes of this machine, sorted by USB path.
 std::vector<Listed> listedNodes() {
     constexpr const char* kClass = "video4linux";
     std::vector<Listed> all;
@@ -57,14 +57,14 @@ bool mayBe(const Listed& node, const CameraIdentity& wanted) {
     return (wanted.serial.empty() || node.usb.serial == wanted.serial) && (wanted.usb.empty() || node.usb.path == wanted.usb);
 }
 
-// The cameras that fit.
+// The matching cameras.
 struct Fitting {
     struct Refused {
         fs::path file;
         int error;  // errno
     };
     std::vector<OpenCamera> open;
-    std::vector<Refused> refused;  // in use, or not ours to open
+    std::vector<Refused> refused;  // in use, or without permission
 };
 Fitting camerasThatFit(const CameraIdentity& wanted) {
     Fitting fitting;
@@ -90,7 +90,7 @@ std::string described(const CameraIdentity& wanted) {
     return words;
 }
 
-// The shortest of a site file's words that single the first camera out among all.
+// The shortest description that identifies the first camera among all.
 std::string optionsFor(const CameraIdentity& one, const std::vector<CameraIdentity>& all) {
     const auto alone = [&](std::string CameraIdentity::*key) {
         return !(one.*key).empty() &&
@@ -109,7 +109,7 @@ Outage whyNotUsed(const fs::path& file, const std::string& what, int error) {
         case EBUSY:
             return {DeviceState::Faulted, fmt::format("{}: another program uses it; close that one", file.string())};
         case ENOTSUP:
-            return {DeviceState::Faulted, fmt::format("{}: not a camera that streams; name the other file of it", file.string())};
+            return {DeviceState::Faulted, fmt::format("{}: not a streaming camera; name its other file", file.string())};
         case ENOSPC:
             return {DeviceState::Faulted,
                     fmt::format(
@@ -141,7 +141,7 @@ std::variant<OpenCamera, Outage> openCameraThatIs(const CameraIdentity& wanted) 
         names.reserve(open.size());
         for (const OpenCamera& one : open) names.push_back(fmt::format("{} '{}'", one.file.string(), one.node.card()));
         return Outage{DeviceState::Faulted,
-                      fmt::format("more than one {} is there ({}): say which by serial, usb, card or device", described(wanted),
+                      fmt::format("more than one {} is there ({}): choose one by serial, usb, card or device", described(wanted),
                                   fmt::join(names, ", "))};
     }
     if (!refused.empty()) return whyNotUsed(refused.back().file, "opening it", refused.back().error);
@@ -183,9 +183,9 @@ std::vector<FoundDevice> findCameras() {
             const VideoNode::Offer offer = open->offer();
             std::vector<std::string> names;
             for (const FrameCoding coding : offer.codings) names.emplace_back(nameOf(coding));
-            if (open->isTaken()) camera.why = whyNotUsed(node.file, "", EBUSY).why;
+            if (open->isInUse()) camera.why = whyNotUsed(node.file, "", EBUSY).why;
             if (names.empty())
-                camera.why = fmt::format("it offers {} alone, which cannot be decoded here", listedFormats(offer.others));
+                camera.why = fmt::format("it offers only {}, which cannot be decoded here", listedFormats(offer.others));
             names.insert(names.end(), offer.others.begin(), offer.others.end());
             if (!names.empty()) camera.what += fmt::format(" ({})", listedFormats(names));
         } else {

@@ -11,12 +11,12 @@
 
 namespace fantascope::drivers {
 
-// By what a camera is known; what is empty says nothing. With nothing at all any camera fits that
-// is the only one.
+// Identifies a camera; empty fields match any. If all are empty, the machine must have exactly one
+// camera.
 struct CameraIdentity {
     std::string device;       // its file: "/dev/video0", or a link to it
     std::string serial, usb;  // UsbIdentity's `serial` and `path`
-    std::string card;         // as its driver names it: "HD Webcam C525"
+    std::string card;         // its driver's name for it: "HD Webcam C525"
 };
 
 struct OpenCamera {
@@ -24,23 +24,23 @@ struct OpenCamera {
     VideoNode node;
 };
 
-// The one camera that fits, open. Else why not: none fits, several do, or it cannot be opened.
+// Opens the only matching camera. Else why not: none matches, several do, or it cannot be opened.
 std::variant<OpenCamera, Outage> openCameraThatIs(const CameraIdentity& wanted);
 
-// What a program claims of the camera (Opening::claim): its file, in use or not; what is wanted
-// where none is there, or several are. Like findCameras() it disturbs none.
+// The name for Opening::claim: the camera's file, in use or not; the description if no camera, or
+// more than one, matches. Like findCameras() it disturbs no camera.
 std::string claimOf(const CameraIdentity& wanted);
 
-// Why a camera's file does not do what it should, from errno: whyNotOpened() with what errors mean
-// for a camera. `what` could not be done.
+// Why a camera's file fails, from errno: as whyNotOpened(), with the meaning of errors for a
+// camera. `what` failed.
 Outage whyNotUsed(const std::filesystem::path& file, const std::string& what, int error);
 
-// The names of formats for a person: some drivers offer eighty, of which the first few are named
-// and the others counted.
+// Names of formats for a message: some drivers offer eighty, so the first few are named and the
+// rest counted.
 std::string listedFormats(const std::vector<std::string>& names);
 
-// Every camera that this machine has. Thread: any; takes some milliseconds a camera, and disturbs
-// none that is in use.
+// All cameras of this machine. Takes some milliseconds per camera and disturbs none that is in use.
+// Thread: any.
 std::vector<FoundDevice> findCameras();
 
 }  // namespace fantascope::drivers

@@ -31,7 +31,7 @@ struct ScalerDeleter {
     void operator()(SwsContext* context) const { sws_freeContext(context); }
 };
 
-// libav's name of a format; those of Mjpg differ from frame to frame, and Grey is converted here.
+// libav's name of a format. Mjpg varies from frame to frame, and Grey is converted here.
 AVPixelFormat pixelsOf(FrameCoding coding) {
     switch (coding) {
         case FrameCoding::Yuyv:
@@ -49,7 +49,7 @@ AVPixelFormat pixelsOf(FrameCoding coding) {
     return AV_PIX_FMT_NONE;
 }
 
-// libav's names of JPEG's formats hold the range too, which is ours to say.
+// libav's names of JPEG formats include the range, which is set separately here.
 AVPixelFormat withoutRange(AVPixelFormat pixels) {
     switch (pixels) {
         case AV_PIX_FMT_YUVJ420P:
@@ -82,12 +82,12 @@ std::size_t bytesOf(const FrameFormat& format) {
         static_cast<std::size_t>(format.coding == FrameCoding::Nv12 ? format.size.y + format.size.y / 2 : format.size.y);
     // The last row's padding may be missing.
     return (rows - 1) * static_cast<std::size_t>(format.stride) +
-           static_cast<std::size_t>(leastStride(format.coding, format.size.x));
+           static_cast<std::size_t>(minStride(format.coding, format.size.x));
 }
 
 }  // namespace
 
-int leastStride(FrameCoding coding, int width) {
+int minStride(FrameCoding coding, int width) {
     switch (coding) {
         case FrameCoding::Yuyv:
         case FrameCoding::Uyvy:
@@ -107,7 +107,7 @@ struct FrameDecoder::Impl {
     FrameFormat format;
     std::array<std::uint8_t, 256> greys{};
     std::unique_ptr<SwsContext, ScalerDeleter> toRgba;
-    AVPixelFormat from = AV_PIX_FMT_NONE;  // that toRgba converts
+    AVPixelFormat from = AV_PIX_FMT_NONE;  // the input of toRgba
     PaddedRows<Rgba8> rows;                // for libswscale
     std::unique_ptr<AVCodecContext, CodecDeleter> jpeg;
     std::unique_ptr<AVPacket, PacketDeleter> packet;
@@ -142,15 +142,15 @@ struct FrameDecoder::Impl {
 
     Result<void> decodeJpeg(std::span<const std::uint8_t> frame, RgbaImage& picture) {
         av_packet_unref(packet.get());
-        FANTASCOPE_CHECK(av_new_packet(packet.get(), static_cast<int>(frame.size())) == 0, "there is memory for a frame");
+        FANTASCOPE_CHECK(av_new_packet(packet.get(), static_cast<int>(frame.size())) == 0, "no memory for a frame");
         std::ranges::copy(frame, packet->data);
         av_frame_unref(decoded.get());
         if (avcodec_send_packet(jpeg.get(), packet.get()) < 0 || avcodec_receive_frame(jpeg.get(), decoded.get()) < 0 ||
             decoded->decode_error_flags != 0)
-            return Error(fmt::format("a JPEG that is damaged, or larger than the {} x {} pixels that are due", format.size.x,
-                                     format.size.y));
+            return Error(
+                fmt::format("a JPEG that is damaged, or larger than the expected {} x {} pixels", format.size.x, format.size.y));
         if (glm::ivec2(decoded->width, decoded->height) != format.size)
-            return Error(fmt::format("a JPEG of {} x {} pixels where {} x {} are due", decoded->width, decoded->height,
+            return Error(fmt::format("a JPEG of {} x {} pixels instead of {} x {}", decoded->width, decoded->height,
                                      format.size.x, format.size.y));
         const auto pixels = withoutRange(static_cast<AVPixelFormat>(decoded->format));
         if (pixels != AV_PIX_FMT_GRAY8) return convert(pixels, decoded->data, decoded->linesize, picture);
@@ -160,20 +160,20 @@ struct FrameDecoder::Impl {
 };
 
 FrameDecoder::FrameDecoder(const FrameFormat& format) : impl_(std::make_unique<Impl>()) {
-    FANTASCOPE_CHECK(format.size.x >= 2 && format.size.y >= 2 && format.stride >= leastStride(format.coding, format.size.x),
-                     "a frame has room for its pixels");
+    FANTASCOPE_CHECK(format.size.x >= 2 && format.size.y >= 2 && format.stride >= minStride(format.coding, format.size.x),
+                     "a frame holds its pixels");
     impl_->format = format;
     for (int value = 0; value < 256; ++value)
         impl_->greys[static_cast<std::size_t>(value)] =
             static_cast<std::uint8_t>(format.fullRange ? value : std::clamp(((value - 16) * 255 + 109) / 219, 0, 255));
     if (format.coding != FrameCoding::Mjpg) return;
-    av_log_set_level(AV_LOG_FATAL);  // damage is said once, by us
+    av_log_set_level(AV_LOG_FATAL);  // damage is reported once, by the driver
     const AVCodec* const codec = avcodec_find_decoder(AV_CODEC_ID_MJPEG);
     FANTASCOPE_CHECK(codec != nullptr, "libavcodec decodes JPEG");
     impl_->jpeg.reset(avcodec_alloc_context3(codec));
-    impl_->jpeg->thread_count = 1;  // several would hold frames back
-    // A damaged header may state any size: nothing larger is begun. libav counts the padding of a
-    // row with its pixels.
+    impl_->jpeg->thread_count = 1;  // several threads would delay frames
+    // A damaged header may state any size, so nothing larger is decoded. libav includes a row's
+    // padding.
     constexpr int kAlignment = 64;
     impl_->jpeg->max_pixels = std::int64_t{format.size.x + kAlignment - 1} / kAlignment * kAlignment * format.size.y;
     impl_->jpeg->err_recognition = AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;

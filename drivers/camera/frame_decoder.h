@@ -12,14 +12,14 @@
 
 namespace fantascope::drivers {
 
-// How the pixels of a frame are coded, by the names that cameras give them.
+// Coding of a frame's pixels, named as by cameras.
 enum class FrameCoding {
     Yuyv,   // 4:2:2, two pixels in four bytes
     Nv12,   // 4:2:0, a plane of luma, then one of colour at half the size
     Uyvy,   // as Yuyv, colour first
-    Rgb24,  // three bytes a pixel
-    Mjpg,   // a JPEG picture each
-    Grey    // one byte a pixel
+    Rgb24,  // three bytes per pixel
+    Mjpg,   // one JPEG picture per frame
+    Grey    // one byte per pixel
 };
 
 constexpr const char* nameOf(FrameCoding coding) {
@@ -27,34 +27,34 @@ constexpr const char* nameOf(FrameCoding coding) {
     return kNames[static_cast<int>(coding)];
 }
 
-// Which weights luma was made of.
+// The weights of red, green and blue in luma.
 enum class LumaWeights { Rec601, Rec709, Rec2020 };
 
 struct FrameFormat {
     FrameCoding coding = FrameCoding::Yuyv;
     glm::ivec2 size{0};
-    int stride = 0;          // bytes from one row to the next, in both planes of Nv12; Mjpg has none
-    bool fullRange = false;  // black is 0 and white 255; else 16 and 235, and colours lie within 16..240
+    int stride = 0;          // bytes per row with padding, in both planes of Nv12; 0 for Mjpg
+    bool fullRange = false;  // black is 0 and white 255; else 16 and 235, with colours in 16..240
     LumaWeights weights = LumaWeights::Rec601;
     friend bool operator==(const FrameFormat&, const FrameFormat&) = default;
 };
 
-// Bytes of a row without padding; Mjpg: 0.
-int leastStride(FrameCoding coding, int width);
+// Bytes per row without padding; 0 for Mjpg.
+int minStride(FrameCoding coding, int width);
 
-// Turns coded frames of one format into pictures. Thread: thread-bound.
+// Decodes frames of one format. Thread: thread-bound.
 class FrameDecoder {
 public:
-    // Needs format.size >= 2 x 2, even for Yuyv, Uyvy and Nv12, and a stride that holds a row.
+    // format.size is at least 2 x 2, and even for Yuyv, Uyvy and Nv12; the stride holds a row.
     explicit FrameDecoder(const FrameFormat& format);
     ~FrameDecoder();
 
-    // Bytes after a frame that may be read: libswscale reads whole blocks.
+    // Readable bytes required after a frame: libswscale reads whole blocks.
     static constexpr std::size_t kPadding = 256;
 
-    // Writes stored values into `picture`, which has format.size; alpha 255. `frame` is followed by
-    // kPadding bytes of any value. Error: the frame is too short, or damaged, or a JPEG of another
-    // size or of pixels that cannot be converted; `picture` is then worth nothing.
+    // Decodes stored values into `picture`, which has format.size; alpha is 255. `frame` is
+    // followed by kPadding bytes of any value. Error: the frame is too short or damaged, or a JPEG
+    // has another size or pixels that cannot be converted; `picture` is then undefined.
     Result<void> decode(std::span<const std::uint8_t> frame, RgbaImage& picture);
 
 private:

@@ -10,12 +10,12 @@
 
 namespace fantascope::drivers {
 
-// Frames whose pictures are used again once nobody holds them, so that a steady stream asks for no
-// memory of a picture's size. Thread: take() from one thread; frames may be held and let go on any,
-// after the pool's end too.
+// A pool that reuses the memory of frames that nobody holds, so a steady stream allocates no
+// pictures. Thread: take() from one thread; frames may be held and released on any, even after the
+// pool is destroyed.
 class FramePool {
 public:
-    // A frame of this size; its picture is an older one's.
+    // A frame of this size; its picture has old contents.
     std::shared_ptr<CameraFrame> take(glm::ivec2 size) {
         std::unique_ptr<CameraFrame> frame;
         {
@@ -30,12 +30,12 @@ public:
         return {frame.release(), [shelf = shelf_](CameraFrame* used) {
                     std::unique_ptr<CameraFrame> back(used);
                     const std::lock_guard lock(shelf->mutex);
-                    if (shelf->frames.size() < kMost) shelf->frames.push_back(std::move(back));
+                    if (shelf->frames.size() < kMaxKept) shelf->frames.push_back(std::move(back));
                 }};
     }
 
 private:
-    static constexpr std::size_t kMost = 4;  // kept; a reader that holds more at once costs memory afresh
+    static constexpr std::size_t kMaxKept = 4;  // frames; a reader that holds more at once allocates again
     struct Shelf {
         std::mutex mutex;
         std::vector<std::unique_ptr<CameraFrame>> frames;

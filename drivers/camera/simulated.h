@@ -8,7 +8,7 @@
 
 namespace fantascope::drivers {
 
-// The camera of the simulated site; what it sees comes from site::SimulatedSite through the world.
+// The camera of the simulated site. site::SimulatedSite sends its frames through the world.
 // Plug: "camera".
 class SimulatedCamera final : public CameraSource {
 public:

@@ -15,13 +15,14 @@
 namespace fantascope::drivers {
 namespace {
 
-// A camera that gives nothing for so long has stalled. Many take more than a second for their first
-// frame.
-constexpr Time kFirstPatience = std::chrono::seconds(3), kLeastPatience = std::chrono::seconds(1);
+// How long a camera may be silent before it has stalled. Many take more than a second for their
+// first frame.
+constexpr Time kFirstTimeout = std::chrono::seconds(3), kMinTimeout = std::chrono::seconds(1);
 constexpr int kPatientPeriods = 5;
-constexpr Time kOldest = std::chrono::seconds(10);  // a stamp that lies further back is none
+constexpr Time kMaxStampAge = std::chrono::seconds(10);  // an older time stamp is invalid
 
-// What a clock shows when the kernel's shows 0: the reading least disturbed of several.
+// The time of a clock when the kernel's clock shows 0. Takes the least disturbed of several
+// readings.
 Time kernelEpoch(const Clock& clock) {
     Time epoch{}, least = Time::max();
     for (int reading = 0; reading < 16; ++reading) {
@@ -38,11 +39,11 @@ const char* nameOf(VideoNode::Control control) {
     return kNames[static_cast<int>(control)];
 }
 
-// A rate is that of another if nobody sees the difference: 29.97 Hz is 30 Hz. Drivers that say none
-// do what they can.
+// Rates are equal if nobody sees the difference: 29.97 Hz is 30 Hz. 0 means that the driver does
+// not say.
 bool isRate(double granted, double asked) { return granted == 0 || granted > .95 * asked; }
 
-// "auto", or a value in V4L2's unit of the control.
+// "auto", or a value in V4L2's unit for the control.
 Result<std::optional<std::int64_t>> controlFrom(const ConfigNode& node) {
     if (const auto word = node.text(); word && *word == "auto") return std::optional<std::int64_t>();
     return std::optional(TRY(node.integer(std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max())));
@@ -58,7 +59,7 @@ Result<Opening<CameraSource>> V4l2Camera::fromConfig(const ConfigNode& node) {
     fields.optional().read("device", options.identity.device, [](const ConfigNode& value) -> Result<std::string> {
         auto path = value.text();
         if (path && !path->starts_with('/'))
-            return value.error(fmt::format("'{}' is no absolute path, such as /dev/video0", *path));
+            return value.error(fmt::format("'{}' is not an absolute path, such as /dev/video0", *path));
         return path;
     });
     fields.optional().text("serial", options.identity.serial);
@@ -86,18 +87,18 @@ Result<Opening<CameraSource>> V4l2Camera::fromConfig(const ConfigNode& node) {
         });
     const CameraIdentity& identity = options.identity;
     if (!identity.device.empty() && !(identity.serial + identity.usb + identity.card).empty())
-        fields.check(node, node.error("'device' says it all; leave out 'serial', 'usb' and 'card', or say only those"));
+        fields.check(node, node.error("give either 'device' alone, or 'serial', 'usb' and 'card'"));
     TRY(fields.finish());
-    const auto open = [options](const Surroundings& around) -> Result<std::unique_ptr<CameraSource>> {
-        return std::unique_ptr<CameraSource>(new V4l2Camera(options, around));
+    const auto open = [options](const DriverContext& context) -> Result<std::unique_ptr<CameraSource>> {
+        return std::unique_ptr<CameraSource>(new V4l2Camera(options, context));
     };
     return Opening<CameraSource>{.open = open, .claim = [identity] { return claimOf(identity); }};
 }
 
-V4l2Camera::V4l2Camera(Options options, const Surroundings& around)
+V4l2Camera::V4l2Camera(Options options, const DriverContext& context)
     : options_(std::move(options)),
-      clock_(around.clock),
-      service_("camera", "v4l2", LossAction::Dark, [this](Service& service) { return attend(service); }) {}
+      clock_(context.clock),
+      service_("camera", "v4l2", LossAction::Dark, [this](Service& service) { return runOnce(service); }) {}
 
 std::shared_ptr<const CameraFrame> V4l2Camera::newest() {
     if (!service_.isRunning()) return nullptr;
@@ -110,7 +111,7 @@ V4l2Camera::Tally V4l2Camera::tally() const {
     return tally_;
 }
 
-// The driver's thread from here on.
+// From here on: the driver's thread.
 
 // One life of an open camera.
 struct V4l2Camera::Life {
@@ -120,10 +121,10 @@ struct V4l2Camera::Life {
     VideoNode node;
     VideoNode::Grant grant;
     std::optional<FrameDecoder> decoder;
-    std::optional<Time> exposure;  // how long, where that is known
-    Time epoch{};                  // of the kernel's clock, on ours
+    std::optional<Time> exposure;  // duration, if known
+    Time epoch{};                  // our time at the kernel clock's 0
 
-    // The newest whole frame; its buffer is the camera's again.
+    // The newest complete frame; its buffer is back with the camera.
     VideoNode::Buffer buffer;
     std::vector<std::uint8_t> coded;
     std::uint64_t sequence = 0;
@@ -131,25 +132,25 @@ struct V4l2Camera::Life {
     std::optional<std::uint32_t> counted;  // the camera's count of the last frame that was taken
 };
 
-Outage V4l2Camera::attend(Service& service) {
+Outage V4l2Camera::runOnce(Service& service) {
     auto found = openCameraThatIs(options_.identity);
     if (auto* const outage = std::get_if<Outage>(&found)) return std::move(*outage);
     auto& camera = std::get<OpenCamera>(found);
     Life life(std::move(camera));
     if (auto outage = negotiate(life)) return std::move(*outage);
-    const std::string shortcomings = adjust(life.node);
+    const std::string shortcomings = applyControls(life.node);
     life.exposure = life.node.lockedExposure();
     life.epoch = kernelEpoch(clock_);
-    if (const int error = life.node.start(); error != 0) return whyNotUsed(life.file, "its stream cannot be started", error);
-    introduce(life, shortcomings);
-    if (!silent_) service.running();
+    if (const int error = life.node.start(); error != 0) return whyNotUsed(life.file, "starting its stream", error);
+    logFormat(life, shortcomings);
+    if (!silent_) service.setRunning();
     Outage outage = stream(service, life);
     forget();
     return outage;
 }
 
-// Drivers rather answer with something else than refuse, so each format is asked for, and what
-// comes nearest is taken.
+// Drivers answer with something else rather than refuse, so each format is tried and the nearest
+// answer is taken.
 std::optional<Outage> V4l2Camera::negotiate(Life& life) const {
     const VideoNode::Offer offer = life.node.offer();
     if (offer.codings.empty())
@@ -157,11 +158,11 @@ std::optional<Outage> V4l2Camera::negotiate(Life& life) const {
                                                         offer.others.empty() ? "nothing" : listedFormats(offer.others))};
     std::optional<FrameCoding> best;
     std::tuple<bool, int, double> bestScore;
-    const auto ask = [&](FrameCoding coding) { return life.node.ask(coding, options_.size, options_.rate, life.grant); };
+    const auto ask = [&](FrameCoding coding) { return life.node.setFormat(coding, options_.size, options_.rate, life.grant); };
     for (const FrameCoding coding : offer.codings) {
         const int error = ask(coding);
         if (error == EINVAL || error == ENOTSUP) continue;
-        if (error != 0) return whyNotUsed(life.file, "its format cannot be chosen", error);
+        if (error != 0) return whyNotUsed(life.file, "setting its format", error);
         const glm::ivec2 missing = glm::abs(life.grant.format.size - options_.size);
         const double rate = isRate(life.grant.rate, options_.rate) ? options_.rate : life.grant.rate;
         const std::tuple score(coding == options_.coding, -missing.x - missing.y, rate);
@@ -171,14 +172,14 @@ std::optional<Outage> V4l2Camera::negotiate(Life& life) const {
     }
     if (!best)
         return Outage{DeviceState::Faulted, fmt::format("{}: it grants none of the formats that it offers", life.file.string())};
-    if (const int error = ask(*best); error != 0) return whyNotUsed(life.file, "its format cannot be chosen", error);
+    if (const int error = ask(*best); error != 0) return whyNotUsed(life.file, "setting its format", error);
     if (options_.fullRange) life.grant.format.fullRange = *options_.fullRange;
     life.decoder.emplace(life.grant.format);
     return std::nullopt;
 }
 
-// Sets what the site file locks, and tells what the camera cannot do of it: "; no focus", "".
-std::string V4l2Camera::adjust(VideoNode& node) const {
+// Sets the controls that the site file locks. Returns what the camera cannot do: "; no focus", "".
+std::string V4l2Camera::applyControls(VideoNode& node) const {
     std::string shortcomings;
     for (const auto& [control, wanted] : options_.controls) {
         auto value = wanted;
@@ -196,12 +197,12 @@ std::string V4l2Camera::adjust(VideoNode& node) const {
     return shortcomings;
 }
 
-// Logs what the camera is and grants, once for as long as that stays the same.
-void V4l2Camera::introduce(const Life& life, const std::string& shortcomings) {
+// Logs the camera and the granted format, once until they change.
+void V4l2Camera::logFormat(const Life& life, const std::string& shortcomings) {
     const FrameFormat& format = life.grant.format;
     std::string words = fmt::format("{} '{}': {} {} x {}", life.file.string(), life.node.card(), nameOf(format.coding),
                                     format.size.x, format.size.y);
-    words += life.grant.rate > 0 ? fmt::format(" at {:.4g} Hz", life.grant.rate) : ", it does not say how often";
+    words += life.grant.rate > 0 ? fmt::format(" at {:.4g} Hz", life.grant.rate) : " at an unknown rate";
     const bool asAsked = format.size == options_.size && isRate(life.grant.rate, options_.rate) &&
                          format.coding == options_.coding.value_or(format.coding);
     if (!asAsked)
@@ -217,45 +218,45 @@ void V4l2Camera::introduce(const Life& life, const std::string& shortcomings) {
 Outage V4l2Camera::stream(Service& service, Life& life) {
     const Time period = life.grant.rate > 0 ? fromSeconds(1 / life.grant.rate) : Time::zero();
     const Time several = kPatientPeriods * std::max(period, life.exposure.value_or(Time::zero()));
-    const Time atFirst = kFirstPatience + several;
-    const Time later = life.grant.rate > 0 ? std::max(kLeastPatience, several) : atFirst;
-    Time patience = atFirst, heard = clock_.now();
-    bool restarted = silent_;  // its being opened again is as good
-    bool damaged = false;      // what came since `heard`
+    const Time atFirst = kFirstTimeout + several;
+    const Time later = life.grant.rate > 0 ? std::max(kMinTimeout, several) : atFirst;
+    Time timeout = atFirst, heard = clock_.now();
+    bool restarted = silent_;  // being reopened is as good as a restart
+    bool damaged = false;      // damaged frames came since `heard`
     while (!service.ending()) {
-        service.wait(heard + patience - clock_.now(), {life.node.file()});
+        service.wait(heard + timeout - clock_.now(), {life.node.file()});
         const int error = take(life);
         if (error == 0 && show(service, life)) {
             heard = clock_.now();
-            patience = later;
-            if (restarted) service.trouble("");
+            timeout = later;
+            if (restarted) service.setTrouble("");
             restarted = damaged = false;
             continue;
         }
         damaged = damaged || error == 0 || error == EBADMSG;
         const bool nothing = error == 0 || error == EBADMSG || error == EAGAIN;
-        if (nothing && clock_.now() - heard < patience) continue;
-        if (!nothing && error != EIO) return whyNotUsed(life.file, "its frames cannot be taken", error);
-        // It has stalled, or has lost its signal.
+        if (nothing && clock_.now() - heard < timeout) continue;
+        if (!nothing && error != EIO) return whyNotUsed(life.file, "reading its frames", error);
+        // It has stalled or lost its signal.
         if (service.ending()) break;
         if (restarted) {
             silent_ = true;
             return {DeviceState::Faulted,
-                    fmt::format("{} '{}' {}; plug it in again, at another port or by a shorter cable", life.file.string(),
-                                life.node.card(), damaged ? "gives damaged frames alone" : "gives no frames")};
+                    fmt::format("{} '{}' {}; replug it, at another port or with a shorter cable", life.file.string(),
+                                life.node.card(), damaged ? "gives only damaged frames" : "gives no frames")};
         }
-        service.trouble("it gave no frames for a while; its stream is started again");
-        if (const int failed = life.node.restart(); failed != 0)
-            return whyNotUsed(life.file, "its stream cannot be started again", failed);
+        service.setTrouble("it gave no frames for a while; restarting its stream");
+        if (const int failed = life.node.restart(); failed != 0) return whyNotUsed(life.file, "restarting its stream", failed);
         life.counted.reset();
         restarted = true;
-        patience = atFirst;
+        timeout = atFirst;
         heard = clock_.now();
     }
     return {};
 }
 
-// Takes all frames that have come and keeps the bytes of the newest. EAGAIN: none has come;
+// Takes all available frames and keeps the bytes of the newest. EAGAIN: there is none; EBADMSG:
+// none is complete.
 // EBADMSG: none that is whole.
 int V4l2Camera::take(Life& life) {
     int outcome = EAGAIN;
@@ -264,7 +265,7 @@ int V4l2Camera::take(Life& life) {
         const int error = life.node.take(buffer);
         if (error == EAGAIN) return outcome;
         if (error != 0) return error;
-        // The camera counts in 32 bits and begins anew with every stream; some never count.
+        // The camera counts in 32 bits and restarts with every stream; some never count.
         const auto step = life.counted ? static_cast<std::int32_t>(buffer.sequence - *life.counted) : 1;
         life.counted = buffer.sequence;
         sequence_ += static_cast<std::uint64_t>(std::max(step, 1));
@@ -273,18 +274,18 @@ int V4l2Camera::take(Life& life) {
             countDamaged();
             if (outcome == EAGAIN) outcome = EBADMSG;
         } else {
-            if (outcome == 0) countMissed(1);  // one that is overtaken
+            if (outcome == 0) countMissed(1);  // overtaken by this one
             life.buffer = buffer;
             life.coded.resize(buffer.bytes.size() + FrameDecoder::kPadding);
             std::ranges::copy(buffer.bytes, life.coded.begin());
             life.sequence = sequence_;
             outcome = 0;
         }
-        if (const int failed = life.node.giveBack(buffer.index); failed != 0) return failed;
+        if (const int failed = life.node.requeue(buffer.index); failed != 0) return failed;
     }
 }
 
-// Decodes what was taken and lets it be seen. Whether it was whole.
+// Decodes the taken frame and publishes it. Returns whether it was good.
 bool V4l2Camera::show(Service& service, Life& life) {
     const VideoNode::Buffer& buffer = life.buffer;
     auto frame = pool_.take(life.grant.format.size);
@@ -293,12 +294,12 @@ bool V4l2Camera::show(Service& service, Life& life) {
         return false;
     }
     const Time now = clock_.now(), stamp = buffer.stamp ? *buffer.stamp + life.epoch : now;
-    const Time at = stamp <= now && now - stamp < kOldest ? stamp : now;
+    const Time at = stamp <= now && now - stamp < kMaxStampAge ? stamp : now;
     const Time half = life.exposure.value_or(Time::zero()) / 2;
     exposed_ = std::max(exposed_ + Time(1), std::min(now, buffer.stampedAtStart ? at + half : at - half));
     frame->exposed = exposed_;
     frame->sequence = life.sequence;
-    if (std::exchange(silent_, false)) service.running();
+    if (std::exchange(silent_, false)) service.setRunning();
     const std::lock_guard lock(mutex_);
     newest_ = std::move(frame);
     ++tally_.good;
@@ -313,7 +314,7 @@ void V4l2Camera::countDamaged() {
     }
     std::uint64_t leading = count;
     while (leading % 10 == 0) leading /= 10;
-    if (leading == 1) log::warning("camera", fmt::format("damaged frames so far: {}; they are left out", count));
+    if (leading == 1) log::warning("camera", fmt::format("damaged frames so far: {}; they are not shown", count));
 }
 
 void V4l2Camera::countMissed(std::uint64_t frames) {

@@ -2,8 +2,8 @@
 
 #include "drivers/camera/camera_search.h"
 #include "drivers/camera/frame_pool.h"
+#include "drivers/common/opening.h"
 #include "drivers/common/service.h"
-#include "drivers/common/surroundings.h"
 
 #include "device/camera_source.h"
 
@@ -18,8 +18,8 @@
 
 namespace fantascope::drivers {
 
-// A camera behind the kernel's V4L2, as USB cameras are: README.md has its keys. Frames are decoded
-// on the driver's own thread.
+// A camera of the kernel's V4L2, such as USB cameras; README.md lists its keys. The driver's own
+// thread decodes the frames.
 class V4l2Camera final : public CameraSource {
 public:
     static Result<Opening<CameraSource>> fromConfig(const ConfigNode& options);
@@ -30,8 +30,8 @@ public:
     // Frames since the opening. Thread: any.
     struct Tally {
         std::uint64_t good = 0;
-        std::uint64_t damaged = 0;  // flagged by the kernel's driver, too short, or no JPEG that can be decoded; never shown
-        std::uint64_t missed = 0;   // that the camera counted and that came too late or never
+        std::uint64_t damaged = 0;  // flagged by the kernel's driver, too short, or an undecodable JPEG; never shown
+        std::uint64_t missed = 0;   // counted by the camera, but late or never received
     };
     Tally tally() const;
 
@@ -40,17 +40,17 @@ private:
         CameraIdentity identity;
         glm::ivec2 size{640, 480};
         double rate = 30;                   // Hz
-        std::optional<FrameCoding> coding;  // that is preferred
-        std::optional<bool> fullRange;      // whatever the camera says
+        std::optional<FrameCoding> coding;  // preferred
+        std::optional<bool> fullRange;      // overrides the camera
         std::map<VideoNode::Control, std::optional<std::int64_t>> controls;
     };
     struct Life;
 
-    V4l2Camera(Options options, const Surroundings& around);
-    Outage attend(Service& service);
+    V4l2Camera(Options options, const DriverContext& context);
+    Outage runOnce(Service& service);
     std::optional<Outage> negotiate(Life& life) const;
-    std::string adjust(VideoNode& node) const;
-    void introduce(const Life& life, const std::string& shortcomings);
+    std::string applyControls(VideoNode& node) const;
+    void logFormat(const Life& life, const std::string& shortcomings);
     Outage stream(Service& service, Life& life);
     int take(Life& life);
     bool show(Service& service, Life& life);
@@ -61,8 +61,8 @@ private:
     const Options options_;
     Clock& clock_;
     FramePool pool_;
-    std::string said_;            // of the camera, last
-    bool silent_ = false;         // its last life ended without a good frame: it runs once it gives one
+    std::string said_;            // the last log line about the camera
+    bool silent_ = false;         // its last life had no good frame; it is Running once it has one
     std::uint64_t sequence_ = 0;  // of the last frame
     Time exposed_ = Time::min();
 

@@ -16,13 +16,13 @@
 namespace fantascope::drivers {
 namespace {
 
-constexpr unsigned kBuffers = 4;  // one is being read, one is being filled, two for a thread that is late
+constexpr unsigned kBuffers = 4;  // one being read, one being filled, two for a late thread
 
 struct Coding {
     std::uint32_t fourcc;
     FrameCoding coding;
 };
-// In the order in which they are preferred: what needs no decoding first, and colours before none.
+// In order of preference: formats without decoding first, colour before grey.
 constexpr Coding kCodings[] = {
     {V4L2_PIX_FMT_YUYV, FrameCoding::Yuyv},   {V4L2_PIX_FMT_NV12, FrameCoding::Nv12},  {V4L2_PIX_FMT_UYVY, FrameCoding::Uyvy},
     {V4L2_PIX_FMT_RGB24, FrameCoding::Rgb24}, {V4L2_PIX_FMT_MJPEG, FrameCoding::Mjpg}, {V4L2_PIX_FMT_GREY, FrameCoding::Grey},
@@ -35,7 +35,7 @@ std::string nameOf(std::uint32_t fourcc) {
     return name;
 }
 
-// What both variants of the interface say of a format.
+// The format's fields that both variants of the API have.
 struct Granted {
     std::uint32_t width, height, fourcc, stride, colourSpace, encoding, quantization;
 };
@@ -52,9 +52,9 @@ Granted grantedIn(const v4l2_format& format, bool planar) {
 }
 
 bool isFullRange(FrameCoding coding, const Granted& granted) {
-    if (coding == FrameCoding::Mjpg) return true;  // as JFIF has it, whatever the driver says
+    if (coding == FrameCoding::Mjpg) return true;  // as in JFIF, whatever the driver reports
     if (granted.quantization != V4L2_QUANTIZATION_DEFAULT) return granted.quantization == V4L2_QUANTIZATION_FULL_RANGE;
-    // V4L2 leaves open what a grey sensor's bytes mean; they are its raw values.
+    // V4L2 does not define a grey sensor's range; its bytes are raw values.
     return coding == FrameCoding::Rgb24 || coding == FrameCoding::Grey || granted.colourSpace == V4L2_COLORSPACE_JPEG;
 }
 
@@ -65,7 +65,7 @@ LumaWeights weightsOf(const Granted& granted) {
     switch (encoding) {
         case V4L2_YCBCR_ENC_709:
         case V4L2_YCBCR_ENC_XV709:
-        case V4L2_YCBCR_ENC_SMPTE240M:  // within a hundredth
+        case V4L2_YCBCR_ENC_SMPTE240M:  // equal to within 1 %
             return LumaWeights::Rec709;
         case V4L2_YCBCR_ENC_BT2020:
         case V4L2_YCBCR_ENC_BT2020_CONST_LUM:
@@ -75,14 +75,14 @@ LumaWeights weightsOf(const Granted& granted) {
     }
 }
 
-// A value and the automatism that may move it.
-struct Knob {
+// A control's value, and the automatic mode that may change it.
+struct ControlIds {
     std::uint32_t automatic;
     std::array<std::int32_t, 2> on, off;  // tried in this order
     std::uint32_t value;
 };
 
-Knob knobOf(VideoNode::Control control) {
+ControlIds idsOf(VideoNode::Control control) {
     switch (control) {
         case VideoNode::Control::Exposure:
             return {V4L2_CID_EXPOSURE_AUTO,
@@ -99,7 +99,7 @@ Knob knobOf(VideoNode::Control control) {
     return {V4L2_CID_FOCUS_AUTO, {1, 1}, {0, 0}, V4L2_CID_FOCUS_ABSOLUTE};
 }
 
-// A buffer's description, with room for its plane where the interface is multi-planar.
+// A buffer's description, with room for its plane in the multi-planar API.
 struct Description {
     v4l2_buffer buffer{};
     v4l2_plane planes[VIDEO_MAX_PLANES]{};
@@ -122,7 +122,7 @@ int callOf(int file, unsigned long request, void* argument) {
     return answer < 0 ? errno : 0;
 }
 
-// Tells the kernel that a DMABUF is read from now on, or no more.
+// Tells the kernel that reading a DMABUF begins or ends.
 bool synchronise(int dmabuf, std::uint64_t edge) {
     dma_buf_sync sync{edge | DMA_BUF_SYNC_READ};
     int error = 0;
@@ -145,7 +145,7 @@ VideoNode::Memory::Memory(FileHandle dmabuf, int node, std::size_t length, std::
     if (!bytes_.empty())
         dmabuf_ = std::move(dmabuf);
     else
-        bytes_ = mapped(node, PROT_READ | PROT_WRITE, length, offset);  // some drivers map for both or not at all
+        bytes_ = mapped(node, PROT_READ | PROT_WRITE, length, offset);  // some drivers map only for both
 }
 
 VideoNode::Memory::~Memory() {
@@ -181,8 +181,8 @@ std::optional<VideoNode> VideoNode::open(const std::filesystem::path& path, int&
     return std::nullopt;
 }
 
-bool VideoNode::isTaken() const {
-    v4l2_requestbuffers none{};  // whoever has none need not be asked; only another's are in the way
+bool VideoNode::isInUse() const {
+    v4l2_requestbuffers none{};  // freeing no buffers is harmless, and fails only if another program has some
     none.type = type();
     none.memory = V4L2_MEMORY_MMAP;
     return call(VIDIOC_REQBUFS, &none) == EBUSY;
@@ -200,7 +200,7 @@ VideoNode::Offer VideoNode::offer() const {
     return offer;
 }
 
-int VideoNode::ask(FrameCoding coding, glm::ivec2 size, double rate, Grant& grant) {
+int VideoNode::setFormat(FrameCoding coding, glm::ivec2 size, double rate, Grant& grant) {
     const std::uint32_t fourcc = std::ranges::find(kCodings, coding, &Coding::coding)->fourcc;
     v4l2_format format{};
     format.type = type();
@@ -214,14 +214,14 @@ int VideoNode::ask(FrameCoding coding, glm::ivec2 size, double rate, Grant& gran
     if (const int error = call(VIDIOC_S_FMT, &format); error != 0) return error;
     const Granted granted = grantedIn(format, planar_);
     const bool pairs = coding == FrameCoding::Yuyv || coding == FrameCoding::Uyvy || coding == FrameCoding::Nv12;
-    constexpr std::uint32_t kMost = 16384;  // pixels either way
-    if (granted.fourcc != fourcc || granted.width < 2 || granted.height < 2 || granted.width > kMost || granted.height > kMost ||
-        (pairs && granted.width % 2 != 0) || (coding == FrameCoding::Nv12 && granted.height % 2 != 0))
+    constexpr std::uint32_t kMaxSide = 16384;  // pixels
+    if (granted.fourcc != fourcc || granted.width < 2 || granted.height < 2 || granted.width > kMaxSide ||
+        granted.height > kMaxSide || (pairs && granted.width % 2 != 0) ||
+        (coding == FrameCoding::Nv12 && granted.height % 2 != 0))
         return ENOTSUP;
     const int width = static_cast<int>(granted.width);
-    // Some drivers say 0 where rows have no padding, and some a number that means nothing where
-    // rows are coded.
-    const int stride = coding == FrameCoding::Mjpg ? 0 : std::max(static_cast<int>(granted.stride), leastStride(coding, width));
+    // Some drivers report 0 for rows without padding, and some report nonsense for coded rows.
+    const int stride = coding == FrameCoding::Mjpg ? 0 : std::max(static_cast<int>(granted.stride), minStride(coding, width));
     grant.format = {coding, {width, granted.height}, stride, isFullRange(coding, granted), weightsOf(granted)};
 
     constexpr std::uint32_t kThousandths = 1000;
@@ -237,18 +237,18 @@ int VideoNode::ask(FrameCoding coding, glm::ivec2 size, double rate, Grant& gran
 }
 
 VideoNode::Outcome VideoNode::set(Control control, std::optional<std::int64_t>& value) {
-    const Knob knob = knobOf(control);
+    const ControlIds ids = idsOf(control);
     const auto move = [&](std::uint32_t id, std::int64_t to) {
         v4l2_control moved{id, static_cast<std::int32_t>(to)};
         return call(VIDIOC_S_CTRL, &moved) == 0;
     };
     const auto moveToOneOf = [&](const std::array<std::int32_t, 2>& settings) {
-        return std::ranges::any_of(settings, [&](std::int32_t setting) { return move(knob.automatic, setting); });
+        return std::ranges::any_of(settings, [&](std::int32_t setting) { return move(ids.automatic, setting); });
     };
-    if (!value) return moveToOneOf(knob.on) ? Outcome::Done : Outcome::Missing;
-    moveToOneOf(knob.off);  // a camera without the automatism has the value all the same
-    if (!move(knob.value, *value)) return Outcome::Missing;
-    v4l2_control now{knob.value, 0};
+    if (!value) return moveToOneOf(ids.on) ? Outcome::Done : Outcome::Missing;
+    moveToOneOf(ids.off);  // cameras without an automatic mode have the value all the same
+    if (!move(ids.value, *value)) return Outcome::Missing;
+    v4l2_control now{ids.value, 0};
     if (call(VIDIOC_G_CTRL, &now) != 0 || now.value == *value) return Outcome::Done;
     value = now.value;
     return Outcome::Changed;
@@ -284,7 +284,7 @@ int VideoNode::start() {
 
 int VideoNode::restart() {
     unsigned type = this->type();
-    // It gives every buffer back to us, whoever had it.
+    // This returns every buffer to us.
     if (const int error = call(VIDIOC_STREAMOFF, &type); error != 0) return error;
     for (unsigned index = 0; index < memories_.size(); ++index)
         if (const int error = queue(index); error != 0) return error;
@@ -311,12 +311,12 @@ int VideoNode::take(Buffer& taken) {
     return 0;
 }
 
-int VideoNode::giveBack(unsigned index) {
+int VideoNode::requeue(unsigned index) {
     memories_[index].endReading();
     return queue(index);
 }
 
-// Closed, if the driver offers none.
+// Closed if the driver offers none.
 FileHandle VideoNode::dmabufOf(unsigned index) const {
     v4l2_exportbuffer exported{};
     exported.type = type();

@@ -5,9 +5,9 @@
 namespace fantascope::drivers {
 
 Time BackOff::failed(Time now) {
-    const bool lived = began_ && now - *began_ >= latest_;
-    began_.reset();
-    pause_ = lived || pause_ == Time::zero() ? soonest_ : std::min(2 * pause_, latest_);
+    const bool lived = succeeded_ && now - *succeeded_ >= maxPause_;
+    succeeded_.reset();
+    pause_ = lived || pause_ == Time::zero() ? minPause_ : std::min(2 * pause_, maxPause_);
     return pause_;
 }
 

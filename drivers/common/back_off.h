@@ -6,23 +6,23 @@
 
 namespace fantascope::drivers {
 
-// The pauses between attempts that fail: the first soon, then each twice as long, up to a limit.
-// What succeeds and fails again within that limit counts as never succeeded. Thread: thread-bound.
+// The pauses between failing attempts: short at first, then doubled each time up to a limit. A
+// success that ends within that limit does not reset the pauses. Thread: thread-bound.
 class BackOff {
 public:
-    // Of a device on a line: so short that one which is there again and whose first answer got lost
-    // is still found within 2 s, so long that a dead one leaves more than half of the line to the
-    // others.
-    static constexpr Time kSoonest = std::chrono::milliseconds(50), kLatest = std::chrono::milliseconds(400);
+    // Defaults for a device on a shared line. Short enough that a device that is back, and whose
+    // first answer got lost, is found within 2 s. Long enough that a dead device leaves more than
+    // half of the line's time to the others.
+    static constexpr Time kMinPause = std::chrono::milliseconds(50), kMaxPause = std::chrono::milliseconds(400);
 
-    explicit BackOff(Time soonest = kSoonest, Time latest = kLatest) : soonest_(soonest), latest_(latest) {}
+    explicit BackOff(Time minPause = kMinPause, Time maxPause = kMaxPause) : minPause_(minPause), maxPause_(maxPause) {}
 
-    void began(Time now) { began_ = now; }  // it has succeeded
-    Time failed(Time now);                  // the pause until the next attempt
+    void succeeded(Time now) { succeeded_ = now; }  // an attempt has succeeded
+    Time failed(Time now);                          // the pause until the next attempt
 
 private:
-    Time soonest_, latest_;
-    std::optional<Time> began_;  // since when it succeeds
+    Time minPause_, maxPause_;
+    std::optional<Time> succeeded_;  // when the current success began
     Time pause_{};
 };
 

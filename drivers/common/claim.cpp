@@ -17,10 +17,11 @@
 namespace fantascope::drivers {
 namespace {
 
-// So many may ask who holds a claim; nobody takes their calls.
+// The most calls of holderOf() during one claim: their connections queue up, and nobody accepts
+// them.
 constexpr int kAskers = 4096;
 
-// FNV-1a, the same in every build: names of files may be longer than an address.
+// FNV-1a, the same in every build. A hash, because a file name may be longer than an address.
 std::uint64_t hashOf(const std::string& text) {
     std::uint64_t hash = 0xcbf29ce484222325;
     for (const char letter : text) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3;
@@ -29,7 +30,7 @@ std::uint64_t hashOf(const std::string& text) {
 
 std::string labelOf(const std::string& name) { return fmt::format("fantascope-claim-{:016x}", hashOf(name)); }
 
-// An abstract address: no file that a crash could leave behind.
+// An abstract address, because a crash leaves no file behind.
 std::pair<sockaddr_un, socklen_t> addressOf(const std::string& name) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;

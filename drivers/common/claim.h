@@ -11,21 +11,21 @@
 
 namespace fantascope::drivers {
 
-// Who has claimed something.
+// The holder of a claim.
 struct ClaimHolder {
-    int process = 0;      // who made the claim; 0: it cannot be told
-    std::string command;  // its command line; "" once it has ended: then its relay guard has the claim
+    int process = 0;      // that made the claim; 0: unknown
+    std::string command;  // its command line; "" once it has ended and its relay guard holds the claim
     bool hasEnded() const { return process != 0 && command.empty(); }
     std::string words() const;  // "process 812 (fantascope run shows/x --site y)"
 };
 
-// A thing that one program at a time may use, by a name that all programs on this machine (in this
-// network namespace) agree on. The claim holds for as long as any process has its file open, so a
-// child that inherits the file shares it, and the kernel releases it when the last one ends,
-// whatever ends it. Thread: reentrant.
+// The exclusive use of a thing, identified by a name that all programs on this machine (in this
+// network namespace) agree on. A claim lasts while any process has its file open. A child that
+// inherits the file shares the claim; the kernel releases it when the last such process ends,
+// however it ends. Thread: reentrant.
 class Claim {
 public:
-    // Nothing: somebody else has it.
+    // Nothing: another program holds it.
     static std::optional<Claim> take(const std::string& name);
     int file() const { return socket_.get(); }
 
@@ -34,14 +34,15 @@ private:
     FileHandle socket_;
 };
 
-// What is claimed of a device's file, whichever of its links is given: "serial line /dev/ttyUSB0".
+// The name of the claim on a device file, the same through any link to it: "serial line
+// /dev/ttyUSB0".
 std::string claimOfFile(std::string_view kind, const std::filesystem::path& file);
-constexpr std::string_view kSerialLine = "serial line";  // the kind; families that share lines call them alike
+constexpr std::string_view kSerialLine = "serial line";  // the kind that all families on serial lines use
 
-// Whether somebody has claimed this. May be asked for ever, which holderOf() may not: who holds a
-// claim keeps a note of every question.
+// Whether it is claimed. May be called any number of times. holderOf() may not: each of its calls
+// leaves an entry in the holder's queue.
 bool isClaimed(const std::string& name);
-// Who has claimed this; nothing: nobody.
+// The holder; nothing if it is not claimed.
 std::optional<ClaimHolder> holderOf(const std::string& name);
 
 }  // namespace fantascope::drivers

@@ -11,7 +11,7 @@
 namespace fantascope::drivers {
 namespace {
 
-// The group that owns a file, "" where nobody knows.
+// The group that owns a file; "" if it has no name.
 std::string groupOf(const std::filesystem::path& file) {
     struct stat known {};
     if (stat(file.c_str(), &known) != 0) return "";

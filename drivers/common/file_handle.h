@@ -10,7 +10,7 @@
 
 namespace fantascope::drivers {
 
-// An open file of the system, closed with its owner.
+// An open file descriptor; the destructor closes it.
 class FileHandle {
 public:
     FileHandle() = default;
@@ -29,16 +29,16 @@ private:
     int file_ = -1;
 };
 
-// Why a device's file cannot be opened, from errno: what the device is then, and what to do about
-// it. Without permission it names the group that has it, and the rules file for udev that this
-// program comes with (systemd/70-fantascope.rules).
+// Why a device is not Running, and what to do about it.
 struct Outage {
     DeviceState state = DeviceState::Absent;
     std::string why;
 };
+// From the errno of an open() that failed. If permission is missing, it names the group that owns
+// the file and the udev rules that come with this program (systemd/70-fantascope.rules).
 Outage whyNotOpened(const std::filesystem::path& file, int error);
 
-// The system's words for an errno: "No such device".
+// The system's message for an errno: "No such device".
 std::string systemMessage(int error);
 
 }  // namespace fantascope::drivers

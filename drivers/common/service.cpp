@@ -14,16 +14,16 @@
 
 namespace fantascope::drivers {
 
-Service::Service(std::string name, std::string driver, LossAction onLoss, Attend attend)
-    : attend_(std::move(attend)), bell_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
-    FANTASCOPE_CHECK(bell_.isOpen(), "a program has room for one more file");
-    status_ = {std::move(name), std::move(driver), DeviceState::Starting, onLoss, "it is being looked for", 0};
+Service::Service(std::string name, std::string driver, LossAction onLoss, RunOnce runOnce)
+    : runOnce_(std::move(runOnce)), wakeFile_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+    FANTASCOPE_CHECK(wakeFile_.isOpen(), "no file descriptor is left");
+    status_ = {std::move(name), std::move(driver), DeviceState::Starting, onLoss, "looking for it", 0};
     thread_ = std::thread([this] { run(); });
 }
 
 Service::~Service() {
     ending_ = true;
-    call();
+    wake();
     thread_.join();
 }
 
@@ -37,45 +37,45 @@ Error Service::refusal() const {
     return Error(now.name + " is " + nameOf(now.state) + (now.detail.empty() ? "" : ": " + now.detail));
 }
 
-void Service::call() {
+void Service::wake() {
     const std::uint64_t once = 1;
-    [[maybe_unused]] const ssize_t written = write(bell_.get(), &once, sizeof once);  // full is called too
+    [[maybe_unused]] const ssize_t written = write(wakeFile_.get(), &once, sizeof once);  // a full counter wakes it, too
 }
 
-void Service::running() {
+void Service::setRunning() {
     const std::lock_guard lock(mutex_);
     status_.state = DeviceState::Running;
     status_.detail.clear();
     running_ = true;
 }
 
-void Service::trouble(std::string what) {
+void Service::setTrouble(std::string what) {
     const std::lock_guard lock(mutex_);
     status_.trouble = std::move(what);
 }
 
-bool Service::wait(Time patience, std::initializer_list<int> files) {
+bool Service::wait(Time timeout, std::initializer_list<int> files) {
     if (ending_) return false;
-    std::vector<pollfd> waited{{bell_.get(), POLLIN, 0}};
+    std::vector<pollfd> waited{{wakeFile_.get(), POLLIN, 0}};
     for (const int file : files) waited.push_back({file, POLLIN, 0});
-    const auto whole = std::chrono::duration_cast<std::chrono::seconds>(std::max(patience, Time::zero()));
-    const timespec limit{whole.count(), (std::max(patience, Time::zero()) - whole).count()};
+    const auto whole = std::chrono::duration_cast<std::chrono::seconds>(std::max(timeout, Time::zero()));
+    const timespec limit{whole.count(), (std::max(timeout, Time::zero()) - whole).count()};
     if (ppoll(waited.data(), waited.size(), &limit, nullptr) <= 0) return false;
     std::uint64_t calls = 0;
     if (waited[0].revents != 0) [[maybe_unused]]
-        const ssize_t count = read(bell_.get(), &calls, sizeof calls);
+        const ssize_t count = read(wakeFile_.get(), &calls, sizeof calls);
     return std::any_of(waited.begin() + 1, waited.end(), [](const pollfd& file) { return file.revents != 0; });
 }
 
 void Service::run() {
-    for (Time pause = kSoonest; !ending_; pause = std::min(2 * pause, kLatest)) {
-        Outage outage = attend_(*this);
+    for (Time pause = kMinPause; !ending_; pause = std::min(2 * pause, kMaxPause)) {
+        Outage outage = runOnce_(*this);
         if (ending_) return;
         {
             const std::lock_guard lock(mutex_);
             if (status_.state == DeviceState::Running) {
                 ++status_.losses;
-                pause = kSoonest;
+                pause = kMinPause;
             }
             running_ = false;
             status_.state = outage.state;

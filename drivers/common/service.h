@@ -16,53 +16,58 @@
 
 namespace fantascope::drivers {
 
-// The thread that attends to one real device, and what the device says of itself. A driver hands it
-// one function that lives through one life of the device; the service calls it again and again,
-// with a back-off from kSoonest to kLatest between, at once when called.
+// The thread of one real device, and the device's status. The driver passes a function that runs
+// one life of the device, from opening it to losing it. The service calls it again and again, with
+// pauses that grow from kMinPause to kMaxPause; wake() ends a pause.
 //
-//     Outage MyDriver::attend(Service& service) {
+//     Outage MyDriver::runOnce(Service& service) {
 //         if (cannot be opened) return whyNotOpened(path, errno);
-//         service.running();
-//         while (!service.ending()) { ... if (lost) return {DeviceState::Absent, "it was unplugged"}; ... service.wait(...); }
-//         return {};  // the farewell was said; nobody reads it
+//         service.setRunning();
+//         while (!service.ending()) {
+//             ...
+//             if (lost) return {DeviceState::Absent, "it was unplugged"};
+//             service.wait(...);
+//         }
+//         return {};  // ending: nobody reads this
 //     }
 //
-// It is the driver's last member, so that the thread has ended before anything that it uses goes.
+// It is the driver's last member, so its thread ends before anything that the thread uses is
+// destroyed.
 class Service {
 public:
-    using Attend = std::function<Outage(Service&)>;
-    static constexpr Time kSoonest = std::chrono::milliseconds(50), kLatest = std::chrono::milliseconds(800);
+    using RunOnce = std::function<Outage(Service&)>;
+    static constexpr Time kMinPause = std::chrono::milliseconds(50), kMaxPause = std::chrono::milliseconds(800);
 
-    // Until its first attempt has ended the device is Starting.
-    Service(std::string name, std::string driver, LossAction onLoss, Attend attend);
-    ~Service();  // returns when attend() has
+    // The device is Starting until its first attempt has ended.
+    Service(std::string name, std::string driver, LossAction onLoss, RunOnce runOnce);
+    ~Service();  // returns after runOnce() has
     Service(const Service&) = delete;
     Service& operator=(const Service&) = delete;
 
-    // From any thread; never wait for the device.
+    // From any thread. These never wait for the device.
     DeviceStatus status() const;
     bool isRunning() const { return running_; }
     // The error of a call while the device is not Running.
     Error refusal() const;
-    // Ends a wait() or the pause before the next attempt: there is something to do.
-    void call();
+    // Ends a wait(), or the pause before the next attempt.
+    void wake();
 
-    // For attend(), on the service's thread.
-    void running();                  // the device is found, opened and does its work from now on
-    void trouble(std::string what);  // of a device that is running, until it is over ("") or the device is lost
+    // For runOnce(), on the service's thread.
+    void setRunning();                  // the device is open and works
+    void setTrouble(std::string what);  // what a running device fails to do; "" or a loss clears it
     bool ending() const { return ending_; }
-    // Waits until one of `files` can be read (or has failed), it was called, or `patience` is over.
-    // Returns at once when it is ending. Whether a file is ready.
-    bool wait(Time patience, std::initializer_list<int> files = {});
+    // Waits until one of `files` is readable or has failed, wake() is called, or `timeout` has
+    // passed. Returns at once while the service is ending. Returns whether a file is ready.
+    bool wait(Time timeout, std::initializer_list<int> files = {});
 
 private:
     void run();
 
-    const Attend attend_;
+    const RunOnce runOnce_;
     mutable std::mutex mutex_;
     DeviceStatus status_;
     std::atomic<bool> running_ = false, ending_ = false;
-    FileHandle bell_;  // an eventfd: readable since it was called
+    FileHandle wakeFile_;  // an eventfd, readable after wake()
     std::thread thread_;
 };
 

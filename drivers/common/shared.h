@@ -6,9 +6,9 @@
 
 namespace fantascope::drivers {
 
-// What several devices use together, such as the two ends of one widget, the modules on one bus,
-// the socket that a protocol has but one of: everybody who asks by the same key is given the same
-// thing, for as long as anybody holds it. Thread: thread-safe; a thing is made while others wait.
+// Things that several devices share: the two directions of a widget, the modules on a bus, the one
+// socket of a protocol. Everybody who asks by the same key gets the same thing, as long as somebody
+// holds it. Thread: thread-safe; one thread makes a thing while the others wait.
 template <class Key, class Thing>
 class Shared {
 public:

@@ -13,16 +13,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The one line of an attribute, "" where there is none.
+// The first line of an attribute; "" if there is none.
 std::string attribute(const fs::path& folder, const char* name) {
     std::ifstream file(folder / name);
     std::string line;
     std::getline(file, line);
     while (!line.empty() && (line.back() == ' ' || line.back() == '\r')) line.pop_back();
-    return printable(line);  // it ends up in messages
+    return printable(line);  // it appears in messages
 }
 
-// Of a USB device's folder.
 std::optional<UsbIdentity> identityIn(const fs::path& folder) {
     UsbIdentity usb;
     usb.vendor = attribute(folder, "idVendor");
@@ -40,7 +39,7 @@ std::optional<UsbIdentity> identityIn(const fs::path& folder) {
 std::optional<UsbIdentity> usbIdentityAt(const std::string& path) { return identityIn(fs::path("/sys/bus/usb/devices") / path); }
 
 std::optional<UsbFile> usbFileOf(const std::string& deviceClass, const std::string& name) {
-    std::error_code gone;  // a device may go while it is looked at
+    std::error_code gone;  // a device may vanish meanwhile
     fs::path folder = fs::canonical(fs::path("/sys/class") / deviceClass / name, gone);
     if (gone) return std::nullopt;
     UsbFile found{fs::path("/dev") / name, {}};

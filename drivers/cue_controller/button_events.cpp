@@ -4,15 +4,15 @@
 
 namespace fantascope::drivers {
 
-void ButtonEvents::settle(const std::vector<ButtonChange>& changes) {
+void ButtonEvents::setInitial(const std::vector<ButtonChange>& changes) {
     for (const ButtonChange& change : changes) {
         if (change.what == ButtonChange::What::Down) downBefore_.insert(change.button);
         if (change.what == ButtonChange::What::Up) downBefore_.erase(change.button);
     }
 }
 
-void ButtonEvents::take(const std::vector<ButtonChange>& changes, Time now) {
-    pass(now);
+void ButtonEvents::feed(const std::vector<ButtonChange>& changes, Time now) {
+    flush(now);
     for (const auto& [button, what] : changes) {
         if (what == ButtonChange::What::Detent) {
             push(button, true, now);
@@ -22,53 +22,54 @@ void ButtonEvents::take(const std::vector<ButtonChange>& changes, Time now) {
         const bool down = what == ButtonChange::What::Down;
         Contact& contact = contacts_[button];
         if (!down && downBefore_.erase(button) != 0) {
-            contact.quietFrom = now + debounce_;  // letting go bounces too
+            contact.settledAt = now + debounce_;  // a release bounces, too
             continue;
         }
-        const auto held = std::find(held_.begin(), held_.end(), button);
+        const auto pending = std::find(pending_.begin(), pending_.end(), button);
         if (down == contact.isDown) {
-            if (held != held_.end()) held_.erase(held);
-        } else if (now >= contact.quietFrom && (down || held_.empty())) {  // a release may wait for older ones, a press never
-            letOut(button, contact, down, now);
-        } else if (held == held_.end()) {
-            held_.push_back(button);
+            if (pending != pending_.end()) pending_.erase(pending);
+        } else if (now >= contact.settledAt &&
+                   (down || pending_.empty())) {  // a release waits for earlier ones, a press never does
+            emit(button, contact, down, now);
+        } else if (pending == pending_.end()) {
+            pending_.push_back(button);
         }
     }
 }
 
-void ButtonEvents::pass(Time now) {
-    while (!held_.empty()) {
-        Contact& contact = contacts_[held_.front()];
-        if (now < contact.quietFrom) return;
-        letOut(held_.front(), contact, !contact.isDown, now);
-        held_.pop_front();
+void ButtonEvents::flush(Time now) {
+    while (!pending_.empty()) {
+        Contact& contact = contacts_[pending_.front()];
+        if (now < contact.settledAt) return;
+        emit(pending_.front(), contact, !contact.isDown, now);
+        pending_.pop_front();
     }
 }
 
-std::optional<Time> ButtonEvents::due() const {
-    if (held_.empty()) return std::nullopt;
-    return contacts_.at(held_.front()).quietFrom;
+std::optional<Time> ButtonEvents::nextFlush() const {
+    if (pending_.empty()) return std::nullopt;
+    return contacts_.at(pending_.front()).settledAt;
 }
 
-void ButtonEvents::letOut(int button, Contact& contact, bool down, Time now) {
+void ButtonEvents::emit(int button, Contact& contact, bool down, Time now) {
     contact = {down, now + debounce_};
     push(button, down, now);
 }
 
 void ButtonEvents::push(int button, bool down, Time now) {
     const std::lock_guard lock(mutex_);
-    if (down && events_.size() >= kMost) return;
+    if (down && events_.size() >= kMaxWaiting) return;
     if (down ? pressed_.insert(button).second : pressed_.erase(button) != 0) events_.push_back({button, down, now});
 }
 
-void ButtonEvents::lose(Time now) {
+void ButtonEvents::deviceLost(Time now) {
     contacts_.clear();
-    held_.clear();
+    pending_.clear();
     downBefore_.clear();
     const std::lock_guard lock(mutex_);
     events_.clear();
     pressed_.clear();
-    for (const int button : given_) events_.push_back({button, false, now});
+    for (const int button : polled_) events_.push_back({button, false, now});
 }
 
 std::optional<ButtonEvent> ButtonEvents::poll() {
@@ -77,9 +78,9 @@ std::optional<ButtonEvent> ButtonEvents::poll() {
     const ButtonEvent event = events_.front();
     events_.pop_front();
     if (event.pressed)
-        given_.insert(event.button);
+        polled_.insert(event.button);
     else
-        given_.erase(event.button);
+        polled_.erase(event.button);
     return event;
 }
 

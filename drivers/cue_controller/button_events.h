@@ -15,47 +15,46 @@
 
 namespace fantascope::drivers {
 
-// Between what a device's buttons do and the events of the CueController. A press comes out at
-// once; what its contacts do within the debounce after a press or a release is looked at when that
-// is over, in the order in which it happened. No release overtakes another.
-// Thread: poll() belongs to the input thread, everything else to the device's.
+// Turns a device's button changes into CueController events, with debouncing. A press comes out at
+// once. Further changes within the debounce time after a press or a release are held back until the
+// time is over, and come out in the order in which they happened. No release overtakes another.
+// Thread: poll() is bound to the input thread, everything else to the device's thread.
 class ButtonEvents {
 public:
-    static constexpr std::size_t kMost = 1024;  // presses that nobody polls; later ones are dropped, with their releases
+    static constexpr std::size_t kMaxWaiting = 1024;  // unpolled events; further presses are dropped, with their releases
 
     explicit ButtonEvents(Time debounce) : debounce_(debounce) {}
 
-    // Before the device is in service: what is down now is no press, nor is letting go of it a
-    // release.
-    void settle(const std::vector<ButtonChange>& changes);
-    void take(const std::vector<ButtonChange>& changes, Time now);
-    // Lets out what the debounce has held back until `now`.
-    void pass(Time now);
-    // When there is something to pass().
-    std::optional<Time> due() const;
-    // The device is gone: what was pressed and polled goes up, what nobody has polled yet never
-    // was.
-    void lose(Time now);
+    // The state before the device is in service: a button that is down now makes no press, and its
+    // release is not reported.
+    void setInitial(const std::vector<ButtonChange>& changes);
+    void feed(const std::vector<ButtonChange>& changes, Time now);
+    // Emits changes whose debounce time is over.
+    void flush(Time now);
+    // When to call flush() next; nothing: no change is held back.
+    std::optional<Time> nextFlush() const;
+    // The device is lost: buttons whose press was polled go up; unpolled events are dropped.
+    void deviceLost(Time now);
 
     std::optional<ButtonEvent> poll();
 
 private:
     struct Contact {
-        bool isDown = false;  // as was let out
-        Time quietFrom{};     // the end of the debounce
+        bool isDown = false;  // as last emitted
+        Time settledAt{};     // the end of its debounce time
     };
-    void letOut(int button, Contact& contact, bool down, Time now);
+    void emit(int button, Contact& contact, bool down, Time now);
     void push(int button, bool down, Time now);
 
     const Time debounce_;
     std::map<int, Contact> contacts_;
-    std::deque<int> held_;      // buttons which are not as was let out, longest so first
+    std::deque<int> pending_;   // buttons that differ from what was emitted, the longest first
     std::set<int> downBefore_;  // down since before the device was in service
 
-    std::mutex mutex_;  // of what follows
+    std::mutex mutex_;  // guards what follows
     std::deque<ButtonEvent> events_;
-    std::set<int> pressed_;  // a press of them is in events_ or was polled, and no release yet
-    std::set<int> given_;    // a press of them was polled, and no release yet
+    std::set<int> pressed_;  // press queued or polled, release not yet queued
+    std::set<int> polled_;   // press polled, release not yet polled
 };
 
 }  // namespace fantascope::drivers

@@ -4,22 +4,22 @@
 
 namespace fantascope::drivers {
 
-bool ButtonLights::tell(int button, const ButtonLight& light) {
+bool ButtonLights::set(int button, const ButtonLight& light) {
     const std::lock_guard lock(mutex_);
-    ButtonLight& told = told_[button];
-    if (told == light) return false;
-    told = light;
+    ButtonLight& wanted = wanted_[button];
+    if (wanted == light) return false;
+    wanted = light;
     if (std::find(due_.begin(), due_.end(), button) == due_.end()) due_.push_back(button);
     return true;
 }
 
-void ButtonLights::restart(int lamps) {
+void ButtonLights::invalidate(int lamps) {
     const std::lock_guard lock(mutex_);
     shown_.clear();
     due_.clear();
-    for (const auto& [button, light] : told_) due_.push_back(button);
+    for (const auto& [button, light] : wanted_) due_.push_back(button);
     for (int button = 1; button <= lamps; ++button)
-        if (!told_.contains(button)) due_.push_back(button);
+        if (!wanted_.contains(button)) due_.push_back(button);
 }
 
 std::optional<std::pair<int, ButtonLight>> ButtonLights::next() {
@@ -27,10 +27,10 @@ std::optional<std::pair<int, ButtonLight>> ButtonLights::next() {
     while (!due_.empty()) {
         const int button = due_.front();
         due_.pop_front();
-        const auto told = told_.find(button);
-        const ButtonLight light = told == told_.end() ? ButtonLight{} : told->second;
+        const auto wanted = wanted_.find(button);
+        const ButtonLight light = wanted == wanted_.end() ? ButtonLight{} : wanted->second;
         const auto shown = shown_.find(button);
-        if (shown != shown_.end() && shown->second == light) continue;  // it has changed its mind
+        if (shown != shown_.end() && shown->second == light) continue;  // changed back meanwhile
         shown_[button] = light;
         return std::pair(button, light);
     }

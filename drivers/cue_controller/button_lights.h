@@ -11,27 +11,26 @@
 
 namespace fantascope::drivers {
 
-// What the buttons are to show, between who says it and the device that takes its time: the newest
-// light of each button wins.
-// Thread: tell() from the input thread, everything else from the device's.
+// The wanted light of each button, between the input thread and a device that takes its time. The
+// newest light of a button wins.
+// Thread: set() from the input thread, everything else from the device's thread.
 class ButtonLights {
 public:
-    // Whether there is something to show now that was not there before.
-    bool tell(int button, const ButtonLight& light);
+    // Returns whether the light differs from the one before.
+    bool set(int button, const ButtonLight& light);
 
-    // The device shows nothing of all this yet: whatever was told is shown, then the others of its
-    // `lamps` first buttons go off.
-    void restart(int lamps);
-    // The button that has waited longest to show something else, and what. It counts as shown from
-    // now on.
+    // The device shows nothing any more. All wanted lights become due, then the remaining ones of
+    // the first `lamps` buttons, to switch them off.
+    void invalidate(int lamps);
+    // The button whose change has waited longest, and its light, which counts as shown from now on.
     std::optional<std::pair<int, ButtonLight>> next();
-    // The buttons that show something.
+    // The buttons that are lit.
     std::vector<int> lit() const;
 
 private:
     mutable std::mutex mutex_;
-    std::map<int, ButtonLight> told_, shown_;
-    std::deque<int> due_;  // each once
+    std::map<int, ButtonLight> wanted_, shown_;
+    std::deque<int> due_;  // each button once
 };
 
 }  // namespace fantascope::drivers

@@ -12,29 +12,29 @@
 namespace fantascope::drivers {
 namespace {
 
-// HID Usage Tables 1.4: usage pages, and usages with their page.
+// HID Usage Tables 1.4: usage pages, then usages with their page.
 constexpr HidUsage kSimulation = 0x02, kGenericDevice = 0x06, kKeyboard = 0x07, kLed = 0x08, kButton = 0x09, kConsumer = 0x0c,
                    kSensor = 0x20, kPower = 0x84, kBattery = 0x85, kVendorPages = 0xff00;
 constexpr HidUsage kPointer = 0x00010001, kMouse = 0x00010002, kMultiAxisController = 0x00010008, kX = 0x00010030,
                    kY = 0x00010031, kWheel = 0x00010038, kHatSwitch = 0x00010039, kErrorRollOver = 0x00070001,
                    kErrorUndefined = 0x00070003;
 
-constexpr int kMostButtons = 1 << 16;  // whoever has more is garbage
+constexpr int kMaxButtons = 1 << 16;  // a descriptor with more is garbage
 
 constexpr HidUsage pageOf(HidUsage usage) { return usage >> 16; }
 
-// What is no key though it may be one bit: lamps, the state of batteries, measurements, and the
-// usages for "nothing".
-bool saysNothingOfKeys(HidUsage usage) {
+// Usages that are no key although they may have one bit: lamps, battery states, measurements, and
+// the usages for "nothing pressed".
+bool isNoKey(HidUsage usage) {
     const HidUsage page = pageOf(usage);
     return (usage & 0xffff) == 0 || page == kLed || page == kGenericDevice || page == kSensor || page == kPower ||
            page == kBattery || (page == kKeyboard && usage <= kErrorUndefined);
 }
 
-// How many usages an array has before the first that is a key: four on a keyboard.
+// How many usages of an array come before its first key: four on a keyboard.
 std::size_t leadOf(const HidField& array) {
     std::size_t lead = 0;
-    for (auto usage = array.usageAt(0); lead < 4 && usage && saysNothingOfKeys(*usage); usage = array.usageAt(lead)) ++lead;
+    for (auto usage = array.usageAt(0); lead < 4 && usage && isNoKey(*usage); usage = array.usageAt(lead)) ++lead;
     return lead;
 }
 
@@ -43,21 +43,21 @@ std::optional<HidControl::Kind> kindOf(const HidField& field) {
     const HidUsage usage = field.usage();
     if (field.array) {
         const auto key = field.usageAt(leadOf(field));
-        // Vendors say "array" of bytes that are none.
-        const bool hasKeys = key && !saysNothingOfKeys(*key) && pageOf(*key) < kVendorPages;
+        // Some vendors declare plain bytes as an array.
+        const bool hasKeys = key && !isNoKey(*key) && pageOf(*key) < kVendorPages;
         return hasKeys ? std::optional(Kind::Keys) : std::nullopt;
     }
     if (field.high == field.low) return std::nullopt;
     const bool hasAxis = (usage >= kX && usage <= kWheel) || pageOf(usage) == kSimulation;
     if (usage == kHatSwitch) return Kind::Hat;
-    // Some tell how hard they are pressed, and some count from 0.
+    // Some report how hard they are pressed, and some count from 0.
     if (pageOf(usage) == kButton) return Kind::Key;
-    if (saysNothingOfKeys(usage)) return std::nullopt;
+    if (isNoKey(usage)) return std::nullopt;
     if (field.high - field.low == 1) return Kind::Key;
     const bool ofPointer = field.application == kMouse || field.application == kPointer;
     if (ofPointer && (usage == kX || usage == kY)) return std::nullopt;
     if (field.relative && field.wraps) return Kind::Counter;
-    // A knob in six directions springs back, though many of them say that they are relative.
+    // A six-axis knob springs back, although many declare themselves relative.
     if (field.relative && field.application != kMultiAxisController)
         return hasAxis || pageOf(usage) == kConsumer ? std::optional(Kind::Wheel) : std::nullopt;
     if (!hasAxis) return std::nullopt;
@@ -70,18 +70,18 @@ std::size_t bytesOf(const HidDescriptor& descriptor, int report) {
     return 0;
 }
 
-// A side of a range is reached beyond 3/4 of the way to its end and left before 5/8, so that a hand
-// at the edge presses once.
+// Hysteresis: a side is reached at 3/4 of the way to its end and left at 5/8, so a hand at the edge
+// presses only once.
 bool isBeyond(std::int64_t value, std::int64_t from, std::int64_t to, bool isDown) {
     const double way = static_cast<double>(value - from) / static_cast<double>(to - from);
     return way > (isDown ? 0.625 : 0.75);
 }
 
-constexpr std::int64_t kMostDetents = 127;  // no hand turns further between two reports
+constexpr std::int64_t kMaxDetents = 127;  // nobody turns further between two reports
 
 using Down = std::set<int>;
 
-// The buttons of a control that a report has down. False: the report says nothing of them.
+// Adds the control's buttons that are down in a report. False: the report does not say.
 bool readDown(const HidControl& control, std::span<const std::uint8_t> report, const Down& before, Down& now) {
     const HidField& field = control.field;
     const auto set = [&](int button, bool down) {
@@ -94,7 +94,7 @@ bool readDown(const HidControl& control, std::span<const std::uint8_t> report, c
             if (value < field.low || value > field.high) continue;
             const auto index = static_cast<std::size_t>(value - field.low);
             const auto usage = field.usageAt(index);
-            // More keys than it can tell apart: it says so in every place.
+            // Too many keys are down to tell them apart; then every place holds this code.
             if (usage && *usage >= kErrorRollOver && *usage <= kErrorUndefined) return false;
             if (usage && index >= lead) set(static_cast<int>(index - lead), true);
         }
@@ -103,7 +103,7 @@ bool readDown(const HidControl& control, std::span<const std::uint8_t> report, c
     std::int64_t value = field.valueIn(report);
     const bool known = value >= field.low && value <= field.high;
     if (control.kind == HidControl::Kind::Hat) {
-        // Clockwise from up, in eighths of a turn; a hat at rest is outside of its range.
+        // Clockwise from up, in eighths of a turn; a hat at rest is out of its range.
         const std::int64_t eighth = known ? (value - field.low) * 8 / (field.high - field.low + 1) : -1;
         set(0, eighth == 7 || eighth == 0 || eighth == 1);
         set(1, eighth >= 1 && eighth <= 3);
@@ -112,7 +112,7 @@ bool readDown(const HidControl& control, std::span<const std::uint8_t> report, c
         return true;
     }
     if (!known && field.hasNull) return false;
-    value = std::clamp(value, field.low, field.high);  // many axes go further than they say
+    value = std::clamp(value, field.low, field.high);  // many axes exceed their declared range
     const auto wasDown = [&](int button) { return before.contains(control.first + button); };
     if (control.kind == HidControl::Kind::Key) {
         const double way = static_cast<double>(value - field.low) / static_cast<double>(field.high - field.low);
@@ -124,16 +124,16 @@ bool readDown(const HidControl& control, std::span<const std::uint8_t> report, c
     return true;
 }
 
-// How far it was turned since its last report, in detents.
+// The detents since the last report.
 std::int64_t detentsOf(const HidControl& control, std::span<const std::uint8_t> report, std::optional<std::int64_t>& position) {
     const HidField& field = control.field;
     const std::int64_t value = field.valueIn(report);
     if (value < field.low || value > field.high) return 0;
-    if (control.kind == HidControl::Kind::Wheel) return std::clamp(value, -kMostDetents, kMostDetents);
+    if (control.kind == HidControl::Kind::Wheel) return std::clamp(value, -kMaxDetents, kMaxDetents);
     const std::int64_t before = std::exchange(position, value).value_or(value), range = field.high - field.low + 1;
     const std::int64_t turned = ((value - before) % range + range) % range;
     // The shorter way round.
-    return std::clamp(2 * turned > range ? turned - range : turned, -kMostDetents, kMostDetents);
+    return std::clamp(2 * turned > range ? turned - range : turned, -kMaxDetents, kMaxDetents);
 }
 
 std::string keyName(HidUsage usage) {
@@ -211,7 +211,7 @@ std::vector<HidControl> controlsOf(const std::vector<HidInterface>& interfaces) 
     });
     int next = 1;
     for (auto control = controls.begin(); control != controls.end(); next += control++->buttons()) {
-        if (control->buttons() > kMostButtons - next) {
+        if (control->buttons() > kMaxButtons - next) {
             controls.erase(control, controls.end());
             break;
         }
@@ -242,10 +242,11 @@ int HidLayout::count() const {
 }
 
 int HidLayout::numberOf(int button) const {
-    const auto place = std::find(leading.begin(), leading.end(), button);
-    if (place != leading.end()) return static_cast<int>(place - leading.begin()) + 1;
-    const auto before = std::count_if(leading.begin(), leading.end(), [&](int other) { return other != 0 && other < button; });
-    return static_cast<int>(leading.size()) + button - static_cast<int>(before);
+    const auto place = std::find(firstKeys.begin(), firstKeys.end(), button);
+    if (place != firstKeys.end()) return static_cast<int>(place - firstKeys.begin()) + 1;
+    const auto before =
+        std::count_if(firstKeys.begin(), firstKeys.end(), [&](int other) { return other != 0 && other < button; });
+    return static_cast<int>(firstKeys.size()) + button - static_cast<int>(before);
 }
 
 std::vector<NamedButton> buttonsOf(const HidLayout& layout) {

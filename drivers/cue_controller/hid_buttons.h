@@ -1,5 +1,5 @@
 #pragma once
-// From the reports of a HID device to buttons with numbers.
+// Turns the reports of a HID device into numbered buttons.
 
 #include "drivers/cue_controller/hid_descriptor.h"
 
@@ -14,24 +14,24 @@
 
 namespace fantascope::drivers {
 
-// A part of a device that somebody presses, turns or pushes, and the buttons that it stands for.
+// A physical control of a device, and the buttons that it stands for.
 struct HidControl {
     enum class Kind {
         Key,      // one button: down above the middle of its range
-        Keys,     // an array: one button for each of its usages
-        Hat,      // four buttons: up, right, down, left; two of them between
-        Wheel,    // two buttons: on and back, pressed and released once a detent
-        Counter,  // the same of a position that wraps
-        Axis,     // two buttons: pushed to its high end, to its low end
-        Touch     // one button: pressed and released once a report whose value is within its range
+        Keys,     // an array: one button per usage
+        Hat,      // four buttons: up, right, down, left; between two of them, both
+        Wheel,    // two buttons, on and back: a press and a release per detent
+        Counter,  // the same for a position that wraps
+        Axis,     // two buttons: its high end, its low end
+        Touch     // one button: a press and a release per report whose value is in its range
     };
     Kind kind = Kind::Key;
     int interface = 0;
-    std::size_t reportBytes = 0;  // a shorter report is no report
+    std::size_t reportBytes = 0;  // shorter reports are ignored
     HidField field;
     int first = 1;     // the number of its first button
-    std::string name;  // what a profile calls it; empty: as its usage is called
-    // The bytes by which a report is known that says something of it, where others share its id.
+    std::string name;  // from a profile; empty: named after its usage
+    // Bytes that identify the reports for this control if several kinds share its id.
     struct Mark {
         std::size_t at = 0;
         std::uint8_t low = 0, high = 0;
@@ -41,27 +41,27 @@ struct HidControl {
     int buttons() const;
 };
 
-// An interface of a device and its report descriptor.
+// A HID interface of a device.
 struct HidInterface {
     int number = 0;
     HidDescriptor descriptor;
 };
 
-// Every control of a device that can be taken for buttons, numbered from 1 in this order: keys (of
-// any usage page) by interface and by place in the descriptor, an array's in the order of its
-// usages; then hats; then wheels; then axes. What says that nothing is pressed (keyboard usages 0
-// to 3, usage 0 elsewhere) has no number, nor has the movement of a pointer.
+// Every control of a device that can serve as buttons. They are numbered from 1 in this order: keys
+// (of any usage page) by interface and by place in the descriptor, an array's keys in the order of
+// its usages; then hats; then wheels; then axes. Usages for "nothing pressed" (keyboard usages 0 to
+// 3, usage 0 elsewhere) and the movement of a pointer have no number.
 std::vector<HidControl> controlsOf(const std::vector<HidInterface>& interfaces);
 
-// The number of the first button with this usage; 0: there is none.
+// The number of the first button with this usage; 0: none.
 int buttonOf(const std::vector<HidControl>& controls, HidUsage usage);
 
-// A device's controls as it numbers them. `leading` are the numbers (by controlsOf) of the buttons
-// that a profile puts first, so that they are 1, 2, ... on every device of its kind, 0 where this
-// one has none; the others come after them in their order.
+// A device's controls and the numbers of their buttons. `firstKeys` are the buttons (by their
+// numbers from controlsOf) that a profile puts first, so that they are 1, 2, ... on every device of
+// its kind; 0 if this device lacks one. The others follow in their order.
 struct HidLayout {
     std::vector<HidControl> controls;
-    std::vector<int> leading;
+    std::vector<int> firstKeys;
 
     int count() const;  // of buttons
     int numberOf(int button) const;
@@ -83,20 +83,20 @@ struct ButtonChange {
     friend bool operator==(const ButtonChange&, const ButtonChange&) = default;
 };
 
-// The buttons of one device, as its reports say.
+// Tracks the buttons of one device from its reports.
 class HidButtons {
 public:
     explicit HidButtons(HidLayout layout) : layout_(std::move(layout)), positions_(layout_.controls.size()) {}
 
-    // What the report changes: what went up, then what went down, then detents. Nothing for a
-    // report that is too short, has an unknown id, or says what was known. A position that wraps is
-    // known from its first report on.
+    // The changes by a report: first releases, then presses, then detents. Nothing for a report
+    // that is too short, has an unknown id, or changes nothing. The first report of a wrapping
+    // position only sets it.
     std::vector<ButtonChange> take(int interface, std::span<const std::uint8_t> report);
 
 private:
     const HidLayout layout_;
     std::vector<std::optional<std::int64_t>> positions_;  // of counters
-    std::set<int> down_;                                  // by controlsOf's numbers
+    std::set<int> down_;                                  // numbers from controlsOf
 };
 
 }  // namespace fantascope::drivers

@@ -10,11 +10,11 @@
 namespace fantascope::drivers {
 namespace {
 
-// More than any real device has; what asks for more is garbage.
-constexpr std::size_t kMostBits = 8 * 16384, kMostFields = 16384, kMostUsages = 4096, kDeepest = 64;
+// More than any real device has; a descriptor that exceeds these is garbage.
+constexpr std::size_t kMaxBits = 8 * 16384, kMaxFields = 16384, kMaxUsages = 4096, kMaxDepth = 64;
 
-// Sections 6.2.2.4, 6.2.2.7 and 6.2.2.8: an item's tag and type, as its first byte has them above
-// its size.
+// Sections 6.2.2.4, 6.2.2.7 and 6.2.2.8: tag and type of an item, as in its first byte above the
+// size.
 enum Item : std::uint8_t {
     kInput = 0x80,
     kOutput = 0x90,
@@ -39,7 +39,7 @@ constexpr std::uint8_t kLongItem = 0xfe, kMain = 0x00, kTypeMask = 0x0c;
 // Section 6.2.2.5.
 constexpr std::uint32_t kConstant = 1 << 0, kVariable = 1 << 1, kRelative = 1 << 2, kWrap = 1 << 3, kNullState = 1 << 6;
 
-// An item's data, which may be signed or not, as only its use tells.
+// An item's data, signed or unsigned depending on its use.
 struct Data {
     std::uint32_t bits = 0;
     int bytes = 0;
@@ -65,7 +65,7 @@ public:
         while (at_ < bytes_.size()) TRY(item());
         if (!collections_.empty()) return wrong("a collection has no end");
         if (inDelimiter_) return wrong("a delimiter has no end");
-        if (hasIds_)  // what was said before the first id belongs to no report
+        if (hasIds_)  // anything before the first id belongs to no report
             for (auto* fields : {&found_.inputs, &found_.outputs, &found_.features})
                 std::erase_if(*fields, [](const HidField& field) { return field.report == 0; });
         for (const auto& [id, bits] : ends_[0])
@@ -82,13 +82,13 @@ private:
         start_ = at_;
         const std::uint8_t prefix = bytes_[at_++];
         if (prefix == kLongItem) {
-            if (bytes_.size() - at_ < 2 || bytes_.size() - at_ - 2 < bytes_[at_]) return wrong("it ends in a long item");
+            if (bytes_.size() - at_ < 2 || bytes_.size() - at_ - 2 < bytes_[at_]) return wrong("it ends inside a long item");
             at_ += 2u + bytes_[at_];
             return {};
         }
         Data data;
         data.bytes = (prefix & 3) == 3 ? 4 : prefix & 3;
-        if (bytes_.size() - at_ < static_cast<std::size_t>(data.bytes)) return wrong("it ends in an item");
+        if (bytes_.size() - at_ < static_cast<std::size_t>(data.bytes)) return wrong("it ends inside an item");
         for (int byte = 0; byte < data.bytes; ++byte) data.bits |= std::uint32_t{bytes_[at_++]} << (8 * byte);
         const std::uint8_t what = prefix & 0xfc;
         TRY((what & kTypeMask) == kMain ? main(what, data) : stated(what, data));
@@ -109,11 +109,11 @@ private:
             case kFeature:
                 return fields(found_.features, ends_[2], data.bits);
             case kCollection:
-                if (collections_.size() == kDeepest) return wrong("too many collections in each other");
+                if (collections_.size() == kMaxDepth) return wrong("collections are nested too deeply");
                 collections_.push_back(usages_.empty() ? 0 : whole(usages_.front().first));
                 return {};
             case kEndCollection:
-                if (collections_.empty()) return wrong("the end of no collection");
+                if (collections_.empty()) return wrong("an end without a collection");
                 collections_.pop_back();
                 return {};
             default:
@@ -121,7 +121,7 @@ private:
         }
     }
 
-    // Global and local items.
+    // Handles global and local items.
     Result<void> stated(std::uint8_t what, const Data& data) {
         switch (what) {
             case kUsagePage:
@@ -140,12 +140,12 @@ private:
                 globals_.reportCount = data.bits;
                 return {};
             case kReportId:
-                if (data.bits == 0 || data.bits > 255) return wrong(fmt::format("report id {} is none", data.bits));
+                if (data.bits == 0 || data.bits > 255) return wrong(fmt::format("{} is not a report id", data.bits));
                 globals_.reportId = static_cast<int>(data.bits);
                 hasIds_ = true;
                 return {};
             case kPush:
-                if (pushed_.size() == kDeepest) return wrong("too many pushes");
+                if (pushed_.size() == kMaxDepth) return wrong("too many pushes");
                 pushed_.push_back(globals_);
                 return {};
             case kPop:
@@ -178,17 +178,17 @@ private:
     }
 
     Result<void> usages(Data first, Data last) {
-        // One end with its page gives it to the other.
+        // An end without a page takes that of the other.
         if (first.bytes == 4 && last.bytes != 4) last = {(first.bits & 0xffff0000) | (last.bits & 0xffff), 4};
         if (last.bytes == 4 && first.bytes != 4) first = {(last.bits & 0xffff0000) | (first.bits & 0xffff), 4};
-        if (first.bits > last.bits || (first.bits ^ last.bits) > 0xffff) return wrong("a range of usages that is none");
+        if (first.bits > last.bits || (first.bits ^ last.bits) > 0xffff) return wrong("a range of usages that is invalid");
         if (inDelimiter_ && alternatives_++ > 0) return {};
-        if (usages_.size() == kMostUsages) return wrong("too many usages");
+        if (usages_.size() == kMaxUsages) return wrong("too many usages");
         usages_.push_back({first, last});
         return {};
     }
 
-    // A usage without a page is of that which holds at the main item (section 6.2.2.8).
+    // A usage without a page takes the page in force at the main item (section 6.2.2.8).
     HidUsage whole(const Data& usage) const {
         return usage.bytes == 4 ? usage.bits : (globals_.usagePage << 16) | (usage.bits & 0xffff);
     }
@@ -196,11 +196,11 @@ private:
     Result<void> fields(std::vector<HidField>& found, std::map<int, std::size_t>& ends, std::uint32_t flags) {
         const std::uint64_t bits = globals_.reportSize, count = globals_.reportCount;
         std::size_t& end = ends.try_emplace(globals_.reportId, globals_.reportId != 0 ? 8u : 0u).first->second;
-        if (bits > kMostBits || count > kMostBits || bits * count > kMostBits - std::min(end, kMostBits))
+        if (bits > kMaxBits || count > kMaxBits || bits * count > kMaxBits - std::min(end, kMaxBits))
             return wrong("a report that is too long");
         const std::size_t start = end;
         end += static_cast<std::size_t>(bits * count);
-        // Padding; and what is wider than a number is no control.
+        // Padding, or wider than a number.
         if ((flags & kConstant) != 0 || count == 0 || bits == 0 || bits > 32) return {};
 
         HidField field;
@@ -212,22 +212,22 @@ private:
         field.wraps = (flags & kWrap) != 0;
         field.hasNull = (flags & kNullState) != 0;
         field.low = globals_.low.asSigned();
-        // Many devices write 25 FF and mean 255: the maximum has a sign only where the minimum is
+        // Many devices write 25 FF and mean 255: the maximum is signed only if the minimum is
         // negative.
         field.high = field.low < 0 ? globals_.high.asSigned() : std::int64_t{globals_.high.bits};
         field.application = collections_.empty() ? 0 : collections_.front();
-        if (field.low > field.high) return wrong(fmt::format("a value from {} to {}", field.low, field.high));
+        if (field.low > field.high) return wrong(fmt::format("a range from {} to {}", field.low, field.high));
 
         std::vector<HidUsages> usages;
         for (const auto& [first, last] : usages_) usages.push_back({whole(first), whole(last)});
-        if (found.size() + (field.array ? 1 : count) > kMostFields) return wrong("too many controls");
+        if (found.size() + (field.array ? 1 : count) > kMaxFields) return wrong("too many controls");
         if (field.array) {
             field.places = static_cast<int>(count);
             field.usages = std::move(usages);
             found.push_back(std::move(field));
             return {};
         }
-        // Usages are given out one by one; the last one serves for all that are left.
+        // Usages are assigned one by one; the last one serves all remaining controls.
         std::size_t run = 0;
         HidUsage taken = 0;
         for (std::uint64_t index = 0; index < count; ++index) {
@@ -256,7 +256,7 @@ private:
     bool inDelimiter_ = false, hasIds_ = false;
     int alternatives_ = 0;
     std::vector<HidUsage> collections_;
-    std::map<int, std::size_t> ends_[3];  // of each report of a kind: the bits so far
+    std::map<int, std::size_t> ends_[3];  // bits so far of each report, per kind
     HidDescriptor found_;
 };
 
@@ -279,7 +279,7 @@ std::optional<HidUsage> HidField::usageAt(std::size_t index) const {
 
 std::int64_t HidField::valueIn(std::span<const std::uint8_t> report, int place) const {
     const std::size_t first = offset + static_cast<std::size_t>(place) * static_cast<std::size_t>(bits);
-    std::uint64_t raw = 0;  // up to five bytes hold it
+    std::uint64_t raw = 0;  // spans up to five bytes
     for (std::size_t byte = first / 8; byte <= (first + static_cast<std::size_t>(bits) - 1) / 8; ++byte)
         raw |= std::uint64_t{report[byte]} << (8 * (byte - first / 8));
     raw = (raw >> (first % 8)) & ((std::uint64_t{1} << bits) - 1);

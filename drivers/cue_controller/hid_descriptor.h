@@ -1,7 +1,6 @@
 #pragma once
-// What a USB HID device says of its reports: its report descriptor, read as the Device Class
-// Definition for Human Interface Devices 1.11 (section 6.2.2) has it. Its tables of usages are the
-// HID Usage Tables 1.4.
+// A USB HID device's report descriptor, parsed as in the Device Class Definition for Human
+// Interface Devices 1.11 (section 6.2.2). Usages are from the HID Usage Tables 1.4.
 
 #include "core/result.h"
 
@@ -13,33 +12,33 @@
 
 namespace fantascope::drivers {
 
-// What a control is for: its usage page in the upper half, its usage in the lower. 0x00090001 is
-// button 1; 0 says nothing.
+// A control's purpose: usage page in the upper half, usage in the lower. 0x00090001 is button 1; 0:
+// unknown.
 using HidUsage = std::uint32_t;
-struct HidUsages {  // from first to last, both included
+struct HidUsages {  // from first to last, inclusive
     HidUsage first = 0, last = 0;
     friend bool operator==(const HidUsages&, const HidUsages&) = default;
 };
 
-// One control in a report, or an array of like places that each name a control which is asserted.
+// One control in a report, or an array: several places, each of which names an asserted control.
 struct HidField {
-    int report = 0;          // the id of its report; 0: its interface has one report, without an id
-    std::size_t offset = 0;  // where it starts: bits from the start of the report, its id included
-    int bits = 0;            // of one place: 1..32
-    int places = 1;          // more than one in arrays only
-    bool array = false;      // its values are indices into its usages, from `low`
+    int report = 0;          // the id of its report; 0: the only report of its interface, without an id
+    std::size_t offset = 0;  // bits from the start of the report, its id included
+    int bits = 0;            // per place: 1..32
+    int places = 1;          // more than one only in arrays
+    bool array = false;      // its values are indices into its usages, counted from `low`
     bool relative = false;   // its value is a change
-    bool wraps = false;      // its value goes on at the other end of the range
-    bool hasNull = false;    // a value outside of the range says nothing
+    bool wraps = false;      // its value wraps from one end of the range to the other
+    bool hasNull = false;    // values outside the range mean nothing
     std::int64_t low = 0, high = 0;
-    std::vector<HidUsages> usages;  // one of a variable, or none; an array's in the order of its values
-    HidUsage application = 0;       // of the outermost collection: a mouse, a keyboard
+    std::vector<HidUsages> usages;  // at most one for a variable; for an array in the order of its values
+    HidUsage application = 0;       // usage of the outermost collection: a mouse, a keyboard
 
     HidUsage usage() const { return usages.empty() ? 0 : usages.front().first; }
     std::size_t usageCount() const;
-    // The usage number `index` of an array; nothing beyond its last.
+    // An array's usage number `index`; nothing beyond the last.
     std::optional<HidUsage> usageAt(std::size_t index) const;
-    // What stands at a place. The report must be long enough.
+    // The value at a place. The report must be long enough.
     std::int64_t valueIn(std::span<const std::uint8_t> report, int place = 0) const;
 };
 
@@ -50,13 +49,13 @@ struct HidReport {
 };
 
 struct HidDescriptor {
-    std::vector<HidField> inputs, outputs, features;     // in the descriptor's order; padding left out
-    std::vector<HidReport> inputReports, outputReports;  // by id, lowest first
+    std::vector<HidField> inputs, outputs, features;     // in the descriptor's order, without padding
+    std::vector<HidReport> inputReports, outputReports;  // sorted by id
 };
 
-// Error: it ends in the middle of an item or a collection, or says what cannot be; with the byte
-// where it does. What the program has no use for (long items, reserved tags, units, designators,
-// strings) is skipped; of alternative usages (delimiters) the first is taken.
+// Error: it ends inside an item or a collection, or is invalid; it names the byte. Items that the
+// program does not use (long items, reserved tags, units, designators, strings) are skipped; of
+// alternative usages (delimiters) the first is taken.
 Result<HidDescriptor> parseHidDescriptor(std::span<const std::uint8_t> bytes);
 
 }  // namespace fantascope::drivers

@@ -56,7 +56,7 @@ private:
 
 // https://docs.elgato.com/streamdeck/hid (general, module-6, stream-deck-neo),
 // https://github.com/abcminiuser/python-elgato-streamdeck (Devices),
-// https://github.com/Julusian/node-elgato-stream-deck (imageWriter) and, of which way up,
+// https://github.com/Julusian/node-elgato-stream-deck (imageWriter). Orientation of the pictures:
 // Boatswain's doc/stream-deck.md.
 class StreamDeckKeys final : public HidLamps {
 public:
@@ -66,8 +66,7 @@ public:
 
     std::vector<HidOutReport> begin(double brightness) const override {
         const std::uint8_t percent = byteOf(100 * brightness);
-        // Whoever had it before may have left it in the middle of a picture; an empty report ends
-        // that.
+        // A program before us may have stopped in the middle of a picture; an empty report ends it.
         return {output({}), isMain() ? feature({0x03, 0x08, percent}, 32) : feature({0x05, 0x55, 0xaa, 0xd1, 0x01, percent}, 17)};
     }
 
@@ -80,7 +79,7 @@ public:
         }
         const Bytes file = keyPictureFile(light, kind_.picture);
         const std::size_t head = isMain() ? 8 : 16;
-        // The first one takes a picture in two halves.
+        // The first version takes a picture in two halves.
         const std::size_t most = isOriginal() ? file.size() / 2 : reportBytes() - head;
         std::vector<HidOutReport> reports;
         for (std::size_t at = 0; at < file.size(); at += most) {
@@ -151,11 +150,11 @@ public:
             std::uint8_t& byte = report.bytes[at / 8];
             byte = static_cast<std::uint8_t>((value >> bit & 1) != 0 ? byte | mask : byte & ~mask);
         }
-        return {report};  // whole: the others in it stay as they are
+        return {report};  // the whole report, so the other lamps in it keep their state
     }
 
 private:
-    // Where in reports_ it stands.
+    // Its index in reports_.
     std::size_t reportOf(int interface, const HidReport& wanted) {
         for (std::size_t i = 0; i < reports_.size(); ++i)
             if (reports_[i].interface == interface && reports_[i].id == wanted.id) return i;
@@ -165,7 +164,7 @@ private:
         return reports_.size() - 1;
     }
 
-    std::vector<std::pair<HidField, std::size_t>> lamps_;  // with their report
+    std::vector<std::pair<HidField, std::size_t>> lamps_;  // each with its report
     std::vector<HidOutReport> reports_;
 };
 

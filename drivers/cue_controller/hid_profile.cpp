@@ -9,7 +9,7 @@ namespace {
 
 using Kind = HidControl::Kind;
 
-// A control where a report holds it; its report's length follows from all of them.
+// A control at a place in a report; withControls() fills in the report's length.
 HidControl control(Kind kind, std::string name, int report, int offset, int bits, std::int64_t low, std::int64_t high) {
     HidControl made;
     made.kind = kind;
@@ -22,7 +22,7 @@ HidControl control(Kind kind, std::string name, int report, int offset, int bits
     return made;
 }
 
-// `count` keys, `step` bits from each other.
+// `count` keys, `step` bits apart.
 struct Run {
     int report, offset, bits, step, count;
 };
@@ -40,8 +40,9 @@ std::vector<HidControl> joined(std::vector<HidControl> first, std::vector<HidCon
     return first;
 }
 
-HidProfile laidOut(std::string_view name, std::string_view what, std::vector<std::pair<std::uint16_t, std::uint16_t>> devices,
-                   std::vector<HidControl> controls, HidLampKind lamps = {}) {
+HidProfile withControls(std::string_view name, std::string_view what,
+                        std::vector<std::pair<std::uint16_t, std::uint16_t>> devices, std::vector<HidControl> controls,
+                        HidLampKind lamps = {}) {
     std::size_t bits = 0;
     int next = 1;
     for (HidControl& each : controls) {
@@ -53,7 +54,7 @@ HidProfile laidOut(std::string_view name, std::string_view what, std::vector<std
     return {name, what, std::move(devices), {}, std::move(controls), std::move(lamps)};
 }
 
-// The sticks have the lamps of an XK-24, whose columns of six are eight numbers apart.
+// The sticks have the lamps of an XK-24, whose columns of six start at multiples of eight.
 XkeysLamps stickLamps(int keys) {
     XkeysLamps lamps;
     for (int key = 0; key < keys; ++key) lamps.blue.push_back(key / 6 * 8 + key % 6);
@@ -68,8 +69,8 @@ StreamDeckLamps deck(int keys, int side, Turn turn = Turn::Half) {
     return {Protocol::Main, keys, keys, {side, Coding::Jpeg, turn}, 0};
 }
 
-// https://docs.elgato.com/streamdeck/hid/stream-deck-plus: byte 1 says of what a report is: 0 keys,
-// 2 the touch strip, 3 dials.
+// https://docs.elgato.com/streamdeck/hid/stream-deck-plus: byte 1 is the kind of report: 0 keys, 2
+// the touch strip, 3 dials.
 std::vector<HidControl> dialsAndStrip() {
     std::vector<HidControl> made = keys({{1, 32, 8, 8, 8}});
     for (HidControl& key : made) key.marks = {{1, 0, 0}};
@@ -81,8 +82,8 @@ std::vector<HidControl> dialsAndStrip() {
         made.push_back(control(Kind::Wheel, fmt::format("dial {}", dial + 1), 1, 40 + 8 * dial, 8, -128, 127));
         made.back().marks = {{1, 3, 3}, {4, 1, 1}};
     }
-    // The strip tells where it was touched, 800 wide, once the finger has left it: shortly or for
-    // long, but not in passing.
+    // The strip, 800 wide, reports a short or long touch once the finger has left it. Swipes are
+    // not used.
     for (int part = 0; part < 4; ++part) {
         made.push_back(
             control(Kind::Touch, fmt::format("strip above dial {}", part + 1), 1, 48, 16, 200 * part, 200 * part + 199));
@@ -91,18 +92,18 @@ std::vector<HidControl> dialsAndStrip() {
     return made;
 }
 
-// The jog is a position that wraps and the shuttle one that springs back; the descriptor calls both
-// relative. As Contour's own (0b33:0020), with the bits of its 13 buttons of which five are there.
+// The jog is a position that wraps, and the shuttle springs back; the descriptor declares both as
+// relative. From Contour's descriptor (0b33:0020), which has the bits of 13 buttons, five of them
+// present.
 std::vector<HidControl> jogAndShuttle() {
     return {control(Kind::Counter, "jog", 0, 8, 8, 0, 255), control(Kind::Axis, "shuttle", 0, 0, 8, -7, 7)};
 }
 
-std::vector<HidProfile> made() {
-    // Keyboard: Page Down, Page Up, F5, Escape, period, B, Right, Left; then the consumer page's
-    // volume up and down.
+void addPresenters(std::vector<HidProfile>& all) {
+    // Keyboard: Page Down, Page Up, F5, Escape, period, B, Right, Left. Consumer page: volume up
+    // and down.
     const std::vector<HidUsage> presenterKeys = {0x0007004e, 0x0007004b, 0x0007003e, 0x00070029, 0x00070037,
                                                  0x00070005, 0x0007004f, 0x00070050, 0x000c00e9, 0x000c00ea};
-    std::vector<HidProfile> all;
     all.push_back({"presenter",
                    "presenter",
                    {{0x046d, 0xc52d},   // Logitech R400, R700
@@ -113,44 +114,56 @@ std::vector<HidProfile> made() {
                     {0x69a7, 0x9803}},  // AVATTO i10 Pro
                    presenterKeys,
                    {}});
-    all.push_back(laidOut("shuttle_xpress", "Contour ShuttleXpress", {{0x0b33, 0x0020}},
-                          joined(keys({{0, 28, 1, 1, 5}}), jogAndShuttle())));
-    all.push_back(laidOut("shuttle_pro", "Contour ShuttlePRO", {{0x0b33, 0x0010}, {0x0b33, 0x0030}},
-                          joined(keys({{0, 24, 1, 1, 15}}), jogAndShuttle())));
-    // X-keys send the number of the unit, the program switch, and a byte a column.
-    all.push_back(
-        laidOut("xkeys_4", "X-keys XK-4 Stick", {{0x05f3, 0x0467}, {0x05f3, 0x0469}}, keys({{0, 16, 1, 8, 4}}), stickLamps(4)));
-    all.push_back(laidOut("xkeys_8", "X-keys XK-8 Stick", {{0x05f3, 0x046a}, {0x05f3, 0x046c}},
-                          keys({{0, 16, 1, 8, 4}, {0, 17, 1, 8, 4}}), stickLamps(8)));
-    all.push_back(laidOut("xkeys_16", "X-keys XK-16 Stick",
-                          {{0x05f3, 0x0419}, {0x05f3, 0x041b}, {0x05f3, 0x04bd}, {0x05f3, 0x04c0}},
-                          keys({{0, 16, 1, 8, 4}, {0, 17, 1, 8, 4}, {0, 18, 1, 8, 4}, {0, 19, 1, 8, 4}}), stickLamps(16)));
+}
+
+void addShuttles(std::vector<HidProfile>& all) {
+    all.push_back(withControls("shuttle_xpress", "Contour ShuttleXpress", {{0x0b33, 0x0020}},
+                               joined(keys({{0, 28, 1, 1, 5}}), jogAndShuttle())));
+    all.push_back(withControls("shuttle_pro", "Contour ShuttlePRO", {{0x0b33, 0x0010}, {0x0b33, 0x0030}},
+                               joined(keys({{0, 24, 1, 1, 15}}), jogAndShuttle())));
+}
+
+void addXkeys(std::vector<HidProfile>& all) {
+    // X-keys send the unit's number, the program switch, and one byte per column.
+    all.push_back(withControls("xkeys_4", "X-keys XK-4 Stick", {{0x05f3, 0x0467}, {0x05f3, 0x0469}}, keys({{0, 16, 1, 8, 4}}),
+                               stickLamps(4)));
+    all.push_back(withControls("xkeys_8", "X-keys XK-8 Stick", {{0x05f3, 0x046a}, {0x05f3, 0x046c}},
+                               keys({{0, 16, 1, 8, 4}, {0, 17, 1, 8, 4}}), stickLamps(8)));
+    all.push_back(withControls("xkeys_16", "X-keys XK-16 Stick",
+                               {{0x05f3, 0x0419}, {0x05f3, 0x041b}, {0x05f3, 0x04bd}, {0x05f3, 0x04c0}},
+                               keys({{0, 16, 1, 8, 4}, {0, 17, 1, 8, 4}, {0, 18, 1, 8, 4}, {0, 19, 1, 8, 4}}), stickLamps(16)));
     XkeysLamps blueAndRed = stickLamps(24);
     blueAndRed.red = 32;
-    all.push_back(laidOut("xkeys_24", "X-keys XK-24", {{0x05f3, 0x0403}, {0x05f3, 0x0405}},
-                          keys({{0, 16, 1, 1, 6}, {0, 24, 1, 1, 6}, {0, 32, 1, 1, 6}, {0, 40, 1, 1, 6}}), blueAndRed));
+    all.push_back(withControls("xkeys_24", "X-keys XK-24", {{0x05f3, 0x0403}, {0x05f3, 0x0405}},
+                               keys({{0, 16, 1, 1, 6}, {0, 24, 1, 1, 6}, {0, 32, 1, 1, 6}, {0, 40, 1, 1, 6}}), blueAndRed));
     all.push_back(
-        laidOut("xkeys_pedal", "X-keys XK-3 Foot Pedal", {{0x05f3, 0x0438}, {0x05f3, 0x043a}}, keys({{0, 17, 1, 1, 3}})));
-    // Stream Decks send a byte a key. The first one counts each row from its right.
-    all.push_back(laidOut("stream_deck_original", "Elgato Stream Deck", {{0x0fd9, 0x0060}},
-                          keys({{1, 40, 8, -8, 5}, {1, 80, 8, -8, 5}, {1, 120, 8, -8, 5}}),
-                          StreamDeckLamps{Protocol::Original, 15, 5, {72, Coding::Bmp, Turn::Half}, 0}));
-    all.push_back(laidOut("stream_deck_mini", "Elgato Stream Deck Mini",
-                          {{0x0fd9, 0x0063}, {0x0fd9, 0x0090}, {0x0fd9, 0x00b3}, {0x0fd9, 0x00b8}}, keys({{1, 8, 8, 8, 6}}),
-                          StreamDeckLamps{Protocol::Mini, 6, 3, {80, Coding::Bmp, Turn::Transposed}, 0}));
-    all.push_back(laidOut("stream_deck", "Elgato Stream Deck",
-                          {{0x0fd9, 0x006d}, {0x0fd9, 0x0080}, {0x0fd9, 0x00a5}, {0x0fd9, 0x00b9}}, keys({{1, 32, 8, 8, 15}}),
-                          deck(15, 72)));
-    all.push_back(laidOut("stream_deck_xl", "Elgato Stream Deck XL", {{0x0fd9, 0x006c}, {0x0fd9, 0x008f}, {0x0fd9, 0x00ba}},
-                          keys({{1, 32, 8, 8, 32}}), deck(32, 96)));
+        withControls("xkeys_pedal", "X-keys XK-3 Foot Pedal", {{0x05f3, 0x0438}, {0x05f3, 0x043a}}, keys({{0, 17, 1, 1, 3}})));
+}
+
+void addStreamDecks(std::vector<HidProfile>& all) {
+    // Stream Decks send one byte per key. The first version counts each row from the right.
+    all.push_back(withControls("stream_deck_original", "Elgato Stream Deck", {{0x0fd9, 0x0060}},
+                               keys({{1, 40, 8, -8, 5}, {1, 80, 8, -8, 5}, {1, 120, 8, -8, 5}}),
+                               StreamDeckLamps{Protocol::Original, 15, 5, {72, Coding::Bmp, Turn::Half}, 0}));
+    all.push_back(withControls("stream_deck_mini", "Elgato Stream Deck Mini",
+                               {{0x0fd9, 0x0063}, {0x0fd9, 0x0090}, {0x0fd9, 0x00b3}, {0x0fd9, 0x00b8}}, keys({{1, 8, 8, 8, 6}}),
+                               StreamDeckLamps{Protocol::Mini, 6, 3, {80, Coding::Bmp, Turn::Transposed}, 0}));
+    all.push_back(withControls("stream_deck", "Elgato Stream Deck",
+                               {{0x0fd9, 0x006d}, {0x0fd9, 0x0080}, {0x0fd9, 0x00a5}, {0x0fd9, 0x00b9}},
+                               keys({{1, 32, 8, 8, 15}}), deck(15, 72)));
+    all.push_back(withControls("stream_deck_xl", "Elgato Stream Deck XL", {{0x0fd9, 0x006c}, {0x0fd9, 0x008f}, {0x0fd9, 0x00ba}},
+                               keys({{1, 32, 8, 8, 32}}), deck(32, 96)));
     StreamDeckLamps neo = deck(8, 96);
     neo.colours = 2;
-    all.push_back(laidOut("stream_deck_neo", "Elgato Stream Deck Neo", {{0x0fd9, 0x009a}}, keys({{1, 32, 8, 8, 10}}), neo));
+    all.push_back(withControls("stream_deck_neo", "Elgato Stream Deck Neo", {{0x0fd9, 0x009a}}, keys({{1, 32, 8, 8, 10}}), neo));
     all.push_back(
-        laidOut("stream_deck_plus", "Elgato Stream Deck +", {{0x0fd9, 0x0084}}, dialsAndStrip(), deck(8, 120, Turn::None)));
-    all.push_back(laidOut("stream_deck_pedal", "Elgato Stream Deck Pedal", {{0x0fd9, 0x0086}}, keys({{1, 32, 8, 8, 3}})));
-    // Their descriptors say that there are lamps, and not what they are for: only whoever asks for
-    // it gets the Num Lock lamp as that of GO.
+        withControls("stream_deck_plus", "Elgato Stream Deck +", {{0x0fd9, 0x0084}}, dialsAndStrip(), deck(8, 120, Turn::None)));
+    all.push_back(withControls("stream_deck_pedal", "Elgato Stream Deck Pedal", {{0x0fd9, 0x0086}}, keys({{1, 32, 8, 8, 3}})));
+}
+
+void addByDescriptor(std::vector<HidProfile>& all) {
+    // Descriptors name lamps, but not their purpose. So the Num Lock lamp serves as GO's only if
+    // the site file asks for it.
     all.push_back({"number_pad",
                    "number pad",
                    {},
@@ -160,13 +173,22 @@ std::vector<HidProfile> made() {
                    {},
                    LedPageLamps{}});
     all.push_back({"lamps_by_descriptor", "device with lamps", {}, {}, {}, LedPageLamps{}});
+}
+
+std::vector<HidProfile> allProfiles() {
+    std::vector<HidProfile> all;
+    addPresenters(all);
+    addShuttles(all);
+    addXkeys(all);
+    addStreamDecks(all);
+    addByDescriptor(all);
     return all;
 }
 
 }  // namespace
 
 std::span<const HidProfile> hidProfiles() {
-    static const std::vector<HidProfile> all = made();
+    static const std::vector<HidProfile> all = allProfiles();
     return all;
 }
 
@@ -191,7 +213,7 @@ HidLayout layoutOf(const std::vector<HidInterface>& interfaces, const HidProfile
     }
     layout.controls = controlsOf(interfaces);
     if (profile == nullptr) return layout;
-    for (const HidUsage usage : profile->leading) layout.leading.push_back(buttonOf(layout.controls, usage));
+    for (const HidUsage usage : profile->firstKeys) layout.firstKeys.push_back(buttonOf(layout.controls, usage));
     return layout;
 }
 

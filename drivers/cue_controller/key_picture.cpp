@@ -17,13 +17,13 @@ namespace {
 
 using State = ButtonLight::State;
 
-constexpr int kSamples = 4;                               // of a pixel, each way
-constexpr double kGap = 0.12;                             // between letters, in ems
-constexpr double kWidestWord = 0.84, kTallestWord = 0.4;  // of the key
+constexpr int kSamples = 4;                                   // per pixel and direction
+constexpr double kGap = 0.12;                                 // between letters, in ems
+constexpr double kMaxWordWidth = 0.84, kMaxWordHeight = 0.4;  // of the key
 constexpr std::size_t kBmpHead = 54;
 
 Rgba8 inkOf(State state) {
-    if (state == State::Off) return {96, 96, 96, 255};  // to be found in the dark, no more
+    if (state == State::Off) return {96, 96, 96, 255};  // just visible in the dark
     return state == State::Active ? Rgba8{0, 0, 0, 255} : Rgba8{255, 255, 255, 255};
 }
 
@@ -37,7 +37,7 @@ Box boxOf(const Outline& outline) {
     return box;
 }
 
-// The letters side by side, x right, y up. What the font lacks is left out.
+// The letters side by side, x right, y up. Letters that the font lacks are left out.
 Outline written(const std::string& word) {
     Outline all;
     double x = 0;
@@ -54,7 +54,7 @@ Outline written(const std::string& word) {
     return all;
 }
 
-// Covers what lies within an odd number of rings. Points are pixels, y down.
+// Fills the region inside an odd number of rings. Points are pixels, y down.
 void fill(RgbaImage& image, const Outline& outline, Rgba8 ink) {
     std::vector<int> covered(static_cast<std::size_t>(image.width()));
     for (int y = 0; y < image.height(); ++y) {
@@ -69,7 +69,7 @@ void fill(RgbaImage& image, const Outline& outline, Rgba8 ink) {
                 }
             std::sort(crossings.begin(), crossings.end());
             for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
-                // The samples whose middle lies between.
+                // The samples whose centres lie between.
                 const auto sampleAfter = [&](double x) {
                     return std::clamp(static_cast<int>(std::ceil(x * kSamples - 0.5)), 0, image.width() * kSamples);
                 };
@@ -118,7 +118,7 @@ std::vector<std::uint8_t> bmpOf(const RgbaImage& image) {
     put(24, 2);
     put(0, 4);
     put(pixels, 4);
-    put(3780, 4);  // pixels in a metre, as their own program says it
+    put(3780, 4);  // pixels per metre, as sent by Elgato's own program
     put(3780, 4);
     put(0, 8);
     for (int y = image.height() - 1; y >= 0; --y)
@@ -148,7 +148,7 @@ RgbaImage keyPicture(const ButtonLight& light, int side) {
     if (word.rings.empty()) return image;
     const Box box = boxOf(word);
     const glm::dvec2 size = box.high - box.low, middle = (box.low + box.high) / 2.0;
-    const double scale = side * std::min(kWidestWord / size.x, kTallestWord / size.y);
+    const double scale = side * std::min(kMaxWordWidth / size.x, kMaxWordHeight / size.y);
     for (auto& ring : word.rings)
         for (glm::dvec2& point : ring) point = side / 2.0 + scale * (point - middle) * glm::dvec2(1, -1);
     fill(image, word, inkOf(light.state));
@@ -157,7 +157,7 @@ RgbaImage keyPicture(const ButtonLight& light, int side) {
 
 std::vector<std::uint8_t> keyPictureFile(const ButtonLight& light, const KeyPictureFormat& format) {
     const RgbaImage image = turned(keyPicture(light, format.side), format.turn);
-    // As large as their own programs send them, that is without a loss that could be seen.
+    // Files as large as Elgato's own program sends; no visible loss.
     constexpr int kQuality = 95;
     return format.coding == KeyPictureFormat::Coding::Jpeg ? jpegOf(image, kQuality) : bmpOf(image);
 }

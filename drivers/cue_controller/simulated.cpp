@@ -20,8 +20,8 @@ std::optional<ButtonEvent> SimulatedCueController::poll() {
     if (plug_.lostAgain()) lost_.merge(down_);
     if (!lost_.empty()) return ButtonEvent{lost_.extract(lost_.begin()).value(), false, plug_.world().clock().now()};
     while (const auto event = plug_.world().takePress()) {
-        // A press of a button that is down is auto-repeat; a release of one that is up was pressed
-        // while nobody could see it.
+        // A press of a button that is down is auto-repeat. A release of a button that is up belongs
+        // to a press that was lost.
         const bool changes = event->pressed ? down_.insert(event->button).second : down_.erase(event->button) == 1;
         if (changes) return event;
     }

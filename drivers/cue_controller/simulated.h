@@ -23,9 +23,9 @@ public:
 private:
     explicit SimulatedCueController(site::Plug plug) : plug_(std::move(plug)) {}
     site::Plug plug_;
-    std::set<int> down_;  // buttons whose press was given
-    std::set<int> lost_;  // of those, the ones whose release a loss has swallowed
-    std::set<int> told_;  // buttons with a light
+    std::set<int> down_;  // buttons whose press was polled
+    std::set<int> lost_;  // those of down_ whose release was lost
+    std::set<int> told_;  // buttons that were given a light
 };
 
 }  // namespace fantascope::drivers

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 // HID 1.11, section 6.2.1.
 constexpr std::uint8_t kHidDescriptor = 0x21, kReportDescriptor = 0x22;
 
-// Bus and ports, as the kernel writes them: "1-1.4".
+// Bus and ports in the kernel's notation: "1-1.4".
 std::string pathOf(libusb_device* device) {
     std::array<std::uint8_t, 8> ports{};
     const int count = libusb_get_port_numbers(device, ports.data(), static_cast<int>(ports.size()));
@@ -44,7 +44,7 @@ Result<void> UsbBus::start() {
     libusb_context* context = nullptr;
     if (const int error = libusb_init(&context); error != 0)
         return Error(fmt::format("this machine has no USB: {}", libusb_strerror(error)));
-    // What comes ends a wait(); without hot-plug it is looked for.
+    // A new device ends a wait(). Without hot-plug support, the devices are listed again and again.
     if (libusb_has_capability(LIBUSB_CAP_HAS_HOTPLUG) != 0)
         libusb_hotplug_register_callback(
             context, LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED, 0, LIBUSB_HOTPLUG_MATCH_ANY, LIBUSB_HOTPLUG_MATCH_ANY,
@@ -54,8 +54,8 @@ Result<void> UsbBus::start() {
     return {};
 }
 
-void UsbBus::wait(Time patience) {
-    timeval limit = timevalOf(patience);
+void UsbBus::wait(Time timeout) {
+    timeval limit = timevalOf(timeout);
     libusb_handle_events_timeout_completed(context_, &limit, nullptr);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The USB as libusb shows it, and the HID devices on it.
+// USB through libusb, and the HID devices on it.
 
 #include "drivers/common/file_handle.h"
 #include "drivers/common/usb_identity.h"
@@ -18,8 +18,8 @@ struct libusb_device;
 
 namespace fantascope::drivers {
 
-// libusb, from the first time that it starts. Thread: interrupt() from any, the rest from the
-// device's.
+// A libusb context, made by the first start(). Thread: interrupt() from any, the rest from the
+// device's thread.
 class UsbBus {
 public:
     UsbBus() = default;
@@ -27,19 +27,19 @@ public:
     UsbBus(const UsbBus&) = delete;
     UsbBus& operator=(const UsbBus&) = delete;
 
-    // Error: this machine has no USB that could be used.
+    // Error: no usable USB on this machine.
     Result<void> start();
     libusb_context* context() const { return context_; }
 
-    // Until something has happened on the USB, it was interrupted, or `patience` is over.
-    void wait(Time patience);
+    // Waits until something happens on the USB, interrupt() is called, or `timeout` has passed.
+    void wait(Time timeout);
     void interrupt();
 
 private:
     std::atomic<libusb_context*> context_ = nullptr;
 };
 
-// A device on the list, for as long as it is held.
+// A listed device, valid as long as it is held.
 class ListedDevice {
 public:
     ListedDevice(libusb_device* device, UsbIdentity usb);
@@ -54,22 +54,22 @@ private:
     libusb_device* device_;
 };
 
-// The devices with a HID interface, by their path.
+// The devices with a HID interface, sorted by path.
 std::vector<ListedDevice> hidDevices(libusb_context* context);
 
-// A HID interface with reports to be heard.
+// A HID interface with an endpoint for input reports.
 struct HidEndpoints {
     int number = 0;
-    std::uint8_t in = 0, out = 0;      // interrupt endpoints; out 0: reports to it go over the control pipe
-    std::size_t packet = 0;            // bytes at most, of `in`
+    std::uint8_t in = 0, out = 0;      // interrupt endpoints; out 0: output reports use the control pipe
+    std::size_t packet = 0;            // maximum bytes of `in`
     std::uint16_t descriptorSize = 0;  // of its report descriptor
 };
 std::vector<HidEndpoints> hidInterfacesOf(libusb_device* device);
 
-// Its file of usbfs.
+// Its file in usbfs.
 std::filesystem::path fileOf(libusb_device* device);
 
-// What libusb says when it does not open, claim or reach a device.
+// The outage for a libusb error while opening, claiming or reaching a device.
 Outage outageOf(int error, const std::filesystem::path& file);
 
 }  // namespace fantascope::drivers

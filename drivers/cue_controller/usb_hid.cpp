@@ -31,7 +31,7 @@ std::uint16_t hexadecimal(const std::string& digits) {
 
 const HidProfile* profileOf(const UsbIdentity& usb) { return hidProfileOf(hexadecimal(usb.vendor), hexadecimal(usb.product)); }
 
-// libusb for a look at what is there; null where this machine has no USB.
+// A libusb context to list devices; null if this machine has no USB.
 using UsbContext = std::unique_ptr<libusb_context, decltype(&libusb_exit)>;
 UsbContext listingContext() {
     libusb_context* opened = nullptr;
@@ -50,22 +50,22 @@ Result<std::string> fourDigits(const ConfigNode& node) {
 
 bool UsbHidController::Options::fits(const UsbIdentity& usb) const {
     const auto isThat = [](const std::string& wanted, const std::string& is) { return wanted.empty() || wanted == is; };
-    // Where nothing is said it is a controller that is known, never the keyboard of the machine.
+    // Without any key only a device with a profile matches, never the machine's keyboard.
     if (vendor.empty() && product.empty() && serial.empty() && path.empty()) return profileOf(usb) != nullptr;
     return isThat(vendor, usb.vendor) && isThat(product, usb.product) && isThat(serial, usb.serial) && isThat(path, usb.path);
 }
 
-std::string UsbHidController::Options::words() const {
-    std::string words = vendor.empty() && product.empty()
-                            ? ""
-                            : fmt::format(" {}:{}", vendor.empty() ? "*" : vendor, product.empty() ? "*" : product);
-    if (!serial.empty()) words += " with serial " + serial;
-    if (!path.empty()) words += " at " + path;
-    return words;
+std::string UsbHidController::Options::description() const {
+    std::string text = vendor.empty() && product.empty()
+                           ? ""
+                           : fmt::format(" {}:{}", vendor.empty() ? "*" : vendor, product.empty() ? "*" : product);
+    if (!serial.empty()) text += " with serial " + serial;
+    if (!path.empty()) text += " at " + path;
+    return text;
 }
 
-std::string UsbHidController::Options::wanted() const {
-    const std::string said = words();
+std::string UsbHidController::Options::notFound() const {
+    const std::string said = description();
     return said.empty() ? "no controller that has a profile" : "no USB controller" + said;
 }
 
@@ -73,7 +73,7 @@ std::string UsbHidController::Options::claim() const {
     if (const UsbContext context = listingContext())
         for (const ListedDevice& device : hidDevices(context.get()))
             if (fits(device.usb)) return "cue controller at the USB port " + device.usb.path;
-    return "cue controller" + words();
+    return "cue controller" + description();
 }
 
 Result<Opening<CueController>> UsbHidController::fromConfig(const ConfigNode& options) {
@@ -94,8 +94,8 @@ Result<Opening<CueController>> UsbHidController::fromConfig(const ConfigNode& op
     fields.optional().boolean("ask_state", wanted.asksState);
     fields.optional().number("brightness", wanted.brightness, 0, 1);
     TRY(fields.finish());
-    const auto open = [wanted](const Surroundings& around) -> Result<std::unique_ptr<CueController>> {
-        return std::unique_ptr<CueController>(new UsbHidController(wanted, around.clock));
+    const auto open = [wanted](const DriverContext& context) -> Result<std::unique_ptr<CueController>> {
+        return std::unique_ptr<CueController>(new UsbHidController(wanted, context.clock));
     };
     return Opening<CueController>{.open = open, .claim = [wanted] { return wanted.claim(); }};
 }
@@ -105,18 +105,18 @@ UsbHidController::UsbHidController(Options options, Clock& clock)
       clock_(clock),
       events_(options_.debounce),
       usb_(std::make_unique<UsbBus>()),
-      service_("cue controller", "usb_hid", LossAction::Hold, [this](Service& service) { return attend(service); }) {}
+      service_("cue controller", "usb_hid", LossAction::Hold, [this](Service& service) { return runOnce(service); }) {}
 
 UsbHidController::~UsbHidController() {
-    leaving_ = true;
+    closing_ = true;
     usb_->interrupt();
 }
 
 void UsbHidController::light(int button, const ButtonLight& light) {
-    if (lights_.tell(button, light)) usb_->interrupt();
+    if (lights_.set(button, light)) usb_->interrupt();
 }
 
-Outage UsbHidController::attend(Service& service) {
+Outage UsbHidController::runOnce(Service& service) {
     if (const auto started = usb_->start(); !started) return {DeviceState::Absent, started.error().message()};
     const auto fitting = [&] {
         auto devices = hidDevices(usb_->context());
@@ -124,38 +124,38 @@ Outage UsbHidController::attend(Service& service) {
         return devices;
     };
     auto devices = fitting();
-    // Once it has said that there is none it waits for one.
-    while (devices.empty() && !leaving_ && service.status().state == DeviceState::Absent) {
+    // Once reported as absent, it waits here for a device.
+    while (devices.empty() && !closing_ && service.status().state == DeviceState::Absent) {
         usb_->wait(1s);
         devices = fitting();
     }
     std::optional<Outage> first;
     for (const ListedDevice& device : devices) {
         const HidProfile* const profile = options_.profile != nullptr ? options_.profile : profileOf(device.usb);
-        UsbHidDevice life({*usb_, clock_, events_, lights_, leaving_}, device, profile, options_.brightness);
-        if (!life.outage()) life.settle(options_.asksState);
-        if (leaving_) {
+        UsbHidDevice life({*usb_, clock_, events_, lights_, closing_}, device, profile, options_.brightness);
+        if (!life.outage()) life.readInitialState(options_.asksState);
+        if (closing_) {
             life.darken();
             return {};
         }
         if (life.outage()) {
-            events_.lose(clock_.now());
+            events_.deviceLost(clock_.now());
             if (!first) first = life.outage();
-            continue;  // another one of its like may do
+            continue;  // another matching device may work
         }
-        service.running();
-        while (!leaving_ && !life.outage()) {
-            const auto due = events_.due();
+        service.setRunning();
+        while (!closing_ && !life.outage()) {
+            const auto due = events_.nextFlush();
             usb_->wait(due ? *due - clock_.now() : Time(1s));
-            events_.pass(clock_.now());
-            life.tend();
-            service.trouble(life.trouble());
+            events_.flush(clock_.now());
+            life.poll();
+            service.setTrouble(life.trouble());
         }
-        if (leaving_) life.darken();
-        events_.lose(clock_.now());
+        if (closing_) life.darken();
+        events_.deviceLost(clock_.now());
         return life.outage().value_or(Outage{});
     }
-    return first.value_or(Outage{DeviceState::Absent, options_.wanted() + " is plugged in"});
+    return first.value_or(Outage{DeviceState::Absent, options_.notFound() + " is plugged in"});
 }
 
 std::vector<FoundDevice> findControllers() {
@@ -165,7 +165,7 @@ std::vector<FoundDevice> findControllers() {
     for (const ListedDevice& device : hidDevices(context.get())) {
         const UsbIdentity& usb = device.usb;
         const HidProfile* const profile = profileOf(usb);
-        // The kernel shows the report descriptors of what its own drivers have.
+        // The kernel shows the report descriptors of devices that its own drivers have.
         std::vector<HidInterface> interfaces;
         bool isHeld = false;
         for (const HidEndpoints& heard : hidInterfacesOf(device.get())) {

@@ -17,23 +17,24 @@ constexpr std::uint8_t kReportDescriptor = 0x22, kGetReport = 0x01, kSetReport =
 constexpr int kInputReport = 1, kOutputReport = 2, kFeatureReport = 3;
 constexpr std::uint8_t kFromInterface = 0x81, kFromHid = 0xa1, kToHid = 0x21;  // bmRequestType
 
-constexpr unsigned kDescriptorPatience = 1000, kStatePatience = 200;  // milliseconds
-// A device that was not listened to has a report or two from that time left, which come with the
-// first polls; no bInterval of a device with buttons is longer than a fifth of this.
+constexpr unsigned kDescriptorTimeout = 1000, kStateTimeout = 200;  // milliseconds
+// A device that nobody listened to may hold a report or two from before, which come with the first
+// polls. No device with buttons has a bInterval longer than a fifth of this.
 constexpr Time kSettling = 100ms;
-constexpr int kQueued = 8;       // transfers of an interface that wait for reports
-constexpr int kMostErrors = 64;  // of transfers, one after the other
+constexpr int kQueued = 8;      // transfers per interface that wait for reports
+constexpr int kMaxErrors = 64;  // consecutive, of transfers
 
-constexpr unsigned kLightPatience = 1000, kFarewellPatience = 200;  // milliseconds, for one report
-constexpr Time kLightPause = 1s;                                    // after a report that was not taken
-constexpr int kMostFailures = 8;                                    // to send lights, one after the other
+constexpr unsigned kLightTimeout = 1000, kDarkenTimeout = 200;  // milliseconds, for one report
+constexpr Time kLightPause = 1s;                                // after a report that was refused
+constexpr int kMaxFailures = 8;                                 // consecutive, to send lights
 
 std::uint16_t reportValue(int type, int id) { return static_cast<std::uint16_t>(type << 8 | id); }
 
 }  // namespace
 
-UsbHidDevice::UsbHidDevice(const Around& around, const ListedDevice& device, const HidProfile* profile, double brightness)
-    : around_(around),
+UsbHidDevice::UsbHidDevice(const Environment& environment, const ListedDevice& device, const HidProfile* profile,
+                           double brightness)
+    : environment_(environment),
       file_(fileOf(device.get())),
       handle_(nullptr, &libusb_close),
       brightness_(brightness),
@@ -45,7 +46,7 @@ UsbHidDevice::UsbHidDevice(const Around& around, const ListedDevice& device, con
     }
     handle_.reset(opened);
     libusb_set_auto_detach_kernel_driver(opened, 1);
-    if (!claim(hidInterfacesOf(device.get())) || !layOut(profile)) return;
+    if (!claim(hidInterfacesOf(device.get())) || !readLayout(profile)) return;
     if (profile != nullptr) lamps_ = lampsOf(profile->lamps, interfaces_);
     listen();
     startLamps();
@@ -55,21 +56,21 @@ UsbHidDevice::~UsbHidDevice() {
     isEnding_ = true;
     for (const Transfer& transfer : transfers_) libusb_cancel_transfer(transfer.get());
     if (isSending_) libusb_cancel_transfer(outTransfer_.get());
-    while (inFlight_ > 0) around_.bus.wait(1s);  // each comes back, cancelled or not
+    while (inFlight_ > 0) environment_.bus.wait(1s);  // each completes, cancelled or not
     for (const HidEndpoints& heard : claimed_) libusb_release_interface(handle_.get(), heard.number);
 }
 
-void UsbHidDevice::settle(bool asks) {
-    const Time end = around_.clock.now() + kSettling;
-    if (asks) askState();
-    while (!outage_ && !around_.leaving && around_.clock.now() < end) {
-        around_.bus.wait(end - around_.clock.now());
-        tend();
+void UsbHidDevice::readInitialState(bool ask) {
+    const Time end = environment_.clock.now() + kSettling;
+    if (ask) askState();
+    while (!outage_ && !environment_.closing && environment_.clock.now() < end) {
+        environment_.bus.wait(end - environment_.clock.now());
+        poll();
     }
     isSettled_ = true;
 }
 
-void UsbHidDevice::tend() {
+void UsbHidDevice::poll() {
     for (libusb_transfer* const transfer : std::exchange(stopped_, {})) {
         libusb_clear_halt(handle_.get(), transfer->endpoint);
         submit(transfer);
@@ -88,13 +89,13 @@ bool UsbHidDevice::claim(const std::vector<HidEndpoints>& interfaces) {
     return true;
 }
 
-bool UsbHidDevice::layOut(const HidProfile* profile) {
-    std::string why = "its descriptors name nothing to press";
+bool UsbHidDevice::readLayout(const HidProfile* profile) {
+    std::string why = "its descriptors name no buttons";
     for (const HidEndpoints& heard : claimed_) {
         std::vector<std::uint8_t> bytes(heard.descriptorSize);
         const int count = libusb_control_transfer(handle_.get(), kFromInterface, LIBUSB_REQUEST_GET_DESCRIPTOR,
                                                   kReportDescriptor << 8, static_cast<std::uint16_t>(heard.number), bytes.data(),
-                                                  heard.descriptorSize, kDescriptorPatience);
+                                                  heard.descriptorSize, kDescriptorTimeout);
         if (count == LIBUSB_ERROR_NO_DEVICE) {
             outage_ = outageOf(count, file_);
             return false;
@@ -108,7 +109,7 @@ bool UsbHidDevice::layOut(const HidProfile* profile) {
     }
     HidLayout layout = layoutOf(interfaces_, profile);
     if (layout.controls.empty()) {
-        outage_ = {DeviceState::Faulted, fmt::format("it has no buttons: {}", why)};
+        outage_ = {DeviceState::Faulted, fmt::format("it has no usable buttons: {}", why)};
         return false;
     }
     buttons_.emplace(std::move(layout));
@@ -117,15 +118,15 @@ bool UsbHidDevice::layOut(const HidProfile* profile) {
 
 void UsbHidDevice::listen() {
     for (const HidEndpoints& heard : claimed_) {
-        // Only changes, no repeats; who does not know it says so, and that is all.
+        // Requests changes only, no repeats. A device that does not support this says so; that is
+        // no fault.
         libusb_control_transfer(handle_.get(), kToHid, kSetIdle, 0, static_cast<std::uint16_t>(heard.number), nullptr, 0,
-                                kStatePatience);
+                                kStateTimeout);
         std::size_t longest = 1;
         for (const HidInterface& interface : interfaces_)
             if (interface.number == heard.number)
                 for (const HidReport& report : interface.descriptor.inputReports) longest = std::max(longest, report.bytes);
-        // Whole packets: a device that sends more than it says does not end the transfer with an
-        // error.
+        // Whole packets, so that a device that sends more than it declared causes no error.
         const std::size_t size = (longest + heard.packet - 1) / heard.packet * heard.packet;
         for (int i = 0; i < kQueued; ++i) {
             auto& buffer = buffers_.emplace_back(size);
@@ -144,8 +145,8 @@ void UsbHidDevice::askState() {
             std::vector<std::uint8_t> bytes(report.bytes);
             const int count = libusb_control_transfer(handle_.get(), kFromHid, kGetReport, reportValue(kInputReport, report.id),
                                                       static_cast<std::uint16_t>(interface.number), bytes.data(),
-                                                      static_cast<std::uint16_t>(bytes.size()), kStatePatience);
-            if (count == LIBUSB_ERROR_TIMEOUT) return;  // it knows no such request, and no manners
+                                                      static_cast<std::uint16_t>(bytes.size()), kStateTimeout);
+            if (count == LIBUSB_ERROR_TIMEOUT) return;  // it ignores unknown requests instead of refusing them
             if (count > 0) take(interface.number, std::span(bytes).first(static_cast<std::size_t>(count)));
         }
 }
@@ -154,13 +155,13 @@ void UsbHidDevice::take(int interface, std::span<const std::uint8_t> report) {
     if (report.empty()) return;
     const auto changes = buttons_->take(interface, report);
     if (isSettled_)
-        around_.events.take(changes, around_.clock.now());
+        environment_.events.feed(changes, environment_.clock.now());
     else
-        around_.events.settle(changes);
+        environment_.events.setInitial(changes);
 }
 
 void UsbHidDevice::submit(libusb_transfer* transfer) {
-    if (isEnding_) return;  // a report that came just before its transfer was cancelled completes it
+    if (isEnding_) return;  // a report that came just before the cancellation completes its transfer
     const int error = libusb_submit_transfer(transfer);
     if (error == 0)
         ++inFlight_;
@@ -183,8 +184,8 @@ void UsbHidDevice::completed(libusb_transfer* transfer) {
         case LIBUSB_TRANSFER_ERROR:
         case LIBUSB_TRANSFER_OVERFLOW:
         case LIBUSB_TRANSFER_TIMED_OUT:
-            if (++device.errors_ >= kMostErrors && !device.outage_)
-                device.outage_ = {DeviceState::Faulted, "its reports come with errors; look at its cable"};
+            if (++device.errors_ >= kMaxErrors && !device.outage_)
+                device.outage_ = {DeviceState::Faulted, "its reports have errors; check its cable"};
             if (!device.outage_ && transfer->status != LIBUSB_TRANSFER_STALL) device.submit(transfer);
             return;
         case LIBUSB_TRANSFER_CANCELLED:
@@ -197,15 +198,15 @@ void UsbHidDevice::completed(libusb_transfer* transfer) {
 
 void UsbHidDevice::startLamps() {
     if (lamps_ == nullptr) return;
-    around_.lights.restart(lamps_->count());
+    environment_.lights.invalidate(lamps_->count());
     const auto first = lamps_->begin(brightness_);
     outgoing_.assign(first.begin(), first.end());
 }
 
 void UsbHidDevice::sendLights() {
-    if (lamps_ == nullptr || isSending_ || outage_ || around_.clock.now() < nextAttempt_) return;
+    if (lamps_ == nullptr || isSending_ || outage_ || environment_.clock.now() < nextAttempt_) return;
     while (outgoing_.empty()) {
-        const auto next = around_.lights.next();
+        const auto next = environment_.lights.next();
         if (!next) return;
         const auto reports = lamps_->show(next->first, next->second);
         outgoing_.assign(reports.begin(), reports.end());
@@ -226,7 +227,7 @@ void UsbHidDevice::submitReport(const HidOutReport& report) {
         if (std::exchange(isOutStopped_, false)) libusb_clear_halt(handle_.get(), endpoint);
         sending_ = report.bytes;
         libusb_fill_interrupt_transfer(outTransfer_.get(), handle_.get(), endpoint, sending_.data(),
-                                       static_cast<int>(sending_.size()), &UsbHidDevice::sent, this, kLightPatience);
+                                       static_cast<int>(sending_.size()), &UsbHidDevice::sent, this, kLightTimeout);
     } else {
         sending_.resize(LIBUSB_CONTROL_SETUP_SIZE);
         libusb_fill_control_setup(sending_.data(), kToHid, kSetReport,
@@ -234,7 +235,7 @@ void UsbHidDevice::submitReport(const HidOutReport& report) {
                                   static_cast<std::uint16_t>(report.interface), static_cast<std::uint16_t>(report.bytes.size()));
         sending_.insert(sending_.end(), report.bytes.begin(), report.bytes.end());
         libusb_fill_control_transfer(outTransfer_.get(), handle_.get(), sending_.data(), &UsbHidDevice::sent, this,
-                                     kLightPatience);
+                                     kLightTimeout);
     }
     const int error = libusb_submit_transfer(outTransfer_.get());
     isSending_ = error == 0;
@@ -270,22 +271,22 @@ void UsbHidDevice::sent(libusb_transfer* transfer) {
     }
 }
 
-// A device that does not take its lights is no worse as a controller.
+// A device that refuses lights still works as a controller.
 void UsbHidDevice::failToSend() {
-    if (++failures_ >= kMostFailures) {
-        trouble_ = "it takes no lights; its buttons serve all the same. Plug it in again";
+    if (++failures_ >= kMaxFailures) {
+        trouble_ = "it refuses lights; its buttons still work. Plug it in again to retry the lights";
         lamps_.reset();
         return;
     }
-    nextAttempt_ = around_.clock.now() + kLightPause;
+    nextAttempt_ = environment_.clock.now() + kLightPause;
     startLamps();
 }
 
 void UsbHidDevice::darken() {
     if (lamps_ == nullptr || outage_) return;
     if (isSending_) libusb_cancel_transfer(outTransfer_.get());
-    while (isSending_) around_.bus.wait(1s);
-    for (const int button : around_.lights.lit())
+    while (isSending_) environment_.bus.wait(1s);
+    for (const int button : environment_.lights.lit())
         for (const HidOutReport& report : lamps_->show(button, {}))
             if (outage_ || !sendNow(report)) return;
 }
@@ -295,12 +296,12 @@ bool UsbHidDevice::sendNow(const HidOutReport& report) {
     const int size = static_cast<int>(bytes.size());
     if (const std::uint8_t endpoint = outEndpointOf(report); endpoint != 0) {
         int count = 0;
-        return libusb_interrupt_transfer(handle_.get(), endpoint, bytes.data(), size, &count, kFarewellPatience) == 0;
+        return libusb_interrupt_transfer(handle_.get(), endpoint, bytes.data(), size, &count, kDarkenTimeout) == 0;
     }
     return libusb_control_transfer(handle_.get(), kToHid, kSetReport,
                                    reportValue(report.feature ? kFeatureReport : kOutputReport, report.id),
                                    static_cast<std::uint16_t>(report.interface), bytes.data(), static_cast<std::uint16_t>(size),
-                                   kFarewellPatience) == size;
+                                   kDarkenTimeout) == size;
 }
 
 }  // namespace fantascope::drivers

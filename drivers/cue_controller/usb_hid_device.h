@@ -25,36 +25,38 @@ struct libusb_transfer;
 
 namespace fantascope::drivers {
 
-// One life of a USB HID device: opened, its interfaces held, its reports listened to and its lamps
-// lit. At its end the kernel's drivers have it again. Thread: bound to the device's; it works while
-// the bus waits.
+// One life of a USB HID device: opens it, claims its interfaces, listens to its reports and lights
+// its lamps. The destructor gives it back to the kernel's drivers. Thread: bound to the device's
+// thread; it works during UsbBus::wait().
 class UsbHidDevice {
 public:
-    // What of it goes on when the device is gone.
-    struct Around {
+    // What outlives the device.
+    struct Environment {
         UsbBus& bus;
         Clock& clock;
         ButtonEvents& events;
         ButtonLights& lights;
-        const std::atomic<bool>& leaving;
+        const std::atomic<bool>& closing;
     };
-    // `profile` may be null. brightness: of the lamps, 0..1.
-    UsbHidDevice(const Around& around, const ListedDevice& device, const HidProfile* profile, double brightness);
+    // `profile` may be null. `brightness`: of the lamps, 0..1.
+    UsbHidDevice(const Environment& environment, const ListedDevice& device, const HidProfile* profile, double brightness);
     ~UsbHidDevice();
     UsbHidDevice(const UsbHidDevice&) = delete;
     UsbHidDevice& operator=(const UsbHidDevice&) = delete;
 
-    // Why it is over, or never began.
+    // Why its life has ended, or could not begin.
     const std::optional<Outage>& outage() const { return outage_; }
-    // What it does not do although it lives.
+    // What fails although it is alive.
     const std::string& trouble() const { return trouble_; }
 
-    // Takes the state in which the device is for known, and asks it for that where `asks`.
-    void settle(bool asks);
-    // What is to be done between two waits of the bus: endpoints that have stopped, and lights that
-    // have changed.
-    void tend();
-    // Farewell to a device that is still there: all its lamps go off, unless it takes too long.
+    // Waits a moment for reports from before this life and takes the buttons' state as known.
+    // `ask`: also requests the state.
+    void readInitialState(bool ask);
+    // Call between two waits of the bus: restarts halted endpoints, and sends lights that have
+    // changed.
+    void poll();
+    // Before the end of a device that is still there: switches all its lamps off, unless that takes
+    // too long.
     void darken();
 
 private:
@@ -62,7 +64,7 @@ private:
     using Transfer = std::unique_ptr<libusb_transfer, void (*)(libusb_transfer*)>;
 
     bool claim(const std::vector<HidEndpoints>& interfaces);
-    bool layOut(const HidProfile* profile);
+    bool readLayout(const HidProfile* profile);
     void listen();
     void askState();
     void take(int interface, std::span<const std::uint8_t> report);
@@ -77,7 +79,7 @@ private:
     static void sent(libusb_transfer* transfer);
     void failToSend();
 
-    const Around around_;
+    const Environment environment_;
     const std::filesystem::path file_;
     Handle handle_;
     std::optional<Outage> outage_;
@@ -93,12 +95,12 @@ private:
     bool isSettled_ = false, isEnding_ = false;
 
     const double brightness_;
-    std::unique_ptr<HidLamps> lamps_;    // null: it has none, or takes nothing
-    std::deque<HidOutReport> outgoing_;  // the first one is on its way while isSending_
+    std::unique_ptr<HidLamps> lamps_;    // null: it has none, or refuses lights
+    std::deque<HidOutReport> outgoing_;  // the first one is being sent while isSending_
     std::vector<std::uint8_t> sending_;
     Transfer outTransfer_;
     bool isSending_ = false, isOutStopped_ = false;
-    int failures_ = 0;    // to send, one after the other
+    int failures_ = 0;    // consecutive, to send
     Time nextAttempt_{};  // to send
 };
 

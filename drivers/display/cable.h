@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/common/surroundings.h"
+#include "drivers/common/opening.h"
 #include "drivers/site/plug.h"
 
 #include "device/status.h"
@@ -12,22 +12,22 @@
 
 namespace fantascope::drivers {
 
-// The line from an output to its projector. A simulated site can pull it by the output's name;
-// elsewhere it is always in.
+// The line from an output to its projector. A simulated site can unplug it by the output's name;
+// elsewhere it is always plugged in.
 // Thread: thread-safe.
 class Cable {
 public:
-    Cable(const DisplayRequest& request, const Surroundings& around) : name_(request.name) {
-        if (around.world != nullptr) plug_.emplace(*around.world, name_, LossAction::Dark);
+    Cable(const DisplayRequest& request, const DriverContext& context) : name_(request.name) {
+        if (context.world != nullptr) plug_.emplace(*context.world, name_, LossAction::Dark);
     }
 
     bool in() const { return !plug_ || plug_->in(); }
-    // Error: it is pulled.
+    // Error: it is unplugged.
     Result<void> check() const {
         if (in()) return {};
         return plug_->absent();
     }
-    // The status of a display of `driver` that fails by its cable alone.
+    // The status of a display of `driver` that fails only by its cable.
     DeviceStatus status(const std::string& driver) const {
         DeviceStatus status{name_, driver, DeviceState::Running, LossAction::Dark, "", 0};
         if (plug_) status = plug_->status();

@@ -15,7 +15,7 @@ constexpr std::size_t kMake = 8, kProduct = 10, kSerial = 12;
 constexpr std::array<std::size_t, 4> kDescriptors = {54, 72, 90, 108};
 constexpr std::uint8_t kSerialText = 0xFF, kNameText = 0xFC;
 
-// The lowest 15 bits are three letters of five bits, A is 1. Empty: other numbers stand there.
+// The lowest 15 bits hold three letters of five bits each; A is 1. Empty if they are not letters.
 std::string letters(std::span<const std::uint8_t> edid) {
     const unsigned bits = edid[kMake] << 8 | edid[kMake + 1];
     std::string make;
@@ -27,8 +27,8 @@ std::string letters(std::span<const std::uint8_t> edid) {
     return make;
 }
 
-// The text of the first descriptor of a kind. It ends at a line's end and is filled up with spaces;
-// makers put anything else there, too.
+// The text of the first descriptor of a kind. It ends at a line feed, padded with spaces; some
+// makers put other bytes there.
 std::string textOf(std::span<const std::uint8_t> edid, std::uint8_t kind) {
     for (const std::size_t at : kDescriptors) {
         const auto descriptor = edid.subspan(at, 18);
@@ -56,7 +56,7 @@ std::optional<MonitorIdentity> identityFromEdid(std::span<const std::uint8_t> ed
     if (identity.model.empty()) identity.model = fmt::format("0x{:02X}{:02X}", edid[kProduct + 1], edid[kProduct]);
     const std::uint32_t number =
         edid[kSerial] | edid[kSerial + 1] << 8 | edid[kSerial + 2] << 16 | static_cast<std::uint32_t>(edid[kSerial + 3]) << 24;
-    if (identity.serial.empty() && number != 0) identity.serial = std::to_string(number);  // 0: it has none
+    if (identity.serial.empty() && number != 0) identity.serial = std::to_string(number);  // 0: none
     return identity;
 }
 

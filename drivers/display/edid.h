@@ -7,19 +7,18 @@
 
 namespace fantascope::drivers {
 
-// What a monitor says of itself, by which it is known again on any connector. A part that it does
-// not tell is empty.
+// A monitor's description of itself, which identifies it on any connector. Fields that it does not
+// report are empty.
 struct MonitorIdentity {
     std::string make;    // the three letters of its PNP id: "EPS"
-    std::string model;   // its product name; the product code as 0x and four hexadecimal digits where it has no name
-    std::string serial;  // its serial number's text; the 32-bit number in decimal where it has no text
+    std::string model;   // its product name; without one, the product code as 0x and four hexadecimal digits
+    std::string serial;  // its serial number as text; without one, the 32-bit number in decimal
     bool operator==(const MonitorIdentity&) const = default;
 };
 
 // Reads the base block of an EDID (VESA E-EDID Standard, Release A, Revision 2, section 3).
-// Extensions after it are not looked at.
-// Nothing: it is too short, or its header or checksum is broken, so that no part of it can be
-// trusted.
+// Extensions are ignored.
+// Nothing if it is too short, or its header or checksum is wrong, so that no part can be trusted.
 std::optional<MonitorIdentity> identityFromEdid(std::span<const std::uint8_t> edid);
 
 }  // namespace fantascope::drivers

@@ -21,8 +21,7 @@ std::vector<FoundDevice> findMonitors() {
         if (monitor.on)
             device.what +=
                 fmt::format(", {} x {} at {:.2f} Hz", monitor.on->area.size.x, monitor.on->area.size.y, monitor.on->mode.hertz);
-        // As little as tells it from its like: where it has no number of its own, the socket that
-        // it hangs on.
+        // The shortest description that identifies it: without a serial number, its connector.
         const MonitorChoice choice = identity.serial.empty() ? MonitorChoice{monitor.connector, "", "", ""}
                                                              : MonitorChoice{"", identity.make, "", identity.serial};
         device.options = fmt::format("{{driver: glfw, monitor: {}}}", choice.text());

@@ -9,12 +9,12 @@
 
 namespace fantascope::drivers {
 
-// The monitors and projectors on this machine's X screen; none where there is no X server. Thread:
-// any; it waits for the X server.
+// The monitors and projectors on this machine's X screen; none without an X server. Thread: any; it
+// waits for the X server.
 std::vector<FoundDevice> findMonitors();
 
-// Where these claims would find their monitors now, one each; nothing is switched, so a monitor
-// that only has to be switched on is one that is there. Error: there is no X server.
+// Where each of these claims would find its monitor now. Nothing is switched; a monitor that is
+// only switched off counts as present. Error: there is no X server.
 Result<std::vector<Placement::Seat>> lookForMonitors(const std::vector<MonitorClaim>& claims);
 
 }  // namespace fantascope::drivers

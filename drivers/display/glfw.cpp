@@ -23,15 +23,15 @@ constexpr const char* kClosed = "its window was closed; start Fantascope again t
 constexpr const char* kEnded = "the X server has ended or closed the connection; the picture is back once the X server is";
 constexpr const char* kDestroyed = "another program has destroyed its window; it is made again";
 constexpr Time kRetry = std::chrono::seconds(1);
-// Where swaps wait, one that takes more than this part of a period waited for a refresh; one that
-// takes less had room in a queue.
+// With vertical sync, a swap that takes longer than this share of a period waited for a refresh; a
+// shorter one found room in a queue.
 constexpr double kWaitOfSwap = 0.25;
 
-// OpenGL's name of what the current context's window shows next.
+// OpenGL's name of the current context's window.
 constexpr GLuint kWindow = 0;
 
-// Whether the current context's window takes linear light and stores it as sRGB in 8 bits, like a
-// framebuffer of our own.
+// Whether the current context's window converts linear light to 8-bit sRGB, as our own framebuffers
+// do.
 bool windowStoresSrgb() {
     const auto of = [](GLenum what) {
         GLint value = 0;
@@ -41,15 +41,15 @@ bool windowStoresSrgb() {
     return of(GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING) == GL_SRGB && of(GL_FRAMEBUFFER_ATTACHMENT_GREEN_SIZE) == 8;
 }
 
-// A corner on the X screen, whole pixels.
+// A corner on the X screen, in whole pixels.
 Result<glm::ivec2> cornerFrom(const ConfigNode& node) {
-    constexpr int kLargest = 32767;  // of the X protocol
+    constexpr int kLargest = 32767;  // limit of the X protocol
     const std::vector<ConfigNode> items = TRY(node.items(2, 2));
     const auto x = TRY(items[0].integer(0, kLargest)), y = TRY(items[1].integer(0, kLargest));
     return glm::ivec2(x, y);
 }
 
-// Letters by what the keyboard's layout writes, so that 'y' is where a German finds it.
+// Letters follow the keyboard's layout, so that 'y' is where a German finds it.
 std::optional<Key> keyOf(int key, int scanCode, int modifiers) {
     Key result;
     result.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
@@ -84,24 +84,23 @@ Result<std::optional<MonitorClaim>> GlfwDisplay::claimOf(const ConfigNode& optio
     fields.optional().read("monitor", monitor, MonitorChoice::fromConfig);
     fields.optional().read("position", position, cornerFrom);
     TRY(fields.finish());
-    if (position && !monitor) return options.error("position is a monitor's; name the monitor");
+    if (position && !monitor) return options.error("'position' needs 'monitor'");
     if (!monitor) return std::optional<MonitorClaim>();
     return std::optional(MonitorClaim{request.name, *monitor, request.size, request.refreshRate, position});
 }
 
 Result<Opening<DisplaySink>> GlfwDisplay::fromConfig(const ConfigNode& options, const DisplayRequest& request) {
     const std::optional<MonitorClaim> wanted = TRY(claimOf(options, request));
-    Opening<DisplaySink> opening{[=](const Surroundings& around) -> Result<std::unique_ptr<DisplaySink>> {
-        std::unique_ptr<GlfwDisplay> sink(new GlfwDisplay(request, around, wanted));
-        (void)sink->poll();  // a missing device is no error: its status tells of it
+    Opening<DisplaySink> opening{[=](const DriverContext& driverContext) -> Result<std::unique_ptr<DisplaySink>> {
+        std::unique_ptr<GlfwDisplay> sink(new GlfwDisplay(request, driverContext, wanted));
+        (void)sink->poll();  // a missing device is no error; its status reports it
         return std::unique_ptr<DisplaySink>(std::move(sink));
     }};
-    // Several monitors of one make are told apart by who asks first; one connector or serial number
-    // is one monitor.
+    // Exclusive only by connector or serial number: monitors of one make are given out in the order
+    // of the outputs.
     if (wanted && !(wanted->monitor.connector + wanted->monitor.serial).empty())
         opening.uses.push_back({"the monitor " + wanted->monitor.text(), ""});
-    // By the words of the site file: that the X server answers is not to be waited for before a
-    // show begins.
+    // Described as in the site file, so that a show need not wait for the X server.
     if (wanted)
         opening.claim = [monitor = wanted->monitor.text()] {
             return fmt::format("the monitor {} of the X server {}", monitor, XScreen::serverName());
@@ -109,13 +108,13 @@ Result<Opening<DisplaySink>> GlfwDisplay::fromConfig(const ConfigNode& options, 
     return opening;
 }
 
-GlfwDisplay::GlfwDisplay(const DisplayRequest& request, const Surroundings& around, std::optional<MonitorClaim> wanted)
+GlfwDisplay::GlfwDisplay(const DisplayRequest& request, const DriverContext& driverContext, std::optional<MonitorClaim> wanted)
     : request_(request),
       wanted_(std::move(wanted)),
-      clock_(around.clock),
-      cable_(request, around),
+      clock_(driverContext.clock),
+      cable_(request, driverContext),
       refreshes_(request.refreshRate),
-      retryAt_(around.clock.now()) {}
+      retryAt_(driverContext.clock.now()) {}
 
 GlfwDisplay::~GlfwDisplay() {
     if (window_ != nullptr) glfwDestroyWindow(window_);
@@ -136,8 +135,8 @@ std::int64_t GlfwDisplay::nextRefresh() const { return refreshes_.running(clock_
 
 Result<void> GlfwDisplay::appear() {
     if (!glfw_) glfw_ = TRY(GlfwLibrary::shared());
-    if (window_ == nullptr) TRY(makeWindow());  // also without its monitor, so that less is to be done when that comes
-    if (!wanted_) return tryWhetherSwapsWait();
+    if (window_ == nullptr) TRY(makeWindow());  // even without its monitor, to save time when it comes
+    if (!wanted_) return probeVsync();
     if (monitor_) {
         monitor_->tryAgain();
     } else {
@@ -148,8 +147,8 @@ Result<void> GlfwDisplay::appear() {
 }
 
 Result<void> GlfwDisplay::makeWindow() {
-    // Frames are drawn straight into the window, which spares a copy of each; they need nothing but
-    // colours there.
+    // Frames are drawn directly into the window, which saves a copy of each. They need only colours
+    // there.
     window_ = TRY(glfw_->makeWindow(request_.name, request_.size,
                                     {{GLFW_RESIZABLE, GLFW_FALSE},
                                      {GLFW_SRGB_CAPABLE, GLFW_TRUE},
@@ -169,11 +168,11 @@ Result<void> GlfwDisplay::makeWindow() {
         framebuffer_ = *framebuffer;
     }
     context_ = ++contexts_;
-    listen();
+    installCallbacks();
     return {};
 }
 
-void GlfwDisplay::listen() {
+void GlfwDisplay::installCallbacks() {
     glfwSetWindowUserPointer(window_, this);
     static constexpr auto of = [](GLFWwindow* window) { return static_cast<GlfwDisplay*>(glfwGetWindowUserPointer(window)); };
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scanCode, int action, int modifiers) {
@@ -197,11 +196,11 @@ Result<void> GlfwDisplay::moveToMonitor() {
     if (!glfw_->pollEvents()) return Error(kEnded);
     showAt(window_, seat_.area.corner.x, seat_.area.corner.y);
     if (seat_.hertz > 0 && seat_.hertz != refreshes_.hertz()) refreshes_.runAt(seat_.hertz, clock_.now());
-    return tryWhetherSwapsWait();
+    return probeVsync();
 }
 
-Result<void> GlfwDisplay::tryWhetherSwapsWait() {
-    if (glfw_->swapsWait) return {};
+Result<void> GlfwDisplay::probeVsync() {
+    if (glfw_->vsync) return {};
     constexpr int kSwaps = 4;
     glfwMakeContextCurrent(window_);
     const auto timeOf = [&](int refreshes) -> Result<Time> {
@@ -211,12 +210,12 @@ Result<void> GlfwDisplay::tryWhetherSwapsWait() {
             glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
             glClearBufferfv(GL_COLOR, 0, black);
             const Time one = TRY(swap(refreshes)).took;
-            if (number > 0) took += one;  // the first waits for what was before
+            if (number > 0) took += one;  // the first also waits for earlier work
         }
         return took;
     };
     const Time atOnce = TRY(timeOf(0)), waiting = TRY(timeOf(1));
-    glfw_->swapsWait = seconds(waiting - atOnce) * refreshes_.hertz() > 0.5 * kSwaps;
+    glfw_->vsync = seconds(waiting - atOnce) * refreshes_.hertz() > 0.5 * kSwaps;
     return {};
 }
 
@@ -232,7 +231,7 @@ std::optional<std::string> GlfwDisplay::whyLost() const {
     return std::nullopt;
 }
 
-void GlfwDisplay::clearUp() {
+void GlfwDisplay::destroyRemains() {
     if (window_ != nullptr) glfwDestroyWindow(std::exchange(window_, nullptr));
     framebuffer_ = 0;
     swapInterval_ = -1;
@@ -242,15 +241,15 @@ void GlfwDisplay::clearUp() {
 bool GlfwDisplay::poll() {
     if (glfw_) glfw_->pollEvents();
     if (const auto lost = whyLost()) {
-        if (std::exchange(context_, 0) == 0) clearUp();  // at the second call: until then somebody may read what was mapped
+        if (std::exchange(context_, 0) == 0) destroyRemains();  // only at the second call: until then, mapped memory may be read
         setAbsence(closed_ ? kClosed : *lost);
         retryAt_ = clock_.now() + kRetry;
         return false;
     }
-    return takePlace();
+    return updatePlace();
 }
 
-bool GlfwDisplay::takePlace() {
+bool GlfwDisplay::updatePlace() {
     const Time now = clock_.now();
     const bool moved = monitor_ && seat_ != monitor_->seat();
     if (moved) seat_ = monitor_->seat();
@@ -265,7 +264,7 @@ bool GlfwDisplay::takePlace() {
     } else if (!absence_.empty() && !closed_ && now >= retryAt_) {
         retryAt_ = now + kRetry;
         const auto appeared = appear();
-        const bool ended = !glfw_ && contexts_ > 0;  // for whoever is told, that is news no second time
+        const bool ended = !glfw_ && contexts_ > 0;  // reports the same reason again, not a second event
         setAbsence(appeared ? "" : ended ? kEnded : appeared.error().message());
     }
     return absence_.empty() && cable_.in();
@@ -273,7 +272,7 @@ bool GlfwDisplay::takePlace() {
 
 Result<void> GlfwDisplay::makeCurrent() {
     if (context_ == 0) return Error(fmt::format("{} has no OpenGL context: {}", request_.name, absence_));
-    glfwGetError(nullptr);  // forgets older ones
+    glfwGetError(nullptr);  // clears older errors
     glfwMakeContextCurrent(window_);
     const char* why = nullptr;
     if (glfwGetError(&why) != GLFW_NO_ERROR)
@@ -281,17 +280,17 @@ Result<void> GlfwDisplay::makeCurrent() {
     return {};
 }
 
-Result<void> GlfwDisplay::beThere() {
+Result<void> GlfwDisplay::ensureRunning() {
     TRY(cable_.check());
     if (const auto lost = whyLost()) return Error(fmt::format("{} is absent: {}", request_.name, *lost));
-    if (!takePlace()) return Error(fmt::format("{} is absent: {}", request_.name, absence_));
+    if (!updatePlace()) return Error(fmt::format("{} is absent: {}", request_.name, absence_));
     return makeCurrent();
 }
 
 Result<void> GlfwDisplay::finish() {
     TRY(makeCurrent());
     if (framebuffer_ != kWindow) {
-        // With conversion off the stored values arrive as they are.
+        // Without conversion, so that stored values arrive unchanged.
         const bool converting = glIsEnabled(GL_FRAMEBUFFER_SRGB);
         glDisable(GL_FRAMEBUFFER_SRGB);
         const auto [width, height] = std::pair(request_.size.x, request_.size.y);
@@ -319,10 +318,10 @@ Result<GlfwDisplay::Swap> GlfwDisplay::swap(int refreshes) {
 }
 
 Result<Shown> GlfwDisplay::present() {
-    TRY(beThere());
+    TRY(ensureRunning());
     std::int64_t refresh = nextRefresh();
-    if (!*glfw_->swapsWait) {
-        clock_.sleepUntil(refreshTime(refresh));  // the followers' clock too, so that all swap at one time
+    if (!*glfw_->vsync) {
+        clock_.sleepUntil(refreshTime(refresh));  // followers use the same clock, so all swap together
         const Swap swapped = TRY(swap(0));
         return Shown{refresh, refreshTime(refresh), swapped.done, swapped.took};
     }
@@ -337,7 +336,7 @@ Result<Shown> GlfwDisplay::present() {
 }
 
 Result<Shown> GlfwDisplay::presentWith(Time leading) {
-    TRY(beThere());
+    TRY(ensureRunning());
     clock_.sleepUntil(leading);
     const std::int64_t refresh = refreshes_.running(clock_.now());
     const Swap swapped = TRY(swap(0));

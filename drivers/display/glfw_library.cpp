@@ -23,19 +23,19 @@ std::string whyGlfwFailed() {
 
 namespace {
 
-std::weak_ptr<GlfwLibrary>& theOne() {
+std::weak_ptr<GlfwLibrary>& instance() {
     static std::weak_ptr<GlfwLibrary> open;
     return open;
 }
 
 }  // namespace
 
-// In place of Xlib's own handler, which ends the program.
+// Replaces Xlib's own handler, which ends the program.
 struct GlfwLibrary::RefusedRequest {
     static int take(Display* connection, XErrorEvent* error) {
-        const auto library = theOne().lock();
+        const auto library = instance().lock();
         if (!library) return 0;
-        if (library->destroyed_.contains(error->resourceid)) return 0;  // it is said already
+        if (library->destroyed_.contains(error->resourceid)) return 0;  // already reported
         if (!library->logged_.emplace(error->error_code, error->request_code).second) return 0;
         std::array<char, 128> text{};
         XGetErrorText(connection, error->error_code, text.data(), static_cast<int>(text.size()));
@@ -46,7 +46,7 @@ struct GlfwLibrary::RefusedRequest {
 };
 
 Result<std::shared_ptr<GlfwLibrary>> GlfwLibrary::shared() {
-    if (auto library = theOne().lock()) {
+    if (auto library = instance().lock()) {
         if (library->lost()) return Error("the X server has ended");
         return library;
     }
@@ -61,10 +61,10 @@ Result<std::shared_ptr<GlfwLibrary>> GlfwLibrary::shared() {
     std::shared_ptr<GlfwLibrary> library(new GlfwLibrary);
     surviveLoss(glfwGetX11Display(), library->lost_);
     XSetErrorHandler(RefusedRequest::take);
-    // GLFW would ask the X server for every monitor at each change, in the middle of a frame, and
-    // does not bear one that vanishes meanwhile.
+    // Otherwise GLFW would query every monitor at each change, in the middle of a frame, and fail
+    // if one vanishes meanwhile.
     XRRSelectInput(glfwGetX11Display(), DefaultRootWindow(glfwGetX11Display()), 0);
-    theOne() = library;
+    instance() = library;
     return library;
 }
 
@@ -76,7 +76,7 @@ Result<GLFWwindow*> GlfwLibrary::makeWindow(const std::string& title, glm::ivec2
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    // As in the headless display: contexts of one kind can take turns on a thread.
+    // As in the headless display: contexts of one kind can alternate on a thread.
     glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
     for (const auto& [hint, value] : hints) glfwWindowHint(hint, value);
     struct Wanted {
@@ -89,7 +89,7 @@ Result<GLFWwindow*> GlfwLibrary::makeWindow(const std::string& title, glm::ivec2
         made.window = glfwCreateWindow(made.size.x, made.size.y, made.title, nullptr, nullptr);
     };
     lost_ = !pollEvents() || lostDuring(make, &wanted) != nullptr;
-    XSetErrorHandler(RefusedRequest::take);  // GLFW 3.3 puts Xlib's own back
+    XSetErrorHandler(RefusedRequest::take);  // GLFW 3.3 restores Xlib's own
     if (lost_) return Error("the X server has ended");
     GLFWwindow* const window = wanted.window;
     if (window == nullptr)
@@ -97,13 +97,13 @@ Result<GLFWwindow*> GlfwLibrary::makeWindow(const std::string& title, glm::ivec2
             fmt::format("no window with OpenGL 4.5: {}; update the graphics driver (in software: Debian's package "
                         "libgl1-mesa-dri)",
                         whyGlfwFailed()));
-    destroyed_.erase(glfwGetX11Window(window));  // X gives a name again
+    destroyed_.erase(glfwGetX11Window(window));  // X reuses ids
     glfwMakeContextCurrent(window);
     return window;
 }
 
 bool GlfwLibrary::pollEvents() {
-    // GLFW does not tell of it.
+    // GLFW does not report destroyed windows.
     for (XEvent event; !lost_ && XCheckTypedEvent(glfwGetX11Display(), DestroyNotify, &event) != 0;)
         destroyed_.insert(event.xdestroywindow.window);
     if (!lost_) glfwPollEvents();
@@ -114,7 +114,7 @@ bool GlfwLibrary::destroyed(GLFWwindow* window) const { return destroyed_.contai
 
 void GlfwLibrary::placeWindow(GLFWwindow* window) {
     Display* const display = glfwGetX11Display();
-    // A window manager owns the selection of its screen (ICCCM, section 4.3).
+    // A window manager owns this selection (ICCCM, section 4.3).
     const std::string selection = fmt::format("WM_S{}", DefaultScreen(display));
     if (XGetSelectionOwner(display, XInternAtom(display, selection.c_str(), False)) != None) return;
     glm::ivec2 size(0);
@@ -135,7 +135,7 @@ void takeFromWindowManager(GLFWwindow* window) {
     attributes.background_pixel = BlackPixel(display, DefaultScreen(display));
     XChangeWindowAttributes(display, glfwGetX11Window(window), CWOverrideRedirect | CWBackPixel, &attributes);
 
-    // GLFW hides no pointer on a machine without libXcursor.
+    // GLFW cannot hide the pointer without libXcursor.
     constexpr char kNothing[] = {0};
     const Pixmap nothing = XCreateBitmapFromData(display, glfwGetX11Window(window), kNothing, 1, 1);
     XColor black{};
@@ -146,7 +146,7 @@ void takeFromWindowManager(GLFWwindow* window) {
 }
 
 void showAt(GLFWwindow* window, int x, int y) {
-    // GLFW's own calls wait for the X server, which is busy just when monitors come.
+    // GLFW's own calls would wait for the X server, which is busy when monitors come.
     XMoveWindow(glfwGetX11Display(), glfwGetX11Window(window), x, y);
     XMapRaised(glfwGetX11Display(), glfwGetX11Window(window));
     XFlush(glfwGetX11Display());

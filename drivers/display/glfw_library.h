@@ -15,38 +15,37 @@ struct GLFWwindow;
 
 namespace fantascope::drivers {
 
-// The process's use of GLFW and its one connection to the X server, for as long as a window needs
-// it. GLFW itself does not follow the monitors: MonitorWatch does.
+// The process's GLFW and its one connection to the X server, as long as a window needs it. GLFW
+// itself does not follow the monitors; MonitorWatch does.
 //
 // Xlib would end the program when the connection ends or the X server refuses a request. Here the
-// first is lost(), and the second is logged, each kind once. A lost connection stays lost: whoever
-// holds the library destroys the windows, lets go of it, and asks for shared() again. Do not swap
-// after the connection is lost: Mesa's software renderer (22.3) then counts for many seconds.
+// first sets lost(), and the second is logged, each kind once. A lost connection stays lost: its
+// holders destroy their windows, release the library, and call shared() again. Do not swap after
+// the loss: Mesa's software renderer (22.3) then spins for many seconds.
 // Thread: the main thread.
 class GlfwLibrary {
 public:
-    // Error: there is no X server, or somebody still holds a library that is lost.
+    // Error: there is no X server, or somebody still holds a lost library.
     static Result<std::shared_ptr<GlfwLibrary>> shared();
     ~GlfwLibrary();
     GlfwLibrary(const GlfwLibrary&) = delete;
     GlfwLibrary& operator=(const GlfwLibrary&) = delete;
 
-    // A window with a context of OpenGL 4.5 core, which is current afterwards. `hints`: further
-    // ones of GLFW, as glfwWindowHint() takes them.
+    // Makes a window with an OpenGL 4.5 core context, which is then current. `hints`: further GLFW
+    // hints, as for glfwWindowHint().
     // Error: this OpenGL is too old, or the X server refuses.
     Result<GLFWwindow*> makeWindow(const std::string& title, glm::ivec2 size,
                                    std::initializer_list<std::pair<int, int>> hints = {});
-    // Takes in what happened to all windows: whether the connection is still there. Never waits.
+    // Handles the events of all windows. Never waits. Returns whether the connection still exists.
     bool pollEvents();
     bool lost() const { return lost_; }
     // Whether another program has destroyed this window.
     bool destroyed(GLFWwindow* window) const;
 
-    // Whether swapping buffers waits for a monitor's refresh, once the first window that was seen
-    // has found it out for all.
-    std::optional<bool> swapsWait;
-    // Puts a window of the desktop beside those before it, in rows, if there is no window manager
-    // to do it.
+    // Whether swapping buffers waits for a monitor's refresh; measured once with the first visible
+    // window.
+    std::optional<bool> vsync;
+    // Without a window manager, places a desktop window beside the earlier ones, in rows.
     void placeWindow(GLFWwindow* window);
 
 private:
@@ -54,20 +53,20 @@ private:
     GlfwLibrary() = default;
 
     bool lost_ = false;
-    std::set<unsigned long> destroyed_;     // windows, whoever did it
-    std::set<std::pair<int, int>> logged_;  // errors of the X server and the requests that they were of
-    glm::ivec2 free_{0};                    // pixels of the X screen: where the next window goes
+    std::set<unsigned long> destroyed_;     // windows, by whatever program
+    std::set<std::pair<int, int>> logged_;  // errors of the X server, each with its request
+    glm::ivec2 free_{0};                    // where the next window goes, pixels of the X screen
     int rowHeight_ = 0;
 };
 
-// Makes a hidden window one that no window manager moves, decorates or covers with its panels, that
-// is black until its first picture, and over which no pointer is seen.
+// Takes a hidden window away from the window manager, so that it is not moved, decorated or
+// covered. It is black until its first picture, and the pointer is hidden over it.
 void takeFromWindowManager(GLFWwindow* window);
-// Shows it above all others with its top left corner there, in pixels of the X screen; it takes no
-// keys from whoever has them.
+// Shows the window above all others, its top left corner at (x, y) in pixels of the X screen. It
+// does not take the keyboard focus.
 void showAt(GLFWwindow* window, int x, int y);
 
-// What GLFW says of the call that failed last.
+// GLFW's reason for the last failure.
 std::string whyGlfwFailed();
 
 }  // namespace fantascope::drivers

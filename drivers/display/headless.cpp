@@ -19,8 +19,8 @@ constexpr const char* kPackages =
     "Debian's packages libegl1, libegl-mesa0 and libgl1-mesa-dri bring a software OpenGL: apt-get install libegl1 libegl-mesa0 "
     "libgl1-mesa-dri";
 
-// A context of OpenGL 4.5 core that draws into framebuffer objects alone. Error: why `display`
-// gives none.
+// An OpenGL 4.5 core context that draws only into framebuffer objects. Error: why `display` has
+// none.
 Result<EGLContext> makeContext(EGLDisplay display) {
     for (const char* needed : {"EGL_KHR_create_context", "EGL_KHR_no_config_context", "EGL_KHR_surfaceless_context"})
         if (!epoxy_has_egl_extension(display, needed)) return Error(fmt::format("{} is missing", needed));
@@ -33,9 +33,9 @@ Result<EGLContext> makeContext(EGLDisplay display) {
     return context;
 }
 
-// The process's one connection to EGL, once a headless display needed it; kept to the end, since
-// opening it loads a whole driver and Mesa does not free all of that again. Tries Mesa without a
-// window system, then every GPU that EGL lists. Error: why each of them failed.
+// The process's one connection to EGL, made when a headless display first needs it. It is kept to
+// the end, because opening it loads a whole driver and Mesa never frees all of it. Tries Mesa
+// without a window system, then every GPU that EGL lists. Error: why each failed.
 Result<EGLDisplay> connection() {
     static std::mutex mutex;
     static EGLDisplay open = EGL_NO_DISPLAY;
@@ -82,24 +82,24 @@ Result<Opening<DisplaySink>> HeadlessDisplay::fromConfig(const ConfigNode& optio
     ConfigFields fields(options);
     fields.text("driver", driver);
     TRY(fields.finish());
-    return Opening<DisplaySink>{[=](const Surroundings& around) { return open(options, request, around); }};
+    return Opening<DisplaySink>{[=](const DriverContext& driverContext) { return open(options, request, driverContext); }};
 }
 
 Result<std::unique_ptr<DisplaySink>> HeadlessDisplay::open(const ConfigNode& options, const DisplayRequest& request,
-                                                           const Surroundings& around) {
+                                                           const DriverContext& driverContext) {
     const EGLDisplay egl = TRY(connection().in(options.error("display").message()));
     const EGLContext context = TRY(makeContext(egl));
-    std::unique_ptr<HeadlessDisplay> sink(new HeadlessDisplay(request, around, egl, context));
+    std::unique_ptr<HeadlessDisplay> sink(new HeadlessDisplay(request, driverContext, egl, context));
     eglMakeCurrent(egl, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
     sink->framebuffer_ = TRY(makeSrgbFramebuffer(request.size).in(options.error(request.name).message()));
     return std::unique_ptr<DisplaySink>(std::move(sink));
 }
 
-HeadlessDisplay::HeadlessDisplay(const DisplayRequest& request, const Surroundings& around, void* egl, void* context)
+HeadlessDisplay::HeadlessDisplay(const DisplayRequest& request, const DriverContext& driverContext, void* egl, void* context)
     : request_(request),
-      clock_(around.clock),
+      clock_(driverContext.clock),
       refreshes_(request.refreshRate),
-      cable_(request, around),
+      cable_(request, driverContext),
       egl_(egl),
       context_(context) {}
 
@@ -115,7 +115,7 @@ std::int64_t HeadlessDisplay::nextRefresh() const { return std::max(refreshes_.r
 Time HeadlessDisplay::refreshTime(std::int64_t number) const { return refreshes_.timeOf(number); }
 
 Result<void> HeadlessDisplay::makeCurrent() {
-    // Asking EGL for the context that is current already would make it flush.
+    // Making the current context current again would make EGL flush.
     if (eglGetCurrentContext() == context_) return {};
     if (!eglMakeCurrent(egl_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
         return Error(fmt::format("{}: its OpenGL context is current on another thread; use one render thread", request_.name));
@@ -137,7 +137,7 @@ Result<Shown> HeadlessDisplay::present() {
     TRY(cable_.check());
     TRY(makeCurrent());
     const Shown shown = heldUntil(nextRefresh());
-    // There is room for another once the frame before is off.
+    // Another frame may be drawn once the previous one is replaced.
     clock_.sleepUntil(refreshTime(shown.refresh - 1));
     return shown;
 }

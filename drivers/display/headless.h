@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/common/surroundings.h"
+#include "drivers/common/opening.h"
 #include "drivers/display/cable.h"
 #include "drivers/display/refresh_train.h"
 
@@ -12,16 +12,16 @@
 
 namespace fantascope::drivers {
 
-// A display without a window system: real OpenGL on EGL alone, Mesa's software renderer or a GPU.
-// Its refreshes are those of a clock: number k takes place at tickTime(k, rate). It can be
-// unplugged where a simulated site has its plug.
+// A display without a window system: real OpenGL through EGL only, with Mesa's software renderer or
+// a GPU. Its refreshes are those of a clock: number k takes place at tickTime(k, rate). A simulated
+// site can unplug it.
 //
-// One finished frame is held until its refresh comes, as a graphics card's swap chain does.
+// One finished frame is held until its refresh, as in a graphics card's swap chain.
 // The context lives as long as the object.
 class HeadlessDisplay final : public DisplaySink {
 public:
-    // Keys: none of its own. Error: a wrong key; at the opening: no OpenGL 4.5 here (names the
-    // Debian packages that bring one).
+    // Keys: none of its own. Error: a wrong key; when opened: no OpenGL 4.5 (it names the Debian
+    // packages that provide it).
     static Result<Opening<DisplaySink>> fromConfig(const ConfigNode& options, const DisplayRequest& request);
     ~HeadlessDisplay() override;
 
@@ -40,9 +40,9 @@ public:
 
 private:
     static Result<std::unique_ptr<DisplaySink>> open(const ConfigNode& options, const DisplayRequest& request,
-                                                     const Surroundings& around);
+                                                     const DriverContext& driverContext);
     Shown heldUntil(std::int64_t refresh);
-    HeadlessDisplay(const DisplayRequest& request, const Surroundings& around, void* egl, void* context);
+    HeadlessDisplay(const DisplayRequest& request, const DriverContext& driverContext, void* egl, void* context);
 
     DisplayRequest request_;
     Clock& clock_;
@@ -51,7 +51,7 @@ private:
     void* egl_;      // EGLDisplay
     void* context_;  // EGLContext
     unsigned framebuffer_ = 0;
-    std::int64_t shown_ = -1;  // the refresh of the newest frame, running or to come
+    std::int64_t shown_ = -1;  // the refresh of the newest frame, current or future
 };
 
 }  // namespace fantascope::drivers

@@ -9,15 +9,15 @@
 namespace fantascope::drivers {
 namespace {
 
-// Where work goes on that lost its connection, and which it was.
+// Where to continue after abandoned work, and the connection that was lost.
 struct Work {
     std::jmp_buf abandoned;
     Display* connection = nullptr;
 };
 Work* running = nullptr;
 
-// In place of Xlib's own, which tells the terminal of the loss. What comes after it is the
-// connection's own matter.
+// Replaces Xlib's own handler, which writes to the terminal. What follows is up to the connection's
+// own handler.
 int onLoss(Display* connection) {
     if (Work* const work = std::exchange(running, nullptr)) {
         work->connection = connection;
@@ -26,10 +26,10 @@ int onLoss(Display* connection) {
     return 0;
 }
 
-// Of a lost connection Xlib gives no room for a request where another library such as EGL used it
-// last, and writes the request all the same.
+// If another library such as EGL used a lost connection last, Xlib leaves no room for a request,
+// and writes it all the same.
 void makeRoomForRequests(Display* connection) {
-    constexpr int kRoom = 2048;  // bytes: the least that Xlib has (BUFSIZE)
+    constexpr int kRoom = 2048;  // bytes; Xlib's minimum (BUFSIZE)
     connection->bufptr = connection->buffer;
     connection->bufmax = connection->buffer + kRoom;
 }

@@ -8,7 +8,7 @@
 namespace fantascope::drivers {
 namespace {
 
-// As a value of a map in one line, where some more letters mean something than elsewhere.
+// As a value in a one-line map, where more characters have a meaning than elsewhere.
 std::string inFlow(const std::string& text) {
     std::string safe = fantascope::quoted(text);
     if (safe != text || text.find_first_of(",[]{}") == std::string::npos) return safe;

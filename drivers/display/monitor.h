@@ -14,7 +14,7 @@
 
 namespace fantascope::drivers {
 
-// Pixels of the X screen, y down.
+// An area of the X screen in pixels, y down.
 struct Area {
     glm::ivec2 corner{0}, size{0};  // top left
     bool operator==(const Area&) const = default;
@@ -22,43 +22,43 @@ struct Area {
     bool overlaps(const Area& other) const;
 };
 
-// A connector of a graphics card, and the monitor or projector on it. Numbers named `...Id` are the
-// X server's.
+// A connector of a graphics card and its monitor or projector. Numbers named `...Id` are the X
+// server's.
 struct Monitor {
     struct Mode {
         std::uint32_t modeId = 0;
         glm::ivec2 size{0};
-        double hertz = 0;  // exact, from the mode's timing; of an interlaced one its fields; 0: the X server does not tell
+        double hertz = 0;  // exact, from the mode's timing; fields if interlaced; 0: unknown
         bool interlaced = false;
     };
     struct Picture {
         std::uint32_t crtcId = 0;
-        Area area;  // what it shows of the X screen
+        Area area;  // the shown part of the X screen
         Mode mode;
     };
 
-    std::string connector;  // as `xrandr` lists it: "HDMI-1"
+    std::string connector;  // as listed by `xrandr`: "HDMI-1"
     std::uint32_t outputId = 0;
     bool connected = false;
-    bool unplugged = false;                    // it was, in the meantime, whatever it is now
-    std::optional<MonitorIdentity> identity;   // nothing: it has no EDID, or a broken one
+    bool unplugged = false;                    // it was unplugged meanwhile, even if it is back
+    std::optional<MonitorIdentity> identity;   // nothing: no EDID, or a broken one
     std::vector<Mode> modes;                   // that it can show
     std::vector<std::uint32_t> possibleCrtcs;  // that can drive it
-    std::optional<Picture> on;                 // nothing: it is switched off
+    std::optional<Picture> on;                 // nothing: switched off
 
-    // For a person, with the identity as the site file's `monitor` takes it: "HDMI-1 {make: EPS,
+    // For messages, with the identity in the form of the site file's `monitor`: "HDMI-1 {make: EPS,
     // model: EPSON PJ, serial: X4}".
     std::string text() const;
 };
 
-// Which monitor an output is bound to. What is empty fits any.
+// The monitor that an output is bound to. Empty fields match any.
 struct MonitorChoice {
     std::string connector, make, model, serial;
 
     // A connector's name, or a map of at least one of connector, make, model, serial.
     static Result<MonitorChoice> fromConfig(const ConfigNode& node);
     bool fits(const Monitor& monitor) const;
-    std::string text() const;  // as fromConfig() takes it
+    std::string text() const;  // in the form that fromConfig() reads
 };
 
 }  // namespace fantascope::drivers

@@ -68,7 +68,7 @@ void MonitorWatch::publish() {
     looked_.notify_all();
 }
 
-// What was asked for is looked at, too: a driver may do something else.
+// Checks again after each request, because a driver may do something else.
 void MonitorWatch::settle() {
     constexpr int kRounds = 5;
     screen_->keepAwake();
@@ -124,7 +124,7 @@ std::string MonitorWatch::follow() {
             continue;
         }
         asked = false;
-        settle();  // its answers may have brought events along
+        settle();  // its replies may have brought events
     }
     return {};
 }

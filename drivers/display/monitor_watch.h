@@ -17,20 +17,20 @@
 
 namespace fantascope::drivers {
 
-// Keeps each claimed monitor on and in its place (see Placement), and knows where it is. All that
-// waits for the X server happens on a thread of its own, which the X server wakes when anything
-// changes, so that no frame has to wait for a monitor that comes or goes. It lives as long as
-// somebody has a claim; meanwhile the screen is not blanked. An X server that ends takes all seats
-// along; once a second it is tried whether there is one again. Thread: thread-safe.
+// Keeps each claimed monitor switched on and in its place (see Placement). A thread of its own does
+// everything that waits for the X server, which wakes it at each change, so no frame waits for a
+// monitor that comes or goes. It lives as long as somebody has a claim; meanwhile the screen does
+// not blank. When the X server ends, all seats become absent; a new one is tried once a second.
+// Thread: thread-safe.
 class MonitorWatch : public std::enable_shared_from_this<MonitorWatch> {
 public:
-    // The process's one. Error: there is no X server with RandR.
+    // The process's only one. Error: there is no X server with RandR.
     static Result<std::shared_ptr<MonitorWatch>> shared();
     ~MonitorWatch();
     MonitorWatch(const MonitorWatch&) = delete;
     MonitorWatch& operator=(const MonitorWatch&) = delete;
 
-    // Somebody's claim on a monitor, until its end.
+    // A claim on a monitor, until it is destroyed.
     class Claim {
     public:
         ~Claim();
@@ -38,7 +38,7 @@ public:
         Claim& operator=(const Claim&) = delete;
         // Where its monitor is now; never waits for the X server.
         Placement::Seat seat() const;
-        // Looks again soon, and tries again what was refused. Never waits.
+        // Checks again soon, and retries what was refused. Never waits.
         void tryAgain();
 
     private:
@@ -47,31 +47,32 @@ public:
         std::shared_ptr<MonitorWatch> watch_;
         int number_;
     };
-    // Waits until it was tried to give the claim its monitor.
+    // Waits until the first attempt to give the claim its monitor has ended.
     std::unique_ptr<Claim> claim(MonitorClaim what);
 
 private:
     MonitorWatch(std::unique_ptr<XScreen> screen, int wake);
     void run();
-    // Follows the monitors until this X server ends or this object does. Why the X server ended.
+    // Follows the monitors until the X server ends or this object is destroyed. Returns why the X
+    // server ended.
     std::string follow();
     void settle();
     enum class Whom { NewClaims, All };
     void deny(const std::string& why, Whom whom);
-    void publish();  // with the mutex
+    void publish();  // with the mutex held
     void wake();
-    // Sleeps until it is woken, `file` can be read (-1: none), or so many milliseconds are over
-    // (-1: never). Whether it was woken.
+    // Sleeps until wake() is called, `file` is readable (-1: none), or the time has passed (-1:
+    // never). Returns whether it was woken.
     bool wait(int file, int milliseconds);
     bool ending();
 
-    std::unique_ptr<XScreen> screen_;  // the thread's; null: the X server is gone
-    int wake_;                         // a file descriptor (eventfd) that the thread waits for besides the X server's
+    std::unique_ptr<XScreen> screen_;  // used only by the thread; null: the X server is gone
+    int wake_;                         // an eventfd that wakes the thread
 
     std::mutex mutex_;
     std::condition_variable looked_;
     Placement placement_;
-    std::map<int, Placement::Seat> seats_;  // when all was done for the last time; of a new claim none yet
+    std::map<int, Placement::Seat> seats_;  // as of the last complete check; a new claim has none yet
     bool ending_ = false;
     std::thread thread_;
 };

@@ -36,7 +36,7 @@ PictureWindow::PictureWindow(std::shared_ptr<GlfwLibrary> library, GLFWwindow* w
 }
 
 PictureWindow::~PictureWindow() {
-    glfwDestroyWindow(window_);  // and its context, with all that is in it
+    glfwDestroyWindow(window_);  // and its context with everything in it
 }
 
 void PictureWindow::show(const GreyImage& picture) {
@@ -64,7 +64,7 @@ void PictureWindow::show(const GreyImage& picture) {
     const glm::ivec2 shown = glm::max(glm::ivec2(glm::dvec2(size) * scale + 0.5), glm::ivec2(1)), corner = (window - shown) / 2;
     const GLfloat black[] = {0, 0, 0, 1};
     glClearNamedFramebufferfv(0, GL_COLOR, 0, black);
-    // Row 0 is the picture's top and OpenGL's bottom.
+    // Row 0 is the picture's top, but OpenGL's bottom.
     glBlitNamedFramebuffer(framebuffer_, 0, 0, 0, size.x, size.y, corner.x, corner.y + shown.y, corner.x + shown.x, corner.y,
                            GL_COLOR_BUFFER_BIT, GL_LINEAR);
     if (library_->pollEvents()) glfwSwapBuffers(window_);

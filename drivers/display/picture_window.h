@@ -16,22 +16,22 @@ struct GLFWwindow;
 
 namespace fantascope::drivers {
 
-// A window of the desktop that shows one picture after the other, for a person who looks at work in
-// progress, and hears what keys the person presses. It is no output: nobody waits for a refresh.
+// A desktop window that shows one picture after another to a person who watches work in progress,
+// and reports the keys that the person presses. It is not an output: nobody waits for a refresh.
 // Thread: the main thread.
 class PictureWindow {
 public:
-    // A picture of other proportions than `size` gets black bars. Error: no X server, or no OpenGL
+    // A picture of another aspect than `size` gets black bars. Error: no X server, or no OpenGL
     // 4.5.
     static Result<std::unique_ptr<PictureWindow>> open(const std::string& title, glm::ivec2 size);
     ~PictureWindow();
     PictureWindow(const PictureWindow&) = delete;
     PictureWindow& operator=(const PictureWindow&) = delete;
 
-    // Stored values.
+    // The picture holds stored values.
     void show(const GreyImage& picture);
-    // The next key that was pressed: ' ', '\x1b' for escape, which a window that was closed or lost
-    // means too, or a letter. Never waits.
+    // The next pressed key: ' ', a letter, or '\x1b' for Escape, which also means that the window
+    // was closed or lost. Never waits.
     std::optional<char> pollKey();
 
 private:

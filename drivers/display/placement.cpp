@@ -13,15 +13,15 @@
 namespace fantascope::drivers {
 namespace {
 
-// Two timings nearer to each other than this are one rate.
+// Hz; rates that differ by less are the same.
 constexpr double kSameHertz = 0.005;
 
 bool sameRate(const Monitor::Mode& a, const Monitor::Mode& b) {
     return a.interlaced == b.interlaced && std::abs(a.hertz - b.hertz) <= kSameHertz;
 }
 
-// Of the modes of the asked size the one nearest to the asked rate, of equal ones the one that the
-// monitor lists first; an interlaced one, whose lines comb what moves, only where there is no
+// Of the modes of the requested size the one nearest to the requested rate; of equal ones the one
+// that the monitor lists first. An interlaced mode, which combs moving edges, only if there is no
 // other. Null: none.
 const Monitor::Mode* bestMode(const Monitor& monitor, const MonitorClaim& claim) {
     const auto cost = [&](const Monitor::Mode& mode) {
@@ -51,7 +51,7 @@ std::string textsOf(const std::vector<const Monitor*>& monitors) {
 
 }  // namespace
 
-// What is taken so far in one look, and what is decided.
+// What one look() has assigned so far.
 struct Placement::Round {
     const std::vector<Monitor>& monitors;
     glm::ivec2 largest;
@@ -97,7 +97,7 @@ void Placement::restart() {
     }
 }
 
-// Its monitor by identity, and the mode there.
+// Finds its monitor by identity, and the mode there.
 void Placement::find(Holder& holder, const std::vector<Monitor>& monitors) {
     const MonitorClaim& claim = holder.claim;
     holder.monitor = nullptr;
@@ -116,14 +116,14 @@ void Placement::find(Holder& holder, const std::vector<Monitor>& monitors) {
         std::vector<std::string> connectors;
         connectors.reserve(fitting.size());
         for (const Monitor* monitor : fitting) connectors.push_back("connector: " + monitor->connector);
-        absence = fmt::format("monitor {} may be any of {} here; say which, by its serial or {}", claim.monitor.text(),
+        absence = fmt::format("monitor {} may be any of {} here; choose one by its serial or {}", claim.monitor.text(),
                               textsOf(fitting), fmt::join(connectors, " or "));
     } else {
         const auto other = std::find_if(holders_.begin(), holders_.end(), [&](const Holder& earlier) {
             return earlier.number < holder.number && earlier.monitor == fitting[0];
         });
         if (other != holders_.end())
-            absence = fmt::format("monitor {} belongs to output '{}' already; give each output its own", fitting[0]->text(),
+            absence = fmt::format("monitor {} already belongs to output '{}'; give each output its own", fitting[0]->text(),
                                   other->claim.name);
         else
             holder.monitor = fitting[0];
@@ -148,11 +148,11 @@ void Placement::find(Holder& holder, const std::vector<Monitor>& monitors) {
     }
     holder.mode = bestMode(monitor, claim);
     if (holder.mode == nullptr)
-        absence = fmt::format("monitor {} has no mode of {} x {} pixels; give the output a size that it has: {}", monitor.text(),
+        absence = fmt::format("monitor {} has no mode of {} x {} pixels; give the output one of its sizes: {}", monitor.text(),
                               claim.size.x, claim.size.y, sizesOf(monitor));
 }
 
-// Whether the monitor shows what it should, so that nothing has to be done.
+// Whether the monitor already shows what it should.
 bool Placement::keeps(Holder& holder, Round& round) {
     const auto& on = holder.monitor->on;
     if (!on || on->area.size != holder.claim.size || !sameRate(on->mode, *holder.mode)) return false;
@@ -167,11 +167,10 @@ bool Placement::keeps(Holder& holder, Round& round) {
     return true;
 }
 
-// Finds the place that is kept for it, now and later. It has none where the X screen would become
-// too large.
+// Reserves its place, for now and later. It gets none if the X screen would become too large.
 void Placement::reserve(Holder& holder, Round& round) {
-    // A monitor that nobody claims may be one whose identity is only just missing, so it takes no
-    // place away until the place is used.
+    // A monitor that nobody claims may be one whose identity is missing for the moment, so it takes
+    // the place only when the place is used.
     const bool now = holder.mode != nullptr;
     const auto free = [&](const Area& area) {
         const auto covers = [&](const Area& other) { return now && area.overlaps(other); };
@@ -181,7 +180,7 @@ void Placement::reserve(Holder& holder, Round& round) {
     if (holder.claim.position) {
         area.corner = *holder.claim.position;
     } else if (!holder.reserved || !free(area)) {
-        // The holders that come later have a say too, if they had a place before.
+        // Places that later holders had before count, too.
         int right = 0;
         for (const auto& [other, theirs] : round.taken) right = std::max(right, theirs.end().x);
         for (const Area& theirs : round.foreign) right = std::max(right, theirs.end().x);
@@ -196,23 +195,24 @@ void Placement::reserve(Holder& holder, Round& round) {
     round.plan.screen = glm::max(round.plan.screen, area.end());
 }
 
-// Decides how its monitor is to be switched.
+// Decides how to switch its monitor.
 void Placement::place(Holder& holder, Round& round) {
     const Monitor& monitor = *holder.monitor;
     std::string& absence = holder.seat.absence;
-    holder.life = Life::Wanted;  // what becomes of the picture now is our doing
+    holder.life = Life::Wanted;  // from now on, changes of the picture are ours
     reserve(holder, round);
     if (!holder.reserved) {
         absence =
-            fmt::format("no room for {} x {} pixels on the X screen, which can be {} x {}; give the outputs other positions",
+            fmt::format("no room for {} x {} pixels on the X screen, which can have {} x {}; give the outputs other positions",
                         holder.claim.size.x, holder.claim.size.y, round.largest.x, round.largest.y);
         if (const auto& asked = holder.claim.position)
             if (const Holder* other = round.inTheWayOf({*asked, holder.claim.size}))
-                absence = fmt::format("at its position it would cover output '{}'; give it another", other->claim.name);
+                absence = fmt::format("at its position it would cover output '{}'; give it another position", other->claim.name);
         return;
     }
 
-    // A CRTC that nobody sees is free: at best one that is off, or else one whose monitor is gone.
+    // A CRTC without a visible picture is free: preferably one that is off, else one whose monitor
+    // is gone.
     std::set<std::uint32_t> used, idle;
     for (const Monitor& other : round.monitors)
         if (&other != &monitor && other.on) (other.connected ? used : idle).insert(other.on->crtcId);
@@ -227,7 +227,7 @@ void Placement::place(Holder& holder, Round& round) {
     }
     if (best == 0) {
         absence = fmt::format(
-            "the graphics card has no picture left for monitor {}; switch another one off, as by xrandr --output "
+            "the graphics card cannot drive monitor {}, too; switch another one off: xrandr --output "
             "NAME --off",
             monitor.text());
         return;
@@ -236,7 +236,7 @@ void Placement::place(Holder& holder, Round& round) {
     const Change change{holder.number, monitor.outputId, best, holder.mode->modeId, *holder.reserved};
     if (holder.tried != change) {
         holder.tried = change;
-        holder.failure = fmt::format("monitor {} does not take {} x {} pixels at {:.2f} Hz; try another size or refresh rate",
+        holder.failure = fmt::format("monitor {} refuses {} x {} pixels at {:.2f} Hz; try another size or refresh rate",
                                      monitor.text(), holder.claim.size.x, holder.claim.size.y, holder.mode->hertz);
         round.plan.changes.push_back(change);
     }
@@ -254,8 +254,8 @@ Placement::Plan Placement::look(const std::vector<Monitor>& monitors, glm::ivec2
         if (monitor.connected && !claimed) round.foreign.push_back(monitor.on->area);
     }
 
-    // Who has to be at a certain place comes first; then whoever is well where they are; then the
-    // others.
+    // Outputs with a fixed position come first, then those that can stay where they are, then the
+    // rest.
     std::vector<Holder*> rest;
     const auto settle = [&](Holder& holder) {
         if (holder.mode != nullptr)

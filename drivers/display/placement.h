@@ -12,58 +12,58 @@
 
 namespace fantascope::drivers {
 
-// What an output wants of the X screen.
+// An output's claim on a monitor of the X screen.
 struct MonitorClaim {
-    std::string name;  // the output's
+    std::string name;  // of the output
     MonitorChoice monitor;
     glm::ivec2 size{0};                  // of the mode, pixels
-    double refreshRate = 0;              // Hz: of the modes of that size the nearest one
-    std::optional<glm::ivec2> position;  // of its top left corner; nothing: wherever there is room
+    double refreshRate = 0;              // Hz; among the modes of that size the nearest rate is used
+    std::optional<glm::ivec2> position;  // of its top left corner; nothing: any free place
 };
 
-// Where each output's picture is to be: it finds the monitors that the outputs claim, by identity,
-// and decides what has to be switched.
+// Decides where each output's picture goes: finds the claimed monitors by identity and plans what
+// to switch.
 //
-// What is on in the right mode stays where it is, unless two outputs would overlap. Anything else
-// comes to its `position`, to the place that it had before, or right of everything else. The place
-// of an output that is absent is kept free, so that nothing has to move, and the screen does not
-// have to grow, when it comes. A monitor is switched on when it arrives; one that somebody switches
-// off while it shows a picture stays off until somebody switches it on, or plugs it in again.
-// It knows no X server: it is told what there is, and tells what to do. Thread: thread-bound.
+// A monitor that is on in the right mode stays where it is, unless two outputs would overlap. Any
+// other goes to its `position`, to its last place, or to the right of everything else. The place of
+// an absent output is kept free, so that nothing has to move, and the screen does not have to grow,
+// when it comes. A monitor is switched on when it appears. If somebody switches it off while it
+// shows a picture, it stays off until somebody switches it on or replugs it.
+// It does not talk to the X server: it gets the monitors and returns what to do. Thread:
+// thread-bound.
 class Placement {
 public:
-    // Of a claim at the last look.
+    // A claim's state at the last look().
     struct Seat {
         std::string absence;  // why it shows nothing and what to do about it; empty: its monitor shows `area`
         Area area;            // of the X screen
         double hertz = 0;     // of its monitor; 0: unknown
         bool operator==(const Seat&) const = default;
     };
-    // Switches a monitor on, or over.
+    // Switches a monitor on, or to another mode or place.
     struct Change {
-        int claim = 0;  // whom it is for
+        int claim = 0;  // the claim that it serves
         std::uint32_t outputId = 0, crtcId = 0, modeId = 0;
         glm::ivec2 corner{0};
         bool operator==(const Change&) const = default;
     };
     struct Plan {
-        glm::ivec2 screen{0};         // the least size of the X screen that holds everything, before the changes
-        std::vector<Change> changes;  // none is asked for twice before it was seen to work, or retry()
+        glm::ivec2 screen{0};         // the minimum size of the X screen, to be set before the changes
+        std::vector<Change> changes;  // a change is not repeated before it has worked, or retry()
     };
 
-    // A number for the claim, to be used below. Earlier ones have the first choice.
+    // Returns a number for the claim. Earlier claims choose first.
     int add(MonitorClaim claim);
     void remove(int claim);
-    // What has to be done now that the monitors are these, and the X screen can be `largest` pixels
-    // at most.
+    // What to do with these monitors, if the X screen can be at most `largest` pixels.
     Plan look(const std::vector<Monitor>& monitors, glm::ivec2 largest);
-    // A change that look() asked for did not succeed.
+    // Reports that a change from look() failed.
     void refused(int claim, const std::string& why);
-    // Changes that did not succeed are asked for again by the next look().
+    // Lets the next look() repeat changes that failed.
     void retry();
-    // The X server is gone, and a new one has switched on what it likes. The places stay.
+    // The X server ended, and a new one has switched monitors on by its own rules. The places stay.
     void restart();
-    // By the claims' numbers.
+    // By claim number.
     std::map<int, Seat> seats() const;
 
 private:
@@ -72,13 +72,13 @@ private:
         int number;
         MonitorClaim claim;
         Life life = Life::Away;
-        std::string connector{};               // where its monitor is, unless it is away
-        std::optional<glm::ivec2> reserved{};  // the corner of the place that is kept for it
-        std::optional<Change> tried{};         // that was not seen to work yet
-        std::string failure{};                 // ... and why not
+        std::string connector{};               // of its monitor, unless it is away
+        std::optional<glm::ivec2> reserved{};  // the corner of its reserved place
+        std::optional<Change> tried{};         // requested, not yet seen to work
+        std::string failure{};                 // ... and why it failed
         Seat seat{};
-        const Monitor* monitor = nullptr;     // in this round
-        const Monitor::Mode* mode = nullptr;  // ... what it is to show there
+        const Monitor* monitor = nullptr;     // in this look()
+        const Monitor::Mode* mode = nullptr;  // ... and the mode that it should show
     };
     struct Round;
     void find(Holder& holder, const std::vector<Monitor>& monitors);

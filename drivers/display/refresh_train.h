@@ -7,8 +7,8 @@
 
 namespace fantascope::drivers {
 
-// The numbered refreshes of a display, `hertz` a second. At first number k takes place at
-// tickTime(k, hertz); a display that sees its monitor's real refreshes sets the count right by each
+// The numbered refreshes of a display, `hertz` per second. Initially number k takes place at
+// tickTime(k, hertz). A display that sees its monitor's real refreshes corrects the count by each
 // of them. Thread: thread-bound.
 class RefreshTrain {
 public:
@@ -18,15 +18,15 @@ public:
     // The number of the refresh that is showing at `time`.
     std::int64_t running(Time time) const { return number_ + tickAt(time - at_, hertz_); }
     Time timeOf(std::int64_t number) const { return at_ + tickTime(number - number_, hertz_); }
-    // A real refresh was seen at `time`: the nearest one by the count so far, but never one that
-    // was seen before. Later ones count from it.
+    // Reports a real refresh at `time` and returns its number: the nearest by the count so far, but
+    // never one that was reported before. Later ones count from it.
     std::int64_t seen(Time time) {
         const Time halfPeriod = tickTime(1, 2 * hertz_);
         number_ = std::max(number_ + 1, running(time + halfPeriod));
         at_ = time;
         return number_;
     }
-    // From `time` on they come at another rate; the running one keeps its number.
+    // Changes the rate from `time` on; the current refresh keeps its number.
     void runAt(double hertz, Time time) {
         number_ = running(time);
         at_ = time;
@@ -35,7 +35,7 @@ public:
 
 private:
     double hertz_;
-    std::int64_t number_ = 0;  // of the refresh that took place at at_
+    std::int64_t number_ = 0;  // of the refresh at at_
     Time at_{};
 };
 

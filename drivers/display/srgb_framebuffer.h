@@ -6,8 +6,9 @@
 
 namespace fantascope::drivers {
 
-// A black picture of stored sRGB values (GL_SRGB8_ALPHA8) in the current context, as the GL name of
-// its framebuffer. It lives and dies with the context. Error: larger than this OpenGL can draw.
+// Makes a black picture of stored sRGB values (GL_SRGB8_ALPHA8) in the current context and returns
+// the GL name of its framebuffer. It lives as long as the context. Error: larger than this OpenGL
+// can draw.
 Result<unsigned> makeSrgbFramebuffer(glm::ivec2 size);
 
 }  // namespace fantascope::drivers

@@ -22,7 +22,7 @@ struct Free {
 template <class Reply>
 using Owned = std::unique_ptr<Reply, Free>;
 
-// The answer to a request, or nothing: an error, or no connection any more.
+// The reply to a request; nothing: an error, or no connection any more.
 template <class Reply, class Cookie>
 Owned<Reply> answer(xcb_connection_t* connection, Reply* (*take)(xcb_connection_t*, Cookie, xcb_generic_error_t**),
                     Cookie cookie) {
@@ -45,6 +45,29 @@ Monitor::Mode modeOf(const xcb_randr_mode_info_t& info) {
 
 std::string textOf(const std::uint8_t* name, int length) {
     return {reinterpret_cast<const char*>(name), static_cast<std::size_t>(length)};
+}
+
+using Modes = std::map<std::uint32_t, Monitor::Mode>;        // by the X server's number
+using Pictures = std::map<std::uint32_t, Monitor::Picture>;  // by CRTC; those that are on
+
+// `edid` may be null.
+Monitor monitorOf(std::uint32_t outputId, const xcb_randr_get_output_info_reply_t& output,
+                  const xcb_randr_get_output_property_reply_t* edid, const Modes& modes, const Pictures& pictures) {
+    Monitor monitor;
+    monitor.connector = textOf(xcb_randr_get_output_info_name(&output), output.name_len);
+    monitor.outputId = outputId;
+    // Some connectors cannot detect a monitor. They report "unknown", which counts as connected.
+    monitor.connected = output.connection != XCB_RANDR_CONNECTION_DISCONNECTED;
+    if (edid != nullptr && edid->format == 8)
+        monitor.identity = identityFromEdid({xcb_randr_get_output_property_data(edid), edid->num_items});
+    for (const std::uint32_t id : std::span(xcb_randr_get_output_info_modes(&output), output.num_modes)) {
+        const auto mode = modes.find(id);
+        monitor.modes.push_back(mode == modes.end() ? Monitor::Mode{} : mode->second);
+    }
+    const std::span possible(xcb_randr_get_output_info_crtcs(&output), output.num_crtcs);
+    monitor.possibleCrtcs.assign(possible.begin(), possible.end());
+    if (const auto on = pictures.find(output.crtc); on != pictures.end()) monitor.on = on->second;
+    return monitor;
 }
 
 }  // namespace
@@ -80,7 +103,7 @@ Result<std::unique_ptr<XScreen>> XScreen::open() {
     xcb_randr_select_input(connection, roots.data->root,
                            XCB_RANDR_NOTIFY_MASK_SCREEN_CHANGE | XCB_RANDR_NOTIFY_MASK_CRTC_CHANGE |
                                XCB_RANDR_NOTIFY_MASK_OUTPUT_CHANGE | XCB_RANDR_NOTIFY_MASK_OUTPUT_PROPERTY);
-    screen->lookAtConnectors();  // nobody minds before the show
+    screen->probeConnectors();  // harmless before the show
     return screen;
 }
 
@@ -100,7 +123,8 @@ XScreen::~XScreen() {
                              static_cast<std::int16_t>(before_->saver->interval), before_->saver->prefer_blanking,
                              before_->saver->allow_exposures);
     if (before_ && before_->dpms) xcb_dpms_enable(connection_);
-    (void)answer(connection_, xcb_get_input_focus_reply, xcb_get_input_focus(connection_));  // until the X server has heard
+    (void)answer(connection_, xcb_get_input_focus_reply,
+                 xcb_get_input_focus(connection_));  // waits until the X server has handled the above
     xcb_disconnect(connection_);
 }
 
@@ -109,7 +133,7 @@ int XScreen::fileDescriptor() const { return xcb_get_file_descriptor(connection_
 Result<bool> XScreen::changed() {
     bool any = false;
     while (const Owned<xcb_generic_event_t> event{xcb_poll_for_event(connection_)}) {
-        const int type = event->response_type & 0x7F;  // the highest bit: sent by a client
+        const int type = event->response_type & 0x7F;  // the highest bit means: sent by a client
         if (type < firstRandrEvent_ || type > firstRandrEvent_ + XCB_RANDR_NOTIFY) continue;
         any = true;
         if (type != firstRandrEvent_ + XCB_RANDR_NOTIFY) continue;
@@ -121,7 +145,7 @@ Result<bool> XScreen::changed() {
     return any;
 }
 
-void XScreen::lookAtConnectors() {
+void XScreen::probeConnectors() {
     (void)answer(connection_, xcb_randr_get_screen_resources_reply, xcb_randr_get_screen_resources(connection_, root_));
 }
 
@@ -136,14 +160,14 @@ Result<std::vector<Monitor>> XScreen::monitors() {
     size_ = {screen->width, screen->height};
     configured_ = resources->config_timestamp;
 
-    std::map<std::uint32_t, Monitor::Mode> modes;
+    Modes modes;
     for (const xcb_randr_mode_info_t& info :
          std::span(xcb_randr_get_screen_resources_current_modes(resources.get()), resources->num_modes))
         modes[info.id] = modeOf(info);
     const std::span crtcs(xcb_randr_get_screen_resources_current_crtcs(resources.get()), resources->num_crtcs);
     const std::span outputs(xcb_randr_get_screen_resources_current_outputs(resources.get()), resources->num_outputs);
 
-    // All questions first, then all answers, so that the X server is waited for once.
+    // All requests go out before the first reply is read, so that the X server is waited for once.
     std::vector<xcb_randr_get_crtc_info_cookie_t> crtcsAsked;
     std::vector<xcb_randr_get_output_info_cookie_t> outputsAsked;
     std::vector<xcb_randr_get_output_property_cookie_t> edidsAsked;
@@ -155,7 +179,7 @@ Result<std::vector<Monitor>> XScreen::monitors() {
             xcb_randr_get_output_property(connection_, output, edid_, XCB_GET_PROPERTY_TYPE_ANY, 0, kBaseBlock, 0, 0));
     }
 
-    std::map<std::uint32_t, Monitor::Picture> pictures;
+    Pictures pictures;
     bool whole = true;
     for (std::size_t i = 0; i < crtcs.size(); ++i) {
         const auto crtc = answer(connection_, xcb_randr_get_crtc_info_reply, crtcsAsked[i]);
@@ -169,25 +193,21 @@ Result<std::vector<Monitor>> XScreen::monitors() {
         const auto edid = answer(connection_, xcb_randr_get_output_property_reply, edidsAsked[i]);
         whole = whole && output && output->status == XCB_RANDR_SET_CONFIG_SUCCESS;
         if (!output) continue;
-        Monitor& monitor = monitors.emplace_back();
-        monitor.connector = textOf(xcb_randr_get_output_info_name(output.get()), output->name_len);
-        monitor.outputId = outputs[i];
-        monitor.connected = output->connection != XCB_RANDR_CONNECTION_DISCONNECTED;  // unknown: some cannot feel a monitor
-        monitor.unplugged = unplugged_.contains(outputs[i]);
-        if (edid && edid->format == 8)
-            monitor.identity = identityFromEdid({xcb_randr_get_output_property_data(edid.get()), edid->num_items});
-        for (const std::uint32_t mode : std::span(xcb_randr_get_output_info_modes(output.get()), output->num_modes))
-            monitor.modes.push_back(modes[mode]);
-        const std::span possible(xcb_randr_get_output_info_crtcs(output.get()), output->num_crtcs);
-        monitor.possibleCrtcs.assign(possible.begin(), possible.end());
-        if (const auto on = pictures.find(output->crtc); on != pictures.end()) monitor.on = on->second;
+        monitors.push_back(monitorOf(outputs[i], *output, edid.get(), modes, pictures));
+        monitors.back().unplugged = unplugged_.contains(outputs[i]);
     }
     if (xcb_connection_has_error(connection_) != 0) return gone();
-    if (!whole) return Error("the monitors are changing; it is tried again");
+    if (!whole) return Error("the monitors are changing; trying again");
     unplugged_.clear();
 
-    // Who switches on a connector that seems to have no monitor knows better: the X server has not
-    // looked at it for long.
+    if (!noteOn(monitors)) return monitors;
+    probeConnectors();
+    return this->monitors();
+}
+
+bool XScreen::noteOn(const std::vector<Monitor>& monitors) {
+    // If a connector without a monitor was switched on, whoever did so knows better: the X server's
+    // knowledge of the connector is old.
     bool stale = false;
     std::set<std::uint32_t> on;
     for (const Monitor& monitor : monitors) {
@@ -196,9 +216,7 @@ Result<std::vector<Monitor>> XScreen::monitors() {
         stale = stale || (!monitor.connected && !on_.contains(monitor.outputId));
     }
     on_ = std::move(on);
-    if (!stale) return monitors;
-    lookAtConnectors();
-    return this->monitors();
+    return stale;
 }
 
 Result<void> XScreen::grow(glm::ivec2 size) {
@@ -206,7 +224,7 @@ Result<void> XScreen::grow(glm::ivec2 size) {
     if (larger == size_) return {};
     const auto millimetres = [](int pixels) {
         return static_cast<std::uint32_t>(pixels * 254 / 960);
-    };  // at the usual 96 dots an inch
+    };  // at the usual 96 dots per inch
     const Owned<xcb_generic_error_t> error(xcb_request_check(
         connection_,
         xcb_randr_set_screen_size_checked(connection_, root_, static_cast<std::uint16_t>(larger.x),

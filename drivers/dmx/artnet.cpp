@@ -17,9 +17,9 @@ namespace {
 using namespace artnet;
 
 constexpr Time kPoll = std::chrono::milliseconds(2750);  // between 2.5 s and 3 s
-constexpr Time kUnanswered = std::chrono::seconds(9);    // three polls, each of which may be answered within 3 s
-constexpr Time kSilence = std::chrono::seconds(10);      // of a sender, until a merge lets it go
-constexpr Time kSyncSilence = std::chrono::seconds(4);   // then nodes go on without ArtSync
+constexpr Time kNodeTimeout = std::chrono::seconds(9);   // three polls, each answered within 3 s
+constexpr Time kSilence = std::chrono::seconds(10);      // after which a sender is gone
+constexpr Time kSyncSilence = std::chrono::seconds(4);   // after which nodes go on without ArtSync
 
 Incoming::Key keyOf(Ipv4 address) {
     Incoming::Key key{};
@@ -46,35 +46,35 @@ public:
         syncIsDue_ = syncIsDue_ || out.settings.sync != 0;
     }
 
-    // Broadcast, as the protocol has it.
+    // Broadcast, as the protocol requires.
     void afterTick(DmxWire& wire) override {
         if (std::exchange(syncIsDue_, false)) wire.send(bytesOf(Sync{}), {wire.interface.broadcast, kUdpPort});
     }
 
-    void sayGoodbye(DmxWire&, Outgoing&) override {}  // Art-Net knows none
+    void sendTerminated(DmxWire&, Outgoing&) override {}  // Art-Net has no termination message
 
-    Time tend(DmxWire& wire, Time now) override {
+    Time poll(DmxWire& wire, Time now) override {
         if (now >= nextPoll_) {
             nextPoll_ = now + kPoll;
             const auto poll = bytesOf(Poll{});
             wire.send(poll, {wire.interface.broadcast, kUdpPort});
-            // Broadcasts end at a router, and some switches swallow them. From our own port, where
-            // nodes send their replies.
+            // A router stops broadcasts, and some switches drop them, so each node is also polled
+            // directly. The polls leave from our own port, because nodes send their replies there.
             for (const Outgoing* const out : wire.outgoing)
                 if (out->settings.polled) (void)wire.socket.send(poll, {out->settings.to.front(), kUdpPort});
         }
         return nextPoll_;
     }
 
-    std::optional<Outage> hindrance(const Outgoing& out, Time now) override {
+    std::optional<Outage> blockedReason(const Outgoing& out, Time now) override {
         if (!out.settings.polled) return std::nullopt;
         const Ipv4 node = out.settings.to.front();
         const auto heard = heard_.find(node);
-        if (heard != heard_.end() && now - heard->second <= kUnanswered) return std::nullopt;
-        if (heard == heard_.end() && now - began_ <= kUnanswered)
-            return Outage{DeviceState::Starting, fmt::format("node {} is asked whether it is there", textOf(node))};
+        if (heard != heard_.end() && now - heard->second <= kNodeTimeout) return std::nullopt;
+        if (heard == heard_.end() && now - began_ <= kNodeTimeout)
+            return Outage{DeviceState::Starting, fmt::format("waiting for node {} to answer ArtPoll", textOf(node))};
         return Outage{DeviceState::Absent,
-                      fmt::format("node {} does not answer ArtPoll: is it on, and on this network? (poll: false for a node "
+                      fmt::format("node {} does not answer ArtPoll: check its power and network (set poll: false for a node "
                                   "that never answers)",
                                   textOf(node))};
     }
@@ -82,7 +82,7 @@ public:
     void receive(DmxWire& wire, std::span<const std::uint8_t> bytes, Endpoint from, Time now) override {
         const auto packet = read(bytes);
         if (!packet) return;
-        const bool ours = from.address == wire.interface.address;  // or another program's on this machine
+        const bool ours = from.address == wire.interface.address;  // or from another program on this machine
         if (const Dmx* const dmx = std::get_if<Dmx>(&*packet)) {
             const bool sent = std::any_of(wire.outgoing.begin(), wire.outgoing.end(),
                                           [&](const Outgoing* out) { return out->settings.universe == dmx->portAddress; });
@@ -101,11 +101,11 @@ public:
 private:
     void receiveLevels(Incoming& in, const Dmx& dmx, Ipv4 from, Time now) {
         const Incoming::Key key = keyOf(from);
-        const DmxSender* const familiar = in.known(key, now, kSilence);
-        if (familiar != nullptr && isLate(dmx.sequence, familiar->sequence)) return;
-        DmxSender* const sender = in.met(key, now, kSilence);
+        const DmxSender* const known = in.find(key, now, kSilence);
+        if (known != nullptr && isLate(dmx.sequence, known->sequence)) return;
+        DmxSender* const sender = in.findOrAdd(key, now, kSilence);
         if (sender == nullptr) return;
-        if (familiar == nullptr) *sender = {textOf(from), 0, {}, {}};
+        if (known == nullptr) *sender = {textOf(from), 0, {}, {}};
         sender->sequence = dmx.sequence;
         sender->heard = now;
         DmxInput frame{dmx.slots, sender->source, 100, now, false, kSilence};
@@ -117,12 +117,12 @@ private:
             in.put(std::move(frame));
     }
 
-    // Each sender's own sync packets are for its own frames.
+    // A sender's sync packets apply to its own frames only.
     void receiveSync(DmxWire& wire, Ipv4 from, Time now) {
         const Incoming::Key key = keyOf(from);
         bool sends = false;
         for (Incoming* const in : wire.incoming) {
-            sends = sends || in->known(key, now, kSilence) != nullptr;
+            sends = sends || in->find(key, now, kSilence) != nullptr;
             in->release([&](const Incoming::Key& sender, const DmxSender&) { return sender == key; }, now);
         }
         if (!sends) return;
@@ -135,7 +135,7 @@ private:
             if (out->settings.polled && out->settings.to.front() == from) heard_[from] = now;
     }
 
-    // One reply a port, so that ports of different nets fit.
+    // One reply per port, because ports of different nets do not fit into one.
     void reply(DmxWire& wire, Ipv4 to) {
         PollReply reply;
         reply.address = wire.interface.address;
@@ -143,35 +143,35 @@ private:
         reply.shortName = "Fantascope";
         reply.longName = "Fantascope, a show controller";
         reply.controller = true;
-        const auto tell = [&] {
+        const auto sendReply = [&] {
             (void)wire.socket.send(bytesOf(reply), {to, kUdpPort});
             reply.bindIndex = std::min(reply.bindIndex + 1, 255);
         };
         for (const Incoming* const in : wire.incoming) {
             reply.outputs = {in->universe};
-            tell();
+            sendReply();
         }
         reply.outputs.clear();
         for (const Outgoing* const out : wire.outgoing) {
             reply.inputs = {out->settings.universe};
-            tell();
+            sendReply();
         }
-        if (wire.incoming.empty() && wire.outgoing.empty()) tell();
+        if (wire.incoming.empty() && wire.outgoing.empty()) sendReply();
     }
 
     Time began_{}, nextPoll_{};
     bool syncIsDue_ = false;
-    std::map<Ipv4, Time> heard_, syncs_;  // when each node answered, and each sender synchronised, for the last time
+    std::map<Ipv4, Time> heard_, syncs_;  // the last answer of each node, the last sync packet of each sender
 };
 
-std::shared_ptr<DmxNetwork> networkFor(const std::string& interface, const Surroundings& around) {
+std::shared_ptr<DmxNetwork> networkFor(const std::string& interface, const DriverContext& context) {
     static Shared<std::tuple<std::string, Clock*>, DmxNetwork> networks;
-    return networks.get({interface, &around.clock}, [&] {
-        return std::make_shared<DmxNetwork>(interface, std::make_unique<ArtnetProtocol>(), around.clock);
+    return networks.get({interface, &context.clock}, [&] {
+        return std::make_shared<DmxNetwork>(interface, std::make_unique<ArtnetProtocol>(), context.clock);
     });
 }
 
-// The keys that in and out have alike.
+// The keys that both directions have.
 struct Keys {
     std::string driver, interface;
     int net = 0, subnet = 0, universe = -1;
@@ -189,8 +189,7 @@ Result<int> portAddressOf(const Keys& keys, int universe, const ConfigNode& opti
     if (keys.universe >= 0) return keys.net << 8 | keys.subnet << 4 | keys.universe;
     if (keys.net != 0 || keys.subnet != 0) return options.error("'universe' is missing beside 'net' and 'subnet', 0 to 15");
     if (universe <= kLastPortAddress) return universe;
-    return options.error(
-        fmt::format("Art-Net has no port-address {}: say which one by 'net', 'subnet' and 'universe'", universe));
+    return options.error(fmt::format("Art-Net has no port-address {}: choose one with 'net', 'subnet' and 'universe'", universe));
 }
 
 }  // namespace
@@ -214,9 +213,9 @@ Result<Opening<DmxPort>> ArtnetPort::fromConfig(const ConfigNode& options, int u
     const Use sent{fmt::format("Art-Net port-address {} towards {}{}", settings.universe,
                                keys.interface.empty() ? "the network" : keys.interface, node ? ", node " + textOf(*node) : ""),
                    ""};
-    const auto open = [keys, settings, universe](const Surroundings& around) -> Result<std::unique_ptr<DmxPort>> {
+    const auto open = [keys, settings, universe](const DriverContext& context) -> Result<std::unique_ptr<DmxPort>> {
         return std::unique_ptr<DmxPort>(std::make_unique<NetworkDmxPort>(fmt::format("universe {}", universe), keys.driver,
-                                                                         settings, networkFor(keys.interface, around)));
+                                                                         settings, networkFor(keys.interface, context)));
     };
     const auto claim = [=] {
         return fmt::format("Art-Net port-address {}{}{}", settings.universe, node ? " of " + textOf(*node) : "",
@@ -231,9 +230,9 @@ Result<Opening<DmxSource>> ArtnetSource::fromConfig(const ConfigNode& options, i
     declare(fields, keys);
     TRY(fields.finish());
     const int portAddress = TRY(portAddressOf(keys, universe, options));
-    const auto open = [keys, portAddress, universe](const Surroundings& around) -> Result<std::unique_ptr<DmxSource>> {
+    const auto open = [keys, portAddress, universe](const DriverContext& context) -> Result<std::unique_ptr<DmxSource>> {
         return std::unique_ptr<DmxSource>(std::make_unique<NetworkDmxSource>(fmt::format("desk {}", universe), keys.driver,
-                                                                             portAddress, networkFor(keys.interface, around)));
+                                                                             portAddress, networkFor(keys.interface, context)));
     };
     return Opening<DmxSource>{open};
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/common/surroundings.h"
+#include "drivers/common/opening.h"
 
 #include "device/dmx_port.h"
 #include "device/dmx_source.h"
@@ -9,7 +9,7 @@
 
 namespace fantascope::drivers {
 
-// Art-Net 4 (Artistic Licence). README.md has the keys and what goes over the network.
+// Art-Net 4 (Artistic Licence). README.md lists the keys and the traffic.
 struct ArtnetPort {
     static Result<Opening<DmxPort>> fromConfig(const ConfigNode& options, int universe);
 };

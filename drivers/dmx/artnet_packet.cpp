@@ -19,7 +19,7 @@ constexpr std::size_t kSequence = 12, kSubUni = 14, kNet = 15, kLength = 16, kSl
 constexpr std::size_t kAddress = 10, kPort = 14, kNetSwitch = 18, kSubSwitch = 19, kOem = 20, kEsta = 24, kShortName = 26;
 constexpr std::size_t kLongName = 44, kReport = 108, kPortCount = 173, kPortTypes = 174, kGoodInput = 178, kGoodOutput = 182;
 constexpr std::size_t kSwIn = 186, kSwOut = 190, kStyle = 200, kHardware = 201, kBindAddress = 207, kBindIndex = 211;
-constexpr std::size_t kStatus2 = 212, kLeastReply = 207;  // older nodes end before what came with binding
+constexpr std::size_t kStatus2 = 212, kMinReply = 207;  // bytes; older nodes leave out the fields that came with binding
 constexpr std::size_t kShortSize = 18, kLongSize = 64, kPorts = 4;
 constexpr std::uint8_t kPortOut = 0x80, kPortIn = 0x40, kActive = 0x80, kController = 1, kReplyOnChange = 0x02;
 constexpr std::uint8_t kWidePortAddress = 0x08;  // of Status2
@@ -54,7 +54,7 @@ std::optional<Packet> readDmx(Bytes bytes) {
 }
 
 std::optional<Packet> readReply(Bytes bytes) {
-    if (bytes.size() < kLeastReply) return std::nullopt;
+    if (bytes.size() < kMinReply) return std::nullopt;
     PollReply reply;
     for (std::size_t i = 0; i < 4; ++i) reply.address.bits = reply.address.bits << 8 | bytes[kAddress + i];
     std::copy_n(bytes.begin() + kHardware, reply.hardware.size(), reply.hardware.begin());
@@ -109,13 +109,13 @@ std::array<std::uint8_t, 14> bytesOf(Poll) {
 }
 
 std::array<std::uint8_t, 239> bytesOf(const PollReply& reply) {
-    FANTASCOPE_CHECK(reply.outputs.size() <= kPorts && reply.inputs.size() <= kPorts, "a reply tells of four ports");
+    FANTASCOPE_CHECK(reply.outputs.size() <= kPorts && reply.inputs.size() <= kPorts, "a reply describes at most four ports");
     std::array<std::uint8_t, 239> bytes{};
     begin(bytes, kOpPollReply);
     putAddress(bytes, kAddress, reply.address);
     bytes[kPort] = kUdpPort & 255;
     bytes[kPort + 1] = kUdpPort >> 8;
-    bytes[kOem + 1] = 0xff;  // a maker that has no code of its own; the ESTA code is one for prototypes
+    bytes[kOem + 1] = 0xff;  // a maker without a code of its own; the ESTA code is one for prototypes
     bytes[kEsta] = 0xf0;
     bytes[kEsta + 1] = 0x7f;
     putText(bytes, kShortName, kShortSize, reply.shortName);

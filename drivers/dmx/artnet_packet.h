@@ -1,6 +1,6 @@
 #pragma once
 // The packets of Art-Net 4 (Artistic Licence, Art-Net 4 Protocol Release) that carry levels and
-// find nodes, as bytes and as values. No sockets and no clocks.
+// discover nodes, as bytes and as values. No sockets, no clocks.
 
 #include "drivers/dmx/udp_socket.h"
 
@@ -20,15 +20,15 @@ inline constexpr std::uint16_t kUdpPort = 6454;
 inline constexpr int kLastPortAddress = 0x7fff;  // 15 bits: net (7), sub-net (4), universe (4)
 
 struct Dmx {
-    std::uint8_t sequence = 0;  // 1 .. 255; 0: the sender does not count
+    std::uint8_t sequence = 0;  // 1 .. 255; 0: not counted
     int portAddress = 0;
-    std::array<std::uint8_t, kDmxSlots> slots{};  // what was not sent is 0
+    std::array<std::uint8_t, kDmxSlots> slots{};  // missing slots are 0
 };
 struct Sync {};
 struct Poll {};
 
-// What a node or a controller is. One that has many ports sends several replies, told apart by
-// bindIndex.
+// A node's or controller's description of itself. One with many ports sends several replies, told
+// apart by bindIndex.
 struct PollReply {
     Ipv4 address;
     std::array<std::uint8_t, 6> hardware{};
@@ -36,20 +36,20 @@ struct PollReply {
     bool controller = false;
     int bindIndex = 1;
     std::vector<int> outputs,
-        inputs;  // port-addresses of at most four ports each: DMX comes out of an output, and goes into an input
+        inputs;  // port-addresses, at most four each. DMX leaves the node at an output and enters it at an input
 };
 
 using Packet = std::variant<Dmx, Sync, Poll, PollReply>;
-// Nothing for what is no whole packet of these kinds, or of a protocol older than 14.
+// Nothing if it is not a complete packet of these kinds, or its protocol version is below 14.
 std::optional<Packet> read(std::span<const std::uint8_t> bytes);
 
 std::array<std::uint8_t, 530> bytesOf(const Dmx& dmx);
 std::array<std::uint8_t, 14> bytesOf(Sync);
-std::array<std::uint8_t, 14> bytesOf(Poll);  // asks for a reply now, and whenever something changes
-// The ports of one reply have net and sub-net in common.
+std::array<std::uint8_t, 14> bytesOf(Poll);  // requests a reply now and after each change
+// All ports of a reply share net and sub-net.
 std::array<std::uint8_t, 239> bytesOf(const PollReply& reply);
 
-// As sacn::isLate; a sequence goes from 255 to 1, and 0 is never late.
+// As sacn::isLate, but the sequence number wraps from 255 to 1, and 0 is never late.
 constexpr bool isLate(std::uint8_t sequence, std::uint8_t last) {
     if (sequence == 0 || last == 0) return false;
     int difference = sequence - last;

@@ -13,20 +13,20 @@
 namespace fantascope::drivers {
 namespace {
 
-// How often a wire is looked at: well within a person's patience.
-constexpr Time kLook = std::chrono::milliseconds(100);
+// How often the interface is checked; short for a person who waits.
+constexpr Time kLinkCheck = std::chrono::milliseconds(100);
 
-// No datagram of either protocol is longer than an Ethernet frame.
-constexpr std::size_t kLongestDatagram = 1500;
+// Bytes; no datagram of either protocol is longer than an Ethernet frame.
+constexpr std::size_t kMaxDatagram = 1500;
 
-// More than that are left for the next round, so that a flood never keeps levels from going out.
-constexpr int kMostAtOnce = 1000;
+// Datagrams; the rest waits for the next round, so that a flood cannot delay the levels.
+constexpr int kMaxPerRound = 1000;
 
-// Some microseconds of work a tick that lamps show when they are late: it goes before everything,
-// where the system allows that even before the pictures
-// (docs/decisions/0007-rendering-has-real-time-priority.md), whose threads may each keep a core for
-// a tenth of a second.
-void goFirst() {
+// Raises the thread's priority as far as the system allows, even above the threads that draw
+// pictures, each of which may keep a core for a tenth of a second
+// (docs/decisions/0007-rendering-has-real-time-priority.md). A tick takes microseconds, and lamps
+// show when it is late.
+void raisePriority() {
     prctl(PR_SET_TIMERSLACK, 1UL);
     for (const int priority : {2, 1}) {
         const sched_param realTime{.sched_priority = priority};
@@ -40,7 +40,7 @@ Time tickAfter(Time time) { return tickTime(tickAt(time, DmxNetwork::kRate) + 1,
 }  // namespace
 
 UniverseStatus::UniverseStatus(std::string name, std::string driver) {
-    status_ = {std::move(name), std::move(driver), DeviceState::Starting, LossAction::Hold, "the network is being looked for", 0};
+    status_ = {std::move(name), std::move(driver), DeviceState::Starting, LossAction::Hold, "looking for the network", 0};
 }
 
 DeviceStatus UniverseStatus::status() const {
@@ -53,14 +53,14 @@ Error UniverseStatus::refusal() const {
     return Error(now.name + " is " + nameOf(now.state) + (now.detail.empty() ? "" : ": " + now.detail));
 }
 
-void UniverseStatus::run() {
+void UniverseStatus::setRunning() {
     const std::lock_guard lock(mutex_);
     status_.state = DeviceState::Running;
     status_.detail.clear();
     running_ = true;
 }
 
-void UniverseStatus::lose(const Outage& outage) {
+void UniverseStatus::setLost(const Outage& outage) {
     const std::lock_guard lock(mutex_);
     if (status_.state == DeviceState::Running) ++status_.losses;
     status_.state = outage.state;
@@ -68,47 +68,47 @@ void UniverseStatus::lose(const Outage& outage) {
     running_ = false;
 }
 
-void Outgoing::hand(std::span<const std::uint8_t, kDmxSlots> slots) {
+void Outgoing::setLevels(std::span<const std::uint8_t, kDmxSlots> slots) {
     std::copy(slots.begin(), slots.end(), wanted_.writable().begin());
     wanted_.publish();
     fresh_ = true;
 }
 
 bool Outgoing::takeChange() {
-    if (!fresh_.exchange(false) || !wanted_.update() || (speaks && wanted_.value() == slots)) return false;
+    if (!fresh_.exchange(false) || !wanted_.update() || (active && wanted_.value() == slots)) return false;
     slots = wanted_.value();
-    speaks = true;
+    active = true;
     repeats_ = DmxNetwork::kRepeats;
     return true;
 }
 
-bool Outgoing::isDue(Time now) {
+bool Outgoing::takeDue(Time now) {
     if (takeChange()) {
         sent_ = now;
         return true;
     }
-    if (!speaks || now < *nextDue()) return false;
+    if (!active || now < *nextDue()) return false;
     repeats_ = std::max(repeats_ - 1, 0);
     sent_ = now;
     return true;
 }
 
-bool Outgoing::isOwed() {
+bool Outgoing::takePending() {
     if (takeChange()) return true;
-    if (!speaks || repeats_ == 0) return false;
+    if (!active || repeats_ == 0) return false;
     --repeats_;
     return true;
 }
 
 std::optional<Time> Outgoing::nextDue() const {
-    if (!speaks) return std::nullopt;
+    if (!active) return std::nullopt;
     return repeats_ > 0 ? tickAfter(sent_) : sent_ + DmxNetwork::kKeepAlive;
 }
 
 void Outgoing::forget() {
     fresh_ = false;
     wanted_.update();
-    speaks = false;
+    active = false;
 }
 
 std::optional<DmxInput> Incoming::take() {
@@ -119,35 +119,36 @@ std::optional<DmxInput> Incoming::take() {
     return oldest;
 }
 
-DmxSender* Incoming::known(const Key& key, Time now, Time silence) {
+DmxSender* Incoming::find(const Key& key, Time now, Time silence) {
     const auto found = senders_.find(key);
     if (found == senders_.end() || now - found->second.heard > silence) return nullptr;
     return &found->second;
 }
 
-DmxSender* Incoming::met(const Key& key, Time now, Time silence) {
-    if (DmxSender* sender = known(key, now, silence)) return sender;
+DmxSender* Incoming::findOrAdd(const Key& key, Time now, Time silence) {
+    if (DmxSender* sender = find(key, now, silence)) return sender;
     std::erase_if(senders_, [&](const auto& entry) { return now - entry.second.heard > silence; });
-    return senders_.size() < kMostSenders ? &senders_[key] : nullptr;
+    return senders_.size() < kMaxSenders ? &senders_[key] : nullptr;
 }
 
 void Incoming::put(DmxInput frame) {
     const std::lock_guard lock(mutex_);
     waiting_.push_back(std::move(frame));
     if (waiting_.size() <= kDepth) return;
-    // The oldest frame that its own sender has already replaced; every sender's newest stays.
+    // Drops the oldest frame that its own sender has already replaced. The newest of every sender
+    // stays.
     for (auto old = waiting_.begin(); old != waiting_.end(); ++old) {
         if (std::none_of(old + 1, waiting_.end(), [&](const DmxInput& later) { return later.source == old->source; })) continue;
         waiting_.erase(old);
         return;
     }
-    // Every one is somebody's only one: as many senders may have spoken as we ever know at once.
-    if (waiting_.size() > kDepth + kMostSenders) waiting_.pop_front();
+    // Every frame is its sender's only one. As many senders may have sent as we track at once.
+    if (waiting_.size() > kDepth + kMaxSenders) waiting_.pop_front();
 }
 
-void Incoming::end(const Key& key, DmxInput goodbye) {
+void Incoming::end(const Key& key, DmxInput terminated) {
     senders_.erase(key);
-    put(std::move(goodbye));
+    put(std::move(terminated));
 }
 
 void Incoming::forget() {
@@ -158,7 +159,7 @@ void Incoming::forget() {
 
 void DmxWire::send(std::span<const std::uint8_t> bytes, Endpoint to) {
     if (const int error = socket.send(bytes, to); error != 0)
-        trouble = fmt::format("{} takes nothing for {}: {}", interface.name, textOf(to.address), systemMessage(error));
+        trouble = fmt::format("{} cannot send to {}: {}", interface.name, textOf(to.address), systemMessage(error));
 }
 
 void DmxWire::sendToOne(std::span<const std::uint8_t> bytes, Endpoint to) {
@@ -171,7 +172,7 @@ void DmxWire::sendToOne(std::span<const std::uint8_t> bytes, Endpoint to) {
         }
         found = toOne.emplace(to.address, std::move(*opened)).first;
     }
-    // Whether anybody is there shows elsewhere, if at all.
+    // Whether the device is there shows elsewhere, if at all.
     (void)found->second.send(bytes, to);
 }
 
@@ -179,34 +180,35 @@ DmxNetwork::DmxNetwork(std::string interface, std::unique_ptr<DmxProtocol> proto
     : interface_(std::move(interface)),
       protocol_(std::move(protocol)),
       clock_(clock),
-      service_("network", "udp", LossAction::Hold, [this](Service& service) { return attend(service); }) {}
+      service_("network", "udp", LossAction::Hold, [this](Service& service) { return runOnce(service); }) {}
 
 void DmxNetwork::add(Outgoing& out) {
     {
         const std::lock_guard lock(mutex_);
         wire_.outgoing.push_back(&out);
-        nextLook_ = {};  // before it is said to run
+        nextLinkCheck_ = {};  // checked before it counts as Running
     }
-    service_.call();
+    service_.wake();
 }
 
 void DmxNetwork::add(Incoming& in) {
     {
         const std::lock_guard lock(mutex_);
         wire_.incoming.push_back(&in);
-        nextLook_ = {};
+        nextLinkCheck_ = {};
     }
-    service_.call();
+    service_.wake();
 }
 
 void DmxNetwork::remove(Outgoing& out) {
     const std::lock_guard lock(mutex_);
-    // Receivers ignore the levels of a goodbye (ANSI E1.31, section 6.2.6), and Art-Net knows none.
-    while (there_ && out.isOwed()) {
+    // Receivers ignore the levels of a terminating packet (ANSI E1.31, section 6.2.6), and Art-Net
+    // has none.
+    while (connected_ && out.takePending()) {
         protocol_->send(wire_, out);
         protocol_->afterTick(wire_);
     }
-    if (there_ && out.speaks) protocol_->sayGoodbye(wire_, out);
+    if (connected_ && out.active) protocol_->sendTerminated(wire_, out);
     std::erase(wire_.outgoing, &out);
 }
 
@@ -215,23 +217,23 @@ void DmxNetwork::remove(Incoming& in) {
     std::erase(wire_.incoming, &in);
 }
 
-void DmxNetwork::call() {
-    if (idle_.exchange(false)) service_.call();
+void DmxNetwork::wake() {
+    if (idle_.exchange(false)) service_.wake();
 }
 
-Outage DmxNetwork::attend(Service& service) {
-    goFirst();
+Outage DmxNetwork::runOnce(Service& service) {
+    raisePriority();
     Outage outage = serve(service);
     const std::lock_guard lock(mutex_);
-    there_ = false;
+    connected_ = false;
     wire_.toOne.clear();
     wire_.socket = {};
     for (Outgoing* const out : wire_.outgoing) {
-        out->status.lose(outage);
+        out->status.setLost(outage);
         out->forget();
     }
     for (Incoming* const in : wire_.incoming) {
-        in->status.lose(outage);
+        in->status.setLost(outage);
         in->forget();
     }
     return outage;
@@ -246,11 +248,11 @@ Outage DmxNetwork::serve(Service& service) {
         wire_.socket = std::move(*socket);
         wire_.trouble.clear();
         for (Outgoing* const out : wire_.outgoing) out->forget();
-        there_ = true;
+        connected_ = true;
         protocol_->begin(wire_, clock_.now());
         nextTick_ = clock_.now();
     }
-    service.running();
+    service.setRunning();
     while (!service.ending()) {
         Time due;
         int file;
@@ -258,28 +260,28 @@ Outage DmxNetwork::serve(Service& service) {
             const std::lock_guard lock(mutex_);
             receiveAll(clock_.now());
             const Time now = clock_.now();
-            if (now >= nextLook_ || !wire_.trouble.empty()) {
+            if (now >= nextLinkCheck_ || !wire_.trouble.empty()) {
                 NetworkInterface seen;
                 if (auto why = whyNoInterface(interface_, seen)) return *why;
-                if (seen != wire_.interface) return {DeviceState::Absent, fmt::format("{} has another address", seen.name)};
+                if (seen != wire_.interface) return {DeviceState::Absent, fmt::format("{} has a new address", seen.name)};
                 if (!wire_.trouble.empty()) return {DeviceState::Faulted, wire_.trouble};
-                nextLook_ = now + kLook;
+                nextLinkCheck_ = now + kLinkCheck;
             }
             for (Incoming* const in : wire_.incoming)
-                if (!in->status.isRunning()) in->status.run();
+                if (!in->status.isRunning()) in->status.setRunning();
             for (Outgoing* const out : wire_.outgoing) {
-                if (auto why = protocol_->hindrance(*out, now)) {
-                    out->status.lose(*why);
+                if (auto why = protocol_->blockedReason(*out, now)) {
+                    out->status.setLost(*why);
                     out->forget();
                 } else if (!out->status.isRunning()) {
                     out->forget();
-                    out->status.run();
+                    out->status.setRunning();
                 }
             }
             if (now >= nextTick_) tick(now);
-            due = std::min(protocol_->tend(wire_, now), nextLook_);
-            // Whoever hands over levels from now on calls; what was handed over before is seen
-            // here.
+            due = std::min(protocol_->poll(wire_, now), nextLinkCheck_);
+            // Levels that are set from now on wake this thread. Levels that were set before are
+            // seen here.
             idle_ = true;
             nextTick_ = nextTick(now);
             if (nextTick_ <= tickAfter(now)) idle_ = false;
@@ -292,8 +294,8 @@ Outage DmxNetwork::serve(Service& service) {
 }
 
 void DmxNetwork::receiveAll(Time now) {
-    std::array<std::uint8_t, kLongestDatagram> buffer;
-    for (int count = 0; count < kMostAtOnce; ++count) {
+    std::array<std::uint8_t, kMaxDatagram> buffer;
+    for (int count = 0; count < kMaxPerRound; ++count) {
         Endpoint from;
         const auto size = wire_.socket.receive(buffer, from);
         if (!size) return;
@@ -304,7 +306,7 @@ void DmxNetwork::receiveAll(Time now) {
 void DmxNetwork::tick(Time now) {
     bool sent = false;
     for (Outgoing* const out : wire_.outgoing) {
-        if (!out->status.isRunning() || !out->isDue(now)) continue;
+        if (!out->status.isRunning() || !out->takeDue(now)) continue;
         protocol_->send(wire_, *out);
         sent = true;
     }
@@ -318,7 +320,7 @@ Time DmxNetwork::nextTick(Time now) const {
         if (out->isFresh()) return soonest;
         if (const auto due = out->nextDue()) next = std::min(next, *due);
     }
-    // The tick at or after what is due.
+    // The first tick at or after that time.
     return std::max(soonest, tickAfter(next - Time(1)));
 }
 
@@ -332,8 +334,8 @@ NetworkDmxPort::~NetworkDmxPort() { network_->remove(out_); }
 
 Result<void> NetworkDmxPort::send(std::span<const std::uint8_t, kDmxSlots> slots) {
     if (!out_.status.isRunning()) return out_.status.refusal();
-    out_.hand(slots);
-    network_->call();
+    out_.setLevels(slots);
+    network_->wake();
     return {};
 }
 

@@ -26,16 +26,16 @@ namespace fantascope::drivers {
 
 using DmxSlots = std::array<std::uint8_t, kDmxSlots>;
 
-// What one universe on a network says of itself. Thread: thread-safe.
+// The status of one universe on a network. Thread: thread-safe.
 class UniverseStatus {
 public:
     UniverseStatus(std::string name, std::string driver);
 
     DeviceStatus status() const;
     bool isRunning() const { return running_; }
-    Error refusal() const;  // of a call while it is not Running
-    void run();
-    void lose(const Outage& outage);
+    Error refusal() const;  // the error of a call while it is not Running
+    void setRunning();
+    void setLost(const Outage& outage);
 
 private:
     mutable std::mutex mutex_;
@@ -43,18 +43,18 @@ private:
     std::atomic<bool> running_ = false;
 };
 
-// How a universe goes out; a protocol leaves what it has no use for.
+// How a universe is sent; a protocol ignores what it does not use.
 struct OutgoingSettings {
-    int universe = 1;      // of sACN, or the port-address of Art-Net
-    std::vector<Ipv4> to;  // one by one; empty: to all, by multicast or broadcast
-    bool polled = false;   // Art-Net: whoever is not answering polls is not there
+    int universe = 1;      // sACN's universe, or Art-Net's port-address
+    std::vector<Ipv4> to;  // unicast to each; empty: multicast or broadcast
+    bool polled = false;   // Art-Net: the node is Absent unless it answers polls
     int priority = 100;    // sACN
-    int sync = 0;          // the universe of the sync packets (sACN), or 1 (Art-Net); 0: none
+    int sync = 0;          // sACN: the universe of the sync packets; Art-Net: 1; 0: none
     bool preview = false;  // sACN
-    std::string name;      // sACN: of the source
+    std::string name;      // sACN: the source's name
 };
 
-// One universe going out. The lighting thread hands over frames, the network's thread sends them.
+// One outgoing universe. The lighting thread sets its levels, the network's thread sends them.
 class Outgoing {
 public:
     Outgoing(std::string name, std::string driver, OutgoingSettings settings)
@@ -63,27 +63,27 @@ public:
     UniverseStatus status;
     const OutgoingSettings settings;
 
-    void hand(std::span<const std::uint8_t, kDmxSlots> slots);  // on the lighting thread
+    void setLevels(std::span<const std::uint8_t, kDmxSlots> slots);  // on the lighting thread
 
     // For the network's thread.
     bool isFresh() const { return fresh_; }
-    // Whether there is something to send at a tick: new levels, one of the three repeats after
-    // them, or the keep-alive.
-    bool isDue(Time now);
-    // Whether the newest levels, or one of their repeats, are still to be sent; each call counts as
-    // sending one.
-    bool isOwed();
-    // When there is something to send next, unless new levels come.
+    // Takes the frame of this tick: new levels, one of the three repeats after them, or the
+    // keep-alive. False: nothing must be sent.
+    bool takeDue(Time now);
+    // Takes the next unsent frame before the port closes: the newest levels, or one of their
+    // repeats. False: nothing is left.
+    bool takePending();
+    // When something must be sent next, unless new levels come.
     std::optional<Time> nextDue() const;
-    // What was handed over so far is not sent any more.
+    // Drops all levels that were set so far.
     void forget();
 
-    DmxSlots slots{};  // what is sent
+    DmxSlots slots{};  // what is being sent
     std::uint8_t sequence = 0;
-    bool speaks = false;  // slots were handed over since the device came
+    bool active = false;  // levels were set since the device appeared
 
 private:
-    bool takeChange();  // new levels into `slots`
+    bool takeChange();  // copies new levels to `slots`
 
     LatestValue<DmxSlots> wanted_;
     std::atomic<bool> fresh_ = false;
@@ -91,20 +91,20 @@ private:
     Time sent_{};
 };
 
-// Somebody who sends a universe to us.
+// A sender of a universe.
 struct DmxSender {
     std::string source;
     std::uint8_t sequence = 0;
     Time heard{};
-    std::optional<DmxInput> held;  // waits for a sync packet
-    int heldFor = 0;               // the universe of that
+    std::optional<DmxInput> held;  // until a sync packet releases it
+    int heldFor = 0;               // the universe of that sync packet
 };
 
-// One universe coming in. The network's thread puts frames in, the lighting thread takes them.
+// One incoming universe. The network's thread puts frames in, the lighting thread takes them.
 class Incoming {
 public:
-    using Key = std::array<std::uint8_t, 16>;                     // a sender's CID, or its address
-    static constexpr std::size_t kDepth = 16, kMostSenders = 64;  // no flood of strangers takes our memory
+    using Key = std::array<std::uint8_t, 16>;                    // a sender's CID or address
+    static constexpr std::size_t kDepth = 16, kMaxSenders = 64;  // bounds, so that a flood of packets cannot exhaust memory
 
     Incoming(std::string name, std::string driver, int universe)
         : status(std::move(name), std::move(driver)), universe(universe) {}
@@ -115,13 +115,13 @@ public:
     std::optional<DmxInput> take();  // on the lighting thread
 
     // For the network's thread.
-    // The sender of that key if it was heard within `silence`; else null.
-    DmxSender* known(const Key& key, Time now, Time silence);
-    // The same, but a sender that was not known gets its place. Null: there is none left.
-    DmxSender* met(const Key& key, Time now, Time silence);
+    // The sender with this key, if it was heard within `silence`; else null.
+    DmxSender* find(const Key& key, Time now, Time silence);
+    // The same, but adds an unknown sender. Null: there is no room for another.
+    DmxSender* findOrAdd(const Key& key, Time now, Time silence);
     void put(DmxInput frame);
-    void end(const Key& key, DmxInput goodbye);
-    // Everybody whose frame waits gives it.
+    void end(const Key& key, DmxInput terminated);
+    // Releases the waiting frames for which released(key, sender) holds.
     template <class Released>
     void release(Released released, Time now) {
         for (auto& [key, sender] : senders_)
@@ -139,60 +139,60 @@ private:
     std::deque<DmxInput> waiting_;
 };
 
-// What there is while the interface is: an open socket for the protocol's port, and one for each
-// device that is spoken to alone, because datagrams to one that is off wait in its socket for the
-// device's hardware address and take up all the room.
+// What exists while the interface is up: a socket on the protocol's port, and one per unicast
+// device. The latter, because datagrams to a device that is off wait in their socket for the
+// device's hardware address and would fill a shared one.
 struct DmxWire {
     NetworkInterface interface;
     UdpSocket socket;
     std::map<Ipv4, UdpSocket> toOne;
     std::vector<Outgoing*> outgoing;
     std::vector<Incoming*> incoming;
-    std::string trouble;  // why the interface does not take what is sent; empty: it does
+    std::string trouble;  // why the interface refuses to send; empty: it does not
 
     void send(std::span<const std::uint8_t> bytes, Endpoint to);       // to all, from the protocol's own port
-    void sendToOne(std::span<const std::uint8_t> bytes, Endpoint to);  // nobody else waits for that one
+    void sendToOne(std::span<const std::uint8_t> bytes, Endpoint to);  // delays no other device
 };
 
-// One protocol on one wire. All calls come while the wire is there, one at a time.
+// One protocol on one wire. It is called only while the wire exists, by one thread at a time.
 class DmxProtocol {
 public:
     virtual ~DmxProtocol() = default;
     virtual std::uint16_t udpPort() const = 0;
-    virtual void begin(DmxWire& wire, Time now) = 0;  // the wire has just come; universes may come and go later
+    virtual void begin(DmxWire& wire, Time now) = 0;  // the wire is new; universes are added and removed later
     virtual void send(DmxWire& wire, Outgoing& out) = 0;
-    virtual void afterTick(DmxWire& wire) = 0;  // all that a tick sends was sent
-    virtual void sayGoodbye(DmxWire& wire, Outgoing& out) = 0;
-    // Does what is due besides levels, and says when it has something to do next.
-    virtual Time tend(DmxWire& wire, Time now) = 0;
-    // Why a universe cannot be sent just now, although the wire is there.
-    virtual std::optional<Outage> hindrance(const Outgoing& out, Time now) = 0;
+    virtual void afterTick(DmxWire& wire) = 0;  // everything of this tick was sent
+    virtual void sendTerminated(DmxWire& wire, Outgoing& out) = 0;
+    // Does its periodic work besides levels, and returns when to call it next.
+    virtual Time poll(DmxWire& wire, Time now) = 0;
+    // Why a universe cannot be sent now, although the wire exists; nothing: it can.
+    virtual std::optional<Outage> blockedReason(const Outgoing& out, Time now) = 0;
     virtual void receive(DmxWire& wire, std::span<const std::uint8_t> bytes, Endpoint from, Time now) = 0;
 };
 
-// All universes of one protocol on one interface, with one thread. While levels change they go out
-// at the ticks of a train of kRate from the clock's zero, all universes together; a late tick is
-// made up for at once and the train stays as it is.
-// Thread: all methods may be called from any.
+// All universes of one protocol on one interface, with one thread. While levels change, they are
+// sent at the ticks of a steady kRate counted from the clock's zero, all universes at the same
+// tick. A late tick is sent at once; the next ticks stay in place.
+// Thread: thread-safe.
 class DmxNetwork {
 public:
-    static constexpr double kRate = 44;  // Hz: what a DMX512 line carries
+    static constexpr double kRate = 44;  // Hz, as on a DMX512 line
     static constexpr int kRepeats = 3;
     static constexpr Time kKeepAlive = std::chrono::milliseconds(900);
 
-    // `interface`: as whyNoInterface() takes it.
+    // `interface`: as for whyNoInterface().
     DmxNetwork(std::string interface, std::unique_ptr<DmxProtocol> protocol, Clock& clock);
 
     void add(Outgoing& out);
     void add(Incoming& in);
-    // What is owed to a universe is sent, and goodbyes are said, before these return.
+    // Before they return, pending frames of the universe are sent and its stream is terminated.
     void remove(Outgoing& out);
     void remove(Incoming& in);
-    // There are new levels.
-    void call();
+    // Call after new levels were set.
+    void wake();
 
 private:
-    Outage attend(Service& service);
+    Outage runOnce(Service& service);
     Outage serve(Service& service);
     void receiveAll(Time now);
     void tick(Time now);
@@ -201,16 +201,16 @@ private:
     const std::string interface_;
     const std::unique_ptr<DmxProtocol> protocol_;
     Clock& clock_;
-    std::mutex mutex_;  // of wire_ and protocol_
+    std::mutex mutex_;  // guards wire_ and protocol_
     DmxWire wire_;
-    bool there_ = false;              // the wire is
-    Time nextLook_{};                 // at the interface
-    Time nextTick_{};                 // when the thread gets up to send
-    std::atomic<bool> idle_ = false;  // it sleeps for longer than a tick
+    bool connected_ = false;          // the wire exists
+    Time nextLinkCheck_{};            // of the interface
+    Time nextTick_{};                 // when the thread wakes to send
+    std::atomic<bool> idle_ = false;  // it sleeps for longer than one tick
     Service service_;
 };
 
-// A universe that goes out over a network.
+// A universe sent over a network.
 class NetworkDmxPort final : public DmxPort {
 public:
     NetworkDmxPort(std::string name, std::string driver, OutgoingSettings settings, std::shared_ptr<DmxNetwork> network);
@@ -224,7 +224,7 @@ private:
     Outgoing out_;
 };
 
-// A universe that comes in from a network.
+// A universe received from a network.
 class NetworkDmxSource final : public DmxSource {
 public:
     NetworkDmxSource(std::string name, std::string driver, int universe, std::shared_ptr<DmxNetwork> network);

@@ -15,12 +15,12 @@
 namespace fantascope::drivers {
 namespace {
 
-constexpr std::size_t kMostNodes = 1000;  // no flood of strangers takes our memory
+constexpr std::size_t kMaxNodes = 1000;  // a bound, so that a flood of packets cannot exhaust memory
 
 struct NodePort {
     Ipv4 node;
     int portAddress = 0;
-    bool output = false;  // DMX comes out of it
+    bool output = false;  // DMX leaves the node here
     friend auto operator<=>(const NodePort&, const NodePort&) = default;
 };
 
@@ -68,13 +68,13 @@ FoundDevice found(const sacn::Cid& cid, const Source& source) {
 void noteNode(Ipv4 from, const artnet::PollReply& reply) {
     const std::lock_guard lock(nodes().mutex);
     const auto note = [&](int portAddress, bool output) {
-        if (nodes().heard.size() < kMostNodes) nodes().heard.insert_or_assign({from, portAddress, output}, reply);
+        if (nodes().heard.size() < kMaxNodes) nodes().heard.insert_or_assign({from, portAddress, output}, reply);
     };
     for (const int portAddress : reply.outputs) note(portAddress, true);
     for (const int portAddress : reply.inputs) note(portAddress, false);
 }
 
-std::vector<FoundDevice> findDmxNodes(Time patience) {
+std::vector<FoundDevice> findDmxNodes(Time timeout) {
     {
         const std::lock_guard lock(nodes().mutex);
         nodes().heard.clear();
@@ -95,8 +95,8 @@ std::vector<FoundDevice> findDmxNodes(Time patience) {
     const SteadyClock clock;
     std::array<std::uint8_t, 1500> buffer;
     Endpoint from;
-    for (Time now = clock.now(); now < patience; now = clock.now()) {
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(patience - now);
+    for (Time now = clock.now(); now < timeout; now = clock.now()) {
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(timeout - now);
         poll(waited.data(), waited.size(), static_cast<int>(left.count()));
         while (const auto size = artSocket ? artSocket->receive(buffer, from) : std::nullopt) {
             const auto packet = artnet::read(std::span(buffer).first(*size));
@@ -105,7 +105,7 @@ std::vector<FoundDevice> findDmxNodes(Time patience) {
         }
         while (const auto size = sacnSocket ? sacnSocket->receive(buffer, from) : std::nullopt) {
             const auto packet = sacn::read(std::span(buffer).first(*size));
-            if (!packet || !std::holds_alternative<sacn::Discovery>(*packet) || sources.size() >= kMostNodes) continue;
+            if (!packet || !std::holds_alternative<sacn::Discovery>(*packet) || sources.size() >= kMaxNodes) continue;
             const auto& discovery = std::get<sacn::Discovery>(*packet);
             Source& source = sources[discovery.cid];
             source.name = discovery.name;

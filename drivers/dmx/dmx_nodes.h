@@ -9,13 +9,13 @@
 
 namespace fantascope::drivers {
 
-// Who answers an ArtPoll on any network of this machine, one entry for each port, and which sACN
-// sources announce themselves (they do so every ten seconds). Listens for `patience`. A program
-// that is playing on this machine goes on undisturbed: what is sent to its own sockets stays with
-// them, so that another program then hears of fewer nodes.
-std::vector<FoundDevice> findDmxNodes(Time patience = std::chrono::seconds(3));
+// All nodes that answer an ArtPoll on any network of this machine, one entry per port, and all sACN
+// sources that announce themselves (every ten seconds). Listens for `timeout`. A show that plays on
+// this machine is not disturbed: its sockets keep their packets, so another program then sees fewer
+// nodes.
+std::vector<FoundDevice> findDmxNodes(Time timeout = std::chrono::seconds(3));
 
-// For the Art-Net driver: a node has answered on a socket of this program's own. Thread:
+// For the Art-Net driver, which reports nodes that answered on a socket of this program. Thread:
 // thread-safe.
 void noteNode(Ipv4 from, const artnet::PollReply& reply);
 

@@ -15,7 +15,7 @@ constexpr std::size_t kHeader = 4;
 }  // namespace
 
 std::vector<std::uint8_t> encoded(WidgetLabel label, std::span<const std::uint8_t> data) {
-    FANTASCOPE_CHECK(data.size() <= kWidgetCapacity, "a message fits");
+    FANTASCOPE_CHECK(data.size() <= kMaxWidgetData, "a message holds at most kMaxWidgetData bytes");
     std::vector<std::uint8_t> message{kStart, static_cast<std::uint8_t>(label), static_cast<std::uint8_t>(data.size() & 0xff),
                                       static_cast<std::uint8_t>(data.size() >> 8)};
     message.insert(message.end(), data.begin(), data.end());
@@ -34,10 +34,10 @@ std::optional<WidgetMessage> WidgetParser::next() {
         if (size < kHeader) break;
         const std::size_t length = start[2] + 256u * start[3];
         const auto data = start + kHeader;
-        if (length > kWidgetCapacity) {
+        if (length > kMaxWidgetData) {
             ++start;
         } else if (size <= kHeader + length) {
-            break;  // the rest is on its way
+            break;  // incomplete so far
         } else if (const auto end = data + static_cast<std::ptrdiff_t>(length); *end != kEnd) {
             ++start;
         } else {
@@ -54,7 +54,7 @@ std::optional<WidgetParameters> parametersIn(std::span<const std::uint8_t> data)
     return WidgetParameters{data[0] + 256 * data[1], data[2], data[3], data[4]};
 }
 
-std::vector<std::uint8_t> parametersRequest() { return {0, 0}; }  // none of the bytes that a user may keep in it
+std::vector<std::uint8_t> parametersRequest() { return {0, 0}; }  // no user configuration
 
 std::vector<std::uint8_t> dataOf(const WidgetParameters& wanted) {
     return {0, 0, static_cast<std::uint8_t>(wanted.breakTime), static_cast<std::uint8_t>(wanted.markAfterBreak),
@@ -64,7 +64,7 @@ std::vector<std::uint8_t> dataOf(const WidgetParameters& wanted) {
 std::optional<std::string> numberIn(std::span<const std::uint8_t> data) {
     if (data.size() < 4) return std::nullopt;
     const std::string digits =
-        fmt::format("{:02x}{:02x}{:02x}{:02x}", data[3], data[2], data[1], data[0]);  // a digit in four bits
+        fmt::format("{:02x}{:02x}{:02x}{:02x}", data[3], data[2], data[1], data[0]);  // four bits per digit
     return digits == "ffffffff" ? "" : digits;
 }
 
@@ -79,7 +79,7 @@ DmxPacket packetOf(std::span<const std::uint8_t, kDmxSlots> slots) {
     return packet;
 }
 
-bool takeOver(const WidgetMessage& message, DmxPacket& packet) {
+bool applyTo(const WidgetMessage& message, DmxPacket& packet) {
     const std::vector<std::uint8_t>& data = message.data;
     if (message.label == WidgetLabel::Received) {
         const bool well = data.size() >= 2 && data.size() <= 1 + packet.size() && data[0] == 0;
@@ -88,8 +88,8 @@ bool takeOver(const WidgetMessage& message, DmxPacket& packet) {
         std::copy(data.begin() + 1, data.end(), packet.begin());
         return true;
     }
-    // Which of 40 slots have changed is told by a bit each, from eight times the first byte on;
-    // then come these slots.
+    // One bit per slot tells which of 40 slots have changed, counted from eight times the first
+    // byte. Their values follow.
     constexpr std::size_t kBits = 40, kBitBytes = kBits / 8;
     if (message.label != WidgetLabel::Changed || data.size() < 1 + kBitBytes) return false;
     std::size_t value = 1 + kBitBytes;

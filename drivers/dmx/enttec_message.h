@@ -1,5 +1,5 @@
 #pragma once
-// What an Enttec DMX USB Pro and its kin say over their line ("DMX USB PRO Widget API
+// The messages of an Enttec DMX USB Pro and compatible widgets ("DMX USB PRO Widget API
 // Specification", 1.44):
 //     0x7e, label, length (low byte, high byte), data, 0xe7
 
@@ -15,29 +15,29 @@
 namespace fantascope::drivers {
 
 enum class WidgetLabel : std::uint8_t {
-    Parameters = 3,     // asked and answered
-    SetParameters = 4,  // kept by the widget when its plug is pulled
-    Received = 5,       // a whole frame came in
-    Send = 6,           // this frame is to go out, over and over
-    ReceiveMode = 8,    // 0: every frame, 1: what has changed
-    Changed = 9,        // some slots came in changed
-    Number = 10,        // the widget's own serial number, asked and answered
-    Manufacturer = 77,  // asked and answered, by newer widgets
+    Parameters = 3,     // request and reply
+    SetParameters = 4,  // stored by the widget, even without power
+    Received = 5,       // a whole frame was received
+    Send = 6,           // send this frame repeatedly
+    ReceiveMode = 8,    // 0: every frame, 1: changes only
+    Changed = 9,        // received slots that changed
+    Number = 10,        // the widget's own serial number; request and reply
+    Manufacturer = 77,  // request and reply; newer widgets only
     Device = 78         // the same
 };
 
-// The most data that a message can hold.
-inline constexpr std::size_t kWidgetCapacity = 600;
-// The length of no message: where one was broken off, so many bytes end it.
-inline constexpr std::size_t kWidgetLongest = kWidgetCapacity + 5;
+// The most data bytes of a message.
+inline constexpr std::size_t kMaxWidgetData = 600;
+// Longer than any message: this many bytes complete a message that was broken off.
+inline constexpr std::size_t kMaxWidgetMessage = kMaxWidgetData + 5;
 
-// Of what the widget sends, in its units.
+// The widget's parameters for sending, in its own units.
 struct WidgetParameters {
     static constexpr double kTimeUnit = 10.67;  // microseconds
 
     int firmware = 0;                       // 256 * major + minor
     int breakTime = 0, markAfterBreak = 0;  // in kTimeUnit: 9 .. 127 and 1 .. 127
-    int rate = 0;                           // frames a second, 1 .. 40; 0 as fast as it can
+    int rate = 0;                           // frames a second, 1 .. 40; 0: as fast as it can
     friend bool operator==(const WidgetParameters&, const WidgetParameters&) = default;
 };
 
@@ -48,35 +48,35 @@ struct WidgetMessage {
 
 // The start code, then the slots.
 using DmxPacket = std::array<std::uint8_t, 1 + kDmxSlots>;
-// With the start code of levels.
+// A packet of levels (start code 0).
 DmxPacket packetOf(std::span<const std::uint8_t, kDmxSlots> slots);
 
 // At most kWidgetCapacity bytes of data.
 std::vector<std::uint8_t> encoded(WidgetLabel label, std::span<const std::uint8_t> data);
 
-// Finds the messages in what arrives. What is none is skipped; a message inside of what only looked
-// like one is found all the same.
+// Finds messages in a stream of bytes. Other bytes are skipped; a message is found even inside
+// bytes that only looked like one.
 class WidgetParser {
 public:
     void put(std::span<const std::uint8_t> bytes);
-    // The next message that is whole.
+    // The next complete message.
     std::optional<WidgetMessage> next();
 
 private:
     std::vector<std::uint8_t> waiting_;
 };
 
-// What the data of an answer say; nothing where they are too few.
+// The parameters in a reply's data; nothing if the data are too short.
 std::optional<WidgetParameters> parametersIn(std::span<const std::uint8_t> data);
 std::vector<std::uint8_t> parametersRequest();
 std::vector<std::uint8_t> dataOf(const WidgetParameters& wanted);
-// The eight digits that stand on the widget; "" where it was given none.
+// The eight digits printed on the widget; "" if it has none.
 std::optional<std::string> numberIn(std::span<const std::uint8_t> data);
-// The name behind the two bytes of an identity.
+// The name after the two bytes of an identity.
 std::string nameIn(std::span<const std::uint8_t> data);
 
-// Takes over what came in, of a Received or a Changed message. Whether it is a frame of levels
-// (start code 0) that the widget received well; slots that a frame did not have are 0.
-bool takeOver(const WidgetMessage& message, DmxPacket& packet);
+// Applies a Received or Changed message to `packet`. Returns whether it is a frame of levels (start
+// code 0) that the widget received without error. Slots that a frame lacks are 0.
+bool applyTo(const WidgetMessage& message, DmxPacket& packet);
 
 }  // namespace fantascope::drivers

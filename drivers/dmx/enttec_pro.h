@@ -1,7 +1,7 @@
 #pragma once
 
+#include "drivers/common/opening.h"
 #include "drivers/common/service.h"
-#include "drivers/common/surroundings.h"
 #include "drivers/dmx/enttec_widget.h"
 #include "drivers/dmx/widget_search.h"
 
@@ -19,35 +19,34 @@
 
 namespace fantascope::drivers {
 
-// An Enttec DMX USB Pro, or what speaks as it does, through all its lives. Thread: bound to its
-// device's own.
+// An Enttec DMX USB Pro or a compatible widget. Thread: bound to the thread of its device.
 class EnttecPro {
 public:
     struct Options {
         WidgetChoice which;
-        std::optional<int> breakTime, markAfterBreak;  // in WidgetParameters' units; as the widget has it where not given
-        std::optional<int> rate;                       // frames a second; the same
+        std::optional<int> breakTime, markAfterBreak;  // in WidgetParameters' units; nothing: the widget's setting
+        std::optional<int> rate;                       // frames a second; nothing: the widget's setting
     };
-    // What to do with a widget that was found and has the parameters that it should; until the
-    // service ends, or something goes wrong.
+    // The work with a widget that was found and configured, until the service ends or something
+    // fails.
     using Work = std::function<Result<void>(EnttecWidget&, const WidgetParameters&, const std::string& number)>;
 
     EnttecPro(const std::string& name, Options options, Clock& clock);
-    Outage attend(Service& service, const Work& work);
+    Outage runOnce(Service& service, const Work& work);
 
 private:
-    struct Met {
+    struct Handshake {
         WidgetParameters parameters;
         std::string number;
     };
-    Result<Met> meet(EnttecWidget& widget);
+    Result<Handshake> handshake(EnttecWidget& widget);
 
     const Options options_;
     Clock& clock_;
     SerialStream line_;
 };
 
-// A universe going out by a DMX USB Pro.
+// A universe sent by a DMX USB Pro.
 class EnttecProPort final : public DmxPort {
 public:
     static Result<Opening<DmxPort>> fromConfig(const ConfigNode& options, int universe);
@@ -66,7 +65,7 @@ private:
     Service service_;
 };
 
-// A universe coming in by a DMX USB Pro. The sender is the widget's own serial number.
+// A universe received by a DMX USB Pro. The sender is the widget's own serial number.
 class EnttecProSource final : public DmxSource {
 public:
     static Result<Opening<DmxSource>> fromConfig(const ConfigNode& options, int universe);

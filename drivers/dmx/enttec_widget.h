@@ -15,44 +15,44 @@
 
 namespace fantascope::drivers {
 
-// A conversation with a widget, over one life of its line. Errors of all: the line is lost, or the
-// widget takes nothing for kStalled, or does not answer. Thread: bound to that of the line.
+// Talks to a widget during one life of its line. Errors of all methods: the line is lost, the
+// widget accepts nothing for kStalled, or it does not answer. Thread: bound to that of the line.
 class EnttecWidget {
 public:
-    static constexpr Time kStalled = std::chrono::seconds(1);   // a widget that takes no byte for so long is stuck
-    static constexpr Time kAskEvery = std::chrono::seconds(1);  // whether it is still there
-    static constexpr Time kSilent = std::chrono::seconds(2);    // and it does not answer
+    static constexpr Time kStalled = std::chrono::seconds(1);        // a widget that accepts no byte for so long is stuck
+    static constexpr Time kAskEvery = std::chrono::seconds(1);       // whether it is still there
+    static constexpr Time kAnswerTimeout = std::chrono::seconds(2);  // then it has stopped answering
 
-    EnttecWidget(ByteStream& line, Clock& clock) : line_(line), clock_(clock), moved_(clock.now()), asked_(clock.now()) {}
+    EnttecWidget(ByteStream& line, Clock& clock) : line_(line), clock_(clock), progress_(clock.now()), asked_(clock.now()) {}
 
-    // Asks for the parameters: what answers is a widget.
-    Result<WidgetParameters> meet();
-    // The eight digits of its own serial number, "" where it has none.
+    // Requests the parameters: only a widget answers.
+    Result<WidgetParameters> handshake();
+    // The eight digits of its own serial number; "" if it has none.
     Result<std::string> number();
-    // Writes parameters where it has others, and looks whether it took them.
-    Result<void> arrange(const WidgetParameters& wanted);
-    // What it is called; "" where it does not know. Ends what it sends out.
+    // Writes the parameters if they differ, and verifies that it accepted them.
+    Result<void> setParameters(const WidgetParameters& wanted);
+    // Its name; "" if it does not know one. The request ends its output.
     Result<std::string> name();
 
-    // To be sent by work().
-    void say(WidgetLabel label, std::span<const std::uint8_t> data);
-    // Whether all that was said has gone.
+    // Queues a message for work().
+    void queue(WidgetLabel label, std::span<const std::uint8_t> data);
+    // Whether all queued messages have been sent.
     bool idle() const { return outgoing_.empty(); }
-    // Sends and hears until `until`, and asks now and then whether the widget is still there: by
-    // the one question that leaves it sending.
-    Result<void> work(Time until, const std::function<void(const WidgetMessage&)>& hear);
+    // Sends queued messages and receives until `until`. Once a second it checks that the widget is
+    // still there, with the one request that does not end its output.
+    Result<void> work(Time until, const std::function<void(const WidgetMessage&)>& onMessage);
 
 private:
     using Data = std::vector<std::uint8_t>;
-    Result<std::optional<Data>> answer(WidgetLabel label, std::span<const std::uint8_t> question, Time patience);
-    Result<void> push();  // what the line takes
-    Result<void> pull(Time patience);
+    Result<std::optional<Data>> answer(WidgetLabel label, std::span<const std::uint8_t> question, Time timeout);
+    Result<void> writeSome();  // as much as the line accepts
+    Result<void> readSome(Time timeout);
 
     ByteStream& line_;
     Clock& clock_;
     WidgetParser parser_;
     Data outgoing_;
-    Time moved_;  // when the line last took a byte, or had none to take
+    Time progress_;  // when the line last accepted a byte, or had nothing to send
     Time asked_;
     bool answered_ = true;
 };

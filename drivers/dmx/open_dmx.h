@@ -1,8 +1,8 @@
 #pragma once
 
 #include "drivers/byte_stream/serial.h"
+#include "drivers/common/opening.h"
 #include "drivers/common/service.h"
-#include "drivers/common/surroundings.h"
 #include "drivers/dmx/enttec_message.h"
 #include "drivers/dmx/widget_search.h"
 
@@ -17,7 +17,7 @@
 
 namespace fantascope::drivers {
 
-// A universe going out by an Enttec Open DMX USB or another bare serial adapter: this program makes
+// A universe sent by an Enttec Open DMX USB or another bare serial adapter. This program generates
 // every break and every byte itself.
 class OpenDmxPort final : public DmxPort {
 public:
@@ -33,9 +33,9 @@ private:
         double rate;  // frames a second
     };
     OpenDmxPort(const std::string& name, const Options& options, Clock& clock);
-    Outage attend(Service& service);
+    Outage runOnce(Service& service);
     Result<void> repeat(Service& service);
-    Result<void> say(const DmxPacket& packet);
+    Result<void> sendPacket(const DmxPacket& packet);
 
     const Options options_;
     Clock& clock_;

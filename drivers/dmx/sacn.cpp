@@ -20,18 +20,18 @@ namespace {
 
 using namespace sacn;
 
-// E1.31's network data loss (section 6.7.1); sync packets may stay away for as long (section
-// 11.1.2).
+// E1.31's timeout for a lost network (section 6.7.1), also for sync packets (section 11.1.2).
 constexpr Time kSilence = std::chrono::milliseconds(2500);
 constexpr Time kDiscovery = std::chrono::seconds(10);
-// A source's universes are all opened within this; the first discovery packet then tells of all.
+// All universes of a source are opened within this time, so the first discovery packet lists them
+// all.
 constexpr Time kFirstDiscovery = std::chrono::seconds(1);
-constexpr std::size_t kMostSyncs = 64;  // no flood of strangers takes our memory
+constexpr std::size_t kMaxSyncs = 64;  // a bound, so that a flood of packets cannot exhaust memory
 
-// Sync packets of one sync universe, as they are sent or heard.
+// Sync packets of one sync universe, outgoing and incoming.
 struct SyncOut {
     std::uint8_t sequence = 0;
-    std::vector<Ipv4> to;  // of the universes of this tick
+    std::vector<Ipv4> to;  // the unicast devices of this tick
     bool toAll = false;
 };
 struct SyncIn {
@@ -69,11 +69,11 @@ public:
         }
     }
 
-    void sayGoodbye(DmxWire& wire, Outgoing& out) override {
+    void sendTerminated(DmxWire& wire, Outgoing& out) override {
         for (int time = 0; time < 3; ++time) sendLevels(wire, out, true);
     }
 
-    Time tend(DmxWire& wire, Time now) override {
+    Time poll(DmxWire& wire, Time now) override {
         joinAll(wire);
         if (now >= nextDiscovery_) {
             discover(wire);
@@ -82,7 +82,7 @@ public:
         return nextDiscovery_;
     }
 
-    std::optional<Outage> hindrance(const Outgoing&, Time) override { return std::nullopt; }
+    std::optional<Outage> blockedReason(const Outgoing&, Time) override { return std::nullopt; }
 
     void receive(DmxWire& wire, std::span<const std::uint8_t> bytes, Endpoint, Time now) override {
         const auto packet = read(bytes);
@@ -105,7 +105,7 @@ private:
         data.sequence = out.sequence++;
         data.preview = settings.preview;
         data.terminated = last;
-        data.force = settings.sync != 0;  // lamps that go on by themselves are better than lamps that stand still
+        data.force = settings.sync != 0;  // unsynchronised lamps are better than frozen ones
         data.slots = out.slots;
         const DataBytes bytes = bytesOf(data);
         if (settings.to.empty()) wire.send(bytes, {{groupOf(settings.universe)}, kUdpPort});
@@ -116,7 +116,7 @@ private:
         std::vector<int> universes;
         std::string name;
         for (const Outgoing* const out : wire.outgoing)
-            if (out->speaks) {
+            if (out->active) {
                 universes.push_back(out->settings.universe);
                 name = out->settings.name;
             }
@@ -149,13 +149,13 @@ private:
         }
     }
 
-    // Whether frames that name this sync universe wait for its packets (section 6.2.4.1). Until the
-    // first one came nobody waits: many a sender names a universe and sends none.
+    // Whether frames that name this sync universe wait for its packets (section 6.2.4.1). They do
+    // not before the first one: many senders name a universe and never send any.
     bool waitsFor(DmxWire& wire, const Data& data, Time now) {
         if (data.sync == 0) return false;
         auto found = syncsIn_.find(data.sync);
         if (found == syncsIn_.end()) {
-            if (syncsIn_.size() >= kMostSyncs) return false;
+            if (syncsIn_.size() >= kMaxSyncs) return false;
             auto joined = Membership::join(wire.interface, {groupOf(data.sync)});
             if (!joined) return false;
             found = syncsIn_.emplace(data.sync, SyncIn{std::move(*joined), std::nullopt}).first;
@@ -166,18 +166,18 @@ private:
 
     void receiveLevels(DmxWire& wire, Incoming& in, const Data& data, Time now) {
         if (data.preview || data.startCode != 0) return;
-        DmxSender* const familiar = in.known(data.cid, now, kSilence);
-        if (familiar != nullptr && isLate(data.sequence, familiar->sequence)) return;
+        DmxSender* const known = in.find(data.cid, now, kSilence);
+        if (known != nullptr && isLate(data.sequence, known->sequence)) return;
         DmxInput frame{data.slots, "", data.priority, now, data.terminated, kSilence};
         if (data.terminated) {
-            if (familiar == nullptr) return;  // the farewell is said three times
-            frame.source = familiar->source;
+            if (known == nullptr) return;  // termination is sent three times
+            frame.source = known->source;
             in.end(data.cid, std::move(frame));
             return;
         }
-        DmxSender* const sender = in.met(data.cid, now, kSilence);
+        DmxSender* const sender = in.findOrAdd(data.cid, now, kSilence);
         if (sender == nullptr) return;
-        if (familiar == nullptr)
+        if (known == nullptr)
             *sender = {
                 data.name.empty() ? textOf(data.cid) : fmt::format("{} {}", printable(data.name), textOf(data.cid)), 0, {}, {}};
         sender->sequence = data.sequence;
@@ -214,15 +214,15 @@ std::string machineName() {
     return name;
 }
 
-std::shared_ptr<DmxNetwork> networkFor(const ConfigNode& options, const std::string& interface, const Surroundings& around) {
-    // The same after a restart, and another one for another site, machine or interface: each has
-    // its own count of packets.
+std::shared_ptr<DmxNetwork> networkFor(const ConfigNode& options, const std::string& interface, const DriverContext& context) {
+    // The same after a restart; another for another site, machine or interface, because each has
+    // its own sequence numbers.
     std::error_code relative;
     const std::filesystem::path site = std::filesystem::absolute(options.file(), relative);
     const Cid cid = cidFor(fmt::format("{}\n{}\n{}", machineName(), site.lexically_normal().string(), interface));
     static Shared<std::tuple<std::string, Cid, Clock*>, DmxNetwork> networks;
-    return networks.get({interface, cid, &around.clock}, [&] {
-        return std::make_shared<DmxNetwork>(interface, std::make_unique<SacnProtocol>(cid), around.clock);
+    return networks.get({interface, cid, &context.clock}, [&] {
+        return std::make_shared<DmxNetwork>(interface, std::make_unique<SacnProtocol>(cid), context.clock);
     });
 }
 
@@ -252,9 +252,9 @@ Result<Opening<DmxPort>> SacnPort::fromConfig(const ConfigNode& options, int uni
                      options.error(fmt::format("'name' is {} bytes long, {} are the most", settings.name.size(), kNameSize - 1)));
     checkUniverse(fields, options, universe);
     TRY(fields.finish());
-    const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<DmxPort>> {
+    const auto open = [=](const DriverContext& context) -> Result<std::unique_ptr<DmxPort>> {
         return std::unique_ptr<DmxPort>(std::make_unique<NetworkDmxPort>(fmt::format("universe {}", universe), driver, settings,
-                                                                         networkFor(options, interface, around)));
+                                                                         networkFor(options, interface, context)));
     };
     const auto claim = [=] { return fmt::format("sACN universe {}{}", universe, onWhichInterface(interface)); };
     return Opening<DmxPort>{.open = open, .claim = claim};
@@ -267,9 +267,9 @@ Result<Opening<DmxSource>> SacnSource::fromConfig(const ConfigNode& options, int
     fields.optional().text("interface", interface);
     checkUniverse(fields, options, universe);
     TRY(fields.finish());
-    const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<DmxSource>> {
+    const auto open = [=](const DriverContext& context) -> Result<std::unique_ptr<DmxSource>> {
         return std::unique_ptr<DmxSource>(std::make_unique<NetworkDmxSource>(fmt::format("desk {}", universe), driver, universe,
-                                                                             networkFor(options, interface, around)));
+                                                                             networkFor(options, interface, context)));
     };
     return Opening<DmxSource>{open};
 }

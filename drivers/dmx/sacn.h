@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/common/surroundings.h"
+#include "drivers/common/opening.h"
 
 #include "device/dmx_port.h"
 #include "device/dmx_source.h"
@@ -9,7 +9,7 @@
 
 namespace fantascope::drivers {
 
-// Streaming ACN (ANSI E1.31-2018). README.md has the keys and what goes over the network.
+// Streaming ACN (ANSI E1.31-2018). README.md lists the keys and the traffic.
 struct SacnPort {
     static Result<Opening<DmxPort>> fromConfig(const ConfigNode& options, int universe);
 };

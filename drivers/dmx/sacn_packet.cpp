@@ -11,8 +11,8 @@
 namespace fantascope::drivers::sacn {
 namespace {
 
-// Offsets of tables 4-1 to 4-3. Each layer begins with its flags and length, which counts from
-// there to the packet's end.
+// Offsets from tables 4-1 to 4-3. Each layer begins with its flags and length; the length counts
+// from there to the packet's end.
 constexpr std::size_t kRootLayer = 16, kRootVector = 18, kCid = 22, kFraming = 38, kFramingVector = 40;
 constexpr std::size_t kName = 44, kPriority = 108, kSyncAddress = 109, kSequence = 111, kOptions = 112, kUniverse = 113;
 constexpr std::size_t kDmp = 115, kDmpVector = 117, kCount = 123, kStartCode = 125, kSlots = 126;
@@ -24,7 +24,7 @@ constexpr std::uint32_t kFramingData = 2, kFramingSync = 1, kFramingDiscovery = 
 constexpr std::uint8_t kDmpSet = 2, kPreview = 0x80, kTerminated = 0x40, kForce = 0x20;
 
 constexpr std::array<std::uint8_t, kRootLayer> kPreamble = {0, 0x10, 0, 0, 'A', 'S', 'C', '-', 'E', '1', '.', '1', '7', 0, 0, 0};
-constexpr std::array<std::uint8_t, 5> kAllSlots = {0xa1, 0, 0, 0, 1};  // two-byte addresses, from 0, each one on
+constexpr std::array<std::uint8_t, 5> kAllSlots = {0xa1, 0, 0, 0, 1};  // two-byte addresses, from 0, in steps of 1
 
 using Bytes = std::span<const std::uint8_t>;
 
@@ -38,7 +38,7 @@ void put(std::span<std::uint8_t> bytes, std::size_t at, std::uint32_t value, std
 void putLayer(std::span<std::uint8_t> bytes, std::size_t at) {
     put(bytes, at, 0x7000 | static_cast<std::uint32_t>(bytes.size() - at), 2);
 }
-// Whether a layer's flags and length are those of what came. What follows a packet is not looked at
+// Whether a layer's flags and length match the received bytes. Bytes after the packet are ignored
 // (section 5.4 of E1.17).
 bool holdsLayer(Bytes bytes, std::size_t at, std::size_t least) {
     if (bytes.size() < at + 2 || bytes[at] >> 4 != 7) return false;
@@ -164,7 +164,7 @@ SyncBytes bytesOf(const Sync& sync) {
 }
 
 std::vector<std::uint8_t> bytesOf(const Discovery& discovery) {
-    FANTASCOPE_CHECK(discovery.universes.size() <= kUniversesOnPage, "a page holds so many");
+    FANTASCOPE_CHECK(discovery.universes.size() <= kUniversesOnPage, "a page holds kUniversesOnPage universes");
     std::vector<std::uint8_t> bytes(kUniverses + 2 * discovery.universes.size());
     putRoot(bytes, kRootExtended, discovery.cid, kFramingDiscovery);
     putName(bytes, discovery.name);

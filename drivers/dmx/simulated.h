@@ -9,7 +9,7 @@
 
 namespace fantascope::drivers {
 
-// One universe of the simulated site's lamps. Plug: "universe N".
+// One universe of lamps at the simulated site. Plug: "universe N".
 class SimulatedDmxPort final : public DmxPort {
 public:
     static Result<Opening<DmxPort>> fromConfig(const ConfigNode& options, int universe);
@@ -23,7 +23,7 @@ private:
     int universe_;
 };
 
-// Somebody else's desk at the simulated site. Plug: "desk N".
+// Another lighting desk at the simulated site. Plug: "desk N".
 class SimulatedDmxSource final : public DmxSource {
 public:
     static Result<Opening<DmxSource>> fromConfig(const ConfigNode& options, int universe);

@@ -15,12 +15,12 @@
 namespace fantascope::drivers {
 namespace {
 
-// Room for what hundreds of universes send while this program is busy elsewhere. More than the
-// system allows gets what it allows.
+// Bytes; room for what hundreds of universes send while this program is busy. The system may grant
+// less.
 constexpr int kReceiveBuffer = 4 << 20;
 
-// The cable leads to something. IFF_RUNNING says so too, but up to a second late. (IFF_LOWER_UP,
-// which <net/if.h> does not have.)
+// The interface has a link. IFF_RUNNING shows it up to a second late. (IFF_LOWER_UP is missing from
+// <net/if.h>.)
 constexpr unsigned kLowerUp = 1u << 16;
 
 Ipv4 ipv4Of(const sockaddr* address) {
@@ -78,7 +78,7 @@ Result<Ipv4> ipv4Of(const ConfigNode& node) {
     const auto address = ipv4Of(text);
     if (!address) return node.error(fmt::format("an address such as 10.0.0.5 is needed, here is '{}'", text));
     if (address->bits == 0 || address->bits >> 28 >= 0xe)
-        return node.error(fmt::format("the address of one device is needed, {} is none", text));
+        return node.error(fmt::format("the address of a single device is needed, {} is not one", text));
     return *address;
 }
 
@@ -112,18 +112,17 @@ std::optional<Outage> whyNoInterface(std::string_view wanted, NetworkInterface& 
     if (fitting.empty())
         return Outage{DeviceState::Absent, wanted.empty() ? "this machine is on no network: no interface has an IPv4 address"
                                                           : fmt::format("there is no interface {} with an IPv4 address", wanted)};
-    // An interface may have several addresses; the first one is its own.
+    // An interface may have several addresses; the first counts.
     if (wanted.empty() && fitting.front().name != fitting.back().name) {
         std::vector<std::string> names;
         for (const NetworkInterface& interface : fitting)
             if (names.empty() || names.back() != interface.name) names.push_back(interface.name);
-        return Outage{
-            DeviceState::Faulted,
-            fmt::format("this machine is on several networks ({}): say which by the key 'interface'", fmt::join(names, ", "))};
+        return Outage{DeviceState::Faulted, fmt::format("this machine is on several networks ({}): choose one with 'interface'",
+                                                        fmt::join(names, ", "))};
     }
     found = fitting.front();
     if (found.up) return std::nullopt;
-    return Outage{DeviceState::Absent, fmt::format("{} has no link: is its cable in?", found.name)};
+    return Outage{DeviceState::Absent, fmt::format("{} has no link: check its cable", found.name)};
 }
 
 std::string onWhichInterface(const std::string& wanted) {
@@ -163,7 +162,7 @@ Result<void> UdpSocket::bindTo(std::uint16_t port) {
     if (!set(file(), SOL_SOCKET, SO_RCVBUFFORCE, kReceiveBuffer)) set(file(), SOL_SOCKET, SO_RCVBUF, kReceiveBuffer);
     const sockaddr_in here = systemAddress({{INADDR_ANY}, port});
     if (bind(file(), reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0) return {};
-    return Error(fmt::format("UDP port {}: {}: another program does not share it", port, systemMessage(errno)));
+    return Error(fmt::format("UDP port {}: {}: another program uses it exclusively", port, systemMessage(errno)));
 }
 
 int UdpSocket::send(std::span<const std::uint8_t> bytes, Endpoint to) {

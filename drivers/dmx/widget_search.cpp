@@ -11,12 +11,12 @@
 namespace fantascope::drivers {
 namespace {
 
-constexpr const char* kFtdi = "0403";  // all widgets so far have an adapter by FTDI
+constexpr const char* kFtdi = "0403";  // all known widgets have an FTDI adapter
 
 // How long a line may take to open.
 constexpr Time kOpening = std::chrono::seconds(1);
 
-// As Enttec's and DMXking's do. An Open DMX is a bare adapter and goes by the adapter's name.
+// As those of Enttec and DMXking do. An Open DMX is a bare adapter and has the adapter's name.
 bool callsItselfWidget(const UsbIdentity& usb) { return usb.name.find("DMX") != std::string::npos; }
 
 std::vector<UsbFile> widgetLines() {
@@ -31,7 +31,7 @@ Result<std::filesystem::path> onlyWidget() {
     if (lines.size() == 1) return lines[0].file;
     std::vector<std::string> serials;
     for (const UsbFile& line : lines) serials.push_back(line.usb.serial);
-    return Error(fmt::format("several DMX widgets are plugged in, say which by 'serial': {}", fmt::join(serials, ", ")));
+    return Error(fmt::format("several DMX widgets are plugged in; choose one with 'serial': {}", fmt::join(serials, ", ")));
 }
 
 bool isByNumber(const WidgetChoice& choice) {
@@ -43,7 +43,7 @@ std::string optionsFor(const char* driver, const UsbFile& line) {
                                    : fmt::format("{{driver: {}, serial: {}}}", driver, fantascope::quoted(line.usb.serial));
 }
 
-// Asks a line for what is on it. Error: why it cannot be used.
+// Asks what is on a line. Error: why it cannot be used.
 Result<std::string> whatIsOn(const UsbFile& line, Clock& clock) {
     SerialStream stream(
         "search", [&] { return Result<std::filesystem::path>(line.file); }, kWidgetSettings);
@@ -53,7 +53,7 @@ Result<std::string> whatIsOn(const UsbFile& line, Clock& clock) {
     }
     if (const DeviceStatus status = stream.status(); status.state != DeviceState::Running) return Error(status.detail);
     EnttecWidget widget(stream, clock);
-    const WidgetParameters parameters = TRY(widget.meet());
+    const WidgetParameters parameters = TRY(widget.handshake());
     const std::string number = TRY(widget.number()), name = TRY(widget.name());
     return fmt::format("{}, firmware {}.{}, number {}", name.empty() ? line.usb.manufacturer + " " + line.usb.name : name,
                        parameters.firmware / 256, parameters.firmware % 256, number.empty() ? "none" : number);
@@ -72,11 +72,11 @@ FoundDevice describedWidget(const UsbFile& line, Clock& clock) {
 void readWidgetLine(ConfigFields& fields, SerialIdentity& line) {
     fields.optional().read("port", line.file, [](const ConfigNode& node) -> Result<std::filesystem::path> {
         const std::filesystem::path port = TRY(node.text());
-        if (!port.is_absolute()) return node.error("a device's file is wanted, such as /dev/ttyUSB0");
+        if (!port.is_absolute()) return node.error("a device file is needed, such as /dev/ttyUSB0");
         return port;
     });
     fields.optional().read("serial", line.serial, [&](const ConfigNode& node) -> Result<std::string> {
-        if (!line.file.empty()) return node.error("'port' says already which adapter it is");
+        if (!line.file.empty()) return node.error("'port' already chooses the adapter");
         return node.text();
     });
 }
@@ -85,7 +85,7 @@ void readWidgetNumber(ConfigFields& fields, std::string& number) {
     fields.optional().read("number", number, [](const ConfigNode& node) -> Result<std::string> {
         const std::string digits = TRY(node.text());
         if (digits.size() != 8 || digits.find_first_not_of("0123456789") != std::string::npos)
-            return node.error("the eight digits that stand on the widget are wanted");
+            return node.error("the eight digits printed on the widget are needed");
         return digits;
     });
 }
@@ -107,7 +107,7 @@ SerialStream::Find widgetFinder(const WidgetChoice& choice) {
     if (!isByNumber(choice)) return onlyWidget;
     return [number = choice.number, next = std::size_t{0}]() mutable -> Result<std::filesystem::path> {
         const std::vector<UsbFile> lines = serialLines({.file = {}, .vendor = kFtdi, .product = {}, .serial = {}});
-        if (lines.empty()) return Error(fmt::format("no adapter is plugged in that could be the widget {}", number));
+        if (lines.empty()) return Error(fmt::format("no adapter that could be widget {} is plugged in", number));
         return lines[next++ % lines.size()].file;
     };
 }
@@ -119,10 +119,9 @@ std::vector<FoundDevice> findWidgets() {
         if (callsItselfWidget(line.usb)) {
             found.push_back(describedWidget(line, clock));
         } else {
-            found.push_back(
-                {"dmx",
-                 fmt::format("{} {}: an Open DMX looks so, and other serial adapters", line.usb.manufacturer, line.usb.name),
-                 "serial " + line.usb.serial, line.file.string(), "", optionsFor("open_dmx", line)});
+            found.push_back({"dmx",
+                             fmt::format("{} {}: an Open DMX or another serial adapter", line.usb.manufacturer, line.usb.name),
+                             "serial " + line.usb.serial, line.file.string(), "", optionsFor("open_dmx", line)});
         }
     }
     return found;

@@ -10,7 +10,7 @@
 namespace fantascope::drivers {
 namespace {
 
-constexpr Time kLong = std::chrono::hours(1);  // until somebody calls
+constexpr Time kLong = std::chrono::hours(1);  // until wake()
 
 }  // namespace
 
@@ -18,16 +18,17 @@ Result<std::shared_ptr<ModbusBus>> ModbusBus::of(const ConfigNode& node, const M
     static Shared<std::pair<const Clock*, std::string>, ModbusBus> buses;
     auto bus = buses.get({&clock, nameOf(options)}, [&] { return std::make_shared<ModbusBus>(options, clock); });
     if (bus->options_ == options) return bus;
-    return node.error(fmt::format("another device has {} with other settings; all on one line need the same", nameOf(options)));
+    return node.error(
+        fmt::format("another device uses {} with other settings; all devices on a line need the same settings", nameOf(options)));
 }
 
 ModbusBus::ModbusBus(const ModbusLineOptions& options, const Clock& clock)
     : options_(options),
       clock_(clock),
       line_(options, clock),
-      service_(nameOf(options), "modbus", LossAction::Hold, [this](Service& service) { return attend(service); }) {}
+      service_(nameOf(options), "modbus", LossAction::Hold, [this](Service& service) { return runOnce(service); }) {}
 
-Outage ModbusBus::attend(Service& service) {
+Outage ModbusBus::runOnce(Service& service) {
     if (auto failure = line_.open(clock_.now() + options_.responseTimeout)) {
         const std::lock_guard lock(mutex_);
         loseAll(failure->outage);
@@ -43,20 +44,20 @@ Outage ModbusBus::attend(Service& service) {
         }
         ModbusUnit::Call* const call = unit->call_;
         if (call != nullptr) call->begun = true;
-        atTurn_ = unit;
+        active_ = unit;
         lock.unlock();
-        const ModbusUnit::Turned turned = unit->take(line_, call);
+        const ModbusUnit::TurnResult result = unit->execute(line_, call);
         lock.lock();
-        unit->settle(turned, call);
-        const ModbusFailure* const failure = std::get_if<ModbusFailure>(&turned);
-        const bool lineIsGone = failure != nullptr && failure->ofLine;
+        unit->finish(result, call);
+        const ModbusFailure* const failure = std::get_if<ModbusFailure>(&result);
+        const bool lineIsGone = failure != nullptr && failure->wholeLine;
         if (lineIsGone) loseAll(failure->outage);
-        atTurn_ = nullptr;
+        active_ = nullptr;
         turnEnded_.notify_all();
         if (lineIsGone) return failure->outage;
         lock.unlock();
         if (failure == nullptr)
-            service.running();  // not sooner: who connects and hangs up at once is to be tried ever more rarely
+            service.setRunning();  // only now, so that a peer that accepts and hangs up at once is retried ever more rarely
     }
     return {};
 }
@@ -78,16 +79,16 @@ void ModbusBus::loseAll(const Outage& outage) {
 }
 
 ModbusUnit::ModbusUnit(std::shared_ptr<ModbusBus> bus, std::string name, std::string driver, LossAction onLoss, Turn turn)
-    : bus_(std::move(bus)), turn_(std::move(turn)), status_{std::move(name), std::move(driver),        DeviceState::Starting,
-                                                            onLoss,          "it is being looked for", 0} {
+    : bus_(std::move(bus)), turn_(std::move(turn)), status_{std::move(name), std::move(driver), DeviceState::Starting,
+                                                            onLoss,          "looking for it",  0} {
     const std::lock_guard lock(bus_->mutex_);
     bus_->units_.push_back(this);
-    bus_->service_.call();
+    bus_->service_.wake();
 }
 
 ModbusUnit::~ModbusUnit() {
     std::unique_lock lock(bus_->mutex_);
-    bus_->turnEnded_.wait(lock, [&] { return bus_->atTurn_ != this; });
+    bus_->turnEnded_.wait(lock, [&] { return bus_->active_ != this; });
     std::erase(bus_->units_, this);
 }
 
@@ -106,7 +107,7 @@ Result<void> ModbusUnit::run(const Job& job, Time deadline) {
     if (status_.state != DeviceState::Running) return refusal();
     Call call{job, bus_->clock_.now(), false, {}};
     call_ = &call;
-    bus_->service_.call();
+    bus_->service_.wake();
     while (!call.answer) {
         if (call.begun) {
             bus_->turnEnded_.wait(lock);  // its requests end by the deadline
@@ -122,15 +123,15 @@ Result<void> ModbusUnit::run(const Job& job, Time deadline) {
     return *call.answer;
 }
 
-ModbusUnit::Turned ModbusUnit::take(ModbusLine& line, Call* call) {
+ModbusUnit::TurnResult ModbusUnit::execute(ModbusLine& line, Call* call) {
     if (call == nullptr) return turn_(line);
     if (auto failure = call->job(line)) return *std::move(failure);
     return Time{};
 }
 
-void ModbusUnit::settle(const Turned& turned, Call* call) {
+void ModbusUnit::finish(const TurnResult& result, Call* call) {
     const Time now = bus_->clock_.now();
-    const auto* const failure = std::get_if<ModbusFailure>(&turned);
+    const auto* const failure = std::get_if<ModbusFailure>(&result);
     if (failure != nullptr && failure->isRefusal && call != nullptr) {
         call->answer = Result<void>(Error(fmt::format("{}: {}", status_.name, failure->outage.why)));
         call_ = nullptr;
@@ -145,16 +146,16 @@ void ModbusUnit::settle(const Turned& turned, Call* call) {
     if (call != nullptr) {
         call->answer = Result<void>();
         call_ = nullptr;
-        due_ = now;  // what is due next may be another thing now
+        due_ = now;  // the job may have changed what is due next
         return;
     }
-    const auto* back = std::get_if<CameBack>(&turned);
-    due_ = back != nullptr ? back->next : std::get<Time>(turned);
+    const auto* back = std::get_if<Returned>(&result);
+    due_ = back != nullptr ? back->next : std::get<Time>(result);
     if (back != nullptr) ++status_.losses;
     if (status_.state == DeviceState::Running) return;
     status_.state = DeviceState::Running;
     status_.detail.clear();
-    backOff_.began(now);
+    backOff_.succeeded(now);
 }
 
 void ModbusUnit::lose(const Outage& outage) {

@@ -24,13 +24,13 @@ namespace fantascope::drivers {
 
 class ModbusUnit;
 
-// A line with its one thread, on which all units on it take turns: who is due first goes first. A
-// unit that does not answer is tried ever more rarely (BackOff); a line that is gone is tried again
-// by its Service, and all its units are lost until then.
+// A line and its one thread. All units on the line take turns; the one that is due first goes
+// first. A unit that does not answer is retried ever more rarely (BackOff). A lost line is retried
+// by its Service, and all its units are lost until it is back.
 class ModbusBus {
 public:
-    // The bus of that line, for as long as anybody holds it. Error: somebody has it already with
-    // other settings (rate, time-out).
+    // The bus of a line, shared while somebody holds it. Error: it is in use with other settings
+    // (rate, timeout).
     static Result<std::shared_ptr<ModbusBus>> of(const ConfigNode& node, const ModbusLineOptions& options, const Clock& clock);
     ModbusBus(const ModbusLineOptions& options, const Clock& clock);
 
@@ -38,35 +38,34 @@ public:
 
 private:
     friend class ModbusUnit;
-    Outage attend(Service& service);
-    // The unit whose turn it is, and nothing when all may wait until `due`.
+    Outage runOnce(Service& service);
+    // The unit whose turn it is; nothing if none is due before `due`.
     ModbusUnit* nextUnit(Time& due) const;
     void loseAll(const Outage& outage);
 
     const ModbusLineOptions options_;
     const Clock& clock_;
-    ModbusLine line_;  // of the thread alone
+    ModbusLine line_;  // used only by the thread
     std::mutex mutex_;
     std::condition_variable turnEnded_;
     std::vector<ModbusUnit*> units_;
-    const ModbusUnit* atTurn_ = nullptr;
+    const ModbusUnit* active_ = nullptr;
     Service service_;
 };
 
-// One device on a bus: what it does at its turns, and what it says of itself. It is the device's
-// last member, so that no turn is under way when anything that it uses goes.
+// One device on a bus: its work at each turn, and its status. It is the device's last member, so no
+// turn is under way when anything that a turn uses is destroyed.
 class ModbusUnit {
 public:
-    // The unit was away without anybody's noticing, and is back.
-    struct CameBack {
+    // The unit was away unnoticed, and is back. This counts as a loss.
+    struct Returned {
         Time next;
     };
-    // When the next turn is due, or why this one failed: then the unit is lost. One that came back
-    // was lost in between.
-    using Turned = std::variant<Time, CameBack, ModbusFailure>;
-    // On the bus's thread. Until one has succeeded the unit is not Running; of that turn everything
-    // must end by responseTimeout.
-    using Turn = std::function<Turned(ModbusLine&)>;
+    // When the next turn is due, or why this one failed. A failure means that the unit is lost.
+    using TurnResult = std::variant<Time, Returned, ModbusFailure>;
+    // Called on the bus's thread. The unit is Running after the first success. Until then, a turn
+    // must end within responseTimeout.
+    using Turn = std::function<TurnResult(ModbusLine&)>;
     using Job = std::function<ModbusOutcome(ModbusLine&)>;
 
     ModbusUnit(std::shared_ptr<ModbusBus> bus, std::string name, std::string driver, LossAction onLoss, Turn turn);
@@ -74,15 +73,15 @@ public:
     ModbusUnit(const ModbusUnit&) = delete;
     ModbusUnit& operator=(const ModbusUnit&) = delete;
 
-    // From any thread; never wait for the line.
+    // From any thread. These never wait for the line.
     DeviceStatus status() const;
     const std::string& name() const { return status_.name; }  // constant
     bool isRunning() const { return status().state == DeviceState::Running; }
 
-    // Does a job on the bus's thread at once, but for the requests that are under way or due
-    // before, and waits for it. The job's own requests must end by `deadline`; what has not begun
-    // by then never begins. Error: not Running, no time, or the job failed: then the unit is lost,
-    // unless it answered that it will not.
+    // Runs a job on the bus's thread as soon as possible, and waits for it; requests that are under
+    // way or due earlier go first. The job's own requests must end by `deadline`; a job that has
+    // not begun by then is dropped. Error: not Running, no time left, or the job failed. A failure
+    // means that the unit is lost, unless the unit itself refused.
     Result<void> run(const Job& job, Time deadline);
 
 private:
@@ -94,14 +93,14 @@ private:
         std::optional<Result<void>> answer;
     };
     Time due() const { return call_ != nullptr ? std::min(call_->since, due_) : due_; }
-    Turned take(ModbusLine& line, Call* call);
-    void settle(const Turned& turned, Call* call);
+    TurnResult execute(ModbusLine& line, Call* call);
+    void finish(const TurnResult& result, Call* call);
     void lose(const Outage& outage);
     Error refusal() const;  // with the mutex held
 
     const std::shared_ptr<ModbusBus> bus_;
     const Turn turn_;
-    // By bus_->mutex_:
+    // Guarded by bus_->mutex_:
     DeviceStatus status_;
     BackOff backOff_;
     Time due_{};

@@ -13,7 +13,7 @@ namespace fantascope::drivers {
 
 FoundDevice modbusLineOn(const UsbFile& file) {
     const UsbIdentity& usb = file.usb;
-    // Opening it would move its control lines; whether it may be opened can be asked.
+    // Opening the line would change its control lines, so only the permission is checked.
     const int error = access(file.file.c_str(), R_OK | W_OK) == 0 ? 0 : errno;
     return {"modbus",
             fmt::format("{} {}", usb.manufacturer, usb.name),

@@ -7,8 +7,8 @@
 
 namespace fantascope::drivers {
 
-// The serial lines of this machine that hang on USB: units on them may be anything, so none is
-// asked. What is on a network needs its host declared. Returns at once.
+// The USB serial lines of this machine. Units on them may be anything, so none is asked. Units on a
+// network are not searched: they need their host declared. Returns at once.
 std::vector<FoundDevice> findModbusLines();
 FoundDevice modbusLineOn(const UsbFile& file);
 

@@ -7,8 +7,8 @@
 namespace fantascope::drivers {
 namespace {
 
-// When so many changes wait nobody looks; what changes then is noticed once somebody does.
-constexpr std::size_t kMostWaiting = 1024;
+// When this many changes wait, nobody polls. Later changes are noticed once somebody does.
+constexpr std::size_t kMaxWaiting = 1024;
 
 }  // namespace
 
@@ -51,17 +51,17 @@ Result<Opening<InputBank>> ModbusInputBank::fromConfig(const char* driver, Modbu
     const bool graded = contact.threshold != ContactOptions().threshold || contact.hysteresis != 0;
     if (bits && graded) return node.error("'threshold' and 'hysteresis' are for registers");
     if (contact.hysteresis >= contact.threshold)
-        return node.error(
-            fmt::format("'hysteresis' must be below 'threshold', which is {}: else no contact ever opens", contact.threshold));
+        return node.error(fmt::format("'hysteresis' must be below 'threshold', which is {}: otherwise no contact ever opens",
+                                      contact.threshold));
     options.contacts.assign(size, contact);
     for (const std::size_t number : normallyClosed) options.contacts[number].normallyClosed = true;
-    const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<InputBank>> {
-        auto bus = TRY(ModbusBus::of(node, options.line, around.clock));
+    const auto open = [=](const DriverContext& context) -> Result<std::unique_ptr<InputBank>> {
+        auto bus = TRY(ModbusBus::of(node, options.line, context.clock));
         return std::unique_ptr<InputBank>(new ModbusInputBank(name, driver, options, std::move(bus)));
     };
     const auto claim = [line = options.line] {
         const ModbusRtu* serial = std::get_if<ModbusRtu>(&line.wire);
-        return serial == nullptr ? "" : claimOf(*serial);  // any number of programs may ask a module on the network
+        return serial == nullptr ? "" : claimOf(*serial);  // any number of programs may read a module on the network
     };
     return Opening<InputBank>{.open = open, .uses = {useOf(options.line)}, .claim = claim};
 }
@@ -80,7 +80,7 @@ std::optional<ContactChange> ModbusInputBank::poll() {
     return oldest;
 }
 
-ModbusUnit::Turned ModbusInputBank::turn(ModbusLine& line) {
+ModbusUnit::TurnResult ModbusInputBank::turn(ModbusLine& line) {
     const bool running = unit_.isRunning();
     const Time began = clock_.now();
     std::vector<std::uint16_t> values(contacts_.size());
@@ -88,7 +88,7 @@ ModbusUnit::Turned ModbusInputBank::turn(ModbusLine& line) {
         return *failure;
     const Time now = clock_.now();
     const std::lock_guard lock(mutex_);
-    for (std::size_t i = 0; i < contacts_.size() && waiting_.size() < kMostWaiting; ++i) {
+    for (std::size_t i = 0; i < contacts_.size() && waiting_.size() < kMaxWaiting; ++i) {
         if (!running) contacts_[i].interrupt();
         if (const auto change = contacts_[i].take(values[i], now))
             waiting_.push_back({i, change->closed, now, change->witnessed});

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/common/surroundings.h"
+#include "drivers/common/opening.h"
 #include "drivers/modbus/bus.h"
 #include "drivers/modbus/values.h"
 
@@ -15,7 +15,7 @@
 
 namespace fantascope::drivers {
 
-// Contacts that are the discrete inputs, coils or registers of a Modbus unit.
+// Contacts at discrete inputs, coils or registers of a Modbus unit.
 class ModbusInputBank final : public InputBank {
 public:
     static Result<Opening<InputBank>> readTcp(const ConfigNode& options, const std::string& name, std::size_t size);
@@ -35,13 +35,13 @@ private:
     static Result<Opening<InputBank>> fromConfig(const char* driver, ModbusLineOptions line, double rate, const ConfigNode& node,
                                                  const std::string& name, std::size_t size);
     ModbusInputBank(std::string name, const char* driver, Options options, std::shared_ptr<ModbusBus> bus);
-    ModbusUnit::Turned turn(ModbusLine& line);  // on the bus's thread
+    ModbusUnit::TurnResult turn(ModbusLine& line);  // on the bus's thread
 
     const Options options_;
     const Clock& clock_;
-    std::vector<Contact> contacts_;  // of the bus's thread; how many never changes
+    std::vector<Contact> contacts_;  // used only by the bus's thread; their number is constant
     std::mutex mutex_;
-    std::deque<ContactChange> waiting_;  // noticed and not taken yet
+    std::deque<ContactChange> waiting_;  // not taken yet
     ModbusUnit unit_;
 };
 

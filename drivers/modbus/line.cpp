@@ -18,7 +18,7 @@
 namespace fantascope::drivers {
 namespace {
 
-constexpr int kBitsOfCharacter = 11;  // with start, parity and stop
+constexpr int kBitsOfCharacter = 11;  // with start, parity and stop bits
 
 void closeAndFree(modbus_t* context) {
     modbus_close(context);
@@ -26,7 +26,7 @@ void closeAndFree(modbus_t* context) {
 }
 
 bool isException(int error) { return error > MODBUS_ENOBASE && error < MODBUS_ENOBASE + MODBUS_EXCEPTION_MAX; }
-// Whether libmodbus itself says so, of what came; else it is the system's.
+// Whether libmodbus reports the error about what it received; else it is the system's.
 bool isLibrarys(int error) { return error > MODBUS_ENOBASE; }
 
 void setResponseTimeout(modbus_t* context, Time limit) {
@@ -34,14 +34,13 @@ void setResponseTimeout(modbus_t* context, Time limit) {
     modbus_set_response_timeout(context, static_cast<std::uint32_t>(us / 1'000'000), static_cast<std::uint32_t>(us % 1'000'000));
 }
 
-// The longest silence that still belongs to a frame (Modbus over Serial Line V1.02, section
-// 2.5.1.1).
+// The longest silence inside a frame (Modbus over Serial Line V1.02, section 2.5.1.1).
 Time silenceOf(const ModbusRtu& wire) {
     const Time least = std::chrono::microseconds(1750);
     return std::max(least, fromSeconds(3.5 * kBitsOfCharacter / wire.baud));
 }
 
-// The file of the line now; nothing while its adapter is away.
+// The line's file now; nothing while its adapter is missing.
 std::optional<std::string> fileOf(const ModbusRtu& wire) {
     if (!wire.device.empty()) return wire.device;
     for (const UsbFile& file : usbFilesOf("tty"))
@@ -54,8 +53,8 @@ void declare(ConfigFields& fields, ModbusTcp& wire) {
         const std::string host = TRY(node.text());
         in_addr address{};
         if (inet_pton(AF_INET, host.c_str(), &address) == 1) return host;
-        return node.error(
-            fmt::format("'{}' is no IPv4 address such as 10.0.0.5; names are not looked up, since that may take long", host));
+        return node.error(fmt::format(
+            "'{}' is not an IPv4 address such as 10.0.0.5; host names are not supported, because a look-up may take long", host));
     });
     fields.optional().integer("port", wire.port, 1, 65535);
 }
@@ -64,7 +63,7 @@ void declare(ConfigFields& fields, ModbusRtu& wire) {
     fields.optional().read("device", wire.device, [](const ConfigNode& node) -> Result<std::string> {
         auto device = node.text();
         if (!device || device->starts_with("/")) return device;
-        return node.error(fmt::format("'{}' is no device file such as /dev/ttyUSB0", *device));
+        return node.error(fmt::format("'{}' is not a device file such as /dev/ttyUSB0", *device));
     });
     fields.optional().read("usb", wire, [&wire](const ConfigNode& node) -> Result<ModbusRtu> {
         ModbusRtu named = wire;
@@ -107,19 +106,19 @@ Result<void> checkLine(const ConfigNode& node, const ModbusLineOptions& options)
 }
 
 void declareUnit(ConfigFields& fields, const ModbusLineOptions& line, ModbusPlace& place) {
-    // The specification has 1 to 247; a module with a network socket of its own may also be 255,
-    // which none behind a gateway is.
+    // The specification has 1 to 247. A module with a network socket of its own may also be 255;
+    // one behind a gateway may not.
     const bool tcp = std::holds_alternative<ModbusTcp>(line.wire);
     fields.optional().read("unit", place.unit, [tcp](const ConfigNode& node) -> Result<int> {
         const auto unit = static_cast<int>(TRY(node.integer(1, tcp ? 255 : 247)));
-        if (unit > 247 && unit < 255) return node.error(fmt::format("{} is kept for others: 1 to 247, or 255", unit));
+        if (unit > 247 && unit < 255) return node.error(fmt::format("{} is reserved; use 1 to 247, or 255", unit));
         return unit;
     });
     fields.optional().integer("first", place.first, 0, 65535);
 }
 
 Result<void> checkPlace(const ConfigNode& node, const ModbusPlace& place, std::size_t count, bool writing) {
-    const std::size_t most = mostAtOnce(place.table, writing);
+    const std::size_t most = maxPerRequest(place.table, writing);
     if (count > most) return node.error(fmt::format("{} values are declared; one request carries {} at most", count, most));
     if (place.first + count > 65536)
         return node.error(fmt::format("'first' is {} and {} values are declared; addresses end at 65535", place.first, count));
@@ -164,7 +163,7 @@ ModbusOutcome ModbusLine::open(Time deadline) {
     if (context_) return std::nullopt;
     const auto failure = [](Outage outage) { return ModbusFailure{std::move(outage), true}; };
     const Time limit = std::min(options_.responseTimeout, deadline - clock_.now());
-    if (limit <= Time::zero()) return failure({DeviceState::Faulted, "there was no time left to connect"});
+    if (limit <= Time::zero()) return failure({DeviceState::Faulted, "no time was left to connect"});
 
     const ModbusTcp* tcp = std::get_if<ModbusTcp>(&options_.wire);
     const ModbusRtu* serial = std::get_if<ModbusRtu>(&options_.wire);
@@ -176,9 +175,9 @@ ModbusOutcome ModbusLine::open(Time deadline) {
                                                               kParities[static_cast<int>(serial->parity)], 8, serial->stopBits),
                               closeAndFree);
     if (!opened) return failure({DeviceState::Faulted, fmt::format("{}: {}", nameOf(options_), modbus_strerror(errno))});
-    setResponseTimeout(opened.get(), limit);  // a connection has no other
-    // Without it a byte may take half a second whatever the deadline is; so the whole answer has
-    // the response's time.
+    setResponseTimeout(opened.get(), limit);  // the only timeout of connecting
+    // 0, because a byte timeout of half a second would ignore the deadline. So the response timeout
+    // holds for the whole answer.
     modbus_set_byte_timeout(opened.get(), 0, 0);
     if (modbus_connect(opened.get()) != 0) {
         const int error = errno;
@@ -202,8 +201,8 @@ ModbusOutcome ModbusLine::lost(int error) {
     return ModbusFailure{{DeviceState::Absent, fmt::format("{} went away: {}", nameOf(options_), systemMessage(error))}, true};
 }
 
-// A frame begins after a silence. What comes meanwhile is noise, or the answer to a request that
-// was given up.
+// A frame begins after a silence. Whatever arrives before is noise, or a late answer to an earlier
+// request.
 ModbusOutcome ModbusLine::waitForSilence(Time deadline) {
     const ModbusRtu* serial = std::get_if<ModbusRtu>(&options_.wire);
     if (serial == nullptr) return std::nullopt;
@@ -225,8 +224,9 @@ ModbusOutcome ModbusLine::waitForSilence(Time deadline) {
 ModbusOutcome ModbusLine::exchange(const ModbusPlace& place, std::size_t count, bool writing, Time deadline,
                                    const Request& request) {
     ModbusOutcome outcome = exchangeOnce(place, count, writing, deadline, request);
-    // An exception is the unit's own word, and a lost line is for the bus to come back to.
-    const bool again = outcome && !outcome->ofLine && outcome->mayAskAgain && clock_.now() < deadline;
+    // Not after an exception, which is the unit's answer, nor on a lost line, which the bus
+    // reopens.
+    const bool again = outcome && !outcome->wholeLine && outcome->retryable && clock_.now() < deadline;
     return again ? exchangeOnce(place, count, writing, deadline, request) : outcome;
 }
 
@@ -242,23 +242,23 @@ ModbusOutcome ModbusLine::exchangeOnce(const ModbusPlace& place, std::size_t cou
 
     const int error = errno;
     if (isException(error)) {
-        ModbusFailure refusal{{DeviceState::Faulted, exceptionInWords(error - MODBUS_ENOBASE, place, count, writing)}};
-        refusal.isRefusal = error != EMBXGPATH && error != EMBXGTAR;  // those are a gateway's words
+        ModbusFailure refusal{{DeviceState::Faulted, describeException(error - MODBUS_ENOBASE, place, count, writing)}};
+        refusal.isRefusal = error != EMBXGPATH && error != EMBXGTAR;  // those two come from a gateway
         return refusal;
     }
     const bool serial = std::holds_alternative<ModbusRtu>(options_.wire);
-    // A module that hangs up may have been without power: that its relays fell must not go
-    // unnoticed behind a new connection.
+    // A module that hangs up may have lost power. A new connection must not hide that its relays
+    // fell.
     if (error != ETIMEDOUT && !isLibrarys(error)) return lost(error);
-    // The answer may still come; on a connection of its own nobody takes it for another.
+    // The answer may still come; a new connection keeps it from being taken for another's.
     if (!serial) context_.reset();
     ModbusFailure failure{{DeviceState::Faulted, ""}, false, true};
     if (error == ETIMEDOUT)
         failure.outage.why =
-            fmt::format("unit {} on {} does not answer within {:g} s: look at its power, wires and address{}", place.unit,
-                        nameOf(options_), seconds(options_.responseTimeout), serial ? ", and at the line's rate and parity" : "");
+            fmt::format("unit {} on {} does not answer within {:g} s: check its power, wires and address{}", place.unit,
+                        nameOf(options_), seconds(options_.responseTimeout), serial ? ", and the line's rate and parity" : "");
     else
-        failure.outage.why = fmt::format("unit {} on {} does not answer rightly: {}", place.unit, nameOf(options_),
+        failure.outage.why = fmt::format("unit {} on {} gives a wrong answer: {}", place.unit, nameOf(options_),
                                          isLibrarys(error) ? modbus_strerror(error) : systemMessage(error));
     return failure;
 }

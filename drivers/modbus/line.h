@@ -1,7 +1,7 @@
 #pragma once
 
 #include "drivers/common/file_handle.h"
-#include "drivers/common/surroundings.h"
+#include "drivers/common/opening.h"
 #include "drivers/common/usb_identity.h"
 
 #include "core/clock.h"
@@ -22,8 +22,8 @@ namespace fantascope::drivers {
 // The four tables of a Modbus unit.
 enum class ModbusTable { Coils, DiscreteInputs, HoldingRegisters, InputRegisters };
 
-// Where values stand. Addresses count from 0, as on the wire: coil 00001 and register 40001 of many
-// manuals are 0 here.
+// The address of values. Addresses count from 0, as on the wire: coil 00001 and register 40001 of
+// many manuals are 0 here.
 struct ModbusPlace {
     int unit = 1;
     ModbusTable table = ModbusTable::Coils;
@@ -36,12 +36,12 @@ struct ModbusTcp {
     friend bool operator==(const ModbusTcp&, const ModbusTcp&) = default;
 };
 
-// A serial line by its file, or by the USB adapter that it hangs on; of several that fit, the first
-// in the order of their USB paths.
+// A serial line, identified by its file or by its USB adapter. If several adapters match, the first
+// by USB path is used.
 struct ModbusRtu {
     enum class Parity { Even, Odd, None };
     std::string device;
-    std::string usbVendor, usbProduct, usbSerial;  // "" fits any
+    std::string usbVendor, usbProduct, usbSerial;  // "" matches any
     int baud = 19200;
     Parity parity = Parity::Even;
     int stopBits = 1;
@@ -51,59 +51,57 @@ struct ModbusRtu {
 
 struct ModbusLineOptions {
     std::variant<ModbusTcp, ModbusRtu> wire;
-    Time responseTimeout = std::chrono::milliseconds(300);  // for one request
+    Time responseTimeout = std::chrono::milliseconds(300);  // per request
     friend bool operator==(const ModbusLineOptions&, const ModbusLineOptions&) = default;
 };
 
-// Declares the keys of the line that is in options.wire, and checks what one key alone cannot tell.
+// Declares the keys of the line in options.wire; checkLine() checks their combinations.
 void declareLine(ConfigFields& fields, ModbusLineOptions& options);
 Result<void> checkLine(const ConfigNode& node, const ModbusLineOptions& options);
-// The same of which unit is meant and where its values begin, and whether `count` values have room
-// from there.
+// The same for the unit and the address of its values. checkPlace() also checks that `count` values
+// fit from there on.
 void declareUnit(ConfigFields& fields, const ModbusLineOptions& line, ModbusPlace& place);
 Result<void> checkPlace(const ConfigNode& node, const ModbusPlace& place, std::size_t count, bool writing);
 // "10.0.0.5:502", "/dev/ttyUSB0", "the USB adapter 0403:6001 serial A5".
 std::string nameOf(const ModbusLineOptions& options);
-// Devices share a line that they use with the same settings.
+// Devices share a line if they use it with the same settings.
 Use useOf(const ModbusLineOptions& options);
-// What a program claims of a serial line (Opening::claim): the file that it would open now, else
-// the adapter that it waits for.
+// The name for Opening::claim of a serial line: the file that it would open now, else the adapter
+// that it waits for.
 std::string claimOf(const ModbusRtu& wire);
 
-// Whether a line that was asked for by its USB adapter may be the one on this.
+// Whether the line named by its USB adapter may be on this one.
 bool isOn(const ModbusRtu& wire, const UsbIdentity& usb);
 
-// Why a request did not succeed: what the unit is then, or the whole line with all its units.
+// Why a request failed: the state of the unit now, or of the whole line with all its units.
 struct ModbusFailure {
     Outage outage;
-    bool ofLine = false;
-    bool mayAskAgain = false;  // no answer, or not its own
-    bool isRefusal = false;    // the unit's own word: it is there and will not do it
+    bool wholeLine = false;
+    bool retryable = false;  // no answer, or a wrong one
+    bool isRefusal = false;  // the unit answered that it will not do it
 };
-using ModbusOutcome = std::optional<ModbusFailure>;  // nothing: it succeeded
+using ModbusOutcome = std::optional<ModbusFailure>;  // nothing: success
 
-// One line and the requests on it, by libmodbus. Whatever went wrong leaves no trace for the next
-// request: a TCP connection is made anew, a serial line is waited on until it is silent. A
-// connection that the far end ended is a lost line. Every call ends by its deadline. Thread:
-// thread-bound.
+// One line and its requests, through libmodbus. A failure leaves no trace for the next request: a
+// TCP connection is reopened, and on a serial line it waits for silence. A connection that the far
+// end closed is a lost line. Every call ends by its deadline. Thread: thread-bound.
 class ModbusLine {
 public:
     ModbusLine(ModbusLineOptions options, const Clock& clock);
 
-    // Makes the connection, or opens the file, where it is not.
+    // Connects, or opens the file, if it is not open.
     ModbusOutcome open(Time deadline);
-    // One request of values.size() values, and its answer. What got no answer, or not its own, is
-    // asked a second time where the deadline leaves time: a state that is read or written twice is
-    // the same state. An exception is an answer.
-    // A value alone is written by the function for one (5 or 6), several by the one for several (15
-    // or 16).
+    // One request for values.size() values, and its answer. Without an answer, or with a wrong one,
+    // it is repeated once if the deadline allows; that is safe, because reading or writing a state
+    // twice changes nothing. An exception is an answer.
+    // A single value is written by function 5 or 6, several by function 15 or 16.
     ModbusOutcome read(const ModbusPlace& place, std::span<std::uint16_t> values, Time deadline);
     ModbusOutcome write(const ModbusPlace& place, std::span<const std::uint16_t> values, Time deadline);
 
     const ModbusLineOptions& options() const { return options_; }
 
 private:
-    using Request = std::function<int(_modbus*)>;  // -1 and errno, as libmodbus has it
+    using Request = std::function<int(_modbus*)>;  // -1 and errno, as in libmodbus
     ModbusOutcome exchange(const ModbusPlace& place, std::size_t count, bool writing, Time deadline, const Request& request);
     ModbusOutcome exchangeOnce(const ModbusPlace& place, std::size_t count, bool writing, Time deadline, const Request& request);
     ModbusOutcome waitForSilence(Time deadline);
@@ -111,7 +109,7 @@ private:
 
     const ModbusLineOptions options_;
     const Clock& clock_;
-    std::unique_ptr<_modbus, void (*)(_modbus*)> context_;  // null: it is not open
+    std::unique_ptr<_modbus, void (*)(_modbus*)> context_;  // null: not open
 };
 
 }  // namespace fantascope::drivers

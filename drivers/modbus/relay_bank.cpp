@@ -64,17 +64,17 @@ Result<Opening<RelayBank>> ModbusRelayBank::fromConfig(const char* driver, Modbu
     if (options.place.table == ModbusTable::Coils && values)
         return node.error("'on' and 'off' are for 'kind: holding_registers'");
     if (options.on == options.off) return node.error("'on' and 'off' are the same value");
-    // It may have to wait for another's request, then it writes and reads back.
+    // It may wait for another device's request, then it writes and reads back.
     if (options.timeout < 3 * options.line.responseTimeout)
         return node.error(fmt::format("'timeout' is {:g} s, three times 'response_timeout' is needed: {:g} s",
                                       seconds(options.timeout), seconds(3 * options.line.responseTimeout)));
-    const auto open = [=](const Surroundings& around) -> Result<std::unique_ptr<RelayBank>> {
-        auto bus = TRY(ModbusBus::of(node, options.line, around.clock));
+    const auto open = [=](const DriverContext& context) -> Result<std::unique_ptr<RelayBank>> {
+        auto bus = TRY(ModbusBus::of(node, options.line, context.clock));
         return std::unique_ptr<RelayBank>(new ModbusRelayBank(name, driver, options, std::move(bus), safeStates));
     };
     const auto claim = [line = options.line, unit = options.place.unit] {
         if (const ModbusRtu* serial = std::get_if<ModbusRtu>(&line.wire)) return claimOf(*serial);
-        return fmt::format("Modbus module {} unit {}", nameOf(line), unit);  // two shows may share a gateway
+        return fmt::format("Modbus module {} unit {}", nameOf(line), unit);  // because two shows may share a gateway
     };
     return Opening<RelayBank>{.open = open, .uses = {useOf(options.line)}, .claim = claim};
 }
@@ -88,7 +88,7 @@ ModbusRelayBank::ModbusRelayBank(std::string name, const char* driver, Options o
             [this](ModbusLine& line) { return turn(line); }) {}
 
 ModbusRelayBank::~ModbusRelayBank() {
-    if (used_) (void)write(safeStates_);  // what is lost has its own watchdog and the run's guard
+    if (used_) (void)write(safeStates_);  // a lost bank relies on its watchdog and the run's relay guard
 }
 
 Result<void> ModbusRelayBank::write(const std::vector<bool>& states) {
@@ -99,12 +99,12 @@ Result<void> ModbusRelayBank::write(const std::vector<bool>& states) {
     for (const bool on : states) wanted.push_back(on ? options_.on : options_.off);
     TRY(unit_.run(
         [&](ModbusLine& line) -> ModbusOutcome {
-            standing_.clear();
-            // First, since a module whose watchdog has struck may refuse everything else.
+            confirmed_.clear();
+            // First, because a module whose watchdog has tripped may refuse everything else.
             if (auto failure = feed(line, deadline)) return failure;
             if (auto failure = set(line, wanted, deadline)) return failure;
             if (auto failure = line.read(options_.place, is, deadline)) return failure;
-            if (is == wanted) standing_ = wanted;
+            if (is == wanted) confirmed_ = wanted;
             return std::nullopt;
         },
         deadline));
@@ -127,27 +127,27 @@ Result<std::vector<bool>> ModbusRelayBank::read() {
     return states;
 }
 
-ModbusUnit::Turned ModbusRelayBank::turn(ModbusLine& line) {
+ModbusUnit::TurnResult ModbusRelayBank::turn(ModbusLine& line) {
     const bool running = unit_.isRunning();
     const Time now = clock_.now(), deadline = now + (running ? 2 : 1) * options_.line.responseTimeout;
     if (!running) {
-        standing_.clear();
-        nextLook_ = now;
+        confirmed_.clear();
+        nextCheck_ = now;
     }
-    if (!standing_.empty() && options_.watchdog && now >= nextFeed_)
+    if (!confirmed_.empty() && options_.watchdog && now >= nextFeed_)
         if (auto failure = feed(line, deadline)) return *failure;
-    if (now >= nextLook_) {
+    if (now >= nextCheck_) {
         std::vector<std::uint16_t> values(size());
         if (auto failure = line.read(options_.place, values, deadline)) return *failure;
-        nextLook_ = now + fromSeconds(1 / options_.rate);
-        // Between two looks the module was without power, or its watchdog struck, or somebody
-        // switched it by hand.
-        if (!standing_.empty() && values != standing_) {
-            standing_.clear();
-            return ModbusUnit::CameBack{nextLook_};
+        nextCheck_ = now + fromSeconds(1 / options_.rate);
+        // Since the last check the module lost power, its watchdog tripped, or somebody switched it
+        // by hand.
+        if (!confirmed_.empty() && values != confirmed_) {
+            confirmed_.clear();
+            return ModbusUnit::Returned{nextCheck_};
         }
     }
-    return !standing_.empty() && options_.watchdog ? std::min(nextLook_, nextFeed_) : nextLook_;
+    return !confirmed_.empty() && options_.watchdog ? std::min(nextCheck_, nextFeed_) : nextCheck_;
 }
 
 ModbusOutcome ModbusRelayBank::set(ModbusLine& line, const std::vector<std::uint16_t>& values, Time deadline) {
@@ -165,8 +165,8 @@ ModbusOutcome ModbusRelayBank::feed(ModbusLine& line, Time deadline) {
     const Watchdog& watchdog = *options_.watchdog;
     const Time now = clock_.now();
     const ModbusPlace place{options_.place.unit, ModbusTable::HoldingRegisters, watchdog.address};
-    if (auto failure = line.write(place, {&watchdog.values[fed_ % watchdog.values.size()], 1}, deadline)) return failure;
-    ++fed_;
+    if (auto failure = line.write(place, {&watchdog.values[feeds_ % watchdog.values.size()], 1}, deadline)) return failure;
+    ++feeds_;
     nextFeed_ = now + watchdog.period;
     return std::nullopt;
 }

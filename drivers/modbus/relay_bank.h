@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/common/surroundings.h"
+#include "drivers/common/opening.h"
 #include "drivers/modbus/bus.h"
 
 #include "device/relay_bank.h"
@@ -14,8 +14,7 @@
 
 namespace fantascope::drivers {
 
-// Relays that are the coils of a Modbus unit, or holding registers with a value for on and one for
-// off.
+// Relays at coils of a Modbus unit, or at holding registers with a value for on and one for off.
 class ModbusRelayBank final : public RelayBank {
 public:
     static Result<Opening<RelayBank>> readTcp(const ConfigNode& options, const std::string& name,
@@ -30,8 +29,8 @@ public:
     Result<std::vector<bool>> read() override;
 
 private:
-    // A register of the module that must be written again and again, or it switches its relays to
-    // the safe states by itself.
+    // A register of the module that must be written again and again, or the module sets its relays
+    // to the safe states by itself.
     struct Watchdog {
         int address = 0;
         std::vector<std::uint16_t> values{1};  // in turn
@@ -41,9 +40,9 @@ private:
         ModbusLineOptions line;
         ModbusPlace place;
         std::uint16_t on = 1, off = 0;
-        bool oneByOne = false;                   // a request for each relay
-        Time timeout = std::chrono::seconds(1);  // of a write() or read() as a whole
-        double rate = 4;                         // Hz; how often it is looked whether the module is there
+        bool oneByOne = false;                   // one request per relay
+        Time timeout = std::chrono::seconds(1);  // of a whole write() or read()
+        double rate = 4;                         // Hz; how often the module is checked
         std::optional<Watchdog> watchdog;
     };
     static Result<Opening<RelayBank>> fromConfig(const char* driver, ModbusLineOptions line, const ConfigNode& node,
@@ -52,22 +51,22 @@ private:
     ModbusRelayBank(std::string name, const char* driver, Options options, std::shared_ptr<ModbusBus> bus,
                     const std::vector<bool>& safeStates);
 
-    bool used_ = false;  // somebody asked for a write
+    bool used_ = false;  // write() was called
 
-    // On the bus's thread.
-    ModbusUnit::Turned turn(ModbusLine& line);
+    // On the bus's thread:
+    ModbusUnit::TurnResult turn(ModbusLine& line);
     ModbusOutcome feed(ModbusLine& line, Time deadline);
     ModbusOutcome set(ModbusLine& line, const std::vector<std::uint16_t>& values, Time deadline);
 
     const Options options_;
     const std::vector<bool> safeStates_;
     const Clock& clock_;
-    // Of the bus's thread:
-    // What was confirmed since the last loss. While it is empty nothing is written, not even to the
-    // watchdog, which keeps the relays safe.
-    std::vector<std::uint16_t> standing_;
-    std::size_t fed_ = 0;  // times
-    Time nextFeed_{}, nextLook_{};
+    // Used only by the bus's thread:
+    // The values confirmed since the last loss. While it is empty nothing is written, not even to
+    // the watchdog, which keeps the relays safe.
+    std::vector<std::uint16_t> confirmed_;
+    std::size_t feeds_ = 0;  // writes to the watchdog
+    Time nextFeed_{}, nextCheck_{};
     ModbusUnit unit_;
 };
 

@@ -36,7 +36,7 @@ Result<Opening<InputBank>> SimulatedInputBank::fromConfig(const ConfigNode& opti
 }
 
 std::optional<ContactChange> SimulatedInputBank::poll() {
-    // All contacts are looked at together, so that a restless one does not hide the others.
+    // All contacts are read together, so that a restless one cannot hide the others.
     if (plug_.lostAgain()) looking_ = false;
     if (waiting_.empty() && plug_.in()) {
         const bool witnessed = std::exchange(looking_, true);

@@ -14,8 +14,8 @@
 
 namespace fantascope::drivers {
 
-// A bank of the simulated site's relays; its watchdog knows at once that its line is dead. Plug:
-// the bank's name.
+// A bank of relays at the simulated site. Its watchdog notices a dead line at once. Plug: the
+// bank's name.
 class SimulatedRelayBank final : public RelayBank {
 public:
     static Result<Opening<RelayBank>> fromConfig(const ConfigNode& options, const std::string& name,
@@ -32,10 +32,10 @@ private:
         : plug_(std::move(plug)), safeStates_(std::move(safeStates)) {}
     site::Plug plug_;
     std::vector<bool> safeStates_;
-    bool used_ = false;  // somebody asked for a write
+    bool used_ = false;  // write() was called
 };
 
-// A bank of the simulated site's contacts. Plug: the bank's name.
+// A bank of contacts at the simulated site. Plug: the bank's name.
 class SimulatedInputBank final : public InputBank {
 public:
     static Result<Opening<InputBank>> fromConfig(const ConfigNode& options, const std::string& name, std::size_t size);
@@ -47,9 +47,9 @@ public:
 private:
     SimulatedInputBank(site::Plug plug, std::size_t size) : plug_(std::move(plug)), reported_(size, false) {}
     site::Plug plug_;
-    std::vector<bool> reported_;         // as of the last change that was noticed
-    bool looking_ = false;               // since the start or the last loss
-    std::deque<ContactChange> waiting_;  // noticed and not taken yet
+    std::vector<bool> reported_;         // as last reported
+    bool looking_ = false;               // read since the start or the last loss
+    std::deque<ContactChange> waiting_;  // not taken yet
 };
 
 }  // namespace fantascope::drivers

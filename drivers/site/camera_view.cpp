@@ -13,11 +13,11 @@ namespace fantascope::site {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr float kSkyDistance = 60;  // metres of air before the sky: what fog hides of it
+constexpr float kSkyDistance = 60;  // metres of fog before the sky
 
-constexpr double kGrazing = 1e-3;  // pixels on a square metre: a surface seen from its very edge
+constexpr double kGrazing = 1e-3;  // pixels per square metre: a surface seen at a grazing angle
 
-// The share of light that is left after a way through fog (Beer and Lambert's law).
+// The share of light that passes through fog (Beer-Lambert law).
 float transmitted(double fog, float path) { return fog > 0 ? std::exp(-static_cast<float>(fog) * path) : 1.0f; }
 
 }  // namespace
@@ -53,7 +53,7 @@ CameraView::CameraView(const Scene& scene, const vision::CameraModel& camera, gl
 void CameraView::addLamp(const Lamp& lamp) {
     Layer layer{Image<glm::vec4>(camera_.size.x, camera_.size.y), glm::vec3(0)};
     const auto add = [&](std::uint32_t pixel, glm::vec3 luminance, float path) {
-        // The way is the mean of the samples', each weighed by its light.
+        // The path is the mean over the samples, weighted by their light.
         layer.light.pixels()[pixel] += glm::vec4(luminance, (luminance.r + luminance.g + luminance.b) * path);
     };
     for (const Sample& sample : samples_) {
@@ -67,8 +67,8 @@ void CameraView::addLamp(const Lamp& lamp) {
         layer.meanIlluminance += illuminance / static_cast<float>(samples_.size());
     }
 
-    // The head itself, a disc in the picture; never smaller than a pixel, so that a far one's light
-    // does not fall between the samples.
+    // The head itself, a disc in the picture, at least a pixel wide, so that the light of a distant
+    // head is not lost between samples.
     const auto centre = camera_.pixelFromWorld(lamp.position);
     const glm::dvec3 fromLamp = camera_.pose.position - lamp.position;
     if (centre && !scene_.blocked(camera_.pose.position, lamp.position)) {
@@ -118,11 +118,11 @@ void CameraView::moveProjector(std::size_t index, const vision::CameraModel& mod
 void CameraView::render(std::span<const glm::vec3> levels, std::span<const ProjectedLight> frames, double fog,
                         Image<glm::vec3>& luminance) const {
     FANTASCOPE_CHECK(levels.size() == lamps_.size() && frames.size() == projectors_.size(),
-                     "one level a lamp, one frame a projector");
+                     "one level per lamp, one frame per projector");
     FANTASCOPE_CHECK(luminance.width() == camera_.size.x && luminance.height() == camera_.size.y,
                      "a picture of the camera's size");
 
-    // Fog scatters what passes through it evenly in all directions, once.
+    // Fog scatters light evenly in all directions, once.
     glm::vec3 inTheAir = steady_.meanIlluminance;
     for (std::size_t i = 0; i < lamps_.size(); ++i) inTheAir += levels[i] * lamps_[i].meanIlluminance;
     for (std::size_t i = 0; i < projectors_.size(); ++i)

@@ -23,7 +23,7 @@ Result<void> Plug::checkKeys(const ConfigNode& options) {
 
 Error Plug::noWorld(const ConfigNode& options, const std::string& device) {
     return options.error(
-        fmt::format("{}: driver 'simulated' needs a simulated site and here is none; rehearse, or name a real driver", device));
+        fmt::format("{}: driver 'simulated' needs a simulated site, and there is none; rehearse, or name a real driver", device));
 }
 
 DeviceStatus Plug::status() const {

@@ -9,17 +9,17 @@
 namespace fantascope::site {
 namespace {
 
-constexpr std::size_t kLevels = 5;  // cells of up to 16 pixels: a camera that sees a whole output in 40 pixels
+constexpr std::size_t kLevels = 5;  // cells of up to 16 pixels, enough for a camera that sees a whole output in 40 pixels
 
 glm::ivec2 halved(glm::ivec2 cells) { return (cells + 1) / 2; }
-bool canBeLookedInto(glm::ivec2 cells) { return std::min(cells.x, cells.y) >= ProjectedLight::kLeastSide; }
+bool canBeLookedInto(glm::ivec2 cells) { return std::min(cells.x, cells.y) >= ProjectedLight::kMinSide; }
 
 }  // namespace
 
 ProjectedLight::ProjectedLight(glm::ivec2 size, double gamma, double blackLevel) : size_(size) {
     for (std::size_t stored = 0; stored < lightOf_.size(); ++stored)
         lightOf_[stored] = static_cast<float>(blackLevel + (1 - blackLevel) * std::pow(static_cast<double>(stored) / 255, gamma));
-    FANTASCOPE_CHECK(canBeLookedInto(size), "a frame of some pixels each way");
+    FANTASCOPE_CHECK(canBeLookedInto(size), "a frame is at least kMinSide pixels each way");
     for (; levels_.size() < kLevels && canBeLookedInto(size); size = halved(size)) levels_.emplace_back(size.x, size.y);
 }
 

@@ -11,32 +11,32 @@
 
 namespace fantascope::site {
 
-// A projector's frame as the light that leaves its lens: linear, 1 is a full white pixel, w unused;
-// averaged over cells of 1, 2, 4 ... pixels, so that a camera pixel that covers many of the
-// projector's sees all of them. Thread-bound.
+// A projector's frame as the light that leaves its lens: linear, 1 is a full white pixel, w unused.
+// It is averaged over cells of 1, 2, 4 ... pixels, so that a camera pixel that covers many
+// projector pixels sees all of them. Thread-bound.
 class ProjectedLight {
     using LightImage = Image<glm::vec4>;
 
 public:
-    // Of the smallest frame: two pixels to lie between.
-    static constexpr int kLeastSide = 2;
+    // The smallest frame: interpolation needs two pixels each way.
+    static constexpr int kMinSide = 2;
     // light = blackLevel + (1 - blackLevel) stored^gamma. blackLevel 0..1, gamma > 0, size >=
-    // kLeastSide each way.
+    // kMinSide each way.
     ProjectedLight(glm::ivec2 size, double gamma, double blackLevel);
 
-    // Takes a new frame, stretched to the projector's own pixels if its size differs; null is no
-    // light at all. Does nothing if it is the one that it has already.
+    // Sets a new frame, stretched to the projector's own pixels if its size differs; null is no
+    // light at all. Setting the same frame again does nothing.
     void show(std::shared_ptr<const RgbaImage> frame);
     bool dark() const { return frame_ == nullptr; }
 
-    // Somewhere in the frame, looked up once and read from every frame.
+    // A place in the frame, computed once and read from every frame.
     struct Place {
-        std::uint32_t level = 0;   // of cells of 2^level pixels
+        std::uint32_t level = 0;   // cells of 2^level pixels
         std::uint32_t corner = 0;  // the cell whose centre is next above and left
         glm::vec2 share{0};        // of the way from there to the next centres right and below
     };
-    // In frames of `size`, around `pixel` in [0, width] x [0, height], in cells about `footprint`
-    // pixels wide.
+    // For frames of `size`, around `pixel` in [0, width] x [0, height], with cells about
+    // `footprint` pixels wide.
     static Place placeOf(glm::ivec2 size, glm::vec2 pixel, double footprint);
     // Bilinear between cell centres. Not while dark().
     glm::vec4 at(const Place& place) const {
@@ -47,14 +47,14 @@ public:
         const glm::vec4 below = bottom[0] + (bottom[1] - bottom[0]) * place.share.x;
         return above + (below - above) * place.share.y;
     }
-    // Of the whole frame. Not while dark().
+    // The mean of the whole frame. Not while dark().
     glm::vec4 mean() const;
 
 private:
     glm::ivec2 size_;
     std::array<float, 256> lightOf_{};
     std::shared_ptr<const RgbaImage> frame_;
-    std::vector<LightImage> levels_;  // each has half the width and height of the one before
+    std::vector<LightImage> levels_;  // each half as wide and high as the one before
 };
 
 }  // namespace fantascope::site

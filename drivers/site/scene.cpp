@@ -12,11 +12,10 @@ namespace fantascope::site {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kDeepest = 60;  // levels of boxes; what is left over there is one leaf
-constexpr float kSkin = 1e-3f;        // metres: a surface does not shadow itself
+constexpr std::size_t kMaxDepth = 60;  // levels of boxes; deeper triangles share one leaf
+constexpr float kSkin = 1e-3f;         // metres, so that a surface does not shadow itself
 
-// Distance along the ray to the triangle's plane where that lies inside the triangle, else infinity
-// (Möller & Trumbore 1997).
+// Distance along the ray to the triangle, or infinity (Möller & Trumbore 1997).
 float meet(glm::vec3 origin, glm::vec3 direction, glm::vec3 corner, glm::vec3 edge1, glm::vec3 edge2) {
     const glm::vec3 p = glm::cross(direction, edge2);
     const float determinant = glm::dot(edge1, p);
@@ -46,9 +45,9 @@ Scene::Scene(const std::vector<SceneObject>& objects) {
     divide(0, 0, static_cast<std::uint32_t>(triangles_.size()), 0);
 }
 
-// Splits the triangles where the surface area heuristic (MacDonald & Booth 1990) expects rays to
-// meet the fewest of them: beside a few great sheets, ground and wall, a split by number alone
-// would put small triangles into great boxes.
+// Splits the triangles by the surface area heuristic (MacDonald & Booth 1990), where rays are
+// expected to meet the fewest. Beside a few huge sheets such as ground and wall, a split by count
+// would put small triangles into large boxes.
 void Scene::divide(std::uint32_t index, std::uint32_t begin, std::uint32_t end, std::size_t depth) {
     const auto sortAlong = [&](int axis) {
         std::sort(triangles_.begin() + begin, triangles_.begin() + end,
@@ -80,7 +79,7 @@ void Scene::divide(std::uint32_t index, std::uint32_t begin, std::uint32_t end, 
             middle = begin + i;
         }
     }
-    if (bestAxis < 0 || depth == kDeepest) return;
+    if (bestAxis < 0 || depth == kMaxDepth) return;
     sortAlong(bestAxis);
     const auto children = static_cast<std::uint32_t>(nodes_.size());
     nodes_[index].first = children;
@@ -105,14 +104,14 @@ float Scene::Box::area() const {
 template <class Test>
 void Scene::visit(glm::vec3 origin, glm::vec3 direction, const float& limit, Test test) const {
     if (nodes_.empty()) return;
-    const glm::vec3 inverse = 1.0f / direction;  // infinite along an axis: the slab test below then keeps or drops the whole box
+    const glm::vec3 inverse = 1.0f / direction;  // infinite along an axis; the slab test below still works
     const auto enters = [&](const Box& box) {
         const glm::vec3 a = (box.low - origin) * inverse, b = (box.high - origin) * inverse;
         const glm::vec3 first = glm::min(a, b), last = glm::max(a, b);
         const float in = std::max({first.x, first.y, first.z, 0.0f}), out = std::min({last.x, last.y, last.z, limit});
         return !(in > out);
     };
-    std::array<std::uint32_t, kDeepest + 1> stack{};
+    std::array<std::uint32_t, kMaxDepth + 1> stack{};
     std::size_t waiting = 1;
     while (waiting > 0) {
         const Node& node = nodes_[stack[--waiting]];

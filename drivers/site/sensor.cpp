@@ -9,9 +9,8 @@
 namespace fantascope::site {
 namespace {
 
-// Drawing a fresh normal value for each channel of each pixel would cost more than the picture.
-// 2^17 values are many times a row's, so that rows that read the same stretch are far apart and
-// rare.
+// Fresh normal values for each channel of each pixel would cost more than the picture. 2^17 values
+// are many rows' worth, so rows that read the same stretch are rare and far apart.
 constexpr std::size_t kNormals = 1 << 17;
 // Fine enough for the steepest part of the sRGB curve: a fifth of a stored step.
 constexpr std::size_t kLinearSteps = 1 << 14;

@@ -19,7 +19,7 @@ namespace {
 
 const std::string kCamera = "camera";
 
-// What a lamp gives at its slots' values: linear, 1 is full power.
+// A lamp's light for its slots' values: linear, 1 is full power.
 glm::vec3 levelOf(const NominalSite::Fixture& fixture, const std::array<std::uint8_t, kDmxSlots>& slots) {
     constexpr std::array<std::string_view, 3> kColours{"red", "green", "blue"};
     std::optional<float> intensity;
@@ -37,14 +37,14 @@ glm::vec3 levelOf(const NominalSite::Fixture& fixture, const std::array<std::uin
     return intensity.value_or(1) * colour.value_or(glm::vec3(1));
 }
 
-// A fault's beginning or end.
+// The beginning or end of a fault.
 struct Change {
     Time at{};
     const Fault* fault = nullptr;
     bool begins = false;
 };
 
-// A contact's closing or its end.
+// The beginning or end of a closing.
 struct Move {
     Time at{};
     std::size_t contact = 0;
@@ -100,7 +100,7 @@ struct SimulatedSite::Impl {
         std::stable_sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.at < b.at; });
     }
 
-    // Everything up to a time since the beginning.
+    // Applies everything up to a time since begin().
     void happen(Time until) {
         for (; nextMove < moves.size() && moves[nextMove].at <= until; ++nextMove) {
             const Move& move = moves[nextMove];
@@ -121,7 +121,7 @@ struct SimulatedSite::Impl {
         }
     }
 
-    // Brings the truth that one fault touches in line with all faults that are active now.
+    // Updates what one fault touches to all faults that are active now.
     void apply(const Fault& changed) {
         const std::string& device = changed.device;
         const auto isActive = [&](Fault::Kind kind) {
@@ -136,7 +136,7 @@ struct SimulatedSite::Impl {
                 if (!isActive(Fault::Kind::Freeze))
                     frozen.erase(device);
                 else
-                    frozen.emplace(device, world.frame(device));  // null for the camera, which repeats its own
+                    frozen.emplace(device, world.frame(device));  // null for the camera, which repeats its own frame
                 break;
             case Fault::Kind::Bump:
                 bump(device);
@@ -160,7 +160,7 @@ struct SimulatedSite::Impl {
         view->moveProjector(static_cast<std::size_t>(found - nominal.outputs.begin()), projector);
     }
 
-    // The site as it is now, seen by the camera; `frame` is its number.
+    // The camera's picture of the site now; `frame` is its number.
     RgbaImage seen(std::int64_t frame) {
         std::vector<glm::vec3> levels;
         for (const FedLamp& lamp : simulation.lamps) {
@@ -200,16 +200,16 @@ struct SimulatedSite::Impl {
     const Sensor sensor;
     Time beginning{};
 
-    std::vector<Change> changes;  // in the order of time; point into simulation.faults
+    std::vector<Change> changes;  // sorted by time; point into simulation.faults
     std::size_t nextChange = 0;
     std::vector<const Fault*> active;
-    std::vector<Move> moves;  // in the order of time
+    std::vector<Move> moves;  // sorted by time
     std::size_t nextMove = 0;
-    std::map<std::size_t, int> closed;                               // how many close a contact now
-    std::map<std::string, std::shared_ptr<const RgbaImage>> frozen;  // what a frozen device keeps
+    std::map<std::size_t, int> closed;                               // how many closings hold a contact closed now
+    std::map<std::string, std::shared_ptr<const RgbaImage>> frozen;  // the frame that a frozen device keeps
 
     std::optional<CameraView> view;
-    std::vector<ProjectedLight> light;  // of each output
+    std::vector<ProjectedLight> light;  // per output
     Image<glm::vec3> luminance;
     RgbaImage lastSeen;
     std::int64_t lastFrame = -1;

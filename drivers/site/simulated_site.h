@@ -16,8 +16,8 @@
 
 namespace fantascope::site {
 
-// What the simulated site is told of the nominal one: the parts of the site file that throw light,
-// or that have a plug.
+// The nominal site as the simulation gets it: the parts of the site file that throw light or have a
+// plug.
 struct NominalSite {
     struct Output {
         std::string name;
@@ -44,46 +44,46 @@ struct NominalSite {
     std::vector<Relay> relays;
     std::vector<Contact> contacts;
     std::optional<vision::CameraModel> camera;
-    std::vector<std::string> devices;  // all that can be unplugged, by their names in World
+    std::vector<std::string> devices;  // everything that can be unplugged, by its name in World
 };
 
-// Something that the fault script did.
+// An event of the fault script.
 struct Happening {
-    Time at{};  // since the site's beginning
+    Time at{};  // since begin()
     std::string text;
 };
 
-// The simulated site in one scene: ground, wall and objects, lit by what the simulated devices do
-// in World, seen by a camera. A projector shows World::frame() of its output, whoever drew it: a
-// headless display, or a real window through the renderer's tap. Faults change the simulated truth,
+// The simulated site as one scene: ground, wall and objects, lit by the simulated devices in World
+// and seen by a camera. A projector shows World::frame() of its output, whether from a headless
+// display or from a real window through the renderer's tap. Faults change the simulated truth,
 // never the nominal site that it started from.
 //
-// Time: everything happens on World's clock, counted from begin(). The same code runs on a thread
-// of its own in real time,
+// Time: everything happens on World's clock, counted from begin(). In real time, a thread of its
+// own runs
 //     site->begin(clock.now());
 //     while (!stopped) {
 //         site->advanceTo(clock.now());
-//         clock.sleepUntil(std::min(site->nextEvent(), clock.now() + 100ms));  // so that `stopped` is seen
+//         clock.sleepUntil(std::min(site->nextEvent(), clock.now() + 100ms));  // sees `stopped`
 //     }
-// and stepped by a manual clock: call advanceTo() after every step of it.
+// With a manual clock, call advanceTo() after every step of the clock.
 // Thread: bound to the site's thread; happenings() may be called from any.
 class SimulatedSite {
 public:
-    // `simulation`: the site file's section of that name, see README.md; it reads the meshes named
-    // there and works out all light beforehand, which takes about a second. `seed`: of the noise.
+    // `simulation`: the site file's section of that name, see README.md. Reads the meshes named
+    // there and computes all light in advance, which takes about a second. `seed`: of the noise.
     // `world` outlives the site. Error: file, line, column, key.
     static Result<std::unique_ptr<SimulatedSite>> open(const ConfigNode& simulation, const NominalSite& nominal,
                                                        std::uint64_t seed, World& world);
     ~SimulatedSite();
 
-    // Sets the beginning from which faults and camera frames count. Before the first advanceTo(),
-    // once.
+    // Sets the time from which faults and camera frames count. Call once, before the first
+    // advanceTo().
     void begin(Time at);
-    // Makes the faults happen and the contacts move that are due, and lets the camera expose the
-    // newest frame that is due; if several are, the older ones are dropped as a real camera's would
-    // be. Some milliseconds for a frame, nothing otherwise.
+    // Applies all due faults and contact movements, and lets the camera expose the newest due
+    // frame. If several frames are due, the older ones are dropped, as by a real camera. Takes some
+    // milliseconds per frame, nothing otherwise.
     void advanceTo(Time now);
-    // When advanceTo() has something to do next.
+    // When to call advanceTo() next.
     Time nextEvent() const;
 
     // The faults so far, oldest first.

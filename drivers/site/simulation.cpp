@@ -13,16 +13,16 @@
 namespace fantascope::site {
 namespace {
 
-constexpr double kFar = 1000;       // metres: the farthest anything stands from the origin
-constexpr double kLongest = 1e6;    // seconds: eleven days
-constexpr double kBrightest = 1e6;  // lux, candela, lumens, cd/m2
+constexpr double kMaxDistance = 1000;  // metres from the origin
+constexpr double kMaxTime = 1e6;       // seconds: eleven days
+constexpr double kMaxLight = 1e6;      // lux, candela, lumens, cd/m2
 
-// A flat four-sided sheet from one corner along two edges.
+// A parallelogram from one corner along two edges.
 TriangleMesh sheet(glm::dvec3 corner, glm::dvec3 right, glm::dvec3 up) {
     return {{corner, corner + right, corner + right + up, corner + up}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-// Six sheets around a centre, along the axes.
+// A box around a centre, along the axes.
 TriangleMesh box(glm::dvec3 centre, glm::dvec3 size) {
     TriangleMesh mesh;
     for (int i = 0; i < 8; ++i) mesh.vertices.push_back(centre + size * (glm::dvec3(i & 1, (i >> 1) & 1, i >> 2) - 0.5));
@@ -37,20 +37,20 @@ TriangleMesh box(glm::dvec3 centre, glm::dvec3 size) {
 Result<TriangleMesh> readRectangle(const ConfigNode& node) {
     glm::dvec3 corner{}, right{}, up{};
     ConfigFields fields(node);
-    fields.vector3("corner", corner, -kFar, kFar, "m");
-    fields.vector3("right", right, -kFar, kFar, "m");
-    fields.vector3("up", up, -kFar, kFar, "m");
+    fields.vector3("corner", corner, -kMaxDistance, kMaxDistance, "m");
+    fields.vector3("right", right, -kMaxDistance, kMaxDistance, "m");
+    fields.vector3("up", up, -kMaxDistance, kMaxDistance, "m");
     TRY(fields.finish());
     if (glm::length(glm::cross(right, up)) < 1e-6)
-        return node.error("'right' and 'up' must span a rectangle; they are zero or in a line");
+        return node.error("'right' and 'up' must span a rectangle; they are zero or parallel");
     return sheet(corner, right, up);
 }
 
 Result<TriangleMesh> readBox(const ConfigNode& node) {
     glm::dvec3 centre{}, size{};
     ConfigFields fields(node);
-    fields.vector3("centre", centre, -kFar, kFar, "m");
-    fields.vector3("size", size, 1e-3, kFar, "m");
+    fields.vector3("centre", centre, -kMaxDistance, kMaxDistance, "m");
+    fields.vector3("size", size, 1e-3, kMaxDistance, "m");
     TRY(fields.finish());
     return box(centre, size);
 }
@@ -61,7 +61,7 @@ Result<TriangleMesh> readPlacedMesh(const ConfigNode& node) {
     double turn = 0, scale = 1;
     ConfigFields fields(node);
     fields.path("file", file);
-    fields.optional().vector3("position", position, -kFar, kFar, "m");
+    fields.optional().vector3("position", position, -kMaxDistance, kMaxDistance, "m");
     fields.optional().angle("turn", turn, -360, 360);
     fields.optional().number("scale", scale, 1e-4, 1e4);
     TRY(fields.finish());
@@ -92,7 +92,7 @@ Result<SceneObject> readObject(const ConfigNode& node) {
 Result<SimulatedProjector> readProjector(const ConfigNode& node) {
     SimulatedProjector projector;
     ConfigFields fields(node);
-    fields.optional().number("lumens", projector.lumens, 0, kBrightest, "lm");
+    fields.optional().number("lumens", projector.lumens, 0, kMaxLight, "lm");
     fields.optional().number("black_level", projector.blackLevel, 0, 1);
     fields.optional().number("gamma", projector.gamma, 0.5, 5);
     TRY(fields.finish());
@@ -103,11 +103,11 @@ Result<Lamp> readLamp(const ConfigNode& node) {
     Lamp lamp;
     glm::dvec3 lookAt{0.0};
     ConfigFields fields(node);
-    fields.vector3("position", lamp.position, -kFar, kFar, "m");
-    fields.vector3("look_at", lookAt, -kFar, kFar, "m");
+    fields.vector3("position", lamp.position, -kMaxDistance, kMaxDistance, "m");
+    fields.vector3("look_at", lookAt, -kMaxDistance, kMaxDistance, "m");
     fields.angle("beam_angle", lamp.beam, 1, 175);
     fields.angle("field_angle", lamp.field, 1, 180);
-    fields.number("candela", lamp.candela, 0, kBrightest, "cd");
+    fields.number("candela", lamp.candela, 0, kMaxLight, "cd");
     fields.optional().vector3("colour", lamp.colour, 0, 1);
     fields.optional().number("radius", lamp.radius, 0.001, 10, "m");
     TRY(fields.finish());
@@ -120,7 +120,7 @@ Result<Lamp> readLamp(const ConfigNode& node) {
 Result<SimulatedCamera> readCamera(const ConfigNode& node) {
     SimulatedCamera camera;
     ConfigFields fields(node);
-    fields.optional().number("white", camera.sensor.white, 1e-3, kBrightest, "cd/m2");
+    fields.optional().number("white", camera.sensor.white, 1e-3, kMaxLight, "cd/m2");
     fields.optional().number("read_noise", camera.sensor.readNoise, 0, 1);
     fields.optional().number("shot_noise", camera.sensor.shotNoise, 0, 1);
     fields.optional().time("latency", camera.latency, 0, 10);
@@ -136,7 +136,7 @@ std::vector<std::string> namesOf(const std::vector<Named>& things) {
     return names;
 }
 
-// A map from names that the site declares to what the simulation adds to them; use(index of the
+// Reads a map from names that the site declares to what the simulation adds; calls use(index of the
 // name, value).
 template <class Parse, class Use>
 Result<void> readNamed(const ConfigNode& node, const std::vector<std::string>& names, std::string_view kind, Parse parse,
@@ -170,15 +170,15 @@ Result<std::vector<FedLamp>> readLamps(const ConfigNode& node, const std::vector
     return lamps;
 }
 
-// When something begins and ends: `until` after `at`. Ask for check() once the fields are finished.
+// A beginning and an end; `until` is after `at`. Call check() after finish().
 struct Span {
     Time& at;
     std::optional<Time>& until;
 
     void declare(ConfigFields& fields) const {
-        fields.time("at", at, 0, kLongest);
+        fields.time("at", at, 0, kMaxTime);
         fields.optional().read("until", until, [](const ConfigNode& value) -> Result<Time> {
-            return fromSeconds(TRY(value.number(0, kLongest, "s")));
+            return fromSeconds(TRY(value.number(0, kMaxTime, "s")));
         });
     }
     Result<void> check(const ConfigNode& node) const {
@@ -200,7 +200,7 @@ Result<Closing> readClosing(const ConfigNode& node, const std::vector<std::strin
 
 Result<Fault> readFault(const ConfigNode& node, const NominalSite& nominal) {
     Fault fault;
-    // Which keys a fault may have follows from its kind, so that comes first wherever it stands.
+    // A fault's keys depend on its kind, so the kind is read first, wherever it stands.
     bool kindKnown = false;
     for (const auto& [key, value] : TRY(node.entries()))
         if (key == "kind") {
@@ -237,7 +237,7 @@ Result<Fault> readFault(const ConfigNode& node, const NominalSite& nominal) {
         }
         case Fault::Kind::Fog:
             fields.number("density", fault.density, 0, 10, "1/m");
-            fields.optional().time("rise", fault.rise, 0, kLongest);
+            fields.optional().time("rise", fault.rise, 0, kMaxTime);
             break;
     }
     TRY(fields.finish());
@@ -256,8 +256,8 @@ Result<Simulation> readSimulation(const ConfigNode& node, const NominalSite& nom
     Simulation simulation;
     simulation.projectors.resize(nominal.outputs.size());
     ConfigFields fields(node);
-    fields.optional().vector3("ambient", simulation.ambient, 0, kBrightest, "lux");
-    fields.optional().vector3("sky", simulation.sky, 0, kBrightest, "cd/m2");
+    fields.optional().vector3("ambient", simulation.ambient, 0, kMaxLight, "lux");
+    fields.optional().vector3("sky", simulation.sky, 0, kMaxLight, "cd/m2");
     fields.list("objects", simulation.objects, readObject, 1);
     fields.optional().read("projectors", simulation.projectors,
                            [&](const ConfigNode& value) { return readProjectors(value, nominal); });
@@ -270,10 +270,10 @@ Result<Simulation> readSimulation(const ConfigNode& node, const NominalSite& nom
                            [&](const ConfigNode& value) { return readClosing(value, namesOf(nominal.contacts)); });
     fields.optional().list("faults", simulation.faults, [&](const ConfigNode& value) { return readFault(value, nominal); });
     for (const NominalSite::Output& output : nominal.outputs)
-        if (const glm::ivec2 size = output.projector.size; std::min(size.x, size.y) < ProjectedLight::kLeastSide)
+        if (const glm::ivec2 size = output.projector.size; std::min(size.x, size.y) < ProjectedLight::kMinSide)
             fields.check(node,
-                         node.error(fmt::format("output '{}' of {} x {} pixels cannot be simulated, {} each way is the least",
-                                                output.name, size.x, size.y, ProjectedLight::kLeastSide)));
+                         node.error(fmt::format("output '{}' of {} x {} pixels cannot be simulated; each side needs at least {}",
+                                                output.name, size.x, size.y, ProjectedLight::kMinSide)));
     TRY(fields.finish());
     return simulation;
 }

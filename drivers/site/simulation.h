@@ -1,5 +1,5 @@
 #pragma once
-// The `simulation:` section of a site file as values; README.md has the table of its keys.
+// The `simulation:` section of a site file as values; README.md lists its keys.
 
 #include "drivers/site/camera_view.h"
 #include "drivers/site/scene.h"
@@ -17,14 +17,14 @@
 
 namespace fantascope::site {
 
-// What a projector is besides its place, one for each of the nominal site's outputs.
+// A projector's properties besides its place, one for each of the nominal site's outputs.
 struct SimulatedProjector {
     double lumens = 3500;
     double blackLevel = 0.0005;  // share of full light that a black pixel lets through
     double gamma = 2.2;
 };
 
-// A lamp and what feeds it: the fixture or relay of that index in the nominal site.
+// A lamp and the index of its fixture or relay in the nominal site.
 struct FedLamp {
     std::size_t feed = 0;
     Lamp lamp;
@@ -36,27 +36,26 @@ struct SimulatedCamera {
     double frameRate = 10;             // Hz
 };
 
-// Something that goes wrong with the simulated truth, and when. Times count from the site's
-// beginning.
+// A fault of the simulated truth. Times count from begin().
 struct Fault {
     enum class Kind { Unplug, Freeze, Bump, Fog };
     Kind kind = Kind::Unplug;
     Time at{};
-    std::optional<Time> until;        // absent: for good
+    std::optional<Time> until;        // nothing: for good
     std::string device;               // Unplug: any device; Freeze: an output or the camera; Bump: an output
-    glm::dvec3 move{0.0}, turn{0.0};  // Bump, along and about the projector's own axes right, down, forward: metres, radians
+    glm::dvec3 move{0.0}, turn{0.0};  // Bump: along and about the projector's own axes right, down, forward; metres, radians
     double density = 0;               // Fog: extinction per metre at its thickest
-    Time rise{};                      // Fog: how long it takes to come, and to go after `until`
+    Time rise{};                      // Fog: how long it takes to build up, and to clear after `until`
 
     // Fog: the extinction at a time.
     double densityAt(Time time) const;
 };
 
-// A contact of the nominal site is closed for a while, as by somebody who passes a gate.
+// Closes a contact for a while, like a person who passes a gate.
 struct Closing {
     std::size_t contact = 0;
     Time at{};
-    std::optional<Time> until;  // absent: for good
+    std::optional<Time> until;  // nothing: for good
 };
 
 struct Simulation {
@@ -64,8 +63,8 @@ struct Simulation {
     glm::dvec3 sky{0.01, 0.015, 0.03};   // cd/m2
     std::vector<SceneObject> objects;
     std::vector<SimulatedProjector> projectors;  // in the order of the nominal outputs
-    std::vector<FedLamp> lamps;                  // fed by fixtures
-    std::vector<FedLamp> streetLamps;            // fed by relays
+    std::vector<FedLamp> lamps;                  // at fixtures
+    std::vector<FedLamp> streetLamps;            // at relays
     SimulatedCamera camera;
     std::vector<Closing> closings;
     std::vector<Fault> faults;

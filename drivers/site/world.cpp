@@ -22,7 +22,7 @@ void World::setPlugged(const std::string& device, bool plugged) {
     plug.in = plugged;
     if (plugged) return;
     ++plug.losses;
-    // What the far end does by itself when its line goes dead.
+    // What the far end does when its line goes dead.
     if (const auto bank = relays_.find(device); bank != relays_.end())
         bank->second = {bank->second.safe, bank->second.safe, false};
     if (device == kCueController) presses_.clear();
@@ -112,7 +112,8 @@ void World::sendFromDesk(int universe, DmxInput frame) {
     frame.arrived = clock_.now();
     waiting.push_back(std::move(frame));
     if (waiting.size() <= kDeskDepth) return;
-    // The oldest frame that its own sender has already replaced; every sender's newest stays.
+    // Drops the oldest frame that its own sender has already replaced. The newest of every sender
+    // stays.
     for (auto old = waiting.begin(); old != waiting.end(); ++old) {
         if (std::none_of(old + 1, waiting.end(), [&](const DmxInput& later) { return later.source == old->source; })) continue;
         waiting.erase(old);

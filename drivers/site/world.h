@@ -20,63 +20,61 @@
 
 namespace fantascope::site {
 
-// The far end of every simulated device: what lamps, relays, projectors, the hand and the camera of
-// the simulated site are doing now. The simulated drivers act on it from one side; the scene
-// (simulated_site.h), tests and the rehearsal's operator from the other. Nothing passes a pulled
-// plug in either direction, and what was on its way when it was pulled is lost. Thread:
-// thread-safe; no call waits for more than a copy.
+// The far end of every simulated device: the current state of the simulated site's lamps, relays,
+// projectors, cue controller and camera. The simulated drivers act on it from one side; the scene
+// (simulated_site.h), tests and the rehearsal's operator from the other. Nothing passes an
+// unplugged device in either direction, and whatever was on its way is lost. Thread: thread-safe;
+// no call waits longer than for a copy.
 class World {
 public:
     explicit World(const Clock& clock) : clock_(clock) {}
 
     const Clock& clock() const { return clock_; }
 
-    // Pulls a device's plug, or puts it back. Devices go by their name in the site file: an
-    // output's or a bank's name, "universe N", "desk N", "cue controller", "camera". All are
-    // plugged in at first.
+    // Unplugs a device, or plugs it in. Devices have their names from the site file: an output's or
+    // a bank's name, "universe N", "desk N", "cue controller", "camera". All are plugged in at
+    // first.
     void setPlugged(const std::string& device, bool plugged);
     bool plugged(const std::string& device) const;
-    // How many times the device was lost so far, by its plug or by a hand at its relays: tells a
-    // driver of a loss that was over before it looked.
+    // How often the device was lost so far, by its plug or by hand at its relays. It shows a driver
+    // a loss that was over before the driver looked.
     int losses(const std::string& device) const;
 
-    // Lamps: what each universe's line carried last; all zero before the first frame. They hold it
-    // while the line is silent.
-    // False: the line is unplugged and the lamps see nothing of it.
+    // Lamps: the last frame of each universe; all zero before the first. Lamps hold it while the
+    // line is silent.
+    // False: the line is unplugged; the lamps see nothing.
     bool setSlots(int universe, std::span<const std::uint8_t, kDmxSlots> slots);
     std::array<std::uint8_t, kDmxSlots> slots(int universe) const;
 
-    // Relays of a bank. installRelays() wires it: they take their safe states now, and whenever the
-    // plug is pulled. states.size() is the installed number.
+    // Relays of a bank. installRelays() adds the bank: its relays take their safe states now, and
+    // whenever it is unplugged. states.size() is the installed number.
     void installRelays(const std::string& bank, const std::vector<bool>& safeStates);
     bool setRelays(const std::string& bank, const std::vector<bool>& states);  // false: unplugged, nothing changes
-    // Somebody at the module switches them. Where they were as written that is a loss.
+    // A person at the module switches them. If they were as written, that is a loss.
     void switchRelaysByHand(const std::string& bank, const std::vector<bool>& states);
     std::vector<bool> relays(const std::string& bank) const;  // empty before installRelays()
 
-    // Contacts of an input bank; all open at first. They open and close whether or not anybody is
-    // connected to them.
+    // Contacts of an input bank; all open at first. They move whether or not anybody is connected.
     void setContact(const std::string& bank, std::size_t contact, bool closed);
     bool contact(const std::string& bank, std::size_t contact) const;
 
-    // Somebody else's desk on a universe: frames wait until the driver takes them, oldest first.
-    // `arrived` is set to the clock's now. Of each sender the newest waits at least; older ones are
-    // dropped beyond kDeskDepth.
+    // Another desk on a universe: frames wait until the driver takes them, oldest first. `arrived`
+    // is set to the clock's now. Beyond kDeskDepth older frames are dropped, but never the newest
+    // of a sender.
     static constexpr std::size_t kDeskDepth = 16;
     void sendFromDesk(int universe, DmxInput frame);
     std::optional<DmxInput> takeFromDesk(int universe);
 
-    // The hand on the cue controller: events wait until the driver takes them. `at` is set to the
-    // clock's now.
+    // The operator's hand on the cue controller: events wait until the driver takes them. `at` is
+    // set to the clock's now.
     void press(int button, bool pressed);
     std::optional<ButtonEvent> takePress();
-    // The lamps of its buttons, from 1 on: what they are driven with, and what they show of it,
-    // which is nothing while the plug is out.
+    // The lights of its buttons, from 1 on: as set, and as shown, which is off while unplugged.
     void setLight(int button, const ButtonLight& light);
     ButtonLight light(int button) const;
 
-    // Projectors: the frame each one throws on the wall now; null before the first, and after its
-    // plug was pulled until the next.
+    // Projectors: the frame that each shows now; null before the first, and from unplugging to the
+    // next frame.
     void setFrame(const std::string& output, std::shared_ptr<const RgbaImage> frame);
     std::shared_ptr<const RgbaImage> frame(const std::string& output) const;
 
@@ -91,7 +89,7 @@ private:
     };
     struct Relays {
         std::vector<bool> states, safe;
-        bool asWritten = false;  // not since a loss
+        bool asWritten = false;  // false after a loss
     };
     bool isIn(const std::string& device) const;  // with mutex_ held
 

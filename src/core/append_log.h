@@ -9,25 +9,25 @@
 
 namespace fantascope {
 
-// A sequence that only grows. Any number of threads append, any number of readers each see every
-// value, once, and all in the same order. A reader never waits and never allocates, and however
-// late it looks it misses nothing. Values stay until the log goes: meant for what comes a few times
-// a second.
-// Thread: append() from any; a Reader belongs to one thread at a time. The log outlives its
+// An append-only log. Any number of threads append; any number of readers each see every value,
+// once, all in the same order. A reader never waits, never allocates, and misses nothing however
+// late it reads. Values stay until the log is destroyed, so it is meant for a few values per
+// second.
+// Thread: append() from any thread; a Reader belongs to one thread at a time. The log outlives its
 // readers.
 template <class T>
 class AppendLog {
     static constexpr std::size_t kChunk = 256;
     struct Chunk {
         std::array<T, kChunk> values{};
-        std::atomic<std::size_t> count = 0;  // of values that may be read
+        std::atomic<std::size_t> count = 0;  // of readable values
         std::atomic<Chunk*> next = nullptr;
     };
 
 public:
     class Reader {
     public:
-        // The next value, which stays where it is; null: there is none yet.
+        // The next value, which stays in place; null: none yet.
         const T* next() {
             if (read_ == kChunk) {
                 const Chunk* const next = chunk_->next.load(std::memory_order_acquire);
@@ -42,7 +42,7 @@ public:
         friend AppendLog;
         explicit Reader(const Chunk* chunk) : chunk_(chunk) {}
         const Chunk* chunk_;
-        std::size_t read_ = 0;  // in it
+        std::size_t read_ = 0;  // in chunk_
     };
 
     AppendLog() : first_(new Chunk), last_(first_) {}
@@ -53,7 +53,7 @@ public:
     AppendLog(const AppendLog&) = delete;
     AppendLog& operator=(const AppendLog&) = delete;
 
-    // Waits for other writers alone.
+    // Waits only for other writers.
     void append(T value) {
         const std::lock_guard lock(writing_);
         std::size_t count = last_->count.load(std::memory_order_relaxed);
@@ -67,12 +67,12 @@ public:
         last_->count.store(count + 1, std::memory_order_release);
     }
 
-    // From the first value on, whenever it is asked for.
+    // Starts at the first value, whenever it is made.
     Reader reader() const { return Reader(first_); }
 
 private:
     Chunk* const first_;
-    std::mutex writing_;  // of:
+    std::mutex writing_;  // guards:
     Chunk* last_;
 };
 

@@ -8,23 +8,23 @@
 
 namespace fantascope {
 
-// A first-in first-out queue of at most `kCapacity` values from one writing thread to one reading
-// thread; neither side ever waits or allocates. Large values are written and read in place: a T
-// that keeps its capacity (a vector, an image) costs nothing in steady state.
-// Thread: space() and push() from one thread, front(), drop() and pop() from one other.
+// A FIFO queue of at most `kCapacity` values from one writer thread to one reader thread; neither
+// ever waits or allocates. Large values are written and read in place: a T that keeps its capacity
+// (a vector, an image) costs nothing in steady state.
+// Thread: space() and push() from one thread; front(), drop() and pop() from one other.
 template <class T, std::size_t kCapacity>
 class BoundedQueue {
 public:
     explicit BoundedQueue(const T& initial = T{}) { values_.fill(initial); }
 
-    // Where the next value goes; it holds some older one: overwrite all of it, then push(). Null if
-    // the queue is full.
+    // The place of the next value, or null if the queue is full. It holds an old value: overwrite
+    // all of it, then push().
     T* space() {
         const std::size_t tail = tail_.load(std::memory_order_relaxed);
         return tail - head_.load(std::memory_order_acquire) == kCapacity ? nullptr : &values_[tail % kCapacity];
     }
     void push() { tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
-    // False if the queue is full: the value was not taken.
+    // False if the queue is full; the value is not taken.
     bool push(const T& value) {
         T* const place = space();
         if (place == nullptr) return false;

@@ -4,11 +4,11 @@
 
 namespace fantascope {
 
-// Prints the broken promise and its place, then aborts; a service manager restarts the show.
+// Prints the failed condition and its place, then aborts; the service manager restarts the show.
 [[noreturn]] void checkFailed(const char* file, int line, const char* condition, std::string_view why);
 
 }  // namespace fantascope
 
-// A promise that our own code keeps. Never for what a file, a device or a user may do: that is a
-// Result.
+// Checks a promise of our own code. Never for what a file, a device or a user may do wrong: that is
+// a Result.
 #define FANTASCOPE_CHECK(condition, why) ((condition) ? void(0) : ::fantascope::checkFailed(__FILE__, __LINE__, #condition, why))

@@ -34,12 +34,12 @@ std::string spelled(const ConfigPath& path) {
     return text;
 }
 
-// How far a path goes in a text.
+// Where a path leads in a text.
 struct Place {
-    std::size_t steps = 0;     // that lead to something
-    std::size_t parent = 0;    // the node before the last of them
-    std::size_t position = 0;  // among the parent's entries
-    YamlPatch::Entry entry;    // where they lead
+    std::size_t steps = 0;     // that exist
+    std::size_t parent = 0;    // the node before the last step
+    std::size_t position = 0;  // index among the parent's entries
+    YamlPatch::Entry entry;    // where the steps lead
     YamlPatch::Entry parentEntry;
     std::size_t indent = 0, parentIndent = 0;  // of the entry, of the parent
 };
@@ -49,8 +49,8 @@ public:
     Pathfinder(const YamlText& yaml, const YamlPatch& patch, const fs::path& file, const ConfigPath& path)
         : yaml_(yaml), patch_(patch), file_(file), path_(path) {}
 
-    // Names the line that the path leads to as far as it goes, and the whole path, which is what
-    // somebody wanted to change.
+    // Names the line of the last step that exists, and the whole path, which is what the caller
+    // wanted to change.
     Error refused(const Place& place, const std::string& why) const {
         return Error(fmt::format("{}: {}: {}", yaml_.place(file_, yaml_.events[place.entry.value].begin), spelled(path_), why));
     }
@@ -89,16 +89,16 @@ public:
         return place;
     }
 
-    // An anchor, alias or tag in what is to change: the text says more than the value does.
+    // Refuses an anchor, alias or tag in what would change: the text then means more than the
+    // value.
     Result<void> plain(const Place& place) const {
         for (std::size_t i = place.entry.value; i < yaml_.after(place.entry.value); ++i) {
             const YamlEvent& event = yaml_.events[i];
             if (event.kind == Alias)
                 return refused(place, "an alias (*) stands here; put the value itself here, so that it can be changed");
             if (event.anchor != 0)
-                return refused(place, "an anchor (&) stands here; take it away, so that the value can be changed");
-            if (!event.tag.empty())
-                return refused(place, "a tag (!) stands here; take it away, so that the value can be changed");
+                return refused(place, "an anchor (&) stands here; remove it, so that the value can be changed");
+            if (!event.tag.empty()) return refused(place, "a tag (!) stands here; remove it, so that the value can be changed");
         }
         return {};
     }
@@ -120,8 +120,8 @@ private:
     const ConfigPath& path_;
 };
 
-// `value` in the maps and lists that the path from `step` on asks for, or nothing if it asks for an
-// item behind others.
+// `value` wrapped in the maps and lists that the path requires from `step` on; nothing if it
+// requires an item after missing ones.
 std::optional<ConfigValue> within(const ConfigPath& path, std::size_t step, ConfigValue value) {
     for (std::size_t i = path.size(); i-- > step;) {
         if (path[i].key() != nullptr)
@@ -134,7 +134,7 @@ std::optional<ConfigValue> within(const ConfigPath& path, std::size_t step, Conf
     return value;
 }
 
-// Whether `now` reads as `before` but for the events [begin, end), in whose place stand the key, if
+// Whether `now` reads as `before`, except that the events [begin, end) are replaced by the key, if
 // any, and the value, if any.
 bool differsOnlyAt(const YamlText& before, std::size_t begin, std::size_t end, const YamlText& now, const std::string* key,
                    const ConfigValue* value) {
@@ -150,7 +150,7 @@ bool differsOnlyAt(const YamlText& before, std::size_t begin, std::size_t end, c
     return at < newEnd && readsAs(now, at, *value) && now.after(at) == newEnd;
 }
 
-// What a step leads to from a node; kNone: nothing.
+// The child that a step leads to; kNone: none.
 std::size_t childOf(const YamlText& yaml, std::size_t node, const ConfigStep& step) {
     const YamlEvent& event = yaml.events[node];
     if (step.key() != nullptr) return event.kind == Map ? valueOf(yaml, node, *step.key()).value_or(kNone) : kNone;
@@ -160,8 +160,7 @@ std::size_t childOf(const YamlText& yaml, std::size_t node, const ConfigStep& st
     return item;
 }
 
-// Whether what the path leads to is the same in both, and the items of lists on the way are the
-// same ones.
+// Whether the path leads to equal values in both texts, through the same list items.
 bool sameAt(const YamlText& a, const YamlText& b, const ConfigPath& path) {
     const auto alike = [&](std::size_t i, std::size_t j) {
         return std::equal(a.events.begin() + i, a.events.begin() + a.after(i), b.events.begin() + j,
@@ -170,7 +169,7 @@ bool sameAt(const YamlText& a, const YamlText& b, const ConfigPath& path) {
     std::size_t i = 0, j = 0;
     for (const ConfigStep& step : path) {
         const std::size_t inA = childOf(a, i, step), inB = childOf(b, j, step);
-        // An item that is new has its place behind the others, whoever else added some there.
+        // A new item goes after the others, whoever else added some.
         if (inA == kNone || inB == kNone) return inA == inB && a.events[i].kind == b.events[j].kind;
         i = inA;
         j = inB;
@@ -209,7 +208,7 @@ Result<void> ConfigDocument::apply(Change change) {
     std::string changed = TRY(applied(text_, change));
     if (changed == text_) return {};
     text_ = std::move(changed);
-    // Of one thing moved many times the last place is enough.
+    // Of consecutive changes of one value only the last is kept.
     const bool again = !changes_.empty() && changes_.back().path == change.path;
     if (again && !changes_.back().value.empty() && !change.value.empty()) changes_.pop_back();
     changes_.push_back(std::move(change));
@@ -236,7 +235,7 @@ Result<std::string> ConfigDocument::applied(const std::string& text, const Chang
         if (siblings.size() > 1)
             patch.erase(place.parent, siblings, place.position, place.position + 1);
         else if (place.parent == 0)
-            return pathfinder.refused(place, "the file's last key cannot be taken away");
+            return pathfinder.refused(place, "the file's last key cannot be removed");
         else
             patch.replace(place.parentEntry,
                           entry.key != kNone ? ConfigValue(ConfigValue::Map{}) : ConfigValue(ConfigValue::List{}),
@@ -261,8 +260,7 @@ Result<std::string> ConfigDocument::applied(const std::string& text, const Chang
     const std::optional<std::string> changed = patch.result();
     const auto now = readYamlText(changed.value_or(""), path_);
     if (!now || !differsOnlyAt(yaml, begin, end, *now, key, value ? &*value : nullptr))
-        return pathfinder.refused(
-            place, "it is written in a way that the program cannot change without touching more; change it by hand");
+        return pathfinder.refused(place, "the program cannot change it without changing more; change it by hand");
     return *changed;
 }
 

@@ -1,10 +1,10 @@
 #pragma once
-// Changes values in a YAML file that a person wrote, and leaves every other byte of it as it was:
-// comments, order, spacing, quotes, line ends.
+// Changes values in a hand-written YAML file and keeps every other byte: comments, order, spacing,
+// quotes, line ends.
 //     ConfigDocument site = TRY(ConfigDocument::load("site.yaml"));
 //     TRY(site.set({"outputs", 1, "corners"}, corners));
 //     TRY(site.save());
-// docs/decisions/0019-files-are-changed-in-place.md says how.
+// See docs/decisions/0019-files-are-changed-in-place.md.
 
 #include "core/config_value.h"
 #include "core/result.h"
@@ -20,7 +20,7 @@
 
 namespace fantascope {
 
-// One step from a node to one in it: a map's key or a list's index.
+// A step from a node to a child: a map's key or a list's index.
 class ConfigStep {
 public:
     ConfigStep(std::string key) : held_(std::move(key)) {}
@@ -37,49 +37,49 @@ private:
 };
 using ConfigPath = std::vector<ConfigStep>;
 
-// A file's text and what was changed in it since it was loaded or saved. Thread: thread-bound.
+// A file's text and its changes since it was loaded or saved. Thread: thread-bound.
 class ConfigDocument {
 public:
-    // Error: unreadable, not YAML, its root is no map, or it cannot safely be changed: see
+    // Error: unreadable, not YAML, its root is no map, or it cannot be changed safely: see
     // readYamlText.
     static Result<ConfigDocument> load(const std::filesystem::path& path);
-    // The same from a text that is taken for that of the file `path`.
+    // The same from a text that stands for the file `path`.
     static Result<ConfigDocument> parse(std::string text, const std::filesystem::path& path);
 
-    // Makes the value at `path` (at least one step) read as `value`. What already does keeps its
-    // bytes: a number that is equal, the items of a list that are the same. What is new comes at
-    // the end of its list or map in that one's style; maps that are missing on the way are made,
-    // and a list's index may be its size. A comment goes only with an item on whose lines it
-    // stands, or out of a list or map in whose place something else comes. Takes milliseconds, as
-    // the whole text is read anew, twice: nothing for a frame's thread. Error, the text is as
-    // before: the path leads through something else; a key stands twice; an anchor, alias or tag is
-    // at the value, or an anchor that aliases mean on the way to it, as more than one place would
-    // change; or the new text would not read as the old one but for the value, by either of two
-    // parsers. Every change is checked so.
+    // Sets the value at `path` (at least one step). Parts that already read as wanted keep their
+    // bytes: an equal number, unchanged items of a list. New parts are added at the end of their
+    // list or map, in its style; missing maps on the path are made, and a list's index may be its
+    // size. A comment is lost only with the lines of its item, or inside a list or map that is
+    // replaced.
+    // Takes milliseconds, because the whole text is parsed again, twice: not for a frame's thread.
+    // Error; the text is then unchanged: the path does not fit; a key is given twice; an anchor,
+    // alias or tag is at the value, or an aliased anchor is on the path, so more than one place
+    // would change; or, by either of two parsers, the new text would differ in more than the value.
+    // Every change is checked for that.
     Result<void> set(const ConfigPath& path, const ConfigValue& value);
-    // Takes a map's entry or a list's item away, with the comment on its lines. Nothing happens if
-    // there is none. Error: as set; or it is the file's last key.
+    // Removes a map's entry or a list's item, with the comment on its lines. Does nothing if there
+    // is none. Error: as set(); or it is the file's last key.
     Result<void> erase(const ConfigPath& path);
 
     const std::string& text() const { return text_; }
-    // The place of the item of the root's list `list` whose `name` is this; nothing: there is none.
+    // The index of the item whose `name` is this, in the root's list `list`; nothing if there is
+    // none.
     std::optional<std::size_t> itemNamed(const std::string& list, const std::string& name) const;
 
-    // Writes the file if anything was changed: see writeFile. A person's version is kept beside it,
-    // as FILE.previous: that which stood there before the first save, and again before a save that
-    // finds the file changed by somebody else since.
-    // Of such a file everything is kept: the changes are made anew in the text that stands there
-    // now. Error, nothing is written and the changes are kept: the file or its previous version
-    // cannot be read or written; or somebody changed the same value, or its item of a list (told by
-    // its `name`, if it has one) is no longer where it was.
-    // Between the last look at the file and the renaming is a moment in which somebody else's save
-    // is lost.
+    // Writes the file if anything changed: see writeFile. A person's version is kept beside it as
+    // FILE.previous: the one before the first save, and again the one before a save that finds the
+    // file changed by somebody else.
+    // Such foreign changes are kept: our changes are applied again to the text that is there now.
+    // Error; nothing is written and our changes are kept: the file or its previous version cannot
+    // be read or written; or somebody changed the same value, or moved its list item (identified by
+    // its `name`, if it has one).
+    // A save by somebody else between our last read and the rename is lost.
     Result<void> save();
 
 private:
     struct Change {
         ConfigPath path;
-        std::vector<ConfigValue> value;  // one, or none: erase
+        std::vector<ConfigValue> value;  // one; none: erase
     };
 
     ConfigDocument(std::filesystem::path path, std::string text) : path_(std::move(path)), base_(text), text_(std::move(text)) {}
@@ -90,8 +90,8 @@ private:
     std::filesystem::path path_;
     std::string base_;  // as loaded or last saved
     std::string text_;
-    std::vector<Change> changes_;  // that make text_ of base_
-    bool saved_ = false;           // base_ is ours, no person's
+    std::vector<Change> changes_;  // from base_ to text_
+    bool saved_ = false;           // base_ was written by us, not by a person
 };
 
 }  // namespace fantascope

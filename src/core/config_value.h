@@ -16,8 +16,8 @@
 
 namespace fantascope {
 
-// A value to be written: a number (finite), a text, a list or a map, made from what the program
-// has: {"corners", std::array<glm::dvec2, 4>}.
+// A value to write: a finite number, a text, a list or a map. Converts from the program's types:
+// {"corners", std::array<glm::dvec2, 4>}.
 class ConfigValue {
 public:
     using List = std::vector<ConfigValue>;

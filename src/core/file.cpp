@@ -32,10 +32,10 @@ Result<void> checkKind(const fs::path& path, const struct stat& found) {
     return Error(fmt::format("{}: is a {}, a file is needed", path.string(), kind));
 }
 
-// At most `bytes` of a file that has at most `most`.
-Result<std::string> read(const fs::path& path, std::size_t bytes, std::uintmax_t most) {
+// Reads up to `bytes` of a file whose size may be `max`.
+Result<std::string> read(const fs::path& path, std::size_t bytes, std::uintmax_t max) {
     TRY(checkRegular(path));
-    // It may be another one by now: a pipe is not waited for either.
+    // The path may have changed meanwhile, so this must not block on a pipe, either.
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     if (descriptor < 0) return notRead(path, errno);
     struct Closed {
@@ -49,9 +49,9 @@ Result<std::string> read(const fs::path& path, std::size_t bytes, std::uintmax_t
         constexpr double kMebi = 1 << 20;
         return Error(
             fmt::format("{}: is too large, {:.1f} MiB: such a file has at most {:.0f} MiB; make it smaller, or name another",
-                        path.string(), static_cast<double>(size) / kMebi, static_cast<double>(most) / kMebi));
+                        path.string(), static_cast<double>(size) / kMebi, static_cast<double>(max) / kMebi));
     };
-    if (static_cast<std::uintmax_t>(found.st_size) > most) return tooLarge(static_cast<std::uintmax_t>(found.st_size));
+    if (static_cast<std::uintmax_t>(found.st_size) > max) return tooLarge(static_cast<std::uintmax_t>(found.st_size));
     std::string content;
     content.reserve(std::min(bytes, static_cast<std::size_t>(found.st_size)));
     std::array<char, 65536> part;
@@ -61,15 +61,15 @@ Result<std::string> read(const fs::path& path, std::size_t bytes, std::uintmax_t
         if (count < 0) return notRead(path, errno);
         if (count == 0) break;
         content.append(part.data(), static_cast<std::size_t>(count));
-        if (content.size() > most) return tooLarge(content.size());  // it grows
+        if (content.size() > max) return tooLarge(content.size());  // it grew
     }
     return content;
 }
 
 }  // namespace
 
-Result<std::string> readFile(const fs::path& path, std::uintmax_t most) {
-    return read(path, std::numeric_limits<std::size_t>::max(), most);
+Result<std::string> readFile(const fs::path& path, std::uintmax_t max) {
+    return read(path, std::numeric_limits<std::size_t>::max(), max);
 }
 
 Result<std::string> readStart(const fs::path& path, std::size_t bytes) {
@@ -89,7 +89,7 @@ Result<NewFile> NewFile::open(const fs::path& path) {
 
     std::error_code ignored;
     if (fs::is_symlink(path, ignored)) file.target_ = fs::canonical(path, failure);
-    if (failure) return file.refused(failure.value());  // a link to nowhere
+    if (failure) return file.refused(failure.value());  // a dangling link
     struct stat standing = {};
     if (::stat(file.target_.c_str(), &standing) == 0) {
         if (!S_ISREG(standing.st_mode) && !S_ISDIR(standing.st_mode))
@@ -98,11 +98,11 @@ Result<NewFile> NewFile::open(const fs::path& path) {
     }
 
     const fs::path folder = file.target_.has_parent_path() ? file.target_.parent_path() : ".";
-    // A nameless file gets its name by way of /proc.
+    // Giving a nameless file its name needs /proc.
     const bool hasProc = ::access("/proc/self/fd", X_OK) == 0;
     if (hasProc) file.descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
     if (!hasProc || (file.descriptor_ < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL))) {
-        std::string aside = file.target_.string() + ".XXXXXX";  // mkostemp(3) puts letters there that no file has yet
+        std::string aside = file.target_.string() + ".XXXXXX";  // for mkostemp(3)
         file.descriptor_ = ::mkostemp(aside.data(), O_CLOEXEC);
         if (file.descriptor_ >= 0) file.aside_ = std::move(aside);
     }
@@ -143,7 +143,8 @@ bool NewFile::giveName() {
         };
         if (link(target_)) return true;
         if (errno != EEXIST) return false;
-        // A link takes no other's place, only a file with a name does. It has one for this moment.
+        // link(2) cannot replace a file, only rename(2) can. So the file gets a temporary name for
+        // a moment.
         std::string name;
         for (int attempt = 0; aside_.empty(); ++attempt) {
             name = fmt::format("{}.{}-{}", target_.string(), ::getpid(), attempt);
@@ -161,8 +162,8 @@ bool NewFile::giveName() {
 Result<void> NewFile::finish(const fs::path& like) {
     struct stat model = {};
     const bool modelled = ::stat(like.empty() ? target_.c_str() : like.c_str(), &model) == 0;
-    // Only root may give a file away, others may to a group of their own; where neither is allowed
-    // the file is the writer's.
+    // Only root may give a file away; others may give it to a group of their own. If neither is
+    // allowed, the file belongs to the writer.
     [[maybe_unused]] const bool given = modelled && (::fchown(descriptor_, model.st_uid, model.st_gid) == 0 ||
                                                      ::fchown(descriptor_, static_cast<uid_t>(-1), model.st_gid) == 0);
     if (::fchmod(descriptor_, modelled ? model.st_mode & 0777 : 0644) != 0 || ::fsync(descriptor_) != 0 || !giveName())

@@ -4,22 +4,22 @@
 
 namespace fantascope {
 
-// How a picture lies on a canvas of another shape.
+// How a picture fits a canvas of another shape.
 enum class Fit {
-    Contain,  // all of it is seen, as large as there is room for; the canvas stays dark beside it
-    Cover,    // the canvas is full; what hangs over its edges is cut off
+    Contain,  // all of it is visible, as large as possible; the canvas stays dark beside it
+    Cover,    // the canvas is full; what exceeds its edges is cut off
     Stretch   // edge to edge: circles become ellipses
 };
 
-// Shapes that differ by less are one: nobody sees the stretching, but everybody would see a dark
-// edge.
+// Shapes that differ by less count as one: nobody sees the stretching, but everybody would see a
+// dark edge.
 constexpr double kSameShape = 0.02;
 
-// Whether two shapes (width / height) are one.
+// Whether two shapes (width / height) count as one.
 bool isSameShape(double aspect, double other);
 
-// Where on the canvas the picture lies, in the middle; beyond the canvas where it is cut off.
-// Aspects are width / height, > 0. Stretched, or of the canvas's own shape: the whole canvas.
+// The picture's place on the canvas, centred; it exceeds the canvas if it is cut off. Aspects are
+// width / height, > 0. The whole canvas if stretched, or if both have the same shape.
 CanvasPart placeOnCanvas(double pictureAspect, double canvasAspect, Fit fit);
 
 }  // namespace fantascope

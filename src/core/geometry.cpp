@@ -19,9 +19,9 @@ std::optional<std::string> whyNotConvex(const std::array<glm::dvec2, 4>& corners
         if (!std::isfinite(corner.x) || !std::isfinite(corner.y)) return "a coordinate is not a finite number";
         extent = std::max(extent, glm::length(corner - corners[0]));
     }
-    if (extent == 0) return "all corners lie on one point";
-    // Going round, every corner must turn the same way; a turn of (nearly) nothing is three corners
-    // in a line.
+    if (extent == 0) return "all corners are one point";
+    // Along the outline every corner must turn the same way; (nearly) no turn means three collinear
+    // corners.
     int left = 0, right = 0;
     for (std::size_t i = 0; i < 4; ++i) {
         const glm::dvec2 in = corners[(i + 1) % 4] - corners[i], out = corners[(i + 2) % 4] - corners[(i + 1) % 4];
@@ -38,9 +38,9 @@ std::optional<std::string> whyNotConvex(const std::array<glm::dvec2, 4>& corners
 Result<Homography> Homography::fromCorners(const std::array<glm::dvec2, 4>& source, const std::array<glm::dvec2, 4>& target) {
     for (const auto* corners : {&source, &target})
         if (const auto why = whyNotConvex(*corners)) return Error(*why);
-    // The direct linear transform with h33 = 1 (Hartley & Zisserman 2004, section 4.1). h33 is the
-    // w of the source's origin, which may not be 0; so the source is measured from its first
-    // corner, whose image is a finite point.
+    // The direct linear transform with h33 = 1 (Hartley & Zisserman 2004, section 4.1). h33 is w at
+    // the source's origin, which may not be 0. So the source is measured from its first corner,
+    // whose image is finite.
     Eigen::Matrix<double, 8, 8> equations;
     Eigen::Matrix<double, 8, 1> values;
     for (int i = 0; i < 4; ++i) {
@@ -75,12 +75,10 @@ glm::dmat3 rotationXyz(glm::dvec3 angles) {
 }
 
 Result<Pose> Pose::lookingAt(glm::dvec3 position, glm::dvec3 target, glm::dvec3 up) {
-    if (glm::length(target - position) < 1e-9)
-        return Error("looks at the point where it stands; move the target or the position");
+    if (glm::length(target - position) < 1e-9) return Error("target and position are the same point; move one of them");
     const glm::dvec3 forward = glm::normalize(target - position);
     const glm::dvec3 right = glm::cross(forward, up);
-    if (!(glm::length(right) > 1e-9 * glm::length(up)))
-        return Error("looks along its own up direction, or that has no length; give another 'up'");
+    if (!(glm::length(right) > 1e-9 * glm::length(up))) return Error("'up' is zero or along the view; give another 'up'");
     const glm::dvec3 unitRight = glm::normalize(right);
     return Pose{glm::dmat3(unitRight, glm::cross(forward, unitRight), forward), position};
 }

@@ -35,15 +35,16 @@ spdlog::level::level_enum spdlogLevel(Level level) {
     return spdlog::level::info;
 }
 
-// What standard error takes of `bytes` at once; -1: nothing. The description behind it belongs to
-// other programs too, so it stays blocking: a terminal or a pipe is opened once more for one line.
+// How many of `bytes` standard error accepts at once; -1: none. Its open file description is shared
+// with other programs, so it stays blocking. Instead, a terminal or a pipe is opened again for each
+// line.
 ssize_t writeAtOnce(const char* bytes, std::size_t count) {
     struct stat status {};
     if (fstat(STDERR_FILENO, &status) != 0) return -1;
     if (S_ISSOCK(status.st_mode)) return send(STDERR_FILENO, bytes, count, MSG_DONTWAIT);
     if (!S_ISFIFO(status.st_mode) && !S_ISCHR(status.st_mode)) return ::write(STDERR_FILENO, bytes, count);
     const int own = open("/proc/self/fd/2", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-    if (own < 0) {  // another user's
+    if (own < 0) {  // owned by another user
         pollfd room{STDERR_FILENO, POLLOUT, 0};
         return poll(&room, 1, 0) > 0 ? ::write(STDERR_FILENO, bytes, count) : -1;
     }
@@ -52,7 +53,7 @@ ssize_t writeAtOnce(const char* bytes, std::size_t count) {
     return written;
 }
 
-// Standard error as a file that never waits. Bound to the sink's lock.
+// Standard error as a file that never waits. Guarded by the sink's lock.
 class Unwaiting {
 public:
     FILE* file() { return file_; }
@@ -66,10 +67,10 @@ private:
         if (writeAtOnce(text.data(), text.size()) == static_cast<ssize_t>(text.size()))
             file.lost_ = 0;
         else
-            ++file.lost_;  // also what was cut short
+            ++file.lost_;  // also partly written lines
         return static_cast<ssize_t>(count);
     }
-    int lost_ = 0;  // since the last line that was taken whole
+    int lost_ = 0;  // since the last complete line
     FILE* const file_ = fopencookie(this, "w", {.read = nullptr, .write = take, .seek = nullptr, .close = nullptr});
 };
 
@@ -99,7 +100,7 @@ private:
         standardError_.file(), isatty(STDERR_FILENO) != 0 && spdlog::details::os::is_color_terminal()
                                    ? spdlog::color_mode::always
                                    : spdlog::color_mode::never);
-    // On a terminal a status line may stand where this one comes; whoever drew it draws it again.
+    // Clears a status line on a terminal; whoever drew it draws it again.
     const char* const wipe_ = isatty(STDERR_FILENO) != 0 ? "\r\x1b[J" : "";
     spdlog::level::level_enum level_ = spdlog::level::info;
     std::map<std::string, std::unique_ptr<spdlog::logger>, std::less<>> loggers_;

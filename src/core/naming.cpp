@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The first value in a file that is the path of `named`, from the file's folder.
+// The first value in a file that is the path of `named`, relative to the file's folder.
 std::optional<ConfigNode> naming(const ConfigNode& node, const fs::path& named) {
     std::vector<ConfigNode> children;
     if (node.isMap()) {

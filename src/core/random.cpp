@@ -6,8 +6,7 @@
 namespace fantascope {
 namespace {
 
-// SplitMix64 (Steele, Lea & Flood 2014): each step is a bijection of the 64 bits that mixes all of
-// them.
+// SplitMix64 (Steele, Lea & Flood 2014): each step is a bijection that mixes all 64 bits.
 std::uint64_t mix(std::uint64_t value) {
     value += 0x9e3779b97f4a7c15u;
     value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -43,7 +42,7 @@ double Rng::normal() {
 }
 
 std::uint32_t Rng::below(std::uint32_t count) {
-    // Lemire 2019: a multiplication, and a rejection of the few values that would favour some
+    // Lemire 2019: a multiplication, and rejection of the few values that would favour some
     // results.
     const std::uint32_t threshold = -count % count;
     for (;;) {

@@ -1,7 +1,7 @@
 #pragma once
-// Chance, the same everywhere: a Mersenne Twister and our own distributions, since those of the
-// standard library differ between implementations. Whoever needs chance is handed an Rng; a thing
-// with an identity gets a stream of its own from streamSeed.
+// Random numbers that are the same on every machine: a Mersenne Twister with distributions of our
+// own, because those of the standard library differ between implementations. Code that needs chance
+// is given an Rng; a thing with an identity gets its own stream by streamSeed().
 
 #include <cstdint>
 #include <initializer_list>
@@ -21,13 +21,13 @@ public:
 
 private:
     std::mt19937 engine_;
-    double spare_ = 0;  // Box-Muller's second value
+    double spare_ = 0;  // the second value of Box-Muller
     bool hasSpare_ = false;
 };
 
-// A seed for the stream of one thing, from the run's seed and the thing's stable identity, such as
-// {instance id, axis}. Different identities give unrelated streams, and one thing's stream does not
-// depend on which other things exist.
+// The seed of one thing's stream, from the run's seed and the thing's stable identity, such as
+// {instance id, axis}. Different identities give unrelated streams, and a stream does not depend on
+// which other things exist.
 std::uint64_t streamSeed(std::uint64_t seed, std::initializer_list<std::uint64_t> identity);
 
 }  // namespace fantascope

@@ -1,7 +1,7 @@
 #pragma once
-// How this program says that the world refused: a file, a device, a parser. What cannot be refused
-// returns its value; what did not converge says so in its Summary; our own mistakes end in
-// FANTASCOPE_CHECK.
+// How functions report that the world refused: a file, a device, a parser. A function that cannot
+// be refused returns its value; a solver that did not converge says so in its Summary; our own
+// mistakes end in FANTASCOPE_CHECK.
 
 #include <optional>
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace fantascope {
 
-// What, where and what to do about it, ready for a person to read. Context is added going up:
-// "shows/x: patterns[2]: ...".
+// A message for a person: what, where, and what to do. Callers add context: "shows/x: patterns[2]:
+// ...".
 class Error {
 public:
     explicit Error(std::string message) : message_(std::move(message)) {}
@@ -22,8 +22,8 @@ private:
     std::string message_;
 };
 
-// A value or an Error, in the manner of C++23's std::expected. Asking for the one that is not there
-// is our own bug and stops the program.
+// A value or an Error, like C++23's std::expected. Asking for the one that is missing is a bug of
+// ours and stops the program.
 template <class T>
 class [[nodiscard]] Result {
 public:
@@ -41,7 +41,7 @@ public:
     T* operator->() { return &value(); }
     const T* operator->() const { return &value(); }
 
-    // The same result, an error's message led by `context`.
+    // The same result; an error's message is led by `context`.
     Result in(const std::string& context) && {
         if (has_value()) return std::move(*this);
         return error().in(context);
@@ -73,8 +73,8 @@ private:
 }  // namespace fantascope
 
 // The value of a Result, or a return of its error from the enclosing function: auto image =
-// TRY(readGrey(path)); Between braces that make a value it comes first, never as in {name,
-// TRY(...)}: g++ would not destroy the name. tests/house holds this.
+// TRY(readGrey(path)); In a braced initialiser it must come first, never as in {name, TRY(...)}:
+// g++ would not destroy the name. tests/house checks this.
 #define TRY(expression)                                                      \
     ({                                                                       \
         auto tried_ = (expression);                                          \

@@ -7,8 +7,8 @@
 namespace fantascope {
 namespace {
 
-// Whether a terminal would obey the character instead of showing it. U+0080 to U+009F begin with
-// 0xc2.
+// Whether a terminal would obey the character instead of showing it. In UTF-8, U+0080 to U+009F
+// begin with 0xc2.
 bool isControl(std::string_view character) {
     const auto lead = static_cast<unsigned char>(character[0]);
     return lead < 0x20 || lead == 0x7f || (lead == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0);
@@ -26,10 +26,10 @@ std::size_t utf8Length(std::string_view text, std::size_t at) {
     return length;
 }
 
-std::string printable(std::string_view text, std::size_t most) {
+std::string printable(std::string_view text, std::size_t max) {
     std::string shown;
     for (std::size_t at = 0; at < text.size();) {
-        if (at >= most) return shown + "...";
+        if (at >= max) return shown + "...";
         const std::size_t length = utf8Length(text, at);
         const std::string_view character = text.substr(at, length == 0 ? 1 : length);
         if (length == 0 || isControl(character))

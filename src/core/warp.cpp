@@ -16,10 +16,10 @@ namespace {
 using Between = WarpMesh::Between;
 using Flip = Orientation::Flip;
 
-// Between two points of a mesh the warp is looked at so many times for folds.
+// Samples between two mesh points in the check for folds.
 constexpr int kLooks = 8;
 
-// The picture's square from the canvas.
+// The map from the canvas to the picture's square.
 glm::dmat3 squareFromCanvas(const CanvasPart& part, const Orientation& orientation) {
     const glm::dvec2 scale = 1.0 / (part.high - part.low), offset = -part.low * scale;
     glm::dmat3 map(scale.x, 0, 0, 0, scale.y, 0, offset.x, offset.y, 1);
@@ -30,7 +30,7 @@ glm::dmat3 squareFromCanvas(const CanvasPart& part, const Orientation& orientati
     return map;
 }
 
-// The weights of four points in a row for a place between the middle two; `share` of the way.
+// The weights of four consecutive points for a place between the middle two; `share` of the way.
 std::array<double, 4> weightsOf(Between between, double share) {
     const double t = share, t2 = t * t, t3 = t2 * t;
     if (between == Between::Straight) return {0, 1 - t, t, 0};
@@ -44,8 +44,8 @@ glm::dvec2 WarpMesh::offsetAt(glm::dvec2 onPicture) const {
     const glm::dvec2 at = glm::clamp(onPicture, 0.0, 1.0) * glm::dvec2(points - 1);
     const glm::ivec2 cell = glm::min(glm::ivec2(at), points - 2);
     const auto across = weightsOf(between, at.x - cell.x), down = weightsOf(between, at.y - cell.y);
-    // Beyond the last point the lattice goes on in a straight line, so that a mesh of two points is
-    // one.
+    // Beyond the last point the lattice continues in a straight line, so that a mesh of two points
+    // is one.
     const auto point = [&](int x, int y) { return offsets[static_cast<std::size_t>(y * points.x + x)]; };
     const auto along = [&](int y, int x) {
         if (x < 0) return 2.0 * point(0, y) - point(1, y);
@@ -87,21 +87,22 @@ WarpShape WarpShape::scaled(glm::dvec2 factor) const {
 
 Result<Warp> Warp::of(const WarpShape& shape) {
     const glm::dvec2 part = shape.part.high - shape.part.low;
-    if (!(part.x > 0 && part.y > 0)) return Error("the part of the canvas has no area: its right and bottom come last");
+    if (!(part.x > 0 && part.y > 0))
+        return Error("the part of the canvas has no area: give its left and top first, then its right and bottom");
     const Homography keystone = TRY(Homography::fromCorners(rectangleCorners(1, 1), shape.corners));
     const WarpMesh& mesh = shape.mesh;
     if (mesh.points != glm::ivec2(0)) {
-        if (std::min(mesh.points.x, mesh.points.y) < 2 || std::max(mesh.points.x, mesh.points.y) > WarpMesh::kMostPoints)
-            return Error(fmt::format("a mesh has 2 to {} points in each direction", WarpMesh::kMostPoints));
+        if (std::min(mesh.points.x, mesh.points.y) < 2 || std::max(mesh.points.x, mesh.points.y) > WarpMesh::kMaxPoints)
+            return Error(fmt::format("a mesh has 2 to {} points in each direction", WarpMesh::kMaxPoints));
         const auto wanted = static_cast<std::size_t>(mesh.points.x) * static_cast<std::size_t>(mesh.points.y);
         if (mesh.offsets.size() != wanted)
             return Error(fmt::format("a mesh of {} x {} points has {} offsets, here are {}", mesh.points.x, mesh.points.y, wanted,
                                      mesh.offsets.size()));
     } else if (!mesh.offsets.empty()) {
-        return Error("offsets without the number of the mesh's points");
+        return Error("the mesh has offsets, but not its number of points");
     }
     Warp warp(shape, keystone, squareFromCanvas(shape.part, shape.orientation));
-    if (warp.bends() && warp.folds()) return Error("the mesh folds the picture over itself; move its points less far apart");
+    if (warp.bends() && warp.folds()) return Error("the mesh folds the picture over itself; move its points less");
     return warp;
 }
 
@@ -142,7 +143,7 @@ glm::dmat2 Warp::slopeAt(glm::dvec2 onPicture) const {
 }
 
 bool Warp::folds() const {
-    // Where the picture is folded over, it runs round the other way than its corners do.
+    // Where the picture is folded, its orientation is opposite to that of its corners.
     const double round =
         glm::determinant(glm::dmat2(shape_.corners[1] - shape_.corners[0], shape_.corners[3] - shape_.corners[0]));
     const glm::ivec2 looks = kLooks * (shape_.mesh.points - 1);
@@ -153,7 +154,7 @@ bool Warp::folds() const {
 }
 
 std::optional<glm::dvec2> Warp::canvasFromProjector(glm::dvec2 pixel) const {
-    constexpr int kMostSteps = 30;
+    constexpr int kMaxSteps = 30;
     constexpr double kNear = 1e-6;  // pixels
     const glm::dmat3& inverse = pictureFromKeystone_.matrix();
     const auto undone = [&](glm::dvec2 keystoned) -> std::optional<glm::dvec2> {
@@ -164,10 +165,10 @@ std::optional<glm::dvec2> Warp::canvasFromProjector(glm::dvec2 pixel) const {
     auto place = undone(pixel);
     if (!place) return std::nullopt;
     if (bends()) {
-        // Newton's method from where the keystone alone would have it; half a step where a whole
-        // one leads farther away.
+        // Newton's method, starting from the keystone alone; a step is halved while it leads
+        // farther away.
         glm::dvec2 miss = pixel - projectorFromPicture(*place);
-        for (int step = 0; step < kMostSteps && glm::length(miss) > kNear; ++step) {
+        for (int step = 0; step < kMaxSteps && glm::length(miss) > kNear; ++step) {
             const glm::dvec2 move = glm::inverse(slopeAt(*place)) * miss;
             double share = 1;
             glm::dvec2 next = *place + move, left = pixel - projectorFromPicture(next);
@@ -185,7 +186,7 @@ std::optional<glm::dvec2> Warp::canvasFromProjector(glm::dvec2 pixel) const {
 }
 
 bool Warp::reaches(glm::ivec2 size) const {
-    constexpr int kSide = 64;  // points of the picture that are tried, across and down
+    constexpr int kSide = 64;  // sampled points of the picture, across and down
     for (int i = 0; i < kSide * kSide; ++i) {
         const glm::dvec2 pixel = projectorFromPicture((glm::dvec2(i % kSide, i / kSide) + 0.5) / double(kSide));
         if (pixel.x >= 0 && pixel.y >= 0 && pixel.x < size.x && pixel.y < size.y) return true;

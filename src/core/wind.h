@@ -4,10 +4,10 @@
 
 namespace fantascope {
 
-// The wind of one moment: what the show gives and what the shapes obey. It scales the movement that
-// a pattern makes by itself, so the one that was not asked for changes nothing.
+// The wind of one moment, as set by the show and obeyed by the shapes. It scales a pattern's own
+// movement; the default changes nothing.
 struct Wind {
-    double strength = 1;  // >= 0; every displacement is multiplied with it, and with it every range
+    double strength = 1;  // >= 0; factor of every displacement and its range
     // The groups' major movement goes along ownDirection * (the pattern's own direction) +
     // direction. That is a unit vector, or a shorter one while the wind turns.
     double ownDirection = 1;    // 0..1

@@ -26,12 +26,12 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 bool isBlank(char c) { return c == ' ' || c == '\t'; }
 bool isBreak(char c) { return c == '\n' || c == '\r'; }
 
-// What YAML reads as nothing where it stands without quotes.
+// Whether YAML reads an unquoted word as null.
 bool isNullWord(std::string_view word) {
     return word.empty() || word == "~" || word == "null" || word == "Null" || word == "NULL";
 }
 
-// The events as yaml-cpp reads them, by which the program reads its files: without places.
+// The events by yaml-cpp, which the program uses to read its files: without places.
 class YamlCppEvents : public YAML::EventHandler {
 public:
     std::vector<YamlEvent> events;
@@ -56,14 +56,14 @@ private:
     void add(YamlEvent::Kind kind, const std::string& tag, std::size_t anchor, const std::string& text) {
         YamlEvent& event = events.emplace_back();
         event.kind = kind;
-        event.tag = tag == "?" || tag == "!" ? "" : tag;  // yaml-cpp's words for none: plain and quoted
+        event.tag = tag == "?" || tag == "!" ? "" : tag;  // yaml-cpp's tags for no tag, plain and quoted
         event.anchor = anchor;
         event.text = text;
     }
 };
 
-// Walks libyaml's events, whose places are counted in characters and, of block scalars and block
-// collections, reach to what comes next.
+// Reads libyaml's events. It counts places in characters, and lets block scalars and block
+// collections extend to the next token.
 class LibyamlReader {
 public:
     LibyamlReader(YamlText& yaml, const fs::path& name) : yaml_(yaml), name_(name) {
@@ -150,8 +150,8 @@ private:
         finish(yaml_.events.size() - 1);
     }
 
-    // Without the line break behind it, which the next line needs too, and without blank lines
-    // where they are not of the value.
+    // Without the line break after it, which the next line needs, too, and without blank lines that
+    // are not part of the value.
     std::size_t blockScalarEnd(const YamlEvent& scalar) const {
         const std::string& bytes = yaml_.bytes;
         std::size_t header = std::min(bytes.find_first_of("|>", scalar.begin), scalar.end);
@@ -174,8 +174,8 @@ private:
         open_.pop_back();
         YamlEvent& collection = yaml_.events[opened];
         collection.close = yaml_.events.size() - 1;
-        // Where a closing bracket stands it is the end; all else ends with what came last in it,
-        // which has told by now.
+        // A closing bracket is the end. Otherwise the end is that of the last node inside, which is
+        // known by now.
         if (collection.flow && added.end > added.begin) collection.end = added.end;
         finish(opened);
     }
@@ -188,7 +188,7 @@ private:
 
     YamlText& yaml_;
     const fs::path& name_;
-    std::vector<std::size_t> characters_;  // where each character begins
+    std::vector<std::size_t> characters_;  // byte offset of each character
     std::vector<std::size_t> open_;
     std::map<std::string, std::size_t> anchors_;
     std::size_t anchorCount_ = 0;
@@ -232,7 +232,7 @@ std::size_t YamlText::pastComments(std::size_t byte) const {
 Result<YamlText> readYamlText(std::string bytes, const fs::path& name) {
     if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
         return Error(name.string() + ": is written in UTF-16; the program changes files in UTF-8 only");
-    TRY(ConfigNode::parse(bytes, name));  // its messages are those that a person knows
+    TRY(ConfigNode::parse(bytes, name));  // its messages are the familiar ones
 
     YamlText yaml;
     yaml.bytes = std::move(bytes);
@@ -241,8 +241,7 @@ Result<YamlText> readYamlText(std::string bytes, const fs::path& name) {
     YamlCppEvents other;
     std::istringstream stream(yaml.bytes);
     YAML::Parser(stream).HandleNextDocument(other);
-    // Where lines are folded the two differ in blanks and line breaks; what counts is what the
-    // program reads.
+    // In folded lines the two differ in blanks and line breaks; what the program reads counts.
     for (std::size_t i = 0; i < std::min(yaml.events.size(), other.events.size()); ++i)
         if (yaml.events[i].lines && yaml.events[i].kind == other.events[i].kind) yaml.events[i].text = other.events[i].text;
     const auto [mine, theirs] = std::mismatch(yaml.events.begin(), yaml.events.end(), other.events.begin(), other.events.end(),

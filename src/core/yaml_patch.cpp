@@ -19,15 +19,15 @@ namespace {
 constexpr std::size_t kNone = YamlPatch::kNone;
 constexpr std::size_t kWidth = 130;  // characters; longer lines are broken
 
-// For any place: quoted where brackets need it, too.
+// Quoted for any place, also inside brackets.
 std::string written(const std::string& text) {
     YAML::Emitter emitter;
     emitter << YAML::Flow << YAML::BeginSeq << text << YAML::EndSeq;
     return std::string(emitter.c_str() + 1, emitter.size() - 2);
 }
 
-// In pieces, between which a line may break. A list or map of numbers and texts stays in one piece
-// if it is short.
+// Splits a value into pieces between which a line may break. A short list or map of numbers and
+// texts is one piece.
 std::vector<std::string> pieces(const ConfigValue& value) {
     if (const double* number = value.number()) return {shortest(*number)};
     if (const std::string* text = value.text()) return {written(*text)};
@@ -105,7 +105,7 @@ YamlPatch::YamlPatch(const YamlText& yaml) : yaml_(yaml), bytes_(yaml.bytes) {
 std::vector<YamlPatch::Entry> YamlPatch::entriesOf(std::size_t collection) const {
     const YamlEvent& event = yaml_.events[collection];
     std::vector<Entry> entries;
-    std::size_t gap = event.begin;  // what stands before the next item and is none
+    std::size_t gap = event.begin;  // what is between items
     for (std::size_t node = collection + 1; node < event.close;) {
         Entry entry;
         if (event.kind == Map) {
@@ -167,7 +167,7 @@ void YamlPatch::append(std::size_t collection, const std::vector<Entry>& entries
     const std::size_t last = entries.empty() ? 0 : yaml_.events[entries[kept - 1].value].end;
     if (event.flow) {
         std::vector<std::string> all;
-        if (!entries.empty()) all.emplace_back();  // which becomes the comma behind what is there
+        if (!entries.empty()) all.emplace_back();  // becomes the comma after the existing items
         for (const auto& [key, value] : added) {
             if (!all.empty()) all.back() += ',';
             std::vector<std::string> some = pieces(value);
@@ -193,13 +193,14 @@ void YamlPatch::erase(std::size_t collection, const std::vector<Entry>& entries,
 }
 
 std::optional<std::string> YamlPatch::result() {
-    // From behind, so that places stay; what is put in where something goes begins after that.
+    // Applied from the end, so that places stay valid. An insertion at the place of a deletion
+    // comes after it.
     std::stable_sort(edits_.begin(), edits_.end(),
                      [](const Edit& a, const Edit& b) { return a.begin != b.begin ? a.begin > b.begin : a.end > b.end; });
     std::string text = bytes_;
     std::size_t untouched = text.size();
     for (std::size_t i = 0; i < edits_.size(); ++i) {
-        std::size_t alike = i;  // several put in at one place come in the order in which they were planned
+        std::size_t alike = i;  // several insertions at one place keep their planned order
         while (alike + 1 < edits_.size() && edits_[alike + 1].begin == edits_[i].begin && edits_[alike + 1].end == edits_[i].end)
             ++alike;
         std::string together;

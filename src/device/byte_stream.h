@@ -11,18 +11,18 @@
 
 namespace fantascope {
 
-// A line of bytes in both directions: a serial port, a pseudo-terminal, a scripted far end. In
-// order, nothing lost or doubled while Running.
+// A bidirectional byte stream: a serial port, a pseudo-terminal, a scripted far end. While Running,
+// bytes arrive in order, none lost or doubled.
 // Thread: bound to the thread of the driver that owns it.
 class ByteStream : public Device {
 public:
-    // Takes up to bytes.size() bytes and returns how many were taken, 0 if the line is full; never
-    // waits. Error: not Running.
+    // Accepts up to bytes.size() bytes and returns how many; 0 if the line is full. Never waits.
+    // Error: not Running.
     virtual Result<std::size_t> write(std::span<const std::uint8_t> bytes) = 0;
-    // Fills the front of `bytes` with what has arrived and returns how many; waits at most
-    // `patience` for the first byte and then returns 0 if none came. Error: not Running; bytes that
-    // arrived before the loss are still given first.
-    virtual Result<std::size_t> read(std::span<std::uint8_t> bytes, Time patience) = 0;
+    // Fills the front of `bytes` with what has arrived and returns how many. Waits up to `timeout`
+    // for the first byte; returns 0 if none came. Error: not Running, once the bytes that arrived
+    // before the loss are read.
+    virtual Result<std::size_t> read(std::span<std::uint8_t> bytes, Time timeout) = 0;
 };
 
 }  // namespace fantascope

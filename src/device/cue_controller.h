@@ -16,33 +16,32 @@ struct ButtonEvent {
     Time at{};  // when it arrived, on the clock that open() was handed
 };
 
-// What a button is good for now, as its lamp or the picture on its key says it.
+// What a press of a button would do now, shown by its lamp or the picture on its key.
 struct ButtonLight {
     enum class State {
-        Off,     // a press would do nothing, or nothing that matters now
+        Off,     // a press would do nothing, or nothing of interest now
         Ready,   // a press would do something
-        Active,  // what it stands for is going on
-        Alarm    // what it stands for is on, and the operator had better know
+        Active,  // its action is going on
+        Alarm    // its action is on, and the operator should know
     };
     State state = State::Off;
-    std::string word;  // for a key with a picture: "GO"; empty: the colour alone
+    std::string word;  // for a key with a picture: "GO"; empty: colour only
     friend bool operator==(const ButtonLight&, const ButtonLight&) = default;
 };
 
 // The hand-held device that steps the cues. Thread: bound to the input thread.
 class CueController : public Device {
 public:
-    // The next event, oldest first; nothing when there is none. Never waits. Events of one button
-    // alternate, a press first; a key's auto-repeat is left out. Plugging in, unplugging or noise
-    // never makes a press, nor does one that waited while the device was lost come out after its
-    // return; a button that was down when the device was lost is reported up.
+    // The next event, oldest first; nothing if there is none. Never waits. The events of a button
+    // alternate, a press first; auto-repeat is left out. Plugging in, unplugging or noise never
+    // makes a press. Presses that were not polled before a loss are dropped; a button that was down
+    // at the loss is reported up.
     virtual std::optional<ButtonEvent> poll() = 0;
 
-    // Shows what a button is good for, until it is told otherwise; all are off at first. Never
-    // waits and never makes a press. Of several lights for a button the newest is shown, and it is
-    // sent only where it differs from what is shown. A lost device shows all of it again when it
-    // returns; at the end all is off, as far as the device still answers. What has no lamp takes it
-    // silently.
+    // Sets a button's light until the next call; all are off at first. Never waits and never makes
+    // a press. Only the newest light of a button is shown, and only changes are sent. After a loss
+    // all lights are shown again. At the end all go off, if the device still answers. Buttons
+    // without a lamp ignore it.
     virtual void light(int button, const ButtonLight& light) = 0;
 };
 

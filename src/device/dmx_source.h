@@ -12,26 +12,25 @@
 
 namespace fantascope {
 
-// One frame from somebody else's desk.
+// One frame from another lighting desk.
 struct DmxInput {
     std::array<std::uint8_t, kDmxSlots> slots{};
-    std::string source;  // the sender, stable while it sends: a CID, an address, a widget's serial number
+    std::string source;  // identifies the sender while it sends: a CID, an address, a widget's serial number
     int priority = 100;  // 0 .. 200 as in E1.31; 100 where the protocol has none
     Time arrived{};      // on the clock that open() was handed
-    bool ended = false;  // the sender said goodbye: it is gone now, and its slots mean nothing
-    // How long its protocol lets a sender be silent before it counts as gone; as in E1.31 where the
-    // protocol says nothing. > 0.
+    bool ended = false;  // the sender terminated its stream: it is gone, and its slots mean nothing
+    // How long a sender may be silent before it counts as gone, by its protocol; E1.31's value if
+    // the protocol has none. > 0.
     Time silence = std::chrono::milliseconds(2500);
 };
 
-// One DMX512 universe coming in. Thread: bound to the lighting thread.
+// Receives one DMX512 universe. Thread: bound to the lighting thread.
 class DmxSource : public Device {
 public:
-    // The next frame that arrived and was not taken yet, oldest first; several senders may
-    // alternate. Never waits. Nothing when there is none, also when the device is lost: the absence
-    // of frames is what a merge times out on. A frame from before a loss is not given after the
-    // return. At least the newest frame of each sender is kept, a goodbye being its newest; older
-    // ones may be dropped when nobody takes them.
+    // The next frame that was not taken yet, oldest first; senders may alternate. Never waits.
+    // Nothing if there is none or the device is lost: a merge detects a missing sender by the
+    // absence of frames. Frames from before a loss are dropped. If nobody takes frames, older ones
+    // may be dropped, but never the newest of a sender; a termination counts as one.
     virtual std::optional<DmxInput> receive() = 0;
 };
 

@@ -4,21 +4,21 @@
 
 namespace fantascope {
 
-// A key of a keyboard as a person knows it: what it writes without Shift, or its name.
+// A key of a keyboard: the character that it types without Shift, or its name.
 struct Key {
     enum class Name { Letter, Left, Right, Up, Down, Tab, Enter, Escape };
     Name name = Name::Letter;
-    char letter = 0;  // printable ASCII in small letters, for Name::Letter
+    char letter = 0;  // printable ASCII, lower case, for Name::Letter
     bool shift = false, control = false;
     friend bool operator==(const Key&, const Key&) = default;
 };
 
-// What a person does at a display. A key that is held comes down again and again.
+// Keyboard or pointer input at a display. A held key repeats KeyDown.
 struct ScreenEvent {
-    enum class Kind { KeyDown, KeyUp, PointerMoved, ButtonDown, ButtonUp };  // the button: the mouse's first
+    enum class Kind { KeyDown, KeyUp, PointerMoved, ButtonDown, ButtonUp };  // the button: the left mouse button
     Kind kind = Kind::KeyDown;
     Key key{};
-    glm::dvec2 at{0.0};  // of the pointer, in the surface's pixels, y down
+    glm::dvec2 at{0.0};  // position of the pointer in pixels of the surface, y down
 };
 
 }  // namespace fantascope

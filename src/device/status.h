@@ -4,13 +4,13 @@
 
 namespace fantascope {
 
-// Where a device is in its life:
-//   Absent -> Starting -> Running    found, then opened, then it does its work
-//   Running -> Faulted -> Starting   it misbehaves or went silent; it is tried again with back-off
+// The states of a device:
+//   Absent -> Starting -> Running    found, then opened, then working
+//   Running -> Faulted -> Starting   misbehaves or is silent; retried with back-off
 //   any -> Absent                    unplugged, or never there
 enum class DeviceState { Absent, Starting, Running, Faulted };
 
-// What takes effect at the far end when the device is lost. Declared by each driver, shown with its
+// What happens at the far end when the device is lost. Declared by each driver, shown with its
 // status.
 enum class LossAction {
     Hold,      // the last value stays (a DMX line into most dimmers)
@@ -18,15 +18,15 @@ enum class LossAction {
     SafeState  // the state declared as safe in the site file (relays)
 };
 
-// What every device says of itself, for the console, the report and the log.
+// The status of a device, for the console, the report and the log.
 struct DeviceStatus {
     std::string name;    // as in the site file: "left", "universe 1"
     std::string driver;  // as in the registry: "headless", "simulated"
     DeviceState state = DeviceState::Absent;
     LossAction onLoss = LossAction::Hold;
-    std::string detail;     // why not Running and what to do about it; empty when Running
-    int losses = 0;         // times that it left Running since the start
-    std::string trouble{};  // what it does not do although it is Running; empty: it does all
+    std::string detail;     // why it is not Running and what to do about it; empty: Running
+    int losses = 0;         // how often it left Running since the start
+    std::string trouble{};  // what fails although it is Running; empty: nothing
 };
 
 constexpr const char* nameOf(DeviceState state) {
@@ -43,15 +43,15 @@ constexpr const char* nameOf(DeviceState state) {
     return "unknown";
 }
 
-// What every port has in common.
+// The base of all ports.
 //
-// Life: a driver's open() gives a device that may be Absent: a missing device is no error of
-// open(), a wrong key in its part of the site file is. A lost device comes back by itself, retried
-// with back-off on its own time; the same object serves before and after.
-// Errors: a call on a device that is not Running returns an error, does nothing, never waits, and
-// leaves other devices alone.
-// Thread: status() may be called from any thread at any time; every other method from the one
-// thread that each port names.
+// Life: open() returns a device that may be Absent. A missing device is no error; a wrong key in
+// the site file is. A lost device comes back by itself, retried with back-off; the object stays the
+// same.
+// Errors: a call on a device that is not Running returns an error at once, does nothing, and
+// affects no other device.
+// Thread: status() may be called from any thread at any time; every other method only from the
+// thread that its port names.
 class Device {
 public:
     virtual ~Device() = default;

@@ -14,7 +14,7 @@
 namespace fantascope {
 namespace {
 
-// A line's words; tabs and spaces part them.
+// A line's words, separated by tabs and spaces.
 std::vector<std::string_view> wordsOf(std::string_view line) {
     std::vector<std::string_view> words;
     while (true) {
@@ -59,8 +59,8 @@ Result<ColourCube> ColourCube::read(const std::filesystem::path& file) {
             return wrong("a one-dimensional table; a LUT_3D_SIZE is needed here, or use 'gamma' and 'white'");
         if (words[0] == "LUT_3D_SIZE") {
             const auto side = words.size() == 2 ? numberOf(words[1]) : std::nullopt;
-            if (!side || *side < 2 || *side > kMostSide || *side != std::floor(*side))
-                return wrong(fmt::format("LUT_3D_SIZE is a whole number in 2 .. {}", kMostSide));
+            if (!side || *side < 2 || *side > kMaxSide || *side != std::floor(*side))
+                return wrong(fmt::format("LUT_3D_SIZE is a whole number in 2 .. {}", kMaxSide));
             cube.side = static_cast<int>(*side);
             wanted =
                 static_cast<std::size_t>(cube.side) * static_cast<std::size_t>(cube.side) * static_cast<std::size_t>(cube.side);
@@ -72,16 +72,16 @@ Result<ColourCube> ColourCube::read(const std::filesystem::path& file) {
         } else if (numberOf(words[0])) {
             const auto colour = colourOf(words, 0);
             if (!colour) return wrong("a colour is three numbers");
-            if (cube.side == 0) return wrong("colours before LUT_3D_SIZE; this is no .cube file");
+            if (cube.side == 0) return wrong("colours before LUT_3D_SIZE; this is not a .cube file");
             if (cube.colours.size() == wanted) return wrong(fmt::format("more than the {} colours of its size", wanted));
             cube.colours.push_back(*colour);
         } else if (cube.side == 0) {
-            return wrong(fmt::format("'{}' is not what a .cube file begins with", words[0].substr(0, 40)));
-        }  // other words are for other programs
+            return wrong(fmt::format("a .cube file does not begin with '{}'", words[0].substr(0, 40)));
+        }  // other keywords are for other programs
     }
-    if (cube.side == 0) return Error(fmt::format("{}: has no LUT_3D_SIZE; this is no .cube file", file.string()));
+    if (cube.side == 0) return Error(fmt::format("{}: has no LUT_3D_SIZE; this is not a .cube file", file.string()));
     if (cube.colours.size() < wanted)
-        return Error(fmt::format("{}: is cut off: {} of {} colours are there", file.string(), cube.colours.size(), wanted));
+        return Error(fmt::format("{}: is cut off: it has {} of {} colours", file.string(), cube.colours.size(), wanted));
     if (!glm::all(glm::lessThan(cube.low, cube.high)))
         return Error(fmt::format("{}: DOMAIN_MIN is not below DOMAIN_MAX", file.string()));
     return cube;

@@ -5,7 +5,7 @@
 
 namespace fantascope {
 
-// A character as DejaVu Sans Bold draws it, which Debian has in fonts-dejavu-core; an em is 1.
+// The outline of a character in DejaVu Sans Bold, from Debian's fonts-dejavu-core; an em is 1.
 // Error: the font is not installed, has no such character, or draws nothing for it.
 Result<Outline> glyphOutline(char32_t character);
 

@@ -18,9 +18,9 @@ namespace fantascope {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::uint64_t kLargestSide = 16384, kMostPixels = std::uint64_t{1} << 26;  // 8192 x 8192
+constexpr std::uint64_t kMaxSide = 16384, kMaxPixels = std::uint64_t{1} << 26;  // 8192 x 8192
 
-// OpenCV's view of an image's own memory.
+// OpenCV's view of an image's memory.
 cv::Mat view(const GreyImage& image) {
     return {image.height(), image.width(), CV_32FC1, const_cast<float*>(image.pixels().data())};
 }
@@ -31,8 +31,8 @@ cv::Mat view(const Rgba16Image& image) {
     return {image.height(), image.width(), CV_16UC4, const_cast<Rgba16*>(image.pixels().data())};
 }
 
-// What is in a picture's head. Pixels are counted before any is decoded: a file of two megabytes
-// can stand for a gigabyte of them.
+// A picture's header. Pixels are counted before decoding: a file of two megabytes can hold a
+// gigabyte of them.
 struct Head {
     std::string_view bytes;
 
@@ -45,7 +45,7 @@ struct Head {
     bool isTiff() const { return begins({"II*\0", 4}) || begins({"MM\0*", 4}) || begins({"II+\0", 4}) || begins({"MM\0+", 4}); }
     bool isKnown() const { return isPng() || isJpeg() || isWebp() || isBmp() || isTiff(); }
 
-    // A whole number of `count` bytes; those beyond the end are 0.
+    // An unsigned integer of `count` bytes; bytes beyond the end are 0.
     std::uint64_t little(std::size_t at, std::size_t count) const {
         std::uint64_t value = 0;
         for (std::size_t i = count; i-- > 0;) value = value << 8 | byteAt(at + i);
@@ -58,13 +58,13 @@ struct Head {
     }
     std::size_t byteAt(std::size_t at) const { return has(at, 1) ? static_cast<unsigned char>(bytes[at]) : 0; }
 
-    // Width and height; nothing where they do not stand in these bytes.
+    // Width and height; nothing if they are not in these bytes.
     using Size = glm::vec<2, std::uint64_t>;
     std::optional<Size> size() const;
 
-    // The segments of a JPEG's head begin with 0xff, a marker and a length that counts itself. Goes
-    // through them until `isLast(marker)`: where that one begins, or what follows the last of them.
-    // A thumbnail in one of them is a whole JPEG, with an end of its own.
+    // The segments of a JPEG's header begin with 0xff, a marker and a length that includes itself.
+    // Returns where the first segment with `isLast(marker)` begins, or the end of the last segment.
+    // A thumbnail in a segment is a whole JPEG with its own end marker.
     static constexpr std::size_t kMarker = 0xff, kStartOfScan = 0xda;
     template <class IsLast>
     std::size_t jpegSegment(IsLast isLast) const {
@@ -82,7 +82,7 @@ private:
 };
 
 std::optional<Head::Size> Head::jpegSize() const {
-    // A frame's head: 0xc0 .. 0xcf but for three of them.
+    // Markers of a frame header: 0xc0 .. 0xcf except three.
     const auto isFrame = [](std::size_t marker) {
         return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
     };
@@ -109,7 +109,7 @@ std::optional<Head::Size> Head::bmpSize() const {
     return Size(little(18, 4), static_cast<std::uint64_t>(std::abs(std::int64_t{height})));
 }
 
-// Of the first of its pictures (TIFF 6.0, section 2; with 8 bytes for places, BigTIFF).
+// The size of the first picture (TIFF 6.0, section 2; BigTIFF with 8-byte offsets).
 std::optional<Head::Size> Head::tiffSize() const {
     const auto number = [&](std::size_t at, std::size_t count) { return begins("I") ? little(at, count) : big(at, count); };
     const bool isBig = number(2, 2) == 43;
@@ -133,8 +133,7 @@ std::optional<Head::Size> Head::size() const {
     return isJpeg() ? jpegSize() : isWebp() ? webpSize() : isBmp() ? bmpSize() : isTiff() ? tiffSize() : std::nullopt;
 }
 
-// JPEG decoders fill what is missing with grey and call it a warning; a picture that ends early
-// must be refused.
+// JPEG decoders fill missing data with grey and only warn, but a truncated picture must be refused.
 bool endsEarly(const Head& head) {
     const auto isStartOfScan = [](std::size_t marker) { return marker == Head::kStartOfScan; };
     if (head.isJpeg()) return head.bytes.find("\xff\xd9", head.jpegSegment(isStartOfScan)) == std::string_view::npos;
@@ -146,7 +145,7 @@ Result<cv::Mat> decode(const fs::path& path) {
         return Error(fmt::format("{}: {}; save it again as a PNG, 8 or 16 bits a channel", path.string(), why));
     };
     constexpr std::string_view kNoPicture = "not a picture that can be read, or a damaged one";
-    constexpr std::size_t kKind = 12;  // bytes that tell of which kind it is
+    constexpr std::size_t kKind = 12;  // bytes that identify the format
     const auto kind = readStart(path, kKind);
     if (!kind) return kind.error();
     if (kind->empty()) return refused("the file is empty");
@@ -158,26 +157,26 @@ Result<cv::Mat> decode(const fs::path& path) {
     if (endsEarly(head)) return refused("the picture is truncated");
     const auto size = head.size();
     if (!size) return refused(kNoPicture);
-    if (std::max(size->x, size->y) > kLargestSide || size->x * size->y > kMostPixels)
+    if (std::max(size->x, size->y) > kMaxSide || size->x * size->y > kMaxPixels)
         return Error(
             fmt::format("{}: {} x {} pixels: a picture may not be larger than {} in a dimension, nor have more than {} million "
                         "pixels; make it smaller",
-                        path.string(), size->x, size->y, kLargestSide, kMostPixels / 1'000'000));
+                        path.string(), size->x, size->y, kMaxSide, kMaxPixels / 1'000'000));
     cv::Mat picture;
     try {
         picture = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data())),
                                cv::IMREAD_UNCHANGED);
-    } catch (const cv::Exception&) {  // reported below like any other picture that cannot be decoded
+    } catch (const cv::Exception&) {  // reported below like any other undecodable picture
         picture.release();
     }
     if (picture.empty()) return refused(kNoPicture);
     if (picture.channels() == 2 || picture.channels() > 4) return refused(fmt::format("has {} channels", picture.channels()));
-    if (!cv::checkRange(picture)) return refused("holds a value that is not a number");
+    if (!cv::checkRange(picture)) return refused("has a value that is not a number");
     return picture;
 }
 
-// A row's channels, one after the other; whole numbers as shares of their type's largest. A row at
-// a time, so that a picture is in memory once and not three times.
+// A row's channels in sequence; integers are divided by their type's maximum. Row by row, so that a
+// picture is in memory once, not three times.
 void rowOf(const cv::Mat& picture, int y, cv::Mat& row) {
     const int depth = picture.depth();
     picture.row(y).convertTo(row, CV_32F, depth == CV_8U ? 1.0 / 255 : depth == CV_16U ? 1.0 / 65535 : 1.0);
@@ -185,9 +184,9 @@ void rowOf(const cv::Mat& picture, int y, cv::Mat& row) {
 
 std::uint8_t toByte(float value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f)); }
 
-// `effort`: 1 is quick, 9 small.
+// `effort`: 1 is fast, 9 small.
 Result<void> encode(const fs::path& path, const cv::Mat& picture, int effort) {
-    FANTASCOPE_CHECK(!picture.empty(), "an empty image was to be written");
+    FANTASCOPE_CHECK(!picture.empty(), "an empty image cannot be written");
     std::vector<std::uint8_t> bytes;
     cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, effort});
     return writeFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
@@ -251,12 +250,12 @@ Result<RgbaImage> readRgba(const fs::path& path) {
 }
 
 Result<glm::ivec2> pictureSize(const fs::path& path) {
-    constexpr std::size_t kHead = 1 << 20;  // bytes; what a camera writes before the size is less
+    constexpr std::size_t kHead = 1 << 20;  // bytes; more than a camera writes before the size
     const auto bytes = readStart(path, kHead);
     if (!bytes) return bytes.error();
     const auto size = Head{*bytes}.size();
     if (!size) return Error(fmt::format("{}: not a PNG or JPEG picture; save it again as a PNG", path.string()));
-    return glm::ivec2(glm::min(*size, Head::Size(0xffff)));  // more than anybody reads
+    return glm::ivec2(glm::min(*size, Head::Size(0xffff)));  // larger than any readable picture
 }
 
 Result<void> writePng(const fs::path& path, const GreyImage& image) {
@@ -268,7 +267,7 @@ Result<void> writePng(const fs::path& path, const GreyImage& image) {
 Result<void> writePng(const fs::path& path, const RgbaImage& image) { return encodeColours(path, image, 6); }
 Result<void> writePng(const fs::path& path, const Rgba16Image& image) {
     return encodeColours(path, image, 3);
-}  // they come by the thousand
+}  // written by the thousand
 
 std::vector<std::uint8_t> jpegOf(const RgbaImage& image, int quality) {
     FANTASCOPE_CHECK(!image.empty(), "an empty image has no file");

@@ -58,40 +58,40 @@ struct Rgba16 {
 
 using RgbaImage = Image<Rgba8>;
 using Rgba16Image = Image<Rgba16>;
-using GreyImage = Image<float>;  // values 0..1; whether stored or linear is said where one is used
+using GreyImage = Image<float>;  // values 0..1; each use says whether stored or linear
 
 // The sRGB transfer function (IEC 61966-2-1), 0..1 to 0..1.
 float linearFromSrgb(float stored);
 float srgbFromLinear(float linear);
 
-// Reads PNG, JPEG, TIFF, BMP and WebP. Grey: stored values / the type's maximum, colours weighted
-// as Rec. 601 luma; an alpha channel is laid over black. Error: names the file: missing, no regular
-// file, truncated, not a picture; or, before it is decoded, larger than 16384 in a dimension or
+// Read PNG, JPEG, TIFF, BMP and WebP. Grey: stored values / the type's maximum, colours weighted as
+// Rec. 601 luma; an alpha channel is composed over black. Error: names the file: missing, not a
+// regular file, truncated, not a picture; or, before decoding, larger than 16384 in a dimension or
 // more than 2^26 pixels.
 Result<GreyImage> readGrey(const std::filesystem::path& path);
 Result<RgbaImage> readRgba(const std::filesystem::path& path);
-// Width and height of a picture, from its head alone: one that is too large need not be decoded to
-// be refused. Error: names the file: missing, or no such picture.
+// Width and height of a picture, from its header only, so that a picture that is too large is
+// refused without decoding. Error: names the file: missing, or no such picture.
 Result<glm::ivec2> pictureSize(const std::filesystem::path& path);
 
-// PNG, 8 bits a channel where the picture has no more, written aside and renamed. Alpha is straight
-// (not premultiplied). The same picture gives the same bytes.
+// Write a PNG to a temporary file, then rename it. 8 bits per channel if the picture has no more.
+// Alpha is straight (not premultiplied). The same picture gives the same bytes.
 Result<void> writePng(const std::filesystem::path& path, const GreyImage& image);
 Result<void> writePng(const std::filesystem::path& path, const RgbaImage& image);
 Result<void> writePng(const std::filesystem::path& path, const Rgba16Image& image);
 
-// The bytes of a JPEG file; alpha is left out. quality: 1 is small, 100 good. The same picture
-// gives the same bytes.
+// The bytes of a JPEG file, without alpha. quality: 1 is small, 100 good. The same picture gives
+// the same bytes.
 std::vector<std::uint8_t> jpegOf(const RgbaImage& image, int quality);
 
-// Area-averaging when it shrinks, bilinear when it grows. width, height > 0.
+// Area-averaging when shrinking, bilinear when growing. width, height > 0.
 GreyImage resized(const GreyImage& image, int width, int height);
 RgbaImage resized(const RgbaImage& image, int width, int height);
-// The same of the light that stored sRGB values stand for, as an eye far away sees it: fine bright
-// shapes do not darken.
+// The same for the light of stored sRGB values, as seen from far away: fine bright shapes do not
+// darken.
 RgbaImage resizedLight(const RgbaImage& image, int width, int height);
 
-// Light for dark: 1 minus every value.
+// 1 minus every value.
 GreyImage inverted(GreyImage image);
 
 // A separable Gaussian, in pixels; the border repeats the edge pixel. sigma > 0.

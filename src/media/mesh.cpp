@@ -22,11 +22,11 @@
 namespace fantascope {
 namespace {
 
-// What assimp opens: the file, and those that it names, such as a glTF's buffers. Each is read
-// whole, and refused as readFile() does it.
+// The files that assimp opens: the mesh, and those that it names, such as a glTF's buffers. Each is
+// read whole, and refused as by readFile().
 class Files : public Assimp::IOSystem {
 public:
-    std::optional<Error> refusal;  // of the first that was
+    std::optional<Error> refusal;  // of the first refused file
 
     bool Exists(const char* path) const override {
         std::error_code ignored;
@@ -58,7 +58,7 @@ private:
         std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
         aiReturn Seek(std::size_t offset, aiOrigin origin) override {
             const std::size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
-            if (from + offset > bytes_.size()) return aiReturn_FAILURE;  // backwards is a large number that wraps
+            if (from + offset > bytes_.size()) return aiReturn_FAILURE;  // a negative offset wraps to a large number
             at_ = from + offset;
             return aiReturn_SUCCESS;
         }
@@ -72,11 +72,11 @@ private:
     };
 };
 
-// Appends what a node and its children show, in the scene's space; parts of points and lines show
-// no surface.
+// Appends the meshes of a node and its children in the scene's space. Points and lines have no
+// surface and are left out.
 void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& sceneFromParent, TriangleMesh& mesh) {
     const aiMatrix4x4 sceneFromNode = sceneFromParent * node.mTransformation;
-    const bool mirrored = aiMatrix3x3(sceneFromNode).Determinant() < 0;  // turns clockwise what was anticlockwise
+    const bool mirrored = aiMatrix3x3(sceneFromNode).Determinant() < 0;  // reverses the winding
     for (unsigned m = 0; m < node.mNumMeshes; ++m) {
         const aiMesh& part = *scene.mMeshes[node.mMeshes[m]];
         if ((part.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) continue;
@@ -88,7 +88,7 @@ void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& sceneFr
         for (unsigned f = 0; f < part.mNumFaces; ++f) {
             const unsigned* corner = part.mFaces[f].mIndices;
             const glm::uvec3 triangle = first + glm::uvec3(corner[0], corner[mirrored ? 2 : 1], corner[mirrored ? 1 : 2]);
-            // In double: a giant's area is still a number.
+            // In double, so that the area of a huge triangle is finite.
             const glm::dvec3 a = mesh.vertices[triangle.x], b = mesh.vertices[triangle.y], c = mesh.vertices[triangle.z];
             if (glm::length(glm::cross(b - a, c - a)) > 0) mesh.triangles.push_back(triangle);
         }
@@ -96,8 +96,7 @@ void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& sceneFr
     for (unsigned child = 0; child < node.mNumChildren; ++child) append(scene, *node.mChildren[child], sceneFromNode, mesh);
 }
 
-// An FBX says which of its axes point right, up and to the viewer, and assimp passes that on
-// without heeding it.
+// An FBX declares its right, up and front axes; assimp reports them but does not apply them.
 aiMatrix4x4 sceneFromFile(const aiScene& scene) {
     aiMatrix4x4 turned;
     constexpr std::pair<unsigned, const char*> kAxes[] = {{0, "CoordAxis"}, {1, "UpAxis"}, {2, "FrontAxis"}};
@@ -117,11 +116,11 @@ bool isFinite(const glm::vec3& point) { return std::isfinite(point.x) && std::is
 }  // namespace
 
 Result<TriangleMesh> readMesh(const std::filesystem::path& path) {
-    TRY(readStart(path, 0));  // assimp's own message for a missing file does not say why
+    TRY(readStart(path, 0));  // assimp's own message for a missing file gives no reason
     const auto refused = [&](std::string_view why) { return Error(fmt::format("{}: {}", path.string(), why)); };
     Assimp::Importer importer;
     auto* const files = new Files;
-    importer.SetIOHandler(files);  // which is the importer's from now on
+    importer.SetIOHandler(files);  // owned by the importer from now on
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TEXCOORDS | aiComponent_COLORS |
                                                             aiComponent_TANGENTS_AND_BITANGENTS);
     const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_RemoveComponent |

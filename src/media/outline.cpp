@@ -32,7 +32,7 @@ using FineTriangulation = CGAL::Constrained_Delaunay_triangulation_2<
 
 glm::dvec2 toGlm(const Point& point) { return {point.x(), point.y()}; }
 
-// After Douglas & Peucker (1973).
+// Douglas & Peucker (1973).
 Outline simplified(const Outline& outline, double tolerance) {
     Outline result;
     for (const auto& ring : outline.rings) {
@@ -46,7 +46,7 @@ Outline simplified(const Outline& outline, double tolerance) {
     return result;
 }
 
-// By the rings that a ray to the right crosses.
+// Counts the rings that a ray to the right crosses.
 bool isInside(const Outline& outline, glm::dvec2 point) {
     bool inside = false;
     for (const auto& ring : outline.rings)
@@ -68,14 +68,14 @@ void insertRings(const Outline& outline, Triangulation& triangulation) {
     }
 }
 
-// No ring passes through a triangle: all of it is inside, or nothing.
+// No ring passes through a triangle, so one point decides.
 template <class Face>
 bool isFaceInside(const Outline& outline, const Face& face) {
     return isInside(outline,
                     (toGlm(face.vertex(0)->point()) + toGlm(face.vertex(1)->point()) + toGlm(face.vertex(2)->point())) / 3.0);
 }
 
-// The triangles that are wanted, with the vertices that they use, each once.
+// The wanted triangles, with each used vertex once.
 template <class Triangulation, class IsWanted>
 FlatMesh trianglesOf(const Triangulation& triangulation, IsWanted isWanted) {
     FlatMesh mesh;
@@ -94,8 +94,8 @@ FlatMesh trianglesOf(const Triangulation& triangulation, IsWanted isWanted) {
     return mesh;
 }
 
-// Walks the borders of a picture through the squares between four pixels' centres (Lorensen & Cline
-// 1987, in the plane), the light on the right.
+// Walks along the borders of a picture through the squares between four pixel centres (Lorensen &
+// Cline 1987, in the plane), with the light on the right.
 class BorderTracer {
 public:
     explicit BorderTracer(const GreyImage& picture) : picture_(picture) {}
@@ -106,7 +106,7 @@ public:
             for (int x = -1; x < picture_.width(); ++x) lookAt(x, y, order);
         Outline outline;
         for (const std::int64_t first : order) {
-            if (!next_.contains(first)) continue;  // walked along already
+            if (!next_.contains(first)) continue;  // already walked
             auto& ring = outline.rings.emplace_back();
             std::int64_t side = first;
             do {
@@ -132,13 +132,13 @@ private:
         return isIn ? double(picture_.at(pixel.x, pixel.y)) : 0;
     }
     // Where the light passes a half between two neighbours: never at a centre, where other borders
-    // may pass too.
+    // may pass.
     glm::dvec2 crossing(glm::ivec2 a, glm::ivec2 b) const {
         const double share = std::clamp((kHalf - at(a)) / (at(b) - at(a)), 0.01, 0.99);
         return glm::dvec2(a) + 0.5 + share * glm::dvec2(b - a);
     }
 
-    // The square whose left top corner is a pixel's centre.
+    // Handles the square whose top left corner is a pixel's centre.
     void lookAt(int x, int y, std::vector<std::int64_t>& order) {
         const std::array<glm::ivec2, 4> corners = {glm::ivec2(x, y), {x + 1, y}, {x + 1, y + 1}, {x, y + 1}};  // clockwise
         std::array<bool, 4> light;
@@ -147,9 +147,9 @@ private:
         const auto lights = std::count(light.begin(), light.end(), true);
         if (lights == 0 || lights == 4) return;
         const bool isSaddle = lights == 2 && light[0] == light[2];
-        // Two corners across from each other hang together unless the middle is dark.
+        // Diagonal corners are connected unless the middle is dark.
         const bool areJoined = isSaddle && at(corners[0]) + at(corners[1]) + at(corners[2]) + at(corners[3]) >= 4 * kHalf;
-        // A border enters over the side where light turns dark, clockwise, and leaves over one
+        // A border enters through a side where light turns dark, clockwise, and leaves through one
         // where dark turns light.
         for (std::size_t i = 0; i < 4; ++i) {
             if (!isLight(i) || isLight(i + 1)) continue;
@@ -161,7 +161,7 @@ private:
             order.push_back(from);
         }
     }
-    // A number of a square's side that it shares with the square beyond: upper, right, lower, left.
+    // The number of a square's side, shared with the neighbour: top, right, bottom, left.
     std::int64_t side(int x, int y, std::size_t i) const {
         if (i == 1) ++x;
         if (i == 2) ++y;
@@ -170,7 +170,7 @@ private:
     }
 
     const GreyImage& picture_;
-    std::unordered_map<std::int64_t, Step> next_;  // by the side that a border comes in over
+    std::unordered_map<std::int64_t, Step> next_;  // by the side through which a border enters
 };
 
 }  // namespace
@@ -181,10 +181,10 @@ std::size_t Outline::pointCount() const {
     return count;
 }
 
-Outline simplified(const Outline& outline, double tolerance, std::size_t most) {
+Outline simplified(const Outline& outline, double tolerance, std::size_t maxPoints) {
     constexpr double kCoarser = 1.25;
     Outline result = simplified(outline, tolerance);
-    while (result.pointCount() > most) result = simplified(outline, tolerance *= kCoarser);
+    while (result.pointCount() > maxPoints) result = simplified(outline, tolerance *= kCoarser);
     return result;
 }
 
@@ -198,19 +198,19 @@ TriangleMesh filled(const Outline& outline) {
     return mesh;
 }
 
-FlatMesh meshed(const Outline& outline, double longest) {
-    constexpr int kMostSteps = 300'000;
-    constexpr double kAngle = 0.125;  // the square of the sine of 20.7 degrees, with which the refinement is sure to end
+FlatMesh meshed(const Outline& outline, double maxEdge) {
+    constexpr int kMaxSteps = 300'000;
+    constexpr double kAngle = 0.125;  // the squared sine of 20.7 degrees, with which refinement is guaranteed to end
     FineTriangulation triangulation;
     insertRings(outline, triangulation);
     for (auto face = triangulation.finite_faces_begin(); face != triangulation.finite_faces_end(); ++face)
         face->set_in_domain(isFaceInside(outline, *face));
     using Criteria = CGAL::Delaunay_mesh_size_criteria_2<FineTriangulation>;
-    CGAL::Delaunay_mesher_2<FineTriangulation, Criteria> mesher(triangulation, Criteria(kAngle, longest));
+    CGAL::Delaunay_mesher_2<FineTriangulation, Criteria> mesher(triangulation, Criteria(kAngle, maxEdge));
     mesher.init(true);
-    // Where rings run within rounding of themselves the refinement may try for ever; what it has by
-    // then will do.
-    for (int step = 0; step < kMostSteps && mesher.try_one_step_refine_mesh(); ++step) {
+    // If rings lie within rounding error of themselves, refinement may never end; the result so far
+    // is good enough.
+    for (int step = 0; step < kMaxSteps && mesher.try_one_step_refine_mesh(); ++step) {
     }
     return trianglesOf(triangulation, [](const auto& face) { return face.is_in_domain(); });
 }
@@ -218,7 +218,7 @@ FlatMesh meshed(const Outline& outline, double longest) {
 Outline tracedBorders(const GreyImage& picture) { return BorderTracer(picture).run(); }
 
 GreyImage drawn(const Outline& outline, int width, int height) {
-    constexpr int kLines = 16;  // through a row of pixels
+    constexpr int kLines = 16;  // per row of pixels
     struct Crossing {
         double x;
         int turn;
@@ -229,7 +229,7 @@ GreyImage drawn(const Outline& outline, int width, int height) {
             glm::dvec2 a = ring[i], b = ring[(i + 1) % ring.size()];
             const int turn = a.y < b.y ? 1 : -1;
             if (turn < 0) std::swap(a, b);
-            // The lines at heights (k + 1/2) / kLines from a on and before b.
+            // The lines at heights (k + 1/2) / kLines from a, inclusive, to b, exclusive.
             const double last = static_cast<double>(lines.size());
             const auto firstLine = [&](double y) {
                 return static_cast<std::size_t>(std::clamp(std::ceil(y * kLines - 0.5), 0.0, last));

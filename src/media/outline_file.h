@@ -7,14 +7,14 @@
 
 namespace fantascope {
 
-// The files that readOutline takes for what they are, by their ending: an SVG, or a picture that
-// core/image.h reads.
+// Whether readOutline() accepts the file by its extension: an SVG, or a picture that media/image.h
+// reads.
 bool isOutlineFile(const std::filesystem::path& path);
 
-// The outline of what an SVG or a picture shows, smooth to a fraction of a pixel and of some 80
-// points at most, in shares of the picture's longer side. If a part of it is transparent, the rest
-// is the region; otherwise what is lighter or darker than most of the border. Specks are left out.
-// Error: names the file: unreadable, of one colour, nothing that has an area, or too intricate.
+// The outline of an SVG or a picture, smooth to a fraction of a pixel, with at most about 80
+// points, in shares of the picture's longer side. If a part is transparent, the rest is the region;
+// otherwise the region is what is lighter or darker than most of the border. Specks are left out.
+// Error: names the file: unreadable, of one colour, without area, or too intricate.
 Result<Outline> readOutline(const std::filesystem::path& path);
 
 }  // namespace fantascope

@@ -9,14 +9,14 @@
 
 namespace fantascope {
 
-// Rows of pixels as libraries with vector code need them. Such code works on whole blocks: it reads
-// and writes up to a block beyond a row's last pixel, and some of it leaves the last pixels out
-// where a row has no room for the block. Keeps its memory. Thread: thread-bound.
+// Rows of pixels for libraries with vector code. Such code works on whole blocks: it reads and
+// writes up to a block beyond a row's last pixel, and some of it skips the last pixels if a row has
+// no room for the block. Keeps its memory. Thread: thread-bound.
 template <class Pixel>
 class PaddedRows {
 public:
     // Calls write(std::uint8_t* rows, int stride), which fills all rows of a picture of this size,
-    // then brings them into `picture`. `stride`: bytes from a row to the next.
+    // then copies them to `picture`. `stride`: bytes per row.
     template <class Write>
     void fill(Image<Pixel>& picture, Write write) {
         if (isWhole(picture)) return write(bytesOf(picture.pixels().data()), stride(picture.width()));
@@ -35,7 +35,7 @@ public:
     }
 
 private:
-    static constexpr int kBlock = 64;  // pixels; the widest registers hold 64 bytes, one of each channel
+    static constexpr int kBlock = 64;  // pixels; the widest registers hold 64 bytes, one channel
 
     struct alignas(64) Block {
         Pixel pixels[kBlock];
@@ -54,7 +54,7 @@ private:
     Pixel* row(int y) { return memory_[static_cast<std::size_t>(y) * static_cast<std::size_t>(inMemory_ / kBlock)].pixels; }
 
     std::vector<Block> memory_;
-    int inMemory_ = 0;  // pixels of a row, with its padding
+    int inMemory_ = 0;  // pixels of a row with its padding
 };
 
 }  // namespace fantascope

@@ -29,7 +29,7 @@ namespace processing = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 
-// Triangles keep their numbers. Empty if the triangles make no surface.
+// Triangles keep their indices. Empty if the triangles form no surface.
 Surface surfaceOf(const TriangleMesh& mesh) {
     std::vector<Kernel::Point_3> points;
     points.reserve(mesh.vertices.size());
@@ -97,9 +97,9 @@ std::vector<double> thicknesses(const TriangleMesh& mesh, std::size_t every) {
 }
 
 Result<void> writeStl(const std::filesystem::path& path, const TriangleMesh& mesh) {
-    static_assert(std::endian::native == std::endian::little, "as the format has it");
+    static_assert(std::endian::native == std::endian::little, "STL is little-endian");
     std::string bytes(80, ' ');
-    bytes.replace(0, 10, "fantascope");  // not "solid", by which programs know an STL that is text
+    bytes.replace(0, 10, "fantascope");  // not "solid", which marks an STL in text form
     const auto append = [&](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
     append(static_cast<std::uint32_t>(mesh.triangles.size()));
     for (const glm::uvec3& t : mesh.triangles) {

@@ -29,7 +29,7 @@ Error notReadable(const std::string& file, GError* error) {
     return Error(fmt::format("{}: not an SVG that can be read: {}", file, why.substr(0, why.find('\n'))));
 }
 
-// cairo's pixels hold colours times alpha.
+// cairo's colours are premultiplied by alpha.
 std::uint8_t withoutAlpha(unsigned value, unsigned alpha) {
     return alpha == 0 ? 0 : static_cast<std::uint8_t>(std::min(255u, (value * 255 + alpha / 2) / alpha));
 }
@@ -50,7 +50,7 @@ RgbaImage toImage(cairo_surface_t* surface) {
     return image;
 }
 
-// A part of the page, whose longer side is `page` pixels before it is magnified.
+// A part of the page; the page's longer side is `page` pixels before magnification.
 struct Part {
     glm::dvec2 begin, end;
     double magnified;

@@ -7,9 +7,9 @@
 
 namespace fantascope {
 
-// What an SVG draws on its page, cut to the box around it, its longer side `side` pixels. Files
-// that it refers to are not looked for.
-// Error: names the file: unreadable, not an SVG, or drawing nothing.
+// An SVG's drawing, cropped to its bounding box, the longer side `side` pixels. Files that it
+// refers to are not loaded.
+// Error: names the file: unreadable, not an SVG, or an empty drawing.
 Result<RgbaImage> readSvg(const std::filesystem::path& path, int side);
 
 }  // namespace fantascope

@@ -15,22 +15,22 @@ namespace fantascope::plot {
 namespace {
 
 constexpr double kText = 14, kLine = 20, kMargin = 24;  // points
-constexpr int kSamples = 3;                             // a pixel has so many in each direction
+constexpr int kSamples = 3;                             // per pixel in each direction
 constexpr glm::dvec3 kPaper{0.975}, kOthers{0.82}, kMissed{1, 0.87, 0.87}, kRed{0.86, 0.05, 0.1};
 constexpr Stroke kOutline{{0, 0, 0}, 1.6}, kFrame{{0.6, 0.6, 0.6}, 1};
 
-// What covers a place: a bit for each actor, and the target's.
+// What covers a place: one bit per actor, and one for the target.
 using Cover = std::uint64_t;
-constexpr int kMostActors = 63;
-constexpr Cover kTarget = Cover{1} << kMostActors;
+constexpr int kMaxActors = 63;
+constexpr Cover kTarget = Cover{1} << kMaxActors;
 
-// Who covers what, also between the pixels: the line between white and black runs straight from
-// pixel to pixel.
+// Looks up what covers a place. Between pixel centres the masks are interpolated, so that outlines
+// are straight from pixel to pixel.
 class Covers {
 public:
     Covers(std::span<const ActorShadow> actors, const theatre::BitMask& target)
         : width_(target.width()), height_(target.height()), covers_(width_, height_) {
-        FANTASCOPE_CHECK(actors.size() <= static_cast<std::size_t>(kMostActors), "there are too many actors for a picture");
+        FANTASCOPE_CHECK(actors.size() <= static_cast<std::size_t>(kMaxActors), "a picture has at most kMaxActors actors");
         add(target, kTarget);
         for (std::size_t i = 0; i < actors.size(); ++i) add(actors[i].mask, Cover{1} << i);
     }
@@ -51,7 +51,7 @@ public:
 
 private:
     void add(const theatre::BitMask& mask, Cover bit) {
-        FANTASCOPE_CHECK(mask.width() == width_ && mask.height() == height_, "the masks of a figure are of one size");
+        FANTASCOPE_CHECK(mask.width() == width_ && mask.height() == height_, "the masks of a figure have the same size");
         for (int y = 0; y < height_; ++y)
             for (int x = 0; x < width_; ++x)
                 if (mask.at(x, y)) covers_.at(x, y) |= bit;
@@ -69,8 +69,7 @@ bool isHatched(const glm::dvec2& at, bool rising) {
     return along - std::floor(along) < kShare;
 }
 
-// What a place looks like in shadowPicture(). sRGB, as what is mixed below: these are inks, not
-// light.
+// The colour of a place in shadowFigure(). Inks are mixed in sRGB, since they are not light.
 glm::dvec3 inkOf(Cover cover, const glm::dvec2& at) {
     const Cover actors = cover & ~kTarget;
     if (actors == 0) {
@@ -79,13 +78,13 @@ glm::dvec3 inkOf(Cover cover, const glm::dvec2& at) {
     }
     glm::dvec3 sum(0);
     int count = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(kMostActors); ++i)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(kMaxActors); ++i)
         if ((actors >> i & 1) != 0) sum += actorColour(i), ++count;
     const glm::dvec3 ink = sum / double(count) * (count > 1 ? 0.62 : 1.0);
     return (cover & kTarget) == 0 && isHatched(at, false) ? 0.25 * ink : ink;
 }
 
-// The same where one actor is looked at.
+// The colour of a place in one actor's picture.
 glm::dvec3 inkOfOne(Cover cover, std::size_t actor, const glm::dvec2& at) {
     const Cover his = Cover{1} << actor;
     if ((cover & his) != 0) return inkOf(cover & (his | kTarget), at);
@@ -118,7 +117,7 @@ theatre::BitMask cut(const theatre::BitMask& mask, glm::ivec2 from, glm::ivec2 t
     return part;
 }
 
-// Masks without the rows and columns around them in which none has anything, but for a little room.
+// Masks cropped to their common content, with a margin.
 struct Cropped {
     Cropped(std::span<const ActorShadow> of, const theatre::BitMask& wholeTarget) : actors(of.begin(), of.end()) {
         glm::ivec2 from(wholeTarget.width(), wholeTarget.height()), to(0);
@@ -135,7 +134,7 @@ struct Cropped {
         target = cut(wholeTarget, from, to);
         for (ActorShadow& actor : actors) actor.mask = cut(actor.mask, from, to);
     }
-    // The largest in whole points with this aspect.
+    // The largest size in whole points with this aspect that fits.
     glm::dvec2 fitting(double width, double height) const {
         const glm::dvec2 size(target.width(), target.height());
         return glm::max(glm::dvec2(1), glm::round(std::min(width / size.x, height / size.y) * size));
@@ -166,7 +165,7 @@ void drawBadge(Page& page, std::size_t actor, glm::dvec2 centre) {
     page.text(fmt::format("{}", actor + 1), centre, 13, Anchor::Middle);
 }
 
-// A small picture of an ink with its meaning; gives where the next one goes.
+// Draws a legend entry, a sample of an ink with its meaning. Returns the place of the next one.
 glm::dvec2 drawKey(Page& page, glm::dvec2 topLeft, Cover cover, std::string_view text) {
     constexpr int kWidth = 28, kHeight = 16;
     RgbaImage sample(kWidth, kHeight);
@@ -188,7 +187,7 @@ Page stageFigure(const StageView& view, const Camera& camera) {
     Page page(kWidth, kHeight);
     page.picture(view.draw(camera, kWidth, kHeight), {0, 0}, {kWidth, kHeight});
     for (std::size_t i = 0; i < view.actors.size(); ++i) {
-        // Above what is highest of him in the picture.
+        // The badge goes above his highest point in the picture.
         std::optional<glm::dvec2> highest;
         for (const glm::vec3& vertex : view.actors[i].mesh.vertices) {
             const auto at = camera.pixelAt(vertex, kWidth, kHeight);
@@ -202,7 +201,7 @@ Page stageFigure(const StageView& view, const Camera& camera) {
 Page shadowFigure(std::span<const ActorShadow> actors, const theatre::BitMask& target, std::span<const std::string> lines) {
     const Cropped cropped(actors, target);
     const glm::dvec2 size = cropped.fitting(760, 600);
-    const std::string several = "several at once", missed = "the target without shadow", out = "shadow beyond the target",
+    const std::string several = "several at once", missed = "target without shadow", out = "shadow beyond the target",
                       edge = "target";
     double column = 0;
     {
@@ -237,7 +236,7 @@ Page shadowFigure(std::span<const ActorShadow> actors, const theatre::BitMask& t
 }
 
 Page actorsFigure(std::span<const ActorShadow> actors, const theatre::BitMask& target) {
-    constexpr double kMostWidth = 1280;
+    constexpr double kMaxWidth = 1280;
     const Cropped cropped(actors, target);
     const glm::dvec2 size = cropped.fitting(380, 300);
     const Covers covers(cropped.actors, cropped.target);
@@ -252,7 +251,7 @@ Page actorsFigure(std::span<const ActorShadow> actors, const theatre::BitMask& t
         }
     }
     const glm::dvec2 cell(width + kMargin, 34 + size.y + 12 + static_cast<double>(lines) * kLine + kMargin);
-    const std::size_t columns = std::clamp<std::size_t>(static_cast<std::size_t>((kMostWidth - kMargin) / cell.x), 1,
+    const std::size_t columns = std::clamp<std::size_t>(static_cast<std::size_t>((kMaxWidth - kMargin) / cell.x), 1,
                                                         std::max<std::size_t>(1, actors.size()));
     const std::size_t rows = (actors.size() + columns - 1) / columns;
     Page page(static_cast<int>(std::ceil(static_cast<double>(columns) * cell.x + kMargin)),
@@ -274,18 +273,18 @@ Page actorsFigure(std::span<const ActorShadow> actors, const theatre::BitMask& t
 }
 
 Page solutionsFigure(std::span<const SolutionCell> solutions, const theatre::BitMask& target) {
-    constexpr double kMostShadow = 340, kMostWidth = 1480, kGap = 8;
+    constexpr double kMaxShadow = 340, kMaxWidth = 1480, kGap = 8;
     const glm::dvec2 view(kCellView);
     std::vector<Cropped> shadows;
     std::size_t lines = 0;
     double width = 0;
     for (const SolutionCell& solution : solutions) {
         shadows.emplace_back(solution.actors, target);
-        width = std::max(width, shadows.back().fitting(kMostShadow, view.y).x);
+        width = std::max(width, shadows.back().fitting(kMaxShadow, view.y).x);
         lines = std::max(lines, solution.lines.size());
     }
     const glm::dvec2 cell(view.x + kGap + width + kMargin, view.y + 16 + static_cast<double>(lines) * kLine + kMargin);
-    const std::size_t columns = std::clamp<std::size_t>(static_cast<std::size_t>((kMostWidth - kMargin) / cell.x), 1,
+    const std::size_t columns = std::clamp<std::size_t>(static_cast<std::size_t>((kMaxWidth - kMargin) / cell.x), 1,
                                                         std::max<std::size_t>(1, solutions.size()));
     const std::size_t rows = (solutions.size() + columns - 1) / columns;
     Page page(static_cast<int>(std::ceil(static_cast<double>(columns) * cell.x + kMargin)),
@@ -297,7 +296,7 @@ Page solutionsFigure(std::span<const SolutionCell> solutions, const theatre::Bit
         page.picture(solution.view, origin, origin + view);
         page.frame(origin, origin + view, kFrame);
         drawShadow(page, Covers(shadows[i].actors, cropped), cropped, origin + glm::dvec2(view.x + kGap, 0),
-                   shadows[i].fitting(kMostShadow, view.y), inkOf);
+                   shadows[i].fitting(kMaxShadow, view.y), inkOf);
         glm::dvec2 at = origin + glm::dvec2(0, view.y + 18);
         for (std::size_t line = 0; line < solution.lines.size(); ++line) {
             page.text(solution.lines[line], at, line == 0 ? kText + 2 : kText - 1, Anchor::Left);

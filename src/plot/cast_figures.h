@@ -1,5 +1,5 @@
 #pragma once
-// The figures of Won & Lee 2016 for a cast of one's own. All masks of a figure are of one size.
+// The figures of Won & Lee 2016 for any cast. All masks of a figure have the same size.
 
 #include "theatre/mask/bit_mask.h"
 
@@ -13,28 +13,28 @@
 
 namespace fantascope::plot {
 
-// What one actor throws on the screen; his colour is actorColour() of his place in the list.
+// One actor's shadow on the screen. His colour is actorColour() of his index in the list.
 struct ActorShadow {
     theatre::BitMask mask;
     std::string name;                // "actor 1, 1.75 m"
-    std::vector<std::string> notes;  // lines below him in actorsFigure()
+    std::vector<std::string> notes;  // lines below his picture in actorsFigure()
 };
 
-// The stage in 1280 pixels, each actor with his number.
+// The stage, 1280 pixels wide, with each actor's number.
 inline constexpr double kStageAspect = 2;
 Page stageFigure(const StageView& view, const Camera& camera);
 
-// The shadow by who throws it: each actor's colour, darker and mixed where several do; hatched in
-// red where the target is missed, in black what sticks out of it. With the target's outline, a
-// legend and these lines; as large as fits into 760 x 600 points, without the rows and columns in
-// which there is nothing. At most 63 actors.
+// The shadow, coloured by who throws it: in each actor's colour, darker and mixed where several do.
+// Missed parts of the target are hatched in red, shadow outside it in black. Has the target's
+// outline, a legend and `lines`. The picture is cropped to its content and scaled to fit into 760 x
+// 600 points. At most 63 actors.
 Page shadowFigure(std::span<const ActorShadow> actors, const theatre::BitMask& target, std::span<const std::string> lines);
 
 // Figure 9: each actor's shadow alone, the others' in grey.
 Page actorsFigure(std::span<const ActorShadow> actors, const theatre::BitMask& target);
 
 // Figure 8: solutions to choose from, each with a view of its stage (kCellView pixels), its shadow
-// and some lines, the first the largest.
+// and some lines, the first line in the largest font.
 inline constexpr glm::ivec2 kCellView{360, 240};
 struct SolutionCell {
     RgbaImage view;
@@ -43,7 +43,7 @@ struct SolutionCell {
 };
 Page solutionsFigure(std::span<const SolutionCell> solutions, const theatre::BitMask& target);
 
-// Pages below each other on one.
+// One page with all pages below each other.
 Page stacked(std::span<const Page> pages);
 
 }  // namespace fantascope::plot

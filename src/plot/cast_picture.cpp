@@ -20,7 +20,7 @@ std::vector<std::string> notesOf(const PoseSearch::Actor& actor) {
     notes.push_back(!actor.touches ? "does not touch the floor"
                     : margin >= 0  ? fmt::format("balanced with {:.1f} cm to spare", margin)
                                    : fmt::format("falls: {:.1f} cm off balance", -margin));
-    constexpr double kShown = 0.0005;  // metres; less is 0.0 cm
+    constexpr double kShown = 0.0005;  // metres; less would be shown as 0.0 cm
     notes.push_back(std::abs(actor.lowest) < kShown
                         ? "lowest point on the floor"
                         : fmt::format("lowest point {:.1f} cm {} the floor", 100 * std::abs(actor.lowest),
@@ -34,7 +34,7 @@ std::vector<std::string> notesOf(const PoseSearch::Actor& actor) {
 }  // namespace
 
 CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const double> dofs) {
-    FANTASCOPE_CHECK(problem.skins.size() == problem.actors.size(), "pictures of a cast show skins");
+    FANTASCOPE_CHECK(problem.skins.size() == problem.actors.size(), "every actor has a skin");
     const PoseSearch::Quality quality = PoseSearch::measure(problem, dofs);
     theatre::SceneEnergy scene(problem);
     scene.pose(dofs);

@@ -11,24 +11,25 @@
 
 namespace fantascope::plot {
 
-// Poses of a problem with skins as the figures of a cast take them.
+// The data of a cast's figures, from poses of a problem with skins.
 struct CastPicture {
-    // What is on a beam's screen, as it looks there.
+    // A beam's image on its screen.
     struct Image {
-        std::vector<ActorShadow>
-            actors;  // how each stands in his notes; after them, if there are any, all platforms and props as one
+        // Each actor's notes say how he stands. A last entry is for all platforms and props, if
+        // there are any.
+        std::vector<ActorShadow> actors;
         theatre::BitMask target;
-        std::vector<std::string> lines;  // how well the shadow fits, and whether everyone can stand so
+        std::vector<std::string> lines;  // how well the shadow fits, and whether everyone can stand like that
     };
     StageView view;
-    std::vector<Image> images;  // of each beam
+    std::vector<Image> images;  // one per beam
 
-    // shadowFigure() and actorsFigure() of each beam, below each other.
+    // The shadowFigure(), or the actorsFigure(), of all beams below each other.
     Page shadows() const;
     Page each() const;
 };
 
-// `dofs`: of all actors, one after the other.
+// `dofs`: all actors' degrees of freedom, one actor after the other.
 CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const double> dofs);
 
 }  // namespace fantascope::plot

@@ -13,33 +13,33 @@ constexpr double kText = 12;  // points
 constexpr Stroke kFrame{{0.2, 0.2, 0.2}, 1};
 constexpr Stroke kGrid{{0.88, 0.88, 0.88}, 1};
 
-// 0..1 along the axis.
+// The value's place on the axis, 0..1.
 double along(const Axis& axis, double value) {
     if (axis.logarithmic) return std::log(value / axis.from) / std::log(axis.to / axis.from);
     return (value - axis.from) / (axis.to - axis.from);
 }
 
-// What stands at a mark; a power of ten as one, for 0.0001 takes too much room.
-std::string markOf(const Axis& axis, double tick) {
+// A tick's label. Powers of ten are written as such, since 0.0001 takes too much room.
+std::string labelOf(const Axis& axis, double tick) {
     return axis.logarithmic && std::abs(std::log10(tick)) > 2.5 ? fmt::format("1e{}", std::lround(std::log10(tick)))
                                                                 : fmt::format("{:.4g}", tick);
 }
 
 }  // namespace
 
-std::vector<double> ticks(const Axis& axis, int most) {
+std::vector<double> ticks(const Axis& axis, int max) {
     std::vector<double> marks;
     if (axis.logarithmic) {
         const int first = static_cast<int>(std::ceil(std::log10(axis.from) - 1e-9)),
                   last = static_cast<int>(std::floor(std::log10(axis.to) + 1e-9));
-        const int step = std::max(1, (last - first + most) / std::max(1, most));
+        const int step = std::max(1, (last - first + max) / std::max(1, max));
         for (int exponent = first; exponent <= last; exponent += step) marks.push_back(std::pow(10, exponent));
         return marks;
     }
-    const double least = (axis.to - axis.from) / most, decade = std::pow(10, std::floor(std::log10(least)));
+    const double minStep = (axis.to - axis.from) / max, decade = std::pow(10, std::floor(std::log10(minStep)));
     double step = 10 * decade;
     for (const double round : {5, 2, 1})
-        if (round * decade >= least) step = round * decade;
+        if (round * decade >= minStep) step = round * decade;
     for (double i = std::ceil(axis.from / step - 1e-9); i * step <= axis.to + 1e-9 * step; ++i)
         marks.push_back(i * step + 0.0);  // never -0
     return marks;
@@ -64,7 +64,7 @@ Chart::Chart(Page& page, glm::dvec2 topLeft, glm::dvec2 bottomRight, Axis x, Axi
     for (const double tick : ticks(y_, std::max(2, static_cast<int>(size.y / 40)))) {
         const double at = bottomRight.y - along(y_, tick) * size.y;
         page.line({topLeft.x, at}, {bottomRight.x, at}, kGrid);
-        page.text(markOf(y_, tick), {topLeft.x - 6, at}, kText, Anchor::Right);
+        page.text(labelOf(y_, tick), {topLeft.x - 6, at}, kText, Anchor::Right);
     }
     page.frame(topLeft, bottomRight, kFrame);
     page.text(x_.label, {(topLeft.x + bottomRight.x) / 2, bottomRight.y + 2.4 * kText}, kText, Anchor::Middle);

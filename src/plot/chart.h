@@ -9,28 +9,28 @@
 namespace fantascope::plot {
 
 struct Axis {
-    double from = 0, to = 1;  // from < to; of a logarithmic one > 0
+    double from = 0, to = 1;  // from < to; on a logarithmic axis > 0
     std::string label;        // with its unit
     bool logarithmic = false;
 };
 
-// Where an axis has its marks: round numbers, some `most` of them at most; powers of ten on a
-// logarithmic one.
-std::vector<double> ticks(const Axis& axis, int most);
-// The smallest axis from 0 or below to 0 or above, with some room, that all values lie on.
+// An axis's tick values: round numbers, or powers of ten on a logarithmic axis. About `max` of them
+// at most.
+std::vector<double> ticks(const Axis& axis, int max);
+// An axis that contains 0 and all values, with a margin.
 Axis axisAround(std::span<const double> values, std::string label);
 
-// Two axes in a rectangle of a page. Points off the axes are cut at the rectangle.
+// Two axes in a rectangle of a page. The rectangle clips.
 class Chart {
 public:
-    // Draws frame, marks and labels; these stand outside the rectangle, 60 points left of it and 40
-    // below.
+    // Draws frame, ticks and labels. Labels need 60 points to the left of the rectangle and 40
+    // below it.
     Chart(Page& page, glm::dvec2 topLeft, glm::dvec2 bottomRight, Axis x, Axis y);
 
     void line(std::span<const glm::dvec2> points, const Stroke& stroke);
     void discs(std::span<const glm::dvec2> points, double radius, glm::dvec3 colour);
     void title(std::string_view text);
-    // A sample of a line and what it stands for; one below the other from the top right.
+    // Adds a line to the legend at the top right: a sample of the stroke and its meaning.
     void legend(std::string_view text, const Stroke& stroke);
 
 private:

@@ -12,7 +12,7 @@
 namespace fantascope::plot {
 namespace {
 
-// Neighbours share an edge, whatever the size.
+// Rounds so that neighbouring patches leave no gap, whatever the card's size.
 void patch(RgbaImage& card, glm::dvec2 low, glm::dvec2 high, Rgba8 colour) {
     const glm::dvec2 size(card.width(), card.height());
     const glm::ivec2 from(glm::round(low * size)), to(glm::round(high * size));
@@ -23,7 +23,7 @@ void patch(RgbaImage& card, glm::dvec2 low, glm::dvec2 high, Rgba8 colour) {
 RgbaImage bars(glm::ivec2 size) {
     RgbaImage card(size.x, size.y);
     constexpr std::uint8_t k75 = 191;
-    // Bit 2 is red, 1 green, 0 blue.
+    // `bits`: bit 2 is red, bit 1 green, bit 0 blue.
     const auto colour = [](int bits, std::uint8_t value) {
         const auto of = [&](int bit) { return (bits >> bit & 1) != 0 ? value : std::uint8_t{0}; };
         return Rgba8{of(2), of(1), of(0), 255};
@@ -58,7 +58,8 @@ RgbaImage ramp(glm::ivec2 size) {
             patch(card, {left, low}, {right, high}, {value, value, value, 255});
             const double font = std::min(24 * letters.unit(), (right - left) * size.x / 2.4);
             if (!row.labelled || font < 7) continue;
-            // No brighter than it must be: beside a bright letter nobody sees the darkest steps.
+            // Labels are no brighter than necessary: next to a bright letter the darkest steps are
+            // invisible.
             letters.text(std::to_string(stored), glm::dvec2((left + right) / 2 * size.x, high * size.y - 1.2 * font), font,
                          (stored < 128 ? stored + 56 : stored - 72) / 255.0);
         }

@@ -13,11 +13,11 @@
 namespace fantascope::plot {
 namespace {
 
-constexpr double kCell = 2;                     // the side of a cell, in sides of a square as large as a shape
-constexpr std::size_t kMostInstanceCells = 50;  // more would hide the picture
-constexpr double kText = 13;                    // points
+constexpr double kCell = 2;                    // side of a cell, in sides of a square with a shape's area
+constexpr std::size_t kMaxInstanceCells = 50;  // more would hide the picture
+constexpr double kText = 13;                   // points
 
-// From red over white to blue, dark at both ends; sRGB. -1 <= difference <= 1.
+// A colour scale from red through white to blue, dark at both ends; sRGB. -1 <= difference <= 1.
 glm::dvec3 diverging(double difference) {
     constexpr std::array<glm::dvec3, 3> kPattern{{{1, 1, 1}, {0.94, 0.42, 0.32}, {0.55, 0, 0.12}}},
         kGuide{{{1, 1, 1}, {0.35, 0.6, 0.87}, {0.03, 0.19, 0.5}}};
@@ -31,7 +31,7 @@ Rgba8 stored(glm::dvec3 colour) {
     return {byte(colour.r), byte(colour.g), byte(colour.b), 255};
 }
 
-// The side of a square as large as each instance is on the canvas, in canvas heights.
+// Per instance: the side of a square with its area on the canvas, in canvas heights.
 std::vector<double> sidesOf(const pattern::ShapePattern& pattern) {
     std::vector<pattern::Silhouette> silhouettes;
     for (const pattern::ElementalShape& shape : pattern.shapes) silhouettes.emplace_back(shape.mesh);
@@ -46,7 +46,7 @@ std::vector<double> sidesOf(const pattern::ShapePattern& pattern) {
     return sides;
 }
 
-// What the colours stand for, from -1 at the left to 1 at the right.
+// Draws the colour scale's legend, from -1 at the left to 1 at the right.
 void drawKey(Page& page, glm::dvec2 topLeft, glm::dvec2 bottomRight) {
     constexpr int kSteps = 200;
     RgbaImage colours(kSteps + 1, 1);
@@ -57,8 +57,8 @@ void drawKey(Page& page, glm::dvec2 topLeft, glm::dvec2 bottomRight) {
         page.text(fmt::format("{:g}", value), {glm::mix(topLeft.x, bottomRight.x, (value + 1) / 2), bottomRight.y + kText}, kText,
                   Anchor::Middle);
     const double middle = (topLeft.y + bottomRight.y) / 2;
-    page.text("pattern alone", {topLeft.x - 10, middle}, kText, Anchor::Right);
-    page.text("guide alone", {bottomRight.x + 10, middle}, kText, Anchor::Left);
+    page.text("only pattern", {topLeft.x - 10, middle}, kText, Anchor::Right);
+    page.text("only guide", {bottomRight.x + 10, middle}, kText, Anchor::Left);
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ RgbaImage differencePicture(const pattern::ShapePattern& pattern, const GreyImag
 Page differenceFigure(const pattern::ShapePattern& pattern, const GreyImage& guide) {
     constexpr Stroke kLattice{{0.36, 0.2, 0.08}, 0.8, 0.7}, kInstance{{0.93, 0.72, 0}, 1.6};
     constexpr double kMargin = 20, kBelow = 90, kWidth = 1200;
-    const double height = kWidth / pattern.aspect();  // also points a canvas height
+    const double height = kWidth / pattern.aspect();  // which is also the number of points per canvas height
     const glm::dvec2 origin(kMargin), end = origin + glm::dvec2(kWidth, height);
     Page page(static_cast<int>(kWidth + 2 * kMargin), static_cast<int>(std::lround(height + 2 * kMargin + kBelow)));
     page.picture(differencePicture(pattern, guide), origin, end);
@@ -89,7 +89,7 @@ Page differenceFigure(const pattern::ShapePattern& pattern, const GreyImage& gui
         for (double x = origin.x + cell; x < end.x; x += cell) page.line({x, origin.y}, {x, end.y}, kLattice);
         for (double y = origin.y + cell; y < end.y; y += cell) page.line({origin.x, y}, {end.x, y}, kLattice);
     }
-    const std::size_t step = std::max<std::size_t>(1, sides.size() / kMostInstanceCells);
+    const std::size_t step = std::max<std::size_t>(1, sides.size() / kMaxInstanceCells);
     for (std::size_t i = 0; i < sides.size(); i += step) {
         const glm::dvec2 centre = origin + height * pattern.instances[i].centre, half(kCell / 2 * sides[i] * height);
         page.frame(centre - half, centre + half, kInstance);
@@ -99,10 +99,10 @@ Page differenceFigure(const pattern::ShapePattern& pattern, const GreyImage& gui
 
     const double key = end.y + 22, middle = kMargin + kWidth / 2;
     drawKey(page, {middle - 200, key}, {middle + 200, key + 16});
-    page.text(fmt::format(
-                  "difference guide - pattern, of {}: brown the evaluation lattice, yellow the cells of every {} instance of {}",
-                  pattern.guide.filename().string(), step == 1 ? "" : fmt::format("{}th", step), sides.size()),
-              {middle, key + 58}, kText, Anchor::Middle);
+    page.text(
+        fmt::format("difference guide - pattern for {}; brown: evaluation lattice; yellow: the cells of every {} instance of {}",
+                    pattern.guide.filename().string(), step == 1 ? "" : fmt::format("{}th", step), sides.size()),
+        {middle, key + 58}, kText, Anchor::Middle);
     return page;
 }
 

@@ -22,10 +22,10 @@ using theatre::Fabrication;
 
 constexpr glm::vec3 kTable{0.80f, 0.83f, 0.87f}, kPlastic{0.55f, 0.53f, 0.50f};  // linear light
 
-constexpr double kPoint = 72 / 25.4;                  // points a millimetre of the paper
-constexpr int kPaperWidth = 842, kPaperHeight = 595;  // A4, lying
+constexpr double kPoint = 72 / 25.4;                  // points per millimetre of paper
+constexpr int kPaperWidth = 842, kPaperHeight = 595;  // A4, landscape
 constexpr double kBorder = 34, kText = 9, kLine = 14;
-constexpr double kColumn = 560;  // how wide side view and plan are; the screen and the figures stand beside them
+constexpr double kColumn = 560;  // width of side view and plan, points; the screen and the numbers stand beside them
 constexpr double kBar = 100;     // mm, on the paper
 constexpr Stroke kEdge{{0.1, 0.1, 0.1}, 1}, kThin{{0.45, 0.45, 0.45}, 0.6}, kRay{{0.85, 0.55, 0.1}, 0.8, 1, true};
 constexpr glm::dvec3 kLampColour{0.95, 0.65, 0.1};
@@ -39,7 +39,7 @@ struct Range {
     double middle() const { return 0.5 * (least + most); }
 };
 
-// The triangles as seen along an axis, filled: `u` and `v` name the print's axes that go right and
+// A filled view of the triangles along an axis. `u`, `v`: the print's axes that point right and
 // down or, with `isUp`, up.
 RgbaImage filledView(const TriangleMesh& mesh, int u, int v, bool isUp, const Range& across, const Range& along, double perMm) {
     const int width = std::max(1, static_cast<int>(std::ceil(across.size() * perMm))),
@@ -66,8 +66,8 @@ RgbaImage filledView(const TriangleMesh& mesh, int u, int v, bool isUp, const Ra
     return image;
 }
 
-// In the print's frame, millimetres; on the paper the lamp is on the left and the screen on the
-// right.
+// The sheet. Coordinates are in the print's frame, millimetres. On paper, the lamp is on the left
+// and the screen on the right.
 class Sheet {
 public:
     Sheet(const Fabrication& print, const theatre::PoseTarget& target) : print_(print), page_(kPaperWidth, kPaperHeight) {
@@ -88,7 +88,7 @@ public:
             frame_[0].add(place.x), frame_[1].add(place.z);
         }
         thereX_.add(wide_.least), thereX_.add(wide_.most), thereZ_.add(high_.most);
-        // The largest scale at which both views and the screen fit.
+        // Chooses the largest scale at which both views and the screen fit.
         constexpr double kRoom = 300;  // points of height for side view and plan
         const double beside = kPaperWidth - kColumn - 2 * kBorder;
         for (const double scale : kScales) {
@@ -105,7 +105,7 @@ public:
     }
 
     Page draw() {
-        page_.text("Where the print, its lamp and its screen stand", {kBorder, kBorder}, 14, Anchor::Left);
+        page_.text("Where to put the print, its lamp and its screen", {kBorder, kBorder}, 14, Anchor::Left);
         page_.text(fmt::format("Views 1:{:g}; distances in millimetres are exact.", scale_), {kBorder, kBorder + 18}, kText,
                    Anchor::Left);
         drawSide();
@@ -174,10 +174,10 @@ private:
         for (const double x : {wide_.least, wide_.most}) page_.line(plan(lamp), plan({x, print_.screen}), kRay);
         page_.line(plan(lamp), plan({lamp.x, print_.screen}), kThin);
         page_.disc(plan(lamp), 4, kLampColour);
-        page_.text("From above; what touches the plate in red", {left_, planTop_ - 10}, kText + 1, Anchor::Left);
+        page_.text("From above; red: what touches the plate", {left_, planTop_ - 10}, kText + 1, Anchor::Left);
     }
 
-    // As the audience at the lamp sees it.
+    // The screen as seen from the lamp.
     void drawScreen() {
         const double x = kBorder + kColumn + 10, top = kBorder + 60;
         const Range up{std::min(0.0, high_.least), std::max(high_.most, print_.light.z)};
@@ -226,10 +226,10 @@ private:
         page_.line({x, y}, {x + kBar * kPoint, y}, kEdge);
         for (int i = 0; i <= 10; ++i)
             page_.line({x + 10 * i * kPoint, y - (i % 10 == 0 ? 6 : 3)}, {x + 10 * i * kPoint, y}, kEdge);
-        page_.text("100 mm on this paper, if it was printed at 100 %", {x + kBar * kPoint + 8, y - 3}, kText, Anchor::Left);
+        page_.text("100 mm on paper if printed at 100 %", {x + kBar * kPoint + 8, y - 3}, kText, Anchor::Left);
     }
 
-    // Rows become columns.
+    // The image with rows and columns exchanged.
     static RgbaImage turned(const RgbaImage& image) {
         RgbaImage result(image.height(), image.width(), kPaper);
         for (int y = 0; y < image.height(); ++y)
@@ -240,10 +240,10 @@ private:
     const Fabrication& print_;
     Page page_;
     std::array<Range, 3> box_;        // of the print
-    Range thereX_, thereY_, thereZ_;  // of all that is drawn
+    Range thereX_, thereY_, thereZ_;  // of everything drawn
     Range wide_, high_;               // of the silhouette on the screen
     std::array<Range, 2> frame_;      // of the shadow's picture
-    double scale_ = 1, mm_ = kPoint;  // points a millimetre of the scene
+    double scale_ = 1, mm_ = kPoint;  // points per millimetre of the scene
     double left_ = 0, sideFloor_ = 0, planTop_ = 0, figuresTop_ = 0;
 };
 

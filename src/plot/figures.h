@@ -1,5 +1,5 @@
 #pragma once
-// The figures of Ji et al. 2015 for a pattern and for a search of one's own.
+// The figures of Ji et al. 2015 for any pattern and any search.
 
 #include "pattern/shape/shape_pattern.h"
 
@@ -12,32 +12,32 @@
 
 namespace fantascope::plot {
 
-// What guide and pattern differ by, R = I - I' (section 4.1), in the pattern's resolution: blue
-// where the guide alone has light, red where the pattern alone has, white where they agree.
-// `guide`: stored values, any resolution.
+// The difference of guide and pattern, R = I - I' (section 4.1), in the pattern's resolution: blue
+// where only the guide has light, red where only the pattern has, white where they agree. `guide`:
+// stored values, any resolution.
 RgbaImage differencePicture(const pattern::ShapePattern& pattern, const GreyImage& guide);
 
-// Figure 4c: that picture with the evaluation lattice and with the instance cells of a few
-// instances, in the sizes that the paper's method has them by default.
+// Figure 4c: that picture with the evaluation lattice and the cells of a few instances, in the
+// default sizes of the paper's method.
 Page differenceFigure(const pattern::ShapePattern& pattern, const GreyImage& guide);
 
-// A search's course, as its report has it: an entry an iteration.
+// A search's history from its report, with one entry per iteration.
 struct SearchHistory {
     std::string method;              // "paper" or "refined"
-    std::vector<double> zMin, zMax;  // of the candidates; of the refined method both are z
+    std::vector<double> zMin, zMax;  // of the candidates; both are z for the refined method
     std::vector<bool> accepted;
     double zBound = 0;
 };
-// Figure 5's plot: the lowest and the highest z of each iteration, and which iterations were
+// The plot of Figure 5: the lowest and the highest z of each iteration, and which iterations were
 // rejected.
 Page searchFigure(const SearchHistory& history);
 
-// Figure 6: how a few instances move in the first 20 s: their groups, they themselves, and both
-// together.
+// Figure 6: the movement of a few instances in the first 20 s: of their groups, their local
+// movement, and both together.
 Page trajectoriesFigure(const pattern::ShapePattern& pattern);
 
-// The power of excitation and movement over frequency, with the slope -2 beta of the model (section
-// 4.2, stage 1): of the groups' major axis and of the local translation.
+// The power spectra of excitation and movement, with the model's slope of -2 beta (section 4.2,
+// stage 1): for the groups' major axis and for local translation.
 Page spectrumFigure(const pattern::ShapePattern& pattern);
 
 // |X_i|^2 for bins 0 .. size / 2 of the samples' discrete Fourier transform.

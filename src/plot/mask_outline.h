@@ -8,10 +8,10 @@
 
 namespace fantascope::plot {
 
-// The line between white and black as closed rings (the first point comes again at the end),
-// through the middles of the pixels' sides, in pixels: around the white clockwise as seen, around
-// its holes anticlockwise. What is beyond the mask's edge is black. Pixels that touch at a corner
-// alone are apart.
+// The boundary between white and black as closed rings (the last point equals the first) through
+// the middles of the pixels' sides, in pixels. As seen, rings run clockwise around white and
+// anticlockwise around holes. Everything beyond the mask's edge is black. Pixels that touch only at
+// a corner are separate.
 std::vector<std::vector<glm::dvec2>> maskOutline(const theatre::BitMask& mask);
 
 }  // namespace fantascope::plot

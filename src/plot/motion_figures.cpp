@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array<glm::dvec3, 3> kColours{{{0.12, 0.35, 0.8}, {0.9, 0.45, 0.05}, {0.1, 0.55, 0.25}}};
 
-// Instances of different groups, as far as there are any; their indices.
+// The indices of a few instances, of different groups if possible.
 std::vector<std::size_t> aFewOf(const pattern::ShapePattern& pattern) {
     std::vector<std::size_t> few;
     std::vector<std::uint32_t> groups;
@@ -34,10 +34,11 @@ std::vector<std::size_t> aFewOf(const pattern::ShapePattern& pattern) {
 
 using Poses = std::vector<pattern::InstancePose>;
 
-// One row of Figure 6: a value of each of a few instances over time.
+// One row of Figure 6: a value of a few instances over time.
 struct Row {
     std::string title, label;
-    // Of an instance, from all poses in the usual wind and from those in which the groups rest.
+    // The value of an instance, from all poses in the default wind and from those with groups at
+    // rest.
     std::function<double(std::size_t instance, const Poses& all, const Poses& local)> value;
 };
 
@@ -60,7 +61,7 @@ std::vector<double> powerSpectrum(std::span<const double> samples) {
 Page trajectoriesFigure(const pattern::ShapePattern& pattern) {
     constexpr double kSeconds = 20, kStep = 1.0 / 60;
     const std::vector<std::size_t> few = aFewOf(pattern);
-    // What they do depends on no other instance.
+    // Their movement does not depend on other instances.
     pattern::ShapePattern shown = pattern;
     shown.instances.clear();
     for (const std::size_t index : few) shown.instances.push_back(pattern.instances[index]);
@@ -119,8 +120,8 @@ Page spectrumFigure(const pattern::ShapePattern& pattern) {
     const pattern::MotionSettings& motion = pattern.motion;
     const std::uint64_t id = pattern.instances.empty() ? 0 : pattern.instances[0].id;
     const std::uint64_t group = pattern.instances.empty() ? 0 : pattern.instances[0].group;
-    // Movement is drawn by seed and number: patterns that share those and the settings move alike,
-    // so the figure names them.
+    // Movement depends on the seed and on the number of group or instance. Patterns that share
+    // these and the settings move alike, so the figure names them.
     const std::array<Panel, 2> panels{
         {{fmt::format("seed {}, group {}, major direction", pattern.seed, group), motion.groupMajor,
           streamSeed(pattern.seed, {pattern::Stream::GroupMotion, group, 0})},
@@ -144,7 +145,7 @@ Page spectrumFigure(const pattern::ShapePattern& pattern) {
         // Relative to the excitation's first bin, where the model is 1.
         const std::vector<double> forcePower = powerSpectrum(force), movementPower = powerSpectrum(movement);
         const double step = motion.rate / motion.frames, last = motion.rate / 2;
-        double mean = 0;  // of what the first bins would be by the model
+        double mean = 0;  // of the first bins relative to the model
         for (int bin = 1; bin <= 10; ++bin) mean += forcePower[bin] * std::pow(bin, 2 * axis.beta) / 10;
         std::vector<glm::dvec2> forcePoints, movementPoints, model;
         for (std::size_t bin = 1; bin < forcePower.size(); ++bin) {

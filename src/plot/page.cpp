@@ -28,12 +28,13 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned count) {
 
 }  // namespace
 
-// What is drawn is kept, to be drawn again in whatever form is asked for.
+// Records what is drawn, to replay it in any format.
 struct Page::Cairo {
     Surface surface;
     Context context;
 
-    // On what writes to `bytes`, or is written to it as PNG; then into the file.
+    // Replays on `target`, whose output goes into `bytes`, finishes it and writes the bytes to the
+    // file.
     Result<void> drawOn(cairo_surface_t* target, const std::filesystem::path& file, std::string& bytes) const {
         {
             const Context copy(cairo_create(target));
@@ -68,7 +69,7 @@ void Page::line(std::span<const glm::dvec2> points, const Stroke& stroke) {
     cairo_set_dash(context, dashes.data(), stroke.dashed ? 2 : 0, 0);
     cairo_set_source_rgba(context, stroke.colour.r, stroke.colour.g, stroke.colour.b, stroke.opacity);
     cairo_set_line_width(context, stroke.width);
-    cairo_new_path(context);  // a text leaves a point behind
+    cairo_new_path(context);  // a text leaves a current point behind
     for (const glm::dvec2 point : points) cairo_line_to(context, point.x, point.y);
     cairo_stroke(context);
 }
@@ -113,7 +114,7 @@ void Page::picture(const RgbaImage& picture, glm::dvec2 topLeft, glm::dvec2 bott
     cairo_translate(context, topLeft.x, topLeft.y);
     cairo_scale(context, (bottomRight.x - topLeft.x) / picture.width(), (bottomRight.y - topLeft.y) / picture.height());
     cairo_set_source_surface(context, surface.get(), 0, 0);
-    cairo_pattern_set_extend(cairo_get_source(context), CAIRO_EXTEND_PAD);  // no blending with nothing at its edges
+    cairo_pattern_set_extend(cairo_get_source(context), CAIRO_EXTEND_PAD);  // no transparency at its edges
     cairo_rectangle(context, 0, 0, picture.width(), picture.height());
     cairo_fill(context);
     cairo_restore(context);
@@ -149,7 +150,7 @@ void Page::text(std::string_view text, glm::dvec2 at, double size, Anchor anchor
     if (upwards) cairo_rotate(context, -std::numbers::pi / 2);
     cairo_set_source_rgb(context, 0.1, 0.1, 0.1);
     cairo_set_font_size(context, size);
-    cairo_move_to(context, left, 0.36 * size);  // half of a capital's height
+    cairo_move_to(context, left, 0.36 * size);  // half of a capital letter's height
     cairo_show_text(context, std::string(text).c_str());
     cairo_restore(context);
 }
@@ -165,7 +166,7 @@ void Page::endClip() { cairo_restore(cairo_->context.get()); }
 bool Page::knows(const std::filesystem::path& file) { return file.extension() == ".png" || file.extension() == ".svg"; }
 
 Result<void> Page::write(const std::filesystem::path& file) const {
-    if (!knows(file)) return Error(fmt::format("{}: a plot's name ends in .png or .svg", file.string()));
+    if (!knows(file)) return Error(fmt::format("{}: a plot's name must end in .png or .svg", file.string()));
     std::string bytes;
     if (file.extension() == ".svg") {
         const Surface surface(cairo_svg_surface_create_for_stream(append, &bytes, width_, height_));
@@ -183,7 +184,7 @@ Result<void> Page::writeAsPaper(const std::filesystem::path& file) const {
         cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_PT);
         return cairo_->drawOn(surface.get(), file, bytes);
     }
-    if (file.extension() != ".pdf") return Error(fmt::format("{}: a paper's name ends in .pdf or .svg", file.string()));
+    if (file.extension() != ".pdf") return Error(fmt::format("{}: a sheet's name must end in .pdf or .svg", file.string()));
     const Surface surface(cairo_pdf_surface_create_for_stream(append, &bytes, width_, height_));
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");  // the same drawing, the same bytes
     return cairo_->drawOn(surface.get(), file, bytes);

@@ -21,11 +21,11 @@ struct Stroke {
     bool dashed = false;
 };
 
-// Which point of a text stands at the place that it is given.
+// Which point of a text lies at the given place.
 enum class Anchor { Left, Middle, Right };
 
-// A white page to draw on, in points from its top left, x right, y down; written as PNG (a pixel a
-// point) or SVG. What is drawn later lies on top. Thread: thread-bound.
+// A white page to draw on, in points from its top left, x right, y down. It can be written as PNG
+// (one pixel per point) or SVG. Later drawing lies on top. Thread: thread-bound.
 class Page {
 public:
     Page(int width, int height);
@@ -42,22 +42,23 @@ public:
     void box(glm::dvec2 topLeft, glm::dvec2 bottomRight, glm::dvec3 colour);
     void picture(const RgbaImage& picture, glm::dvec2 topLeft, glm::dvec2 bottomRight);
     void cover(glm::dvec2 topLeft, glm::dvec2 bottomRight, double opacity);  // with white
-    // All that is on another page.
+    // Draws everything that is on another page.
     void page(const Page& other, glm::dvec2 topLeft);
-    // The text's middle line stands at at.y; `upwards` turns it by 90 degrees about `at`.
+    // The text's middle line is at at.y. `upwards`: rotated by 90 degrees about `at`, reading
+    // upwards.
     void text(std::string_view text, glm::dvec2 at, double size, Anchor anchor, bool upwards = false);
     double textWidth(std::string_view text, double size) const;  // points
 
-    // What is drawn until end() shows inside the rectangle alone.
+    // Clips everything drawn until endClip() to the rectangle.
     void clip(glm::dvec2 topLeft, glm::dvec2 bottomRight);
     void endClip();
 
-    // By the name's end, .png or .svg; written aside and renamed. Error: another name, or the file
-    // cannot be written.
+    // Writes the format of the file's ending, .png or .svg, to a temporary file and renames it.
+    // Error: another ending, or the file cannot be written.
     Result<void> write(const std::filesystem::path& file) const;
-    // Whether write() knows what the name asks for.
+    // Whether write() knows the file's ending.
     static bool knows(const std::filesystem::path& file);
-    // In true size, a point being 1/72 inch: .pdf or .svg.
+    // The same in true size, with points of 1/72 inch: .pdf or .svg.
     Result<void> writeAsPaper(const std::filesystem::path& file) const;
 
 private:

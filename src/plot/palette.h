@@ -7,9 +7,9 @@
 
 namespace fantascope::plot {
 
-// A colour for each actor, sRGB 0..1, in all pictures the same; from the ninth on they come again.
-// After Okabe & Ito 2008 (told apart by the colour-blind too); black, which is the shadow's and the
-// outline's, gives way to a brown.
+// An actor's colour in all pictures, sRGB 0..1. Colours repeat after the eighth. After Okabe & Ito
+// 2008, whose colours colour-blind people can distinguish; brown replaces black, which is used for
+// shadow and outline.
 inline glm::dvec3 actorColour(std::size_t actor) {
     constexpr std::array<std::array<int, 3>, 8> kColours{{{230, 159, 0},
                                                           {86, 180, 233},

@@ -12,10 +12,10 @@
 namespace fantascope::plot {
 namespace {
 
-constexpr int kSamples = 3;       // a pixel has so many in each direction
-constexpr int kBand = 32;         // rows of pixels that are drawn at a time, to keep the buffers small
-constexpr double kNear = 0.05;    // metres; what is nearer to the camera is cut away
-constexpr float kSmooth = 0.65f;  // cosine of the angle between normals below which an edge is smooth
+constexpr int kSamples = 3;       // per pixel in each direction
+constexpr int kBand = 32;         // rows of pixels drawn at a time, to keep the buffers small
+constexpr double kNear = 0.05;    // metres; the near clipping plane
+constexpr float kSmooth = 0.65f;  // cosine: edges between normals at a smaller angle are smoothed
 
 struct Axes {
     glm::dvec3 right, up, forward;
@@ -26,7 +26,8 @@ Axes axesOf(const glm::dvec3& direction) {
     return {right, glm::cross(right, forward), forward};
 }
 
-// From a place to a picture: seen() has x right, y down, z forward, metres; at() pixels.
+// A camera's projection. seen(): a place in its frame, x right, y down, z forward, metres. at():
+// pixels.
 struct Lens {
     Lens(const Camera& camera, double width, double height)
         : axes(axesOf(camera.lookAt - camera.position)),
@@ -56,8 +57,7 @@ Corner between(const Corner& a, const Corner& b, double share) {
     return {glm::mix(a.seen, b.seen, share), glm::mix(a.place, b.place, s), glm::mix(a.normal, b.normal, s)};
 }
 
-// A triangle on the picture: attributes are linear in the picture once they are divided by the
-// depth.
+// A triangle in the picture. Attributes divided by the depth are linear in the picture.
 struct Drawn {
     std::array<glm::dvec2, 3> at;
     std::array<double, 3> nearness;  // 1 / depth
@@ -66,8 +66,8 @@ struct Drawn {
     std::size_t surface;
 };
 
-// Of each corner of each triangle: the mean of the normals around the vertex, of those that are
-// near to the triangle's own.
+// Per triangle and corner: the mean of those normals around the vertex that are close to the
+// triangle's own.
 std::vector<std::array<glm::vec3, 3>> normalsOf(const TriangleMesh& mesh) {
     std::vector<glm::vec3> areas, flat;
     std::vector<std::vector<std::size_t>> around(mesh.vertices.size());
@@ -90,7 +90,7 @@ std::vector<std::array<glm::vec3, 3>> normalsOf(const TriangleMesh& mesh) {
     return normals;
 }
 
-// The triangle without what is nearer than kNear: none, one or two triangles.
+// Clips the triangle at kNear, which leaves none, one or two triangles.
 void draw(const std::array<Corner, 3>& triangle, std::size_t surface, const Lens& lens, std::vector<Drawn>& drawn) {
     std::array<Corner, 4> kept;
     std::size_t count = 0;
@@ -114,7 +114,7 @@ void draw(const std::array<Corner, 3>& triangle, std::size_t surface, const Lens
     }
 }
 
-// Some rows of samples.
+// A band of rows of samples.
 class Band {
 public:
     Band(int width, int rows) : width_(width), rows_(rows) {
@@ -133,7 +133,7 @@ public:
         const double area = cross(b - a, c - a);
         if (area == 0) return;
         const auto [least, most] = std::minmax({a.x, b.x, c.x});
-        // The first sample whose middle is not before a place, of so many.
+        // The index of the first sample whose centre is not before `place`, at most `count`.
         const auto sampleFrom = [](double place, int count) {
             return static_cast<int>(std::ceil(std::clamp(place, 0.0, double(count)) - 0.5));
         };
@@ -141,8 +141,7 @@ public:
         const int left = sampleFrom(least, width_), right = sampleFrom(most, width_);
         const std::array<glm::dvec2, 3> starts{b, c, a}, sides{c - b, a - c, b - a};
         for (int y = from; y < to; ++y) {
-            // Where all three edges have the row on their inner side, and a sample more at each
-            // end.
+            // The range of samples inside all three edges, one sample wider at each end.
             double first = left, last = right;
             for (std::size_t edge = 0; edge < 3; ++edge) {
                 const double at = cross(sides[edge], glm::dvec2(0.5, first_ + y + 0.5) - starts[edge]) / area,
@@ -207,9 +206,9 @@ Camera Camera::fitting(std::span<const glm::dvec3> points, const glm::dvec3& dir
                        double margin) {
     const Axes axes = axesOf(direction);
     const double tall = std::tan(0.5 * fieldOfView) * (1 - margin), wide = tall * aspect;
-    // A point at (x, y, z) along the axes is between the left and the right side of the view from
-    // (cx, cy, cz) if |x - cx| <= wide (z - cz); so all are if cx - wide cz and cx + wide cz have
-    // room between these; the same upwards.
+    // A point (x, y, z) in the camera's axes is inside the view from (cx, cy, cz) horizontally if
+    // |x - cx| <= wide (z - cz). So cx - wide cz is at least the maximum of x - wide z, and cx +
+    // wide cz at most the minimum of x + wide z. The same holds vertically.
     constexpr double kFar = std::numeric_limits<double>::infinity();
     double left = kFar, right = -kFar, low = kFar, high = -kFar;
     for (const glm::dvec3& point : points) {
@@ -234,7 +233,7 @@ RgbaImage rendered(std::span<const Surface> surfaces, const Camera& camera, cons
             const TriangleMesh& mesh = surfaces[s].mesh;
             const auto normals = normalsOf(mesh);
             for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-                if (normals[i][0] == glm::vec3(0)) continue;  // it has no area
+                if (normals[i][0] == glm::vec3(0)) continue;  // the triangle has no area
                 std::array<Corner, 3> triangle;
                 for (std::size_t c = 0; c < 3; ++c) {
                     const glm::vec3 place = mesh.vertices[mesh.triangles[i][static_cast<int>(c)]];

@@ -27,7 +27,7 @@ Page searchFigure(const SearchHistory& history) {
     Chart chart(page, {80, 50}, {930, 480},
                 {0, std::max(1.0, static_cast<double>(count)), refined ? "iteration, of 1000 moves" : "iteration"}, z);
     chart.title(fmt::format("z over {} iterations of the {} method, {} {}", count, history.method, rejected.size(),
-                            refined ? "of them without gain" : "of them rejected"));
+                            refined ? "without gain" : "rejected"));
     const Stroke bound{kGrey, 1.2, 1, true};
     chart.line(std::vector<glm::dvec2>{{0, history.zBound}, {std::max(1.0, static_cast<double>(count)), history.zBound}}, bound);
     if (!refined) chart.line(highest, {kOrange, 1});
@@ -36,7 +36,7 @@ Page searchFigure(const SearchHistory& history) {
     if (!refined) chart.legend("highest z of the candidates", {kOrange});
     chart.legend(refined ? "z" : "lowest z of the candidates", {kBlue});
     chart.legend(refined ? "no better than before" : "rejected", {kRed});
-    chart.legend("the least z that white shapes on black can have", bound);
+    chart.legend("lower bound of z for white shapes on black", bound);
     return page;
 }
 

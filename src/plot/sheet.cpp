@@ -21,7 +21,7 @@ Sheet::Sheet(glm::ivec2 size)
     cairo_t* const c = context_.get();
     cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
     cairo_select_font_face(c, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_BOLD);
-    // Neither a monitor's sub-pixels nor hints: a text is the same picture wherever it stands.
+    // No sub-pixel rendering and no hinting: a text looks the same at any place.
     cairo_font_options_t* const options = cairo_font_options_create();
     cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
     cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
@@ -71,8 +71,8 @@ double Sheet::textWidth(const std::string& text, double size) {
     return extents.x_advance;
 }
 
-double Sheet::fontSize(const std::string& text, double width, double most) {
-    return std::min(most, width / std::max(textWidth(text, 1), 1e-3));
+double Sheet::fontSize(const std::string& text, double width, double max) {
+    return std::min(max, width / std::max(textWidth(text, 1), 1e-3));
 }
 
 void Sheet::text(const std::string& text, glm::dvec2 middle, double size, double value, bool rimmed) {
@@ -89,7 +89,7 @@ void Sheet::text(const std::string& text, glm::dvec2 middle, double size, double
     }
     grey(value);
     cairo_show_text(c, text.c_str());
-    cairo_new_path(c);  // a text leaves a point behind
+    cairo_new_path(c);  // a text leaves a current point behind
 }
 
 void Sheet::pixels(const std::function<int(int, int)>& value) {
@@ -102,7 +102,7 @@ void Sheet::pixels(const std::function<int(int, int)>& value) {
 }
 
 RgbaImage Sheet::image(glm::ivec2 size, glm::ivec2 origin, glm::ivec2 across, glm::ivec2 down) {
-    FANTASCOPE_CHECK(cairo_status(context_.get()) == CAIRO_STATUS_SUCCESS, "a text of a test picture is not UTF-8");
+    FANTASCOPE_CHECK(cairo_status(context_.get()) == CAIRO_STATUS_SUCCESS, "the texts of a test picture are UTF-8");
     cairo_surface_flush(surface_.get());
     RgbaImage image(size.x, size.y);
     for (int y = 0; y < size.y; ++y) {

@@ -1,5 +1,5 @@
 #pragma once
-// What the pictures for setting up a projector are drawn on.
+// The drawing surface of the pictures for setting up a projector.
 
 #include "media/image.h"
 
@@ -12,12 +12,12 @@
 #include <span>
 #include <string>
 
-struct _cairo;  // cairo's own names of a context and a surface
+struct _cairo;  // cairo's own names of its context and surface types
 struct _cairo_surface;
 
 namespace fantascope::plot {
 
-inline constexpr double kCapital = 0.73;  // height of a capital, of the font's size
+inline constexpr double kCapital = 0.73;  // height of a capital letter, as a share of the font size
 
 struct Box {
     glm::dvec2 low, high;
@@ -25,14 +25,14 @@ struct Box {
     glm::dvec2 middle() const { return (low + high) / 2.0; }
 };
 
-// A transparent sheet with what is drawn on it in grey. Pixels, y down.
+// A transparent sheet on which everything is drawn in grey. Pixels, y down.
 class Sheet {
 public:
     explicit Sheet(glm::ivec2 size);
 
     glm::ivec2 size() const { return size_; }
     Box all() const { return {glm::dvec2(0), glm::dvec2(size_)}; }
-    double unit() const { return unit_; }  // pixels: one where the picture has 1080 rows
+    double unit() const { return unit_; }  // pixels: one if the picture has 1080 rows
     double thin() const { return std::max(1.0, 1.5 * unit_); }
     _cairo* context() { return context_.get(); }
 
@@ -45,20 +45,20 @@ public:
     void addRing(glm::dvec2 centre, double radius);
 
     void stroke(double width, double value);
-    // Light with a dark rim: seen on any picture.
+    // A light line with a dark rim, visible on any picture.
     void rimmedStroke(double width, double value);
 
     double textWidth(const std::string& text, double size);
-    // The largest size, at most `most`, in which a text is no wider.
-    double fontSize(const std::string& text, double width, double most);
-    // The middle of its capitals stands at `middle`.
+    // The largest font size up to `max` at which `text` is no wider than `width`.
+    double fontSize(const std::string& text, double width, double max);
+    // The middle of its capital letters lies at `middle`.
     void text(const std::string& text, glm::dvec2 middle, double size, double value, bool rimmed = false);
 
-    // Row by row from the top left.
+    // Sets every pixel to the stored grey value(x, y), 0..255, row by row from the top left.
     void pixels(const std::function<int(int, int)>& value);
 
-    // `origin`: what pixel comes to the result's top left; `across`, `down`: the steps to its
-    // neighbours.
+    // A rotated or mirrored copy. `origin`: the pixel that becomes its top left one; `across`,
+    // `down`: the steps to that pixel's right and lower neighbours.
     RgbaImage image(glm::ivec2 size, glm::ivec2 origin, glm::ivec2 across, glm::ivec2 down);
 
 private:

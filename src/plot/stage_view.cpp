@@ -4,6 +4,7 @@
 
 #include "core/check.h"
 #include "core/geometry.h"
+#include "plot/contact_shade.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -20,16 +21,16 @@ namespace fantascope::plot {
 namespace {
 
 constexpr double kFieldOfView = radians(32), kMargin = 0.05;
-// Where the cameras look: 50 degrees from the first beam, 20 degrees down.
+// The view direction: 50 degrees from the first beam, 20 degrees down.
 const glm::dvec3 kFromAbove{-std::sin(radians(50)), -std::tan(radians(20)), -std::cos(radians(50))};
 constexpr double kLamp = 0.07;       // radius of the lamp, metres
-constexpr double kFloorReach = 9;    // from the stage's middle to where the floor has faded, metres
-constexpr float kGridLine = 0.008f;  // half of a line's width, metres
-constexpr double kOutline = 0.006;   // half of the outline's width, of the screen's height
-constexpr double kBase = 0.2;        // half the side of what the lamp's stand is on, metres
-constexpr double kFoot = 0.35;       // how far the screen's feet reach before and behind it, metres
-constexpr double kBar = 0.03;        // of the screen's frame, metres
-constexpr double kStrip = 0.1;       // the width of the flat strips that a curved screen is drawn in, metres
+constexpr double kFloorReach = 9;    // distance from the stage's middle at which the floor has faded, metres
+constexpr float kGridLine = 0.008f;  // half a line's width, metres
+constexpr double kOutline = 0.006;   // half the outline's width, as a share of the image's height
+constexpr double kBase = 0.2;        // half the side of a lamp stand's base, metres
+constexpr double kFoot = 0.35;       // length of a screen's feet in front of it and behind it, metres
+constexpr double kBar = 0.03;        // thickness of a screen's frame, metres
+constexpr double kStrip = 0.1;       // maximum width of the flat strips of a curved screen, metres
 
 // Linear light.
 constexpr glm::vec3 kBackground{0.80f, 0.83f, 0.87f}, kFloor{0.50f, 0.50f, 0.49f}, kGrid{0.36f, 0.37f, 0.38f};
@@ -48,11 +49,11 @@ void addFace(TriangleMesh& mesh, const glm::vec3& corner, const glm::vec3& u, co
     mesh.triangles.push_back({first, first + 2, first + 3});
 }
 
-void addBox(TriangleMesh& mesh, const glm::vec3& least, const glm::vec3& most) {
-    const glm::vec3 size = most - least, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
-    addFace(mesh, least, y, x), addFace(mesh, least + z, x, y);
-    addFace(mesh, least, z, y), addFace(mesh, least + x, y, z);
-    addFace(mesh, least, x, z), addFace(mesh, least + y, z, x);
+void addBox(TriangleMesh& mesh, const glm::vec3& low, const glm::vec3& high) {
+    const glm::vec3 size = high - low, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
+    addFace(mesh, low, y, x), addFace(mesh, low + z, x, y);
+    addFace(mesh, low, z, y), addFace(mesh, low + x, y, z);
+    addFace(mesh, low, x, z), addFace(mesh, low + y, z, x);
 }
 
 TriangleMesh ball(const glm::vec3& centre, float radius) {
@@ -71,80 +72,6 @@ TriangleMesh ball(const glm::vec3& centre, float radius) {
     return mesh;
 }
 
-// How much of the sky the things above hide from the floor, in a grid: the sum of the form factors
-// of their surfaces that face a place.
-class ContactShade {
-public:
-    explicit ContactShade(const StageView& view) {
-        glm::vec2 least(std::numeric_limits<float>::max()), most(-least);
-        forEachMesh(view, [&](const TriangleMesh& mesh) {
-            for (const glm::vec3& v : mesh.vertices) {
-                least = glm::min(least, glm::vec2(v.x, v.z));
-                most = glm::max(most, glm::vec2(v.x, v.z));
-            }
-        });
-        if (least.x > most.x) return;
-        origin_ = least - kReach;
-        const glm::vec2 cells = glm::ceil((most - least + 2 * kReach) / kCell);
-        shade_ = GreyImage(static_cast<int>(cells.x), static_cast<int>(cells.y));
-        forEachMesh(view, [&](const TriangleMesh& mesh) {
-            for (const glm::uvec3 t : mesh.triangles) add(mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z]);
-        });
-    }
-
-    // 0, or more; 1 where nothing of the sky is left
-    float at(const glm::vec3& place) const {
-        const glm::vec2 p = (glm::vec2(place.x, place.z) - origin_) / kCell - 0.5f;
-        const int x = static_cast<int>(std::floor(p.x)), y = static_cast<int>(std::floor(p.y));
-        if (x < 0 || y < 0 || x + 1 >= shade_.width() || y + 1 >= shade_.height()) return 0;
-        const glm::vec2 f = p - glm::vec2(x, y);
-        return glm::mix(glm::mix(shade_.at(x, y), shade_.at(x + 1, y), f.x),
-                        glm::mix(shade_.at(x, y + 1), shade_.at(x + 1, y + 1), f.x), f.y);
-    }
-
-private:
-    static constexpr float kCell = 0.05f, kReach = 0.6f;  // metres
-
-    template <class Visit>
-    static void forEachMesh(const StageView& view, Visit visit) {
-        for (const StageView::Actor& actor : view.actors) visit(actor.mesh);
-        for (const StageView::Actor& prop : view.props) visit(prop.mesh);
-    }
-
-    // A triangle in pieces no larger than a cell.
-    void add(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-        const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
-        const int steps = 1 + static_cast<int>(longest / kCell);
-        const glm::vec3 u = (b - a) / float(steps), v = (c - a) / float(steps), area = 0.5f * glm::cross(u, v);
-        for (int i = 0; i < steps; ++i)
-            for (int j = 0; i + j < steps; ++j) {
-                const glm::vec3 corner = a + float(i) * u + float(j) * v;
-                spread(corner + (u + v) / 3.0f, area);
-                if (i + j + 1 < steps) spread(corner + (u + v) * (2 / 3.0f), area);
-            }
-    }
-
-    // Adds the form factor cos cos' dA / (pi r^2), fading out at kReach. `area`: along the normal.
-    void spread(const glm::vec3& place, const glm::vec3& area) {
-        const float height = std::max(place.y, 0.0f);
-        if (height >= kReach) return;
-        const glm::vec2 at = (glm::vec2(place.x, place.z) - origin_) / kCell - 0.5f;
-        const glm::ivec2 least = glm::max(glm::ivec2(at - kReach / kCell), glm::ivec2(0)),
-                         most = glm::min(glm::ivec2(at + kReach / kCell), glm::ivec2(shade_.width(), shade_.height()) - 1);
-        for (int y = least.y; y <= most.y; ++y)
-            for (int x = least.x; x <= most.x; ++x) {
-                const glm::vec3 d(kCell * (at.x - float(x)), height, kCell * (at.y - float(y)));
-                const float r2 = std::max(glm::dot(d, d), 0.25f * kCell * kCell), fading = 1 - r2 / (kReach * kReach);
-                const float facing = -glm::dot(d, area);
-                if (facing <= 0 || fading <= 0) continue;
-                shade_.at(x, y) += height * facing / (glm::pi<float>() * r2 * r2) * fading;
-            }
-    }
-
-    glm::vec2 origin_{0};
-    GreyImage shade_;
-};
-
 // A rectangle of the unrolled screen.
 struct Extent {
     glm::dvec2 leftTop, rightBottom;
@@ -154,7 +81,7 @@ Extent extentOf(const theatre::ScreenFrame& frame) {
     return {frame.metresAt({0, 0}), frame.metresAt({frame.width(), frame.height()})};
 }
 
-// The smallest rectangle of pixels around what is white; all if nothing is.
+// The bounding box of the white pixels; all pixels if none is white.
 Extent extentOfWhite(const theatre::ScreenFrame& frame, const theatre::BitMask& mask) {
     if (mask.count() == 0) return extentOf(frame);
     int left = mask.width(), right = 0, top = mask.height(), bottom = 0;
@@ -167,26 +94,26 @@ Extent extentOfWhite(const theatre::ScreenFrame& frame, const theatre::BitMask& 
     return {frame.metresAt({left, top}), frame.metresAt({right, bottom})};
 }
 
-// A screen with the images that are on it.
+// A screen with the images on it.
 struct ShownScreen {
     const theatre::Screen& screen;
     std::vector<std::size_t> beams;
-    Extent extent;  // of all
+    Extent extent;  // of all images
 
-    // A place of it, or one so far before it; on the stage.
+    // A place on the screen, or in front of it by `before`, in the stage's frame.
     glm::dvec3 at(double along, double up, double before = 0) const {
         glm::dvec3 place = screen.surface({along, up});
         const double angle = screen.isCurved() ? along / screen.radius : 0;
         place += before * glm::dvec3(-std::sin(angle), 0, std::cos(angle));
         return screen.stageFromScreen(place);
     }
-    // The place along it and up of a point of it.
+    // Maps a point of the screen to (along, up).
     glm::dvec2 unrolled(const glm::dvec3& point) const {
         const glm::dvec3 p = screen.screenFromStage(point);
         if (!screen.isCurved()) return {p.x, p.y};
         return {screen.radius * std::atan2(p.x / screen.radius, 1 - p.z / screen.radius), p.y};
     }
-    // Where it is cut into strips, each flat enough.
+    // Divides from .. to into strips that are flat enough.
     std::vector<double> cuts(double from, double to) const {
         const int strips = screen.isCurved() ? std::max(1, static_cast<int>(std::ceil((to - from) / kStrip))) : 1;
         std::vector<double> all;
@@ -214,7 +141,7 @@ std::vector<ShownScreen> screensOf(const StageView& view) {
     return screens;
 }
 
-// Between the values at pixel centres; beyond the edge as at the edge.
+// Interpolates between pixel centres; beyond the edge, the edge's value.
 float sampled(const GreyImage& image, const glm::vec2& pixel) {
     const glm::vec2 p = pixel - 0.5f, low = glm::floor(p), f = p - low;
     const auto at = [&](int x, int y) {
@@ -224,7 +151,7 @@ float sampled(const GreyImage& image, const glm::vec2& pixel) {
     return glm::mix(glm::mix(at(x, y), at(x + 1, y), f.x), glm::mix(at(x, y + 1), at(x + 1, y + 1), f.x), f.y);
 }
 
-// The vectors are towards the lights.
+// The colour of a matt surface under two lights and the sky.
 glm::vec3 matt(const glm::vec3& colour, const glm::vec3& normal, const glm::vec3& toCamera) {
     static const glm::vec3 key = glm::normalize(glm::vec3(-0.35f, 0.75f, 0.65f)),
                            fill = glm::normalize(glm::vec3(0.9f, 0.25f, 0.2f));
@@ -232,7 +159,7 @@ glm::vec3 matt(const glm::vec3& colour, const glm::vec3& normal, const glm::vec3
     const glm::vec3 light = 0.95f * std::max(0.0f, glm::dot(normal, key)) * glm::vec3(1.0f, 0.97f, 0.9f) +
                             0.18f * std::max(0.0f, glm::dot(normal, fill)) * glm::vec3(0.85f, 0.93f, 1.0f) +
                             glm::mix(glm::vec3(0.10f, 0.095f, 0.09f), glm::vec3(0.27f, 0.28f, 0.30f), sky);
-    const float rim = std::max(0.0f, glm::dot(normal, toCamera));  // a little darker where the surface turns away
+    const float rim = std::max(0.0f, glm::dot(normal, toCamera));  // silhouettes are a little darker
     return colour * light * glm::mix(0.72f, 1.0f, glm::smoothstep(0.0f, 0.55f, rim));
 }
 
@@ -244,7 +171,7 @@ Surface mattSurface(TriangleMesh mesh, const glm::vec3& colour, const glm::vec3&
 
 Surface floorOf(const StageView& view, const ContactShade& contact) {
     const glm::vec3 middle(float(view.stage.beams[0].light.x), 0, float(0.45 * view.stage.beams[0].light.z));
-    // As far as the farthest lamp after the first.
+    // The floor extends to the farthest light.
     float reach = static_cast<float>(kFloorReach);
     for (const theatre::Stage::Beam& beam : std::span(view.stage.beams).subspan(1))
         reach = std::max(reach, 1.5f * glm::distance(middle, glm::vec3(beam.light)));
@@ -259,13 +186,13 @@ Surface floorOf(const StageView& view, const ContactShade& contact) {
             }};
 }
 
-// How one beam lights a screen's places, given unrolled.
+// How one beam lights a screen. Places are on the unrolled screen.
 struct Lighting {
     theatre::ScreenFrame frame;
     GreyImage shadow, target;  // signed distances, pixels
     bool hasTarget = false;
     glm::dvec3 light;  // in the screen's frame
-    float half = 0;    // of the outline's width, metres
+    float half = 0;    // half the outline's width, metres
 
     Lighting(const StageView& view, std::size_t beam)
         : frame(view.images[beam].frame),
@@ -282,7 +209,7 @@ struct Lighting {
         const glm::vec3 cloth = kCloth / (1 + falloff * falloff);
         return isIn ? glm::mix(cloth, kShadow, glm::smoothstep(-0.5f, 0.5f, sampled(shadow, glm::vec2(pixel)))) : cloth;
     }
-    // How much of the target's outline is there.
+    // The opacity of the target's outline, 0..1.
     float outline(const glm::dvec2& place) const {
         const auto pixel = static_cast<float>(frame.pixel());
         const float off = std::abs(sampled(target, glm::vec2(frame.pixelAt(place.x, place.y)))) * pixel;
@@ -311,21 +238,21 @@ Surface surfaceOf(const StageView& view, const ShownScreen& shown) {
             }};
 }
 
-// A box in a frame of its own, brought to the stage vertex by vertex.
+// Adds a box given in another frame, which `toStage` maps to the stage.
 template <class ToStage>
-void addBox(TriangleMesh& mesh, const glm::vec3& least, const glm::vec3& most, ToStage toStage) {
+void addBox(TriangleMesh& mesh, const glm::vec3& low, const glm::vec3& high, ToStage toStage) {
     const std::size_t first = mesh.vertices.size();
-    addBox(mesh, least, most);
+    addBox(mesh, low, high);
     for (std::size_t i = first; i < mesh.vertices.size(); ++i) mesh.vertices[i] = toStage(mesh.vertices[i]);
 }
 
-// The screens' frames and their feet, and what the lamps stand on.
+// The screens' frames and feet, and the lamps' stands.
 TriangleMesh standsOf(const StageView& view) {
     TriangleMesh mesh;
     const auto bar = static_cast<float>(kBar), foot = static_cast<float>(kFoot);
     for (const ShownScreen& shown : screensOf(view)) {
         const auto toStage = [&](const glm::vec3& v) { return glm::vec3(shown.at(v.x, v.y, v.z)); };
-        const auto add = [&](const glm::vec3& least, const glm::vec3& most) { addBox(mesh, least, most, toStage); };
+        const auto add = [&](const glm::vec3& low, const glm::vec3& high) { addBox(mesh, low, high, toStage); };
         const float left = float(shown.extent.leftTop.x), right = float(shown.extent.rightBottom.x),
                     top = float(shown.extent.leftTop.y);
         add({left - bar, 0, -bar}, {left, top + bar, bar});
@@ -339,7 +266,7 @@ TriangleMesh standsOf(const StageView& view) {
         const theatre::Screen& screen = view.stage.screenOf(i);
         const glm::vec3 light(view.stage.lightOnScreen(i));
         const auto toStage = [&](const glm::vec3& v) { return glm::vec3(screen.stageFromScreen(v)); };
-        const auto add = [&](const glm::vec3& least, const glm::vec3& most) { addBox(mesh, least, most, toStage); };
+        const auto add = [&](const glm::vec3& low, const glm::vec3& high) { addBox(mesh, low, high, toStage); };
         add(light + glm::vec3(-1.5f * lamp, -1.5f * lamp, 1.2f * lamp), light + glm::vec3(1.5f * lamp, 1.5f * lamp, 3.2f * lamp));
         if (light.y <= 3 * lamp) continue;
         add({light.x - 0.015f, 0, light.z + 2 * lamp}, {light.x + 0.015f, light.y, light.z + 2 * lamp + 0.03f});
@@ -353,7 +280,7 @@ Surface glowing(TriangleMesh mesh, const glm::vec3& colour, float opacity) {
     return {std::move(mesh), [=](const glm::vec3&, const glm::vec3&) { return glm::vec4(colour, opacity); }, opacity < 1};
 }
 
-// A thin bar with three sides.
+// Adds a thin three-sided bar.
 void addRay(TriangleMesh& mesh, const glm::vec3& from, const glm::vec3& to) {
     constexpr float kWidth = 0.012f;
     const glm::vec3 along = glm::normalize(to - from), side = kWidth * glm::normalize(glm::cross(along, glm::vec3(0, 1, 0)));
@@ -362,11 +289,11 @@ void addRay(TriangleMesh& mesh, const glm::vec3& from, const glm::vec3& to) {
     for (std::size_t i = 0; i < 3; ++i) addFace(mesh, from + around[i], to - from, around[(i + 1) % 3] - around[i]);
 }
 
-// The pyramid from a lamp to the box around its target: its sides, barely seen, and its edges.
+// Adds the pyramid from a lamp to the bounding box of its target: faint sides, and edges.
 void addBeam(const StageView& view, const ShownScreen& shown, std::size_t beam, std::vector<Surface>& surfaces) {
     const Extent box = extentOfWhite(view.images[beam].frame, view.images[beam].target);
     const glm::vec3 light(view.stage.beams[beam].light);
-    std::vector<glm::vec3> around;  // the box, clockwise from its left top
+    std::vector<glm::vec3> around;  // the box's border, clockwise from its top left
     const std::vector<double> cuts = shown.cuts(box.leftTop.x, box.rightBottom.x);
     for (const double x : cuts) around.emplace_back(shown.at(x, box.leftTop.y));
     for (auto x = cuts.rbegin(); x != cuts.rend(); ++x) around.emplace_back(shown.at(*x, box.rightBottom.y));
@@ -382,7 +309,7 @@ void addBeam(const StageView& view, const ShownScreen& shown, std::size_t beam, 
     surfaces.push_back(glowing(std::move(edges), kGlow, 0.5f));
 }
 
-// A disc that faces the camera, fading outwards.
+// A disc that faces the camera and fades outwards.
 Surface haloOf(const glm::vec3& light, const glm::vec3& camera) {
     constexpr float kRadius = 0.55f;
     const glm::vec3 towards = glm::normalize(camera - light), side = glm::normalize(glm::cross(towards, glm::vec3(0, 1, 0)));
@@ -397,7 +324,7 @@ Surface haloOf(const glm::vec3& light, const glm::vec3& camera) {
             true};
 }
 
-// What a camera must see.
+// Points that must be in every camera's picture.
 std::vector<glm::dvec3> peopleAndScreens(const StageView& view) {
     std::vector<glm::dvec3> points;
     for (const ShownScreen& shown : screensOf(view)) {
@@ -424,7 +351,7 @@ void addLamps(const StageView& view, std::vector<glm::dvec3>& points) {
     }
 }
 
-// From the side from which more screens are seen from before.
+// The view direction from the side that shows more screens from the front.
 glm::dvec3 fromAbove(const StageView& view) {
     const glm::dvec3 mirrored(-kFromAbove.x, kFromAbove.y, kFromAbove.z);
     const auto seen = [&](const glm::dvec3& look) {

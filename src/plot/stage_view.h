@@ -13,9 +13,9 @@
 
 namespace fantascope::plot {
 
-// What an outsider would see on the stage of a shadow theatre: each lamp and its beam to the
-// target, the actors on the floor, and behind them the screens with their shadows and the targets'
-// outlines in red. Metres, the stage's frame.
+// An outside view of a shadow theatre's stage: each lamp and its beam to the target, the actors on
+// the floor, and behind them the screens with their shadows and the targets' outlines in red.
+// Metres, the stage's frame.
 struct StageView {
     struct Actor {
         TriangleMesh mesh;
@@ -23,24 +23,24 @@ struct StageView {
     };
 
     theatre::Stage stage;
-    // What is on a beam's screen, as it looks there: unrolled.
+    // A beam's image on its screen, unrolled if that is curved.
     struct Image {
         theatre::ScreenFrame frame;
         theatre::BitMask shadow, target;  // both of the frame's size
     };
-    std::vector<Image> images;  // of each beam
+    std::vector<Image> images;  // one per beam
     std::vector<Actor> actors;
-    std::vector<Actor> props{};  // platforms and whatever else stands there
+    std::vector<Actor> props{};  // platforms and props
 
-    // Cameras for a picture of this aspect: from behind the first lamp, from above and the right,
-    // or the left if that shows more screens from before; the same, near, with people and screens,
-    // but not the lamps; and from the right, with all.
+    // Cameras for a picture of this aspect. overview(): from behind the first lamp, from above and
+    // the right, or from the left if that shows more screens from the front. closeUp(): the same
+    // direction, but near, without the lamps. fromTheSide(): everything, from the right.
     Camera overview(double aspect) const;
     Camera closeUp(double aspect) const;
     Camera fromTheSide(double aspect) const;
 
-    // Opaque. The floor has a line a metre and is darker where something stands close above it.
-    // Thread: reentrant.
+    // The picture is opaque. The floor has a grid of 1 m and is darker close below things. Thread:
+    // reentrant.
     RgbaImage draw(const Camera& camera, int width, int height) const;
 };
 

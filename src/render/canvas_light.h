@@ -6,16 +6,16 @@
 
 namespace fantascope::render {
 
-// Light that adds up in a picture of the canvas, shown in one colour through the output's warp.
-// Thread: the context's.
+// Light that is accumulated in a picture of the canvas and then shown in one colour through the
+// output's warp. Thread: the context's.
 class CanvasLight {
 public:
-    // `aspect`: the canvas's; `colour`: of as much light as 1 in that picture, linear. Errors as
-    // makeDrawnSource().
+    // `aspect`: of the canvas. `colour`: linear light that a value of 1 in that picture stands for.
+    // Errors as makeDrawnSource().
     static Result<CanvasLight> create(double aspect, glm::vec3 colour, const CanvasPlace& place, DrawingTools& tools);
 
     void follow(const CanvasPlace& place) { painter_.follow(place); }
-    // add() draws the light. `picture` is begun by this.
+    // Begins `picture`, and paints into it the light that add() draws.
     template <class Add>
     void paint(gpu::LayerPicture& picture, Add add) {
         canvas_.begin();

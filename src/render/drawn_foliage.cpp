@@ -14,8 +14,8 @@
 namespace fantascope::render {
 namespace {
 
-// A blur of less than a pixel is none: the layer's samples smooth its edges as much.
-constexpr double kLeastBlur = 1;
+// A blur of less than a pixel is left out: a sharp layer's samples smooth its edges as much.
+constexpr double kMinBlur = 1;
 
 // One layer of leaves, blurred.
 class BlurredLayer {
@@ -26,8 +26,8 @@ public:
         auto convolution = TRY(gpu::Convolution::create(grid.size, grid.filter, grid.block, tools.samples, tools.programs));
         const glm::ivec2 painted = grid.block * (grid.size + 2 * convolution.margin());
         auto picture = TRY(gpu::LayerPicture::create(painted, tools.samples));
-        // OpenGL has its row 0 at the bottom: the canvas is painted upside down, so that the
-        // picture's row 0 is its top.
+        // OpenGL's row 0 is at the bottom. The canvas is painted upside down, so that row 0 of its
+        // picture is its top.
         WarpShape upsideDown{.corners = rectangleCorners(grid.block * aspect / grid.pitch, grid.block / grid.pitch)};
         for (glm::dvec2& corner : upsideDown.corners) {
             corner += glm::dvec2(grid.block * (convolution.margin() + 1));
@@ -95,7 +95,7 @@ private:
     glm::vec3 dark_, bright_;
     std::vector<BlurredLayer> blurred_;
     std::vector<gpu::CanvasPainter::Picture> pictures_;
-    std::vector<DrawnInstances> sharp_;  // all in one picture: what is covered twice is as dark as what is covered once
+    std::vector<DrawnInstances> sharp_;  // all in one picture: covered twice is as dark as covered once
     std::optional<gpu::LayerPicture> sharpPicture_;
     gpu::CanvasPainter painter_;
 };
@@ -109,7 +109,7 @@ Result<std::unique_ptr<DrawnSource>> makeDrawnFoliage(const FoliageSource& sourc
     std::vector<BlurredLayer> blurred;
     std::vector<DrawnInstances> sharp;
     for (const ShadowLayer& layer : source.layers) {
-        if (layer.holes || layer.filter.width * rows >= kLeastBlur)
+        if (layer.holes || layer.filter.width * rows >= kMinBlur)
             blurred.push_back(TRY(BlurredLayer::create(layer, rows, tools)));
         else
             sharp.emplace_back(layer.leaves, place, tools.bend);

@@ -20,7 +20,7 @@ namespace {
 using Facet = gpu::SpotPainter::Facet;
 
 constexpr std::uint64_t kSeed = 1;
-constexpr double kAskew = radians(0.6);  // the standard deviation of a mirror that somebody glued on
+constexpr double kAskew = radians(0.6);  // standard deviation of the angle of a mirror glued on by hand
 
 class DrawnMirrorBall : public DrawnSource {
 public:
@@ -53,7 +53,7 @@ std::vector<Facet> mirrorFacets(double radius, double facet) {
         for (long i = 0; i < count; ++i) {
             const double angle = 2 * std::numbers::pi * (static_cast<double>(i) + begin) / static_cast<double>(count);
             const glm::dvec3 outwards(std::sin(polar) * std::sin(angle), std::cos(polar), std::sin(polar) * std::cos(angle));
-            const glm::dvec3 askew{rng.normal(), rng.normal(), rng.normal()};  // drawn in this order
+            const glm::dvec3 askew{rng.normal(), rng.normal(), rng.normal()};  // braces keep the order of the draws
             facets.push_back({outwards, glm::normalize(outwards + kAskew * askew)});
         }
     }

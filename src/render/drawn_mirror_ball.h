@@ -7,13 +7,13 @@
 
 namespace fantascope::render {
 
-// The mirrors of a ball: rings of squares from pole to pole, each ring begun somewhere else and
-// each mirror a little askew, as if glued on by hand; always the same for the same measures.
-// `radius` and `facet` in one unit.
+// The mirrors of a ball: rings of squares from pole to pole. Each ring starts at another angle and
+// each mirror is a little askew, as if glued on by hand. The same arguments give the same mirrors.
+// `radius` and `facet`: in the same unit.
 std::vector<gpu::SpotPainter::Facet> mirrorFacets(double radius, double facet);
 
-// The spots of a turning mirror ball: every facet mirrors the lamp and throws it on the wall.
-// Errors as makeDrawnSource().
+// The spots of a turning mirror ball: every facet reflects the lamp onto the wall. Errors as
+// makeDrawnSource().
 Result<std::unique_ptr<DrawnSource>> makeDrawnMirrorBall(const MirrorBallSource& source, const CanvasPlace& place,
                                                          DrawingTools& tools);
 

@@ -16,9 +16,9 @@
 namespace fantascope::render {
 namespace {
 
-// The most texels of a picture that a pixel covers along a side: by the keystone nowhere more than
-// in one of the corners.
-double mostTexels(const CanvasPlace& place, glm::ivec2 size) {
+// The maximum number of texels along a side that a pixel covers. With a keystone, it is reached in
+// one of the corners.
+double maxTexels(const CanvasPlace& place, glm::ivec2 size) {
     constexpr double kStep = 1e-3;  // pixels
     const Homography canvasFromProjector = place.warp.keystone().inverse();
     double most = 0;
@@ -30,15 +30,13 @@ double mostTexels(const CanvasPlace& place, glm::ivec2 size) {
     return most;
 }
 
-// A texture on the canvas.
 struct PictureOnCanvas {
     gpu::PictureTexture texture;
     gpu::PicturePainter painter;
 
     static Result<PictureOnCanvas> create(glm::ivec2 size, const CanvasPlace& place, const gpu::Bend& bend, DrawingTools& tools) {
-        // Where a mesh bends the canvas besides, or the warp changes while the show runs, a pixel
-        // covers a little more.
-        const bool small = 2 * mostTexels(place, size) > gpu::PicturePainter::kMostTaps;
+        // Twice: a mesh, or a warp that changes while the show runs, can make a pixel cover more.
+        const bool small = 2 * maxTexels(place, size) > gpu::PicturePainter::kMaxTaps;
         auto texture = TRY(gpu::PictureTexture::create(size, small ? gpu::Mipmaps::All : gpu::Mipmaps::None));
         auto painter = TRY(gpu::PicturePainter::create(bend, tools.programs));
         painter.follow(place);

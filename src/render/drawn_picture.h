@@ -4,13 +4,13 @@
 
 namespace fantascope::render {
 
-// Pictures that fill the canvas: they keep no shape of their own, their corners lie on the
-// canvas's. Errors as makeDrawnSource().
+// Pictures that fill the canvas of `place`, corner to corner, whatever their aspect. Errors as
+// makeDrawnSource().
 Result<std::unique_ptr<DrawnSource>> makeDrawnImage(const ImageSource& source, const CanvasPlace& place, DrawingTools& tools);
 Result<std::unique_ptr<DrawnSource>> makeDrawnVideo(const VideoSource& source, const CanvasPlace& place, DrawingTools& tools);
 Result<std::unique_ptr<DrawnSource>> makeDrawnCamera(const CameraSource& source, const CanvasPlace& place, DrawingTools& tools);
 
-// A picture from edge to edge of an output of `size` pixels, whatever its warp.
+// A picture that fills an output of `size` pixels, without its warp.
 Result<std::unique_ptr<DrawnSource>> makeDrawnCard(const ImageSource& source, glm::ivec2 size, DrawingTools& tools);
 
 }  // namespace fantascope::render

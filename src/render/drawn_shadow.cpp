@@ -24,7 +24,7 @@ namespace {
 
 using gpu::ShadowCaster;
 using theatre::BodyMesh;
-static_assert(BodyMesh::kInfluences == 4 && BodyMesh::kMostJoints == ShadowCaster::kMostJoints);
+static_assert(BodyMesh::kInfluences == 4 && BodyMesh::kMostJoints == ShadowCaster::kMaxJoints);
 
 ShadowCaster::Piece pieceOf(const BodyMesh& skin) {
     ShadowCaster::Piece piece{{}, skin.atRest.triangles, true};
@@ -36,15 +36,15 @@ ShadowCaster::Piece pieceOf(const BodyMesh& skin) {
     return piece;
 }
 
-// A thing that moves as a whole. Artists' meshes need not be closed.
+// A rigid thing. Artists' meshes need not be closed.
 ShadowCaster::Piece pieceOf(const TriangleMesh& thing) {
     ShadowCaster::Piece piece{{}, thing.triangles, false};
     for (const glm::vec3& vertex : thing.vertices) piece.vertices.push_back({vertex, {}, {1, 0, 0, 0}});
     return piece;
 }
 
-// Where a lamp shines from, in the screen's frame: spread evenly over its disc (Vogel 1979), or its
-// middle alone.
+// A lamp's points of light in the screen's frame: evenly distributed over its disc (Vogel 1979), or
+// only its centre.
 std::vector<glm::dvec3> pointsOf(const ShadowSource::Lamp& lamp, int samples, const theatre::Screen& screen) {
     const glm::dvec3 middle = screen.screenFromStage(lamp.place);
     if (lamp.size <= 0) return {middle};
@@ -57,17 +57,19 @@ std::vector<glm::dvec3> pointsOf(const ShadowSource::Lamp& lamp, int samples, co
     return points;
 }
 
-// From a point of light onto the flat screen at z = 0 of its own frame: (X, Y, W) of (x, y, z, 1).
+// The projection from a point of light onto the flat screen z = 0, in the screen's frame: from (x,
+// y, z, 1) to (X, Y, W).
 glm::dmat4x3 thrownFrom(const glm::dvec3& light) {
     return {{light.z, 0, 0}, {0, light.z, 0}, {-light.x, -light.y, -1}, {0, 0, light.z}};
 }
 
-// One lamp.
+// A lamp as it is drawn.
 struct Shining {
     std::vector<ShadowCaster::Light> points;
-    std::vector<glm::vec3>
-        colours;  // of each piece: its shadow as a layer picture holds it, or what it takes away of each point's light
-    bool alike = true;
+    // Per piece: its shadow's colour as a layer picture holds it, or what its shadow takes away of
+    // each point's light.
+    std::vector<glm::vec3> colours;
+    bool alike = true;  // all colours are equal
 };
 
 class DrawnShadow : public DrawnSource {
@@ -77,8 +79,8 @@ public:
         std::unique_ptr<DrawnShadow> made(new DrawnShadow(source, tools));
         const std::vector<ShadowCaster::Piece> pieces = made->pieces();
         made->caster_.emplace(TRY(ShadowCaster::create(pieces, made->onto_.isCurved(), tools.bend, tools.programs)));
-        // The shadow of one point of light is painted as it is, within straight edges; those of
-        // many add up first.
+        // The shadow of one point of light is painted directly, clipped by straight edges. Those of
+        // several are summed first.
         const bool sums = source.lamps.size() > 1 || (source.lamps[0].size > 0 && source.samples > 1) ||
                           (made->onto_.isCurved() && made->beam_.lit);
         if (sums) made->sum_.emplace(TRY(gpu::ShadowSum::create(place.size, tools.samples)));
@@ -111,7 +113,7 @@ public:
                                           1);
         for (Shining& lamp : lamps_)
             for (ShadowCaster::Light& light : lamp.points) light.clipFromScreen = glm::mat3(clip * canvasFromScreen);
-        // A line e of the canvas, dot(e, (x, y, 1)) = 0, is the line inverse(H)^T e of its image.
+        // A homography H maps the line e, dot(e, (x, y, 1)) = 0, to inverse(H)^T e.
         const CanvasPart part = place.warp.shown();
         const glm::dmat3 clipFromEdge = glm::transpose(glm::inverse(clip));
         glm::dvec2 low = part.low, high = part.high;
@@ -132,9 +134,10 @@ private:
           beam_(source.cast->stage.beams[source.beam]),
           onto_(source.cast->stage.screenOf(source.beam)) {}
 
-    // Actors first, then what each of them holds, then what stands.
+    // Actors first, then the props that each holds, then platforms and standing props.
     std::vector<ShadowCaster::Piece> pieces() {
-        // A mesh, and a curved screen, bend triangles at their corners alone.
+        // A mesh and a curved screen bend triangles only at their corners, so triangles must be
+        // small.
         const double longest =
             tools_.bend.any() || onto_.isCurved() ? gpu::Bend::kLongestEdge * (source_.to.y - source_.from.y) : INFINITY;
         const auto thing = [&](const TriangleMesh& mesh) { return pieceOf(cutUp(mesh, longest)); };
@@ -210,7 +213,7 @@ private:
     std::optional<gpu::ScreenPainter> painter_;
     std::vector<Shining> lamps_;
     gpu::ScreenPainter::Screen screen_;
-    std::array<glm::vec3, 4> inside_{};  // of the canvas's shown part, and of what is lit
+    std::array<glm::vec3, 4> inside_{};  // of the canvas's shown part and the lit part of the screen
 };
 
 }  // namespace

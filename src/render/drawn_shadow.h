@@ -4,7 +4,7 @@
 
 namespace fantascope::render {
 
-// A cast's shadow, straight through the output's warp. Errors as makeDrawnSource().
+// A cast's shadow, drawn straight through the output's warp. Errors as makeDrawnSource().
 Result<std::unique_ptr<DrawnSource>> makeDrawnShadow(const ShadowSource& source, const CanvasPlace& place, DrawingTools& tools);
 
 }  // namespace fantascope::render

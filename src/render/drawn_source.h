@@ -17,20 +17,20 @@
 
 namespace fantascope::render {
 
-// What all sources of one output draw with.
+// What all sources of one output share for drawing.
 struct DrawingTools {
     gpu::ShapePainter painter;
     gpu::ProgramCache programs;
     gpu::Bend bend;      // of the output's warp
-    gpu::Bend straight;  // for what no warp bends
-    int samples;         // a pixel, of every layer picture
-    Stopwatch uploads;   // of what goes to the GPU anew in a frame: instances, pictures
+    gpu::Bend straight;  // for what the warp must not bend
+    int samples;         // per pixel, of every layer picture
+    Stopwatch uploads;   // time spent on sending instances and pictures to the GPU
 };
 
-// What a layer is drawn for.
+// The moment that a layer is drawn for.
 struct Moment {
     Time show{};     // show time
-    Time ofLayer{};  // since the source came onto the output
+    Time ofLayer{};  // time since the source came onto the output
     Wind wind{};
 };
 
@@ -38,32 +38,32 @@ struct Moment {
 class DrawnSource {
 public:
     virtual ~DrawnSource() = default;
-    // Paints all of the source as it stands at that moment, at full opacity. `picture` is begun by
-    // this. No allocation.
+    // Begins `picture` and paints the whole source into it as it is at that moment, at full
+    // opacity. Does not allocate.
     virtual void paint(const Moment& moment, gpu::LayerPicture& picture) = 0;
-    // The output shows its canvas elsewhere from now on; the tools' bend follows by itself.
+    // From now on the output shows its canvas at `place`. The tools' bend is updated by its owner.
     virtual void follow(const CanvasPlace& place) = 0;
 };
 
-// `tools` outlives it. Error: a shader that does not compile; more pixels than this OpenGL has.
+// `tools` outlives the result. Error: a shader does not compile, or a picture has more pixels than
+// OpenGL allows here.
 Result<std::unique_ptr<DrawnSource>> makeDrawnSource(const PictureSource& source, const CanvasPlace& place, DrawingTools& tools);
 
-// A pattern's instances in one picture; what every source that shows a pattern draws it with.
+// A pattern's instances in one picture. Every source that shows a pattern draws it by this.
 class DrawnInstances {
 public:
-    // Straight onto an output: cut at the edges of the canvas's shown part, bent by the tools'
-    // mesh.
+    // For an output: clipped at the edges of the canvas's shown part, and bent by the tools' mesh.
     DrawnInstances(const PatternSource& source, const CanvasPlace& place, const gpu::Bend& bend);
-    // Into a picture of the canvas, cut by nothing but the picture.
+    // For a picture of the canvas, clipped by that picture alone.
     DrawnInstances(const PatternSource& source, const CanvasPlace& place);
 
     void follow(const CanvasPlace& place);
-    // Paints into the picture that has begun.
+    // Paints into the current layer picture.
     void paint(const Moment& moment, DrawingTools& tools);
 
 private:
     PlacedSource placed_;
-    const gpu::Bend* bend_;  // null: into a picture of the canvas
+    const gpu::Bend* bend_;  // null: for a picture of the canvas
     gpu::InstancedMeshes meshes_;
 };
 

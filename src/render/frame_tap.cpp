@@ -50,7 +50,7 @@ const ShownFrame* FrameQueue::newer(Time now) {
 void FrameQueue::forget() {
     const std::size_t given = given_;
     missed_ += static_cast<std::int64_t>(given - taken_.exchange(given));
-    released_ = given;  // the frames themselves are gone
+    released_ = given;  // the frames no longer exist
 }
 
 void FrameQueue::give(CapturedFrame& frame) {
@@ -63,7 +63,7 @@ void FrameQueue::give(CapturedFrame& frame) {
 }
 
 NewestFrame::NewestFrame(const ShownFrame& blank, double rate) : FrameReader(blank) {
-    FANTASCOPE_CHECK(rate >= 0, "frames come forwards");
+    FANTASCOPE_CHECK(rate >= 0, "a frame rate is not negative");
     if (rate > 0)
         interval_ = fromSeconds(1 / rate);
     else
@@ -85,7 +85,7 @@ bool NewestFrame::wants(Time showTime) const { return showTime >= due_ || showTi
 
 void NewestFrame::promised(Time showTime) {
     if (showTime >= due_ && interval_ > Time{}) due_ = showTime + interval_;
-    // Unless the reader has asked for another one meanwhile.
+    // Keeps a request that the reader makes at the same moment.
     if (Time::rep asked = asked_; showTime.count() >= asked) asked_.compare_exchange_strong(asked, kNothing);
 }
 
@@ -101,7 +101,7 @@ void NewestFrame::forget() {
 void NewestFrame::give(CapturedFrame& frame) {
     slot_.writable() = {hold(&frame), hold(given_)};
     slot_.publish();
-    given_ = &frame;  // held by the slot or by its reader until the next one is given
+    given_ = &frame;  // the slot or its reader holds it until the next one is given
     release(slot_.writable().frame);
     release(slot_.writable().before);
 }
@@ -110,7 +110,8 @@ FrameTap::FrameTap(std::size_t output, glm::ivec2 size) : blank_{output, Time{},
 
 template <class Reader, class... Arguments>
 Reader& FrameTap::add(Arguments... arguments) {
-    FANTASCOPE_CHECK(captures_ == 0 && readers_.size() < kMostReaders, "readers come before the first frame, and are few");
+    FANTASCOPE_CHECK(captures_ == 0 && readers_.size() < kMaxReaders,
+                     "at most kMaxReaders readers are added, before the first frame");
     auto reader = std::make_unique<Reader>(blank_, arguments...);
     Reader& added = *reader;
     readers_.push_back(std::move(reader));
@@ -120,9 +121,9 @@ Reader& FrameTap::add(Arguments... arguments) {
 FrameQueue& FrameTap::addQueue(std::size_t depth) { return add<FrameQueue>(depth); }
 NewestFrame& FrameTap::addNewest(double rate) { return add<NewestFrame>(rate); }
 
-std::size_t FrameTap::mostHeld() const {
-    std::size_t most = kMostUnderWay;
-    for (const auto& reader : readers_) most += reader->mostHeld();
+std::size_t FrameTap::maxHeld() const {
+    std::size_t most = kMaxUnderWay;
+    for (const auto& reader : readers_) most += reader->maxHeld();
     return most;
 }
 
@@ -132,7 +133,7 @@ Result<void> FrameTap::addFrame() {
 }
 
 Result<void> FrameTap::prepare() {
-    while (frames_.size() < mostHeld()) TRY(addFrame());
+    while (frames_.size() < maxHeld()) TRY(addFrame());
     return {};
 }
 
@@ -154,7 +155,7 @@ void FrameTap::forget() {
 CapturedFrame* FrameTap::unused() {
     const auto unused = std::ranges::find(frames_, 0, &CapturedFrame::holders);
     if (unused != frames_.end()) return &*unused;
-    FANTASCOPE_CHECK(frames_.size() < mostHeld(), "no reader holds more than its share");
+    FANTASCOPE_CHECK(frames_.size() < maxHeld(), "no reader holds more than maxHeld() frames");
     return addFrame() ? &frames_.back() : nullptr;
 }
 

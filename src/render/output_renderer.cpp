@@ -9,7 +9,7 @@
 namespace fantascope::render {
 namespace {
 
-// Of a picture that lies on a part of the canvas.
+// The place of a picture that lies on a part of the canvas.
 CanvasPlace placeOn(const CanvasPlace& canvas, const CanvasPart& part) {
     return {canvas.size, part == CanvasPart() ? canvas.warp : canvas.warp.ofPictureOn(part)};
 }
@@ -71,7 +71,7 @@ void OutputRenderer::draw(const show::OutputState& state, const Wind& wind, Time
     const auto lay = [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const show::LayerState& layer = state.layers[i];
-            FANTASCOPE_CHECK(layer.source < sources_.size(), "a layer shows a source that the renderer was not given");
+            FANTASCOPE_CHECK(layer.source < sources_.size(), "a layer shows a source of create()'s");
             if (layer.opacity <= 0) continue;
             sources_[layer.source]->paint({time, time - layer.begun, wind}, composer_->nextPicture());
             composer_->lay(layer.opacity, layer.blend);

@@ -23,14 +23,14 @@
 
 namespace fantascope::render {
 
-// Draws one output's picture. A source of another shape than the canvas lies on it as its `fit`
-// says. What reaches the projector is the canvas, bent by the output's warp, and black around it:
-// shapes that sway over the canvas's edge are cut there.
+// Draws one output's picture. A source's `fit` says how it lies on a canvas of another aspect. The
+// projector shows the canvas through the output's warp, and black around it; shapes that sway over
+// the canvas's edge are clipped there.
 //
-// Layers blend in linear light. Within a layer the shapes are opaque to each other, the later
-// instance of the pattern on top, and a fading layer fades as one picture. Shapes are drawn
-// straight through the warp, without a picture of the canvas in between, and their edges smoothed
-// by several samples a pixel that are averaged as light.
+// Layers blend in linear light. Within a layer, shapes hide each other, with later instances of the
+// pattern on top, and a layer fades as one picture. Shapes are drawn straight through the warp,
+// without an intermediate picture of the canvas. Their edges are smoothed by several samples per
+// pixel, which are averaged in linear light.
 //
 // Thread: the render thread, with the context of the output's display current in every call:
 // create(), draw() and the destructor.
@@ -38,32 +38,33 @@ class OutputRenderer {
 public:
     struct Options {
         Projection projection;                    // of the display's pixels
-        std::shared_ptr<const BlendMap> blend{};  // what it gives to each pixel beside its neighbours; null: all of its light
-        int samples = 4;                          // a pixel; llvmpipe and every GPU have 4
+        std::shared_ptr<const BlendMap> blend{};  // its share of the light beside its neighbours; null: all of it
+        int samples = 4;                          // per pixel; llvmpipe and every GPU support 4
         std::filesystem::path shaders;            // the folder of the shader files
-        const Clock* clock = nullptr;             // by which uploads are timed; null: they are not
+        const Clock* clock = nullptr;             // times uploads; null: they are not timed
     };
-    // Error: a shader that does not compile (its file and the compiler's log); more pixels or
-    // samples than this OpenGL has.
+    // Error: a shader does not compile (names its file and gives the compiler's log), or more
+    // pixels or samples than OpenGL allows here.
     static Result<std::unique_ptr<OutputRenderer>> create(const Options& options, std::span<const PictureSource> sources);
 
-    // The projector is set otherwise from now on, its size aside. A mesh that comes where there was
-    // none bends the corners of triangles that were made for a straight canvas: make another
-    // renderer to have it exact. Error: a shader does not compile.
+    // Applies new settings of the projector; its size must stay. If the warp had no mesh when the
+    // renderer was made, a new mesh bends only the corners of large triangles; make a new renderer
+    // to have it exact. Error: a shader does not compile.
     Result<void> follow(const Projection& projection, const std::shared_ptr<const BlendMap>& blend);
-    // What a technician is shown. `card`: in place of the show, opaque stored sRGB values that pass
-    // the projector's colours and the blend but no warp; null: the show. `overlay`: in the
-    // projector's own pixels over all of that, stored values, colours multiplied by alpha; null:
-    // none. Both are copied. Error: a shader does not compile; more pixels than this OpenGL has.
+    // Sets what a technician sees while setting the output up. `card`: replaces the show; opaque
+    // stored sRGB values that pass the projector's colours and the blend but not the warp; null:
+    // the show. `overlay`: lies over everything in the projector's own pixels; stored values,
+    // colours multiplied by alpha; null: none. Both are copied. Error: a shader does not compile,
+    // or more pixels than OpenGL allows here.
     Result<void> setUp(const RgbaImage* overlay, const RgbaImage* card);
-    // Draws every source once and every way in which layers may come together, so that nothing is
-    // compiled while people watch. Error: OpenGL has no memory left.
+    // Draws every source once and every combination of layers, so that nothing is compiled during
+    // the show. Error: OpenGL has no memory left.
     Result<void> warmUp(unsigned framebuffer);
-    // Draws what the show shows on this output at show time `time`, in the wind of then, into
-    // `framebuffer`, the display's. Layers name sources by their index in create()'s. No allocation
-    // once every source has been shown.
+    // Draws the output's state at show time `time`, in the wind of that time, into the display's
+    // `framebuffer`. Layers name sources by their index in create()'s. Does not allocate once every
+    // source has been shown.
     void draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer);
-    // How much of the draw() before was spent on bringing instances and pictures to the GPU.
+    // How long the last draw() spent on sending instances and pictures to the GPU.
     Time uploading() const { return tools_.uploads.sum(); }
 
 private:

@@ -14,8 +14,8 @@
 namespace fantascope::render {
 namespace {
 
-// Where the light on the facets comes from, in the canvas's frame (x right, y down, z to the
-// viewer): above, a little left, in front.
+// The direction towards the light that shades facets, in the canvas's frame (x right, y down, z to
+// the viewer): above, a little left, in front.
 const glm::dvec3 kTowardsLight = glm::normalize(glm::dvec3(-0.4, -0.6, 0.7));
 
 }  // namespace
@@ -34,8 +34,7 @@ PlacedSource::PlacedSource(const PatternSource& source, const CanvasPlace& place
 
 void PlacedSource::follow(const CanvasPlace& place) {
     clipFromCanvas_ = clipFromCanvas(source_.pattern->aspect(), place);
-    // A line e of the picture's square, dot(e, (x, y, 1)) = 0, is the line inverse(H)^T e of its
-    // image.
+    // A homography H maps the line e, dot(e, (x, y, 1)) = 0, to inverse(H)^T e.
     const glm::dmat3 clipFromEdge = glm::transpose(glm::inverse(clipFromPicture(place)));
     const auto [low, high] = shownInPicture(place);
     const std::array<glm::dvec3, 4> edges = {{{1, 0, -low.x}, {-1, 0, high.x}, {0, 1, -low.y}, {0, -1, high.y}}};
@@ -57,23 +56,23 @@ std::vector<gpu::InstancedMeshes::Mesh> PlacedSource::meshes(double longestEdge)
 }
 
 bool PlacedSource::mirrored() const {
-    // Canvas and projector have y down, OpenGL has it up: the warp of an upright picture turns
-    // over, and so does canvasFromShape.
+    // Canvas and projector have y down, OpenGL has y up. So the warp of an upright picture flips,
+    // and so does canvasFromShape.
     return glm::determinant(clipFromCanvas_) > 0;
 }
 
 void PlacedSource::place(Time time, const Wind& wind, std::span<gpu::Instance> out) {
-    FANTASCOPE_CHECK(out.size() == order_.size(), "one place for each instance");
+    FANTASCOPE_CHECK(out.size() == order_.size(), "there is one place per instance");
     if (source_.motion) source_.motion->posesAt(time, wind, poses_);
 
-    // Each instance has a slice of the depths 0 .. 1 to itself, the last instance the nearest. Clip
-    // z is that depth and w the warp's, so the map of space to clip space is projective: whatever
-    // lies behind a point of the canvas keeps its order.
+    // Each instance has its own slice of the depths 0 .. 1, the last instance the nearest. Clip z
+    // is that depth times the warp's w, so the map from space to clip space is projective, and
+    // depth order is kept at every point of the canvas.
     const double slice = 1.0 / static_cast<double>(order_.size());
     for (std::size_t i = 0; i < out.size(); ++i) {
         const std::size_t rank = order_[i];
         const pattern::InstancePose& pose = poses_[rank];
-        const glm::dmat3 canvasFromShape = pattern::canvasFromShape({pose.centre, 1, pose.rotation});  // but for size and place
+        const glm::dmat3 canvasFromShape = pattern::canvasFromShape({pose.centre, 1, pose.rotation});  // without size and centre
         const double depth = 1 - (static_cast<double>(rank) + 0.5) * slice;
         const auto clip = [&](glm::dvec3 canvas, double depth) {
             const glm::dvec3 warped = clipFromCanvas_ * canvas;

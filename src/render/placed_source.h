@@ -16,32 +16,34 @@
 
 namespace fantascope::render {
 
-// One light pattern as it stands in one output's picture: which meshes, and at any time where their
-// instances are, through the warp. Instances are opaque to each other: of two, the later one in the
-// pattern's order lies on top, whole. Thread: thread-bound.
+// One light pattern in one output's picture: its meshes, and at any time the places of their
+// instances through the warp. Instances hide each other: of two, the later in the pattern's order
+// lies entirely on top. Thread: thread-bound.
 class PlacedSource {
 public:
     PlacedSource(const PatternSource& source, const CanvasPlace& place);
 
-    // Stands elsewhere from now on.
+    // Sets a new place.
     void follow(const CanvasPlace& place);
-    // The meshes with the number of their instances, in the order in which place() fills them.
-    // `longestEdge`: canvas heights that no triangle's edge exceeds; larger triangles are cut up.
+    // The meshes with the numbers of their instances, in the order in which place() fills them.
+    // `longestEdge`: maximum length of a triangle's edge, canvas heights; larger triangles are cut
+    // up.
     std::vector<gpu::InstancedMeshes::Mesh> meshes(double longestEdge = INFINITY) const;
-    // Whether the warp turns the canvas over, as for rear projection.
+    // Whether the warp mirrors the canvas, as for rear projection.
     bool mirrored() const;
-    // The edges of the canvas's shown part: a clip space point (x, y, z, w) is inside when its (x,
-    // y, w) has no negative dot product with any, before a mesh bends it.
+    // The edges of the canvas's shown part. A point in clip space (x, y, z, w) is inside if (x, y,
+    // w) has no negative dot product with any of them, before a mesh bends it.
     const std::array<glm::vec3, 4>& canvasEdges() const { return canvasEdges_; }
-    // All instances at show time `time`, in the wind of then. No allocation.
+    // Fills `out` with all instances at show time `time`, in the wind of that time. Does not
+    // allocate.
     void place(Time time, const Wind& wind, std::span<gpu::Instance> out);
 
 private:
     PatternSource source_;
-    glm::dmat3 clipFromCanvas_{1};  // (x, y, w) = clipFromCanvas_ * (canvas x, canvas y, 1), w >= 1 all over the shown part
+    glm::dmat3 clipFromCanvas_{1};  // (x, y, w) = clipFromCanvas_ * (canvas x, canvas y, 1), w >= 1 on the whole shown part
     std::array<glm::vec3, 4> canvasEdges_{};
-    std::vector<pattern::InstancePose> poses_;  // in the pattern's order; at rest where nothing moves
-    std::vector<std::size_t> order_;            // the pattern's instances, mesh by mesh
+    std::vector<pattern::InstancePose> poses_;  // in the pattern's order; at rest if nothing moves
+    std::vector<std::size_t> order_;            // indices of the pattern's instances, mesh by mesh
 };
 
 }  // namespace fantascope::render

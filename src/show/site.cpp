@@ -121,7 +121,7 @@ Result<WarpMesh> readMesh(const ConfigNode& node) {
     ConfigFields fields(node);
     fields.read("points", mesh.points, [](const ConfigNode& value) -> Result<glm::ivec2> {
         const auto sides = TRY(value.items(2, 2));
-        return glm::ivec2(TRY(sides[0].integer(2, WarpMesh::kMostPoints)), TRY(sides[1].integer(2, WarpMesh::kMostPoints)));
+        return glm::ivec2(TRY(sides[0].integer(2, WarpMesh::kMaxPoints)), TRY(sides[1].integer(2, WarpMesh::kMaxPoints)));
     });
     fields.optional().choice("between", mesh.between, {"smooth", "straight"});
     fields.list("offsets", mesh.offsets, readPixel);
@@ -132,9 +132,9 @@ Result<WarpMesh> readMesh(const ConfigNode& node) {
 Result<Mask> readMask(const ConfigNode& node) {
     Mask mask;
     ConfigFields fields(node);
-    fields.optional().list("polygon", mask.polygon, readPixel, 3, Mask::kMostPoints);
+    fields.optional().list("polygon", mask.polygon, readPixel, 3, Mask::kMaxPoints);
     fields.optional().choice("hides", mask.hidesOutside, {"inside", "outside"});
-    fields.optional().number("feather", mask.feather, 0, Mask::kWidestFeather, "px");
+    fields.optional().number("feather", mask.feather, 0, Mask::kMaxFeather, "px");
     fields.optional().read("image", mask.image, [&](const ConfigNode& image) -> Result<std::shared_ptr<const GreyImage>> {
         mask.imageFile = TRY(image.text());
         return std::make_shared<const GreyImage>(TRY(readGrey(TRY(image.path())).in(image.place())));
@@ -231,7 +231,7 @@ Result<Output> readOutput(const ConfigNode& node, std::set<std::string>& names, 
     });
     fields.optional().read("corners", corners, readCorners);
     fields.optional().read("mesh", warp.mesh, readMesh);
-    fields.optional().list("masks", projection.masks, readMask, 1, Mask::kMost);
+    fields.optional().list("masks", projection.masks, readMask, 1, Mask::kMax);
     fields.optional().read("light", projection.light, readLight);
     fields.optional().read("projector", output.projector, readProjector);
     fields.optional().read("surface", output.surface, readSurface);

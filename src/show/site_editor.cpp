@@ -318,12 +318,14 @@ Result<void> SiteEditor::moveBy(glm::dvec2 move, bool pixels) {
             Mask& mask = wanted.masks[chosen.mask];
             if (!pixels) move *= kPixels[step];
             if (chosen.kind == MaskHandle::Kind::Feather)
-                mask.feather = std::clamp(rounded(mask.feather + move.x - move.y, kPixelGrain), 0.0, Mask::kWidestFeather);
+                mask.feather = std::clamp(rounded(mask.feather + move.x - move.y, kPixelGrain), 0.0, Mask::kMaxFeather);
             else
                 for (std::size_t i = 0; i < mask.polygon.size(); ++i)
                     if (i == chosen.point || chosen.kind == MaskHandle::Kind::Whole)
                         mask.polygon[i] = rounded(mask.polygon[i] + move, kPixelGrain);
-            const auto isFar = [](glm::dvec2 point) { return std::max(std::abs(point.x), std::abs(point.y)) > Mask::kFarthest; };
+            const auto isFar = [](glm::dvec2 point) {
+                return std::max(std::abs(point.x), std::abs(point.y)) > Mask::kMaxCoordinate;
+            };
             if (std::any_of(mask.polygon.begin(), mask.polygon.end(), isFar)) return Error("so far away it hides nothing");
             return change(std::move(wanted), true);
         }
@@ -393,8 +395,8 @@ Result<void> SiteEditor::run(const edit::MeshPoints& mesh) {
     Projection wanted = projection();
     WarpShape shape = wanted.warp.shape();
     if (mesh.points != glm::ivec2(0) &&
-        (std::min(mesh.points.x, mesh.points.y) < 2 || std::max(mesh.points.x, mesh.points.y) > WarpMesh::kMostPoints))
-        return Error(fmt::format("a mesh has 2 to {} points in each direction", WarpMesh::kMostPoints));
+        (std::min(mesh.points.x, mesh.points.y) < 2 || std::max(mesh.points.x, mesh.points.y) > WarpMesh::kMaxPoints))
+        return Error(fmt::format("a mesh has 2 to {} points in each direction", WarpMesh::kMaxPoints));
     shape.mesh = shape.mesh.resampled(mesh.points);
     for (glm::dvec2& offset : shape.mesh.offsets) offset = rounded(offset, kPixelGrain);
     wanted.warp = TRY(Warp::of(shape));
@@ -404,7 +406,7 @@ Result<void> SiteEditor::run(const edit::MeshPoints& mesh) {
 }
 Result<void> SiteEditor::run(const edit::AddMask&) {
     Projection wanted = projection();
-    if (wanted.masks.size() == Mask::kMost) return Error(fmt::format("an output has at most {} masks", Mask::kMost));
+    if (wanted.masks.size() == Mask::kMax) return Error(fmt::format("an output has at most {} masks", Mask::kMax));
     const glm::dvec2 size(wanted.size);
     std::vector<glm::dvec2> polygon;
     for (const glm::dvec2 corner : rectangleCorners(1, 1)) polygon.push_back(rounded(size * (0.25 + 0.5 * corner), kPixelGrain));
@@ -421,7 +423,7 @@ Result<void> SiteEditor::run(const edit::MaskPoints& points) {
     std::vector<glm::dvec2>& polygon = wanted.masks[chosen.mask].polygon;
     const auto at = polygon.begin() + static_cast<std::ptrdiff_t>(chosen.point);
     if (points.change > 0) {
-        if (polygon.size() == Mask::kMostPoints) return Error(fmt::format("a mask has at most {} points", Mask::kMostPoints));
+        if (polygon.size() == Mask::kMaxPoints) return Error(fmt::format("a mask has at most {} points", Mask::kMaxPoints));
         polygon.insert(at + 1, rounded((*at + polygon[(chosen.point + 1) % polygon.size()]) / 2.0, kPixelGrain));
     } else if (polygon.size() > 3) {
         polygon.erase(at);

@@ -10,7 +10,7 @@
 namespace fantascope::vision {
 namespace {
 
-// A radius in focal lengths and where distortion takes it, with the slope there.
+// A distorted radius, in focal lengths, and the distortion's slope there.
 struct Distorted {
     double radius, slope;
 };
@@ -20,8 +20,8 @@ Distorted distorted(double r, double k1, double k2) {
     return {r * (1 + r2 * (k1 + r2 * k2)), 1 + r2 * (3 * k1 + r2 * 5 * k2)};
 }
 
-// The radius beyond which the picture would fold back over itself: the smallest root of the slope 1
-// + 3 k1 r^2 + 5 k2 r^4.
+// The radius beyond which the picture would fold over itself: the smallest root of the slope 1 + 3
+// k1 r^2 + 5 k2 r^4.
 double foldRadius(double k1, double k2) {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     if (k2 == 0) return k1 < 0 ? std::sqrt(-1 / (3 * k1)) : kNever;
@@ -35,8 +35,8 @@ double foldRadius(double k1, double k2) {
     return nearest;
 }
 
-// Newton's iteration on the radius. Below the fold the map rises, and starting from the seen radius
-// (kept below the fold) converges for every distortion that fromFieldOfView() accepts.
+// Newton's iteration for the radius. Below the fold the map rises. From the distorted radius (kept
+// below the fold) it converges for every distortion that fromFieldOfView() accepts.
 double undistorted(double seen, double k1, double k2) {
     const double fold = foldRadius(k1, k2);
     double r = std::min(seen, 0.95 * fold);
@@ -85,9 +85,9 @@ std::optional<glm::dvec2> CameraModel::pixelFromWorld(glm::dvec3 point) const {
 }
 
 double CameraModel::pixelsPerArea(glm::dvec3 point, glm::dvec3 normal) const {
-    // A plane at `depth` that faces the camera squarely holds (focal / depth)^2, wherever it lies
-    // in the picture; this one is slanted to the ray, and the ray to the axis: cos(to normal) /
-    // cos(to axis), each with the distance cancelled.
+    // A plane at `depth` that faces the camera squarely has (focal / depth)^2 pixels per area
+    // anywhere in the picture. This surface is slanted to the ray, and the ray to the axis: cos(to
+    // normal) / cos(to axis), with the distance cancelled.
     const glm::dvec3 toEye = pose.position - point;
     const double depth = -glm::dot(toEye, pose.worldFromLocal[2]);
     return focal * focal * glm::dot(normal, toEye) / (depth * depth * depth);
@@ -110,7 +110,7 @@ Result<std::array<glm::dvec2, 4>> rectifyingCorners(const CameraModel& projector
         const auto pixel = projector.pixelFromWorld(corners[i]);
         if (!pixel || !projector.inPicture(*pixel))
             return Error(fmt::format(
-                "corner {} lies outside the projector's picture{}; move or turn the projector, or take a smaller quadrilateral",
+                "corner {} lies outside the projector's picture{}; move or turn the projector, or choose a smaller quadrilateral",
                 i + 1, pixel ? fmt::format(" (at pixel {:.0f}, {:.0f})", pixel->x, pixel->y) : ""));
         pixels[i] = *pixel;
     }

@@ -1,7 +1,7 @@
 #pragma once
-// Where things in the world stand in a camera's picture and back. A projector is a camera run
-// backwards: the same model without distortion. Pixels as in core/image.h: the picture is [0,
-// width] x [0, height], the centre of pixel (0, 0) at (0.5, 0.5).
+// The map between the world and a camera's picture. A projector is a camera run backwards: the same
+// model without distortion. Pixels as in media/image.h: the picture is [0, width] x [0, height],
+// the centre of pixel (0, 0) at (0.5, 0.5).
 
 #include "core/geometry.h"
 #include "core/result.h"
@@ -19,50 +19,51 @@ struct Ray {
     glm::dvec3 direction{0, 0, -1};  // unit
 };
 
-// An endless plane; `normal` is unit.
+// An infinite plane; `normal` is unit.
 struct Plane {
     glm::dvec3 point{0.0};
     glm::dvec3 normal{0, 0, 1};
 
-    // Where a ray meets the plane's front, or nothing: it runs along it, away from it, or comes
+    // Where a ray hits the plane's front; nothing if it runs along or away from the plane, or comes
     // from behind.
     std::optional<glm::dvec3> hitBy(const Ray& ray) const;
 };
 
-// A pinhole with radial distortion (Brown 1966, first two terms). Value type; thread-safe to read.
+// A pinhole camera with radial distortion (Brown 1966, first two terms). Value type; thread-safe to
+// read.
 struct CameraModel {
     Pose pose;
     glm::ivec2 size{640, 360};    // pixels
     double focal = 500;           // pixels, the same across and down
     glm::dvec2 centre{320, 180};  // where the axis meets the picture, in pixels
-    double k1 = 0, k2 = 0;        // a point at r focal lengths from the axis is seen at r (1 + k1 r^2 + k2 r^4)
+    double k1 = 0, k2 = 0;        // a point at r focal lengths from the axis appears at r (1 + k1 r^2 + k2 r^4)
 
-    // A camera with `fieldOfView` radians across the picture's middle row, distortion left aside. 0
-    // < fieldOfView < pi.
-    // Error: the distortion folds the picture over within its own corners, so that a pixel would
-    // see two directions.
+    // A camera with `fieldOfView` radians across the picture's middle row, without distortion. 0 <
+    // fieldOfView < pi.
+    // Error: the distortion folds the picture over inside its corners, so that one pixel would see
+    // two directions.
     static Result<CameraModel> fromFieldOfView(const Pose& pose, glm::ivec2 size, double fieldOfView, double k1 = 0,
                                                double k2 = 0);
     // A projector: throwRatio = distance / picture width, > 0; the lens shift moves the picture
-    // right and up by that many picture widths and heights.
+    // right and up, in picture widths and heights.
     static CameraModel fromThrowRatio(const Pose& pose, glm::ivec2 size, double throwRatio, glm::dvec2 lensShift);
 
-    // Where a point in the world is seen; it may lie outside the picture. Nothing: behind the
-    // camera, or beyond the fold of its distortion.
+    // The pixel of a point in the world; it may lie outside the picture. Nothing if it is behind
+    // the camera or beyond the fold of its distortion.
     std::optional<glm::dvec2> pixelFromWorld(glm::dvec3 point) const;
-    // How many of its pixels a square metre of a surface holds there, distortion left aside;
-    // `normal` is unit. 0 or less: the surface turns its back. A projector whose pixels all give
-    // the same light makes an illuminance of that many times as much.
+    // Its pixels per square metre of a surface, without distortion; `normal` is unit. 0 or less:
+    // the surface faces away. A projector whose pixels all give the same light makes an illuminance
+    // proportional to this.
     double pixelsPerArea(glm::dvec3 point, glm::dvec3 normal) const;
     // Whether a pixel position lies in the picture.
     bool inPicture(glm::dvec2 pixel) const;
-    // What a pixel position in the picture sees. Exact to 1e-12 focal lengths.
+    // The ray of a pixel position in the picture. Exact to 1e-12 focal lengths.
     Ray rayThrough(glm::dvec2 pixel) const;
 };
 
-// Four projector pixels, from the canvas's top left clockwise, that put the canvas on a flat
-// quadrilateral in the world (corners in the same order, metres): the keystone correction by the
-// drawings. Error: a corner that the projector's picture does not reach.
+// The four projector pixels, clockwise from the canvas's top left, that put the canvas on a flat
+// quadrilateral in the world (corners in the same order, metres): the keystone correction computed
+// from drawings. Error: a corner outside the projector's picture.
 Result<std::array<glm::dvec2, 4>> rectifyingCorners(const CameraModel& projector, const std::array<glm::dvec3, 4>& corners);
 
 }  // namespace fantascope::vision

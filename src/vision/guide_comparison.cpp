@@ -14,28 +14,28 @@
 namespace fantascope::vision {
 namespace {
 
-// The low-pass, sigma in canvas heights: that of the pattern's own `tone`. On the default site with
-// a pattern of 400 shapes, the score in place and with the projector turned by half a degree were
-// .060 / .108 at 1/144, .043 / .092 at 1/72, .027 / .074 at 1/36 and .014 / .048 at 1/18: less blur
-// counts the gaps between shapes as faults, more blur hides small moves.
+// Sigma of the low-pass, in canvas heights; the same as of the pattern's own `tone`. On the default
+// site with a pattern of 400 shapes, the scores in place / with the projector turned by half a
+// degree were .060 / .108 at 1/144, .043 / .092 at 1/72, .027 / .074 at 1/36 and .014 / .048 at
+// 1/18: less blur counts the gaps between shapes as faults, more blur hides small moves.
 constexpr double kBlur = 1.0 / 36;
-constexpr int kRows = 72;                 // cells down the canvas: two a sigma
-constexpr int kPlaces = 3;                // across and down a cell
-constexpr double kMostlySeen = 0.5;       // share of what is shown of the canvas that the camera must see
-constexpr double kOutliers = 0.02;        // share of the darkest and of the brightest cells that has no say in the scale
-constexpr float kFlat = 0.02f;            // a picture that spans less, in linear light of full white, is noise and ambient light
+constexpr int kRows = 72;                 // cells down the canvas: two per sigma
+constexpr int kPlaces = 3;                // samples across and down a cell
+constexpr double kMostlySeen = 0.5;       // share of the shown canvas that the camera must see
+constexpr double kOutliers = 0.02;        // share of the darkest and of the brightest cells that the scale ignores
+constexpr float kFlat = 0.02f;            // a smaller range, in linear light of full white, is noise and ambient light
 constexpr int kBackgroundTerms = 6;       // 1, x, y, x^2, xy, y^2
-constexpr double kBackgroundCost = 1e-3;  // just enough to give to the picture what could be either
+constexpr double kBackgroundCost = 1e-3;  // just enough to assign ambiguous light to the picture
 
-// Where the camera sees one cell of the canvas: some places of it in camera pixels, and how
-// strongly the projector lights it there.
+// A cell of the canvas as the camera sees it: some places of it in camera pixels, and how strongly
+// the projector lights it there.
 struct Cell {
     int column = 0, row = 0;
     std::vector<glm::vec2> places;
     double gain = 0;
 };
 
-// All cells that the camera sees whole, by rows; the strongest gain is 1.
+// All cells that the camera sees completely, by rows; the strongest gain is 1.
 std::vector<Cell> cellsInSight(const NominalView& view, glm::ivec2 grid) {
     const CanvasPart part = view.warp.shown();
     std::vector<Cell> cells;
@@ -77,16 +77,16 @@ glm::dvec3 linearAt(const RgbaImage& frame, glm::vec2 pixel) {
     return glm::mix(glm::mix(at(x, y), at(x + 1, y), share.x), glm::mix(at(x, y + 1), at(x + 1, y + 1), share.x), share.y);
 }
 
-// wanted = scale * seen + lift, as far as their quantiles tell.
+// wanted = scale * seen + lift, estimated from quantiles.
 struct Exposure {
     double scale = 0, lift = 0;
-    double span = 0;  // of what is seen
+    double span = 0;  // of the seen values
 };
 
-// Exposure, fades and the colour of the shapes scale what is seen, and uniform light lifts it. By
-// how much follows from the values alone, wherever they stand: the line through the quantiles of
-// one against those of the other. So a picture in the wrong place is not taken for a faint one in
-// the right place, as the best fit cell by cell would.
+// Exposure, fades and the colour of the shapes scale the seen light, and uniform light lifts it.
+// Both are estimated from the values alone, regardless of their places: a line through the
+// quantiles of one against those of the other. So a picture in the wrong place is not mistaken for
+// a faint one in the right place, as a cell-by-cell fit would do.
 Exposure exposureOf(std::vector<float> seen, std::vector<float> wanted) {
     std::sort(seen.begin(), seen.end());
     std::sort(wanted.begin(), wanted.end());
@@ -112,7 +112,7 @@ struct GuideComparison::Tables {
     glm::ivec2 grid;   // cells across and down the canvas
     double shown = 1;  // the share of the canvas that the output shows
     std::vector<Cell> cells;
-    GreyImage weights;             // of the cells in sight under the low-pass
+    GreyImage weights;             // sum of the low-pass over the cells in sight
     std::vector<float> wanted;     // low-passed, of the cells in sight
     Eigen::MatrixXf background;    // cells x terms
     Eigen::MatrixXf backgroundOf;  // terms x cells: how much of each term is in the low-passed light
@@ -129,7 +129,7 @@ struct GuideComparison::Tables {
 };
 
 GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wanted) {
-    FANTASCOPE_CHECK(!wanted.empty(), "a guide to compare with");
+    FANTASCOPE_CHECK(!wanted.empty(), "a guide must not be empty");
     auto tables = std::make_shared<Tables>();
     tables->frameSize = view.camera.size;
     tables->grid = {std::max(1, static_cast<int>(std::lround(kRows * view.canvasAspect))), kRows};
@@ -148,8 +148,8 @@ GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wante
     for (const Cell& cell : tables->cells) values.push_back(guide.at(cell.column, cell.row));
     tables->wanted = tables->lowPassed(values);
 
-    // Least squares of the low-passed light on the low-passed guide and on a smooth background: the
-    // first column takes the picture out of the fit.
+    // Least squares of the low-passed light on the low-passed guide and a smooth background: the
+    // first column keeps the picture out of the background.
     Eigen::MatrixXd terms(count, 1 + kBackgroundTerms);
     for (int i = 0; i < count; ++i) {
         const Cell& cell = tables->cells[static_cast<std::size_t>(i)];
@@ -170,8 +170,8 @@ std::optional<double> GuideComparison::compare(const RgbaImage& frame) const {
     const auto count = static_cast<int>(tables.cells.size());
     if (count < kMostlySeen * tables.shown * tables.grid.x * tables.grid.y) return std::nullopt;
 
-    // The light on every cell, and what of it comes from sky and lamps: each channel for itself,
-    // since that has a colour of its own.
+    // The light on every cell, minus that of sky and lamps: per channel, because that light has a
+    // colour.
     std::array<std::vector<float>, 3> light;
     for (const Cell& cell : tables.cells) {
         glm::dvec3 sum(0);
@@ -184,8 +184,8 @@ std::optional<double> GuideComparison::compare(const RgbaImage& frame) const {
         const Eigen::VectorXf share = tables.backgroundOf * Eigen::Map<const Eigen::VectorXf>(smooth.data(), count);
         Eigen::Map<Eigen::VectorXf>(channel.data(), count) -= tables.background * share;
     }
-    // A pixel's value is its brightest channel, so that shapes of any colour count alike; over the
-    // projector's own fall-off.
+    // A pixel's value is its brightest channel, so that shapes of any colour count alike, divided
+    // by the projector's own fall-off.
     std::vector<float> seen;
     for (std::size_t i = 0; i < tables.cells.size(); ++i)
         seen.push_back(std::max({light[0][i], light[1][i], light[2][i]}) / static_cast<float>(tables.cells[i].gain));

@@ -15,12 +15,12 @@ using Bytes = std::vector<std::uint8_t>;
 class ByteStreamRig : public Rig<ByteStream> {
 public:
     virtual void farSends(const Bytes& bytes) = 0;
-    // All that arrived at the far end and was not asked for yet.
+    // Everything that arrived at the far end since the last call.
     virtual Bytes farReceives() = 0;
 };
 
-// Every byte there is, `times` times over, so that no value is special and every position is told
-// from its neighbours.
+// All 256 byte values, `times` times, so that no value is special and every position differs from
+// its neighbours.
 inline Bytes everyByte(std::size_t times = 1) {
     Bytes bytes(256 * times);
     std::iota(bytes.begin(), bytes.end(), std::uint8_t{0});
@@ -28,9 +28,9 @@ inline Bytes everyByte(std::size_t times = 1) {
 }
 
 // The next bytes, at most `most` of them.
-inline Result<Bytes> readSome(ByteStreamRig& rig, std::size_t most, Time patience = std::chrono::milliseconds(50)) {
+inline Result<Bytes> readSome(ByteStreamRig& rig, std::size_t most, Time timeout = std::chrono::milliseconds(50)) {
     Bytes bytes(most);
-    bytes.resize(TRY(rig.port().read(bytes, patience)));
+    bytes.resize(TRY(rig.port().read(bytes, timeout)));
     return bytes;
 }
 
@@ -70,7 +70,7 @@ inline Suite<ByteStreamRig> byteStreamSuite() {
              [](ByteStreamRig& rig) -> std::string {
                  constexpr std::size_t kFarMoreThanALineHolds = 1 << 22;
                  Bytes taken, received;
-                 for (std::size_t round = 0; round < 2; ++round) {  // a line that was emptied takes again
+                 for (std::size_t round = 0; round < 2; ++round) {  // an emptied line accepts bytes again
                      bool full = false;
                      while (!full && taken.size() < (round + 1) * kFarMoreThanALineHolds) {
                          const Bytes chunk = everyByte(4);
@@ -88,14 +88,14 @@ inline Suite<ByteStreamRig> byteStreamSuite() {
                  }
                  return "";
              }},
-            {"read() of a silent line gives nothing once its patience is over",
+            {"read() of a silent line gives nothing once its timeout has passed",
              [](ByteStreamRig& rig) -> std::string {
-                 for (const Time patience : {Time::zero(), Time(std::chrono::milliseconds(20))}) {
+                 for (const Time timeout : {Time::zero(), Time(std::chrono::milliseconds(20))}) {
                      const Time before = rig.clock().now();
-                     const auto read = readSome(rig, 10, patience);
+                     const auto read = readSome(rig, 10, timeout);
                      CONTRACT_SUCCEEDS(read);
                      CONTRACT_REQUIRE(read->empty(), "{} bytes came from nowhere", read->size());
-                     CONTRACT_REQUIRE(rig.clock().now() - before >= patience, "it gave up before its time");
+                     CONTRACT_REQUIRE(rig.clock().now() - before >= timeout, "it gave up before its time");
                  }
                  return "";
              }},

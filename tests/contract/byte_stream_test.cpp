@@ -25,15 +25,15 @@ public:
 
 private:
     std::unique_ptr<ByteStream> open() override {
-        auto ends = drivers::openLoopback(around_, "line");
+        auto ends = drivers::openLoopback(context_, "line");
         farEnd_ = std::move(ends[1]);
         return std::move(ends[0]);
     }
     std::unique_ptr<ByteStream> farEnd_;
 };
 
-// Its script says nothing: whatever comes is taken, and what it sends is an exchange in which
-// nothing is expected.
+// Its script is empty: it accepts everything, and sends by an exchange in which nothing is
+// expected.
 class ScriptedRig final : public SimulatedRig<ByteStreamRig> {
 public:
     ScriptedRig() : SimulatedRig("line", {}) { reopen(); }
@@ -48,7 +48,7 @@ public:
 
 private:
     std::unique_ptr<ByteStream> open() override {
-        auto stream = std::make_unique<drivers::ScriptedStream>(around_, "line");
+        auto stream = std::make_unique<drivers::ScriptedStream>(context_, "line");
         script_ = stream.get();
         asked_ = 0;
         return stream;
@@ -73,7 +73,7 @@ std::vector<std::string> brokenBy() {
 class AlmostGood : public Between<ByteStream> {
     using Between::Between;
     Result<std::size_t> write(std::span<const std::uint8_t> bytes) override { return good_->write(bytes); }
-    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time patience) override { return good_->read(bytes, patience); }
+    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time timeout) override { return good_->read(bytes, timeout); }
 };
 
 class ClaimsToHaveTakenAll : public AlmostGood {
@@ -89,8 +89,8 @@ TEST(ByteStreamContract, finds_a_line_that_claims_to_have_taken_all) {
 
 class DropsWhatDoesNotFit : public AlmostGood {
     using AlmostGood::AlmostGood;
-    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time patience) override {
-        const std::size_t count = TRY(good_->read(bytes, patience));
+    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time timeout) override {
+        const std::size_t count = TRY(good_->read(bytes, timeout));
         Bytes rest(1000);
         if (count == bytes.size()) (void)good_->read(rest, Time::zero());
         return count;
@@ -102,9 +102,9 @@ TEST(ByteStreamContract, finds_a_line_that_drops_what_does_not_fit_into_a_read) 
 
 class ForgetsAtALoss : public AlmostGood {
     using AlmostGood::AlmostGood;
-    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time patience) override {
+    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time timeout) override {
         if (!running()) return Error("gone");
-        return good_->read(bytes, patience);
+        return good_->read(bytes, timeout);
     }
 };
 TEST(ByteStreamContract, finds_a_line_that_forgets_what_had_arrived) {
@@ -113,12 +113,12 @@ TEST(ByteStreamContract, finds_a_line_that_forgets_what_had_arrived) {
 
 class WaitsForAFullBuffer : public AlmostGood {
     using AlmostGood::AlmostGood;
-    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time patience) override {
+    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time timeout) override {
         std::size_t count = 0;
-        const Time deadline = around_.clock.now() + patience;
+        const Time deadline = context_.clock.now() + timeout;
         do {
-            count += TRY(good_->read(bytes.subspan(count), deadline - around_.clock.now()));
-        } while (count < bytes.size() && around_.clock.now() < deadline && running());
+            count += TRY(good_->read(bytes.subspan(count), deadline - context_.clock.now()));
+        } while (count < bytes.size() && context_.clock.now() < deadline && running());
         return count;
     }
 };

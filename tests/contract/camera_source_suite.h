@@ -13,8 +13,8 @@ namespace fantascope::contract {
 
 class CameraSourceRig : public Rig<CameraSource> {
 public:
-    // The camera exposes a frame now, all of it of one grey. Greys 16 apart must be told apart, so
-    // that a rig may compress.
+    // The camera exposes a frame now, all of it of one grey. Greys 16 apart must be
+    // distinguishable, so that a rig may compress.
     virtual void expose(int grey) = 0;
 };
 

@@ -22,7 +22,7 @@ public:
     }
 
 private:
-    std::unique_ptr<CameraSource> open() override { return drivers::openCamera(options_, around_).value(); }
+    std::unique_ptr<CameraSource> open() override { return drivers::openCamera(options_, context_).value(); }
     std::uint64_t sequence_ = 0;
 };
 
@@ -44,7 +44,7 @@ class RepeatsItsLastFrame : public Between<CameraSource> {
     }
     std::shared_ptr<const CameraFrame> last_;
 };
-// The comparison with the guide would go on scoring a picture that is long gone.
+// Otherwise the comparison with the guide would go on scoring an old picture.
 TEST(CameraSourceContract, finds_a_camera_that_gives_a_frame_again) {
     EXPECT_THAT(
         brokenBy<RepeatsItsLastFrame>(),
@@ -86,11 +86,11 @@ class GivesTheTimeOfTaking : public Between<CameraSource> {
         const auto frame = good_->newest();
         if (!frame) return nullptr;
         CameraFrame late = *frame;
-        late.exposed = around_.clock.now();
+        late.exposed = context_.clock.now();
         return std::make_shared<const CameraFrame>(std::move(late));
     }
 };
-// Latency would look like a projector that lags behind the show.
+// Otherwise latency would look like a projector that lags behind the show.
 TEST(CameraSourceContract, finds_a_camera_that_takes_the_arrival_for_the_exposure) {
     EXPECT_THAT(brokenBy<GivesTheTimeOfTaking>(),
                 ElementsAre("a frame tells when it was exposed, and both its time and its count rise"));
@@ -109,7 +109,7 @@ class CountsAnewAfterALoss : public Between<CameraSource> {
     int losses_ = 0;
     std::uint64_t first_ = 0;
 };
-// As every kernel's driver does; whoever looks for gaps would find them, or none.
+// As every kernel driver does. A search for gaps would then find false ones, or none.
 TEST(CameraSourceContract, finds_a_camera_that_counts_anew_after_a_loss) {
     EXPECT_THAT(brokenBy<CountsAnewAfterALoss>(), ElementsAre("its count and its times go on rising after a loss"));
 }

@@ -1,7 +1,7 @@
 #pragma once
-// A contract suite is the list of what a port promises, one clause a promise, in terms of a rig:
-// the port under test and its far end (what the wire carries, how to unplug it and plug it in
-// again, how to let time pass). The same suite runs on every backend of the port.
+// A contract suite lists what a port promises, one clause per promise, in terms of a rig: the port
+// under test and its far end (what the wire carries, how to unplug it and plug it in, how to let
+// time pass). The same suite runs on every backend of the port.
 
 #include <functional>
 #include <memory>
@@ -15,7 +15,7 @@ namespace fantascope::contract {
 template <class Rig>
 struct Clause {
     std::string name;                        // the promise, as a sentence
-    std::function<std::string(Rig&)> check;  // "" when it holds, else what was seen
+    std::function<std::string(Rig&)> check;  // "" if it holds, else what was seen
 };
 
 template <class Rig>

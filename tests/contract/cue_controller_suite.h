@@ -12,14 +12,13 @@ namespace fantascope::contract {
 
 class CueControllerRig : public Rig<CueController> {
 public:
-    // A button goes down or up under the operator's finger; a button that is down already repeats
-    // itself as a held key does.
+    // A button goes down or up under the operator's finger. Pressing a button that is already down
+    // repeats it like a held key.
     virtual void finger(int button, bool down) = 0;
 
-    // Closes the port, and nobody opens it again.
+    // Closes the port for good.
     virtual void close() = 0;
-    // What the button's lamp or picture shows now, as the operator sees it. For a device with lamps
-    // on buttons 1 to 3.
+    // What the button's lamp or picture shows now. For a device with lamps on buttons 1 to 3.
     virtual ButtonLight::State shown(int button) = 0;
     // A button that the device does not have.
     virtual int absentButton() const = 0;
@@ -31,7 +30,7 @@ public:
     ButtonLight::State shown(int) override { return ButtonLight::State::Off; }
 };
 
-// What the controller gives once all has arrived: "+3" for button 3 down, "-3" for up.
+// The controller's events once everything has arrived: "+3" for button 3 down, "-3" for up.
 inline std::string given(CueControllerRig& rig) {
     rig.letTimePass();
     std::string events;
@@ -46,7 +45,7 @@ inline std::string givenDiffers(CueControllerRig& rig, const std::string& wanted
     return "";
 }
 
-// Every promise of device/cue_controller.h but those of lampSuite().
+// Every promise of device/cue_controller.h except those of lampSuite().
 inline Suite<CueControllerRig> cueControllerSuite() {
     const auto serves = [](CueControllerRig& rig) -> std::string {
         rig.finger(1, true);
@@ -129,10 +128,10 @@ inline Suite<CueControllerRig> cueControllerSuite() {
              }},
             {"a light is not waited for",
              [](CueControllerRig& rig) -> std::string {
-                 rig.unplug();  // nobody takes it
+                 rig.unplug();  // nobody polls it
                  const Time before = rig.clock().now();
                  for (int light = 0; light < 4; ++light) rig.port().light(1, {ButtonLight::State(light), ""});
-                 // A clock that stands still finds out whoever waits; the real one tells nothing.
+                 // A clock that stands still detects waiting; a real one shows nothing.
                  const bool stands = dynamic_cast<ManualClock*>(&rig.clock()) != nullptr;
                  CONTRACT_REQUIRE(!stands || rig.clock().now() == before, "it waited {} s", seconds(rig.clock().now() - before));
                  return "";
@@ -144,7 +143,7 @@ inline std::string nameOf(ButtonLight::State state) {
     return std::array{"off", "ready", "active", "alarm"}[static_cast<std::size_t>(state)];
 }
 
-// "" if buttons 1 to 3 show these once all has arrived.
+// "" if buttons 1 to 3 show these once everything has arrived.
 inline std::string showsOther(CueControllerRig& rig, const std::array<ButtonLight::State, 3>& wanted) {
     rig.letTimePass();
     for (int button = 1; button <= 3; ++button) {
@@ -154,7 +153,7 @@ inline std::string showsOther(CueControllerRig& rig, const std::array<ButtonLigh
     return "";
 }
 
-// The promises of device/cue_controller.h that a device with lamps keeps besides.
+// The further promises of device/cue_controller.h for a device with lamps.
 inline Suite<CueControllerRig> lampSuite() {
     using enum ButtonLight::State;
     return {

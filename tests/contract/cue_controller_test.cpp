@@ -25,15 +25,15 @@ public:
     void finger(int button, bool down) override { world_.press(button, down); }
     void close() override { port_.reset(); }
     ButtonLight::State shown(int button) override { return world_.light(button).state; }
-    int absentButton() const override { return 0; }  // it has as many as somebody presses
+    int absentButton() const override { return 0; }  // any positive number is a button
 
 private:
-    std::unique_ptr<CueController> open() override { return drivers::openCueController(options_, around_).value(); }
+    std::unique_ptr<CueController> open() override { return drivers::openCueController(options_, context_).value(); }
 };
 
 Suite<CueControllerRig> wholeSuite() { return joined(cueControllerSuite(), lampSuite()); }
 
-// Good but for what a subclass breaks.
+// Good except for what a subclass breaks.
 class BetweenControllers : public Between<CueController> {
 public:
     using Between::Between;
@@ -66,7 +66,7 @@ class PressesAtItsReturn : public BetweenControllers {
     using BetweenControllers::BetweenControllers;
     std::optional<ButtonEvent> poll() override {
         const int losses = good_->status().losses;
-        if (running() && std::exchange(seen_, losses) != losses) return ButtonEvent{1, true, around_.clock.now()};
+        if (running() && std::exchange(seen_, losses) != losses) return ButtonEvent{1, true, context_.clock.now()};
         return good_->poll();
     }
     int seen_ = 0;
@@ -80,7 +80,7 @@ TEST(CueControllerContract, finds_a_controller_that_presses_when_it_is_plugged_i
 
 class HasNoMemory : public BetweenControllers {
     using BetweenControllers::BetweenControllers;
-    std::optional<ButtonEvent> poll() override { return around_.world->takePress(); }
+    std::optional<ButtonEvent> poll() override { return context_.world->takePress(); }
 };
 TEST(CueControllerContract, finds_a_controller_that_hands_on_whatever_the_wire_says) {
     EXPECT_THAT(brokenBy<HasNoMemory>(),
@@ -112,7 +112,7 @@ class PressesWhatItLights : public BetweenControllers {
         lit_ = running();
     }
     std::optional<ButtonEvent> poll() override {
-        return std::exchange(lit_, false) ? ButtonEvent{1, true, around_.clock.now()} : good_->poll();
+        return std::exchange(lit_, false) ? ButtonEvent{1, true, context_.clock.now()} : good_->poll();
     }
     bool lit_ = false;
 };
@@ -126,12 +126,12 @@ class PressesWhatItLightsAnew : public BetweenControllers {
     using BetweenControllers::BetweenControllers;
     void light(int button, const ButtonLight& light) override {
         good_->light(button, light);
-        told_ = told_ || !running();
+        reported_ = reported_ || !running();
     }
     std::optional<ButtonEvent> poll() override {
-        return running() && std::exchange(told_, false) ? ButtonEvent{1, true, around_.clock.now()} : good_->poll();
+        return running() && std::exchange(reported_, false) ? ButtonEvent{1, true, context_.clock.now()} : good_->poll();
     }
-    bool told_ = false;
+    bool reported_ = false;
 };
 TEST(CueControllerContract, finds_a_controller_that_presses_what_it_lights_at_its_return) {
     EXPECT_THAT(brokenBy<PressesWhatItLightsAnew>(), ElementsAre("a light of a lost device makes no press at its return"));
@@ -141,7 +141,7 @@ class WaitsForItsLamps : public BetweenControllers {
     using BetweenControllers::BetweenControllers;
     void light(int button, const ButtonLight& light) override {
         good_->light(button, light);
-        around_.clock.sleepUntil(around_.clock.now() + std::chrono::milliseconds(1));
+        context_.clock.sleepUntil(context_.clock.now() + std::chrono::milliseconds(1));
     }
 };
 TEST(CueControllerContract, finds_a_controller_that_waits_for_its_lamps) {
@@ -151,9 +151,9 @@ TEST(CueControllerContract, finds_a_controller_that_waits_for_its_lamps) {
 class ShowsTheFirst : public BetweenControllers {
     using BetweenControllers::BetweenControllers;
     void light(int button, const ButtonLight& light) override {
-        if (told_.insert(button).second) good_->light(button, light);
+        if (reported_.insert(button).second) good_->light(button, light);
     }
-    std::set<int> told_;
+    std::set<int> reported_;
 };
 TEST(CueControllerContract, finds_a_controller_that_keeps_its_first_light) {
     EXPECT_THAT(brokenBy<ShowsTheFirst>(),
@@ -169,7 +169,7 @@ TEST(CueControllerContract, finds_a_controller_that_lights_another_button) {
     EXPECT_THAT(brokenBy<LightsTheNearest>(), ElementsAre("a light of a button that is not there is left out"));
 }
 
-// Forgets at the loss, as a device does by itself.
+// Forgets its lights at the loss, like a real device.
 class ForgetsItsLamps : public BetweenControllers {
     using BetweenControllers::BetweenControllers;
     DeviceStatus status() const override {
@@ -210,13 +210,13 @@ public:
     using BetweenControllers::BetweenControllers;
     ~LeavesItsLampsOn() override {
         good_.reset();
-        for (const auto& [button, light] : told_) around_.world->setLight(button, light);
+        for (const auto& [button, light] : reported_) context_.world->setLight(button, light);
     }
     void light(int button, const ButtonLight& light) override {
         good_->light(button, light);
-        told_[button] = light;
+        reported_[button] = light;
     }
-    std::map<int, ButtonLight> told_;
+    std::map<int, ButtonLight> reported_;
 };
 TEST(CueControllerContract, finds_a_controller_that_leaves_its_lamps_on) {
     EXPECT_THAT(brokenBy<LeavesItsLampsOn>(), ElementsAre("at the end all is off"));

@@ -15,8 +15,8 @@
 
 namespace fantascope::contract {
 
-// A display that was asked to be kSize large and kRefreshRate fast, on a clock that stands still
-// unless somebody moves it, so that whoever waits is found out.
+// A display with requested size kSize and rate kRefreshRate, on a clock that stands still unless
+// somebody moves it, which detects waiting.
 class DisplaySinkRig : public Rig<DisplaySink> {
 public:
     static constexpr glm::ivec2 kSize{64, 36};
@@ -25,8 +25,8 @@ public:
     virtual ManualClock& manualClock() = 0;
     // Another output of the same kind on the same thread.
     virtual DisplaySink& otherOutput() = 0;
-    // Takes away what its context was made on, which a new one can be made on after kRetry. False:
-    // nothing can.
+    // Removes what its context was made on; a new context can be made after kRetry. False: that is
+    // impossible.
     static constexpr Time kRetry = std::chrono::seconds(1);
     virtual bool loseContext() { return false; }
 };
@@ -172,7 +172,7 @@ inline Suite<DisplaySinkRig> displaySinkSuite() {
                  const double period = 1 / DisplaySinkRig::kRefreshRate;
                  CONTRACT_SUCCEEDS(rig.port().makeCurrent());
                  CONTRACT_SUCCEEDS(rig.port().present());
-                 rig.manualClock().advance(fromSeconds(2.5 * period));  // the drawing of the second frame
+                 rig.manualClock().advance(fromSeconds(2.5 * period));  // while the second frame is drawn
                  const Time finished = rig.clock().now();
                  const auto second = rig.port().present();
                  CONTRACT_SUCCEEDS(second);
@@ -257,7 +257,7 @@ inline Suite<DisplaySinkRig> displaySinkSuite() {
                  }
                  CONTRACT_REQUIRE(rig.port().status().losses == 1, "{} losses", rig.port().status().losses);
                  (void)rig.otherOutput().poll();
-                 (void)rig.otherOutput().poll();  // the other one lets go too
+                 (void)rig.otherOutput().poll();  // the other one releases it, too
                  rig.manualClock().advance(DisplaySinkRig::kRetry);
                  CONTRACT_REQUIRE(rig.port().poll(), "it does not come back: {}", rig.port().status().detail);
                  CONTRACT_REQUIRE(rig.port().context() > context, "the next context has number {} after {}", rig.port().context(),
@@ -266,7 +266,7 @@ inline Suite<DisplaySinkRig> displaySinkSuite() {
                  CONTRACT_REQUIRE(!glIsBuffer(buffer), "it is the same context");
                  return serves(rig);
              }},
-            // So that what it will show is made before people watch.
+            // So that its contents can be prepared before people watch.
             {"a display that is missing at the start has its context all the same",
              [](DisplaySinkRig& rig) -> std::string {
                  rig.unplug();

@@ -24,19 +24,19 @@ public:
     DisplaySink& otherOutput() override { return *other_; }
     void letTimePass() override {
         SimulatedRig::letTimePass();
-        (void)port().poll();  // a window hears of its fate when its thread looks
+        (void)port().poll();  // a window learns of it in poll()
     }
 
 private:
     std::unique_ptr<DisplaySink> openNamed(const std::string& name) {
-        return drivers::openDisplay(options_, {name, kSize, kRefreshRate}, around_).value();
+        return drivers::openDisplay(options_, {name, kSize, kRefreshRate}, context_).value();
     }
     std::unique_ptr<DisplaySink> open() override { return openNamed("left"); }
 
     std::unique_ptr<DisplaySink> other_;
 };
 
-// A window, which somebody can force its program to let go of.
+// A window whose program can be forced to lose it.
 class WindowRig final : public DrivenDisplayRig {
 public:
     explicit WindowRig(const XServer& server, Wrap<DisplaySink> wrap = {})
@@ -82,7 +82,7 @@ class AlmostGood : public Between<DisplaySink> {
     Result<Shown> presentWith(Time leading) override { return good_->presentWith(leading); }
 };
 
-// Whoever drew with it would go on with names of another context.
+// Otherwise its user would go on with names of another context.
 class KeepsQuietAboutItsContext : public AlmostGood {
     using AlmostGood::AlmostGood;
     int context() const override { return 1; }
@@ -122,7 +122,7 @@ TEST(DisplaySinkContract, finds_a_display_that_does_not_pace) {
         Contains("leading frames are shown at one refresh after the other, and the display waits for it or for the one before"));
 }
 
-// A queue without an end: no frame is ever late, and a button's effect comes ever later.
+// An endless queue: no frame is ever late, and a button's effect comes later and later.
 class QueuesEverything : public AlmostGood {
     using AlmostGood::AlmostGood;
     std::int64_t nextRefresh() const override { return std::max(good_->nextRefresh(), shown_ + 1); }
@@ -142,7 +142,7 @@ class AlwaysWaits : public AlmostGood {
     using AlmostGood::AlmostGood;
     Result<Shown> presentWith(Time) override {
         const Shown shown = TRY(good_->present());
-        around_.clock.sleepUntil(shown.at);
+        context_.clock.sleepUntil(shown.at);
         return shown;
     }
 };
@@ -153,7 +153,7 @@ TEST(DisplaySinkContract, finds_a_follower_that_waits_for_a_refresh_of_its_own) 
 
 class RunsAhead : public AlmostGood {
     using AlmostGood::AlmostGood;
-    Result<Shown> presentWith(Time) override { return good_->presentWith(around_.clock.now()); }
+    Result<Shown> presentWith(Time) override { return good_->presentWith(context_.clock.now()); }
 };
 TEST(DisplaySinkContract, finds_a_follower_that_does_not_wait_for_the_leader) {
     EXPECT_THAT(brokenBy<RunsAhead>(),
@@ -183,7 +183,7 @@ TEST(DisplaySinkContract, finds_uneven_refreshes) {
     EXPECT_THAT(brokenBy<SaysItsRefreshesAreUneven>(), Contains("refreshes are even and counted, shown or not"));
 }
 
-// The display that is presented is whatever context happens to be current.
+// Presents whatever context happens to be current.
 class TakesAnyContext : public AlmostGood {
     using AlmostGood::AlmostGood;
     Result<Shown> presentWith(Time) override {
@@ -203,7 +203,7 @@ TEST(DisplaySinkContract, finds_a_lost_display_that_claims_to_be_there) {
     EXPECT_THAT(brokenBy<DeniesItsLoss>(), Contains("a lost display shows nothing, says so and names itself, at once"));
 }
 
-// Nothing can be made ready for it before people watch.
+// Nothing can be prepared before people watch.
 class HasNoContextWhileAway : public AlmostGood {
     using AlmostGood::AlmostGood;
     Result<void> makeCurrent() override {
@@ -217,7 +217,7 @@ TEST(DisplaySinkContract, finds_a_context_that_is_away_with_its_display) {
                                      "what is in its context outlives a loss"));
 }
 
-// Whatever comes next is drawn into another display's context.
+// The next drawing goes to another display's context.
 class FinishesWhateverIsCurrent : public AlmostGood {
     using AlmostGood::AlmostGood;
     Result<void> finish() override {
@@ -237,7 +237,7 @@ TEST(DisplaySinkContract, finds_a_display_that_does_not_come_back) {
     EXPECT_THAT(brokenBy<StaysAway>(), Contains("a lost device comes back by itself and the same object serves"));
 }
 
-// A loss throws everything away, and the return starts afresh.
+// A loss discards everything, and the return starts anew.
 class LosesItsContext : public AlmostGood {
 public:
     using AlmostGood::AlmostGood;
@@ -254,7 +254,7 @@ private:
     unsigned framebuffer() const override { return fresh_ ? fresh_->framebuffer() : good_->framebuffer(); }
     std::unique_ptr<DisplaySink> openAnother() const {
         const ConfigNode options = ConfigNode::parse("driver: headless\n", "site.yaml").value();
-        return drivers::openDisplay(options, {"left", DisplaySinkRig::kSize, DisplaySinkRig::kRefreshRate}, around_).value();
+        return drivers::openDisplay(options, {"left", DisplaySinkRig::kSize, DisplaySinkRig::kRefreshRate}, context_).value();
     }
     int lossesSeen_ = 0;
     std::unique_ptr<DisplaySink> fresh_;

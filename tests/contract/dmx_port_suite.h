@@ -13,14 +13,13 @@ using DmxFrame = std::array<std::uint8_t, kDmxSlots>;
 
 class DmxPortRig : public Rig<DmxPort> {
 public:
-    // What the line says over and over now; nothing while it is silent.
+    // What the line repeats now; nothing while it is silent.
     virtual std::optional<DmxFrame> line() = 0;
-    // The last frame that reached the lamps, from before reopen() too.
+    // The last frame that reached the lamps, even from before reopen().
     virtual std::optional<DmxFrame> lastFrame() = 0;
 };
 
-// A frame in which every slot differs from its neighbours, and any two of which differ in every
-// slot.
+// A frame whose slots differ from their neighbours; any two frames differ in every slot.
 inline DmxFrame dmxFrame(int number) {
     DmxFrame frame;
     for (std::size_t slot = 0; slot < frame.size(); ++slot)

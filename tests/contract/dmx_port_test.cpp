@@ -24,7 +24,7 @@ public:
     std::optional<DmxFrame> lastFrame() override { return world_.slots(1); }
 
 private:
-    std::unique_ptr<DmxPort> open() override { return drivers::openDmxPort(options_, 1, around_).value(); }
+    std::unique_ptr<DmxPort> open() override { return drivers::openDmxPort(options_, 1, context_).value(); }
 };
 
 template <class Broken>
@@ -37,12 +37,11 @@ TEST(DmxPortContract, is_kept_by_the_simulated_port) {
     EXPECT_THAT(violations(dmxPortSuite(), [] { return std::make_unique<SimulatedDmxPortRig>(); }), IsEmpty());
 }
 
-// The suite is worth something only if it finds the port that breaks a promise, and names that
-// promise.
+// The suite must find a port that breaks a promise, and name the promise.
 class KeepsTheUnsentFrame : public Between<DmxPort> {
     using Between::Between;
     Result<void> send(std::span<const std::uint8_t, kDmxSlots> slots) override {
-        if (std::exchange(last_, around_.clock.now()) == around_.clock.now()) return {};  // still busy with the one before
+        if (std::exchange(last_, context_.clock.now()) == context_.clock.now()) return {};  // still busy with the previous frame
         return good_->send(slots);
     }
     Time last_{-1};
@@ -106,12 +105,12 @@ class ShiftsItsSlots : public Between<DmxPort> {
         return good_->send(shifted);
     }
 };
-// It serves nobody, so whatever asks it to serve complains.
+// It never works, so whatever uses it complains.
 TEST(DmxPortContract, finds_a_port_that_takes_slot_1_for_slot_0) {
     EXPECT_THAT(brokenBy<ShiftsItsSlots>(), testing::Contains("the line carries all 512 slots of the frame that was sent"));
 }
 
-// The clauses that all devices share, shown on this one by what it says of itself.
+// The clauses that all devices share, shown by a device that misreports its status.
 class MisreportsItself : public Between<DmxPort> {
     using Between::Between;
     Result<void> send(std::span<const std::uint8_t, kDmxSlots> slots) override { return good_->send(slots); }

@@ -13,20 +13,20 @@ namespace fantascope::contract {
 
 class DmxSourceRig : public Rig<DmxSource> {
 public:
-    // Somebody's desk sends a frame whose slots are all `level`; `priority` only where the protocol
-    // has it.
+    // A desk sends a frame whose slots are all `level`; `priority` counts only if the protocol has
+    // it.
     virtual void deskSends(const std::string& source, int level, int priority = 100) = 0;
-    // It says goodbye. False: the protocol knows none.
-    virtual bool deskSaysGoodbye(const std::string& source) = 0;
+    // The desk terminates its stream. False: the protocol has no termination.
+    virtual bool deskTerminates(const std::string& source) = 0;
     // Whether the protocol has priorities.
     virtual bool hasPriority() const { return true; }
-    // Whether the protocol tells senders apart. Where not, they all are desk "a".
+    // Whether the protocol tells senders apart. If not, they are all desk "a".
     virtual bool hasSenders() const { return true; }
     // The desk that a frame's source stands for.
     virtual std::string deskOf(const std::string& source) { return source; }
 };
 
-// What the source gives once all that is on its way has come, as "sender:level" or "sender:gone".
+// The source's frames once everything has arrived, as "sender:level" or "sender:gone".
 inline std::vector<std::string> received(DmxSourceRig& rig) {
     rig.letTimePass();
     std::vector<std::string> frames;
@@ -101,18 +101,18 @@ inline Suite<DmxSourceRig> dmxSourceSuite() {
                  CONTRACT_REQUIRE(frame->silence > Time::zero(), "{} s", seconds(frame->silence));
                  return "";
              }},
-            {"a goodbye is given once, after the frames before it, and its sender may come back",
+            {"a termination is given once, after the frames before it, and its sender may come back",
              [](DmxSourceRig& rig) -> std::string {
                  rig.deskSends("a", 1);
-                 if (!rig.deskSaysGoodbye("a")) return "";
+                 if (!rig.deskTerminates("a")) return "";
                  if (auto wrong = receivedDiffers(rig, {"a:1", "a:gone"}); !wrong.empty()) return wrong;
                  rig.deskSends("a", 2);
                  return receivedDiffers(rig, {"a:2"});
              }},
-            {"a goodbye is kept when nobody takes frames, as a sender's newest is",
+            {"a termination is kept when nobody takes frames, as a sender's newest is",
              [](DmxSourceRig& rig) -> std::string {
                  rig.deskSends("a", 1);
-                 if (!rig.deskSaysGoodbye("a")) return "";
+                 if (!rig.deskTerminates("a")) return "";
                  for (int level = 1; level <= 100; ++level) rig.deskSends("loud", level);
                  const auto got = received(rig);
                  CONTRACT_REQUIRE(std::find(got.begin(), got.end(), "a:gone") != got.end(), "received [{}]", fmt::join(got, " "));

@@ -22,16 +22,16 @@ public:
         frame.priority = priority;
         world_.sendFromDesk(1, frame);
     }
-    bool deskSaysGoodbye(const std::string& source) override {
-        DmxInput goodbye;
-        goodbye.source = source;
-        goodbye.ended = true;
-        world_.sendFromDesk(1, goodbye);
+    bool deskTerminates(const std::string& source) override {
+        DmxInput termination;
+        termination.source = source;
+        termination.ended = true;
+        world_.sendFromDesk(1, termination);
         return true;
     }
 
 private:
-    std::unique_ptr<DmxSource> open() override { return drivers::openDmxSource(options_, 1, around_).value(); }
+    std::unique_ptr<DmxSource> open() override { return drivers::openDmxSource(options_, 1, context_).value(); }
 };
 
 template <class Broken>
@@ -80,7 +80,7 @@ class HasOnePlaceForAll : public Between<DmxSource> {
     std::optional<DmxInput> receive() override {
         std::deque<DmxInput> waiting;
         while (const auto frame = good_->receive()) waiting.push_back(*frame);
-        if (waiting.size() < 5) {  // enough for all but a loud sender
+        if (waiting.size() < 5) {  // enough except for a loud sender
             kept_.insert(kept_.end(), waiting.begin(), waiting.end());
         } else {
             kept_ = {waiting.back()};
@@ -95,10 +95,10 @@ class HasOnePlaceForAll : public Between<DmxSource> {
 TEST(DmxSourceContract, finds_a_source_where_a_loud_sender_drowns_a_quiet_one) {
     EXPECT_THAT(brokenBy<HasOnePlaceForAll>(),
                 ElementsAre("of each sender at least the newest frame is kept, and in order",
-                            "a goodbye is kept when nobody takes frames, as a sender's newest is"));
+                            "a termination is kept when nobody takes frames, as a sender's newest is"));
 }
 
-class HearsNoGoodbye : public Between<DmxSource> {
+class IgnoresTermination : public Between<DmxSource> {
     using Between::Between;
     std::optional<DmxInput> receive() override {
         auto frame = good_->receive();
@@ -106,30 +106,30 @@ class HearsNoGoodbye : public Between<DmxSource> {
         return frame;
     }
 };
-TEST(DmxSourceContract, finds_a_source_that_hears_no_goodbye) {
-    EXPECT_THAT(brokenBy<HearsNoGoodbye>(),
-                ElementsAre("a goodbye is given once, after the frames before it, and its sender may come back",
-                            "a goodbye is kept when nobody takes frames, as a sender's newest is"));
+TEST(DmxSourceContract, finds_a_source_that_ignores_a_termination) {
+    EXPECT_THAT(brokenBy<IgnoresTermination>(),
+                ElementsAre("a termination is given once, after the frames before it, and its sender may come back",
+                            "a termination is kept when nobody takes frames, as a sender's newest is"));
 }
 
-// As E1.31 says it three times.
-class RepeatsGoodbyes : public Between<DmxSource> {
+// As E1.31 sends it three times.
+class RepeatsTermination : public Between<DmxSource> {
     using Between::Between;
     std::optional<DmxInput> receive() override {
-        if (repeats_ > 0 && repeats_-- > 0) return goodbye_;
+        if (repeats_ > 0 && repeats_-- > 0) return termination_;
         auto frame = good_->receive();
         if (frame && frame->ended) {
-            goodbye_ = frame;
+            termination_ = frame;
             repeats_ = 2;
         }
         return frame;
     }
-    std::optional<DmxInput> goodbye_;
+    std::optional<DmxInput> termination_;
     int repeats_ = 0;
 };
-TEST(DmxSourceContract, finds_a_source_that_gives_a_goodbye_three_times) {
-    EXPECT_THAT(brokenBy<RepeatsGoodbyes>(),
-                ElementsAre("a goodbye is given once, after the frames before it, and its sender may come back"));
+TEST(DmxSourceContract, finds_a_source_that_gives_a_termination_three_times) {
+    EXPECT_THAT(brokenBy<RepeatsTermination>(),
+                ElementsAre("a termination is given once, after the frames before it, and its sender may come back"));
 }
 
 class WaitsForNobody : public Between<DmxSource> {

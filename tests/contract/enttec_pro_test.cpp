@@ -22,7 +22,7 @@ TEST(DmxPortContract, is_kept_by_a_widget) {
                 IsEmpty());
 }
 
-// Gives what the port gives, but what the rig itself has sent to see how far the port has come.
+// Gives the port's frames, except the marks by which the rig sees how far the port has come.
 class Marked final : public DmxSource {
 public:
     static constexpr std::uint8_t kMark = 255;
@@ -58,7 +58,7 @@ public:
     DmxSource& port() override { return *port_; }
     void reopen() override {
         port_.reset();
-        port_ = std::make_unique<Marked>(drivers::openDmxSource(optionsFor(socket_), 1, around_).value());
+        port_ = std::make_unique<Marked>(drivers::openDmxSource(optionsFor(socket_), 1, context_).value());
     }
     void unplug() override { socket_.unplug(); }
     void plugIn() override { socket_.plugIn(); }
@@ -78,16 +78,16 @@ public:
     void deskSends(const std::string&, int level, int) override {
         if (socket_.in()) socket_.widget().comesIn(std::vector<std::uint8_t>(kDmxSlots, static_cast<std::uint8_t>(level)));
     }
-    bool deskSaysGoodbye(const std::string&) override { return false; }
+    bool deskTerminates(const std::string&) override { return false; }
     bool hasPriority() const override { return false; }
     bool hasSenders() const override { return false; }
     std::string deskOf(const std::string& source) override { return source == "01234567" ? "a" : "somebody else"; }
 
 private:
     SteadyClock clock_;
-    drivers::Surroundings around_{clock_};
+    drivers::DriverContext context_{clock_};
     WidgetSocket socket_, next_;
-    std::unique_ptr<DmxSource> neighbour_ = drivers::openDmxSource(optionsFor(next_), 2, around_).value();
+    std::unique_ptr<DmxSource> neighbour_ = drivers::openDmxSource(optionsFor(next_), 2, context_).value();
     std::unique_ptr<Marked> port_;
 };
 
@@ -98,7 +98,7 @@ TEST(DmxSourceContract, is_kept_by_a_widget) {
 class EnttecProTest : public testing::Test {
 protected:
     std::unique_ptr<DmxPort> open(const WidgetSocket& socket, const std::string& further = "") {
-        return drivers::openDmxPort(optionsFor(socket, further), 1, around_).value();
+        return drivers::openDmxPort(optionsFor(socket, further), 1, context_).value();
     }
     static void awaitState(const Device& device, DeviceState state) {
         eventually(nameOf(state), [&] { return device.status().state == state; });
@@ -109,7 +109,7 @@ protected:
     }
 
     SteadyClock clock_;
-    drivers::Surroundings around_{clock_};
+    drivers::DriverContext context_{clock_};
 };
 
 TEST_F(EnttecProTest, the_widget_hears_nothing_but_whole_messages) {
@@ -117,7 +117,7 @@ TEST_F(EnttecProTest, the_widget_hears_nothing_but_whole_messages) {
     const auto port = open(socket);
     awaitState(*port, DeviceState::Running);
     ASSERT_TRUE(port->send(dmxFrame(1)));
-    awaitFrames(socket.widget(), 50);  // longer than it takes to be asked whether it is still there
+    awaitFrames(socket.widget(), 50);  // long enough for the check whether it is still there
     EXPECT_EQ(socket.widget().complaint(), "");
 }
 
@@ -152,7 +152,7 @@ TEST_F(EnttecProTest, another_widget_in_its_place_is_faulted_with_both_numbers) 
     WidgetSocket socket("76543210");
     const auto port = open(socket, "number: '01234567'\n");
     awaitState(*port, DeviceState::Faulted);
-    EXPECT_EQ(port->status().detail, socket.file().string() + ": it is the widget 76543210, not 01234567");
+    EXPECT_EQ(port->status().detail, socket.file().string() + ": it is widget 76543210, not 01234567");
     EXPECT_EQ(port->status().losses, 0);
     EXPECT_FALSE(port->send(dmxFrame(1)));
 }
@@ -165,7 +165,7 @@ TEST_F(EnttecProTest, a_widget_that_takes_no_more_bytes_is_faulted_and_the_port_
     socket.widget().stopReading();
     eventually("fault", [&] { return !port->send(dmxFrame(2)); });
     EXPECT_EQ(port->status().state, DeviceState::Faulted);
-    port.reset();  // returns, though what was written can go nowhere
+    port.reset();  // returns, although the bytes can go nowhere
 }
 
 TEST_F(EnttecProTest, a_message_that_another_program_broke_off_is_ended) {
@@ -193,7 +193,7 @@ TEST_F(EnttecProTest, a_widget_is_an_output_or_an_input_and_the_second_says_so) 
     WidgetSocket socket;
     const auto port = open(socket);
     awaitState(*port, DeviceState::Running);
-    const auto source = drivers::openDmxSource(optionsFor(socket), 2, around_).value();
+    const auto source = drivers::openDmxSource(optionsFor(socket), 2, context_).value();
     awaitState(*source, DeviceState::Faulted);
     EXPECT_THAT(source->status().detail, HasSubstr("in use, by another device of this site or by another program"));
 }
@@ -208,10 +208,10 @@ TEST_F(EnttecProTest, what_is_no_widget_is_faulted) {
 
 TEST_F(EnttecProTest, only_frames_of_levels_that_came_in_well_are_given) {
     WidgetSocket socket;
-    const auto source = drivers::openDmxSource(optionsFor(socket), 1, around_).value();
+    const auto source = drivers::openDmxSource(optionsFor(socket), 1, context_).value();
     eventually("receiving", [&] { return socket.widget().wasToldToReceive(); });
     const std::vector<std::uint8_t> slots(kDmxSlots, 9), few(24, 7);
-    socket.widget().comesIn(slots, 0xcc);  // a question to a lamp that can be configured
+    socket.widget().comesIn(slots, 0xcc);  // a query to a configurable lamp
     socket.widget().comesIn(slots, 0, 1);  // the widget could not keep up
     socket.widget().comesIn(few);
     std::optional<DmxInput> frame;
@@ -223,11 +223,11 @@ TEST_F(EnttecProTest, only_frames_of_levels_that_came_in_well_are_given) {
 TEST_F(EnttecProTest, keys_are_strict) {
     const auto refusal = [&](const std::string& keys) {
         const auto node = ConfigNode::parse("driver: enttec_pro\n" + keys, "site.yaml").value();
-        const auto port = drivers::openDmxPort(node, 1, around_);
+        const auto port = drivers::openDmxPort(node, 1, context_);
         return port ? "accepted" : port.error().message();
     };
-    EXPECT_THAT(refusal("port: ttyUSB0\n"), HasSubstr("a device's file is wanted"));
-    EXPECT_THAT(refusal("port: /dev/ttyUSB0\nserial: EN1\n"), HasSubstr("'port' says already"));
+    EXPECT_THAT(refusal("port: ttyUSB0\n"), HasSubstr("a device file is needed"));
+    EXPECT_THAT(refusal("port: /dev/ttyUSB0\nserial: EN1\n"), HasSubstr("'port' already chooses"));
     EXPECT_THAT(refusal("number: 1234\n"), HasSubstr("eight digits"));
     EXPECT_THAT(refusal("break: 40\n"), HasSubstr("us"));
     EXPECT_THAT(refusal("rate: 44\n"), HasSubstr("40"));

@@ -7,8 +7,8 @@
 
 namespace fantascope::contract {
 
-// Returns once the condition holds. For what real threads and a real kernel have on their way; a
-// test that waits in vain fails, after far longer than a loaded machine takes.
+// Returns once the condition holds. For things that real threads and a real kernel have on their
+// way. A test that waits in vain fails, after far longer than a loaded machine needs.
 template <class Condition>
 void eventually(const char* what, Condition condition) {
     SteadyClock clock;

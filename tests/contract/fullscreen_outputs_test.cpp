@@ -1,5 +1,5 @@
-// Projectors bound by identity, on a real X server with several outputs: what a display driver sees
-// of a night on which somebody pulls cables, changes them over and switches projectors off.
+// Projectors bound by identity, on a real X server with several outputs: what a display driver goes
+// through on a night on which somebody pulls cables, swaps them and switches projectors off.
 
 #include "drivers/display/glfw.h"
 #include "drivers/registry.h"
@@ -68,8 +68,8 @@ protected:
     }
     Output& openSerial(const std::string& serial) { return open(serial, "monitor: {serial: " + serial + "}"); }
 
-    // Picture number `picture` has cells of 20 x 20 pixels that are all different, and different in
-    // every picture.
+    // The cells of picture number `picture`, 20 x 20 pixels each, are all different, and different
+    // in every picture.
     static Pixel colourOf(int picture, glm::ivec2 cell) {
         return {static_cast<std::uint8_t>(picture * 50 + cell.y), static_cast<std::uint8_t>(cell.x * 7),
                 static_cast<std::uint8_t>(255 - cell.y * 11)};
@@ -91,8 +91,8 @@ protected:
         glDisable(GL_SCISSOR_TEST);
     }
 
-    // A frame on every output that is there, as the frame loop makes one: the first leads, the
-    // others show with it.
+    // Shows a frame on every present output, like the frame loop: the first leads, the others
+    // follow.
     void frame() {
         std::vector<Output*> drawn;
         for (Output& output : outputs_)
@@ -109,8 +109,8 @@ protected:
             leading = shown->at;
         }
     }
-    // Frames until it is so; what happens to a projector travels by the X server. An absurd number
-    // of frames: it will never be.
+    // Shows frames until the condition holds, because changes travel through the X server. After an
+    // absurd number it gives up.
     bool framesUntil(const std::function<bool()>& so) {
         for (int frames = 0; frames < 5'000; ++frames) {
             if (so()) return true;
@@ -121,8 +121,8 @@ protected:
     static bool runs(const Output& output) { return output.sink->status().state == DeviceState::Running; }
     static std::string detailOf(const Output& output) { return output.sink->status().detail; }
 
-    // What is wrong on the screen, where these pictures should be in these areas: the first wrong
-    // pixel, or "".
+    // The first wrong pixel on the screen if these pictures should be in these areas; "" if none is
+    // wrong.
     std::string wrongPixel(const std::map<int, glm::ivec2>& cornersOfPictures, glm::ivec2 size = kSize) {
         const auto rows = projectors_->server().rows();
         for (const auto& [picture, corner] : cornersOfPictures)
@@ -146,7 +146,7 @@ protected:
 
     std::unique_ptr<Projectors> projectors_;
     ManualClock clock_;
-    std::deque<Output> outputs_;  // gone before the X server
+    std::deque<Output> outputs_;  // destroyed before the X server
 };
 
 // As X starts without a desktop: the first projector shows something, the others are dark.
@@ -214,8 +214,7 @@ TEST_F(FullscreenOutputs, go_on_when_another_is_switched_off_and_have_it_back_wh
         EXPECT_EQ(lost->frames, framesOfLost);
         EXPECT_EQ(projectors_->picture(connector), std::nullopt) << "whoever switched it off wanted it";
 
-        // Somebody switches it on as the projector likes best; it gets its mode and its place
-        // again.
+        // Somebody switches it on in its preferred mode; it gets its own mode and place again.
         projectors_->switchOn(connector, {0, 300}, Projectors::kLarge);
         ASSERT_TRUE(framesUntil([&] { return runs(*lost); })) << detailOf(*lost);
         frame();
@@ -233,7 +232,7 @@ TEST_F(FullscreenOutputs, follow_their_projectors_when_cables_are_changed_over) 
     hang();
     for (const char* serial : {"A", "B", "C"}) openSerial(serial);
     frame();
-    projectors_->plug("DUMMY0", {});  // one after the other, as hands do
+    projectors_->plug("DUMMY0", {});  // one after the other, as by hand
     ASSERT_TRUE(framesUntil([&] { return !runs(outputs_[0]); }));
     EXPECT_THAT(detailOf(outputs_[0]), AllOf(HasSubstr("there is no monitor {serial: A}"), HasSubstr("DUMMY0 (without EDID)"),
                                              HasSubstr("DUMMY1 {make: EPS, model: EPSON PJ, serial: B}")));
@@ -248,7 +247,7 @@ TEST_F(FullscreenOutputs, follow_their_projectors_when_cables_are_changed_over) 
     EXPECT_GT(outputs_[1].frames, frames);
 }
 
-// Nothing was heard of the moment between.
+// No event arrived between the two changes.
 TEST_F(FullscreenOutputs, follow_their_projectors_when_two_change_places_at_once) {
     hang();
     for (const char* serial : {"A", "B", "C"}) openSerial(serial);
@@ -277,7 +276,7 @@ TEST_F(FullscreenOutputs, that_are_absent_at_the_start_come_later_on_any_connect
     EXPECT_EQ(d.sink->status().losses, 0) << "what was never there was not lost";
 }
 
-// `xrandr` makes the X server look at its connectors before it switches one on, not after.
+// `xrandr` makes the X server probe its connectors before it switches one on, not after.
 TEST_F(FullscreenOutputs, see_a_monitor_that_the_x_server_has_not_looked_at_since) {
     projectors_->switchOn("DUMMY1", {kSize.x, 0}, kSize, 60, Projectors::Looks::Before);
     EXPECT_TRUE(runs(open("early", "monitor: DUMMY1"))) << detailOf(outputs_[0]);
@@ -287,7 +286,7 @@ TEST_F(FullscreenOutputs, see_a_monitor_that_the_x_server_has_not_looked_at_sinc
     EXPECT_TRUE(framesUntil([&] { return runs(late); })) << detailOf(late);
 }
 
-// The place of who is away is nobody's: a picture that comes back moves no other one.
+// The place of an absent output stays reserved: a picture that comes back moves no other.
 TEST_F(FullscreenOutputs, come_back_to_their_place_on_another_connector_switched_on_by_us) {
     hang();
     projectors_->switchOn("DUMMY3", {3 * kSize.x, 0});
@@ -327,7 +326,7 @@ TEST_F(FullscreenOutputs, ask_which_one_is_meant_where_two_projectors_are_alike)
     frame();
     EXPECT_EQ(wrongPixel({{2, cornerOf("DUMMY1")}}), "");
 
-    projectors_->plug("DUMMY1", edidOf("B"));  // now it is plain
+    projectors_->plug("DUMMY1", edidOf("B"));  // now they differ
     EXPECT_TRUE(framesUntil([&] { return runs(output) && !runs(told); })) << detailOf(output);
 }
 
@@ -335,13 +334,13 @@ TEST_F(FullscreenOutputs, of_one_monitor_are_refused_but_the_first) {
     hang();
     Output& first = openSerial("A");
     Output& second = open("second", "monitor: DUMMY0");
-    EXPECT_THAT(detailOf(second), HasSubstr("belongs to output 'A' already"));
+    EXPECT_THAT(detailOf(second), HasSubstr("already belongs to output 'A'"));
     frame();
     EXPECT_EQ(first.frames, 1);
     EXPECT_EQ(wrongPixel({{1, cornerOf("DUMMY0")}}), "");
 }
 
-// GLFW knows whole Hz only. Over a night the difference is a minute and a half.
+// GLFW knows only whole Hz. Over a night the difference is a minute and a half.
 TEST_F(FullscreenOutputs, run_at_the_exact_rate_that_is_nearest_to_the_asked_one) {
     hang();
     EXPECT_THAT(open("a", "monitor: DUMMY0", kSize, 59.94).sink->refreshRate(), DoubleNear(59.94, 1e-6));
@@ -400,7 +399,7 @@ TEST(MonitorKeys, are_read_strictly) {
     EXPECT_THAT(refused("monitor: {serail: X}"), HasSubstr("did you mean 'serial'"));
     EXPECT_THAT(refused("monitor: {}"), HasSubstr("give at least one of connector, make, model, serial"));
     EXPECT_THAT(refused("monitor: [a]"), HasSubstr("a text is needed"));
-    EXPECT_THAT(refused("position: [0, 0]"), HasSubstr("name the monitor"));
+    EXPECT_THAT(refused("position: [0, 0]"), HasSubstr("'position' needs 'monitor'"));
     EXPECT_THAT(refused("monitor: a, position: [0, -1]"), HasSubstr("position"));
     EXPECT_THAT(refused("monitor: a, position: [0]"), HasSubstr("position"));
 }

@@ -1,4 +1,4 @@
-// What a window adds to the promises of every display.
+// What a window promises beyond every display.
 
 #include "drivers/display/glfw.h"
 #include "drivers/registry.h"
@@ -53,9 +53,8 @@ protected:
     ManualClock clock_;
 };
 
-// All 256 stored values, in the picture's top row alone, so that a picture upside down is found
-// out. A conversion there and back on the way to the window would move some by one, a single one
-// nearly all.
+// All 256 stored values, only in the picture's top row, to detect an upside-down picture. Two
+// conversions on the way to the window would change some values by one; a single one nearly all.
 TEST_F(GlfwDisplay, fills_its_monitor_with_the_stored_values) {
     const auto sink = open("{driver: glfw, monitor: screen}", {1280, 720}, clock_);
     ASSERT_TRUE(sink->makeCurrent()) << sink->status().detail;
@@ -87,14 +86,13 @@ TEST_F(GlfwDisplay, is_absent_without_its_monitor_and_names_those_there_are) {
     EXPECT_FALSE(sink->present());
 }
 
-// Otherwise the picture would be scaled or cut and nobody would know.
+// Otherwise the picture would be scaled or cropped without notice.
 TEST_F(GlfwDisplay, is_absent_on_a_monitor_without_a_mode_of_its_size) {
     const auto sink = open("{driver: glfw, monitor: screen}", {1000, 700}, clock_);
     EXPECT_THAT(sink->status().detail, HasSubstr("no mode of 1000 x 700"));
 }
 
-// Nobody could see both otherwise: where no window manager places them, two windows would lie on
-// each other.
+// Otherwise, without a window manager, two windows would cover each other.
 TEST_F(GlfwDisplay, stands_beside_the_windows_before_it) {
     const auto left = open("{driver: glfw}", {640, 36}, clock_), right = open("{driver: glfw}", {640, 36}, clock_),
                below = open("{driver: glfw}", {64, 20}, clock_);
@@ -121,8 +119,7 @@ TEST_F(GlfwDisplay, stays_closed_when_somebody_closes_its_window) {
     ASSERT_TRUE(sink->present());
     ASSERT_TRUE(server_->hasWindow("left"));
     server_->closeWindow("left");
-    // The request travels by the server: some frame's events tell of it, the next one's or a later
-    // one's.
+    // The request travels through the server, so it arrives with the events of some later frame.
     for (int frame = 0; frame < 100'000 && sink->presentWith(clock_.now()); ++frame) {
     }
     for (int second = 0; second < 3; ++second) {
@@ -136,8 +133,8 @@ TEST_F(GlfwDisplay, stays_closed_when_somebody_closes_its_window) {
     EXPECT_FALSE(server_->hasWindow("left"));
 }
 
-// A technician's keyboard at the output itself. A key comes by the server: some frame's events tell
-// of it.
+// A technician's keyboard at the output itself. A key travels through the server, so it arrives
+// with the events of some later frame.
 TEST_F(GlfwDisplay, hears_the_keys_that_are_pressed_at_it) {
     const auto sink = open("{driver: glfw}", {64, 36}, clock_);
     ASSERT_TRUE(sink->present());
@@ -174,7 +171,7 @@ TEST_F(GlfwDisplay, waits_for_an_x_server_and_tries_once_a_second) {
     EXPECT_EQ(sink->status().losses, 0) << "what was never there was not lost";
 }
 
-// What a program holds of the system.
+// How many of the system's resources a program holds.
 std::size_t entriesIn(const char* folder) {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
@@ -191,7 +188,7 @@ testing::AssertionResult shows(DisplaySink& sink, int red) {
     return testing::AssertionSuccess();
 }
 
-// Polls until it runs; somebody else's thread may have to find out first.
+// Polls until it runs; another thread may have to notice first.
 void comesBack(DisplaySink& sink, ManualClock& clock) {
     eventually("the display comes back", [&] {
         clock.advance(std::chrono::seconds(1));
@@ -199,8 +196,8 @@ void comesBack(DisplaySink& sink, ManualClock& clock) {
     });
 }
 
-// Example failure: Xlib ends the program; or a display, a window and a thread more are left each
-// time.
+// Example failure: Xlib ends the program; or each time a display, a window and a thread are left
+// over.
 TEST_F(GlfwDisplay, outlives_twenty_x_servers_and_leaves_nothing_of_them) {
     const auto window = open("{driver: glfw}", {64, 36}, clock_),
                monitor = open("{driver: glfw, monitor: screen}", {1280, 720}, clock_);
@@ -233,7 +230,7 @@ TEST_F(GlfwDisplay, outlives_twenty_x_servers_and_leaves_nothing_of_them) {
     EXPECT_EQ(entriesIn("/proc/self/task"), threads);
 }
 
-// Example failure: BadWindow, for which Xlib ends the program; or the picture is away and its
+// Example failure: BadWindow, for which Xlib ends the program; or there is no picture, and the
 // status says Running.
 TEST_F(GlfwDisplay, makes_its_window_again_that_another_program_has_destroyed) {
     const auto sink = open("{driver: glfw}", {64, 36}, clock_);
@@ -266,7 +263,7 @@ TEST_F(GlfwDisplay, stays_closed_on_the_next_x_server) {
     EXPECT_TRUE(other->poll()) << "the closed one keeps nothing that others need: " << other->status().detail;
 }
 
-// A hung graphics card. Example failure: who asks for the status waits for the render thread, which
+// A hung graphics card. Example failure: asking for the status waits for the render thread, which
 // waits for the X server.
 TEST_F(GlfwDisplay, tells_its_status_while_the_x_server_hangs_and_goes_on_with_it) {
     const auto sink = open("{driver: glfw}", {64, 36}, clock_);
@@ -283,12 +280,12 @@ TEST_F(GlfwDisplay, tells_its_status_while_the_x_server_hangs_and_goes_on_with_i
     EXPECT_EQ(sink->status().losses, 0);
 }
 
-// An X server that ends after so many bytes of what it is asked: while GLFW starts, while a window
+// An X server that ends after a number of bytes from its clients: while GLFW starts, while a window
 // is made, in a frame, anywhere.
 class MortalXServer {
 public:
     explicit MortalXServer(const std::string& real) {
-        // A number that no server has; where a client looks for it.
+        // A display number that no server has, at the place where clients look for it.
         for (int number = 200; listening_ < 0; ++number) {
             display_ = ":" + std::to_string(number);
             listening_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -307,7 +304,7 @@ public:
         ::close(listening_);
     }
     const std::string& display() const { return display_; }
-    // Of all connections together, from now on.
+    // Counted over all connections, from now on.
     void endAfter(std::int64_t bytes) { left_ = bytes; }
     std::int64_t left() const { return left_; }
 
@@ -323,7 +320,7 @@ private:
                 static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + path.size())};
     }
     void serve(const std::stop_token& stop) {
-        std::vector<std::pair<int, int>> pairs;  // of a client, and of the real server
+        std::vector<std::pair<int, int>> pairs;  // a client's, and the real server's
         std::array<char, 4096> bytes;
         const auto endAll = [&] {
             for (const auto& [client, server] : pairs) ::close(client), ::close(server);
@@ -366,7 +363,7 @@ private:
     std::jthread thread_;
 };
 
-// Example failure: Xlib ends the program, since nobody has told it otherwise so early.
+// Example failure: Xlib ends the program, because so early no handler is set.
 TEST_F(GlfwDisplay, outlives_an_x_server_that_ends_at_any_byte_of_its_greeting) {
     MortalXServer server(server_->display());
     ::setenv("DISPLAY", server.display().c_str(), 1);
@@ -386,7 +383,7 @@ TEST_F(GlfwDisplay, outlives_an_x_server_that_ends_at_any_byte_of_its_greeting) 
     EXPECT_TRUE(open("{driver: glfw}", {16, 9}, clock_)->poll()) << "and the next one is as good as the first";
 }
 
-// Example failure: Xlib writes a request where there is no room for one, and crashes.
+// Example failure: Xlib writes a request beyond its buffer, and crashes.
 TEST_F(GlfwDisplay, outlives_an_x_server_that_ends_at_any_byte_of_a_frame) {
     MortalXServer server(server_->display());
     ::setenv("DISPLAY", server.display().c_str(), 1);

@@ -15,7 +15,7 @@ public:
     virtual void setContact(std::size_t contact, bool closed) = 0;
 };
 
-// What the bank reports once it had time to notice: "+1" for contact 1 closed, "-1" for open.
+// The bank's changes once it had time to notice: "+1" for contact 1 closed, "-1" for open.
 inline std::string reported(InputBankRig& rig) {
     rig.letTimePass();
     std::string changes;

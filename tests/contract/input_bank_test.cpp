@@ -19,7 +19,7 @@ public:
     void setContact(std::size_t contact, bool closed) override { world_.setContact("doors", contact, closed); }
 
 private:
-    std::unique_ptr<InputBank> open() override { return drivers::openInputBank(options_, "doors", 3, around_).value(); }
+    std::unique_ptr<InputBank> open() override { return drivers::openInputBank(options_, "doors", 3, context_).value(); }
 };
 
 template <class Broken>
@@ -42,7 +42,7 @@ class OpensAtALoss : public AlmostGood {
     std::optional<ContactChange> poll() override {
         if (!running()) {  // reads zeros, and believes them
             if (closed_.empty()) return std::nullopt;
-            return ContactChange{closed_.extract(closed_.begin()).value(), false, around_.clock.now()};
+            return ContactChange{closed_.extract(closed_.begin()).value(), false, context_.clock.now()};
         }
         const auto change = good_->poll();
         if (change && change->closed) closed_.insert(change->contact);
@@ -62,8 +62,8 @@ class ForgetsWhatItSaid : public AlmostGood {
         if (std::exchange(seen_, losses) != losses) said_ = {};
         if (!running()) return std::nullopt;
         for (const std::size_t contact : {2, 1, 0}) {
-            const bool closed = around_.world->contact("doors", contact);
-            if (std::exchange(said_[contact], closed) != closed) return ContactChange{contact, closed, around_.clock.now()};
+            const bool closed = context_.world->contact("doors", contact);
+            if (std::exchange(said_[contact], closed) != closed) return ContactChange{contact, closed, context_.clock.now()};
         }
         return std::nullopt;
     }
@@ -84,7 +84,7 @@ class ClaimsToHaveSeenIt : public AlmostGood {
         return change;
     }
 };
-// Example failure: a gate that stood open while the program started fires the cue of its opening.
+// Example failure: a gate that was open when the program started triggers the cue of its opening.
 TEST(InputBankContract, finds_a_bank_that_claims_to_have_seen_what_it_found) {
     EXPECT_THAT(brokenBy<ClaimsToHaveSeenIt>(),
                 ElementsAre("what was found so at the first look was not witnessed, a movement afterwards was"));

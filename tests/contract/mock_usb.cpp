@@ -58,7 +58,7 @@ Bytes descriptorsOf(const MockUsbDevice& device) {
     return bytes;
 }
 
-// What libusb has asked usbfs for, and its place in libusb's memory.
+// A request from libusb to usbfs, and its place in libusb's memory.
 struct Urb {
     UMockdevIoctlData* request = nullptr;
     UMockdevIoctlData* buffer = nullptr;
@@ -74,13 +74,13 @@ struct Answer {
 
 struct Endpoint {
     std::deque<Urb> waiting;
-    std::deque<Bytes> reports;      // that nobody has asked for yet
-    std::optional<Bytes> atCancel;  // comes when a transfer is to be cancelled
+    std::deque<Bytes> reports;      // not requested yet
+    std::optional<Bytes> atCancel;  // arrives when a transfer is being cancelled
 };
 
 }  // namespace
 
-// One plugged device, and what usbfs does with it.
+// One plugged device, and usbfs's work with it.
 class MockUsb::Plugged {
 public:
     Plugged(UMockdevTestbed* bed, MockUsbDevice device, int address, std::map<int, Bytes>& states)
@@ -107,17 +107,17 @@ public:
                 "\nP: {2}\nE: SUBSYSTEM=hid\nH: report_descriptor={3}\n",
                 interfaceFolder(i).substr(4), i, hidFolder(i).substr(4), hex(device_.reportDescriptors[i]));
         // libusb may open the device before its event: a late event of the same port is enough. So
-        // its file and its handler come first. If open() failed, umockdev would keep the descriptor
-        // -1, and a read() of -1 on umockdev's own thread would wait for itself.
+        // its file and its handler come first. If open() failed, umockdev would keep descriptor -1,
+        // and a read() of -1 on umockdev's own thread would wait for itself.
         FANTASCOPE_CHECK(mkfifo(file().c_str(), 0600) == 0, "no pipe");
         pipe_ = ::open(file().c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-        // usbfs says by POLLOUT that an answer can be fetched; a pipe says so unless it is full.
+        // usbfs signals an available answer by POLLOUT; a pipe has POLLOUT unless it is full.
         FANTASCOPE_CHECK(fcntl(pipe_, F_SETPIPE_SZ, kPipe) == kPipe, "no small pipe");
         showAnswers();
         GError* error = nullptr;
         handler_ = umockdev_ioctl_base_new();
         g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(&Plugged::onIoctl), this);
-        { const std::lock_guard lock(mutex_); }  // umockdev's thread takes it, and sees all of the above
+        { const std::lock_guard lock(mutex_); }  // umockdev's thread takes it, and sees everything above
         FANTASCOPE_CHECK(umockdev_testbed_attach_ioctl(bed_, node_.c_str(), handler_, &error) != 0, error->message);
         FANTASCOPE_CHECK(umockdev_testbed_add_from_string(bed_, entries.c_str(), &error) != 0, error->message);
         umockdev_testbed_uevent(bed_, folder_.c_str(), "add");
@@ -129,7 +129,7 @@ public:
         ::close(pipe_);
     }
 
-    // Whoever has it open still reads what it had asked for: that there is no device.
+    // A program that has it open still gets an answer to its requests: there is no device.
     void unplug() {
         {
             const std::lock_guard lock(mutex_);
@@ -185,7 +185,7 @@ public:
 
     void forbid() const {
         chmod(file().c_str(), 0);
-        // Where umockdev itself talks to the program, who is not root may go.
+        // Files by which umockdev itself talks to the program; a user other than root may use them.
         const std::string root = file().substr(0, file().size() - node_.size());
         for (const std::string& path : {root + node_, root + "/ioctl" + node_})
             for (std::size_t at = root.size(); at != std::string::npos; at = path.find('/', at + 1))
@@ -305,7 +305,7 @@ private:
         showAnswers();
     }
 
-    // A report to the device, whichever way it comes.
+    // Whether it is a report to the device, by either way.
     static bool isOut(const Urb& urb) {
         if (urb.of().type != USBDEVFS_URB_TYPE_CONTROL) return (urb.of().endpoint & 0x80) == 0;
         return urb.buffer->data[0] == 0x21 && urb.buffer->data[1] == 0x09;  // SET_REPORT
@@ -408,15 +408,15 @@ private:
     int pipe_ = -1;
     UMockdevIoctlBase* handler_ = nullptr;
 
-    mutable std::mutex mutex_;  // of what follows; umockdev answers from a thread of its own
+    mutable std::mutex mutex_;  // guards what follows; umockdev answers on a thread of its own
     std::map<int, Bytes>& states_;
     std::vector<Endpoint> endpoints_;
     std::set<unsigned> kernelHas_;
     std::deque<Answer> answers_;
-    std::vector<Urb> offered_;  // to a device that takes nothing
+    std::vector<Urb> offered_;  // sent to a device that accepts nothing
     std::vector<MockUsbReport> sent_;
     Taking taking_ = Taking::All;
-    int owed_ = 0;  // reports that were told, and their transfer has not come back to wait for another
+    int owed_ = 0;  // reports delivered, whose transfer was not submitted again yet
     bool isGone_ = false;
 };
 
@@ -424,8 +424,8 @@ struct MockUsb::Bed {
     UMockdevTestbed* const testbed;
     int nextAddress = 2;
     std::map<std::string, std::map<int, Bytes>> states;
-    std::map<std::string, Plugged*> plugged, last;  // by path; also after it was unplugged
-    std::vector<std::unique_ptr<Plugged>> all;      // also those that are gone: somebody may have them open
+    std::map<std::string, Plugged*> plugged, last;  // by path; the last one also after unplugging
+    std::vector<std::unique_ptr<Plugged>> all;      // also unplugged ones, which may still be open
 };
 
 MockUsb::MockUsb(MockMachine& machine) : bed_(std::make_unique<Bed>(machine.testbed())) {
@@ -451,7 +451,7 @@ MockUsb::Plugged* MockUsb::at(const std::string& path) const {
 
 void MockUsb::plug(const MockUsbDevice& device) {
     FANTASCOPE_CHECK(at(device.path) == nullptr, "there is something plugged in");
-    // A new address every time, as the kernel gives it.
+    // A new address every time, as from the kernel.
     bed_->all.push_back(std::make_unique<Plugged>(bed_->testbed, device, bed_->nextAddress++, bed_->states[device.path]));
     bed_->plugged[device.path] = bed_->last[device.path] = bed_->all.back().get();
 }

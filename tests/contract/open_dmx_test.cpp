@@ -1,5 +1,5 @@
-// Over a pseudo-terminal, which knows no break and no rate: what is tested is what is between the
-// breaks, and that the driver lives.
+// Over a pseudo-terminal, which has no break and no rate: this tests the bytes between the breaks,
+// and the driver's lives.
 
 #include "contract/serial_dmx_rig.h"
 
@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// Takes every 513 bytes for a packet, there being no break between.
+// Takes every 513 bytes as a packet, because there are no breaks.
 class Lamps {
 public:
     explicit Lamps(int line) : line_(line), thread_([this] { run(); }) {}
@@ -76,11 +76,11 @@ TEST(OpenDmx, has_to_be_told_which_adapter_it_is) {
     EXPECT_EQ(open("serial: AB12\nbreak: 100\nmark_after_break: 12\nrate: 20\n"), "accepted");
 }
 
-// A pseudo-terminal takes any rate, so it is the file that must be refused.
+// A pseudo-terminal accepts any rate, so the file must be refused.
 TEST(OpenDmx, on_what_is_no_serial_line_is_faulted) {
     SteadyClock clock;
-    const drivers::Surroundings around{clock};
-    const auto port = drivers::openDmxPort(serialOptions("open_dmx", "/dev/null"), 1, around).value();
+    const drivers::DriverContext context{clock};
+    const auto port = drivers::openDmxPort(serialOptions("open_dmx", "/dev/null"), 1, context).value();
     eventually("fault", [&] { return port->status().state == DeviceState::Faulted; });
     EXPECT_EQ(port->status().detail, "/dev/null is no serial line");
 }

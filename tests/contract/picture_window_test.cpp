@@ -20,7 +20,7 @@ protected:
         ASSERT_TRUE(window) << window.error().message();
         window_ = std::move(window).value();
     }
-    // What was pressed, up to the first of these.
+    // The pressed keys, up to the first of these.
     std::vector<char> keysUntil(char last) {
         std::vector<char> keys;
         while (keys.empty() || keys.back() != last)

@@ -18,7 +18,7 @@
 namespace fantascope {
 namespace {
 
-// The dummy driver takes pixel clocks of 11 MHz and more, so small pictures get wide borders.
+// The dummy driver requires pixel clocks of 11 MHz and more, so small pictures get wide borders.
 constexpr const char* kConfiguration = R"(
 Section "ServerFlags"
   Option "AutoAddDevices" "false"

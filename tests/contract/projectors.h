@@ -17,31 +17,31 @@ struct xcb_connection_t;
 
 namespace fantascope {
 
-// Xorg with its dummy driver, which really sets modes, on no card: connectors DUMMY0 to DUMMY15, of
-// which DUMMY0 is on at the start. A connector has a projector from the first time on that it is
-// on, and for ever; that somebody pulls it is seen by its EDID.
+// Xorg with its dummy driver, which really sets modes, but on no card. Its connectors are DUMMY0 to
+// DUMMY15; DUMMY0 is on at the start. Once a connector was on, it has a projector for ever; an
+// unplugged one is recognised by its EDID.
 class Projectors {
 public:
     static constexpr glm::ivec2 kSize{320, 180};
     static constexpr double kHertz[] = {60, 59.94, 75};  // the modes of that size
     static constexpr glm::ivec2 kLarge{640, 360};        // and one of this, at 60 Hz
 
-    // Error: Xorg does not start: why, and the packages that it needs.
+    // Error: Xorg does not start, why, and the packages that it needs.
     static Result<std::unique_ptr<Projectors>> start();
     ~Projectors();
 
     XServer& server() { return *server_; }
-    // The X server crashes, and another one starts on the same display: as at the start.
+    // The X server crashes, and another one starts on the same display in its initial state.
     void crash();
     void startAgain();
-    // Puts a projector with such an EDID on a connector that was on before, or, without bytes, one
-    // that tells nothing.
+    // Puts a projector with this EDID on a connector that was on before; without bytes, one that
+    // reports nothing.
     void plug(const std::string& connector, std::span<const std::uint8_t> edid);
-    enum class Looks { Before, AndAfter };  // when it makes the X server look at its connectors, as the command `xrandr` does
+    enum class Looks { Before, AndAfter };  // when it makes the X server probe its connectors, like the command `xrandr`
     void switchOn(const std::string& connector, glm::ivec2 corner, glm::ivec2 size = kSize, double hertz = 60,
                   Looks looks = Looks::AndAfter);
     void switchOff(const std::string& connector);
-    // What it shows of the screen, and how often. Nothing: it is off.
+    // The shown part of the screen, and the rate. Nothing: it is off.
     struct Picture {
         glm::ivec2 corner, size;
         double hertz;
@@ -49,9 +49,9 @@ public:
     };
     std::optional<Picture> picture(const std::string& connector) const;
 
-    // After so many seconds without a key the screen goes dark; 0: never.
+    // After how many seconds without a key the screen blanks; 0: never.
     int blanksAfter() const;
-    // Whether a pointer is to be seen there.
+    // Whether a pointer is visible there.
     bool pointerSeenAt(glm::ivec2 pixel) const;
 
 private:

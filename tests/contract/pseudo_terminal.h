@@ -17,8 +17,8 @@
 
 namespace fantascope::contract {
 
-// A line of the kernel with a file at one end, as an adapter gives one, and the far end in our
-// hands. It is unplugged with the object: whoever has the file open is hung up, and the name goes.
+// A kernel line with a file at one end, as an adapter gives one, and the far end in the test's
+// hands. Destroying it unplugs it: whoever has the file open is hung up, and the name disappears.
 class PseudoTerminal {
 public:
     PseudoTerminal() {
@@ -49,8 +49,8 @@ public:
         FANTASCOPE_CHECK(::write(far_.get(), bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()),
                          "the line has room for what a test sends");
     }
-    // Whether all that was sent has been read at the near end. The question itself brings what is
-    // on its way to that end.
+    // Whether everything that was sent has been read at the near end. The question itself moves
+    // pending bytes to that end.
     bool hasBeenRead() const {
         pollfd line{near_.get(), POLLIN, 0};
         return poll(&line, 1, 0) == 0;

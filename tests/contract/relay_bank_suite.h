@@ -16,7 +16,7 @@ public:
 
     // What the relays really are.
     virtual std::vector<bool> relays() = 0;
-    // Somebody switches them at the module itself.
+    // A person switches them at the module itself.
     virtual void handSwitches(const std::vector<bool>& states) = 0;
     // Destroys the port. Only reopen() may follow.
     virtual void close() = 0;

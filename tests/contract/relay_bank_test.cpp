@@ -21,7 +21,7 @@ public:
     void close() override { port_.reset(); }
 
 private:
-    std::unique_ptr<RelayBank> open() override { return drivers::openRelayBank(options_, "road", kSafe, around_).value(); }
+    std::unique_ptr<RelayBank> open() override { return drivers::openRelayBank(options_, "road", kSafe, context_).value(); }
 };
 
 template <class Broken>
@@ -78,22 +78,22 @@ class LeavesTheLightsAsTheyAre : public AlmostGood {
 public:
     using AlmostGood::AlmostGood;
     ~LeavesTheLightsAsTheyAre() override {
-        const std::vector<bool> last = around_.world->relays("road");
+        const std::vector<bool> last = context_.world->relays("road");
         good_.reset();
-        around_.world->setRelays("road", last);
+        context_.world->setRelays("road", last);
     }
 };
 TEST(RelayBankContract, finds_a_bank_that_leaves_the_lights_as_they_are) {
     EXPECT_THAT(brokenBy<LeavesTheLightsAsTheyAre>(), ElementsAre("closing leaves the relays safe"));
 }
 
-// Whoever asks in the middle of a show how the relays are switches them.
+// Reading the relays in the middle of a show would switch them.
 class MakesSafeWhatItLookedAt : public AlmostGood {
 public:
     using AlmostGood::AlmostGood;
     ~MakesSafeWhatItLookedAt() override {
         good_.reset();
-        around_.world->setRelays("road", RelayBankRig::kSafe);
+        context_.world->setRelays("road", RelayBankRig::kSafe);
     }
 };
 TEST(RelayBankContract, finds_a_bank_that_switches_what_it_only_looked_at) {
@@ -103,15 +103,15 @@ TEST(RelayBankContract, finds_a_bank_that_switches_what_it_only_looked_at) {
 constexpr const char* kFoundOtherwise =
     "relays that are found other than written are a loss, counted once, and stay so until they are written";
 
-// Its plug is all that it knows of.
+// It notices only its plug.
 class DoesNotLookAtItsRelays : public AlmostGood {
     using AlmostGood::AlmostGood;
     DeviceStatus status() const override {
         const std::lock_guard lock(mutex_);
         DeviceStatus status = good_->status();
-        // What the plug does leaves the relays safe; anything else that the good bank noticed was a
-        // hand.
-        const bool byHand = around_.world->relays("road") != RelayBankRig::kSafe;
+        // Unplugging leaves the relays safe; any other change that the good bank noticed was made
+        // by hand.
+        const bool byHand = context_.world->relays("road") != RelayBankRig::kSafe;
         if (const int more = status.losses - std::exchange(seen_, status.losses); !byHand) counted_ += more;
         status.losses = counted_;
         return status;
@@ -134,21 +134,21 @@ public:
     }
 
 protected:
-    // With the mutex. What the plug does leaves the relays safe.
+    // With the mutex held. Unplugging leaves the relays safe.
     bool wasSwitched() const {
-        const std::vector<bool> is = around_.world->relays("road");
+        const std::vector<bool> is = context_.world->relays("road");
         return running() && !last_.empty() && is != last_ && is != RelayBankRig::kSafe;
     }
     mutable std::mutex mutex_;
     std::vector<bool> last_;
 };
 
-// The street lamps and somebody's hand fight for the switch, and nobody is told.
+// The program and a person fight over the street lamps, and nobody is told.
 class SwitchesBackByItself : public FeelsTheHand {
     using FeelsTheHand::FeelsTheHand;
     DeviceStatus status() const override {
         const std::lock_guard lock(mutex_);
-        if (wasSwitched()) around_.world->setRelays("road", last_);
+        if (wasSwitched()) context_.world->setRelays("road", last_);
         return good_->status();
     }
 };

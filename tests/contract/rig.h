@@ -1,5 +1,5 @@
 #pragma once
-// What every port's rig has, and the clauses that hold for every device (device/status.h).
+// The base of all rigs, and the clauses for every device (device/status.h).
 
 #include "device/status.h"
 
@@ -14,13 +14,13 @@
 #include <type_traits>
 #include <vector>
 
-// In a clause: unless the condition holds, the clause is violated, and the rest tells what was
+// In a clause: if the condition fails, the clause is violated; the other arguments say what was
 // seen.
 #define CONTRACT_REQUIRE(condition, ...)                   \
     do {                                                   \
         if (!(condition)) return fmt::format(__VA_ARGS__); \
     } while (false)
-// In a clause: unless the result is a value, the clause is violated by its error.
+// In a clause: if the result is an error, the clause is violated by it.
 #define CONTRACT_SUCCEEDS(expression)                                                                          \
     do {                                                                                                       \
         if (const auto done_ = (expression); !done_) return #expression " failed: " + done_.error().message(); \
@@ -28,7 +28,7 @@
 
 namespace fantascope::contract {
 
-// A port under test with its far end within reach.
+// A port under test with its far end.
 template <class Port>
 class Rig {
 public:
@@ -40,8 +40,8 @@ public:
     virtual void reopen() = 0;
     virtual void unplug() = 0;
     virtual void plugIn() = 0;
-    // Lets as much time pass as the port and its line may need to notice what happened and to carry
-    // what is on its way.
+    // Lets the time pass that the port and its line need to notice what happened and to carry what
+    // is on its way.
     virtual void letTimePass() = 0;
     // The clock that open() was handed.
     virtual Clock& clock() = 0;
@@ -58,7 +58,7 @@ public:
     }
 };
 
-// "" if the device says rightly whether it runs, and why not.
+// "" if the device reports correctly whether it runs, and why not.
 inline std::string misreports(const Device& device, bool running) {
     const DeviceStatus status = device.status();
     CONTRACT_REQUIRE((status.state == DeviceState::Running) == running, "its state is {}", nameOf(status.state));
@@ -66,7 +66,7 @@ inline std::string misreports(const Device& device, bool running) {
     return "";
 }
 
-// `serves` does with the port what it is for and says what went wrong; it must be repeatable.
+// `serves` uses the port for its purpose and returns what went wrong; it must be repeatable.
 template <class AnyRig>
 Suite<AnyRig> lifeClauses(const std::function<std::string(AnyRig&)>& serves) {
     return {
@@ -115,14 +115,14 @@ Suite<AnyRig> lifeClauses(const std::function<std::string(AnyRig&)>& serves) {
         {"a lost device leaves its neighbour alone",
          [serves](AnyRig& rig) -> std::string {
              rig.lose();
-             (void)serves(rig);  // it cannot, but it may not pull the neighbour down by trying
+             (void)serves(rig);  // it cannot work, but it must not disturb the neighbour
              rig.giveBack();
              CONTRACT_REQUIRE(rig.neighbour().status().losses == 0, "the neighbour was lost too");
              return misreports(rig.neighbour(), true);
          }},
         {"status may be asked from any thread while the device serves",
          [serves](AnyRig& rig) -> std::string {
-             // A data race is for the thread sanitizer to find; here the answers must be right.
+             // Data races are for the thread sanitizer; here the answers must be right.
              std::string wrong;
              std::jthread console([&] {
                  for (int asked = 0; asked < 100 && wrong.empty(); ++asked) wrong = misreports(rig.port(), true);
@@ -134,8 +134,8 @@ Suite<AnyRig> lifeClauses(const std::function<std::string(AnyRig&)>& serves) {
     };
 }
 
-// Everything that a poll() or a receive() has to give. A port that never ends is stopped at an
-// absurd number.
+// Everything that a poll() or a receive() returns. A port that never ends is stopped at an absurd
+// number.
 template <class Next>
 auto drained(Next next) {
     std::vector<typename std::invoke_result_t<Next>::value_type> all;

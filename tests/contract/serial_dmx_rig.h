@@ -1,5 +1,5 @@
 #pragma once
-// The rig of a universe that goes out by a serial adapter.
+// The rig of a universe that is sent by a serial adapter.
 
 #include "drivers/registry.h"
 
@@ -23,7 +23,7 @@ inline ConfigNode serialOptions(const std::string& driver, const std::filesystem
     return ConfigNode::parse(fmt::format("driver: {}\nport: {}\n{}", driver, port.string(), further), "site.yaml").value();
 }
 
-// Remembers whether a frame is to be on the line.
+// Remembers whether a frame should be on the line.
 class Sending final : public DmxPort {
 public:
     Sending(std::unique_ptr<DmxPort> port, bool& sent) : port_(std::move(port)), sent_(sent) {}
@@ -39,8 +39,8 @@ private:
     bool& sent_;
 };
 
-// A socket is like Socket. Its far end has out(), the frame that its lamps are given, and
-// framesOut(), how many it was sent.
+// AnySocket is like Socket. Its far end has out(), the frame that its lamps get, and framesOut(),
+// the number of frames.
 template <class AnySocket>
 class SerialDmxPortRig final : public DmxPortRig {
 public:
@@ -77,12 +77,12 @@ public:
 private:
     std::unique_ptr<DmxPort> open(const AnySocket& socket, int universe) {
         const auto options = ConfigNode::parse(fmt::format("driver: {}\n{}\n", driver_, socket.key()), "site.yaml");
-        return drivers::openDmxPort(options.value(), universe, around_).value();
+        return drivers::openDmxPort(options.value(), universe, context_).value();
     }
 
     const std::string driver_;
     SteadyClock clock_;
-    drivers::Surroundings around_{clock_};
+    drivers::DriverContext context_{clock_};
     const std::unique_ptr<AnySocket> socket_, next_;
     bool sent_ = false;
     std::unique_ptr<DmxPort> neighbour_, port_;

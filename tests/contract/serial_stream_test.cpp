@@ -13,7 +13,7 @@ using drivers::SerialStream;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// Counts what the line took, so that the rig knows what is to arrive.
+// Counts the bytes that the line accepted, so that the rig knows what must arrive.
 class Counting final : public ByteStream {
 public:
     Counting(std::unique_ptr<ByteStream> line, std::size_t& taken) : line_(std::move(line)), taken_(taken) {}
@@ -23,21 +23,21 @@ public:
         taken_ += count;
         return count;
     }
-    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time patience) override { return line_->read(bytes, patience); }
+    Result<std::size_t> read(std::span<std::uint8_t> bytes, Time timeout) override { return line_->read(bytes, timeout); }
 
 private:
     std::unique_ptr<ByteStream> line_;
     std::size_t& taken_;
 };
 
-// An adapter that has another name whenever it is plugged in.
+// An adapter that has a new name whenever it is plugged in.
 class Adapter {
 public:
     void plugIn() { in_ = true; }
     void unplug() {
         const std::lock_guard lock(mutex_);
         in_ = false;
-        line_ = std::make_unique<PseudoTerminal>();  // made before the old one goes, so its name is another
+        line_ = std::make_unique<PseudoTerminal>();  // made before the old one is destroyed, so its name differs
     }
     bool in() const { return in_; }
     PseudoTerminal& line() { return *line_; }
@@ -69,8 +69,8 @@ public:
         letTimePass();
     }
     void unplug() override {
-        // What arrived before the loss has been read by then: the kernel forgets what nobody read
-        // in time.
+        // Waits until the bytes from before the loss are read: the kernel drops what nobody read in
+        // time.
         eventually("what was sent is read", [&] { return !runs(*port_) || adapter_.line().hasBeenRead(); });
         adapter_.unplug();
     }

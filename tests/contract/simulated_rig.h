@@ -1,5 +1,5 @@
 #pragma once
-// What the rigs of all simulated backends share, and what it takes to break one.
+// The common base of all simulated rigs, and the tools to break one.
 
 #include "drivers/registry.h"
 #include "drivers/site/world.h"
@@ -13,31 +13,31 @@
 
 namespace fantascope::contract {
 
-// Stands between the suite and a good port, and breaks a promise where a subclass says so.
+// Stands between the suite and a good port; a subclass breaks a promise.
 template <class Port>
 class Between : public Port {
 public:
-    Between(std::unique_ptr<Port> good, const drivers::Surroundings& around) : good_(std::move(good)), around_(around) {}
+    Between(std::unique_ptr<Port> good, const drivers::DriverContext& context) : good_(std::move(good)), context_(context) {}
     DeviceStatus status() const override { return good_->status(); }
 
 protected:
     bool running() const { return good_->status().state == DeviceState::Running; }
 
     std::unique_ptr<Port> good_;
-    const drivers::Surroundings& around_;
+    const drivers::DriverContext& context_;
 };
 
-// Puts something between the suite and the port; nothing by default.
+// Wraps the port; does nothing by default.
 template <class Port>
-using Wrap = std::function<std::unique_ptr<Port>(std::unique_ptr<Port>, const drivers::Surroundings&)>;
+using Wrap = std::function<std::unique_ptr<Port>(std::unique_ptr<Port>, const drivers::DriverContext&)>;
 
 template <class Broken, class Port>
-std::unique_ptr<Port> wrappedIn(std::unique_ptr<Port> good, const drivers::Surroundings& around) {
-    return std::make_unique<Broken>(std::move(good), around);
+std::unique_ptr<Port> wrappedIn(std::unique_ptr<Port> good, const drivers::DriverContext& context) {
+    return std::make_unique<Broken>(std::move(good), context);
 }
 
-// A rig of the simulated site. A subclass opens the port in its constructor's end by reopen() and
-// reaches the far end in world_.
+// A rig of the simulated site. A subclass opens the port with reopen() at the end of its
+// constructor, and reaches the far end through world_.
 template <class PortRig>
 class SimulatedRig : public PortRig {
 public:
@@ -45,9 +45,9 @@ public:
 
     Port& port() override { return *port_; }
     void reopen() override {
-        port_.reset();  // first, so that the old one's farewell does not disturb the new one
+        port_.reset();  // first, so that the old port's last actions do not disturb the new one
         port_ = open();
-        if (wrap_) port_ = wrap_(std::move(port_), around_);
+        if (wrap_) port_ = wrap_(std::move(port_), context_);
     }
     void unplug() override { world_.setPlugged(device_, false); }
     void plugIn() override { world_.setPlugged(device_, true); }
@@ -61,14 +61,14 @@ protected:
 
     ManualClock clock_;
     site::World world_{clock_};
-    drivers::Surroundings around_{clock_, &world_};
+    drivers::DriverContext context_{clock_, &world_};
     ConfigNode options_ = ConfigNode::parse("driver: simulated\n", "site.yaml").value();
     std::unique_ptr<Port> port_;
 
 private:
     std::string device_;
     Wrap<Port> wrap_;
-    std::unique_ptr<DmxPort> neighbour_ = drivers::openDmxPort(options_, 99, around_).value();
+    std::unique_ptr<DmxPort> neighbour_ = drivers::openDmxPort(options_, 99, context_).value();
 };
 
 }  // namespace fantascope::contract

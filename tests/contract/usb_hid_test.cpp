@@ -1,4 +1,4 @@
-// The cue controller's contract on a real libusb, with devices that umockdev shows it.
+// The cue controller's contract on a real libusb, with umockdev devices.
 
 #include "drivers/cue_controller/usb_hid.h"
 
@@ -54,7 +54,7 @@ bool eventually(Condition condition) {
 struct Kind {
     MockUsbDevice device;
     std::function<std::vector<std::uint8_t>(const std::set<int>& down)> report;
-    int lamps = 0;  // of buttons 1 to this
+    int lamps = 0;  // on buttons 1 to this
     // What a button shows after these reports to the device.
     std::function<ButtonLight::State(const std::vector<MockUsbReport>&, int button)> shown{};
 };
@@ -86,7 +86,7 @@ public:
     void plugIn() override {
         show();
         usb_.plug(kind_.device);
-        // Who has buttons down tells it once there is somebody to tell.
+        // A device with buttons down reports them once somebody listens.
         if (!kind_.device.tellsState && !down_.empty()) usb_.report("1-1", 0, kind_.report(down_));
         isPlugged_ = true;
     }
@@ -103,12 +103,12 @@ public:
         EXPECT_TRUE(settled) << port_->status().detail;
         if (!isPlugged_ || !settled) return;
         EXPECT_TRUE(eventually([&] { return usb_.isHeard("1-1"); }));
-        // Its debounce is over, and it is awake to see that: a report that says nothing new.
+        // Its debounce time is over. A report without a change wakes it to notice that.
         clock_.sleepUntil(clock_.now() + 6ms);
         usb_.report("1-1", 0, kind_.report(down_));
         EXPECT_TRUE(eventually([&] { return usb_.isHeard("1-1"); }));
         if (kind_.lamps == 0) return;
-        // All that was told is shown once the last button shows what it is told after it.
+        // All lights are shown once the last button shows a light that was set after them.
         probe_ = probe_ == ButtonLight::State::Ready ? ButtonLight::State::Active : ButtonLight::State::Ready;
         port_->light(kind_.lamps, {probe_, ""});
         EXPECT_TRUE(eventually([&] { return shown(kind_.lamps) == probe_; }));
@@ -123,12 +123,12 @@ public:
 private:
     std::unique_ptr<CueController> open(const std::string& serial) {
         const auto options = ConfigNode::parse("{driver: usb_hid, serial: " + serial + "}\n", "site.yaml");
-        return drivers::openCueController(options.value(), around_).value();
+        return drivers::openCueController(options.value(), context_).value();
     }
     void show() { usb_.setState("1-1", 0, kind_.report(down_)); }
 
     SteadyClock clock_;
-    drivers::Surroundings around_{clock_};
+    drivers::DriverContext context_{clock_};
     MockMachine machine_;
     MockUsb usb_{machine_};
     Kind kind_;
@@ -180,7 +180,7 @@ Kind xkeys(bool hasOutEndpoint) {
     return kind;
 }
 
-// The pictures of a Stream Deck, by their colour at the edge;
+// The pictures of a Stream Deck, recognised by their colour at the edge;
 // https://docs.elgato.com/streamdeck/hid.
 Kind streamDeck() {
     Kind kind;
@@ -216,7 +216,7 @@ TEST(CueControllerContract, is_kept_by_usb_hid) {
     EXPECT_THAT(violations(cueControllerSuite(), [] { return std::make_unique<UsbHidRig>(lampless(true)); }), IsEmpty());
 }
 
-// Many devices do not know how to say what is pressed now.
+// Many devices cannot report what is pressed now.
 TEST(CueControllerContract, is_kept_by_usb_hid_with_a_device_that_tells_only_changes) {
     EXPECT_THAT(violations(cueControllerSuite(), [] { return std::make_unique<UsbHidRig>(lampless(false)); }), IsEmpty());
 }
@@ -225,7 +225,7 @@ TEST(CueControllerContract, of_lamps_is_kept_by_usb_hid_with_a_panel_of_two_colo
     EXPECT_THAT(violations(lampSuite(), [] { return std::make_unique<UsbHidRig>(xkeys(true)); }), IsEmpty());
 }
 
-// Some devices have no endpoint for reports to them.
+// Some devices have no endpoint for output reports.
 TEST(CueControllerContract, of_lamps_is_kept_by_usb_hid_over_the_control_pipe) {
     EXPECT_THAT(violations(lampSuite(), [] { return std::make_unique<UsbHidRig>(xkeys(false)); }), IsEmpty());
 }
@@ -238,10 +238,10 @@ class UsbHidTest : public testing::Test {
 protected:
     std::unique_ptr<CueController> open(const std::string& keys) {
         const auto options = ConfigNode::parse("{driver: usb_hid, debounce: 0" + keys + "}\n", "site.yaml").value();
-        return drivers::openCueController(options, around_).value();
+        return drivers::openCueController(options, context_).value();
     }
     static bool isRunning(const Device& device) { return device.status().state == DeviceState::Running; }
-    // "+3" for button 3 down, once all that was reported has arrived.
+    // "+3" for button 3 down, once all reports have arrived.
     std::string given(CueController& controller, const std::string& path = "1-1") {
         EXPECT_TRUE(eventually([&] { return usb_.isHeard(path); }));
         std::string events;
@@ -250,12 +250,12 @@ protected:
     }
 
     SteadyClock clock_;
-    drivers::Surroundings around_{clock_};
+    drivers::DriverContext context_{clock_};
     MockMachine machine_;
     MockUsb usb_{machine_};
 };
 
-// Two sites may name one controller by other words.
+// Two sites may describe one controller differently.
 TEST_F(UsbHidTest, is_claimed_by_where_it_is_plugged_in) {
     const auto claim = [](const std::string& keys) {
         return drivers::readCueController(ConfigNode::parse("{driver: usb_hid" + keys + "}\n", "site.yaml").value())
@@ -275,7 +275,8 @@ TEST_F(UsbHidTest, is_claimed_by_where_it_is_plugged_in) {
     EXPECT_EQ(given(*controller), "+1");
 }
 
-// The operator's keys reach nobody else while the show has them, and everybody again when it ends.
+// The operator's keys reach no other program while the show has them, and all programs again when
+// it ends.
 TEST_F(UsbHidTest, takes_every_interface_from_the_kernel_and_gives_it_back) {
     MockUsbDevice presenter = eightButtons("1-1", "P");
     presenter.reportDescriptors = {kEightButtons, kEightButtons, kEightButtons};
@@ -295,8 +296,8 @@ TEST_F(UsbHidTest, takes_every_interface_from_the_kernel_and_gives_it_back) {
     for (int interface = 0; interface < 3; ++interface) EXPECT_TRUE(usb_.kernelHas("1-1", interface));
 }
 
-// Example failure: somebody sat on the clicker before the doors opened; the report of it waits in
-// the device, and the show begins with a GO.
+// Example failure: somebody sat on the clicker before the doors opened; its report waits in the
+// device, and the show begins with a GO.
 TEST_F(UsbHidTest, a_report_from_before_is_no_press) {
     MockUsbDevice device = eightButtons("1-1", "P");
     device.tellsState = false;
@@ -311,7 +312,7 @@ TEST_F(UsbHidTest, a_report_from_before_is_no_press) {
     EXPECT_EQ(given(*controller), "+1+2");
 }
 
-// Example failure: somebody presses a button as the show ends, and the program never does.
+// Example failure: somebody presses a button as the show ends, and the program never ends.
 TEST_F(UsbHidTest, ends_though_a_report_comes_just_before_its_transfer_is_cancelled) {
     usb_.plug(eightButtons("1-1", "P"));
     auto controller = open(", serial: P");
@@ -368,7 +369,7 @@ TEST_F(UsbHidTest, a_cable_that_only_errs_is_a_fault_and_is_tried_again) {
     EXPECT_TRUE(eventually([&] { return isRunning(*controller); }));
 }
 
-// The bytes are those of its data report, not of the program.
+// The bytes are from the device's data report, not from the program.
 TEST_F(UsbHidTest, lights_a_stick_by_its_endpoint_and_darkens_it_at_the_end) {
     MockUsbDevice stick = xkeys(true).device;
     stick.product = 1049;
@@ -436,7 +437,7 @@ TEST_F(UsbHidTest, says_how_bright_a_key_pad_is_in_a_feature_report) {
     EXPECT_EQ(sent[1].bytes, brightness);
 }
 
-// Example failure: the operator presses GO while the pad chews on its pictures, and nothing
+// Example failure: the operator presses GO while the pad is busy with its pictures, and nothing
 // happens.
 TEST_F(UsbHidTest, a_device_that_takes_no_lights_for_a_while_serves_and_shows_the_newest_then) {
     const Kind kind = xkeys(true);
@@ -459,7 +460,7 @@ TEST_F(UsbHidTest, a_device_that_takes_no_lights_for_a_while_serves_and_shows_th
     EXPECT_EQ(controller->status().losses, 0);
 }
 
-// Example failure: the pad is dark for the rest of the night, and nobody is told why.
+// Example failure: the pad stays dark for the rest of the night, and nobody is told why.
 TEST_F(UsbHidTest, a_device_that_takes_no_lights_any_more_serves_and_says_so) {
     const Kind kind = xkeys(true);
     usb_.plug(kind.device);
@@ -468,14 +469,14 @@ TEST_F(UsbHidTest, a_device_that_takes_no_lights_any_more_serves_and_says_so) {
     EXPECT_EQ(controller->status().trouble, "");
     usb_.take("1-1", MockUsb::Taking::Stalls);
     controller->light(1, {Alarm, ""});
-    EXPECT_TRUE(eventually([&] { return controller->status().trouble.starts_with("it takes no lights"); }));
+    EXPECT_TRUE(eventually([&] { return controller->status().trouble.starts_with("it refuses lights"); }));
     usb_.report("1-1", 0, kind.report({5}));
     usb_.report("1-1", 0, kind.report({}));
     EXPECT_EQ(given(*controller), "+5-5");
     EXPECT_TRUE(isRunning(*controller));
 }
 
-TEST_F(UsbHidTest, ends_with_a_device_that_takes_no_farewell) {
+TEST_F(UsbHidTest, ends_with_a_device_that_accepts_no_last_lights) {
     const Kind kind = xkeys(true);
     usb_.plug(kind.device);
     auto controller = open(", vendor: 05f3");
@@ -503,7 +504,7 @@ TEST_F(UsbHidTest, is_found_by_what_is_said_of_it_and_by_nothing_else) {
     }
 }
 
-// A keyboard of the machine is never taken without being named; a presenter is known.
+// The machine's keyboard is never used without being named; a presenter is known.
 TEST_F(UsbHidTest, is_a_known_controller_where_nothing_is_said) {
     usb_.plug(eightButtons("1-1", "keyboard"));
     MockUsbDevice shuttle;
@@ -539,10 +540,10 @@ TEST_F(UsbHidTest, says_what_is_wrong_with_a_device_that_cannot_serve) {
     const auto controller = open(", serial: G");
     EXPECT_TRUE(eventually([&] { return controller->status().state == DeviceState::Faulted; }));
     EXPECT_THAT(controller->status().detail,
-                HasSubstr("it has no buttons: interface 0: report descriptor, byte 2: it ends in an item"));
+                HasSubstr("it has no usable buttons: interface 0: report descriptor, byte 2: it ends inside an item"));
 }
 
-// Root may do everything; for the time of this test nobody is root.
+// Root may open everything, so this test runs as nobody.
 class Nobody {
 public:
     Nobody() { [[maybe_unused]] const int error = setresuid(65534, 65534, 0); }
@@ -578,11 +579,11 @@ TEST_F(UsbHidTest, finds_what_is_there_without_touching_it) {
     EXPECT_EQ(found[0].why, "");
     EXPECT_EQ(found[1].what, "Elgato Stream Deck, 15 buttons");
     EXPECT_TRUE(usb_.kernelHas("1-1", 0));
-    // What it offers for the site file is taken there.
+    // The offered options are valid in a site file.
     for (const auto& each : found) {
         const auto options = ConfigNode::parse(each.options + "\n", "site.yaml");
         ASSERT_TRUE(options) << each.options;
-        const auto controller = drivers::openCueController(options.value(), around_);
+        const auto controller = drivers::openCueController(options.value(), context_);
         ASSERT_TRUE(controller) << controller.error().message();
         EXPECT_TRUE(eventually([&] { return isRunning(**controller); })) << (*controller)->status().detail;
     }
@@ -591,7 +592,7 @@ TEST_F(UsbHidTest, finds_what_is_there_without_touching_it) {
 TEST_F(UsbHidTest, refuses_wrong_keys_with_their_place) {
     const auto refusal = [&](const std::string& keys) {
         const auto options = ConfigNode::parse("{driver: usb_hid, " + keys + "}\n", "site.yaml").value();
-        const auto opened = drivers::openCueController(options, around_);
+        const auto opened = drivers::openCueController(options, context_);
         return opened ? "" : opened.error().message();
     };
     EXPECT_THAT(refusal("vendor: 46d"), HasSubstr("site.yaml:1:27: vendor: '46d' is not four hexadecimal digits, such as 046d"));

@@ -1,5 +1,5 @@
-// Widgets told apart by what they say of themselves, on a machine of umockdev's: its /sys lists
-// them as the kernel does.
+// Widgets identified by what they report, on a umockdev machine whose /sys lists them like the
+// kernel.
 
 #include "drivers/byte_stream/serial.h"
 #include "drivers/dmx/widget_search.h"
@@ -34,37 +34,37 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-// What an adapter says of itself, and the number of the widget behind it.
+// An adapter's description, and the number of the widget behind it.
 struct Adapter {
     std::string port;    // of the USB bus: "1-1"
-    std::string name;    // what it is called
-    std::string serial;  // its own
-    std::string number;  // the widget's
+    std::string name;    // its name
+    std::string serial;  // the adapter's serial number
+    std::string number;  // the widget's number
 };
 const Adapter kLeft{"1-1", "DMX USB PRO", "EN100001", "00000001"}, kRight{"1-2", "DMX USB PRO", "EN100002", "00000002"},
     kBare{"1-3", "FT232R USB UART", "AB0CD1EF", "00000003"};
 
-// The file that answers for a line, for as long as it is plugged in.
+// The file that answers for a line while it is plugged in.
 struct Answering {
     std::mutex mutex;
     int file = -1;
 };
 
-// Asks the kernel past umockdev, which may take the number of this file for that of a line that a
-// driver has just closed, and then passes the question to the very thread that asks.
+// Asks the kernel, bypassing umockdev. umockdev may confuse this file's number with that of a line
+// that a driver has just closed, and then pass the request to the very thread that asks.
 int askKernel(int file, unsigned long request, void* argument) {
     return static_cast<int>(syscall(SYS_ioctl, file, request, argument));
 }
 
-// What a program asks of a line's file passes through umockdev, on a thread of its own, also once
-// the line has gone. In the manner of a GLib signal.
+// A program's requests on a line's file pass through umockdev, on a thread of its own, even after
+// the line is gone. This is a GLib signal handler.
 gboolean passOn(UMockdevIoctlBase*, UMockdevIoctlClient* client, void* answering) {
     auto& [mutex, file] = *static_cast<Answering*>(answering);
     const std::lock_guard lock(mutex);
     const unsigned long request = umockdev_ioctl_client_get_request(client) & 0xffffffff;
     UMockdevIoctlData* const argument = umockdev_ioctl_client_get_arg(client);
     int result = -1;
-    errno = ENOTTY;  // a pseudo-terminal knows nothing of adapters
+    errno = ENOTTY;  // a pseudo-terminal has no adapter
     if (request == TIOCEXCL || request == TIOCNXCL || request == TCFLSH) {
         result = askKernel(file, request, *reinterpret_cast<void* const*>(argument->data));
     } else if (const unsigned size = _IOC_SIZE(request); size > 0) {  // the settings
@@ -92,7 +92,7 @@ public:
         while (!answers_.empty()) hush(answers_.begin()->first);
     }
 
-    // As the kernel lists it; its file is not there. Its folders.
+    // Lists an adapter like the kernel; its file need not exist. Returns the folders.
     std::vector<std::string> list(const Adapter& adapter, const std::string& file) {
         const std::string device = "/devices/pci0000:00/0000:00:14.0/usb1/" + adapter.port;
         const std::string interface = device + "/" + adapter.port + ":1.0";
@@ -137,8 +137,8 @@ private:
         Answering* answering = nullptr;
         std::vector<std::string> folders;
     };
-    // Who asks a line that has just gone is answered too: else it would wait for ever. So nobody is
-    // taken away sooner than another comes, or all ends.
+    // A request on a line that is gone must be answered, too, or it would wait for ever. So an
+    // answering file is removed only when another replaces it, or at the end.
     void hush(const std::string& file) {
         const auto answers = answers_.find(file);
         if (answers == answers_.end()) return;
@@ -150,18 +150,18 @@ private:
         GError* error = nullptr;
         FANTASCOPE_CHECK(umockdev_testbed_add_from_string(testbed_.get(), description.c_str(), &error), error->message);
     }
-    std::deque<Answering> answering_;  // outlives whoever asks
+    std::deque<Answering> answering_;  // outlives all requests
     std::unique_ptr<UMockdevTestbed, void (*)(void*)> testbed_;
     fs::path dev_;
     std::map<std::string, Plugged> plugged_;
-    std::map<std::string, UMockdevIoctlBase*> answers_;  // by file, also where nothing is plugged in any more
+    std::map<std::string, UMockdevIoctlBase*> answers_;  // by file, even if nothing is plugged in any more
 };
 
 class UsbWidgets : public testing::Test {
 protected:
     std::unique_ptr<DmxPort> open(const std::string& keys, int universe = 1) {
         const auto node = ConfigNode::parse("driver: enttec_pro\n" + keys, "site.yaml").value();
-        return drivers::openDmxPort(node, universe, around_).value();
+        return drivers::openDmxPort(node, universe, context_).value();
     }
     static void await(const Device& device, DeviceState state, const std::string& detail) {
         DeviceStatus status;
@@ -182,7 +182,7 @@ protected:
 
     Machine machine_;
     SteadyClock clock_;
-    drivers::Surroundings around_{clock_};
+    drivers::DriverContext context_{clock_};
 };
 
 TEST_F(UsbWidgets, are_found_with_what_they_are_and_what_a_site_file_says) {
@@ -195,7 +195,7 @@ TEST_F(UsbWidgets, are_found_with_what_they_are_and_what_a_site_file_says) {
     EXPECT_EQ(found[0].where, "/dev/ttyUSB0");
     EXPECT_EQ(found[0].options, "{driver: enttec_pro, serial: EN100001}");
     EXPECT_EQ(found[0].why, "");
-    EXPECT_THAT(found[1].what, HasSubstr("an Open DMX looks so"));
+    EXPECT_THAT(found[1].what, HasSubstr("an Open DMX or another serial adapter"));
     EXPECT_EQ(found[1].options, "{driver: open_dmx, serial: AB0CD1EF}");
 }
 
@@ -251,7 +251,7 @@ TEST_F(UsbWidgets, need_no_key_where_there_is_one_and_a_serial_number_where_ther
     port.reset();
     machine_.plugIn(kRight, "ttyUSB2");
     port = open("");
-    await(*port, DeviceState::Absent, "several DMX widgets are plugged in, say which by 'serial': EN100001, EN100002");
+    await(*port, DeviceState::Absent, "several DMX widgets are plugged in; choose one with 'serial': EN100001, EN100002");
     machine_.unplug("ttyUSB0");
     await(*port, DeviceState::Running, "");
     machine_.unplug("ttyUSB2");
@@ -276,14 +276,14 @@ std::string claimOfRelaysOn(const std::string& usb) {
     return drivers::readRelayBank(node, "relays", {true}).value().claim();
 }
 
-// Example failure: with several fitting adapters nothing was claimed, and a second run took the
-// first one's relays.
+// Example failure: if several adapters match, nothing is claimed, and a second run takes the first
+// one's relays.
 TEST_F(UsbWidgets, are_claimed_as_the_lines_that_their_drivers_take) {
     const auto claim = [](const std::string& keys) {
         return drivers::readDmxPort(ConfigNode::parse(keys, "site.yaml").value(), 1).value().claim();
     };
     const std::string left = "serial line /dev/ttyUSB0", right = "serial line /dev/ttyUSB1";
-    machine_.list(kLeft, "ttyUSB0");  // without a file: umockdev follows no link that leaves its machine
+    machine_.list(kLeft, "ttyUSB0");  // without a file: umockdev does not follow links that leave its machine
     EXPECT_EQ(claim("{driver: enttec_pro}"), left);
     machine_.list(kRight, "ttyUSB1");
     EXPECT_EQ(claimOfRelaysOn("vendor: '0403'"), left) << "of several the first one";

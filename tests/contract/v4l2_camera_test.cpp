@@ -1,4 +1,4 @@
-// The camera's contract on the real driver, against cameras of umockdev.
+// The camera's contract on the real driver, with umockdev cameras.
 
 #include "drivers/camera/v4l2.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 using testing::IsEmpty;
 
-// One grey, in a format's own bytes, limited range.
+// One grey, in a format's own coding, limited range.
 std::vector<std::uint8_t> greyFrame(const std::string& format, glm::ivec2 size, int grey) {
     std::vector<std::uint8_t> bytes;
     if (format == "MJPG") {
@@ -73,17 +73,17 @@ public:
 private:
     std::unique_ptr<CameraSource> open(const std::string& serial) {
         const std::string text = fmt::format("driver: v4l2\nserial: {}\nsize: [64, 48]\nrate: .1\n", serial);
-        return drivers::V4l2Camera::fromConfig(ConfigNode::parse(text, "site.yaml").value()).value().open(around_).value();
+        return drivers::V4l2Camera::fromConfig(ConfigNode::parse(text, "site.yaml").value()).value().open(context_).value();
     }
     MockCameraKind kindOf(const std::string& serial, const std::string& usb) const {
-        // It says that a frame takes ten seconds, so that its silence between two exposures is
-        // none, however slow the machine.
+        // It reports ten seconds per frame, so that the driver tolerates its silence between two
+        // exposures, however slow the machine.
         return {.serial = serial, .usb = usb, .formats = {format_}, .rates = {{format_, .1}}};
     }
 
     std::string format_;
     SteadyClock clock_;
-    drivers::Surroundings around_{clock_};
+    drivers::DriverContext context_{clock_};
     MockMachine machine_;
     MockCamera camera_{machine_, kindOf("OURS", "1-1")}, other_{machine_, kindOf("OTHER", "1-2")};
     int number_ = 0;

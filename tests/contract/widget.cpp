@@ -88,7 +88,7 @@ bool Widget::take() {
     const auto start = std::find(heard_.begin(), heard_.end(), 0x7e);
     if (heard_.end() - start < 4) return false;
     const int length = start[2] | start[3] << 8;
-    if (length > 600) {  // it goes on to the next start
+    if (length > 600) {  // it skips to the next start
         heard_.erase(heard_.begin(), start + 1);
         return true;
     }
@@ -105,7 +105,7 @@ bool Widget::take() {
 
 void Widget::answer(std::uint8_t label, const std::vector<std::uint8_t>& data) {
     const auto digits = [&](int from) { return static_cast<std::uint8_t>(std::stoi(number_.substr(from, 2), nullptr, 16)); };
-    // Whatever is not a frame to send, nor the question for its parameters, makes it an input.
+    // Every message except a frame to send, or a request for its parameters, makes it an input.
     if (label != 6 && label != 3) {
         out_.reset();
         input_ = true;

@@ -13,44 +13,44 @@
 
 namespace fantascope::contract {
 
-// What a widget keeps, in its units; as from the factory.
+// What a widget stores, in its units; factory settings.
 struct WidgetSettings {
     std::uint8_t breakTime = 9, markAfterBreak = 1, rate = 40;
 };
 
-// Stands in for an Enttec DMX USB Pro at the far end of a line. It reads the protocol with code of
-// its own, none of the driver's; that it is one in the eyes of others is shown in tests/peers.
+// Simulates an Enttec DMX USB Pro at the far end of a line. Its protocol code is independent of the
+// driver's; tests/peers shows that another program accepts it as a widget.
 // Thread: thread-safe.
 class Widget {
 public:
     using Frame = std::array<std::uint8_t, 512>;
     using Parameters = WidgetSettings;
 
-    // On the open file `line`, which outlives it. `number`: its eight digits, "ffffffff" for none.
+    // On the open file `line`, which outlives it. `number`: its eight digits; "ffffffff" for none.
     explicit Widget(int line, std::string number = "01234567", Parameters parameters = {});
     ~Widget();
 
-    // The DMX line out of it: the frame that it repeats, and how many it was sent.
+    // Its DMX output: the frame that it repeats, and how many it was sent.
     std::optional<Frame> out() const;
     int framesOut() const;
-    // Whoever speaks to it does not keep to the protocol: what it did wrong first.
+    // The first violation of the protocol by the host; "" if none.
     std::string complaint() const;
     Parameters parameters() const;
     int parametersWritten() const;
     bool wasToldToReceive() const;
 
-    // A frame comes in by its DMX line: these slots behind a start code. It passes on every one
-    // until it is given one to send out.
+    // A frame arrives on its DMX line: these slots after a start code. It forwards every frame
+    // until it is given one to send.
     void comesIn(std::span<const std::uint8_t> slots, std::uint8_t startCode = 0, std::uint8_t status = 0);
-    // It stops to answer, and reads on; or reads nothing more.
+    // It stops answering but reads on; or it stops reading.
     void fallSilent() { silent_ = true; }
     void stopReading() { deaf_ = true; }
-    // As it is when a program has broken off in the middle of a message.
+    // The state after another program broke off in the middle of a message.
     void hasHeard(std::vector<std::uint8_t> bytes);
 
 private:
     void run();
-    bool take();  // the next whole message in heard_; whether there was one
+    bool take();  // the next complete message in heard_; returns whether there was one
     void answer(std::uint8_t label, const std::vector<std::uint8_t>& data);
     void say(std::uint8_t label, const std::vector<std::uint8_t>& data);
 

@@ -12,11 +12,11 @@
 
 namespace fantascope::contract {
 
-// Where something with a serial line is plugged in: a device file that comes and goes with it.
+// A place for a device with a serial line: its device file comes and goes with it.
 template <class FarEnd>
 class Socket {
 public:
-    // `make`: the far end on its end of the line.
+    // `make`: makes the far end on its end of the line.
     explicit Socket(std::function<std::unique_ptr<FarEnd>(int line)> make, std::string name = "ttyUSB0")
         : make_(std::move(make)), name_(std::move(name)) {
         plugIn();
@@ -36,7 +36,7 @@ public:
     FarEnd& farEnd() { return *farEnd_; }
     PseudoTerminal& line() { return *line_; }
     std::filesystem::path file() const { return folder_ / name_; }
-    // What a site file says to mean it.
+    // The key by which a site file names it.
     std::string key() const { return "port: " + file().string(); }
 
 private:

@@ -26,7 +26,7 @@ Connection connectionTo(const std::string& name) {
 }
 
 std::vector<std::vector<std::array<std::uint8_t, 3>>> rowsOf(Display* display, int first, int count) {
-    const int width = DisplayWidth(display, DefaultScreen(display));  // as it is now: the connection is new
+    const int width = DisplayWidth(display, DefaultScreen(display));  // up to date, because the connection is new
     XImage* const image = XGetImage(display, DefaultRootWindow(display), 0, first, static_cast<unsigned>(width),
                                     static_cast<unsigned>(count), AllPlanes, ZPixmap);
     FANTASCOPE_CHECK(image != nullptr, "no such rows");
@@ -41,7 +41,7 @@ std::vector<std::vector<std::array<std::uint8_t, 3>>> rowsOf(Display* display, i
     return rows;
 }
 
-// Without a window manager every window hangs from the root. 0: there is none.
+// Without a window manager every window is a child of the root. 0: there is none.
 Window windowTitled(Display* display, const std::string& title) {
     Window root = 0, parent = 0, *children = nullptr, found = 0;
     unsigned count = 0;
@@ -65,8 +65,7 @@ struct Child {
 Result<Child> launched(std::vector<std::string> command) {
     int ends[2];
     FANTASCOPE_CHECK(::pipe(ends) == 0, "no pipe");
-    // By itself it starts afresh when its last client leaves, and turns away whoever comes
-    // meanwhile.
+    // By default it resets when its last client leaves, and refuses clients meanwhile.
     command.insert(command.end(), {"-noreset", "-displayfd", std::to_string(ends[1])});
     std::vector<char*> words;
     for (std::string& word : command) words.push_back(word.data());
@@ -74,15 +73,15 @@ Result<Child> launched(std::vector<std::string> command) {
     const pid_t child = ::fork();
     FANTASCOPE_CHECK(child >= 0, "no process");
     if (child == 0) {
-        ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // a test that crashes leaves no server behind
+        ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // a crashed test leaves no server behind
         ::close(ends[0]);
         ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
         ::execvp(words[0], words.data());
         ::_exit(127);
     }
     ::close(ends[1]);
-    // The server writes its number and a line's end once it can be used; if it ends before, so does
-    // the pipe.
+    // The server writes its number and a line feed once it is usable; if it ends before, the pipe
+    // ends.
     std::string number;
     char letter = 0;
     while (::read(ends[0], &letter, 1) == 1 && letter != '\n') number += letter;

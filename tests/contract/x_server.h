@@ -1,5 +1,5 @@
 #pragma once
-// An X server of a test's own, and what a person in front of its screen sees and does.
+// An X server of the test's own, and what a person in front of its screen sees and does.
 
 #include "core/result.h"
 
@@ -36,14 +36,14 @@ public:
     // Presses a key while the window has the focus; the key's name as xmodmap has it: "space",
     // "Escape", "a".
     void pressKey(const std::string& title, const std::string& key) const;
-    // Asks the window to close, as its close button does.
+    // Asks the window to close, like its close button.
     void closeWindow(const std::string& title) const;
-    // Destroys the window, as no program of good manners does.
+    // Destroys the window, as no well-behaved program does.
     void destroyWindow(const std::string& title) const;
-    // Ends the connection of the program that the window belongs to, as `xkill` does.
+    // Ends the connection of the window's program, like `xkill`.
     void killProgramOf(const std::string& title) const;
 
-    // What becomes of the server itself: it crashes, and a new one starts on the same display; it
+    // The fate of the server itself: it crashes, and a new one starts on the same display; it
     // hangs, and goes on.
     void crash();
     void startAgain();
@@ -59,7 +59,7 @@ private:
     std::optional<std::string> displayBefore_;
 };
 
-// While one lives, a connection that the X server has ended does not end the program.
+// While one exists, SIGPIPE from an ended connection does not end the program.
 class BrokenPipesIgnored {
 public:
     BrokenPipesIgnored() = default;

@@ -17,7 +17,7 @@ TEST(Time, seconds_and_nanoseconds_turn_into_each_other) {
 }
 
 // A night has ten hours and an installation many nights. Example failure: a period rounded to a
-// nanosecond, added up, is 20 ms late in the morning.
+// nanosecond adds up to 20 ms by the morning.
 TEST(Time, ticks_stay_exact_over_days) {
     constexpr std::int64_t kDays = 100 * 24 * 3600;
     EXPECT_EQ(tickTime(1, 60), 16'666'667ns);
@@ -70,7 +70,7 @@ TEST(SteadyClock, starts_at_zero_and_sleeps_until_its_time) {
     EXPECT_GE(before, 0ns);
     clock.sleepUntil(before + 1ms);
     EXPECT_GE(clock.now(), before + 1ms);
-    clock.sleepUntil(0ns);  // is over already, and returns
+    clock.sleepUntil(0ns);  // is past, so it returns
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What threads hand to each other, and that the number of threads changes nothing. Data races are
-// for the thread sanitizer to find.
+// What threads exchange, and that the number of threads changes nothing. Data races are for the
+// thread sanitizer.
 
 #include "core/append_log.h"
 #include "core/bounded_queue.h"
@@ -85,7 +85,7 @@ TEST(BoundedQueue, takes_no_more_than_its_capacity_and_keeps_the_order) {
     }
 }
 
-// Example failure: a camera's frame stays in memory until the queue has gone all the way round.
+// Example failure: a camera frame stays in memory until the queue has wrapped around.
 TEST(BoundedQueue, keeps_no_hold_of_what_was_taken) {
     BoundedQueue<std::shared_ptr<int>, 3> queue;
     queue.push(std::make_shared<int>(5));
@@ -112,7 +112,7 @@ TEST(BoundedQueue, everything_arrives_once_and_in_order_between_two_threads) {
     }
 }
 
-// Example failure: a reader that comes late finds only the newest chunk.
+// Example failure: a late reader finds only the newest chunk.
 TEST(AppendLog, every_reader_sees_every_value_once_and_all_in_one_order) {
     constexpr int kWriters = 4, kEach = 5000;
     AppendLog<int> log;

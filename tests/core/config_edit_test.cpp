@@ -173,11 +173,11 @@ TEST(ConfigEdit, entries_and_items_are_taken_away_with_their_lines) {
     EXPECT_EQ(afterErase("l: [1]\n", {"l", 0}), "l: []\n");
     EXPECT_EQ(afterErase("m:\n  # why\n  a: 1\nb: 2\n", {"m", "a"}), "m: {}\n  # why\nb: 2\n");
     EXPECT_EQ(afterErase("a: 1\n", {"b", 3, "c"}), "a: 1\n") << "what is not there is gone already";
-    EXPECT_EQ(afterErase("a: 1\n", {"a"}), "refused: f:1:4: a: the file's last key cannot be taken away");
+    EXPECT_EQ(afterErase("a: 1\n", {"a"}), "refused: f:1:4: a: the file's last key cannot be removed");
 }
 
-// One place that is written stands for two, or says more than its value. Example failure: every
-// projector's corners move with one's.
+// One place in the text stands for two values, or means more than its value. Example failure:
+// changing one projector's corners changes all.
 TEST(ConfigEdit, what_would_change_more_than_one_place_is_refused) {
     EXPECT_THAT(afterSet("a: &x [1, 2]\nb: *x\n", {"b"}, 1), HasSubstr("refused: f:2:4: b: an alias (*) stands here"));
     EXPECT_THAT(afterSet("a: &x [1, 2]\nb: *x\n", {"b", 0}, 5),
@@ -220,7 +220,7 @@ TEST(ConfigEdit, texts_that_cannot_be_changed_safely_are_refused) {
 
 // ---- Any document, any path, any value
 
-// What a document says, read by other means than the code under test: by ConfigNode.
+// A document's contents, read independently of the code under test, by ConfigNode.
 struct Tree {
     std::string text;
     std::vector<Tree> items;
@@ -316,7 +316,7 @@ ConfigValue randomValue(Rng& rng, int depth) {
     return ConfigValue::Map(entries.begin(), entries.end());
 }
 
-// To anything in the tree or to something new in it.
+// A path to anything in the tree, or to something new in it.
 ConfigPath randomPath(const Tree& tree, Rng& rng) {
     ConfigPath path;
     const Tree* at = &tree;
@@ -348,8 +348,8 @@ std::string labelOf(const ConfigPath& path) {
     return label;
 }
 
-// Writes documents as persons do who know all of YAML's ways but anchors and tags. Each comment
-// says in which value it stands.
+// Writes documents like people who know all of YAML except anchors and tags. Each comment names the
+// value that contains it.
 class Author {
 public:
     explicit Author(std::uint64_t seed) : rng_(seed) {}
@@ -365,7 +365,9 @@ public:
         if (rng_.below(4) == 0) text.insert(0, "\xEF\xBB\xBF");
         return text;
     }
-    const std::vector<std::pair<std::string, std::string>>& comments() const { return comments_; }  // with the label of its value
+    const std::vector<std::pair<std::string, std::string>>& comments() const {
+        return comments_;
+    }  // each with the label of its value
 
 private:
     std::string pad(std::uint32_t indent) const { return std::string(indent, ' '); }
@@ -415,7 +417,8 @@ private:
         if (count > 0 && rng_.below(6) == 0) text += ",";
         return text + space() + (map ? "}" : "]");
     }
-    // Behind "key:" or "-", with the line's end. `outer` is the label of what it stands in.
+    // The text after "key:" or "-", with the line's end. `outer` is the label of the surrounding
+    // value.
     std::string value(std::uint32_t indent, const std::string& outer, const std::string& label, int depth, bool inList) {
         const std::uint32_t kind = rng_.below(depth > 0 ? 8 : 4);
         if (kind == 0) return maybeComment(outer) + "\n";
@@ -468,8 +471,8 @@ TEST(ConfigEdit, in_any_document_any_value_is_set_and_all_else_reads_as_before) 
             const ConfigPath path = randomPath(expected, rng);
             const ConfigValue value = randomValue(rng, 2);
             const std::string before = document->text();
-            // Text that keeps its blank lines ("|+") would take those behind what goes, too:
-            // refused.
+            // Text that keeps its blank lines ("|+") would also take those after what is removed,
+            // so this is refused.
             const bool erases =
                 rng.below(4) == 0 && text.find('+') == std::string::npos && (path.size() > 1 || expected.entries.size() > 1);
             const auto set = erases ? document->erase(path) : document->set(path, value);
@@ -495,8 +498,8 @@ TEST(ConfigEdit, in_any_document_any_value_is_set_and_all_else_reads_as_before) 
     EXPECT_GT(changed, 1400);
 }
 
-// Whatever somebody has done to a file: it is refused, or its other values stay. Bytes are changed
-// one by one, with those that mean something to YAML in the majority.
+// Whatever happened to a file, it is refused, or its other values stay. Bytes are changed one by
+// one, mostly to ones that mean something in YAML.
 TEST(ConfigEdit, files_with_damage_are_refused_or_changed_rightly) {
     const std::string marks = "\n\n  :#-[]{},'\"&*!|>%@`\t\r\xFF\xC3?~a1";
     int refused = 0, changed = 0;
@@ -524,7 +527,7 @@ TEST(ConfigEdit, files_with_damage_are_refused_or_changed_rightly) {
             }
             ++changed;
             const auto before = treeOfText(text);
-            if (!before) continue;  // a key is there twice, but not on the path
+            if (!before) continue;  // a key occurs twice, but not on the path
             Tree expected = *before;
             put(expected, path, 0, treeOf(value));
             ASSERT_EQ(treeOfText(document->text()).value(), expected) << labelOf(path) << "\n" << text;
@@ -598,7 +601,7 @@ TEST(ConfigEditSave, what_somebody_else_wrote_meanwhile_is_kept) {
     EXPECT_EQ(*readFile(folder / "site.yaml.previous"), theirs);
 }
 
-// Example failure: an output is put in before, and the corners of the second land in the first.
+// Example failure: somebody inserts an output, and the corners of the second go to the first.
 TEST(ConfigEditSave, a_change_that_no_longer_fits_leaves_both_alone) {
     const ScratchFolder folder;
     const auto refusal = [&](const ConfigPath& path, const std::string& theirs) {

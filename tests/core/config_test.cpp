@@ -38,7 +38,7 @@ TEST(Config, reads_values_and_keeps_defaults_of_absent_keys) {
     EXPECT_EQ(lens->blades, 5);
 }
 
-// The operator finds the line without counting. Example failure: lines counted from 0.
+// The operator must find the line without counting. Example failure: lines counted from 0.
 TEST(Config, unknown_key_names_file_line_column_and_the_nearest_key) {
     EXPECT_EQ(refusal("name: Nikkor\n  \nfocall: 85\n"), "folder/lens.yaml:3:1: focall: unknown key (did you mean 'focal'?)");
     EXPECT_THAT(refusal("name: Nikkor\nzzzzzz: 1\n"), HasSubstr("known here: name, focal, blades"));
@@ -61,7 +61,7 @@ TEST(Config, what_is_not_yaml_is_refused_with_its_place) {
     EXPECT_THAT(refusal(""), HasSubstr("a map"));
 }
 
-// Example failure: whoever mends a file starts the program once for each mistake.
+// Example failure: to fix a file, one starts the program once per mistake.
 TEST(Config, all_mistakes_are_told_in_the_files_order) {
     EXPECT_EQ(refusal("zoom: 2\nblades: 1\nfocal: 0\n"),
               "folder/lens.yaml:1:1: zoom: unknown key (known here: name, focal, blades)\n"
@@ -70,7 +70,7 @@ TEST(Config, all_mistakes_are_told_in_the_files_order) {
               "folder/lens.yaml:3:8: focal: 0 is out of range, 1 .. 1000 mm is allowed");
 }
 
-// A list goes on after an item that is wrong, and so does a map in it.
+// Reading continues after a wrong item of a list, and inside a map in it.
 TEST(Config, mistakes_in_several_items_are_all_told) {
     const auto node = ConfigNode::parse("lenses:\n  - {a: 1, other: 2}\n  - {a: x}\n  - {a: 3}\n", "f");
     std::vector<double> lenses;
@@ -88,8 +88,8 @@ TEST(Config, mistakes_in_several_items_are_all_told) {
               "f:4:9: lenses[2].a: 3 is out of range, 0 .. 2 is allowed");
 }
 
-// Example failure: "unknown key 'nme'" and "'name' is missing" send a reader to two places for one
-// slip of the finger.
+// Example failure: one typo is reported as "unknown key 'nme'" and as "'name' is missing", at two
+// places.
 TEST(Config, a_key_that_is_misspelt_is_not_missing_too) {
     for (const char* slip : {"nme", "Name", "namee"})
         EXPECT_EQ(refusal(std::string(slip) + ": Nikkor\n"),
@@ -104,9 +104,9 @@ TEST(Config, a_second_document_is_refused_with_its_place) {
     EXPECT_EQ(refusal("# first\n---\nname: a\n"), "accepted");
 }
 
-// A file from elsewhere must not steer the terminal that tells of it.
-// Example failure: "\x1b[2J" in a name clears the screen, and 70 KB of a value push everything out
-// of it.
+// A foreign file must not control the terminal that shows messages about it.
+// Example failure: "\x1b[2J" in a name clears the screen, or a value of 70 KB scrolls everything
+// away.
 TEST(Config, what_is_quoted_of_a_file_is_harmless_and_short) {
     const std::string escape = "\"\\e[2J\"", longText(70'000, 'x');
     for (const std::string& text :
@@ -149,7 +149,7 @@ TEST(Config, shortest_numbers_read_back_exactly) {
     for (const double value : {0.1, 1.0 / 3, 1e-300, -123456789.125, 0.0}) EXPECT_EQ(std::stod(shortest(value)), value);
 }
 
-// An editor of another age, or a file that is none of ours.
+// A very old editor, or a foreign file.
 TEST(ConfigNode, refuses_what_is_not_utf8_with_its_place) {
     const auto refusal = [](const std::string& text) {
         const auto node = ConfigNode::parse(text, "a.yaml");

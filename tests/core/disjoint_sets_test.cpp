@@ -10,8 +10,8 @@
 namespace fantascope {
 namespace {
 
-// Beside sets that are joined by writing every number anew. Example failure: the root depends on
-// the order of joining.
+// Compared with sets that are joined by relabelling every number. Example failure: the root depends
+// on the order of joining.
 TEST(DisjointSets, are_joined_under_their_smallest_number) {
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
         Rng rng(seed);

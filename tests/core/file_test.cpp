@@ -78,7 +78,7 @@ TEST(File, permissions_and_links_stay_as_they_are) {
     EXPECT_THAT(folder.names(), ElementsAre("b", "broken", "c", "deep", "link"));
 }
 
-// Only root may give files away, so anybody else can try it with files of their own alone.
+// Only root may give files away; others can test this only with their own files.
 TEST(File, the_owner_stays) {
     const bool root = ::geteuid() == 0;
     const uid_t owner = root ? 1234 : ::geteuid();
@@ -106,8 +106,8 @@ TEST(File, a_file_that_is_kept_from_being_written_is_not_replaced) {
     EXPECT_THAT(folder.names(), ElementsAre("a"));
 }
 
-// As on a full disk: some bytes were written aside already. Example failure: the half of them stays
-// there, or becomes the file.
+// As on a full disk: some bytes are already in the temporary file. Example failure: the
+// half-written file stays, or replaces the old one.
 TEST(File, a_write_that_fails_half_way_leaves_the_old_bytes) {
     const ScratchFolder folder;
     folder.file("a", "old");
@@ -124,8 +124,7 @@ TEST(File, a_write_that_fails_half_way_leaves_the_old_bytes) {
     EXPECT_THAT(folder.names(), ElementsAre("a"));
 }
 
-// Example failures: a pipe is waited for without end; a device without an end is read until the
-// memory is full.
+// Example failures: waiting for a pipe forever; reading an endless device until memory is full.
 TEST(File, what_is_no_regular_file_is_refused_at_once) {
     const ScratchFolder folder;
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
@@ -155,14 +154,13 @@ TEST(File, that_is_too_large_is_refused_before_it_is_read) {
     const auto file = folder.file("a", "");
     std::filesystem::resize_file(file, 100'000);
     EXPECT_EQ(readFile(file, 100'000)->size(), 100'000u);
-    std::filesystem::resize_file(file, std::uintmax_t{1} << 40);  // a terabyte of nothing
+    std::filesystem::resize_file(file, std::uintmax_t{1} << 40);  // a sparse terabyte
     EXPECT_THAT(folder.relative(readFile(file).error().message()),
                 "a: is too large, 1048576.0 MiB: such a file has at most 32 MiB; make it smaller, or name another");
     EXPECT_EQ(readStart(file, 5)->size(), 5u);
 }
 
-// A program that is ended in the middle leaves no half file, however it is ended. Example failure:
-// NAME.part lies about.
+// A program that is killed leaves no half-written file. Example failure: NAME.part is left over.
 TEST(File, that_is_written_has_no_name_before_it_is_whole) {
     const ScratchFolder folder;
     for (const char* before : {"", "old"}) {
@@ -182,8 +180,7 @@ TEST(File, that_is_written_has_no_name_before_it_is_whole) {
     EXPECT_THAT(folder.names(), ElementsAre("a", "b"));
 }
 
-// Example failure: a report that is to be thrown away replaces /dev/null, for every program of the
-// machine.
+// Example failure: a report written to /dev/null replaces it, for every program on the machine.
 TEST(File, a_device_is_not_replaced) {
     const ScratchFolder folder;
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
@@ -192,8 +189,7 @@ TEST(File, a_device_is_not_replaced) {
     EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
 }
 
-// The rename fails, at the very end: what was there stays, and nothing written aside is left lying
-// about.
+// The rename fails at the very end: the old file stays, and no temporary file is left over.
 TEST(File, a_failed_write_leaves_nothing_behind) {
     const ScratchFolder folder;
     folder.file("taken/inside", "x");
@@ -213,7 +209,7 @@ TEST(File, a_folder_that_cannot_be_made_is_named_with_the_reason) {
     EXPECT_THAT(folder.names(), ElementsAre("file"));
 }
 
-// Whoever has the old file open goes on reading the old bytes. Example failure: the file is
+// A reader that has the old file open goes on reading the old bytes. Example failure: the file is
 // truncated and written in place.
 TEST(File, a_reader_never_sees_half_a_file) {
     const ScratchFolder folder;

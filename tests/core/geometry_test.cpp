@@ -41,7 +41,7 @@ TEST(Homography, carries_each_corner_to_its_target) {
 
 TEST(Homography, keeps_lines_straight_and_crosses_diagonals_where_they_cross) {
     const auto projectorFromCanvas = *Homography::fromCorners(rectangleCorners(2, 1), kKeystone);
-    // Where the target's diagonals meet, by hand: the centre of a rectangle seen in perspective.
+    // Where the target's diagonals meet, by hand: the centre of a rectangle in perspective.
     const glm::dvec2 a = kKeystone[2] - kKeystone[0], b = kKeystone[3] - kKeystone[1], c = kKeystone[1] - kKeystone[0];
     const double along = (c.x * b.y - c.y * b.x) / (a.x * b.y - a.y * b.x);
     EXPECT_LT(glm::distance(projectorFromCanvas({1, 0.5}), kKeystone[0] + along * a), 1e-9);
@@ -58,8 +58,7 @@ TEST(Homography, inverse_and_product_are_those_of_the_maps) {
     EXPECT_EQ(Homography()({3, 4}), glm::dvec2(3, 4));
 }
 
-// (x, y) -> (1 / x, y / x) sends the origin to infinity; the four corners are as good as any
-// others.
+// (x, y) -> (1 / x, y / x) sends the origin to infinity; its four corners are as valid as any.
 TEST(Homography, the_sources_origin_may_lie_on_the_horizon) {
     const Corners source = {{{1, 0}, {2, 0}, {2, 1}, {1, 1}}}, target = {{{1, 0}, {0.5, 0}, {0.5, 0.5}, {1, 1}}};
     const auto map = *Homography::fromCorners(source, target);
@@ -70,15 +69,14 @@ TEST(Homography, the_sources_origin_may_lie_on_the_horizon) {
 TEST(Homography, holds_for_any_convex_corners_anywhere) {
     Rng rng(1);
     for (int round = 0; round < 200; ++round) {
-        const auto corners =
-            [&] {  // a square of side 2, its corners moved by less than it takes to fold it, somewhere else in another size
-                const double size = std::exp(rng.uniform(-6, 6));
-                const glm::dvec2 place(rng.uniform(-10, 10), rng.uniform(-10, 10));
-                Corners moved = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
-                for (glm::dvec2& corner : moved)
-                    corner = size * (place + corner + glm::dvec2(rng.uniform(-0.4, 0.4), rng.uniform(-0.4, 0.4)));
-                return moved;
-            };
+        const auto corners = [&] {  // a square of side 2 at another place and size, its corners moved by less than folds it
+            const double size = std::exp(rng.uniform(-6, 6));
+            const glm::dvec2 place(rng.uniform(-10, 10), rng.uniform(-10, 10));
+            Corners moved = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+            for (glm::dvec2& corner : moved)
+                corner = size * (place + corner + glm::dvec2(rng.uniform(-0.4, 0.4), rng.uniform(-0.4, 0.4)));
+            return moved;
+        };
         const Corners source = corners(), target = corners();
         const auto map = Homography::fromCorners(source, target);
         ASSERT_TRUE(map) << map.error().message();
@@ -86,7 +84,7 @@ TEST(Homography, holds_for_any_convex_corners_anywhere) {
     }
 }
 
-// Rear projection and a mirror in the beam turn the corners round the other way.
+// Rear projection and a mirror in the beam reverse the order of the corners.
 TEST(Homography, mirrored_corners_are_fine) {
     const Corners mirrored = {{{1, 0}, {0, 0}, {0, 1}, {1, 1}}};
     EXPECT_LT(greatestError(*Homography::fromCorners(rectangleCorners(1, 1), mirrored), rectangleCorners(1, 1), mirrored), 1e-12);
@@ -97,7 +95,7 @@ TEST(Homography, corners_that_are_no_picture_are_refused_with_the_reason) {
     EXPECT_THAT(refusal({{{0, 0}, {1, 0}, {0.2, 0.2}, {0, 1}}}), HasSubstr("crossed or folded"));
     EXPECT_EQ(refusal({{{0, 0}, {1, 0}, {2, 0}, {0, 1}}}), "corners 1, 2 and 3 lie in a line");
     EXPECT_EQ(refusal({{{0, 0}, {0, 0}, {1, 1}, {0, 1}}}), "corners 1, 2 and 3 lie in a line");
-    EXPECT_EQ(refusal({{{5, 5}, {5, 5}, {5, 5}, {5, 5}}}), "all corners lie on one point");
+    EXPECT_EQ(refusal({{{5, 5}, {5, 5}, {5, 5}, {5, 5}}}), "all corners are one point");
     EXPECT_EQ(refusal({{{0, 0}, {1, 0}, {1, std::numeric_limits<double>::quiet_NaN()}, {0, 1}}}),
               "a coordinate is not a finite number");
     EXPECT_FALSE(Homography::fromCorners({{{0, 0}, {1, 1}, {1, 0}, {0, 1}}}, rectangleCorners(1, 1)))
@@ -118,7 +116,7 @@ TEST(Rotation, turns_about_x_then_y_then_z_by_the_right_hand) {
 
 // Camera axes: x right, y down, z forward.
 TEST(Pose, looks_along_z_with_x_to_the_right_and_y_down) {
-    const Pose pose = *Pose::lookingAt({0, 2, 10}, {0, 2, 0});  // at the wall, from in front of it
+    const Pose pose = *Pose::lookingAt({0, 2, 10}, {0, 2, 0});  // at the wall, from the front
     EXPECT_LT(glm::distance(pose.localFromWorld({0, 2, 0}), {0, 0, 10}), 1e-12) << "ahead";
     EXPECT_LT(glm::distance(pose.localFromWorld({1, 2, 10}), {1, 0, 0}), 1e-12) << "to the right";
     EXPECT_LT(glm::distance(pose.localFromWorld({0, 3, 10}), {0, -1, 0}), 1e-12) << "above";
@@ -129,9 +127,9 @@ TEST(Pose, looks_along_z_with_x_to_the_right_and_y_down) {
 }
 
 TEST(Pose, a_view_without_a_direction_or_a_top_is_refused) {
-    EXPECT_THAT(Pose::lookingAt({1, 2, 3}, {1, 2, 3}).error().message(), HasSubstr("looks at the point where it stands"));
-    EXPECT_THAT(Pose::lookingAt({0, 5, 0}, {0, 0, 0}).error().message(), HasSubstr("up direction"));
-    EXPECT_THAT(Pose::lookingAt({0, 5, 0}, {0, 0, 1}, {0, 0, 0}).error().message(), HasSubstr("up direction"));
+    EXPECT_THAT(Pose::lookingAt({1, 2, 3}, {1, 2, 3}).error().message(), HasSubstr("target and position are the same point"));
+    EXPECT_THAT(Pose::lookingAt({0, 5, 0}, {0, 0, 0}).error().message(), HasSubstr("'up' is zero"));
+    EXPECT_THAT(Pose::lookingAt({0, 5, 0}, {0, 0, 1}, {0, 0, 0}).error().message(), HasSubstr("'up' is zero"));
 }
 
 }  // namespace

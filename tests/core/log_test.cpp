@@ -17,7 +17,7 @@
 namespace fantascope {
 namespace {
 
-// Two ends: what is written to the second one is read from the first.
+// Two ends: what is written to the second is read from the first.
 using Ends = std::array<int, 2>;
 
 Ends aPipe() {
@@ -47,7 +47,7 @@ protected:
         ::dup2(before_, STDERR_FILENO);
         for (const int file : {before_, ends_[0], ends_[1]}) ::close(file);
     }
-    // What is there to read; a terminal hands it over when the kernel comes to it.
+    // Reads what is available; a terminal delivers it when the kernel is ready.
     std::string read() {
         pollfd written{ends_[0], POLLIN, 0};
         EXPECT_EQ(::poll(&written, 1, 30000), 1);
@@ -68,9 +68,9 @@ struct Told {
     int lost = 0;
 };
 
-// Of a log whose messages end in a full stop. A line that was cut short has what was lost on the
-// next line, a whole one has an empty line between; and a loss that was told before a line that was
-// cut short is told again.
+// Parses a log whose messages end in a full stop. After a line that was cut short, the count of
+// lost lines is on the next line; after a complete one there is an empty line between. A count
+// before a line that was cut short is reported again.
 Told toldBy(const std::string& log) {
     Told told;
     int lost = 0;
@@ -92,8 +92,8 @@ Told toldBy(const std::string& log) {
     return told;
 }
 
-// Example failure: somebody presses Ctrl-S, or `run 2>&1 | less` is not scrolled, and the thread
-// that sends the lamps stands still.
+// Example failure: somebody presses Ctrl-S, or does not scroll `run 2>&1 | less`, and the thread
+// that sends the lamps blocks.
 TEST_P(Unread, holds_up_nobody_who_logs_and_is_told_what_it_lost) {
     int logged = 10000;
     auto logging = std::async(std::launch::async, [logged] {
@@ -116,7 +116,7 @@ TEST_P(Unread, holds_up_nobody_who_logs_and_is_told_what_it_lost) {
 
 INSTANTIATE_TEST_SUITE_P(By, Unread, testing::Values(&aPipe, &aSocket, &aTerminal));
 
-// Ctrl-S stops a terminal that has room.
+// Ctrl-S stops a terminal that still has room.
 TEST(Log, a_terminal_that_is_stopped_holds_up_nobody) {
     const Ends ends = aTerminal();
     ASSERT_EQ(::tcflow(ends[1], TCOOFF), 0);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMany = 200'000;
 
-// Of kMany values. All bounds on them are five standard errors wide, and the seeds are fixed.
+// The moments of kMany values. All bounds are five standard errors wide, and the seeds are fixed.
 struct Moments {
     double mean = 0, variance = 0, fourth = 0;  // about the mean; the fourth over the variance squared
 };
@@ -26,9 +26,8 @@ Moments momentsOf(Draw draw) {
     return moments;
 }
 
-// Computed by an independent implementation of SplitMix64, std::seed_seq (as the standard defines
-// it) and the Mersenne Twister. If these change, every show that was computed before looks
-// different.
+// Computed by an independent implementation of SplitMix64, std::seed_seq (as in the standard) and
+// the Mersenne Twister. If these change, every show that was computed before looks different.
 TEST(Rng, first_values_are_those_of_every_machine) {
     Rng bits(42), uniform(42), normal(42), below(42);
     for (const std::uint32_t expected : {1763492588u, 1912930480u, 3568202319u, 1523670562u}) EXPECT_EQ(bits.bits(), expected);
@@ -67,7 +66,7 @@ TEST(Rng, normal_numbers_have_the_moments_of_a_normal_distribution) {
     EXPECT_NEAR(moments.fourth, 3, 5 * std::sqrt(24.0 / kMany));
 }
 
-// Box-Muller gives two numbers at a time; the second may not follow the first.
+// Box-Muller gives two numbers at a time; the second must not depend on the first.
 TEST(Rng, neighbouring_normal_numbers_do_not_know_each_other) {
     Rng rng(3);
     double product = 0, squares = 0;
@@ -88,7 +87,7 @@ TEST(Rng, each_of_a_few_is_as_likely_as_the_others) {
     for (const int count : counts) chiSquare += std::pow(count - kMany / 7.0, 2) / (kMany / 7.0);
     EXPECT_LT(chiSquare, 22.5) << "0.1 % of honest generators exceed this, 6 degrees of freedom";
     EXPECT_EQ(rng.below(1), 0u);
-    // With so many that 2^32 is no multiple of them, a plain remainder would give the first third
+    // For such a count, which does not divide 2^32, a plain remainder would give the first third
     // half of all draws.
     int low = 0;
     for (int i = 0; i < kMany; ++i) low += rng.below(3u << 30) < (1u << 30) ? 1 : 0;
@@ -106,7 +105,7 @@ TEST(StreamSeed, no_two_identities_share_a_stream) {
     EXPECT_NE(streamSeed(5, {3, 1}), streamSeed(5, {3, 1, 0}));
 }
 
-// Two leaves that sway as one would be seen at once.
+// Two leaves that sway alike would be noticed at once.
 TEST(StreamSeed, neighbouring_identities_give_unrelated_streams) {
     constexpr int kStreams = 200, kLength = 1000;
     double product = 0;

@@ -26,7 +26,8 @@ TEST(Text, a_long_text_loses_its_end_at_a_whole_character) {
 
 TEST(Text, the_lines_of_a_message_stay) { EXPECT_EQ(printableLines("a\x1b\nb"), "a\\x1b\nb"); }
 
-// Whoever gets "t.png: cannot be read" has to search three files for the one that names it.
+// A person who reads "t.png: cannot be read" would have to search three files for the one that
+// names it.
 TEST(NamedIn, the_error_of_a_named_file_is_led_by_the_place_of_its_key) {
     const ScratchFolder folder;
     folder.file("c.yaml", "a: 1\nmany:\n  - {picture: other.png}\n  - {picture: ./t.png}\n");

@@ -43,7 +43,7 @@ TEST(Warp, carries_the_corners_of_the_shown_part_to_the_asked_pixels) {
     }
 }
 
-// Which corner of the canvas comes out where, written down by hand: a sheet with A B over D C.
+// Where each corner of the canvas appears, by hand: a sheet with A B over D C.
 TEST(Warp, mirrors_first_and_then_turns_clockwise) {
     const auto seen = [](Orientation orientation) {
         const Warp warp = Warp::of({.orientation = orientation, .corners = rectangleCorners(kSize.x, kSize.y)}).value();
@@ -65,8 +65,8 @@ TEST(Warp, mirrors_first_and_then_turns_clockwise) {
     EXPECT_EQ(seen({Flip::Horizontal, 1}), "CBAD");
 }
 
-// A technician drags a point: that point goes along, exactly, and so does nothing that lies two
-// points away.
+// A technician drags a mesh point: the picture follows exactly there, and nothing moves two points
+// away.
 TEST(Warp, moves_each_point_of_the_mesh_by_its_offset_and_only_its_surroundings) {
     for (const Between between : {Between::Smooth, Between::Straight}) {
         WarpShape shape{.corners = kKeystone, .mesh = meshOf({7, 5}, between, 0, 1)};
@@ -85,8 +85,8 @@ TEST(Warp, moves_each_point_of_the_mesh_by_its_offset_and_only_its_surroundings)
     }
 }
 
-// A mesh that only shears and stretches must not ripple: what lies between points of a plane lies
-// in it.
+// A mesh that only shears and stretches must not ripple: between points of a plane it is that
+// plane.
 TEST(Warp, keeps_a_plane_of_offsets_plane) {
     for (const Between between : {Between::Smooth, Between::Straight})
         for (const glm::ivec2 points : {glm::ivec2(2, 2), glm::ivec2(3, 5), glm::ivec2(9, 4)}) {
@@ -100,8 +100,8 @@ TEST(Warp, keeps_a_plane_of_offsets_plane) {
         }
 }
 
-// Straight lines stay smooth curves: the slope does not jump where two patches meet, as it does in
-// a bilinear mesh.
+// Straight lines become smooth curves: the slope does not jump between patches, as it does in a
+// bilinear mesh.
 TEST(Warp, joins_smooth_patches_without_a_kink) {
     const auto kinkOf = [](Between between) {
         const Warp warp =
@@ -138,8 +138,8 @@ TEST(Warp, finds_the_canvas_point_of_every_pixel) {
     }
 }
 
-// Beyond the horizon of a steep keystone there is no canvas; the formula alone gives a point of its
-// far side.
+// Beyond the horizon of a steep keystone there is no canvas; the formula alone would give a point
+// on its far side.
 TEST(Warp, has_no_canvas_beyond_the_horizon) {
     const Warp steep = Warp::of({.corners = {{{900, 200}, {1020, 200}, {1900, 1000}, {20, 1000}}}}).value();
     EXPECT_TRUE(steep.canvasFromProjector({960, 210}));
@@ -159,11 +159,11 @@ TEST(Warp, refuses_what_is_no_picture) {
     EXPECT_THAT(refusal({.corners = kKeystone, .mesh = {Between::Smooth, {1, 4}, {}}}), HasSubstr("2 to 129 points"));
     EXPECT_THAT(refusal({.corners = kKeystone, .mesh = {Between::Smooth, {2, 2}, {{0, 0}}}}), HasSubstr("4 offsets, here are 1"));
     WarpMesh folded = meshOf({4, 4}, Between::Smooth, 0, 1);
-    folded.offsets[5] = {700, 0};  // over its neighbour
+    folded.offsets[5] = {700, 0};  // beyond its neighbour
     EXPECT_THAT(refusal({.corners = kKeystone, .mesh = folded}), HasSubstr("folds"));
     folded.offsets[5] = {150, 0};
     EXPECT_EQ(refusal({.corners = kKeystone, .mesh = folded}), "accepted");
-    // Rear projection by its corners runs round the other way and is no fold.
+    // Corners for rear projection run the other way, which is not a fold.
     EXPECT_EQ(refusal({.corners = {{{1920, 0}, {0, 0}, {0, 1080}, {1920, 1080}}}, .mesh = folded}), "accepted");
 }
 

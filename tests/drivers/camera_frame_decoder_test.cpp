@@ -1,5 +1,5 @@
-// Frames of every coding against pictures that were coded by this file's own arithmetic, or by
-// other people's encoders.
+// Frames of every coding, compared with pictures coded by this file's own arithmetic or by other
+// encoders.
 
 #include "drivers/camera/frame_decoder.h"
 
@@ -61,10 +61,10 @@ Components componentsOf(Rgba8 colour, LumaWeights weights, bool fullRange) {
     return {byte(16 + 219 * y), byte(128 + 224 * cb), byte(128 + 224 * cr)};
 }
 
-// What stands in the padding is seen if somebody takes it for pixels.
+// A padding value that shows if it is taken for pixels.
 constexpr std::uint8_t kRubbish = 0xa5;
 
-// `colourAt`: of x and y, in pixels.
+// `colourAt`: function of x and y, in pixels.
 template <class ColourAt>
 Bytes coded(const FrameFormat& format, ColourAt colourAt) {
     Bytes frame;
@@ -100,8 +100,8 @@ Bytes coded(const FrameFormat& format) {
     return coded(format, [](int x, int) { return barAt(x); });
 }
 
-// The middle of each bar, where no neighbour's colour reaches; JPEG's blocks and bars are as wide
-// as each other.
+// Checks the middle of each bar, free of its neighbours' colours; JPEG blocks are as wide as the
+// bars.
 void expectBars(const RgbaImage& picture, int tolerance) {
     for (int x = kBar / 2; x < kSize.x; x += kBar)
         for (const int y : {0, kSize.y / 2, kSize.y - 1}) {
@@ -117,7 +117,7 @@ class CodedFrames : public testing::TestWithParam<std::tuple<FrameCoding, LumaWe
 
 FrameFormat formatOf(const CodedFrames::ParamType& kind) {
     const auto [coding, weights, fullRange, padding] = kind;
-    return {coding, kSize, leastStride(coding, kSize.x) + padding, fullRange, weights};
+    return {coding, kSize, minStride(coding, kSize.x) + padding, fullRange, weights};
 }
 
 std::string nameOfKind(const testing::TestParamInfo<CodedFrames::ParamType>& kind) {
@@ -154,10 +154,10 @@ TEST(GreyFrames, show_the_luma_in_either_range) {
     }
 }
 
-// Some drivers leave out the padding of a picture's last row, and all else is worth nothing.
+// Some drivers omit the padding of the last row; anything shorter is invalid.
 TEST(CodedFrame, that_is_too_short_is_refused) {
     for (const FrameCoding coding : {FrameCoding::Yuyv, FrameCoding::Nv12, FrameCoding::Grey, FrameCoding::Rgb24}) {
-        const FrameFormat format{coding, kSize, leastStride(coding, kSize.x) + 32, false, LumaWeights::Rec601};
+        const FrameFormat format{coding, kSize, minStride(coding, kSize.x) + 32, false, LumaWeights::Rec601};
         RgbaImage picture(kSize.x, kSize.y);
         FrameDecoder decoder(format);
         Bytes frame = coded(format);
@@ -171,7 +171,7 @@ TEST(CodedFrame, that_is_too_short_is_refused) {
 
 FrameFormat jpegFormat(glm::ivec2 size) { return {FrameCoding::Mjpg, size, 0, true, LumaWeights::Rec601}; }
 
-// 4:2:2 as most USB cameras code, by libav's encoder from this file's own components.
+// 4:2:2, as most USB cameras code, by libav's encoder from this file's own components.
 Bytes jpegByLibav() {
     const AVCodec* const codec = avcodec_find_encoder(AV_CODEC_ID_MJPEG);
     AVCodecContext* context = avcodec_alloc_context3(codec);
@@ -228,7 +228,7 @@ TEST(JpegFrame, shows_its_colours) {
     ASSERT_TRUE(decoder.decode(jpegByLibav(), picture));
     expectBars(picture, 8);
 
-    // libjpeg's colours are at half the size both ways: bars of twice the width, then.
+    // libjpeg's colours have half the size in both directions, so the bars are twice as wide.
     constexpr int kTwice = 2;
     cv::Mat bars(kSize.y * kTwice, kSize.x * kTwice, CV_8UC3);
     for (int y = 0; y < bars.rows; ++y)
@@ -248,9 +248,9 @@ TEST(JpegFrame, without_colours_is_grey) {
     EXPECT_EQ(picture.at(40, 20), (Rgba8{77, 77, 77, 255}));
 }
 
-// Neither the picture nor the decoder's own memory may be touched behind its end, nor the frame
-// behind its padding.
-// Example failures: the heap is overwritten behind the picture; the last columns stay as they were.
+// Nothing may be written beyond the end of the picture or of the decoder's own memory, or read
+// beyond the frame's padding.
+// Example failures: the heap is overwritten beyond the picture; the last columns are not written.
 TEST(CodedFrame, of_every_width_is_right_to_the_last_pixel_and_nothing_is_touched_behind_it) {
     constexpr int kRows = 4;
     for (const FrameCoding coding :
@@ -258,7 +258,7 @@ TEST(CodedFrame, of_every_width_is_right_to_the_last_pixel_and_nothing_is_touche
         const bool twoByTwo = coding == FrameCoding::Yuyv || coding == FrameCoding::Nv12 || coding == FrameCoding::Uyvy;
         for (int width = 2; width <= 130; width += twoByTwo ? 2 : 1) {
             const glm::ivec2 size(width, kRows);
-            const FrameFormat format{coding, size, leastStride(coding, width), true, LumaWeights::Rec601};
+            const FrameFormat format{coding, size, minStride(coding, width), true, LumaWeights::Rec601};
             RgbaImage wanted = shaded(size);
             if (coding == FrameCoding::Grey)
                 for (Rgba8& pixel : wanted.pixels()) {
@@ -282,8 +282,8 @@ TEST(CodedFrame, of_every_width_is_right_to_the_last_pixel_and_nothing_is_touche
     }
 }
 
-// A cable that is too long loses packets, and what is decoded all the same is a torn picture. JPEG
-// has no checksum: where a packet is lost in the middle, what follows may happen to make sense.
+// A cable that is too long loses packets, and decoding gives a torn picture. JPEG has no checksum:
+// if a packet is lost in the middle, the rest may happen to make sense.
 TEST(JpegFrame, that_lost_a_part_is_refused_and_the_next_one_is_not) {
     cv::Mat noise(240, 320, CV_8UC3);
     Rng rng(1);
@@ -315,7 +315,7 @@ TEST(JpegFrame, that_is_none_or_of_another_size_is_refused) {
     EXPECT_TRUE(decoder.decode(jpegByLibav(), picture));
 }
 
-// The most address space that this process has had, MB.
+// The peak address space of this process, MB.
 long mostMemory() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);)
@@ -323,24 +323,24 @@ long mostMemory() {
     return 0;
 }
 
-// A damaged header of a small frame, which may state any size. Example failure: 500 MB for each of
-// a bad cable's frames.
+// A damaged header of a small frame may state any size. Example failure: 500 MB for each frame of a
+// bad cable.
 TEST(JpegFrame, that_says_it_is_huge_takes_no_memory) {
     Bytes frame = jpegByLibav();
     constexpr std::array<std::uint8_t, 2> kSizeFollows{0xff, 0xc0};
     const auto header = std::ranges::search(frame, kSizeFollows).begin();
     ASSERT_LT(header + 9, frame.end());
-    for (const int side : {5, 7}) {  // 16000 lines, and as many pixels in each
+    for (const int side : {5, 7}) {  // 16000 lines with as many pixels each
         header[side] = 16000 >> 8;
         header[side + 1] = 16000 & 0xff;
     }
-    frame.resize(2'000'000);  // as large as libav believes such a picture to be at least
+    frame.resize(2'000'000);  // the minimum size of such a picture for libav
     RgbaImage picture(kSize.x, kSize.y);
     FrameDecoder decoder(jpegFormat(kSize));
     const long before = mostMemory();
     const auto decoded = decoder.decode(frame, picture);
     ASSERT_FALSE(decoded);
-    EXPECT_THAT(decoded.error().message(), testing::HasSubstr("larger than the 96 x 32 pixels that are due"));
+    EXPECT_THAT(decoded.error().message(), testing::HasSubstr("larger than the expected 96 x 32 pixels"));
     EXPECT_GT(before, 0);
     EXPECT_LT(mostMemory() - before, 200);
 }

@@ -1,5 +1,5 @@
-// What the contract does not know of the V4L2 driver: what is asked of a camera, what is done with
-// what it answers, and what is wrong with its frames. Against cameras of umockdev.
+// The V4L2 driver beyond its contract: what it requests from a camera, how it handles the answers,
+// and what can be wrong with frames. With umockdev cameras.
 
 #include "drivers/camera/v4l2.h"
 
@@ -55,7 +55,7 @@ protected:
     }
     void open(const std::string& options = "") {
         camera_.reset();
-        camera_ = V4l2Camera::fromConfig(optionsFrom("size: [64, 48]\n" + options)).value().open(around_).value();
+        camera_ = V4l2Camera::fromConfig(optionsFrom("size: [64, 48]\n" + options)).value().open(context_).value();
     }
     static ConfigNode optionsFrom(const std::string& options) {
         return ConfigNode::parse("driver: v4l2\n" + options, "site.yaml").value();
@@ -80,7 +80,7 @@ protected:
         ASSERT_TRUE(comesTo(DeviceState::Running)) << camera_->status().detail;
         ASSERT_TRUE(mock.waitUntilTaken());
     }
-    // What is seen of one frame: null if it is not shown.
+    // The frame that the driver shows for one frame of the camera: null if it is not shown.
     std::shared_ptr<const CameraFrame> seenOf(MockCamera& mock, const MockCamera::Frame& frame) {
         mock.send(frame);
         EXPECT_TRUE(mock.waitUntilTaken());
@@ -88,7 +88,7 @@ protected:
     }
 
     SteadyClock clock_;
-    Surroundings around_{clock_};
+    DriverContext context_{clock_};
     MockMachine machine_;
     std::vector<std::unique_ptr<MockCamera>> mocks_;
     std::unique_ptr<CameraSource> camera_;
@@ -128,7 +128,7 @@ TEST_F(V4l2Cameras, that_are_not_there_are_absent_and_say_who_is_missed) {
     EXPECT_THAT(camera_->status().detail, HasSubstr("/dev/video9 is not there"));
 }
 
-// Example failure: two sites named one camera by other words, and two runs took it from each other.
+// Example failure: two sites describe one camera differently, and two runs take it from each other.
 TEST_F(V4l2Cameras, are_claimed_by_their_file_whatever_a_site_says_of_them) {
     plugIn({.card = "Left Eye", .serial = "A1", .usb = "1-1"}, 0);
     MockCamera& right = plugIn({.card = "Right Eye", .serial = "B2", .usb = "1-2"}, 2);
@@ -153,7 +153,7 @@ TEST_F(V4l2Cameras, have_nodes_of_metadata_that_are_left_alone) {
     EXPECT_NE(seenOf(eye, {.bytes = yuyv(100)}), nullptr);
     open("device: /dev/video0\n");
     ASSERT_TRUE(comesTo(DeviceState::Faulted));
-    EXPECT_THAT(camera_->status().detail, HasSubstr("not a camera that streams"));
+    EXPECT_THAT(camera_->status().detail, HasSubstr("not a streaming camera"));
 }
 
 TEST_F(V4l2Cameras, are_found_with_what_a_site_file_would_say_of_them) {
@@ -169,12 +169,12 @@ TEST_F(V4l2Cameras, are_found_with_what_a_site_file_would_say_of_them) {
                     AllOf(Field(&FoundDevice::what, "Right: Eye (H264)"), Field(&FoundDevice::identity, "USB port 1-2"),
                           Field(&FoundDevice::why, HasSubstr("cannot be decoded")),
                           Field(&FoundDevice::options, "{driver: v4l2, usb: 1-2}"))));
-    // What a site file would say opens it.
+    // The offered options open it.
     open("serial: A1\n");
     EXPECT_TRUE(comesTo(DeviceState::Running)) << camera_->status().detail;
 }
 
-// As the kernel's vivid and many a grabber do. Example failure: one camera fills the screen.
+// Like the kernel's vivid and many frame grabbers. Example failure: one camera fills the screen.
 TEST_F(V4l2Cameras, that_offer_eighty_formats_are_told_in_a_line) {
     std::vector<std::string> formats = {"YUYV"};
     for (int number = 0; number < 79; ++number) formats.push_back(fmt::format("X{:03}", number));
@@ -191,7 +191,7 @@ TEST_F(V4l2Cameras, have_options_that_are_read_strictly) {
 
 // --- What it gives
 
-// USB has no room for 30 pictures a second of a large size, unless they are coded.
+// USB cannot carry 30 large pictures a second unless they are coded.
 TEST_F(V4l2Cameras, are_asked_for_the_format_that_reaches_the_rate) {
     MockCamera& mock = plugIn({.formats = {"GREY", "MJPG", "YUYV"}, .rates = {{"YUYV", 10}, {"GREY", 29.97}}});
     stream(mock, "rate: 30\n");
@@ -204,7 +204,7 @@ TEST_F(V4l2Cameras, are_asked_for_the_format_that_reaches_the_rate) {
     EXPECT_EQ(mock.format(), "MJPG") << "what is not offered is no reason to show nothing";
 }
 
-// Drivers answer with what they have, and a picture in the wrong format is rubbish.
+// Drivers answer with what they have, and a picture decoded in the wrong format is garbage.
 TEST_F(V4l2Cameras, that_answer_with_another_format_are_not_believed) {
     MockCamera& mock = plugIn({.formats = {"YUYV", "MJPG"}, .answers = "MJPG"});
     stream(mock);
@@ -286,7 +286,7 @@ TEST_F(V4l2Cameras, keep_what_is_locked) {
     EXPECT_EQ(mock.control(V4L2_CID_FOCUS_AUTO), 1);
     EXPECT_EQ(mock.control(V4L2_CID_AUTOGAIN), 0) << "what is not named stays";
 
-    // A camera forgets it all when it loses its power.
+    // A camera forgets everything when it loses power.
     mock.unplug();
     ASSERT_TRUE(comesTo(DeviceState::Absent));
     EXPECT_EQ(camera_->newest(), nullptr);
@@ -327,7 +327,7 @@ TEST_F(V4l2Cameras, tell_the_middle_of_an_exposure_that_is_known) {
     }
 }
 
-// Some stamp by a clock of their own, some not at all, and some say nonsense.
+// Some drivers use another clock, some have no time stamps, and some report nonsense.
 TEST_F(V4l2Cameras, whose_stamps_say_nothing_are_taken_at_their_arrival) {
     MockCamera& mock = plugIn({.usb = "1-1"}, 0);
     MockCamera& unstamped = plugIn({.usb = "1-2", .stampFlags = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN}, 1);
@@ -417,16 +417,16 @@ TEST_F(V4l2Cameras, that_stall_are_started_again_then_faulted_until_they_speak) 
     ASSERT_NE(seenOf(mock, {.bytes = yuyv(100)}), nullptr);
     const int streams = mock.streams();
     EXPECT_EQ(camera_->status().trouble, "");
-    ASSERT_TRUE(mock.waitForStreams(streams + 1)) << "its stream is started again first";
+    ASSERT_TRUE(mock.waitForStreams(streams + 1)) << "its stream is restarted first";
     EXPECT_EQ(camera_->status().losses, 0);
-    EXPECT_THAT(camera_->status().trouble, HasSubstr("its stream is started again"));
+    EXPECT_THAT(camera_->status().trouble, HasSubstr("restarting its stream"));
     EXPECT_NE(seenOf(mock, {.bytes = yuyv(100)}), nullptr);
     EXPECT_EQ(camera_->status().trouble, "");
     ASSERT_TRUE(mock.waitForStreams(streams + 2));
     ASSERT_TRUE(comesTo(DeviceState::Faulted));
     EXPECT_THAT(camera_->status().detail, HasSubstr("gives no frames"));
     EXPECT_EQ(camera_->status().trouble, "");
-    // It is opened again and again, and is not said to run before there is a picture.
+    // It is reopened again and again, and is not Running before there is a picture.
     ASSERT_TRUE(mock.waitForStreams(streams + 3));
     ASSERT_TRUE(mock.waitUntilTaken());
     EXPECT_EQ(camera_->status().state, DeviceState::Faulted);

@@ -25,7 +25,7 @@ std::string ofDisplay(const std::string& options) {
     return readDisplay(parsed(options), {"left", {320, 180}, 60}).value().claim();
 }
 
-// Two site files may say the same thing in other words.
+// Two site files may describe the same thing differently.
 TEST(Claims, have_the_same_name_for_the_same_device) {
     EXPECT_EQ(ofRelays("{driver: modbus_tcp, host: 10.0.0.5, first: 4}"),
               ofRelays("{driver: modbus_tcp, host: 10.0.0.5, port: 502, unit: 1, rate: 9}"));
@@ -49,7 +49,7 @@ TEST(Claims, of_whatever_hangs_on_a_serial_line_are_the_lines) {
     EXPECT_EQ(ofDesk("{driver: enttec_pro, " + port), claim);
 }
 
-// Two runs that wait for one adapter would both begin, and fight for it when it comes.
+// Otherwise two runs that wait for one adapter would both begin, and fight for it when it comes.
 TEST(Claims, of_what_is_not_there_are_what_is_looked_for) {
     EXPECT_EQ(ofRelays("{driver: modbus_rtu, usb: {serial: none-such}}"), "the USB adapter serial none-such");
     EXPECT_EQ(ofPort("{driver: open_dmx, serial: none-such}"), "the USB adapter serial none-such");
@@ -97,8 +97,7 @@ TEST(Claim, is_one_programs_and_names_it_until_it_ends) {
     EXPECT_TRUE(Claim::take(name)) << "it is free again";
 }
 
-// Example failure: after kill -9 a new show begins while the relay guard of the old one still
-// switches.
+// Example failure: after kill -9, a new show begins while the old one's relay guard still switches.
 TEST(Claim, goes_over_to_a_child_when_its_maker_dies) {
     const std::string name = fmt::format("an inheritance of process {}", getpid());
     int ready[2], release[2];
@@ -109,7 +108,8 @@ TEST(Claim, goes_over_to_a_child_when_its_maker_dies) {
         if (fork() == 0) {
             close(release[1]);
             char byte = 0;
-            _exit(write(ready[1], "r", 1) == 1 && read(release[0], &byte, 1) == 0 ? 0 : 1);  // has it until the test lets go
+            _exit(write(ready[1], "r", 1) == 1 && read(release[0], &byte, 1) == 0 ? 0
+                                                                                  : 1);  // holds it until the test releases it
         }
         for (;;) pause();
     }

@@ -13,7 +13,7 @@ using enum ButtonChange::What;
 
 class ButtonEventsTest : public testing::Test {
 protected:
-    void change(int button, ButtonChange::What what, Time now) { events_.take({{button, what}}, now); }
+    void change(int button, ButtonChange::What what, Time now) { events_.feed({{button, what}}, now); }
     // "+3@5": button 3 down at 5 ms.
     std::string given() {
         std::string all;
@@ -32,22 +32,22 @@ TEST_F(ButtonEventsTest, a_press_is_never_held_back) {
 TEST_F(ButtonEventsTest, a_press_that_bounces_is_one_press_until_the_finger_goes) {
     for (const auto& [what, at] : {std::pair(Down, 100ms), {Up, 101ms}, {Down, 102ms}, {Up, 103ms}, {Down, 104ms}})
         change(1, what, at);
-    events_.pass(200ms);
+    events_.flush(200ms);
     EXPECT_EQ(given(), "+1@100 ");
     for (const auto& [what, at] : {std::pair(Up, 500ms), {Down, 501ms}, {Up, 502ms}}) change(1, what, at);
-    events_.pass(600ms);
+    events_.flush(600ms);
     EXPECT_EQ(given(), "-1@500 ");
 }
 
 TEST_F(ButtonEventsTest, a_tap_that_is_shorter_than_the_debounce_is_let_go_at_its_end) {
     change(1, Down, 100ms);
     change(1, Up, 102ms);
-    EXPECT_EQ(events_.due(), 105ms);
-    events_.pass(104ms);
+    EXPECT_EQ(events_.nextFlush(), 105ms);
+    events_.flush(104ms);
     EXPECT_EQ(given(), "+1@100 ");
-    events_.pass(105ms);
+    events_.flush(105ms);
     EXPECT_EQ(given(), "-1@105 ");
-    EXPECT_EQ(events_.due(), std::nullopt);
+    EXPECT_EQ(events_.nextFlush(), std::nullopt);
 }
 
 TEST_F(ButtonEventsTest, what_was_held_back_comes_out_in_its_order) {
@@ -55,18 +55,18 @@ TEST_F(ButtonEventsTest, what_was_held_back_comes_out_in_its_order) {
     change(1, Down, 101ms);
     change(1, Up, 102ms);
     change(3, Up, 103ms);
-    events_.pass(106ms);
+    events_.flush(106ms);
     EXPECT_EQ(given(), "+3@100 +1@101 -1@106 -3@106 ");
 }
 
-// Two fingers that let go faster than the debounce of the later press.
+// Two releases within the debounce time of the later press.
 TEST_F(ButtonEventsTest, no_release_overtakes_one_that_is_held_back) {
     change(3, Down, 100ms);
     change(1, Down, 104ms);
     change(1, Up, 105ms);
     change(3, Up, 106ms);
     change(2, Down, 107ms);
-    events_.pass(109ms);
+    events_.flush(109ms);
     EXPECT_EQ(given(), "+3@100 +1@104 +2@107 -1@109 -3@109 ");
 }
 
@@ -82,11 +82,11 @@ TEST_F(ButtonEventsTest, a_detent_is_a_press_and_a_release_however_fast) {
 }
 
 TEST_F(ButtonEventsTest, what_was_down_before_is_no_press_and_no_release) {
-    events_.settle({{1, Down}, {2, Down}, {2, Up}, {9, Detent}});
+    events_.setInitial({{1, Down}, {2, Down}, {2, Up}, {9, Detent}});
     change(1, Up, 100ms);
-    change(1, Down, 101ms);  // letting go bounces
+    change(1, Down, 101ms);  // a release bounces
     change(1, Up, 102ms);
-    events_.pass(200ms);
+    events_.flush(200ms);
     EXPECT_EQ(given(), "");
     change(1, Down, 300ms);
     change(2, Down, 301ms);
@@ -99,14 +99,14 @@ TEST_F(ButtonEventsTest, a_loss_lets_go_of_what_was_polled_and_forgets_the_rest)
     EXPECT_EQ(given(), "+1@100 +2@100 ");
     change(2, Up, 150ms);
     change(3, Down, 150ms);
-    events_.lose(200ms);
-    events_.lose(300ms);
+    events_.deviceLost(200ms);
+    events_.deviceLost(300ms);
     EXPECT_EQ(given(), "-1@300 -2@300 ");
     change(1, Down, 400ms);
     EXPECT_EQ(given(), "+1@400 ");
 }
 
-// Nobody polls: presses that come out hours later would start cues that nobody wants.
+// Nobody polls: presses that come out hours later would start unwanted cues.
 TEST_F(ButtonEventsTest, presses_that_nobody_polls_are_dropped_with_their_releases) {
     for (int i = 0; i < 5000; ++i) {
         change(1, Down, i * 100ms);
@@ -120,11 +120,11 @@ TEST_F(ButtonEventsTest, presses_that_nobody_polls_are_dropped_with_their_releas
         ++events;
     }
     EXPECT_FALSE(down);
-    EXPECT_LE(events, static_cast<int>(ButtonEvents::kMost) + 1);
+    EXPECT_LE(events, static_cast<int>(ButtonEvents::kMaxWaiting) + 1);
 }
 
-// Whatever contacts do: the events of a button alternate, a press first, and in the end it is what
-// the contact is.
+// Whatever the contacts do, the events of a button alternate, a press first, and end in the
+// contact's state.
 TEST_F(ButtonEventsTest, alternate_in_any_weather) {
     Rng rng(7);
     Time now{};
@@ -135,7 +135,7 @@ TEST_F(ButtonEventsTest, alternate_in_any_weather) {
         contact[button] = !contact[button];
         change(button, contact[button] ? Down : Up, now);
         if (rng.below(500) == 0) {
-            events_.lose(now);
+            events_.deviceLost(now);
             contact.clear();
         }
         while (const auto event = events_.poll()) {
@@ -143,7 +143,7 @@ TEST_F(ButtonEventsTest, alternate_in_any_weather) {
             told[event->button] = event->pressed;
         }
     }
-    events_.pass(now + 1s);
+    events_.flush(now + 1s);
     while (const auto event = events_.poll()) told[event->button] = event->pressed;
     for (const auto& [button, down] : contact) EXPECT_EQ(told[button], down) << button;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The report descriptors of real devices, from what is public of them. Each says where from, and
-// which are whole and which only have the shape that is told; none was read from a device at hand.
+// The report descriptors of real devices, from public sources. Each names its source, and whether
+// it is complete or only has the described shape. None was read from a device at hand.
 
 #include <cstdint>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace fantascope::drivers {
 
-// "05 01 09 06": bytes as descriptors are printed.
+// "05 01 09 06": bytes in the usual notation for descriptors.
 inline std::vector<std::uint8_t> bytesOf(std::string_view text) {
     std::vector<std::uint8_t> bytes;
     int digits = 0, value = 0;
@@ -29,15 +29,15 @@ inline const std::vector<std::uint8_t> kBootKeyboard = bytesOf(
     "01 75 03 "
     "91 01 95 06 75 08 15 00 25 65 05 07 19 00 29 65 81 00 c0");
 
-// HID 1.11, appendix B.2 and E.10, with the wheel that mice have: three buttons, X, Y, wheel. As of
-// a Logitech USB Optical Mouse (046d:c077), https://github.com/libusb/hidapi/pull/306.
+// HID 1.11, appendix B.2 and E.10, with the usual wheel: three buttons, X, Y, wheel. Like a
+// Logitech USB Optical Mouse (046d:c077), https://github.com/libusb/hidapi/pull/306.
 inline const std::vector<std::uint8_t> kMouse = bytesOf(
     "05 01 09 02 a1 01 09 01 a1 00 05 09 19 01 29 03 15 00 25 01 75 01 95 03 81 02 75 05 95 01 81 03 05 01 09 30 09 31 09 38 15 "
     "81 25 7f "
     "75 08 95 03 81 06 c0 c0");
 
 // The shape of a presenter's second interface: consumer control with an array of two-byte usages up
-// to 0x28c and system control with three of its own, as Logitech's receivers have them (Linux,
+// to 0x28c, and system control with three usages, as in Logitech's receivers (Linux,
 // drivers/hid/hid-logitech-dj.c, consumer_descriptor and syscontrol_descriptor).
 inline const std::vector<std::uint8_t> kPresenterConsumer = bytesOf(
     "05 0c 09 01 a1 01 85 03 75 10 95 02 15 01 26 8c 02 19 01 2a 8c 02 81 00 c0 05 01 09 80 a1 01 85 04 75 02 95 01 15 01 25 03 "
@@ -67,17 +67,17 @@ inline const std::vector<std::uint8_t> kXboxGamepad = bytesOf(
     "00 09 85 "
     "15 00 25 01 95 01 75 01 81 02 15 00 25 00 75 07 95 01 81 03 c0 c0");
 
-// Contour ShuttleXpress (0b33:0020): a wheel and a dial that are called relative, a spare byte,
-// thirteen buttons, from the input capabilities that Windows lists of it
+// Contour ShuttleXpress (0b33:0020): a wheel and a dial declared as relative, a spare byte,
+// thirteen buttons, from the input capabilities that Windows lists
 // (https://github.com/EMATech/ContourShuttle).
 inline const std::vector<std::uint8_t> kShuttleXpress = bytesOf(
     "05 0c 09 01 a1 01 a1 02 05 01 09 38 15 80 25 7f 75 08 95 01 81 06 09 37 15 00 26 ff 00 75 08 95 01 81 2e 75 08 95 01 81 03 "
     "05 09 19 "
     "01 29 0d 15 00 25 01 75 01 95 0d 81 02 75 03 95 01 81 03 c0 c0");
 
-// 3Dconnexion SpaceNavigator (046d:c626), whole:
-// https://libevdev.pages.freedesktop.org/udev-hid-bpf, case study of it. Six axes in two reports
-// that are called relative and are not, two buttons, a lamp.
+// 3Dconnexion SpaceNavigator (046d:c626), complete:
+// https://libevdev.pages.freedesktop.org/udev-hid-bpf, its case study. Six axes in two reports,
+// wrongly declared as relative, two buttons, a lamp.
 inline const std::vector<std::uint8_t> kSpaceNavigator = bytesOf(
     "05 01 09 08 a1 01 a1 00 85 01 16 a2 fe 26 5e 01 36 88 fa 46 78 05 55 0c 65 11 09 30 09 31 09 32 75 10 95 03 81 06 c0 a1 00 "
     "85 02 09 "
@@ -92,8 +92,8 @@ inline const std::vector<std::uint8_t> kSpaceNavigator = bytesOf(
     "31 95 04 b1 02 c0 c0 c0");
 
 // A foot pedal of PCsensor's kind (1a86:e026): a keyboard with report ids beside a mouse and a
-// gamepad, in the shape that
-// https://gitlab.freedesktop.org/libevdev/udev-hid-bpf/-/merge_requests/102 lists.
+// gamepad, in the shape listed at
+// https://gitlab.freedesktop.org/libevdev/udev-hid-bpf/-/merge_requests/102.
 inline const std::vector<std::uint8_t> kFootPedal = bytesOf(
     "05 01 09 06 a1 01 85 01 05 07 19 e0 29 e7 15 00 25 01 75 01 95 08 81 02 95 01 75 08 81 01 95 03 75 01 05 08 19 01 29 03 91 "
     "02 95 05 "
@@ -101,22 +101,21 @@ inline const std::vector<std::uint8_t> kFootPedal = bytesOf(
     "00 25 01 "
     "95 05 75 01 81 02 95 01 75 03 81 01 05 01 09 30 09 31 09 38 15 81 25 7f 75 08 95 03 81 06 c0 c0");
 
-// Griffin PowerMate (077d:0410): what Linux's powermate driver reads of its six bytes
-// (drivers/input/misc/powermate.c): a button, a turn, four bytes of the lamp's state. Its
-// descriptor is not published; this one says the same.
+// Griffin PowerMate (077d:0410): the six bytes that Linux's powermate driver reads
+// (drivers/input/misc/powermate.c): a button, a turn, four bytes of lamp state. Its descriptor is
+// not published; this one declares the same.
 inline const std::vector<std::uint8_t> kPowerMate = bytesOf(
     "05 0c 09 01 a1 01 05 09 09 01 15 00 25 01 75 01 95 01 81 02 75 07 95 01 81 03 05 01 09 37 15 81 25 7f 75 08 95 01 81 06 06 "
     "00 ff 09 "
     "01 15 00 26 ff 00 75 08 95 04 81 02 c0");
 
-// X-keys sticks (P.I. Engineering): 32 bytes of their own without an id, and 35 for lamps; what is
-// in them is in no descriptor (https://github.com/Xkeys-Lib/xkeys, products). Only the lengths are
-// theirs.
+// X-keys sticks (P.I. Engineering): 32 vendor bytes without an id, and 35 for lamps, which no
+// descriptor explains (https://github.com/Xkeys-Lib/xkeys, products). Only the lengths are real.
 inline const std::vector<std::uint8_t> kXkeys =
     bytesOf("06 00 ff 09 01 a1 01 09 01 15 00 26 ff 00 75 08 95 20 81 02 09 02 95 23 91 02 c0");
 
-// Elgato Stream Decks: bytes on the button page behind id 1
-// (https://docs.elgato.com/streamdeck/hid). 511 of them since the second version.
+// Elgato Stream Decks: bytes on the button page after id 1
+// (https://docs.elgato.com/streamdeck/hid); 511 of them from the second version on.
 inline const std::vector<std::uint8_t> kStreamDeck = bytesOf(
     "05 0c 09 01 a1 01 09 01 05 09 19 01 29 10 15 00 26 ff 00 75 08 96 ff 01 85 01 81 02 0a 00 ff 96 ff 03 85 02 91 02 c0");
 

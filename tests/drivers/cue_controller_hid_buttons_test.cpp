@@ -24,7 +24,7 @@ public:
     explicit Device(const std::vector<std::vector<std::uint8_t>>& descriptors, const HidProfile* profile = nullptr)
         : layout_(layoutOf(interfacesOf(descriptors), profile)), buttons_(layout_) {}
 
-    // What the report changes: "+3" down, "-3" up, "~3" a detent.
+    // The changes by a report: "+3" down, "-3" up, "~3" a detent.
     std::string after(std::string_view report, int interface = 0) {
         std::string changes;
         for (const auto& [button, what] : buttons_.take(interface, bytesOf(report)))
@@ -58,7 +58,7 @@ TEST(HidButtons, of_a_keyboard_are_its_modifiers_and_then_its_keys) {
     EXPECT_EQ(keyboard.after("00 00 00 00 00 00 00 00"), "-2-10");
 }
 
-// Example failure: seven keys at once let all of them go, and press them again.
+// Example failure: seven keys at once release all of them, and press them again.
 TEST(HidButtons, stay_where_they_are_while_a_keyboard_cannot_tell) {
     Device keyboard({kBootKeyboard});
     EXPECT_EQ(keyboard.after("00 00 04 05 06 07 08 09"), "+9+10+11+12+13+14");
@@ -129,7 +129,7 @@ TEST(HidButtons, of_a_gamepad_are_its_keys_then_its_hat_then_its_axes) {
     EXPECT_EQ(pad.after("05 80 80 80 80 08 00 00 80 80"), "") << "nor is one of another id";
 }
 
-// A hand that holds a stick at the edge does not press many times.
+// A hand that holds a stick at the edge must not press many times.
 TEST(HidButtons, of_an_axis_are_left_at_another_place_than_reached) {
     Device pad({kDualShock4});
     const auto x = [&](int value) {
@@ -157,8 +157,7 @@ TEST(HidButtons, of_a_hat_that_counts_from_one_has_its_rest_at_zero) {
     EXPECT_EQ(pad.after("02 01"), "+11");
 }
 
-// Nobody turns a knob in six directions by detents, whatever its descriptor says; and it goes
-// further than it says.
+// A six-axis knob has no detents, whatever its descriptor says, and it exceeds its declared range.
 TEST(HidButtons, of_a_knob_that_springs_back_are_its_directions) {
     Device knob({kSpaceNavigator});
     EXPECT_EQ(knob.count(), 2u + 12);
@@ -185,7 +184,7 @@ TEST(HidButtons, of_a_jog_wheel_are_its_detents_the_shorter_way_round) {
     EXPECT_EQ(shuttle.after("f9 ff 00 00 00"), "+9");
 }
 
-// Without its profile the dial is known by its wrap.
+// Without its profile the dial is recognised by its wrap.
 TEST(HidButtons, of_a_dial_that_wraps_are_its_detents) {
     Device shuttle({kShuttleXpress});
     EXPECT_EQ(shuttle.count(), 13u + 2 + 2);
@@ -249,7 +248,7 @@ TEST(HidButtons, of_a_number_pad_begin_with_the_largest_key) {
     EXPECT_EQ(pad.after("00 00 62 00 00 00 00 00"), "-1+2");
 }
 
-// A vendor's own bits are buttons too, its bytes are not: what could be anything is not pressed.
+// A vendor's own bits are buttons, too; its bytes are not, because they could be anything.
 TEST(HidButtons, of_an_unknown_device_are_its_bits) {
     Device box({bytesOf(
         "06 00 ff 09 01 a1 01 09 10 09 11 15 00 25 01 75 01 95 02 81 02 95 06 81 03 09 20 26 ff 00 75 08 95 03 81 02 09 30 "
@@ -259,7 +258,7 @@ TEST(HidButtons, of_an_unknown_device_are_its_bits) {
     EXPECT_EQ(box.name(2), "usage 0xff00 0x11");
 }
 
-// Some count their buttons from 0, and some tell how hard they are pressed.
+// Some count their buttons from 0, and some report how hard they are pressed.
 TEST(HidButtons, of_the_button_page_count_however_they_are_written) {
     Device box(
         {bytesOf("05 01 09 04 a1 01 05 09 19 00 29 07 15 00 25 01 75 01 95 08 81 02 19 01 29 02 26 ff 00 75 08 95 02 81 02 c0")});
@@ -270,8 +269,8 @@ TEST(HidButtons, of_the_button_page_count_however_they_are_written) {
     EXPECT_EQ(box.after("81 10 ff"), "-9+10");
 }
 
-// A device that says it has more keys than there are usages has none of the surplus; the numbers
-// stay numbers.
+// A device that declares more keys than there are usages has none of the surplus; the numbers stay
+// valid.
 TEST(HidButtons, have_an_end) {
     std::vector<std::uint8_t> bytes = bytesOf("05 01 09 06 a1 01 15 00 26 ff 00 75 08 95 01 05 0c");
     for (int array = 0; array < 40; ++array) {
@@ -290,8 +289,9 @@ TEST(HidProfiles, have_names_that_are_one_word_and_devices_of_their_own) {
         EXPECT_EQ(profile.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_"), std::string_view::npos)
             << profile.name;
         EXPECT_EQ(hidProfileNamed(profile.name), &profile);
-        EXPECT_TRUE(profile.leading.empty() || profile.controls.empty()) << profile.name;
-        EXPECT_FALSE(profile.leading.empty() && profile.controls.empty() && std::holds_alternative<std::monostate>(profile.lamps))
+        EXPECT_TRUE(profile.firstKeys.empty() || profile.controls.empty()) << profile.name;
+        EXPECT_FALSE(profile.firstKeys.empty() && profile.controls.empty() &&
+                     std::holds_alternative<std::monostate>(profile.lamps))
             << profile.name;
         for (const auto& device : profile.devices) EXPECT_TRUE(devices.insert(device).second) << profile.name;
     }

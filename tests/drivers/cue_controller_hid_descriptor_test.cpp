@@ -63,8 +63,7 @@ TEST(HidDescriptor, keeps_the_reports_of_several_ids_apart) {
     EXPECT_EQ(knob.inputs[5].valueIn(std::vector<std::uint8_t>{2, 0, 0, 0, 0, 0xa2, 0xfe}), -350);
 }
 
-// Example failure: 25 FF, which is -1 by the letter and 255 by what every device means, makes a
-// range without values.
+// Example failure: 25 FF, literally -1 but always meant as 255, makes an empty range.
 TEST(HidDescriptor, takes_a_maximum_for_unsigned_where_the_minimum_is_not_negative) {
     const HidDescriptor byte = parsed(bytesOf("05 01 09 04 a1 01 09 30 15 00 25 ff 75 08 95 01 81 02 c0"));
     EXPECT_EQ(byte.inputs.at(0).high, 255);
@@ -99,7 +98,7 @@ TEST(HidDescriptor, takes_usages_with_their_page_and_ranges_whose_ends_come_in_e
     EXPECT_EQ(keys.inputs[10].usage(), 0x00090002u);
 }
 
-// Section 6.2.2.8: a usage is of the page that holds at the main item, not where the usage stands.
+// Section 6.2.2.8: a usage takes the page in force at the main item, not where the usage stands.
 TEST(HidDescriptor, takes_the_page_that_holds_at_the_main_item) {
     const HidDescriptor keys = parsed(bytesOf("05 01 09 06 a1 01 09 01 05 09 15 00 25 01 75 01 95 01 81 02 c0"));
     EXPECT_EQ(keys.inputs.at(0).usage(), 0x00090001u);
@@ -124,11 +123,11 @@ TEST(HidDescriptor, takes_the_first_of_alternative_usages_and_skips_what_it_has_
 }
 
 TEST(HidDescriptor, refuses_what_is_broken_and_says_where) {
-    EXPECT_THAT(refusalOf("05 01 26 ff"), HasSubstr("byte 2: it ends in an item"));
+    EXPECT_THAT(refusalOf("05 01 26 ff"), HasSubstr("byte 2: it ends inside an item"));
     EXPECT_THAT(refusalOf("fe 04 00 00"), HasSubstr("long item"));
     EXPECT_THAT(refusalOf("fe"), HasSubstr("long item"));
     EXPECT_THAT(refusalOf("a1 01"), HasSubstr("no end"));
-    EXPECT_THAT(refusalOf("c0"), HasSubstr("no collection"));
+    EXPECT_THAT(refusalOf("c0"), HasSubstr("without a collection"));
     EXPECT_THAT(refusalOf("b4"), HasSubstr("pop without a push"));
     EXPECT_THAT(refusalOf("85 00"), HasSubstr("report id 0"));
     EXPECT_THAT(refusalOf("86 00 01"), HasSubstr("report id 256"));
@@ -146,8 +145,8 @@ TEST(HidDescriptor, that_says_nothing_has_no_controls) {
     EXPECT_THAT(parsed(bytesOf("05 01 09 06 a1 01 c0")).inputs, IsEmpty());
 }
 
-// Mutations of real descriptors and reports: cut off, bytes changed, put in, taken out. The
-// sanitizers look on; here it must come to an end, and whatever is read lies inside of its report.
+// Mutations of real descriptors and reports: truncated, with bytes changed, inserted or removed.
+// The sanitizers watch; here the parser must end, and whatever is read lies inside its report.
 TEST(HidDescriptor, survives_garbage) {
     const std::vector<std::vector<std::uint8_t>> seeds = {kBootKeyboard, kMouse,         kPresenterConsumer, kDualShock4,
                                                           kXboxGamepad,  kShuttleXpress, kSpaceNavigator,    kFootPedal,

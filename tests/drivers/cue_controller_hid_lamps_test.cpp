@@ -54,7 +54,7 @@ TEST(XkeysLamps, of_a_stick_are_blue_and_go_by_columns_of_six) {
     EXPECT_EQ(stick->show(1, {Ready, ""}).at(0).id, 0);
 }
 
-// Blue 0 to 29, red 32 further: its data report.
+// Blue 0 to 29, red 32 higher: from its data report.
 TEST(XkeysLamps, of_a_panel_are_blue_and_red) {
     const auto panel = lampsOfDevice(0x05f3, 0x0405);
     ASSERT_EQ(panel->count(), 24);
@@ -64,7 +64,7 @@ TEST(XkeysLamps, of_a_panel_are_blue_and_red) {
     EXPECT_THAT(wireOf(panel->show(24, {Off, ""})), ElementsAre(padded({181, 29, 0, 1}, 35), padded({181, 61, 0, 1}, 35)));
 }
 
-// What the reports of a picture hold together: their heads, and the file behind them.
+// The contents of a picture's reports: their headers, and the file after them.
 struct Sent {
     std::vector<Bytes> heads;
     Bytes file;
@@ -73,7 +73,7 @@ Sent pictureIn(const std::vector<HidOutReport>& reports, std::size_t head, std::
     Sent sent;
     for (const HidOutReport& report : reports) {
         sent.heads.emplace_back(report.bytes.begin(), report.bytes.begin() + static_cast<std::ptrdiff_t>(head));
-        // The length stands in the head, or follows from the file's.
+        // The length is in the header, or follows from the file's.
         const std::size_t rest = fileBytes == 0 ? report.bytes.at(4) + 256u * report.bytes.at(5)
                                                 : std::min(fileBytes - sent.file.size(), report.bytes.size() - head);
         const auto from = report.bytes.begin() + static_cast<std::ptrdiff_t>(head);
@@ -84,8 +84,8 @@ Sent pictureIn(const std::vector<HidOutReport>& reports, std::size_t head, std::
 
 cv::Mat decoded(const Bytes& file) { return cv::imdecode(file, cv::IMREAD_COLOR); }
 
-// An "L" has ink to the left, at the top too, and at the bottom right; none at the top right. White
-// on green: its blue tells.
+// An "L" has ink at the left, up to the top, and at the bottom right; none at the top right. White
+// on green, so blue shows the ink.
 bool isUpright(const cv::Mat& picture) {
     const int side = picture.cols;
     int topLeft = 0, topRight = 0, bottomRight = 0;
@@ -158,11 +158,11 @@ TEST(StreamDeckLamps, of_touch_keys_are_colours_in_a_feature_report) {
     EXPECT_EQ(alarm[0].bytes[4], 0);
 }
 
-// https://gist.github.com/cliffrowley/d18a9c4569537b195f2b1eb6c68469e0 has the head of the file as
-// its own program sends it.
+// https://gist.github.com/cliffrowley/d18a9c4569537b195f2b1eb6c68469e0 has the file's header as
+// sent by Elgato's own program.
 TEST(StreamDeckLamps, of_the_first_one_are_bmp_files_in_two_halves_with_the_keys_counted_from_the_right) {
     const auto first = lampsOfDevice(0x0fd9, 0x0060);
-    const auto reports = first->show(6, {Ready, "L"});  // the leftmost of the second row
+    const auto reports = first->show(6, {Ready, "L"});  // the leftmost key of the second row
     ASSERT_THAT(reports, SizeIs(2));
     EXPECT_THAT(reports, Each(testing::Field(&HidOutReport::bytes, SizeIs(8191))));
     const auto head = [&](std::size_t report) {
@@ -183,7 +183,7 @@ TEST(StreamDeckLamps, of_the_first_one_are_bmp_files_in_two_halves_with_the_keys
     EXPECT_TRUE(isUpright(picture));
 }
 
-// Boatswain's doc/stream-deck.md: mirrored at its middle line, and turned by 90 degrees.
+// Boatswain's doc/stream-deck.md: mirrored and rotated by 90 degrees.
 TEST(StreamDeckLamps, of_the_mini_are_bmp_files_on_their_side) {
     const auto mini = lampsOfDevice(0x0fd9, 0x0063);
     ASSERT_EQ(mini->count(), 6);
@@ -218,7 +218,7 @@ TEST(LedPageLamps, are_the_outputs_that_a_descriptor_calls_lamps_in_their_order)
     EXPECT_THAT(keyboard->show(6, {Ready, ""}), IsEmpty());
 }
 
-// Two lamps behind id 3, and a byte of brightness that is none.
+// Two lamps after id 3, and a brightness byte, which is no lamp.
 TEST(LedPageLamps, stand_in_a_report_with_an_id_where_it_has_one) {
     const auto descriptor = bytesOf(
         "05 01 09 05 a1 01 85 03 05 09 19 01 29 08 15 00 25 01 75 01 95 08 81 02 05 08 09 4b 09 4b 95 02 91 02 95 06 91 03 06 00 "
@@ -232,7 +232,7 @@ TEST(LedPageLamps, stand_in_a_report_with_an_id_where_it_has_one) {
     EXPECT_THAT(reports[0].bytes, ElementsAre(3, 2, 0));
 }
 
-// Nobody's Num Lock is lit by guess.
+// Num Lock must not be lit on a guess.
 TEST(HidLamps, are_none_where_no_profile_says_so) {
     const auto keyboard = std::vector<HidInterface>{{0, parseHidDescriptor(kBootKeyboard).value()}};
     EXPECT_EQ(lampsOf(hidProfileNamed("presenter")->lamps, keyboard), nullptr);
@@ -254,8 +254,8 @@ TEST(KeyPicture, is_the_colour_of_its_state_with_the_word_in_its_middle) {
     EXPECT_EQ(keyPicture({Ready, "\x01"}, 72), keyPicture({Ready, ""}, 72)) << "what cannot be written is left out";
 }
 
-// Otherwise a light that changes back is sent twice, and a lamp that was told nothing stays as the
-// last program left it.
+// Otherwise a light that changes back is sent twice, and a lamp without a light stays as the last
+// program left it.
 TEST(ButtonLights, give_what_differs_oldest_first_and_all_of_it_anew) {
     ButtonLights lights;
     const auto given = [&] {
@@ -263,17 +263,17 @@ TEST(ButtonLights, give_what_differs_oldest_first_and_all_of_it_anew) {
         while (const auto next = lights.next()) all += fmt::format("{}:{} ", next->first, static_cast<int>(next->second.state));
         return all;
     };
-    EXPECT_FALSE(lights.tell(1, {}));
-    EXPECT_TRUE(lights.tell(3, {Ready, ""}));
-    EXPECT_TRUE(lights.tell(1, {Alarm, ""}));
-    EXPECT_TRUE(lights.tell(3, {Active, ""}));
+    EXPECT_FALSE(lights.set(1, {}));
+    EXPECT_TRUE(lights.set(3, {Ready, ""}));
+    EXPECT_TRUE(lights.set(1, {Alarm, ""}));
+    EXPECT_TRUE(lights.set(3, {Active, ""}));
     EXPECT_EQ(given(), "3:2 1:3 ");
-    EXPECT_FALSE(lights.tell(1, {Alarm, ""}));
-    EXPECT_TRUE(lights.tell(1, {Off, ""}));
-    EXPECT_TRUE(lights.tell(1, {Alarm, ""}));
+    EXPECT_FALSE(lights.set(1, {Alarm, ""}));
+    EXPECT_TRUE(lights.set(1, {Off, ""}));
+    EXPECT_TRUE(lights.set(1, {Alarm, ""}));
     EXPECT_EQ(given(), "");
     EXPECT_THAT(lights.lit(), ElementsAre(1, 3));
-    lights.restart(4);
+    lights.invalidate(4);
     EXPECT_THAT(lights.lit(), IsEmpty());
     EXPECT_EQ(given(), "1:3 3:2 2:0 4:0 ");
 }

@@ -1,6 +1,5 @@
 #pragma once
-// The default site as the program opens it: the nominal site from its file, the simulation on top
-// of it.
+// The default site as the program opens it: the nominal site from its file, with the simulation.
 
 #include "drivers/site/simulated_site.h"
 

@@ -29,18 +29,17 @@ TEST(Edid, falls_back_to_the_numbers_where_there_is_no_text) {
         << "spaces are no text";
 }
 
-// Makers fill up with whatever they like. A status with such bytes in it could not be copied into a
-// file.
+// Makers pad with arbitrary bytes. A status with such bytes could not be copied into a file.
 TEST(Edid, leaves_out_what_is_not_text) {
     EXPECT_THAT(identityFromEdid(edidBlock({.name = " BenQ PJ  ", .serial = "A\x01\xFF\x42"})),
                 Optional(Eq(MonitorIdentity{"EPS", "BenQ PJ", "AB"})));
     auto block = edidBlock({});
-    block[8] = block[9] = 0;  // letters from 1 on
+    block[8] = block[9] = 0;  // letters start at 1
     setEdidChecksum(block);
     EXPECT_EQ(identityFromEdid(block)->make, "");
 }
 
-// A timing's descriptor may have the same byte where a text's has its kind.
+// A timing descriptor may have the same byte where a text descriptor has its kind.
 TEST(Edid, takes_no_timing_for_a_text) {
     auto block = edidBlock({.name = ""});
     block[54 + 3] = 0xFC;

@@ -1,6 +1,6 @@
-// What is to be switched on, and where, when monitors come and go. What no X server without a
-// graphics card can play is here, too: cables that are pulled, and cards that cannot drive
-// everything.
+// Which monitors are switched on, and where, as monitors come and go. Includes what an X server
+// without a graphics card cannot reproduce: unplugged cables, and cards that cannot drive every
+// monitor.
 
 #include "drivers/display/placement.h"
 
@@ -17,7 +17,7 @@ using testing::SizeIs;
 constexpr glm::ivec2 kHd{1920, 1080}, kLargest{16384, 16384};
 constexpr std::uint32_t kHd60 = 100, kHd50 = 101, kHdFields = 102, kSmall = 103;
 
-// Monitor number n: a projector of serial "Sn" on connector HDMI-n, dark, that any of three CRTCs
+// Monitor number n: a projector with serial "Sn" on connector HDMI-n, off, which any of three CRTCs
 // can drive.
 Monitor projector(std::uint32_t n) {
     Monitor monitor;
@@ -41,7 +41,7 @@ protected:
         for (Monitor& monitor : monitors_) monitor.unplugged = false;
         return plan;
     }
-    // What the X server makes of a change.
+    // The effect of a change, as by the X server.
     void apply(const Placement::Change& change) {
         for (Monitor& monitor : monitors_) {
             if (monitor.on && monitor.on->crtcId == change.crtcId) monitor.on.reset();
@@ -55,7 +55,7 @@ protected:
         for (const Placement::Change& change : plan.changes) apply(change);
         return plan;
     }
-    // Does what is asked for until nothing is.
+    // Applies changes until there are none.
     void settle() {
         for (int round = 0; round < 3; ++round) obey();
         ASSERT_THAT(look().changes, IsEmpty());
@@ -79,7 +79,7 @@ TEST_F(PlacementOfOutputs, switches_on_side_by_side_in_the_order_of_the_claims) 
     EXPECT_FALSE(monitors_[2].on) << "nobody asked for it";
 }
 
-// Lines of two moments comb whatever moves.
+// Interlaced lines show two moments, which combs moving edges.
 TEST_F(PlacementOfOutputs, takes_an_interlaced_mode_only_where_there_is_no_other) {
     claim("S1");
     monitors_[0].modes = {{kHdFields, kHd, 60, true}, {kHd50, kHd, 50}};
@@ -88,8 +88,8 @@ TEST_F(PlacementOfOutputs, takes_an_interlaced_mode_only_where_there_is_no_other
     EXPECT_THAT(look().changes, ElementsAre(testing::Field(&Placement::Change::modeId, kHdFields)));
 }
 
-// Without a desktop nobody switches an unplugged monitor off, so that its CRTC shows on; nothing
-// may be switched when it goes, since every change of a mode may make the others blink.
+// Without a desktop nobody switches an unplugged monitor off, so its CRTC goes on. Nothing may be
+// switched then, because every change of a mode may make the others blink.
 TEST_F(PlacementOfOutputs, switches_nothing_when_a_cable_is_pulled_and_plugged_in_again) {
     const int a = claim("S1"), b = claim("S2");
     settle();
@@ -109,13 +109,12 @@ TEST_F(PlacementOfOutputs, switches_nothing_when_a_cable_is_pulled_and_plugged_i
     EXPECT_EQ(absence(a), "");
 }
 
-// Some drivers switch the picture off with the cable. Whoever only sees that it is off must not
-// take it for somebody's wish.
+// Some drivers switch the picture off with the cable. That must not be taken for a person's wish.
 TEST_F(PlacementOfOutputs, switches_on_again_what_went_off_with_its_cable_even_if_it_was_back_at_once) {
     const int a = claim("S1");
     settle();
     monitors_[0].on.reset();
-    monitors_[0].unplugged = true;  // and connected again before anybody looked
+    monitors_[0].unplugged = true;  // and reconnected before the next look
     EXPECT_THAT(obey().changes, SizeIs(1));
     settle();
     EXPECT_EQ(absence(a), "");
@@ -163,13 +162,13 @@ TEST_F(PlacementOfOutputs, says_that_the_card_can_drive_no_further_monitor) {
     claim("S2");
     const int c = claim("S3");
     settle();
-    EXPECT_THAT(absence(c), HasSubstr("no picture left for monitor HDMI-3"));
-    monitors_[0].on.reset();  // as it says
+    EXPECT_THAT(absence(c), HasSubstr("cannot drive monitor HDMI-3"));
+    monitors_[0].on.reset();  // as the message says
     settle();
     EXPECT_EQ(absence(c), "");
 }
 
-// Clones share a CRTC; each is to have its own.
+// Clones share a CRTC; each monitor must get its own.
 TEST_F(PlacementOfOutputs, parts_monitors_that_share_a_crtc) {
     const Monitor::Picture picture{11, {{0, 0}, kHd}, monitors_[0].modes[2]};
     monitors_[0].on = monitors_[1].on = picture;
@@ -180,7 +179,7 @@ TEST_F(PlacementOfOutputs, parts_monitors_that_share_a_crtc) {
     EXPECT_EQ(absence(a) + absence(b), "");
 }
 
-// Everything that grows the screen later makes the others blink.
+// Whatever grows the screen later makes the others blink.
 TEST_F(PlacementOfOutputs, keeps_room_for_who_is_absent_from_the_start) {
     monitors_[0].connected = false;
     const int a = claim("S1"), b = claim("S2");
@@ -195,7 +194,7 @@ TEST_F(PlacementOfOutputs, keeps_room_for_who_is_absent_from_the_start) {
     EXPECT_EQ(corner(b), glm::ivec2(1920, 0));
 }
 
-// An operator's monitor beside the projectors is nobody's output, and not to be covered.
+// An operator's monitor beside the projectors belongs to no output and must not be covered.
 TEST_F(PlacementOfOutputs, keeps_clear_of_monitors_that_nobody_claims) {
     monitors_[0].on = Monitor::Picture{11, {{0, 0}, {1280, 720}}, monitors_[0].modes[0]};
     const int b = claim("S2");
@@ -208,7 +207,7 @@ TEST_F(PlacementOfOutputs, asks_once_for_what_is_refused_and_again_when_told_to)
     const int a = claim("S1");
     EXPECT_THAT(look().changes, SizeIs(1));
     for (int time = 0; time < 3; ++time) EXPECT_THAT(look().changes, IsEmpty());
-    EXPECT_THAT(absence(a), HasSubstr("does not take 1920 x 1080 pixels at 60.00 Hz"));
+    EXPECT_THAT(absence(a), HasSubstr("refuses 1920 x 1080 pixels at 60.00 Hz"));
     placement_.refused(a, "the X screen cannot become larger");
     EXPECT_EQ(absence(a), "the X screen cannot become larger");
     look();
@@ -225,7 +224,7 @@ TEST_F(PlacementOfOutputs, says_that_the_screen_would_become_too_large) {
     const auto plan = placement_.look(monitors_, {3000, 3000});
     EXPECT_THAT(plan.changes, SizeIs(1));
     EXPECT_EQ(plan.screen, kHd);
-    EXPECT_THAT(absence(b), HasSubstr("no room for 1920 x 1080 pixels on the X screen, which can be 3000 x 3000"));
+    EXPECT_THAT(absence(b), HasSubstr("no room for 1920 x 1080 pixels on the X screen, which can have 3000 x 3000"));
 }
 
 TEST_F(PlacementOfOutputs, keeps_a_rotated_picture_that_has_the_size) {

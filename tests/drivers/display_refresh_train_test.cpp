@@ -17,7 +17,7 @@ TEST(RefreshTrain, counts_by_the_clock_until_a_refresh_is_seen) {
     EXPECT_EQ(train.timeOf(3), milliseconds(60));
 }
 
-// The monitor's refreshes lie between the clock's and drift against them.
+// The monitor's refreshes lie between the clock's and drift relative to them.
 TEST(RefreshTrain, follows_the_refreshes_that_are_seen) {
     RefreshTrain train(kHertz);
     EXPECT_EQ(train.seen(milliseconds(67)), 3);
@@ -27,15 +27,14 @@ TEST(RefreshTrain, follows_the_refreshes_that_are_seen) {
     for (int refresh = 4; refresh < 100; ++refresh) EXPECT_EQ(train.seen(milliseconds(67 + 20.2 * (refresh - 3))), refresh);
 }
 
-// Example failure: a frame that came late is given the number of the refresh it was for, and nobody
-// hears of it.
+// Example failure: a late frame gets the number of the refresh that it missed, and nobody notices.
 TEST(RefreshTrain, counts_the_refreshes_that_nobody_saw) {
     RefreshTrain train(kHertz);
     train.seen(milliseconds(67));
     EXPECT_EQ(train.seen(milliseconds(67 + 3 * 20 + 1)), 6);
 }
 
-// Two frames cannot share a refresh: the display waited between them.
+// Two frames cannot share a refresh, because the display waited between them.
 TEST(RefreshTrain, gives_no_number_twice) {
     RefreshTrain train(kHertz);
     const auto first = train.seen(milliseconds(67));

@@ -1,4 +1,4 @@
-// The packets of sACN and Art-Net against bytes written by hand from the standards.
+// The packets of sACN and Art-Net, compared with bytes written by hand from the standards.
 
 #include "drivers/dmx/artnet_packet.h"
 #include "drivers/dmx/sacn_packet.h"
@@ -155,7 +155,7 @@ TEST(SacnPacket, a_cid_is_a_uuid_and_stands_for_its_name) {
     EXPECT_EQ(sacn::cidFor("here")[8] >> 6, 2) << "its variant";
 }
 
-// Section 6.7.2: dropped are differences in (-20, 0].
+// Section 6.7.2: differences in (-20, 0] are dropped.
 TEST(SacnPacket, late_is_what_the_standard_says) {
     std::vector<int> late;
     for (int difference = -128; difference < 128; ++difference)
@@ -240,7 +240,7 @@ TEST(ArtnetPacket, a_sequence_goes_from_255_to_1_and_0_does_not_count) {
     EXPECT_FALSE(artnet::isLate(7, 0));
 }
 
-// What each packet says of itself must hold, field by field.
+// Each field must have its required value.
 TEST(Packets, with_a_wrong_field_are_not_read) {
     struct Case {
         std::size_t at;
@@ -300,19 +300,19 @@ TEST(Packets, that_end_too_early_are_not_read) {
     for (const Bytes& whole : goodPackets()) {
         ASSERT_TRUE(sacn::read(whole) || artnet::read(whole));
         const bool isSacn = whole[0] == 0;
-        // A poll has had more than its first bytes only since Art-Net 4, and old nodes reply with
-        // less.
+        // Polls have had further bytes only since Art-Net 4, and old nodes send shorter replies.
         const std::size_t least = isSacn ? whole.size() : whole.size() == 239 ? 207 : whole.size() == 14 ? 12 : whole.size();
         for (std::size_t size = 0; size < least; ++size) {
-            // Of its own size, so that reading beyond it is seen by the address sanitizer.
+            // In a buffer of exactly its size, so that the address sanitizer detects reading beyond
+            // it.
             const Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
             EXPECT_FALSE(sacn::read(part) || artnet::read(part)) << size << " of " << whole.size();
         }
     }
 }
 
-// Example failure: a length from the packet is trusted, and somebody's broken gateway ends the
-// show. What is read must also be in range.
+// Example failure: a length from the packet is trusted, and a broken gateway ends the show. All
+// values read must be in range.
 TEST(Packets, that_are_damaged_at_random_never_harm) {
     Rng rng(1);
     const std::vector<Bytes> good = goodPackets();

@@ -50,7 +50,7 @@ TEST(WidgetParser, an_end_and_a_start_may_stand_in_the_data) {
     EXPECT_THAT(messages[0].data, ElementsAre(0xe7, 0x7e, 0xe7));
 }
 
-// A computer begins to listen in the middle of a message, or a byte is lost: whatever comes before,
+// A computer begins to listen in the middle of a message, or a byte is lost. Whatever comes before,
 // the next message is found.
 TEST(WidgetParser, finds_its_way_back_after_whatever_came_before) {
     const Bytes good = encoded(WidgetLabel::Number, Bytes{1, 2, 3, 4});
@@ -60,7 +60,7 @@ TEST(WidgetParser, finds_its_way_back_after_whatever_came_before) {
         for (std::size_t cut = 0; cut < garbage.size(); cut += 1 + garbage.size() / 7) {
             WidgetParser parser;
             const Bytes before(garbage.begin() + static_cast<std::ptrdiff_t>(cut), garbage.end());
-            // A start that stood by chance may ask for up to 600 bytes before it is found out.
+            // A start byte by chance may claim up to 600 bytes before it is rejected.
             auto messages = parsed(parser, before);
             for (int more = 0; more < 80; ++more) {
                 auto next = parsed(parser, good);
@@ -96,36 +96,36 @@ TEST(WidgetAnswer, is_read_as_the_widget_means_it) {
 TEST(ReceivedPacket, holds_the_slots_that_came_and_0_in_the_others) {
     DmxPacket packet;
     packet.fill(9);
-    EXPECT_TRUE(takeOver({WidgetLabel::Received, {0, 0, 11, 12}}, packet));
+    EXPECT_TRUE(applyTo({WidgetLabel::Received, {0, 0, 11, 12}}, packet));
     EXPECT_EQ(packet[1], 11);
     EXPECT_EQ(packet[2], 12);
     EXPECT_EQ(packet[3], 0);
-    EXPECT_FALSE(takeOver({WidgetLabel::Received, {1, 0, 50}}, packet)) << "the widget could not keep up";
-    EXPECT_FALSE(takeOver({WidgetLabel::Received, {0, 0xcc, 50}}, packet)) << "another start code";
-    EXPECT_FALSE(takeOver({WidgetLabel::Received, Bytes(515, 0)}, packet)) << "more than a universe";
-    EXPECT_FALSE(takeOver({WidgetLabel::Received, {}}, packet));
+    EXPECT_FALSE(applyTo({WidgetLabel::Received, {1, 0, 50}}, packet)) << "the widget could not keep up";
+    EXPECT_FALSE(applyTo({WidgetLabel::Received, {0, 0xcc, 50}}, packet)) << "another start code";
+    EXPECT_FALSE(applyTo({WidgetLabel::Received, Bytes(515, 0)}, packet)) << "more than a universe";
+    EXPECT_FALSE(applyTo({WidgetLabel::Received, {}}, packet));
     EXPECT_EQ(packet[1], 11);
-    EXPECT_TRUE(takeOver({WidgetLabel::Received, Bytes(514, 0)}, packet));
+    EXPECT_TRUE(applyTo({WidgetLabel::Received, Bytes(514, 0)}, packet));
 }
 
-// A bit a slot, from eight times the first byte on, the start code being slot 0 of them.
+// One bit per slot, from eight times the first byte on; slot 0 is the start code.
 TEST(ChangedSlots, are_those_whose_bits_are_set) {
     DmxPacket packet{};
-    EXPECT_TRUE(takeOver({WidgetLabel::Changed, {0, 0b0000'0110, 0, 0, 0, 0, 100, 200}}, packet));
+    EXPECT_TRUE(applyTo({WidgetLabel::Changed, {0, 0b0000'0110, 0, 0, 0, 0, 100, 200}}, packet));
     EXPECT_EQ(packet[1], 100);
     EXPECT_EQ(packet[2], 200);
-    EXPECT_TRUE(takeOver({WidgetLabel::Changed, {60, 0, 0, 0, 0b0000'1000, 0b0000'0001, 77, 88}}, packet));
+    EXPECT_TRUE(applyTo({WidgetLabel::Changed, {60, 0, 0, 0, 0b0000'1000, 0b0000'0001, 77, 88}}, packet));
     EXPECT_EQ(packet[60 * 8 + 27], 77);
     EXPECT_EQ(packet[60 * 8 + 32], 88);
-    EXPECT_FALSE(takeOver({WidgetLabel::Changed, {64, 0b10, 0, 0, 0, 0, 1}}, packet)) << "beyond slot 512";
-    EXPECT_FALSE(takeOver({WidgetLabel::Changed, {0, 0b110, 0, 0, 0, 0, 1}}, packet)) << "a value is missing";
-    EXPECT_FALSE(takeOver({WidgetLabel::Changed, {0, 1}}, packet));
+    EXPECT_FALSE(applyTo({WidgetLabel::Changed, {64, 0b10, 0, 0, 0, 0, 1}}, packet)) << "beyond slot 512";
+    EXPECT_FALSE(applyTo({WidgetLabel::Changed, {0, 0b110, 0, 0, 0, 0, 1}}, packet)) << "a value is missing";
+    EXPECT_FALSE(applyTo({WidgetLabel::Changed, {0, 1}}, packet));
 }
 
 class EnttecWidgetTest : public testing::Test {
 protected:
     void expect(WidgetLabel label, const Bytes& data, const Bytes& reply = {}) { line_.expect(encoded(label, data), reply); }
-    // Of work(), all that is heard until `duration` is over.
+    // Runs work() for `duration` and collects all messages.
     Result<void> work(Time duration) {
         return widget_.work(clock_.now() + duration, [&](const WidgetMessage& message) { heard_.push_back(message); });
     }
@@ -133,15 +133,15 @@ protected:
     const Bytes parameters_ = encoded(WidgetLabel::Parameters, Bytes{44, 1, 9, 1, 40});
     ManualClock clock_;
     site::World world_{clock_};
-    Surroundings around_{clock_, &world_};
-    ScriptedStream line_{around_, "widget"};
+    DriverContext context_{clock_, &world_};
+    ScriptedStream line_{context_, "widget"};
     EnttecWidget widget_{line_, clock_};
     std::vector<WidgetMessage> heard_;
 };
 
 TEST_F(EnttecWidgetTest, is_met_by_its_parameters_whatever_else_it_says) {
     line_.expect({0x7e, 3, 2, 0, 0, 0, 0xe7}, joined({{1, 2, 3}, encoded(WidgetLabel::Received, Bytes(514, 0)), parameters_}));
-    EXPECT_EQ(widget_.meet().value(), (WidgetParameters{256 + 44, 9, 1, 40}));
+    EXPECT_EQ(widget_.handshake().value(), (WidgetParameters{256 + 44, 9, 1, 40}));
     EXPECT_TRUE(line_.finished()) << line_.deviation();
 }
 
@@ -149,12 +149,12 @@ TEST_F(EnttecWidgetTest, is_asked_again_behind_what_ends_any_message) {
     expect(WidgetLabel::Parameters, {0, 0});
     line_.expect(Bytes(605, 0));
     expect(WidgetLabel::Parameters, {0, 0}, parameters_);
-    EXPECT_TRUE(widget_.meet());
+    EXPECT_TRUE(widget_.handshake());
     EXPECT_TRUE(line_.finished()) << line_.deviation();
 }
 
 TEST_F(EnttecWidgetTest, is_none_if_it_never_answers) {
-    EXPECT_THAT(widget_.meet().error().message(), HasSubstr("does not answer"));
+    EXPECT_THAT(widget_.handshake().error().message(), HasSubstr("does not answer"));
     EXPECT_EQ(line_.received().size(), 3 * 7u + 2 * 605u);
 }
 
@@ -173,7 +173,7 @@ TEST_F(EnttecWidgetTest, is_given_parameters_and_asked_whether_it_took_them) {
     expect(WidgetLabel::Parameters, {0, 0}, parameters_);
     line_.expect({0x7e, 4, 5, 0, 0, 0, 17, 2, 30, 0xe7});
     expect(WidgetLabel::Parameters, {0, 0}, encoded(WidgetLabel::Parameters, Bytes{44, 1, 17, 2, 30}));
-    EXPECT_TRUE(widget_.arrange({256 + 44, 17, 2, 30}));
+    EXPECT_TRUE(widget_.setParameters({256 + 44, 17, 2, 30}));
     EXPECT_TRUE(line_.finished()) << line_.deviation();
 }
 
@@ -182,14 +182,14 @@ TEST_F(EnttecWidgetTest, that_keeps_its_own_parameters_is_told) {
         expect(WidgetLabel::Parameters, {0, 0}, parameters_);
         if (time < 3) expect(WidgetLabel::SetParameters, {0, 0, 17, 2, 30});
     }
-    EXPECT_THAT(widget_.arrange({256 + 44, 17, 2, 30}).error().message(), HasSubstr("does not take its parameters"));
+    EXPECT_THAT(widget_.setParameters({256 + 44, 17, 2, 30}).error().message(), HasSubstr("does not accept its parameters"));
 }
 
 TEST_F(EnttecWidgetTest, sends_what_it_is_told_byte_by_byte) {
     Bytes packet(513);
     std::iota(packet.begin() + 1, packet.end(), std::uint8_t{5});
     line_.expect(joined({{0x7e, 6, 0x01, 0x02}, packet, {0xe7}}));
-    widget_.say(WidgetLabel::Send, packet);
+    widget_.queue(WidgetLabel::Send, packet);
     EXPECT_FALSE(widget_.idle());
     ASSERT_TRUE(work(25ms));
     EXPECT_TRUE(widget_.idle());
@@ -213,25 +213,25 @@ TEST_F(EnttecWidgetTest, that_does_not_answer_for_two_seconds_has_stopped) {
 TEST_F(EnttecWidgetTest, whose_line_is_lost_gives_the_lines_error) {
     world_.setPlugged("widget", false);
     EXPECT_FALSE(work(25ms));
-    EXPECT_FALSE(widget_.meet());
+    EXPECT_FALSE(widget_.handshake());
 }
 
 // A far end that reads nothing.
 TEST_F(EnttecWidgetTest, that_takes_no_byte_for_a_second_is_stuck) {
-    const auto ends = openLoopback(around_, "line", 1000);
+    const auto ends = openLoopback(context_, "line", 1000);
     EnttecWidget widget(*ends[0], clock_);
     const auto hear = [](const WidgetMessage&) {};
-    widget.say(WidgetLabel::Send, Bytes(513, 0));
+    widget.queue(WidgetLabel::Send, Bytes(513, 0));
     ASSERT_TRUE(widget.work(clock_.now() + 25ms, hear));
-    widget.say(WidgetLabel::Send, Bytes(513, 1));
+    widget.queue(WidgetLabel::Send, Bytes(513, 1));
     ASSERT_TRUE(widget.work(clock_.now() + 900ms, hear)) << "as long as it may yet take the rest";
     EXPECT_FALSE(widget.idle());
     Bytes some(600);
     ASSERT_EQ(ends[1]->read(some, Time::zero()).value(), 600u);
     ASSERT_TRUE(widget.work(clock_.now() + 25ms, hear));
     EXPECT_TRUE(widget.idle());
-    for (int frame = 0; frame < 2; ++frame) widget.say(WidgetLabel::Send, Bytes(513, 2));
-    EXPECT_THAT(widget.work(clock_.now() + 1100ms, hear).error().message(), HasSubstr("takes no more bytes"));
+    for (int frame = 0; frame < 2; ++frame) widget.queue(WidgetLabel::Send, Bytes(513, 2));
+    EXPECT_THAT(widget.work(clock_.now() + 1100ms, hear).error().message(), HasSubstr("accepts no more bytes"));
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ using testing::StartsWith;
 
 ConfigNode parsed(const std::string& text) { return ConfigNode::parse(text, "site.yaml").value(); }
 
-// What a contact reports of values that come every 20 ms: "+3" closed at the fourth, "-" open, "?"
-// as it was found.
+// A contact's reports for values that come every 20 ms: "+3" closed at the fourth, "-" open, "?"
+// not witnessed.
 std::string reported(Contact& contact, const std::vector<int>& values) {
     std::string changes;
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -41,13 +41,13 @@ TEST(ModbusContact, is_open_at_first_and_tells_each_change_once) {
     EXPECT_EQ(reported({}, {1, 1}), "+0?");
 }
 
-// An emergency button breaks its circuit.
+// An emergency button opens its circuit.
 TEST(ModbusContact, is_closed_while_the_circuit_of_a_normally_closed_one_is_open) {
     EXPECT_EQ(reported({.normallyClosed = true}, {1, 1, 0, 1}), "+2-3");
     EXPECT_EQ(reported({.normallyClosed = true}, {0}), "+0?");
 }
 
-// Example failure: a register that trembles about its threshold makes a door bang.
+// Example failure: a register that fluctuates around its threshold makes a door open and close.
 TEST(ModbusContact, opens_only_below_threshold_less_hysteresis) {
     EXPECT_EQ(reported({.threshold = 500, .hysteresis = 50}, {499, 500, 499, 450, 449, 499, 500}), "+1-4+6");
     EXPECT_EQ(reported({.threshold = 500}, {500, 499, 65535}), "+0?-1+2");
@@ -79,24 +79,24 @@ TEST(ModbusBackOff, waits_longer_after_every_failure_up_to_a_limit) {
 TEST(ModbusBackOff, begins_soon_after_a_life_and_not_after_a_moment) {
     BackOff backOff;
     for (int time = 0; time < 6; ++time) backOff.failed({});
-    backOff.began(milliseconds(1000));
+    backOff.succeeded(milliseconds(1000));
     EXPECT_EQ(backOff.failed(milliseconds(1100)), milliseconds(400)) << "it is lost as soon as it is found";
-    backOff.began(milliseconds(2000));
+    backOff.succeeded(milliseconds(2000));
     EXPECT_EQ(backOff.failed(milliseconds(9000)), milliseconds(50));
 }
 
 TEST(ModbusExceptions, are_told_in_words) {
     const ModbusPlace coils{7, ModbusTable::Coils, 200}, registers{7, ModbusTable::HoldingRegisters, 3};
-    EXPECT_EQ(exceptionInWords(1, coils, 4, true), "illegal function: unit 7 cannot write coils; see 'kind'");
-    EXPECT_EQ(exceptionInWords(2, coils, 4, false),
-              "illegal data address: unit 7 has not all of coils 200 to 203; see 'first' and how many are declared");
-    EXPECT_EQ(exceptionInWords(3, registers, 1, true),
+    EXPECT_EQ(describeException(1, coils, 4, true), "illegal function: unit 7 cannot write coils; see 'kind'");
+    EXPECT_EQ(describeException(2, coils, 4, false),
+              "illegal data address: unit 7 does not have all of coils 200 to 203; check 'first' and how many are declared");
+    EXPECT_EQ(describeException(3, registers, 1, true),
               "illegal data value: unit 7 refuses what is written to holding register 3");
-    EXPECT_THAT(exceptionInWords(11, coils, 4, false), HasSubstr("the gateway gets no answer from unit 7"));
-    EXPECT_THAT(exceptionInWords(99, coils, 4, false), HasSubstr("exception 99"));
+    EXPECT_THAT(describeException(11, coils, 4, false), HasSubstr("the gateway gets no answer from unit 7"));
+    EXPECT_THAT(describeException(99, coils, 4, false), HasSubstr("exception 99"));
 }
 
-// What is refused is refused by its text, before anything opens.
+// Keys are refused before anything opens.
 class ModbusKeys : public testing::Test {
 protected:
     std::string relays(const std::string& text, std::size_t count = 3, bool tcp = true) {
@@ -107,11 +107,11 @@ protected:
     std::string contacts(const std::string& text, std::size_t count = 3) {
         const auto read = ModbusInputBank::readTcp(parsed(text), "contacts", count);
         if (!read) return read.error().message();
-        const auto opened = read->open(around_);
+        const auto opened = read->open(context_);
         return opened ? "" : opened.error().message();
     }
     SteadyClock clock_;
-    Surroundings around_{clock_};
+    DriverContext context_{clock_};
     const std::string tcp_ = "driver: modbus_tcp\nhost: 127.0.0.1\nport: 1\n";
     const std::string rtu_ = "driver: modbus_rtu\ndevice: /dev/none\n";
 };
@@ -129,14 +129,14 @@ TEST_F(ModbusKeys, with_good_ones_a_device_that_is_not_there_opens) {
 
 TEST_F(ModbusKeys, bad_ones_are_refused_with_their_place) {
     EXPECT_THAT(relays("driver: modbus_tcp\nhost: relays.local\n"),
-                StartsWith("site.yaml:2:7: host: 'relays.local' is no IPv4 address"));
+                StartsWith("site.yaml:2:7: host: 'relays.local' is not an IPv4 address"));
     EXPECT_THAT(relays(tcp_ + "unit: 250\n"), StartsWith("site.yaml:4:7: unit: 250 is kept"));
     EXPECT_THAT(relays(tcp_ + "watchdogs: {}\n"), StartsWith("site.yaml:4:1: watchdogs: unknown key (did you mean 'watchdog'?)"));
     EXPECT_THAT(relays(tcp_ + "kind: discrete_inputs\n"), StartsWith("site.yaml:4:7: kind"));
     EXPECT_THAT(relays(tcp_ + "watchdog: {period: 1}\n"), HasSubstr("watchdog"));
     EXPECT_THAT(relays(rtu_ + "unit: 255\n", 3, false), StartsWith("site.yaml:3:7: unit"));
     EXPECT_THAT(relays("driver: modbus_rtu\ndevice: ttyUSB0\n", 3, false),
-                StartsWith("site.yaml:2:9: device: 'ttyUSB0' is no device"));
+                StartsWith("site.yaml:2:9: device: 'ttyUSB0' is not a device"));
     EXPECT_THAT(relays("driver: modbus_rtu\nusb: {vendor: 403}\n", 3, false), HasSubstr("four hexadecimal digits"));
     EXPECT_THAT(contacts(tcp_ + "normally_closed: [3]\n"), StartsWith("site.yaml:4:19: normally_closed[0]"));
 }
@@ -161,12 +161,12 @@ TEST_F(ModbusKeys, what_has_no_room_in_the_addresses_or_in_one_request_is_refuse
 }
 
 TEST_F(ModbusKeys, of_one_line_must_be_the_same_for_all_on_it) {
-    const auto first = ModbusRelayBank::readTcp(parsed(tcp_), "relays", {false}).value().open(around_).value();
-    EXPECT_THAT(contacts(tcp_ + "response_timeout: 0.2\n"), HasSubstr("another device has 127.0.0.1:1 with other settings"));
+    const auto first = ModbusRelayBank::readTcp(parsed(tcp_), "relays", {false}).value().open(context_).value();
+    EXPECT_THAT(contacts(tcp_ + "response_timeout: 0.2\n"), HasSubstr("another device uses 127.0.0.1:1 with other settings"));
     EXPECT_EQ(contacts(tcp_ + "unit: 2\n"), "");
 }
 
-// What a search prints is copied into a site file as it stands.
+// The output of a search is copied into a site file unchanged.
 TEST(ModbusLines, that_are_found_say_how_to_use_them) {
     SteadyClock clock;
     for (const char* serial : {"", "A5", "it's: \"odd\""}) {

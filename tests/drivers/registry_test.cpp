@@ -15,23 +15,23 @@ class RegistryTest : public testing::Test {
 protected:
     static ConfigNode options(const std::string& text) { return ConfigNode::parse(text, "site.yaml").value(); }
 
-    // What each port's opener says to these options: the errors of the ports whose drivers have no
-    // key of their own.
-    static std::vector<std::string> refusals(const std::string& text, const Surroundings& around) {
+    // The errors of the openers for these options, for all ports whose drivers have no keys of
+    // their own.
+    static std::vector<std::string> refusals(const std::string& text, const DriverContext& context) {
         const ConfigNode node = options(text);
         const auto message = [](const auto& opened) { return opened ? "accepted" : opened.error().message(); };
-        return {message(openDmxPort(node, 1, around)),
-                message(openDmxSource(node, 1, around)),
-                message(openRelayBank(node, "road", {true}, around)),
-                message(openInputBank(node, "doors", 1, around)),
-                message(openCueController(node, around)),
-                message(openCamera(node, around))};
+        return {message(openDmxPort(node, 1, context)),
+                message(openDmxSource(node, 1, context)),
+                message(openRelayBank(node, "road", {true}, context)),
+                message(openInputBank(node, "doors", 1, context)),
+                message(openCueController(node, context)),
+                message(openCamera(node, context))};
     }
 
     ManualClock clock_;
     site::World world_{clock_};
-    Surroundings rehearsal_{clock_, &world_};
-    Surroundings night_{clock_};
+    DriverContext rehearsal_{clock_, &world_};
+    DriverContext night_{clock_};
 };
 
 TEST_F(RegistryTest, opens_each_simulated_device_by_its_name) {
@@ -67,7 +67,7 @@ TEST_F(RegistryTest, a_key_that_the_driver_does_not_know_is_refused_with_its_pla
 }
 
 // Example failure: the night is started with the rehearsal's site file, and the street stays dark
-// with no word said.
+// without a message.
 TEST_F(RegistryTest, a_simulated_driver_without_a_simulated_site_is_refused) {
     EXPECT_THAT(refusals("driver: simulated\n", night_),
                 testing::Each(AllOf(StartsWith("site.yaml:1:1: "), HasSubstr("needs a simulated site"))));

@@ -21,8 +21,8 @@ protected:
 
     ManualClock clock_;
     site::World world_{clock_};
-    Surroundings around_{clock_, &world_};
-    ScriptedStream stream_{around_, "widget"};
+    DriverContext context_{clock_, &world_};
+    ScriptedStream stream_{context_, "widget"};
 };
 
 TEST_F(ScriptedStreamTest, replies_when_exactly_the_expected_bytes_have_come) {
@@ -70,7 +70,7 @@ TEST_F(ScriptedStreamTest, bytes_after_the_end_are_a_deviation) {
 }
 
 TEST_F(ScriptedStreamTest, the_two_ends_of_a_loopback_share_a_line_and_a_plug) {
-    const auto ends = openLoopback(around_, "line", 4);
+    const auto ends = openLoopback(context_, "line", 4);
     EXPECT_EQ(ends[1]->write(Bytes{1, 2, 3, 4, 5}).value(), 4u);
     Bytes bytes(10);
     EXPECT_EQ(ends[0]->read(bytes, 1s).value(), 4u);

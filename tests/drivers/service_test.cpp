@@ -15,9 +15,9 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr Time kLong = std::chrono::hours(1);  // never over in a test
+constexpr Time kLong = std::chrono::hours(1);  // never reached in a test
 
-Service::Attend once(std::function<Outage(Service&)> first, std::function<Outage(Service&)> later) {
+Service::RunOnce once(std::function<Outage(Service&)> first, std::function<Outage(Service&)> later) {
     return [first = std::move(first), later = std::move(later), lives = 0](Service& service) mutable {
         return lives++ == 0 ? first(service) : later(service);
     };
@@ -59,7 +59,7 @@ TEST(Service, counts_a_loss_for_every_life_that_ends) {
                 done.set_value();
                 return untilTheEnd(device);
             }
-            device.running();
+            device.setRunning();
             return {DeviceState::Faulted, "it bit"};
         });
         done.get_future().wait();
@@ -79,9 +79,9 @@ TEST(Service, is_in_trouble_until_that_is_over_or_it_is_lost) {
                 done.set_value();
                 return untilTheEnd(device);
             }
-            device.running();
+            device.setRunning();
             for (const char* trouble : {"it flickers", "", "it hums"}) {
-                device.trouble(trouble);
+                device.setTrouble(trouble);
                 note();
             }
             return {DeviceState::Faulted, "it bit"};
@@ -94,7 +94,7 @@ TEST(Service, is_in_trouble_until_that_is_over_or_it_is_lost) {
 TEST(Service, ends_while_it_waits) {
     std::promise<void> running;
     Service service("lamp", "test", LossAction::Hold, [&](Service& device) {
-        device.running();
+        device.setRunning();
         running.set_value();
         return untilTheEnd(device);
     });
@@ -103,25 +103,25 @@ TEST(Service, ends_while_it_waits) {
     EXPECT_THAT(service.status().detail, IsEmpty());
 }
 
-TEST(Service, waits_for_a_file_or_a_call_and_tells_them_apart) {
+TEST(Service, waits_for_a_file_or_wake_and_tells_them_apart) {
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
     const FileHandle out(ends[0]), in(ends[1]);
-    std::promise<bool> byFile, byCall;
-    std::promise<void> waitsForCall;
+    std::promise<bool> byFile, byWake;
+    std::promise<void> waitsForWake;
     Service service("lamp", "test", LossAction::Hold, [&](Service& device) {
         byFile.set_value(device.wait(kLong, {out.get()}));
         char byte = 0;
         EXPECT_EQ(read(out.get(), &byte, 1), 1);
-        waitsForCall.set_value();
-        byCall.set_value(device.wait(kLong, {out.get()}));
+        waitsForWake.set_value();
+        byWake.set_value(device.wait(kLong, {out.get()}));
         return untilTheEnd(device);
     });
     ASSERT_EQ(write(in.get(), "x", 1), 1);
     EXPECT_TRUE(byFile.get_future().get());
-    waitsForCall.get_future().wait();
-    service.call();
-    EXPECT_FALSE(byCall.get_future().get());
+    waitsForWake.get_future().wait();
+    service.wake();
+    EXPECT_FALSE(byWake.get_future().get());
 }
 
 TEST(Shared, is_one_thing_for_as_long_as_anybody_holds_it) {

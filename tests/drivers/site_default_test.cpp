@@ -1,4 +1,4 @@
-// config/simulated/site.yaml: its corners by its drawings, and what its camera sees.
+// config/simulated/site.yaml: its corners match its drawings, and what its camera sees.
 
 #include "drivers/default_site.h"
 
@@ -13,14 +13,14 @@ namespace {
 
 constexpr double kAspect = 16.0 / 9;
 
-// Where the two pictures are meant to be: 5.12 m x 2.88 m, 0.9 m above the ground, 0.8 m either
-// side of the middle.
+// Where the two pictures should be: 5.12 m x 2.88 m, 0.9 m above the ground, 0.8 m either side of
+// the middle.
 std::array<glm::dvec3, 4> pictureOnWall(const std::string& output) {
     const double left = output == "left" ? -0.8 - 5.12 : 0.8, bottom = 0.9;
     return {{{left, bottom + 2.88, 0}, {left + 5.12, bottom + 2.88, 0}, {left + 5.12, bottom, 0}, {left, bottom, 0}}};
 }
 
-// Whoever moves a projector in the file copies the corners that this prints.
+// If you move a projector in the file, copy the corners that this test prints.
 TEST(DefaultSite, corners_put_each_canvas_on_its_rectangle) {
     const show::Site site = defaultSite();
     const NominalSite nominal = nominalPartsOf(site);
@@ -42,7 +42,7 @@ TEST(DefaultSite, corners_put_each_canvas_on_its_rectangle) {
             const auto pixel = projector.pixelFromWorld(wanted);
             EXPECT_LT(glm::distance(projectorFromCanvas(canvas), pixel.value()), 0.5) << line;
         }
-        // Off its axis by so much that an uncorrected picture would be visibly crooked: its sides
+        // So far off its axis that an uncorrected picture would be visibly crooked: its sides
         // differ by more than a tenth.
         const double left = glm::distance((*corners)[0], (*corners)[3]), right = glm::distance((*corners)[1], (*corners)[2]);
         EXPECT_GT(std::abs(left - right), 0.1 * std::min(left, right));
@@ -62,8 +62,7 @@ TEST(DefaultSite, camera_sees_both_pictures_whole_and_apart) {
     EXPECT_LT(lastOfLeft + 20, firstOfRight);
 }
 
-// The mean stored green of a block of the camera's picture around what stands at a point of the
-// site.
+// The mean stored green of a block of the camera's picture around a point of the site.
 double greyAround(const RgbaImage& image, const vision::CameraModel& camera, glm::dvec3 point) {
     const glm::ivec2 pixel = camera.pixelFromWorld(point).value();
     double sum = 0;

@@ -1,5 +1,5 @@
-// z_camera on the default site: what the simulated camera sees of shapes that sway on two keystoned
-// pictures, against their guides.
+// z_camera on the default site: what the simulated camera sees of swaying shapes on two keystoned
+// pictures, compared with their guides.
 
 #include "drivers/default_site.h"
 
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kAspect = 16.0 / 9;
 
-// Guides as an artist would draw them: two soft strokes; a tree of hard ones.
+// Guides like an artist's: two soft strokes; a tree with hard edges.
 GreyImage strokes() {
     GreyImage guide(320, 180);
     for (int y = 0; y < 180; ++y)
@@ -51,8 +51,8 @@ GreyImage tree() {
     return guide;
 }
 
-// A pattern in the manner of the optimiser's: discs of either white or nothing that cover as much
-// of every neighbourhood as the guide is bright.
+// A pattern like the optimiser's: white discs that cover as much of every neighbourhood as the
+// guide is bright.
 struct Disc {
     glm::dvec2 centre;
     double radius;
@@ -74,8 +74,8 @@ std::vector<Disc> discsAfter(const GreyImage& guide, bool coloured) {
     return discs;
 }
 
-// The frame that a projector throws: the discs through its keystone, swaying, faded to `opacity` in
-// linear light.
+// The projector's frame: the discs through its keystone, swaying, faded to `opacity` in linear
+// light.
 std::shared_ptr<const RgbaImage> frameOf(const std::vector<Disc>& discs, const show::Output& output, double opacity,
                                          double phase) {
     constexpr int kSide = 3;  // samples across and down a pixel
@@ -113,8 +113,8 @@ std::shared_ptr<const RgbaImage> frameOf(const std::vector<Disc>& discs, const s
     return frame;
 }
 
-// The default site with a script of faults, and the two comparisons that know its nominal file
-// alone.
+// The default site with a script of faults, and the two comparisons, which know only its nominal
+// file.
 class Night {
 public:
     explicit Night(const std::string& faults) {
@@ -169,8 +169,8 @@ private:
     std::vector<vision::GuideComparison> comparisons_;
 };
 
-// The measure of the whole thing. Each bump lasts from n.05 to n.75 s; the camera looks at n.4
-// during it, and at n.9 when it is put back.
+// Measures the whole chain. Each bump lasts from n.05 to n.75 s; the camera looks at n.4 during it,
+// and at n.9 when it is over.
 TEST(GuideComparisonOnSite, rises_while_a_projector_is_bumped_and_only_for_its_own_output) {
     const std::vector<std::pair<std::string, double>> bumps = {{"move: [0.06, 0, 0]", 1.05},
                                                                {"turn: [0, 0.5, 0]", 1.5},
@@ -204,7 +204,7 @@ TEST(GuideComparisonOnSite, stays_put_through_fades_colours_swaying_and_lamps) {
     double time = 0;
     const double base = night.at(time).left.value();
     const auto staysPut = [&](const std::string& what, double tolerance) {
-        const auto scores = night.at(time += 0.3);  // another moment of the swaying, another noise
+        const auto scores = night.at(time += 0.3);  // another moment of the swaying, other noise
         ASSERT_TRUE(scores.left) << what;
         fmt::print("{}: left {:.4f}, in place {:.4f}\n", what, *scores.left, base);
         EXPECT_NEAR(*scores.left, base, tolerance) << what;
@@ -230,7 +230,7 @@ TEST(GuideComparisonOnSite, stays_put_through_fades_colours_swaying_and_lamps) {
     staysPut("fog", 0.005);
 }
 
-// A blackout is no wrong picture; but a lamp that shines into it is no right one.
+// A blackout is not a wrong picture, but a lamp that shines into it is not a right one.
 TEST(GuideComparisonOnSite, has_no_value_in_the_dark_and_a_bad_one_under_lamps_alone) {
     Night night("");
     night.opacity_ = 0;

@@ -1,4 +1,4 @@
-// Radiometry that can be worked out by hand: a wall of reflectance 0.5 at z = 0 that a camera faces
+// Radiometry that can be computed by hand: a wall of reflectance 0.5 at z = 0 that a camera faces
 // squarely.
 
 #include "drivers/site/camera_view.h"
@@ -94,9 +94,9 @@ TEST(SiteLight, a_white_picture_spreads_the_projectors_lumens_evenly) {
     EXPECT_NEAR(seen(view, {}, light).middle(), luminanceOf(800 * std::pow(128.0 / 255, 2.2)), 1e-3 * luminanceOf(800));
 }
 
-// However slanted the projector and shifted its lens, all its light arrives: over the camera's even
-// pixels it adds up to its lumens. Example failure: a cosine too many or too few, which a test
-// straight on cannot see.
+// However slanted the projector and shifted its lens, all its light arrives: summed over the
+// camera's uniform pixels it equals its lumens. Example failure: a cosine too many or too few,
+// which a perpendicular view cannot show.
 TEST(SiteLight, a_slanted_projectors_light_adds_up_to_its_lumens) {
     const Scene scene({sheet({0, 0, 0}, 10)});
     const auto camera = vision::CameraModel::fromFieldOfView(facing({0, 0, 6}), {160, 160}, 2 * std::atan(0.5)).value();
@@ -142,12 +142,12 @@ TEST(SiteLight, a_projector_pixel_is_seen_where_the_models_say) {
     }
 }
 
-// A projector's pixels are finer than the camera's. Picking one of them for each camera pixel would
+// A projector's pixels are finer than the camera's. Taking only one of them per camera pixel would
 // turn fine patterns into moire.
 TEST(SiteLight, fine_patterns_average_in_linear_light) {
     const Scene scene({sheet({0, 0, 0}, 10)});
     CameraView view(scene, kCamera, {0, 0, 0}, {0, 0, 0});
-    const glm::ivec2 size(512, 512);  // twelve times as fine as the camera's
+    const glm::ivec2 size(512, 512);  // twelve times finer than the camera's
     view.addProjector(vision::CameraModel::fromThrowRatio(facing({0, 0, 3}), size, 1, {0, 0}), 900);
     std::vector<ProjectedLight> light{{size, 2.2, 0}};
     light[0].show(plainFrame(size, 255));
@@ -163,8 +163,8 @@ TEST(SiteLight, fine_patterns_average_in_linear_light) {
 }
 
 TEST(SiteLight, an_object_casts_its_shadow_in_every_light) {
-    // A sheet of 0.4 m, one metre before the wall, seen past its edge: the lights stand to the
-    // right, so the shadow lies to the left.
+    // A sheet of 0.4 m, one metre before the wall. The lights stand to the right, so the shadow
+    // lies to the left.
     const Scene scene({sheet({0, 0, 0}, 10), sheet({0, 0, 1}, 0.2f)});
     CameraView view(scene, kCamera, {0, 0, 0}, {0, 0, 0});
     view.addLamp(lampAt({1.5, 0, 3}, 100));
@@ -172,7 +172,7 @@ TEST(SiteLight, an_object_casts_its_shadow_in_every_light) {
     view.addProjector(vision::CameraModel::fromThrowRatio(facing({1.5, 0, 3}), size, 1, {0, 0}), 900);
     std::vector<ProjectedLight> light{{size, 2.2, 0}};
     light[0].show(plainFrame(size, 255));
-    // The line from the light over the sheet's middle meets the wall at x = -0.75: pixel 15.5 -
+    // The line from the light through the sheet's middle meets the wall at x = -0.75: pixel 15.5 -
     // 0.75 * 15.5.
     const int shadow = 3, lit = 27;
     for (const Seen& picture : {seen(view, {glm::vec3(1)}, {{size, 2.2, 0}}), seen(view, {glm::vec3(0)}, light)}) {
@@ -182,7 +182,7 @@ TEST(SiteLight, an_object_casts_its_shadow_in_every_light) {
     }
 }
 
-// A dark pixel of a projector that runs is not as dark as no projector at all.
+// A black pixel of a running projector is brighter than no projector at all.
 TEST(SiteLight, black_leaks_but_a_dark_projector_gives_nothing) {
     const Scene scene({sheet({0, 0, 0}, 10)});
     CameraView view(scene, kCamera, {0, 0, 0}, {0, 0, 0});
@@ -198,7 +198,7 @@ TEST(SiteLight, black_leaks_but_a_dark_projector_gives_nothing) {
     EXPECT_EQ(seen(view, {}, light).middle(), 0);
 }
 
-// A real window may have been given another size than the site file says; the projector scales it.
+// A real window may have another size than in the site file; the projector scales it.
 TEST(SiteLight, a_frame_of_another_size_fills_the_picture) {
     ProjectedLight light({64, 64}, 1, 0);
     RgbaImage halves(20, 10, {0, 0, 0, 255});
@@ -210,8 +210,8 @@ TEST(SiteLight, a_frame_of_another_size_fills_the_picture) {
     EXPECT_NEAR(light.mean().r, 0.5, 0.01);
 }
 
-// Beer's law over the whole way of the light; and what the fog takes from ambient light comes back
-// as a veil over what lies far.
+// Beer's law over the whole path; and what the fog takes from ambient light returns as a veil over
+// distant surfaces.
 TEST(SiteLight, fog_weakens_light_on_its_way_and_lays_a_veil) {
     const Scene scene({sheet({0, 0, 0}, 10)});
     CameraView ambient(scene, kCamera, {20, 20, 20}, {0, 0, 0});
@@ -219,8 +219,8 @@ TEST(SiteLight, fog_weakens_light_on_its_way_and_lays_a_veil) {
     EXPECT_NEAR(seen(ambient, {}, {}).middle(), luminanceOf(20), 1e-4);
     EXPECT_NEAR(seen(ambient, {}, {}, 0.1).middle(), luminanceOf(20) * left + 20 / (4 * kPi) * (1 - left), 1e-3);
 
-    // Against a black wall only the veil is seen: more of it the thicker the fog. On a bright one
-    // the lamp's light is weakened too.
+    // On a black wall only the veil is visible, more of it in thicker fog. On a bright wall the
+    // lamp's light is weakened, too.
     const Scene black({sheet({0, 0, 0}, 10, 0)});
     CameraView lampOnBlack(black, kCamera, {0, 0, 0}, {0, 0, 0}), lampOnWall(scene, kCamera, {0, 0, 0}, {0, 0, 0});
     lampOnBlack.addLamp(lampAt({0, 0, 4}, 100));
@@ -247,7 +247,7 @@ TEST(SiteLight, a_moved_projector_lights_as_if_it_had_always_stood_there) {
     EXPECT_EQ(seen(moved, {}, light).luminance, seen(placed, {}, light).luminance);
 }
 
-// A street lamp that is on is seen as a bright spot, where it is, and not through a wall.
+// A lit street lamp appears as a bright spot in its place, but not through a wall.
 TEST(SiteLight, a_lamps_head_is_seen) {
     Lamp lamp = lampAt({0.5, 0.5, 0.5}, 100);
     lamp.aim = {0, 0, 1};  // at the camera

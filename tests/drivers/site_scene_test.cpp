@@ -16,8 +16,8 @@ glm::vec3 randomPoint(Rng& rng, double reach) {
     return {rng.uniform(-reach, reach), rng.uniform(-reach, reach), rng.uniform(-reach, reach)};
 }
 
-// The tree of boxes may leave out only what the ray cannot meet. Example failure: a box that is
-// flat along an axis is never entered.
+// The tree of boxes may skip only what the ray cannot hit. Example failure: a box that is flat
+// along an axis is never entered.
 TEST(Scene, finds_with_its_tree_what_triangle_by_triangle_finds) {
     Rng rng(1);
     std::vector<SceneObject> objects;

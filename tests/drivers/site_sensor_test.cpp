@@ -48,8 +48,8 @@ TEST(Sensor, noise_has_the_deviation_that_was_asked_for) {
     }
 }
 
-// The table of normal values is read on by every row from a place of its own. Example failure:
-// every frame or row has the same noise, a pattern that averaging over time would never remove.
+// Each row reads the table of normal values from its own place. Example failure: every frame or row
+// has the same noise, a pattern that averaging over time would never remove.
 TEST(Sensor, noise_differs_from_frame_to_frame_and_from_row_to_row) {
     const Sensor sensor({40, 0.02, 0}, 7);
     const RgbaImage one = sensor.expose(even(20), 1), two = sensor.expose(even(20), 2);
@@ -72,7 +72,7 @@ TEST(Sensor, noise_differs_from_frame_to_frame_and_from_row_to_row) {
 TEST(Sensor, noise_is_the_same_for_the_same_seed_and_frame) {
     const Sensor::Settings noisy{40, 0.02, 0.02};
     const Sensor sensor(noisy, 7), same(noisy, 7), other(noisy, 8);
-    (void)sensor.expose(even(10), 4);  // what was exposed before leaves no trace
+    (void)sensor.expose(even(10), 4);  // earlier exposures leave no trace
     EXPECT_EQ(sensor.expose(even(20), 5), same.expose(even(20), 5));
     EXPECT_NE(sensor.expose(even(20), 5), sensor.expose(even(20), 6));
     EXPECT_NE(sensor.expose(even(20), 5), other.expose(even(20), 5));

@@ -37,8 +37,7 @@ NominalSite nominalSite() {
     return site;
 }
 
-// The simulation's keys; `more` is added at the end, so that a test may add faults or what is
-// wrong.
+// The simulation's keys; `more` is appended, so that a test may add faults or errors.
 std::string simulationText(const std::string& more = "", const std::string& camera = "white: 40") {
     return fmt::format(R"(ambient: [1, 1, 1]
 objects:
@@ -78,7 +77,7 @@ public:
         clock_.advanceTo(time);
         site_->advanceTo(clock_.now());
     }
-    // What the camera sees next, from now on.
+    // The camera's next frame from now on.
     std::shared_ptr<const CameraFrame> look() {
         (void)world_.takeFromCamera();
         advanceTo(clock_.now() + 100ms);
@@ -124,8 +123,7 @@ TEST(SimulatedSite, exposes_at_its_frame_rate_and_delivers_after_its_latency) {
     EXPECT_EQ(stage.world_.takeFromCamera()->exposed, Time(100ms));
 }
 
-// Whoever steps coarsely, or a machine that cannot keep up, gets the newest frame; a backlog would
-// only grow.
+// With coarse steps, or on a slow machine, only the newest frame is exposed; a backlog would grow.
 TEST(SimulatedSite, drops_frames_that_nobody_can_see_any_more) {
     Stage stage;
     stage.advanceTo(0ms);
@@ -201,8 +199,7 @@ TEST(SimulatedSite, gives_the_same_bytes_for_the_same_seed) {
     EXPECT_NE(first, night(2));
 }
 
-// The loop of the header, word for word, on a clock that its sleep moves; devices and console work
-// beside it.
+// The loop from the header, on a clock that its sleep moves; devices and console work in parallel.
 TEST(SimulatedSite, runs_on_a_thread_of_its_own) {
     Stage stage(
         "faults: [{kind: bump, output: left, at: 0.5, until: 1, turn: [0, 1, 0]}, {kind: unplug, device: right, at: 1.5}]");
@@ -309,8 +306,8 @@ TEST(SimulatedSite, bumps_a_projector_and_puts_it_back_exactly) {
                                                 "3.0 projector left put back", "4.0 projector left put back"));
 }
 
-// It thickens from 1 s to 3 s and clears from 5 s to 7 s. Meanwhile pictures are fainter, and the
-// dark wall between them is lighter.
+// The fog builds up from 1 s to 3 s and clears from 5 s to 7 s. Meanwhile the pictures are fainter,
+// and the dark wall between them is brighter.
 TEST(SimulatedSite, lets_fog_come_and_go) {
     Stage stage("faults: [{kind: fog, at: 1, until: 5, density: 0.2, rise: 2}]");
     stage.show("left", 255);
@@ -332,7 +329,7 @@ TEST(SimulatedSite, lets_fog_come_and_go) {
     EXPECT_THAT(told(*stage.site_), ElementsAre("1.0 fog of 0.2 / m comes within 2 s", "5.0 fog clears within 2 s"));
 }
 
-// Two who stand in the gate: it opens when the last one goes.
+// Two people in the gate: it opens when the last one goes.
 TEST(SimulatedSite, closes_the_contacts_of_each_bank_for_as_long_as_it_is_told) {
     Stage stage(R"(contacts:
   - {contact: gate, at: 1, until: 3}

@@ -84,8 +84,8 @@ TEST_F(WorldTest, relays_are_safe_when_installed_and_when_their_plug_is_pulled) 
     EXPECT_THAT(world_.relays("road"), ElementsAre(true, false));
 }
 
-// Example failure: every switch by hand is a loss, and who tries the lamps one after the other is
-// written about a dozen times.
+// Example failure: every switch by hand is a loss, and a person who tries the lamps in turn causes
+// a dozen messages.
 TEST_F(WorldTest, a_hand_at_the_relays_is_a_loss_where_they_were_as_written) {
     world_.installRelays("road", {true, false});
     world_.installRelays("park", {true});
@@ -186,8 +186,8 @@ TEST_F(WorldTest, camera_frames_on_their_way_are_lost_with_the_plug) {
     EXPECT_EQ(world_.takeFromCamera(), nullptr);
 }
 
-// The lighting thread writes, the scene reads, the operator pulls the plug. A torn frame would mix
-// two levels; races are for the thread sanitizer.
+// The lighting thread writes, the scene reads, the operator unplugs. A torn frame would mix two
+// levels; races are for the thread sanitizer.
 TEST_F(WorldTest, frames_are_whole_whoever_looks) {
     std::jthread lighting([&] {
         for (int frame = 0; frame < 1000; ++frame)

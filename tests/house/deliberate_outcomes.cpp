@@ -1,5 +1,5 @@
-// Passes, skips, fails and hangs on purpose, for skips_test.cpp. ctest runs it under `-C
-// deliberate` alone.
+// Passes, skips, fails and hangs on purpose, for skips_test.cpp. ctest runs it only under `-C
+// deliberate`.
 
 #include <gmock/gmock.h>
 #include <unistd.h>

@@ -22,8 +22,7 @@ std::vector<std::string> linesOf(const std::string& text) {
     return lines;
 }
 
-// What stands at the root but was not written by anybody: git's own, and folders such as "/build/"
-// in .gitignore.
+// Entries at the root that nobody wrote: git's own, and folders such as "/build/" in .gitignore.
 std::set<std::string> ignoredAt(const fs::path& root) {
     std::set<std::string> ignored = {".git"};
     for (const std::string& line : linesOf(readFile(root / ".gitignore").value()))

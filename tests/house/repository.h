@@ -1,5 +1,5 @@
 #pragma once
-// The repository's own text files, for the tests that read them.
+// The repository's text files, for the tests that read them.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@ struct TextFile {
     std::vector<std::string> lines;
 };
 
-// All text files but those that .gitignore names and git's own, in the order of their paths.
+// All text files except git's own and those in .gitignore, sorted by path.
 std::vector<TextFile> repositoryFiles();
 
 // "src/core/clock.h:12"

@@ -1,4 +1,4 @@
-// What ctest and tools/run-tests make of a program whose tests pass, skip, fail or hang.
+// How ctest and tools/run-tests handle a program whose tests pass, skip, fail or hang.
 
 #include "scratch_folder.h"
 #include "source_folder.h"
@@ -25,8 +25,8 @@ struct Outcome {
     std::string said;
 };
 
-// tools/run-tests on the entry `name` of this folder's CMakeLists.txt, with ctest's files in a
-// folder of its own: this test runs under ctest, too.
+// Runs tools/run-tests on the entry `name` of this folder's CMakeLists.txt, with ctest's files in a
+// separate folder, because this test runs under ctest, too.
 Outcome runEntry(const std::string& name, const std::string& environment = "") {
     const ScratchFolder folder;
     std::ofstream(folder / "CTestTestfile.cmake") << "subdirs(\"" FANTASCOPE_HOUSE_BUILD "\")\n";
@@ -67,8 +67,8 @@ TEST(Skips, are_refused_where_asked) {
 // Example failure: a renamed test leaves .ci/run with a filter that runs nothing and passes.
 TEST(Skips, a_filter_that_wants_no_test_fails) { EXPECT_NE(runEntry("deliberately_runs_nothing").status, 0); }
 
-// Example failure: a program is ended after its time, and nobody knows which of its 400 tests it
-// was.
+// Example failure: a program is ended after its timeout, and nobody knows which of its 400 tests
+// hung.
 TEST(Hangs, are_named) {
     const Outcome outcome = runEntry("deliberately_hangs", "FANTASCOPE_TEST_PATIENCE=1");
     EXPECT_NE(outcome.status, 0) << outcome.said;

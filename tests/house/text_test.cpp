@@ -1,4 +1,4 @@
-// Holds the rules of the craft that can be seen in the text of a file.
+// Checks the rules of the craft that are visible in a file's text.
 
 #include "house/repository.h"
 #include "source_folder.h"
@@ -21,8 +21,8 @@ using Words = std::vector<std::string>;
 
 struct Ban {
     Words words;
-    Words where;   // files whose path begins so; none: everywhere
-    Words unless;  // ... but not so
+    Words where;   // files whose path begins so; empty: everywhere
+    Words unless;  // ... except those whose path begins so
     std::string_view why;
 };
 
@@ -56,7 +56,7 @@ bool beginsWithAny(std::string_view path, const Words& beginnings) {
                        [&](std::string_view beginning) { return path.starts_with(beginning); });
 }
 
-// What a file says that it may not, each with its place.
+// The forbidden text of a file, each with its place.
 std::vector<std::string> banned(const TextFile& file) {
     std::vector<std::string> found;
     for (const Ban& ban : kBans) {

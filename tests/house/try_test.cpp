@@ -1,5 +1,5 @@
-// Holds the rule of core/result.h: between braces that make a value, nothing comes before TRY. When
-// TRY returns there, g++ does not destroy the members that were made before it.
+// Checks the rule of core/result.h: in a braced initialiser, nothing comes before TRY. When TRY
+// returns there, g++ does not destroy the members that were made before it.
 
 #include "house/repository.h"
 
@@ -17,7 +17,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-// Code with blanks for comments, and for what stands between quotes; lines stay lines.
+// The code with comments and quoted text replaced by blanks; lines stay lines.
 std::string withoutWords(const TextFile& file) {
     static const std::regex kWords(R"rx("(?:\\.|[^"\\])*"|\b(?:0x)?\d[\w.']*|'(?:\\.|[^'\\])'|//.*)rx");
     std::string code;
@@ -27,9 +27,9 @@ std::string withoutWords(const TextFile& file) {
 
 bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-// Whether the brace at `at` begins a value, as in Type{...}, = {...}, return {...}, f({...}) and
-// {{...}}; else it begins a block. The house's format has a blank before a block's brace, and none
-// after a type's name.
+// Whether the brace at `at` begins an initialiser, as in Type{...}, = {...}, return {...}, f({...})
+// and {{...}}; else it begins a block. The house format has a blank before a block's brace, and
+// none after a type's name.
 bool beginsValue(std::string_view code, std::size_t at) {
     if (at > 0 && (isWord(code[at - 1]) || code[at - 1] == '>')) return true;
     std::string_view before = code.substr(0, at);
@@ -38,7 +38,7 @@ bool beginsValue(std::string_view code, std::size_t at) {
     return !before.empty() && std::string_view("=(,{").find(before.back()) != std::string_view::npos;
 }
 
-// Whether something stands before the TRY at `at` between the braces of a value around it.
+// Whether something comes before the TRY at `at` in the braces of an initialiser around it.
 bool comesAfterAMember(std::string_view code, std::size_t at) {
     int depth = 0;
     bool comma = false;

@@ -24,7 +24,7 @@ std::string refusal(const std::string& text) {
     return cube ? "accepted" : cube.error().message();
 }
 
-// A table of `side` points each way, of what `colourOf` makes of each colour; red runs fastest.
+// A table of `side` points in each direction with the results of `colourOf`; red varies fastest.
 template <class ColourOf>
 std::string tableOf(int side, ColourOf colourOf) {
     std::string text = fmt::format("# made by a test\r\nTITLE \"a table\"\r\nLUT_3D_SIZE {}\r\n\r\n", side);
@@ -37,7 +37,7 @@ std::string tableOf(int side, ColourOf colourOf) {
     return text;
 }
 
-// Example failure: blue runs fastest, as in other formats.
+// Example failure: blue varies fastest, as in other formats.
 TEST(ColourCube, finds_each_colour_in_its_place_and_goes_straight_in_between) {
     const auto linear = [](glm::vec3 c) { return glm::vec3(0.2f + 0.5f * c.r, 0.9f * c.g, c.b * 0.3f + 0.4f * c.r); };
     const auto cube = readText(tableOf(5, linear));
@@ -59,15 +59,15 @@ TEST(ColourCube, heeds_its_domain) {
 TEST(ColourCube, refuses_what_is_no_table_and_says_where) {
     const std::string whole = tableOf(3, [](glm::vec3 c) { return c; });
     EXPECT_EQ(refusal(whole), "accepted");
-    EXPECT_THAT(refusal(whole.substr(0, whole.rfind("0.500000\t1.0"))), HasSubstr("is cut off: 25 of 27 colours are there"));
+    EXPECT_THAT(refusal(whole.substr(0, whole.rfind("0.500000\t1.0"))), HasSubstr("is cut off: it has 25 of 27 colours"));
     EXPECT_THAT(refusal(whole + "0 0 0\n"), HasSubstr(":32: more than the 27 colours of its size"));
     EXPECT_THAT(refusal("LUT_1D_SIZE 2\n0 0 0\n1 1 1\n"), HasSubstr(":1: a one-dimensional table"));
     EXPECT_THAT(refusal("LUT_3D_SIZE 1\n"), HasSubstr(":1: LUT_3D_SIZE is a whole number in 2 .. 256"));
     EXPECT_THAT(refusal("LUT_3D_SIZE 2\n0 0\n"), HasSubstr(":2: a colour is three numbers"));
     EXPECT_THAT(refusal("LUT_3D_SIZE 2\n0 0 nan\n"), HasSubstr(":2: a colour is three numbers"));
-    EXPECT_THAT(refusal("0 0 0\n"), HasSubstr("no .cube file"));
-    EXPECT_THAT(refusal("PNG\n"), HasSubstr("'PNG' is not what a .cube file begins with"));
-    EXPECT_THAT(refusal(""), HasSubstr("no .cube file"));
+    EXPECT_THAT(refusal("0 0 0\n"), HasSubstr("not a .cube file"));
+    EXPECT_THAT(refusal("PNG\n"), HasSubstr("a .cube file does not begin with 'PNG'"));
+    EXPECT_THAT(refusal(""), HasSubstr("not a .cube file"));
     EXPECT_THAT(refusal("DOMAIN_MIN 1 1 1\nDOMAIN_MAX 1 2 2\n" + whole), HasSubstr("DOMAIN_MIN is not below DOMAIN_MAX"));
     EXPECT_THAT(ColourCube::read("nowhere.cube").error().message(), StartsWith("nowhere.cube: cannot be read"));
 }

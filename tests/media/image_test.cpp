@@ -25,7 +25,7 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-// A picture that OpenCV encodes, blue first as it has it.
+// A picture encoded by OpenCV, in its blue-first order.
 std::string encoded(const char* ending, const cv::Mat& picture) {
     std::vector<std::uint8_t> bytes;
     cv::imencode(ending, picture, bytes);
@@ -42,7 +42,7 @@ cv::Mat gradient(int width, int height) {
 
 class ImageTest : public testing::Test {
 protected:
-    // What both readers say to a file of these bytes; they must agree on whether it is a picture.
+    // The error of both readers for a file of these bytes; they must agree.
     std::string refusal(const std::string& bytes) {
         const auto path = folder_.file("picture", bytes);
         const auto grey = readGrey(path);
@@ -102,7 +102,7 @@ TEST_F(ImageTest, sixteen_bits_keep_their_steps) {
               (Rgba8{7, 255, 0, 9}));
 }
 
-// A guide drawn on a transparent ground: what was not drawn is black, as no light falls there.
+// A guide on a transparent background: what was not drawn is black, because no light falls there.
 TEST_F(ImageTest, what_is_transparent_is_black_in_grey_and_keeps_its_alpha_in_colour) {
     const std::string bytes = encoded(".png", cv::Mat(1, 1, CV_8UC4, cv::Scalar(255, 255, 255, 51)));
     EXPECT_NEAR(grey(bytes).at(0, 0), 0.2, 1e-6);
@@ -143,7 +143,7 @@ TEST_F(ImageTest, a_truncated_jpeg_is_refused_wherever_it_ends) {
     EXPECT_THAT(refusal(whole.substr(0, whole.size() - 2)), HasSubstr("truncated"));
 }
 
-// A camera's JPEG has a small JPEG in its head, whose end is not the picture's.
+// A camera's JPEG has a small JPEG in its header, whose end is not the picture's.
 TEST_F(ImageTest, the_end_of_a_thumbnail_is_not_the_end_of_the_picture) {
     std::string whole = encoded(".jpg", gradient(60, 40));
     const std::string thumbnail = encoded(".jpg", gradient(8, 8));
@@ -163,7 +163,8 @@ TEST_F(ImageTest, what_is_no_picture_is_refused_with_advice) {
 }
 
 // A picture of floating-point values may hold anything.
-// Example failure: the size of a thumbnail, or of what stands in another segment of the head.
+// Example failure: it returns the size of a thumbnail, or of something in another segment of the
+// header.
 TEST_F(ImageTest, a_pictures_size_stands_in_its_head) {
     const auto size = [&](const std::string& bytes) { return pictureSize(folder_.file("picture", bytes)); };
     const cv::Mat picture = gradient(300, 20);
@@ -182,8 +183,8 @@ TEST_F(ImageTest, a_pictures_size_stands_in_its_head) {
     EXPECT_THAT(pictureSize(folder_ / "absent").error().message(), HasSubstr("absent: cannot be read"));
 }
 
-// So many pixels from so few bytes: a head alone, of every kind, and what a decoder would have to
-// make room for.
+// Many pixels from few bytes: only a header, of every format, that claims more than a decoder could
+// allocate.
 // Example failure: a file of two megabytes takes three gigabytes before it is refused.
 TEST_F(ImageTest, too_many_pixels_are_refused_before_they_are_decoded) {
     const auto number = [](std::uint32_t value, bool isBig) {
@@ -212,7 +213,7 @@ TEST_F(ImageTest, too_many_pixels_are_refused_before_they_are_decoded) {
     EXPECT_THAT(refusal(png(0xffffffff, 0xffffffff)), HasSubstr("4294967295 x 4294967295 pixels"));
 }
 
-// What the head says is what comes out.
+// The size in the header is the decoded size.
 TEST_F(ImageTest, every_kind_of_picture_is_read) {
     const cv::Mat picture = gradient(33, 20);
     for (const char* ending : {".png", ".jpg", ".tiff", ".bmp", ".webp"}) {
@@ -234,7 +235,7 @@ TEST_F(ImageTest, what_is_no_regular_file_is_refused_at_once) {
     EXPECT_THAT(readRgba(huge).error().message(), HasSubstr("is too large"));
 }
 
-// Example failure: red for blue on every key of the pad.
+// Example failure: red and blue are exchanged on every key of the pad.
 TEST_F(ImageTest, a_jpeg_has_the_picture_as_it_was_but_for_its_loss) {
     RgbaImage image(32, 16, {200, 40, 0, 255});
     for (int x = 16; x < 32; ++x)
@@ -286,8 +287,8 @@ TEST(Resized, averages_when_it_shrinks_and_keeps_even_pictures_even) {
     EXPECT_THAT(resized(RgbaImage(9, 6, {10, 20, 30, 40}), 3, 2).pixels(), Each(Rgba8{10, 20, 30, 40}));
 }
 
-// Against the definition: the light of each stored value times the share of the target pixel that
-// it covers.
+// Compared with the definition: the light of each stored value times the share of the target pixel
+// that it covers.
 // Example failure: stored values are averaged, so that a fine pattern is half as bright as on the
 // wall.
 TEST(ResizedLight, is_the_area_average_of_the_light) {

@@ -35,8 +35,8 @@ f 1 5 8 4
 f 2 3 7 6
 )";
 
-// The volume inside, by the divergence theorem: negative if the triangles' corners run clockwise as
-// seen from outside.
+// The enclosed volume by the divergence theorem; negative if the triangles run clockwise as seen
+// from outside.
 double volume(const TriangleMesh& mesh) {
     double sum = 0;
     for (const glm::uvec3 t : mesh.triangles)
@@ -46,8 +46,8 @@ double volume(const TriangleMesh& mesh) {
     return sum;
 }
 
-// An FBX as text, version 7.4: a square of side 2 in the first and third coordinate, of one
-// polygon; `axes` are global settings.
+// An FBX as text, version 7.4: a square of side 2 in the first and third coordinate, as one
+// polygon; `axes` are its global settings.
 std::string fbx(const std::string& axes, const std::string& vertices = "0,0,0, 2,0,0, 2,0,2, 0,0,2") {
     return R"(; FBX 7.4.0 project file
 FBXHeaderExtension:  {
@@ -84,7 +84,7 @@ Connections:  {
 }
 )";
 }
-// The axes that point right, up and to the viewer, each with its sign.
+// The right, up and front axes, each with its sign.
 std::string fbxAxes(std::array<int, 6> axes) {
     std::string text;
     const std::array<const char*, 6> names = {"CoordAxis", "CoordAxisSign", "UpAxis", "UpAxisSign", "FrontAxis", "FrontAxisSign"};
@@ -95,7 +95,7 @@ std::string fbxAxes(std::array<int, 6> axes) {
 
 std::string bytesOf(const auto& value) { return {reinterpret_cast<const char*>(&value), sizeof value}; }
 
-// A binary glTF (2.0, section 4.4) of one triangle: its head, the scene as JSON, the points.
+// A binary glTF (2.0, section 4.4) of one triangle: its header, the scene as JSON, the points.
 std::string glb(std::array<float, 9> points, const std::string& count = "3") {
     std::string json = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
@@ -182,8 +182,8 @@ TEST_F(MeshTest, node_transforms_are_applied) {
     EXPECT_EQ(most(moved), glm::vec3(12, 3, 0));
 }
 
-// glTF 2.0, section 3.7.4: a negative determinant turns the winding round, so that the outside
-// stays outside.
+// glTF 2.0, section 3.7.4: a negative determinant reverses the winding, so that the outside stays
+// outside.
 TEST_F(MeshTest, a_mirrored_node_keeps_its_outside_outside) {
     for (const char* scale : {"1, 1, 1", "-1, 1, 1"}) {
         const TriangleMesh mirrored = mesh("a.gltf", gltf(R"("scale": [)" + std::string(scale) + "]"));
@@ -199,7 +199,7 @@ TEST_F(MeshTest, a_binary_gltf_is_read) {
     EXPECT_EQ(most(triangle), glm::vec3(4, 3, 1));
 }
 
-// Example failure: a tool whose up is z writes that into the file, and its leaf lies on the floor.
+// Example failure: a tool whose up is z declares that in the file, and its leaf lies on the floor.
 TEST_F(MeshTest, an_fbx_stands_up_as_it_says) {
     const TriangleMesh plain = mesh("plain.fbx", fbx(""));
     EXPECT_EQ(plain.triangles.size(), 2u);
@@ -210,12 +210,12 @@ TEST_F(MeshTest, an_fbx_stands_up_as_it_says) {
     const TriangleMesh zUp = mesh("z.fbx", fbx(fbxAxes({0, 1, 2, 1, 1, -1})));
     EXPECT_EQ(least(zUp), glm::vec3(10, 0, 0));
     EXPECT_EQ(most(zUp), glm::vec3(12, 2, 0));
-    for (const glm::uvec3 t : zUp.triangles)  // as seen from where the file says the front is
+    for (const glm::uvec3 t : zUp.triangles)  // as seen from the declared front
         EXPECT_GT(glm::cross(zUp.vertices[t.y] - zUp.vertices[t.x], zUp.vertices[t.z] - zUp.vertices[t.x]).z, 0);
     EXPECT_EQ(most(mesh("odd.fbx", fbx(fbxAxes({0, 1, 0, 1, 7, 1})))), glm::vec3(12, 0, 2)) << "axes that are none";
 }
 
-// Example failure: an area in single precision is infinite less infinite.
+// Example failure: an area in single precision is infinity minus infinity.
 TEST_F(MeshTest, a_giant_is_a_mesh) {
     EXPECT_EQ(mesh("giant.obj", "v 0 0 0\nv 1e30 1e30 0\nv -1e30 2e30 1e30\nf 1 2 3\n").triangles.size(), 1u);
 }
@@ -260,7 +260,7 @@ TEST_F(MeshTest, what_is_no_mesh_is_refused_with_its_name_and_advice) {
     EXPECT_THAT(readMesh(folder_ / "").error().message(), HasSubstr("is a folder"));
 }
 
-// Example failure: the check of a file waits without end for what another one names.
+// Example failure: reading one file blocks forever on another file that it names.
 TEST(Mesh, what_is_no_regular_file_is_refused_wherever_it_is_named) {
     const ScratchFolder folder;
     ASSERT_EQ(::mkfifo((folder / "pipe.obj").c_str(), 0600), 0);

@@ -25,7 +25,7 @@ double area(const Outline& outline) {
     return sum;
 }
 
-// The box around it, as the point nearest to the lower left and its size.
+// The bounding box: the lower left point and the size.
 struct Box {
     glm::dvec2 least{1e9}, most{-1e9};
     glm::dvec2 size() const { return most - least; }
@@ -39,8 +39,8 @@ Box boxOf(const Outline& outline) {
 
 using Inside = std::function<bool(glm::dvec2)>;  // a point in pixels, y down
 
-// A picture of a region, each pixel as grey as much of it is covered (on a raster of 8 x 8), black
-// on white.
+// A picture of a region, black on white; each pixel's grey is its covered share (on a raster of 8 x
+// 8).
 GreyImage drawn(int width, int height, const Inside& inside, bool smooth = true) {
     GreyImage image(width, height);
     const int steps = smooth ? 8 : 1;
@@ -88,7 +88,7 @@ TEST_F(OutlineFileTest, an_ending_says_what_is_an_outline) {
     for (const char* name : {"a.obj", "a.fbx", "svg", "a.svg.glb"}) EXPECT_FALSE(isOutlineFile(name)) << name;
 }
 
-// Example failure: the outline runs along the pixels, with a corner at each.
+// Example failure: the outline follows the pixels, with a corner at each.
 TEST_F(OutlineFileTest, the_outline_of_a_small_picture_is_smooth_to_a_fraction_of_a_pixel) {
     for (const bool smooth : {true, false}) {
         SCOPED_TRACE(smooth ? "smoothed edges" : "edges of whole pixels");
@@ -125,7 +125,7 @@ TEST_F(OutlineFileTest, dark_on_light_light_on_dark_and_opaque_on_transparent_ar
     }
 }
 
-// Example failure: the picture's rows, which run down, stand the shape on its head.
+// Example failure: the shape is upside down, because rows run down.
 TEST_F(OutlineFileTest, up_in_the_picture_is_up) {
     const Outline tip = png(drawn(80, 80, [](glm::dvec2 p) { return std::abs(p.x - 40) < (p.y - 10) / 2 && p.y < 70; }));
     const Box box = boxOf(tip);
@@ -148,8 +148,8 @@ TEST_F(OutlineFileTest, holes_stay_specks_go_and_an_edge_ends_what_it_cuts) {
     EXPECT_NEAR(area(cut) * 100 * 100, std::numbers::pi * 900 / 2, 30);
 }
 
-// Even-odd filling, a transform, a stroke: what the drawing program shows counts, not what the
-// file's text looks like.
+// Even-odd filling, a transform, a stroke: what a drawing program displays counts, not how the file
+// is written.
 TEST_F(OutlineFileTest, an_svg_is_what_it_shows) {
     const std::string frames = "M-20 -20 H20 V20 H-20 Z M-10 -10 H10 V10 H-10 Z";
     const Outline frame =
@@ -177,7 +177,7 @@ TEST_F(OutlineFileTest, an_svg_may_fill_its_page_or_lie_on_a_ground_or_be_a_spec
     EXPECT_GE(small.pointCount(), 20u) << "drawn as large as it can be before it is traced";
 }
 
-// Every point is a triangle in each of a thousand copies.
+// Every point costs a triangle in each of a thousand copies.
 TEST_F(OutlineFileTest, points_are_few_however_intricate_the_drawing) {
     std::string path = "M50 100";
     for (int i = 0; i < 300; ++i) {

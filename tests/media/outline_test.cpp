@@ -20,7 +20,7 @@ using testing::IsEmpty;
 
 using Ring = std::vector<glm::dvec2>;
 
-// Half the cross product of two sides of each: negative where corners run clockwise.
+// Half the cross product of two sides of each triangle: negative if corners run clockwise.
 double area(const TriangleMesh& mesh) {
     double sum = 0;
     for (const glm::uvec3 t : mesh.triangles) {
@@ -42,8 +42,8 @@ Ring circle(double radius, int points) {
     return ring;
 }
 
-// Example failure: the direction of a ring decides whether it is a hole, and a drawing program's
-// own order fills it.
+// Example failure: the direction of a ring decides whether it is a hole, and some drawing programs
+// fill holes.
 TEST(Outline, a_ring_inside_a_ring_is_a_hole_whatever_its_direction) {
     for (const Ring& hole : {square(1), clockwise(square(1))}) {
         EXPECT_NEAR(area(filled({{square(2), hole}})), 16 - 4, 1e-6);
@@ -59,15 +59,15 @@ TEST(Outline, parts_that_lie_apart_are_all_filled) {
     EXPECT_EQ(mesh.triangles.size(), 4u);
 }
 
-// A polygon of n corners and h holes has n + 2h - 2 triangles, the fewest possible: none is added
+// A polygon of n corners and h holes has n + 2h - 2 triangles, the minimum: no points are added
 // inside.
 TEST(Outline, no_triangle_is_spent_on_points_of_its_own) {
     EXPECT_EQ(filled({{circle(1, 17)}}).triangles.size(), 15u);
     EXPECT_EQ(filled({{circle(1, 17), circle(0.5, 5)}}).triangles.size(), 22u);
 }
 
-// A stroke one pixel wide is traced there and back along the same line. Example failure: whoever
-// counts that line as one border takes the outside beyond it for the inside.
+// A stroke one pixel wide is traced there and back along the same line. Example failure: that line
+// counts as one border, and the outside beyond it as inside.
 TEST(Outline, a_line_there_and_back_has_no_area_and_turns_nothing_inside_out) {
     const Ring flag = {{-1, -1}, {1, -1}, {1, 0}, {5, 0}, {5, 3}, {5, 0}, {1, 0}, {1, 1}, {-1, 1}};
     EXPECT_NEAR(area(filled({{flag}})), 4, 1e-6);
@@ -76,7 +76,7 @@ TEST(Outline, a_line_there_and_back_has_no_area_and_turns_nothing_inside_out) {
     EXPECT_THAT(filled({}).triangles, IsEmpty());
 }
 
-// The bow: two triangles that meet in the middle.
+// A bow tie: two triangles that meet in the middle.
 TEST(Outline, rings_that_cross_themselves_are_cut_there) {
     EXPECT_NEAR(area(filled({{{{-1, -1}, {1, 1}, {1, -1}, {-1, 1}}}})), 2, 1e-6);
 }
@@ -84,10 +84,10 @@ TEST(Outline, rings_that_cross_themselves_are_cut_there) {
 TEST(Outline, is_simplified_within_its_tolerance) {
     const Outline round{{circle(1, 2000)}};
     const Outline simple = simplified(round, 0.01, 1000);
-    EXPECT_LE(simple.pointCount(), 46u);  // the fewest, evenly placed, would be 23
+    EXPECT_LE(simple.pointCount(), 46u);  // 23 evenly placed points would be the minimum
     EXPECT_GE(simple.pointCount(), 23u);
     const auto& ring = simple.rings.at(0);
-    for (std::size_t i = 0; i < ring.size(); ++i)  // a chord lies farthest from the circle in its middle
+    for (std::size_t i = 0; i < ring.size(); ++i)  // a chord is farthest from the circle in its middle
         EXPECT_LT(1 - glm::length((ring[i] + ring[(i + 1) % ring.size()]) / 2.0), 0.01 + 1e-9);
 }
 
@@ -100,7 +100,7 @@ TEST(Outline, corners_are_kept_and_points_on_straight_sides_go) {
     EXPECT_THAT(simple.rings.at(0), testing::UnorderedElementsAreArray(corners));
 }
 
-// Example failure: the tolerance has the last word, and a gear of a thousand teeth keeps them all.
+// Example failure: the tolerance takes precedence, and a gear with a thousand teeth keeps them all.
 TEST(Outline, the_most_points_are_never_more) {
     Ring gear = circle(1, 2000);
     for (std::size_t i = 0; i < gear.size(); i += 2) gear[i] *= 1.2;
@@ -138,8 +138,8 @@ TEST(Meshed, fills_the_region_with_triangles_of_one_size_that_are_no_slivers) {
     EXPECT_NEAR(sum, areaOf(circle(4, 60)) - areaOf(circle(2, 30)) + areaOf(circle(1, 20)), 1e-9);
 }
 
-// White pixels end half-way to their black neighbours, and where the picture ends; only their
-// corners are cut.
+// White pixels end half-way to their black neighbours, and at the picture's edge; only their
+// corners are cut off.
 TEST(Borders, run_between_white_and_black_around_islands_and_the_other_way_around_holes) {
     const GreyImage picture = pictureOf(
         30, 20, [](int x, int y) { return (isIn(x, y, 0, 0, 12, 10) && !isIn(x, y, 4, 3, 4, 4)) || isIn(x, y, 20, 10, 10, 10); });
@@ -150,13 +150,13 @@ TEST(Borders, run_between_white_and_black_around_islands_and_the_other_way_aroun
     for (const Ring& ring : borders.rings) areas.push_back(areaOf(ring));
     std::sort(areas.begin(), areas.end());
     EXPECT_NEAR(areas[0], -(16 - kCutOff), 1e-9);
-    // At the picture's edge the light ends with the pixel, a half beyond its centre.
+    // At the picture's edge the light ends with the pixel, half a pixel beyond its centre.
     EXPECT_NEAR(areas[1], 100 - kCutOff, 1e-9);
     EXPECT_NEAR(areas[2], 120 - kCutOff, 1e-9);
 }
 
-// Example failure: where two pixels meet in a corner the tracer takes the wrong way out, and never
-// comes home.
+// Example failure: where two pixels touch at a corner, the tracer takes the wrong way and never
+// returns.
 TEST(Borders, are_closed_and_never_meet_in_a_picture_of_noise) {
     Rng rng(1);
     const GreyImage noise = pictureOf(60, 40, [&](int, int) { return rng.uniform() < 0.5; });
@@ -170,8 +170,8 @@ TEST(Borders, are_closed_and_never_meet_in_a_picture_of_noise) {
     }
     std::sort(points.begin(), points.end());
     EXPECT_EQ(std::adjacent_find(points.begin(), points.end()), points.end());
-    // What is drawn of the borders is the picture, but for the corners that are cut off a pixel
-    // that stands alone: half of it.
+    // Drawing the borders gives the picture again, except for the cut corners of an isolated pixel,
+    // half of it.
     const GreyImage again = drawn(borders, 60, 40);
     for (int y = 0; y < 40; ++y)
         for (int x = 0; x < 60; ++x) ASSERT_NEAR(again.at(x, y), noise.at(x, y), 0.5 + 1e-6) << x << ' ' << y;
@@ -191,7 +191,7 @@ TEST(Borders, of_greys_lie_where_the_light_passes_a_half) {
     EXPECT_THAT(tracedBorders(GreyImage(5, 5)).rings, IsEmpty());
 }
 
-// Two light pixels across a corner hang together over it where the middle is no darker than a half.
+// Two diagonal light pixels are connected if the middle is no darker than a half.
 TEST(Borders, join_what_meets_in_a_corner_unless_it_is_dark_there) {
     const auto rings = [](float light, float dark) {
         GreyImage picture(4, 4, 0);
@@ -212,7 +212,7 @@ TEST(Drawn, is_how_much_of_a_pixel_is_covered) {
         for (int x = 0; x < 5; ++x) EXPECT_NEAR(picture.at(x, y), wanted[std::size_t(y)][std::size_t(x)], 1e-6) << x << ' ' << y;
 }
 
-// An ear that is bent over the head. Example failure: what lies over each other cancels out.
+// An ear that is bent over the head. Example failure: overlaps cancel out.
 TEST(Drawn, what_overlaps_stays_filled_and_holes_stay_open) {
     const Ring big = {{0, 0}, {6, 0}, {6, 6}, {0, 6}}, other = {{4, 4}, {9, 4}, {9, 9}, {4, 9}},
                hole = {{1, 1}, {1, 3}, {3, 3}, {3, 1}};
@@ -223,7 +223,7 @@ TEST(Drawn, what_overlaps_stays_filled_and_holes_stay_open) {
     EXPECT_EQ(picture.at(9, 0), 0);
     // A part that is moved over the hole closes it.
     EXPECT_EQ(drawn({{big, hole, {{0, 0}, {4, 0}, {4, 4}, {0, 4}}}}, 10, 10).at(2, 2), 1);
-    // What leaves the picture is cut off, and fills nothing else.
+    // Parts outside the picture are cut off, and fill nothing else.
     const GreyImage cut = drawn({{{{-5, -5}, {2, -5}, {2, 20}, {-5, 20}}}}, 4, 4);
     EXPECT_EQ(cut.at(1, 3), 1);
     EXPECT_EQ(cut.at(2, 0), 0);

@@ -1,4 +1,4 @@
-// What a printer's slicer asks of a mesh, told by CGAL; each defect is made on purpose.
+// What a slicer requires of a mesh, checked by CGAL; each defect is deliberate.
 
 #include "media/solid.h"
 

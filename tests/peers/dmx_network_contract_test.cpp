@@ -18,8 +18,8 @@ protected:
     }
 };
 
-// A universe goes out to the far end. Another one goes the same way, by which the rig knows how far
-// its line has come.
+// Sends a universe to the far end. A second universe takes the same way, by which the rig knows how
+// far its line has come.
 class NetworkDmxPortRig final : public contract::DmxPortRig {
 public:
     explicit NetworkDmxPortRig(const std::string& protocol) : protocol_(protocol), ear_(protocol) {
@@ -45,7 +45,7 @@ public:
         setLink("far", true);
         isIn_ = true;
     }
-    // Everything that was handed over before the first of two marks is out when the second one is.
+    // Everything that was sent before the first of two marks is out when the second arrives.
     void letTimePass() override {
         if (!ear_.listenUntil([&] { return runs(*port_) == isIn_ && runs(*marker_) == isIn_; })) ADD_FAILURE() << why();
         ear_.forget();
@@ -57,8 +57,8 @@ public:
             if (!ear_.listenUntil(seen)) ADD_FAILURE() << "the mark was not heard";
         }
     }
-    // What is heard anew; a line says nothing over and over when nothing came while another was
-    // kept alive twice.
+    // The repeated frame; the line is silent if nothing arrived while another universe was kept
+    // alive twice.
     std::optional<DmxFrame> line() override {
         ear_.forget();
         if (!isIn_) return std::nullopt;
@@ -67,7 +67,7 @@ public:
         if (ear_.heard[kUniverse].empty()) return std::nullopt;
         return ear_.heard[kUniverse].back().slots;
     }
-    // All has arrived when a mark has that was sent later.
+    // Everything has arrived when a later mark has.
     std::optional<DmxFrame> lastFrame() override {
         const DmxFrame mark = contract::dmxFrame(++mark_);
         EXPECT_TRUE(marker_->send(mark));
@@ -75,7 +75,7 @@ public:
         if (!ear_.listenUntil(seen)) ADD_FAILURE() << "the mark was not heard";
         std::optional<DmxFrame> last;
         for (const PlainLevels& levels : ear_.heard[kUniverse])
-            if (levels.options != 0x40) last = levels.slots;  // a goodbye has none that count
+            if (levels.options != 0x40) last = levels.slots;  // slots of a terminating packet do not count
         return last;
     }
     Clock& clock() override { return testClock(); }
@@ -102,8 +102,8 @@ TEST_P(NetworkContract, of_a_port_is_kept) {
                 IsEmpty());
 }
 
-// Desks at the far end, and one more universe by which the rig knows that everything before has
-// come.
+// Desks at the far end, and a second universe by which the rig knows that everything before has
+// arrived.
 class NetworkDmxSourceRig final : public contract::DmxSourceRig {
 public:
     explicit NetworkDmxSourceRig(const std::string& protocol) : protocol_(protocol) {
@@ -138,7 +138,7 @@ public:
         if (!eventually(marked)) ADD_FAILURE() << "the mark did not come";
     }
     void deskSends(const std::string& source, int level, int priority) override { send(source, kUniverse, level, priority, 0); }
-    bool deskSaysGoodbye(const std::string& source) override {
+    bool deskTerminates(const std::string& source) override {
         if (!isSacn()) return false;
         for (int time = 0; time < 3; ++time) send(source, kUniverse, 0, 100, 0x40);
         return true;
@@ -159,7 +159,7 @@ private:
     struct Desk {
         int number = 0;
         PlainSocket socket;
-        std::map<int, int> sequence = {};  // of each universe
+        std::map<int, int> sequence = {};  // per universe
     };
     bool isSacn() const { return protocol_ == "sacn"; }
     std::string keys() const { return "driver: " + protocol_ + "\ninterface: near\n"; }

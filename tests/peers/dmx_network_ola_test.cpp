@@ -1,5 +1,5 @@
-// sACN and Art-Net against OLA (the Open Lighting Architecture) as receiver and as sender, and
-// against the decoder of Wireshark.
+// sACN and Art-Net with OLA (the Open Lighting Architecture) as receiver and as sender, and with
+// Wireshark's decoder.
 
 #include "peers/dmx_network_rig.h"
 #include "scratch_folder.h"
@@ -20,8 +20,8 @@ using testing::IsEmpty;
 
 constexpr int kSacnUniverses = 12, kArtnetUniverses = 4, kFrames = 400;
 constexpr int kSacnToOla = 101, kArtnetToOla = 17, kSacnFromOla = 201,
-              kArtnetFromOla = 37;  // OLA's own numbers of the first ones
-constexpr int kNibble = 16;         // Art-Net's universe is OLA's number by its last four bits
+              kArtnetFromOla = 37;  // OLA's own numbers of the first universes
+constexpr int kNibble = 16;         // Art-Net's universe is the last four bits of OLA's number
 
 std::string contentsOf(const fs::path& file) {
     std::ostringstream text;
@@ -29,7 +29,7 @@ std::string contentsOf(const fs::path& file) {
     return text.str();
 }
 
-// A frame that says which it is, and differs in every slot from those around it.
+// A frame that shows its number, and differs in every slot from those around it.
 Slots numbered(int universe, int number) {
     Slots slots;
     for (int slot = 0; slot < 512; ++slot)
@@ -41,7 +41,7 @@ Slots numbered(int universe, int number) {
 }
 int numberOf(const Slots& slots) { return slots[1] << 8 | slots[0]; }
 
-// OLA's daemon at the far end, with some universes of each protocol in and out.
+// OLA's daemon at the far end, with some universes of each protocol in both directions.
 class Ola {
 public:
     Ola() {
@@ -80,8 +80,8 @@ public:
     bool isReady() const { return isReady_; }
     std::string log() const { return contentsOf(folder_ / "olad.log") + contentsOf(folder_ / "tools.log"); }
 
-    // Begins to record all universes that come in; the second one ends it and gives each universe's
-    // frames.
+    // Begins to record all incoming universes; the second function ends it and returns each
+    // universe's frames.
     void record() {
         std::string universes;
         for (int port = 0; port < kSacnUniverses; ++port) universes += fmt::format("{},", kSacnToOla + port);
@@ -110,7 +110,7 @@ public:
         return frames;
     }
 
-    // Begins to play frames 1 .. count on all universes that go out.
+    // Begins to play frames 1 .. count on all outgoing universes.
     void play(int count) {
         std::ofstream show(folder_ / "played");
         show << "OLA Show\n";
@@ -124,7 +124,7 @@ public:
             for (int port = 0; port < kArtnetUniverses; ++port) add(kArtnetFromOla + port, number);
             pause = "20\n";
         }
-        // The player leaves out what is last in its file.
+        // The player omits the last entry of its file.
         add(kSacnFromOla, count + 1);
         show.close();
         there([&] { player_ = Peer({"ola_recorder", "-p", folder_ / "played"}, folder_ / "tools.log"); });
@@ -168,7 +168,7 @@ protected:
     }
 };
 
-// Our universes that OLA hears, all on one train of ticks.
+// Our universes that OLA receives, all sent at the same ticks.
 struct Outward {
     Outward() {
         for (int i = 0; i < kSacnUniverses; ++i) {
@@ -225,7 +225,7 @@ TEST_F(DmxNetworkOla, gets_every_frame_of_sixteen_universes_and_we_get_all_of_it
     };
     ola.record();
     ola.play(kFrames);
-    // What comes after the last one lets OLA catch up before its recorder is stopped.
+    // Further frames let OLA catch up before its recorder is stopped.
     constexpr int kMore = 60;
     for (int number = 1; number <= kFrames + kMore; ++number) {
         ASSERT_TRUE(out.send(number)) << number;
@@ -258,8 +258,8 @@ TEST_F(DmxNetworkOla, gets_every_frame_of_sixteen_universes_and_we_get_all_of_it
         for (const Slots& slots : recorded.at(universe)) {
             const int number = numberOf(slots);
             ASSERT_EQ(slots, numbered(universe, number));
-            // The recorder takes up one universe after the other while the first frames are out
-            // already.
+            // The recorder starts with one universe after the other while the first frames are
+            // being sent.
             constexpr int kUntilItListens = 20;
             ASSERT_TRUE(number == last || number == last + 1 || (last == 0 && number <= kUntilItListens))
                 << last << ", " << number;
@@ -287,9 +287,9 @@ TEST_F(DmxNetworkOla, gets_every_frame_of_sixteen_universes_and_we_get_all_of_it
     RecordProperty("frames", toOla + fromOla);
 }
 
-// OLA merges by priority as our own DmxMerge does, so what it carries tells whether it has read our
-// priority and our goodbye.
-TEST_F(DmxNetworkOla, takes_our_priority_and_our_goodbye_and_after_its_restart_our_levels) {
+// OLA merges by priority like our DmxMerge, so its output shows whether it has read our priority
+// and our termination.
+TEST_F(DmxNetworkOla, takes_our_priority_and_our_termination_and_after_its_restart_our_levels) {
     Ola ola;
     ASSERT_TRUE(ola.isReady()) << ola.log();
     const auto openAs = [](const std::string& site, int priority) {
@@ -306,7 +306,7 @@ TEST_F(DmxNetworkOla, takes_our_priority_and_our_goodbye_and_after_its_restart_o
     int sentNumber = 0;
     const auto carried = [&]() -> std::string {
         ola.record();
-        // Enough that both have been heard anew.
+        // Enough that both have been received again.
         EXPECT_TRUE(low->send(numbered(1, ++sentNumber)));
         EXPECT_TRUE(!high || high->send(numbered(2, sentNumber)));
         ear.forget();
@@ -319,7 +319,7 @@ TEST_F(DmxNetworkOla, takes_our_priority_and_our_goodbye_and_after_its_restart_o
     };
     EXPECT_EQ(carried(), "high");
     high.reset();
-    EXPECT_EQ(carried(), "low") << "the other said goodbye";
+    EXPECT_EQ(carried(), "low") << "the other terminated its stream";
     ola.stop();
     ola.start();
     ASSERT_TRUE(ola.isReady()) << ola.log();
@@ -335,7 +335,7 @@ protected:
     }
 };
 
-// All that we ever send, as another program's decoder reads it.
+// Everything that we send, as read by another program's decoder.
 TEST_F(DmxNetworkCapture, every_packet_is_decoded_by_wireshark_without_a_complaint) {
     const ScratchFolder folder;
     fs::permissions(folder.path(), fs::perms::all);
@@ -378,7 +378,7 @@ TEST_F(DmxNetworkCapture, every_packet_is_decoded_by_wireshark_without_a_complai
         ports.clear();
         ASSERT_TRUE(listenUntil([&] { return !sacn.heard[7].empty() && sacn.heard[7].back().options & 0x40; }));
     }
-    // Until the capture has what was sent last.
+    // Waits until the capture has the last packet.
     const auto decoded = [&](const std::string& filter) {
         const std::string out = folder / "decoded";
         fs::remove(out);
@@ -392,19 +392,18 @@ TEST_F(DmxNetworkCapture, every_packet_is_decoded_by_wireshark_without_a_complai
         return packets;
     };
     const std::string ours = "ip.src == 10.77.0.1 && ";
-    const std::string goodbyes = ours + "acn.dmx.universe == 7 && acn.dmx.option_s == 1";
-    EXPECT_TRUE(eventually([&] { return decoded(goodbyes).size() >= 3; })) << contentsOf(log);
+    const std::string terminations = ours + "acn.dmx.universe == 7 && acn.dmx.option_s == 1";
+    EXPECT_TRUE(eventually([&] { return decoded(terminations).size() >= 3; })) << contentsOf(log);
     recorder.stop(SIGINT);
     EXPECT_GE(decoded(ours + "acn.dmx.universe == 7 && acn.dmx.source_name == \"Place of the Café\"").size(), 30u);
     EXPECT_GE(decoded(ours + "acn.dmx.universe == 8 && acn.dmx.priority == 0 && acn.dmx.option_p == 1").size(), 30u);
-    EXPECT_EQ(decoded(goodbyes).size(), 3u);
+    EXPECT_EQ(decoded(terminations).size(), 3u);
     EXPECT_GE(decoded(ours + "artnet.output.universe == 7").size(), 30u);
     EXPECT_GE(decoded(ours + "artnet.output.universe == 0x7fff && ip.dst == 10.77.0.2").size(), 30u);
     EXPECT_GE(decoded(ours + "artnet.header.opcode == 0x5200").size(), 30u) << "ArtSync";
     EXPECT_GE(decoded(ours + "artnet.header.opcode == 0x2000").size(), 1u) << "ArtPoll";
     EXPECT_GE(decoded(ours + "artnet.header.opcode == 0x2100").size(), 3u) << "ArtPollReply";
-    // Sync and discovery are beyond what this decoder knows of sACN; of the others it knows every
-    // one.
+    // This decoder does not know sACN's sync and discovery packets; it knows all others.
     const std::string known = ours + "(udp.port == 6454 || (udp.port == 5568 && frame.len == 680))";
     EXPECT_THAT(decoded(known + " && !acn && !artnet"), IsEmpty());
     EXPECT_THAT(decoded(ours + "(_ws.malformed || _ws.expert.severity >= 6291456)"), IsEmpty());

@@ -1,5 +1,5 @@
 #pragma once
-// What the tests of DMX over a network have in common.
+// Shared by the tests of DMX over a network.
 
 #include "drivers/registry.h"
 
@@ -18,15 +18,14 @@
 
 namespace fantascope::peers {
 
-// Opens a port or a source on this program's own clock, and waits until it runs where that is
-// wanted.
+// Open a port or a source on this program's own clock, and wait until it is Running if requested.
 inline SteadyClock& testClock() {
     static SteadyClock clock;
     return clock;
 }
-inline const drivers::Surroundings& night() {
-    static const drivers::Surroundings around{testClock()};
-    return around;
+inline const drivers::DriverContext& night() {
+    static const drivers::DriverContext context{testClock()};
+    return context;
 }
 inline ConfigNode options(const std::string& text) { return ConfigNode::parse(text, "site.yaml").value(); }
 inline std::unique_ptr<DmxPort> openPort(const std::string& keys, int universe) {
@@ -37,7 +36,7 @@ inline std::unique_ptr<DmxSource> openSource(const std::string& keys, int univer
 }
 inline bool runs(const Device& device) { return device.status().state == DeviceState::Running; }
 
-// A far end that hears levels by its own hand-written offsets and, as a node, answers polls.
+// A far end that reads levels by its own hand-written offsets and, as a node, answers polls.
 class Ear {
 public:
     explicit Ear(const std::string& protocol, bool answers = true) : isSacn_(protocol == "sacn"), answers_(answers) {
@@ -48,12 +47,12 @@ public:
     }
     void answer(bool yes) { answers_ = yes; }
 
-    // All that has arrived so far, and what arrives within `patience` milliseconds if that is
-    // nothing. Whether anything came.
-    bool listen(int patience = 2) {
+    // Reads everything that has arrived, or if nothing has, what arrives within `timeout`
+    // milliseconds. Returns whether anything arrived.
+    bool listen(int timeout = 2) {
         bool any = false;
         std::string from;
-        for (Datagram bytes = socket_.receive(patience, &from); !bytes.empty(); bytes = socket_.receive(0, &from)) {
+        for (Datagram bytes = socket_.receive(timeout, &from); !bytes.empty(); bytes = socket_.receive(0, &from)) {
             any = true;
             const auto levels = isSacn_ ? readPlainSacn(bytes) : readPlainArtDmx(bytes);
             if (levels) heard[levels->universe].push_back(*levels);
@@ -62,7 +61,7 @@ public:
         }
         return any;
     }
-    // Listens until a condition holds: false after half a minute without.
+    // Listens until a condition holds; false after half a minute.
     bool listenUntil(const std::function<bool()>& condition) {
         return eventually([&] {
             listen();
@@ -75,8 +74,8 @@ public:
         packets.clear();
     }
 
-    std::map<int, std::vector<PlainLevels>> heard;  // of each universe, oldest first
-    std::vector<Datagram> packets;                  // whatever they are
+    std::map<int, std::vector<PlainLevels>> heard;  // per universe, oldest first
+    std::vector<Datagram> packets;                  // of all kinds
 
 private:
     bool isSacn_, answers_;

@@ -1,5 +1,4 @@
-// What sACN and Art-Net promise beyond the contracts of the ports, heard and spoken by plain
-// sockets at the far end.
+// sACN and Art-Net beyond the contracts of the ports, with plain sockets at the far end.
 
 #include "drivers/dmx/dmx_nodes.h"
 
@@ -30,7 +29,7 @@ protected:
     }
 };
 
-// Hands over a frame and listens until it is heard, with nothing else handed over meanwhile.
+// Sends a frame once and listens until it arrives.
 bool isHeard(Ear& ear, DmxPort& port, int universe, const Slots& frame) {
     const auto sent = port.send(frame);
     return sent && ear.listenUntil([&] { return !ear.heard[universe].empty() && ear.heard[universe].back().slots == frame; });
@@ -56,7 +55,7 @@ TEST_F(DmxNetwork, sacn_is_known_again_by_its_cid_after_a_restart) {
     for (const char* site : {"site.yaml", "site.yaml", "other/site.yaml"}) {
         const auto port = drivers::openDmxPort(ConfigNode::parse(kSacn, site).value(), 7, night()).value();
         ASSERT_TRUE(ear.listenUntil([&] { return runs(*port); }));
-        // Another frame each time: a port that closes sends its own again.
+        // A new frame each time, because a port that closes repeats its last one.
         ASSERT_TRUE(isHeard(ear, *port, 7, dmxFrame(static_cast<int>(cids.size()) + 1)));
         cids.push_back(ear.heard[7].back().cid);
         ear.forget();
@@ -65,7 +64,7 @@ TEST_F(DmxNetwork, sacn_is_known_again_by_its_cid_after_a_restart) {
     EXPECT_NE(cids[0], cids[2]) << "another site is another source";
 }
 
-TEST_F(DmxNetwork, sacn_says_goodbye_three_times) {
+TEST_F(DmxNetwork, sacn_sends_its_termination_three_times) {
     Ear ear("sacn");
     ear.join(7);
     auto port = openPort(kSacn, 7);
@@ -81,8 +80,8 @@ TEST_F(DmxNetwork, sacn_says_goodbye_three_times) {
         EXPECT_EQ(ear.heard[7][i].sequence, (ear.heard[7][i - 1].sequence + 1) & 255);
 }
 
-// What receivers of a goodbye have then are the levels before it, since its own mean nothing (ANSI
-// E1.31, section 6.2.6). Example failure: a test of a lamp leaves it at full.
+// Receivers keep the levels before a termination, because those of the terminating packet mean
+// nothing (ANSI E1.31, section 6.2.6). Example failure: testing a lamp leaves it at full.
 TEST_F(DmxNetwork, the_newest_levels_are_out_four_times_before_a_port_closes) {
     for (const std::string protocol : {"sacn", "artnet"}) {
         SCOPED_TRACE(protocol);
@@ -107,7 +106,7 @@ TEST_F(DmxNetwork, the_newest_levels_are_out_four_times_before_a_port_closes) {
     }
 }
 
-// Packets that follow each other on the wire: "7", "8", or "sync".
+// The order of packets on the wire: "7", "8", or "sync".
 std::vector<std::string> orderOf(const std::vector<Datagram>& packets) {
     std::vector<std::string> order;
     for (const Datagram& packet : packets) {
@@ -238,7 +237,7 @@ TEST_F(DmxNetwork, artnet_answers_polls_with_its_ports) {
     EXPECT_EQ(replies[0][200], 1) << "a controller";
 }
 
-// Desks at the far end, and what a source of ours makes of them.
+// Desks at the far end, and what our source receives from them.
 class DmxNetworkIn : public DmxNetwork {
 protected:
     void open(const std::string& protocol) {
@@ -262,7 +261,8 @@ protected:
         desk_.send(bytes, isSacn_ ? sacnGroup(levels.universe) : "10.77.0.1", isSacn_ ? 5568 : 6454);
     }
     void sendBytes(const Datagram& bytes) { desk_.send(bytes, isSacn_ ? sacnGroup(7) : "10.77.0.1", isSacn_ ? 5568 : 6454); }
-    // The first slots of what a source gives once all that was sent has come; -1 for a goodbye.
+    // The first slots of the frames from a source once everything has arrived; -1 for a
+    // termination.
     std::vector<int> got(DmxSource& source) {
         mark_ = mark_ % 250 + 1;
         PlainLevels mark = levels(mark_, mark_, 99, "mark");
@@ -273,7 +273,7 @@ protected:
                 desk_.send(plainArtDmx(mark), "10.77.0.1", 6454);
             for (auto frame = marker_->receive(); frame; frame = marker_->receive())
                 if (frame->slots[0] == mark_) return true;
-            // A sync packet may have made the mark wait for one.
+            // After a sync packet the mark may wait for another one.
             if (!isSacn_) desk_.send(plainArtSync(), "10.77.0.1", 6454);
             return false;
         }));
@@ -315,7 +315,7 @@ TEST_F(DmxNetworkIn, what_is_no_levels_for_us_is_ignored) {
             Datagram bytes = isSacn_ ? plainSacn(levels(2, 2)) : plainArtDmx(levels(2, 2));
             const std::uint32_t kind = rng.below(3);
             if (kind == 0) bytes.resize(rng.below(static_cast<std::uint32_t>(bytes.size())));
-            // One byte of the header that may have no other value.
+            // Bytes of the header that may have no other value.
             const std::vector<std::size_t> fixed =
                 isSacn_ ? std::vector<std::size_t>{0, 1, 4, 12, 16, 18, 21, 38, 40, 43, 115, 117, 118, 119, 121, 123}
                         : std::vector<std::size_t>{0, 3, 7, 8, 9};
@@ -329,7 +329,7 @@ TEST_F(DmxNetworkIn, what_is_no_levels_for_us_is_ignored) {
             preview.options = 0x80;
             send(preview);
             Datagram other = plainSacn(levels(4, 3));
-            other[125] = 0xdd;  // priorities of single slots, not levels
+            other[125] = 0xdd;  // per-slot priorities, not levels
             sendBytes(other);
         }
         send(levels(5, 9));
@@ -362,11 +362,11 @@ TEST_F(DmxNetworkIn, synchronised_sacn_waits_for_its_sync_packet) {
     sync(50, 2);
     EXPECT_THAT(got(*source_), ElementsAre(4)) << "the newest alone";
     EXPECT_THAT(got(*second_), ElementsAre(3));
-    PlainLevels goodbye = levels(0, 4);
-    goodbye.options = 0x40;
+    PlainLevels termination = levels(0, 4);
+    termination.options = 0x40;
     synchronised(5, 4, 7);
-    goodbye.sequence = 5;
-    send(goodbye);
+    termination.sequence = 5;
+    send(termination);
     EXPECT_THAT(got(*source_), ElementsAre(-1)) << "what waits does not outlive its sender";
 }
 
@@ -428,7 +428,7 @@ TEST_F(DmxNetwork, an_interface_that_is_switched_off_is_absent_and_comes_back) {
 TEST_F(DmxNetwork, a_machine_on_two_networks_is_told_to_choose) {
     const auto port = openPort("driver: sacn\n", 7), unknown = openPort("driver: sacn\ninterface: eth77\n", 7);
     ASSERT_TRUE(eventually([&] { return port->status().state == DeviceState::Faulted; }));
-    EXPECT_THAT(port->status().detail, HasSubstr("several networks (near, aside): say which by the key 'interface'"));
+    EXPECT_THAT(port->status().detail, HasSubstr("several networks (near, aside): choose one with 'interface'"));
     ASSERT_TRUE(eventually([&] { return unknown->status().state == DeviceState::Absent; }));
     EXPECT_THAT(unknown->status().detail, HasSubstr("there is no interface eth77"));
 }
@@ -460,7 +460,7 @@ TEST_F(DmxNetwork, nodes_and_sources_are_found_whether_or_not_we_play) {
         std::vector<drivers::FoundDevice> found;
         {
             std::jthread search([&] { found = drivers::findDmxNodes(std::chrono::seconds(1)); });
-            // Until the search has heard both, they answer and announce again and again.
+            // They answer and announce again and again until the search has found both.
             std::jthread farEnd([&](const std::stop_token& over) {
                 while (!over.stop_requested()) {
                     ear.listen(20);
@@ -481,7 +481,7 @@ TEST_F(DmxNetwork, nodes_and_sources_are_found_whether_or_not_we_play) {
     }
 }
 
-// What a site file may say, and what it is told.
+// What a site file may say, and the errors.
 TEST_F(DmxNetwork, keys_are_read_strictly) {
     const auto refused = [](const std::string& text, int universe = 1) {
         const auto opened = drivers::openDmxPort(options(text), universe, night());
@@ -489,7 +489,7 @@ TEST_F(DmxNetwork, keys_are_read_strictly) {
     };
     EXPECT_THAT(refused("driver: sacn\npriority: 201\n"), HasSubstr("site.yaml:2:11: priority: "));
     EXPECT_THAT(refused("driver: sacn\nunicast: [lamp]\n"), HasSubstr("an address such as 10.0.0.5 is needed, here is 'lamp'"));
-    EXPECT_THAT(refused("driver: sacn\nunicast: [239.255.0.1]\n"), HasSubstr("the address of one device is needed"));
+    EXPECT_THAT(refused("driver: sacn\nunicast: [239.255.0.1]\n"), HasSubstr("the address of a single device is needed"));
     EXPECT_THAT(refused("driver: sacn\nsync: 64000\n"), HasSubstr("site.yaml:2:7: sync: "));
     EXPECT_THAT(refused("driver: sacn\nname: " + std::string(64, 'x') + "\n"),
                 HasSubstr("'name' is 64 bytes long, 63 are the most"));

@@ -1,6 +1,5 @@
-// The widget that our drivers are tested with, in the eyes of a program that we did not write: OLA
-// takes it for a DMX USB PRO, sends by it and receives by it. What OLA and the widget agree upon is
-// the protocol.
+// The simulated widget of our driver tests, as seen by an independent program: OLA accepts it as a
+// DMX USB PRO for sending and receiving. What both agree on is the protocol.
 
 #include "contract/eventually.h"
 #include "contract/widget_socket.h"
@@ -31,10 +30,10 @@ namespace {
 
 using testing::HasSubstr;
 
-// A program in the background, ended with the object or with the test.
+// A background program, ended with the object or with the test.
 class Background {
 public:
-    // As `user`; whatever it says goes to `log`.
+    // Runs as `user`; its output goes to `log`.
     Background(const std::vector<std::string>& command, const std::string& log, const passwd* user = nullptr) : child_(fork()) {
         if (child_ != 0) return;
         prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -45,7 +44,7 @@ public:
             const bool changed =
                 initgroups(user->pw_name, user->pw_gid) == 0 && setgid(user->pw_gid) == 0 && setuid(user->pw_uid) == 0;
             if (!changed) _exit(126);
-            prctl(PR_SET_PDEATHSIG, SIGKILL);  // who changes the user forgets it
+            prctl(PR_SET_PDEATHSIG, SIGKILL);  // changing the user clears this
         }
         std::vector<char*> words;
         for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
@@ -68,7 +67,8 @@ private:
     bool ended_ = false;
 };
 
-// A network of this process's own, so that the daemon's ports are free and nobody else hears it.
+// A network namespace for this process, so that the daemon's ports are free and nobody else
+// receives it.
 bool hasOwnNetwork() {
     if (unshare(CLONE_NEWNET) != 0) return false;
     const drivers::FileHandle socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
@@ -82,7 +82,7 @@ bool hasOwnNetwork() {
 class OlaTest : public testing::Test {
 protected:
     void SetUp() override {
-        const passwd* const user = getpwnam("olad");  // it refuses to be root
+        const passwd* const user = getpwnam("olad");  // it refuses to run as root
         if (user == nullptr || access("/usr/bin/olad", X_OK) != 0) GTEST_SKIP() << "OLA is missing; tools/peers installs it";
         if (!hasOwnNetwork()) GTEST_SKIP() << "only root may have a network of its own for olad";
         for (const char* plugin : {"artnet", "dummy",   "e131",     "espnet",  "ftdidmx",          "gpio",    "karate",
@@ -102,7 +102,7 @@ protected:
         eventually("OLA has found a device", [&] { return ola("ola_dev_info", {}).find("Device") != std::string::npos; });
     }
 
-    // What one of OLA's programs says.
+    // The output of one of OLA's programs.
     std::string ola(const std::string& program, std::vector<std::string> words) const {
         words.insert(words.begin(), program);
         Background call(words, log_ / "call");
@@ -111,7 +111,7 @@ protected:
     }
 
     ScratchFolder folder_, log_;
-    // OLA locks a line by its file's name, for all of the machine.
+    // OLA locks a line by its file's name, machine-wide.
     Socket<Widget> socket_{[](int line) { return std::make_unique<Widget>(line, "12345678"); },
                            fmt::format("ttyUSB{}", getpid())};
     std::unique_ptr<Background> olad_;

@@ -1,5 +1,5 @@
-// Every end of a run leaves its relays safe: `fantascope run` at a module that somebody else wrote,
-// ended in every way that a program ends.
+// Every end of a run leaves its relays safe: `fantascope run` with a module by other authors, ended
+// in every way in which a program can end.
 
 #include "core/check.h"
 #include "core/clock.h"
@@ -61,19 +61,19 @@ relays: [{{name: road, coil: 0, safe: on}}]
                                        display, device, more));
     }
     bool isSafe() const { return peer_.ask("get 0 c 0 1") == "1"; }
-    // Somebody at the module.
+    // A person at the module.
     void switchByHand(bool on) { peer_.ask(on ? "set 0 c 0 1" : "set 0 c 0 0"); }
-    // Whether no program has written anything but the run's own "off".
+    // Whether no program has written anything except the run's own "off".
     bool isUndisturbed() const {
         return std::ranges::all_of(peer_.journal(), [](const ModbusPeer::Change& change) { return change.coils[0] == '0'; });
     }
-    // The lamp was on; returns once the run has switched it off.
+    // The lamp is on at first; returns once the run has switched it off.
     Process run(const Process::Prepare& prepare = {}, const std::vector<std::string>& more = {}) {
         std::vector<std::string> arguments = {"run", ".", "--site", ".", "--from", "One", "--report", "report.json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return begun(arguments, prepare);
     }
-    // The lamp was on; returns in the middle of its first click.
+    // The lamp is on at first; returns in the middle of its first click.
     Process trial() { return begun({"devices", "--site", ".", "--test", "street", "--yes", "--seconds", "60"}); }
     json report() const { return json::parse(contentsOf(folder_ / "report.json")); }
     void removeReport() { std::filesystem::remove(folder_ / "report.json"); }
@@ -91,7 +91,7 @@ private:
     ModbusPeer peer_;
 };
 
-// How a run ends. What it sees itself it ends in order, with a report.
+// How a run ends. If the run notices, it ends in order, with a report.
 struct End {
     std::string name;
     bool seen;
@@ -132,8 +132,8 @@ const std::vector<End>& allEnds() {
     return ends;
 }
 
-// How long after its end a run's relays were safe, as the module saw it; nothing: they were not
-// within half a minute.
+// How long after a run's end its relays were safe, as the module saw it; nothing: not within half a
+// minute.
 std::optional<Time> safeAfter(Street& street, const End& end, std::string& wrong) {
     std::optional<Process> x;
     std::string display;
@@ -170,9 +170,9 @@ protected:
     }
 };
 
-// Ends in an order of chance, but for the first of each kind: as many as FANTASCOPE_ENDS says on
-// each wire, or each kind once on one of the two. Each run begins on the site that the one before
-// has left, so no end keeps a claim.
+// Ends in random order, but the first of each kind in order: as many as FANTASCOPE_ENDS on each
+// wire, or each kind once on one of the two. Each run begins on the site that the previous one has
+// left, so no end may keep a claim.
 // Example failures: only SIGINT and SIGTERM make relays safe; a crash leaves the street dark until
 // the morning.
 TEST_F(Ends, leave_the_relays_safe_whatever_they_are) {
@@ -204,8 +204,7 @@ TEST_F(Ends, leave_the_relays_safe_whatever_they_are) {
     }
 }
 
-// Example failure: with an X server that was stopped nothing but kill -9 ended the program, and no
-// report was left.
+// Example failure: with a stopped X server only kill -9 ended the program, and there was no report.
 TEST_F(Ends, an_x_server_that_is_stopped_holds_up_no_end) {
     Street street(ModbusPeer::Wire::Tcp, "glfw");
     std::string display;
@@ -214,14 +213,14 @@ TEST_F(Ends, an_x_server_that_is_stopped_holds_up_no_end) {
     Process run = street.run();
     x.signal(SIGSTOP);
     run.signal(SIGTERM);
-    const int status = run.wait();  // what it does with X may hang, or not
+    const int status = run.wait();  // its use of X may hang, or not
     EXPECT_EQ(status, run.said().find("it hung while") == std::string::npos ? 0 : 1) << run.said();
     EXPECT_EQ(street.report()["unsafe_relays"], json::array());
     EXPECT_EQ(street.report()["cues"].size(), 1u);
     EXPECT_TRUE(street.isSafe());
 }
 
-// The operator hears what is not safe and the guard goes on.
+// The operator is told what is not safe, and the guard goes on.
 TEST_F(Ends, a_module_that_is_silent_at_the_end_is_told_and_tried_on) {
     Street street(ModbusPeer::Wire::Tcp);
     Process run = street.run();
@@ -257,8 +256,8 @@ TEST_F(Ends, under_nohup_a_closed_terminal_ends_nothing) {
     EXPECT_TRUE(street.isSafe());
 }
 
-// Example failures: what is printed goes into the file that signals ring; the guard's own files
-// replace the claims that it keeps.
+// Example failures: output goes to the file that signals use; the guard's own files replace the
+// claims that it keeps.
 TEST_F(Ends, a_run_without_standard_streams_ends_as_any_other) {
     Street street(ModbusPeer::Wire::Tcp);
     const auto withoutStreams = [] {
@@ -275,7 +274,7 @@ TEST_F(Ends, a_run_without_standard_streams_ends_as_any_other) {
     EXPECT_TRUE(eventually([&] { return street.isSafe(); }));
 }
 
-// Somebody at a terminal with a shell.
+// A person at a terminal with a shell.
 class Shell {
 public:
     explicit Shell(const std::filesystem::path& folder) {
@@ -313,8 +312,8 @@ public:
         });
     }
     const std::string& shown() const { return shown_; }
-    // Whether the terminal shows each key and gives them by the line; the shell wants neither while
-    // it waits for keys.
+    // Whether the terminal echoes keys and delivers them by line; the shell turns both off while it
+    // waits for keys.
     bool echoes() const {
         termios settings{};
         tcgetattr(terminal_.get(), &settings);
@@ -334,7 +333,7 @@ private:
     std::string shown_;
 };
 
-// Example failure: Ctrl-Z in place of Ctrl-C left the street dark for as long as nobody looked.
+// Example failure: Ctrl-Z instead of Ctrl-C left the street dark until somebody noticed.
 TEST_F(Ends, ctrl_z_does_not_stop_a_run) {
     Street street(ModbusPeer::Wire::Tcp);
     Shell shell(street.folder());
@@ -350,8 +349,8 @@ TEST_F(Ends, ctrl_z_does_not_stop_a_run) {
     EXPECT_TRUE(street.isSafe());
 }
 
-// Example failures: at its end it was stopped, since it gave back a terminal that was not its own
-// any more, and left no report; the shell got the settings that the run had found.
+// Example failures: at its end it was stopped, because it restored a terminal that was no longer
+// its own, and left no report; the shell got the settings that the run had found.
 TEST_F(Ends, a_run_in_the_background_ends_with_its_report_and_leaves_the_terminal_to_the_shell) {
     Street street(ModbusPeer::Wire::Tcp);
     Shell shell(street.folder());
@@ -378,13 +377,13 @@ protected:
         Ends::SetUp();
         if (!whyNoNetwork().empty()) GTEST_SKIP() << whyNoNetwork();
     }
-    // Until then it has the module, and the next test may get the same line.
+    // Until then it holds the module, and the next test may get the same line.
     static bool guardIsDone(Process& trial) {
         return eventually([&] { return trial.said().find("made its relays safe") != std::string::npos; });
     }
 };
 
-// Example failure: a street lamp that was tried stays off for ever.
+// Example failure: a tested street lamp stays off for ever.
 TEST_F(Trials, a_kill_in_the_middle_of_a_click_leaves_the_relay_safe) {
     for (const auto wire : {ModbusPeer::Wire::Tcp, ModbusPeer::Wire::Rtu}) {
         Street street(wire);
@@ -405,7 +404,7 @@ TEST_F(Trials, ctrl_c_twice_in_the_middle_of_a_click_leaves_the_relay_safe) {
     EXPECT_TRUE(street.isSafe());
 }
 
-// Somebody else may have the other banks of the site.
+// Another program may use the other banks of the site.
 TEST_F(Trials, a_kill_switches_nothing_of_another_bank) {
     Street street(ModbusPeer::Wire::Tcp);
     std::string site = contentsOf(street.folder() / "site.yaml");
@@ -425,7 +424,7 @@ TEST_F(Trials, a_kill_switches_nothing_of_another_bank) {
 
 using Claims = Ends;
 
-// Two runs switched the relays 8 times a second against each other.
+// Example failure: two runs switched the relays against each other 8 times a second.
 TEST_F(Claims, a_second_run_is_refused_and_told_who_holds_the_site_or_a_device_of_it) {
     Street street(ModbusPeer::Wire::Tcp);
     Process first = street.run();
@@ -443,10 +442,10 @@ TEST_F(Claims, a_second_run_is_refused_and_told_who_holds_the_site_or_a_device_o
     EXPECT_EQ(first.wait(), 0);
 }
 
-// Example failure: the list was made by opening every bank, and closing them wrote all coils safe
-// in the middle of a show.
+// Example failure: the list opened every bank, and closing them wrote all coils safe in the middle
+// of a show.
 TEST_F(Claims, looking_at_the_devices_of_a_site_switches_nothing) {
-    if (!whyNoNetwork().empty()) GTEST_SKIP() << whyNoNetwork();  // `devices` asks every network that there is
+    if (!whyNoNetwork().empty()) GTEST_SKIP() << whyNoNetwork();  // `devices` searches every network
     Street street(ModbusPeer::Wire::Tcp);
     street.peer().ask("set 0 c 0 0");
     const Outcome before = runProgram({"devices", "--site", "."}, street.folder());
@@ -476,8 +475,8 @@ TEST_F(Claims, what_a_run_has_is_looked_at_from_afar_and_not_tried) {
     EXPECT_EQ(run.wait(), 0) << run.said();
 }
 
-// Example failure: the guard reads the site file anew, which somebody saves in the middle of the
-// show; it guards other relays, or none.
+// Example failure: the guard reads the site file again, which somebody saved in the middle of the
+// show, and guards other relays, or none.
 TEST_F(Ends, a_guard_that_is_replaced_knows_the_site_that_the_run_has_read) {
     Street street(ModbusPeer::Wire::Tcp);
     Process run = street.run();
@@ -520,8 +519,8 @@ TEST_F(Ends, an_impatient_operator_gets_the_end_levels_at_once_and_is_told_of_th
         return socket;
     });
     std::optional<int> level;
-    const auto hears = [&](int patience) {
-        for (Datagram bytes = ear.receive(patience); !bytes.empty(); bytes = ear.receive(0))
+    const auto hears = [&](int timeout) {
+        for (Datagram bytes = ear.receive(timeout); !bytes.empty(); bytes = ear.receive(0))
             if (const auto levels = readPlainSacn(bytes)) level = levels->slots[0];
         return level;
     };

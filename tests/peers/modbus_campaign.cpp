@@ -26,12 +26,12 @@ std::string bitsOf(const std::vector<bool>& states) {
     return bits;
 }
 
-// The caller, as the program's relay thread is one.
+// The caller, like the program's relay thread.
 class Caller {
 public:
     Caller(RelayBank& bank, Clock& clock) : bank_(bank), clock_(clock) {}
     std::vector<bool> wanted;
-    std::vector<std::string> diary;  // what it met with, each with the moment in seconds
+    std::vector<std::string> diary;  // its events, each with the moment in seconds
 
     void tick() {
         const DeviceStatus status = bank_.status();
@@ -69,7 +69,7 @@ std::vector<Fault> faultsOn(ModbusPeer::Wire wire) {
         {"stopped", [](ModbusPeer& peer) { peer.stop(); }, [](ModbusPeer& peer) { peer.resume(); }},
         {"wrong unit", asked("unit 0 9"), asked("unit 0 1")},
         {"exceptions", asked("exception 0 4"), asked("exception 0 0")},
-        {"late answers", asked("late 0 110"), asked("late 0 0")},  // some still in time, most for the next request
+        {"late answers", asked("late 0 110"), asked("late 0 0")},  // some still in time, most too late
         {"no answers", asked("mute 0 1"), asked("mute 0 0")},
         {"line cut", asked("cut 0"), asked("mend 0")},
     };
@@ -84,14 +84,13 @@ ModbusCampaign runModbusCampaign(ModbusPeer::Wire wire, int faults, std::uint64_
     ModbusPeer peer(wire, 1);
     SteadyClock clock;
     Rng rng(seed);
-    const drivers::Surroundings around{clock};
+    const drivers::DriverContext context{clock};
     const std::string text =
         peer.options(0) + fmt::format("first: {}\nresponse_timeout: {}\n", kFirst, seconds(kResponseTimeout));
     const auto options = ConfigNode::parse(text, "site.yaml").value();
     const std::vector<Fault> kinds = faultsOn(wire);
 
-    // All states that were ever asked for, each with its number: a module may see them in that
-    // order alone.
+    // All requested states, each with its number: a module may see them only in that order.
     std::map<std::string, int> asked;
     const auto newStates = [&] {
         std::vector<bool> states;
@@ -104,9 +103,9 @@ ModbusCampaign runModbusCampaign(ModbusPeer::Wire wire, int faults, std::uint64_
     };
     const std::vector<bool> safe = newStates();
     {
-        const auto bank = drivers::openRelayBank(options, "relays", safe, around).value();
+        const auto bank = drivers::openRelayBank(options, "relays", safe, context).value();
         Caller caller(*bank, clock);
-        // The module's own word, by another way than the line.
+        // The module's own state, by another way than the line.
         const auto really = [&] {
             std::string bits;
             for (const char letter : peer.ask(fmt::format("get 0 c {} {}", kFirst, kRelays)))
@@ -114,7 +113,7 @@ ModbusCampaign runModbusCampaign(ModbusPeer::Wire wire, int faults, std::uint64_
             return bits;
         };
         const auto stood = [&] { return std::chrono::milliseconds(std::stoi(peer.ask("stood 0"))) > kResponseTimeout / 2; };
-        Time ended{};  // of the fault
+        Time ended{};  // end of the fault
         const auto settled = [&] {
             const Time deadline = clock.now() + kGenerous;
             while (!(caller.content() && really() == bitsOf(caller.wanted))) {
@@ -140,7 +139,7 @@ ModbusCampaign runModbusCampaign(ModbusPeer::Wire wire, int faults, std::uint64_
                 caller.tick();
             }
             fault.end(peer);
-            (void)stood();  // as it was told to
+            (void)stood();  // discards what it was told to do
             ended = clock.now();
             caller.note("the fault ends");
             if (!settled())

@@ -17,7 +17,7 @@
 namespace fantascope {
 namespace {
 
-constexpr const char* kPython = "/usr/bin/python3";  // Debian's own, for which its pymodbus is
+constexpr const char* kPython = "/usr/bin/python3";  // Debian's own Python, which has its pymodbus
 const std::string kScript = sourceFolder() + "/tests/peers/modbus_peer.py";
 
 // Becomes another program, in a child process that ends with the test.
@@ -83,7 +83,7 @@ void ModbusPeer::start() {
 
 void ModbusPeer::kill() {
     if (child_ < 0) return;
-    // First, since the number of a terminal that is gone is soon another program's.
+    // First, because the number of a closed terminal is soon another program's.
     if (wire_ == Wire::Rtu)
         for (const std::string& link : places_) std::filesystem::remove(link);
     ::kill(child_, SIGKILL);
@@ -104,7 +104,7 @@ void ModbusPeer::resume() { ::kill(child_, SIGCONT); }
 std::string ModbusPeer::options(int line) const {
     const std::string& place = places_[static_cast<std::size_t>(line)];
     if (wire_ == Wire::Tcp) return fmt::format("driver: modbus_tcp\nhost: 127.0.0.1\nport: {}\n", place);
-    return fmt::format("driver: modbus_rtu\ndevice: {}\nparity: none\n", place);  // a pseudo terminal has no parity
+    return fmt::format("driver: modbus_rtu\ndevice: {}\nparity: none\n", place);  // a pseudo-terminal has no parity
 }
 
 std::string ModbusPeer::ask(const std::string& command) const {

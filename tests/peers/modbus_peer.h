@@ -1,6 +1,6 @@
 #pragma once
-// Modbus modules that we did not write: pymodbus, in a process of its own
-// (tests/peers/modbus_peer.py has its commands).
+// Modbus modules by other authors: pymodbus, in a process of its own (tests/peers/modbus_peer.py
+// lists its commands).
 
 #include "core/result.h"
 #include "scratch_folder.h"
@@ -17,29 +17,29 @@ namespace fantascope {
 class ModbusPeer {
 public:
     enum class Wire { Tcp, Rtu };
-    // Why there can be none on this machine; "" where there can.
+    // Why this machine cannot run it; "" if it can.
     static std::string missing();
 
-    // With so many lines, each with two modules, units 1 and 2.
+    // With this many lines, each with two modules, units 1 and 2.
     ModbusPeer(Wire wire, int lines);
     ~ModbusPeer();
     ModbusPeer(const ModbusPeer&) = delete;
     ModbusPeer& operator=(const ModbusPeer&) = delete;
 
-    // What a site file says to use a line, but for what is of relays or contacts alone. Stays as it
-    // is over a restart.
+    // The site file's keys for a line, except those for relays or contacts. Stays the same over a
+    // restart.
     std::string options(int line) const;
     std::string ask(const std::string& command) const;
 
-    void kill();     // as a module without power
-    void restart();  // ... that comes up anew
-    void stop();     // it hangs: its lines are there and nobody answers
+    void kill();     // like a module without power
+    void restart();  // ... that starts again
+    void stop();     // it hangs: its lines exist and nobody answers
     void resume();
 
-    // What became of the coils, in order: by whom ("write", "struck") and all of them as they were
-    // then, a character each.
+    // The changes of the coils, in order: the cause ("write", "struck") and all coils afterwards,
+    // one character each.
     struct Change {
-        int line;  // 100 more for unit 2
+        int line;  // plus 100 for unit 2
         std::string by, coils;
     };
     std::vector<Change> journal() const;
@@ -49,7 +49,7 @@ private:
 
     const Wire wire_;
     ScratchFolder folder_;
-    std::vector<std::string> places_;  // a line's port or link
+    std::vector<std::string> places_;  // each line's port or link
     pid_t child_ = -1;
     int commands_ = -1, answers_ = -1;
 };

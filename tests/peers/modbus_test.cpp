@@ -1,4 +1,4 @@
-// The Modbus drivers against pymodbus, over TCP and over a serial line.
+// The Modbus drivers with pymodbus, over TCP and over a serial line.
 
 #include "app/live/lighting.h"
 #include "app/running_show.h"
@@ -38,7 +38,7 @@ std::string nameOfWire(const testing::TestParamInfo<ModbusPeer::Wire>& info) {
 
 ConfigNode parsed(const std::string& text) { return ConfigNode::parse(text, "site.yaml").value(); }
 
-// Whether it holds before long.
+// Whether the condition holds soon.
 bool comesTrue(Clock& clock, const std::function<bool()>& condition) {
     for (const Time deadline = clock.now() + kGenerous; !condition();) {
         if (clock.now() > deadline) return false;
@@ -49,7 +49,7 @@ bool comesTrue(Clock& clock, const std::function<bool()>& condition) {
 
 bool runs(const Device& device) { return device.status().state == DeviceState::Running; }
 
-// A busy machine has kept what was written to a pseudo terminal for more than .2 s.
+// A busy machine may take more than .2 s to deliver what was written to a pseudo-terminal.
 const std::string kPatient = "response_timeout: 0.33\n";
 
 // How a rig's line is lost.
@@ -74,9 +74,9 @@ public:
         plugged_ = true;
         peer_.ask(loss_ == Loss::LineIsCut ? "mend 0" : "unit 0 1");
     }
-    // Until the state is what the plug says, what was asked before is answered, and the module's
-    // watchdog has done what it has to. Of four answers one is under way already, one may be to the
-    // watchdog, one tells how the relays are, and after the next the driver knows.
+    // Waits until the state matches the plug, earlier requests are answered, and the module's
+    // watchdog has had its effect. Of four answers, one may be under way already, one may be to the
+    // watchdog, one reports the relays, and after the next the driver knows.
     void letTimePass() override {
         const int served = this->served();
         const bool passed = comesTrue(clock_, [&] {
@@ -91,7 +91,7 @@ public:
 protected:
     PeerRig(ModbusPeer& peer, Loss loss, std::string options) : peer_(peer), loss_(loss), more_(std::move(options)) {
         for (const char* command : {"reset 0", "reset 1"}) peer_.ask(command);
-        neighbour_ = drivers::openInputBank(parsed(peer_.options(1)), "contacts", 3, around_).value();
+        neighbour_ = drivers::openInputBank(parsed(peer_.options(1)), "contacts", 3, context_).value();
         if (!comesTrue(clock_, [&] { return runs(*neighbour_); })) ADD_FAILURE() << neighbour_->status().detail;
     }
     virtual std::unique_ptr<Port> open() = 0;
@@ -102,7 +102,7 @@ protected:
     const Loss loss_;
     const std::string more_;
     SteadyClock clock_;
-    drivers::Surroundings around_{clock_};
+    drivers::DriverContext context_{clock_};
     std::unique_ptr<Port> port_;
 
 private:
@@ -129,12 +129,12 @@ public:
     void close() override { port_.reset(); }
 
 private:
-    std::unique_ptr<RelayBank> open() override { return drivers::openRelayBank(options(), "relays", kSafe, around_).value(); }
+    std::unique_ptr<RelayBank> open() override { return drivers::openRelayBank(options(), "relays", kSafe, context_).value(); }
 };
 
 class ContactsOnPeer final : public PeerRig<contract::InputBankRig> {
 public:
-    // Table and value of a closed contact, as the peer has them.
+    // `table`, `closed`: table and value of a closed contact, as in the peer.
     ContactsOnPeer(ModbusPeer& peer, Loss loss, char table, int closed, const std::string& options)
         : PeerRig(peer, loss, options + kPatient), table_(table), closed_(closed) {
         reopen();
@@ -145,7 +145,7 @@ public:
     }
 
 private:
-    std::unique_ptr<InputBank> open() override { return drivers::openInputBank(options(), "contacts", 3, around_).value(); }
+    std::unique_ptr<InputBank> open() override { return drivers::openInputBank(options(), "contacts", 3, context_).value(); }
     const char table_;
     const int closed_;
 };
@@ -158,11 +158,11 @@ protected:
         peer_ = std::make_unique<ModbusPeer>(GetParam(), 2);
     }
     std::unique_ptr<RelayBank> relays(const std::string& more, std::size_t count = 3) {
-        return drivers::openRelayBank(parsed(peer_->options(0) + more), "relays", std::vector<bool>(count, false), around_)
+        return drivers::openRelayBank(parsed(peer_->options(0) + more), "relays", std::vector<bool>(count, false), context_)
             .value();
     }
     std::unique_ptr<InputBank> contacts(const std::string& more, int line = 0) {
-        return drivers::openInputBank(parsed(peer_->options(line) + more), "contacts", 3, around_).value();
+        return drivers::openInputBank(parsed(peer_->options(line) + more), "contacts", 3, context_).value();
     }
     bool comesTrue(const std::function<bool()>& condition) { return fantascope::comesTrue(clock_, condition); }
     bool saysBeforeLong(const Device& device, const std::string& words) {
@@ -171,7 +171,7 @@ protected:
 
     std::unique_ptr<ModbusPeer> peer_;
     SteadyClock clock_;
-    drivers::Surroundings around_{clock_};
+    drivers::DriverContext context_{clock_};
 };
 INSTANTIATE_TEST_SUITE_P(, OnModbus, testing::Values(ModbusPeer::Wire::Tcp, ModbusPeer::Wire::Rtu), nameOfWire);
 
@@ -206,7 +206,7 @@ TEST_P(OnModbus, registers_get_the_value_for_on_and_the_value_for_off) {
     EXPECT_EQ(bank->read().value(), (std::vector<bool>{true, false, true}));
 }
 
-// That the module has taken a request says nothing of its relays.
+// That the module has accepted a request says nothing about its relays.
 TEST_P(OnModbus, a_write_is_confirmed_by_what_is_read_back) {
     const auto bank = relays("");
     ASSERT_TRUE(comesTrue([&] { return runs(*bank); })) << bank->status().detail;
@@ -218,7 +218,7 @@ TEST_P(OnModbus, a_write_is_confirmed_by_what_is_read_back) {
     EXPECT_TRUE(bank->write({true, false, false}));
 }
 
-// The default show's street on a module. The show's time runs as fast as the module answers.
+// The default show's street on a module. Show time runs as fast as the module answers.
 class Street {
 public:
     Street(std::unique_ptr<RelayBank> bank) { show_.devices.relayBanks[0] = std::move(bank); }
@@ -245,7 +245,7 @@ private:
     const std::vector<app::Part> relays_ = lighting.relayParts();
 };
 
-// Example failure: 20 writes a second all night for one burnt relay, and nobody knows of it.
+// Example failure: 20 writes a second all night for one burnt relay, and nobody is told.
 TEST_P(OnModbus, a_relay_that_sticks_is_told_once_and_written_ever_more_rarely) {
     Street street(relays("", 2));
     ASSERT_TRUE(comesTrue([&] { return runs(street.bank()); })) << street.bank().status().detail;
@@ -263,7 +263,7 @@ TEST_P(OnModbus, a_relay_that_sticks_is_told_once_and_written_ever_more_rarely) 
     EXPECT_THAT(street.lighting.unsafeBanks()[0].why, HasSubstr("say 1 0"));
 }
 
-// That a module will not is no loss of it: example failure, it is missing and back for ever.
+// A refusal is not a loss. Example failure: the module is missing and back for ever.
 TEST_P(OnModbus, a_module_that_refuses_is_told_once_and_asked_ever_more_rarely) {
     Street street(relays("", 2));
     ASSERT_TRUE(comesTrue([&] { return runs(street.bank()); })) << street.bank().status().detail;
@@ -280,7 +280,7 @@ TEST_P(OnModbus, a_module_that_refuses_is_told_once_and_asked_ever_more_rarely) 
     EXPECT_EQ(peer_->ask("get 0 c 0 2"), "1 1");
 }
 
-// Many a cheap module knows no function that writes several.
+// Many cheap modules lack the functions that write several values.
 TEST_P(OnModbus, relays_are_written_one_by_one_where_the_module_needs_it) {
     const auto bank = relays("first: 8\none_by_one: true\n");
     ASSERT_TRUE(comesTrue([&] { return runs(*bank); })) << bank->status().detail;
@@ -296,7 +296,7 @@ TEST_P(OnModbus, without_a_watchdog_of_the_module_the_relays_are_said_to_hold) {
     EXPECT_EQ(relays("watchdog: {register: 100, period: 0.1}")->status().onLoss, LossAction::SafeState);
 }
 
-// While the show has written nothing the relays are to stay as its watchdog has put them.
+// Until the show writes, the relays must stay as the watchdog has set them.
 TEST_P(OnModbus, the_watchdog_is_not_fed_before_the_first_write) {
     const auto bank = relays("rate: 50\nwatchdog: {register: 100, values: [5, 6], period: 0.02}\n");
     ASSERT_TRUE(comesTrue([&] { return std::stoi(peer_->ask("served 0")) > 10; })) << bank->status().detail;
@@ -307,7 +307,7 @@ TEST_P(OnModbus, the_watchdog_is_not_fed_before_the_first_write) {
 
 TEST_P(OnModbus, a_wrong_address_is_told_in_words) {
     const auto bank = relays("first: 126\n");
-    EXPECT_TRUE(saysBeforeLong(*bank, "illegal data address: unit 1 has not all of coils 126 to 128; see 'first'"))
+    EXPECT_TRUE(saysBeforeLong(*bank, "illegal data address: unit 1 does not have all of coils 126 to 128; check 'first'"))
         << bank->status().detail;
     EXPECT_EQ(bank->status().losses, 0);
 }
@@ -315,12 +315,12 @@ TEST_P(OnModbus, a_wrong_address_is_told_in_words) {
 TEST_P(OnModbus, a_silent_unit_is_named) {
     const auto bank = relays("unit: 9\nresponse_timeout: 0.1\n");
     EXPECT_TRUE(saysBeforeLong(*bank, "unit 9 on")) << bank->status().detail;
-    EXPECT_TRUE(saysBeforeLong(*bank, "does not answer within 0.1 s: look at its power, wires and address"))
+    EXPECT_TRUE(saysBeforeLong(*bank, "does not answer within 0.1 s: check its power, wires and address"))
         << bank->status().detail;
 }
 
-// Example failure: every look at the dead unit takes its whole time-out, and comes as often as a
-// look at a living one.
+// Example failure: every check of the dead unit takes its whole timeout, as often as for a living
+// one.
 TEST_P(OnModbus, a_dead_unit_leaves_the_line_to_the_others) {
     peer_->ask("dead 0.2");
     const auto dead = contacts(kPatient + "unit: 2\nrate: 50\n");
@@ -347,7 +347,7 @@ TEST_P(OnModbus, a_dead_unit_leaves_the_line_to_the_others) {
 
 TEST_P(OnModbus, a_dead_bus_leaves_the_others_alone) {
     ModbusPeer hanging(GetParam(), 1);
-    const auto dead = drivers::openRelayBank(parsed(hanging.options(0)), "relays", {false}, around_).value();
+    const auto dead = drivers::openRelayBank(parsed(hanging.options(0)), "relays", {false}, context_).value();
     ASSERT_TRUE(comesTrue([&] { return runs(*dead); })) << dead->status().detail;
     hanging.stop();
     const auto bank = relays("");
@@ -363,8 +363,7 @@ TEST_P(OnModbus, a_dead_bus_leaves_the_others_alone) {
     EXPECT_TRUE(comesTrue([&] { return runs(*dead); })) << dead->status().detail;
 }
 
-// A short interruption of its power changes a module's relays, and nothing else on a serial line
-// tells of it.
+// A short power interruption changes a module's relays, and nothing else on a serial line shows it.
 TEST_P(OnModbus, relays_that_changed_by_themselves_are_a_loss) {
     const auto bank = relays("rate: 50\n");
     ASSERT_TRUE(comesTrue([&] { return runs(*bank); })) << bank->status().detail;
@@ -402,9 +401,9 @@ TEST_P(OnModbus, units_on_one_line_get_what_is_theirs) {
     EXPECT_GE(writes, 200u);
 }
 
-// What a write that was given up could still do later, nobody would know of.
+// Otherwise an abandoned write could still take effect later, unnoticed.
 TEST_P(OnModbus, a_write_that_nobody_waits_for_any_more_is_not_done) {
-    const auto slow = contacts("response_timeout: 0.3\nunit: 9\nrate: 50\n");  // has the line for its time-out
+    const auto slow = contacts("response_timeout: 0.3\nunit: 9\nrate: 50\n");  // occupies the line for its timeout
     const auto bank = relays("response_timeout: 0.3\n");
     ASSERT_TRUE(comesTrue([&] { return runs(*bank); })) << bank->status().detail;
     peer_->ask("mute 0 1");
@@ -418,7 +417,7 @@ TEST_P(OnModbus, a_write_that_nobody_waits_for_any_more_is_not_done) {
 
 TEST_P(OnModbus, two_on_one_line_need_the_same_settings_of_it) {
     const auto bank = relays("");
-    const auto other = drivers::openInputBank(parsed(peer_->options(0) + "response_timeout: 0.2\n"), "contacts", 3, around_);
+    const auto other = drivers::openInputBank(parsed(peer_->options(0) + "response_timeout: 0.2\n"), "contacts", 3, context_);
     ASSERT_FALSE(other);
     EXPECT_THAT(other.error().message(), AllOf(HasSubstr("site.yaml:1:1"), HasSubstr("with other settings")));
 }
@@ -432,7 +431,7 @@ TEST_P(OnModbus, faults_are_survived_without_a_wrong_relay) {
     EXPECT_GT(campaign.writes, 25u) << "the modules saw too few writes for it to mean anything";
 }
 
-// The line is there, the unit is not: nothing but time tells.
+// The line is there, the unit is not: only a timeout shows it.
 TEST(ModbusSerialLine, the_contract_of_relays_is_kept_when_the_unit_falls_silent) {
     if (const std::string missing = ModbusPeer::missing(); !missing.empty()) GTEST_SKIP() << missing;
     ModbusPeer peer(ModbusPeer::Wire::Rtu, 2);
@@ -440,7 +439,7 @@ TEST(ModbusSerialLine, the_contract_of_relays_is_kept_when_the_unit_falls_silent
                 IsEmpty());
 }
 
-// A serial line has room for one program, which would else take the answers of the other.
+// A serial line is for one program only; another would take its answers.
 TEST(ModbusSerialLine, is_refused_while_somebody_else_has_it) {
     if (const std::string missing = ModbusPeer::missing(); !missing.empty()) GTEST_SKIP() << missing;
     ModbusPeer peer(ModbusPeer::Wire::Rtu, 1);
@@ -469,7 +468,7 @@ TEST(ModbusSerialLine, says_what_keeps_it_from_being_used) {
     }
 }
 
-// A socket whose queue is full drops who wants to connect, as a host behind a firewall does.
+// A socket with a full queue drops connections, like a host behind a firewall.
 TEST(ModbusTcp, a_host_that_drops_connections_delays_nobody) {
     if (const std::string missing = ModbusPeer::missing(); !missing.empty()) GTEST_SKIP() << missing;
     sockaddr_in address{};
@@ -486,14 +485,14 @@ TEST(ModbusTcp, a_host_that_drops_connections_delays_nobody) {
         (void)::connect(queue.back().get(), name, size);
     }
     SteadyClock clock;
-    const drivers::Surroundings around{clock};
+    const drivers::DriverContext context{clock};
     const auto dead =
         drivers::openRelayBank(parsed(fmt::format("driver: modbus_tcp\nhost: 127.0.0.1\nport: {}\nresponse_timeout: 0.1\n",
                                                   ntohs(address.sin_port))),
-                               "hanging", {false}, around)
+                               "hanging", {false}, context)
             .value();
     ModbusPeer peer(ModbusPeer::Wire::Tcp, 1);
-    const auto bank = drivers::openRelayBank(parsed(peer.options(0)), "relays", {false}, around).value();
+    const auto bank = drivers::openRelayBank(parsed(peer.options(0)), "relays", {false}, context).value();
     ASSERT_TRUE(comesTrue(clock, [&] { return runs(*bank); })) << bank->status().detail;
     for (int time = 0; time < 200; ++time) ASSERT_TRUE(bank->write({time % 2 == 0}));
     EXPECT_TRUE(comesTrue(clock, [&] { return dead->status().detail.find("nothing answers at") != std::string::npos; }))

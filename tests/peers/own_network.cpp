@@ -27,7 +27,7 @@ namespace {
 
 std::string why;
 drivers::FileHandle here, far;  // the two namespaces
-bool isGuest = false;           // root in a user namespace of our own alone
+bool isGuest = false;           // root only in a user namespace of our own
 
 drivers::FileHandle currentNamespace() {
     return drivers::FileHandle(open(fmt::format("/proc/self/task/{}/ns/net", gettid()).c_str(), O_RDONLY | O_CLOEXEC));
@@ -37,7 +37,7 @@ void ip(const std::string& arguments) {
     if (why.empty() && std::system(("ip " + arguments).c_str()) != 0) why = "'ip " + arguments + "' failed";
 }
 
-// Becomes somebody in a user namespace, who is `inside` there and was `outside` before.
+// Maps a user of the user namespace, `inside` there, to the one `outside`.
 void mapUser(unsigned inside, unsigned outsideUser, unsigned outsideGroup) {
     std::ofstream("/proc/self/setgroups") << "deny";
     std::ofstream("/proc/self/uid_map") << fmt::format("{} {} 1", inside, outsideUser);
@@ -148,9 +148,9 @@ bool PlainSocket::send(std::span<const std::uint8_t> bytes, const std::string& t
            static_cast<ssize_t>(bytes.size());
 }
 
-std::vector<std::uint8_t> PlainSocket::receive(int patience, std::string* from) {
+std::vector<std::uint8_t> PlainSocket::receive(int timeout, std::string* from) {
     pollfd waited{file_.get(), POLLIN, 0};
-    if (poll(&waited, 1, patience) <= 0) return {};
+    if (poll(&waited, 1, timeout) <= 0) return {};
     std::vector<std::uint8_t> bytes(2048);
     sockaddr_in sender{};
     socklen_t size = sizeof sender;

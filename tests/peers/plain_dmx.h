@@ -1,6 +1,6 @@
 #pragma once
-// sACN and Art-Net as the test itself speaks them, apart from the program's own packets: bytes and
-// offsets written by hand from ANSI E1.31-2018 and the Art-Net 4 specification.
+// sACN and Art-Net by the test itself, independent of the program's packets: bytes and offsets
+// written by hand from ANSI E1.31-2018 and the Art-Net 4 specification.
 
 #include <array>
 #include <cstdint>
@@ -17,7 +17,7 @@ using Slots = std::array<std::uint8_t, 512>;
 struct PlainLevels {
     int universe = 0, sequence = 0, priority = 100, options = 0, sync = 0;
     Slots slots{};
-    std::string cid = {}, name = {};  // 16 bytes; the source's
+    std::string cid = {}, name = {};  // 16 bytes; of the source
 };
 
 inline Datagram plainSacn(const PlainLevels& levels) {
@@ -41,7 +41,7 @@ inline Datagram plainSacnSync(const std::string& cid, int universe, int sequence
     return bytes;
 }
 
-// Nothing for another packet than levels.
+// Nothing if it is not a packet of levels.
 inline std::optional<PlainLevels> readPlainSacn(std::span<const std::uint8_t> bytes) {
     if (bytes.size() != 638 || bytes[21] != 4 || bytes[43] != 2) return std::nullopt;
     PlainLevels levels;

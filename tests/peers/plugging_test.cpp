@@ -1,6 +1,6 @@
-// A day's worth of plugging at the real drivers: `fantascope run` with widgets on serial lines,
-// lamps on two networks, a desk, relays, contacts, a hand controller and a camera, every one of
-// which is pulled and put back over and over, in an order of chance, while the show runs.
+// A day of plugging at the real drivers: `fantascope run` with widgets on serial lines, lamps on
+// two networks, a desk, relays, contacts, a hand controller and a camera. Each is unplugged and
+// replugged over and over, in random order, while the show runs.
 
 #include "contract/mock_usb.h"
 #include "contract/projectors.h"
@@ -30,7 +30,7 @@ namespace fantascope::peers {
 namespace {
 
 #ifdef FANTASCOPE_SANITIZED
-constexpr int kTimes = 10;  // all is slower, and what counts is found by the sanitizer
+constexpr int kTimes = 10;  // everything is slower, and the sanitizer finds what counts
 #else
 constexpr int kTimes = 100;
 #endif
@@ -47,7 +47,7 @@ looks:
 cues: [{name: One, look: one, fade: 0.1}, {name: Two, look: two, fade: 0.1}]
 )";
 
-// What is pulled as one, and the devices that go with it.
+// What is unplugged together, and the devices that go with it.
 struct Plug {
     std::vector<std::string> devices;
     std::function<void(bool in)> put;
@@ -93,7 +93,7 @@ protected:
     }
 
     std::string site() const {
-        const auto inside = [](std::string options) {  // a map's lines as one
+        const auto inside = [](std::string options) {  // joins a map's lines to one
             std::replace(options.begin(), options.end(), '\n', ',');
             return "{" + options + "}";
         };
@@ -126,8 +126,8 @@ camera:
                            inside(contacts_->options(0) + "response_timeout: 0.2\n"), camera_.kind().serial);
     }
 
-    // Takes what the program says next: a line may hold several sentences, of one device too.
-    // False: it says nothing more.
+    // Reads the program's next line, which may hold several sentences, even of one device.
+    // False: there is none.
     bool hear(RunningProgram& program) {
         const auto said = program.line();
         const std::string line = said.value_or("");
@@ -138,10 +138,10 @@ camera:
                     if (news.starts_with(") is missing")) missing_.insert(device);
                     if (news.starts_with(") is back")) missing_.erase(device);
                 }
-        camera_.send({.bytes = std::vector<std::uint8_t>(64 * 48 * 2, 128)});  // to nobody where it is out
+        camera_.send({.bytes = std::vector<std::uint8_t>(64 * 48 * 2, 128)});  // to nobody if it is unplugged
         return said.has_value();
     }
-    // Whether the program knows how a plug is.
+    // Whether the program has reported a plug's state.
     bool isTold(const Plug& plug) const {
         return std::ranges::all_of(plug.devices, [&](const std::string& device) { return missing_.contains(device) != plug.in; });
     }
@@ -152,7 +152,7 @@ camera:
         return names;
     }
     static constexpr int kPatience = 60;  // lines of the program
-    // Every plug `times` times out and in again, in an order of chance: another one whenever the
+    // Unplugs and replugs every plug `times` times, in random order: another one whenever the
     // program has noticed.
     void plugAndUnplug(RunningProgram& program, int times) {
         for (Plug& plug : plugs_) plug.pulls = 0;
@@ -165,12 +165,12 @@ camera:
                 plug.put(plug.in);
                 idle = 0;
             }
-            // There is news only where something was pulled or plugged in.
+            // There is news only if something was unplugged or plugged in.
             if (std::ranges::all_of(plugs_, [&](const Plug& plug) { return isTold(plug); })) continue;
             ASSERT_TRUE(idle < kPatience && hear(program)) << untold() << "\n" << program.all();
         }
     }
-    // GO or BACK, and nothing else.
+    // Presses GO or BACK.
     void press(int button) {
         for (const int state : {1 << (button - 1), 0}) usb_.report(hand_.path, 0, {static_cast<std::uint8_t>(state)});
     }
@@ -187,12 +187,12 @@ camera:
     contract::WidgetSocket widget_;
     std::optional<ModbusPeer> relays_, contacts_;
     std::vector<Plug> plugs_;
-    std::set<std::string> missing_;  // by what the program has told
+    std::set<std::string> missing_;  // as reported by the program
 };
 
 TEST_F(Plugging, at_the_real_drivers_leaves_nothing_over_and_the_show_goes_on) {
     RunningProgram program({"run", ".", "--site", ".", "--from", "One", "--report", "report.json"}, folder_.path());
-    // Once it has its devices: a projector that is off before it switches on by itself.
+    // Wait for the devices, because a projector that is off would switch on by itself.
     while (program.all().find("cue 1 of 2") == std::string::npos) ASSERT_TRUE(hear(program)) << program.all();
     plugAndUnplug(program, 3);  // whatever the libraries keep from their first uses
     struct Holdings {
@@ -209,11 +209,11 @@ TEST_F(Plugging, at_the_real_drivers_leaves_nothing_over_and_the_show_goes_on) {
     EXPECT_EQ(after.files, before.files);
     EXPECT_EQ(after.threads, before.threads);
 #ifndef FANTASCOPE_SANITIZED
-    constexpr long kAtEveryLoss = 1;  // KiB, of the report's and the allocator's; what is lost for good the leak sanitizer finds
+    constexpr long kAtEveryLoss = 1;  // KiB, of the report's and the allocator's; the leak sanitizer finds real leaks
     EXPECT_LT(after.kibibytes, before.kibibytes + kAtEveryLoss * kTimes * std::ssize(plugs_));
 #endif
 
-    // All of it still does what it is for.
+    // Everything still works.
     press(1);
     const auto comesTrue = [&](const std::function<bool()>& condition) {
         SteadyClock clock;
@@ -226,7 +226,7 @@ TEST_F(Plugging, at_the_real_drivers_leaves_nothing_over_and_the_show_goes_on) {
     EXPECT_EQ(program.stop(), 0) << program.all();
     const auto report = nlohmann::json::parse(contentsOf(folder_ / "report.json"));
     EXPECT_EQ(report["cues"].size(), 2u) << "no plug has pressed a button";
-    // Alone it is drawn 30 times a second, beside a projector as often as that.
+    // Alone it is drawn 30 times a second; beside a projector, at the projector's rate.
     EXPECT_GE(report["frames_by_output"]["right"].get<double>() + report["late_frames_by_output"]["right"].get<double>(),
               30 * report["seconds"].get<double>() - 1)
         << "it stood still";

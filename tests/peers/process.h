@@ -1,5 +1,5 @@
 #pragma once
-// Programs that run beside a test and are ended by it in every way.
+// Programs that run beside a test, which ends them in every way.
 
 #include "drivers/common/file_handle.h"
 
@@ -25,8 +25,8 @@ namespace fantascope::peers {
 class Process {
 public:
     Process() = default;
-    // fantascope with these arguments; what it says goes through a pipe. `prepare` is the last that
-    // its process does before.
+    // fantascope with these arguments; its output goes to a pipe. `prepare` is called last in its
+    // process before exec.
     using Prepare = std::function<void()>;
     Process(const std::vector<std::string>& arguments, const std::filesystem::path& folder, const Prepare& prepare = {}) {
         start([&] {
@@ -64,8 +64,8 @@ public:
     void signal(int number) const {
         if (process_ > 0) ::kill(process_, number);
     }
-    // The same, and it has reached the program when this returns: two signals of a kind do not
-    // become one.
+    // The same, and returns once the signal has reached the program, because two pending signals of
+    // a kind become one.
     void signalAlone(int number) const {
         signal(number);
         const auto isPending = [&] {
@@ -82,13 +82,13 @@ public:
         siginfo_t ended{};
         return ::waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid == 0;
     }
-    // Until it has ended: its status, or 128 + a signal.
+    // Waits for its end: its status, or 128 + a signal.
     int wait() {
         int status = 0;
         ::waitpid(std::exchange(process_, -1), &status, 0);
         return statusOf(status);
     }
-    // What it has said so far.
+    // Its output so far.
     const std::string& said() {
         while (poll(0)) {
             char bytes[4096];
@@ -123,9 +123,9 @@ private:
         ::close(ends[1]);
         words_ = drivers::FileHandle(ends[0]);
     }
-    bool poll(int patience) const {
+    bool poll(int timeout) const {
         pollfd something{words_.get(), POLLIN, 0};
-        return ::poll(&something, 1, patience) > 0 && (something.revents & POLLIN) != 0;
+        return ::poll(&something, 1, timeout) > 0 && (something.revents & POLLIN) != 0;
     }
     bool waitForWords() const { return poll(30'000); }
 

@@ -46,17 +46,17 @@ std::size_t count(const RgbaImage& picture, Rgba8 colour) {
 const Rgba8 kFirst = stored(actorColour(0)), kSecond = stored(actorColour(1));
 bool isHatch(Rgba8 p) { return p.r > 200 && p.g < 110 && p.b < 110; }
 
-// The target fills the whole mask in its lower three quarters, so that a figure is not cut; one
-// actor throws its left half, one what is right of its middle but for the last quarter, and in the
-// middle they overlap.
+// The target fills the lower three quarters of the mask, so that figures are not cropped. One actor
+// covers its left half, the other its right half without the last quarter; they overlap in the
+// middle.
 struct Halves {
     BitMask target = rectangle(0, 16, 64, 64);
     std::vector<ActorShadow> actors{{rectangle(0, 16, 36, 64), "1.75 m", {"note of the first"}},
                                     {rectangle(28, 0, 48, 64), "1.60 m", {"note of the second"}}};
 };
 
-// In a figure's picture, which is the first thing on the page below and right of its margin: the
-// colour of the middle of a square of pixels.
+// The colour of a point in a figure's picture, which is at the page's top left inside the margin:
+// the mean of a square of pixels.
 Rgba8 inFigure(const RgbaImage& page, double x, double y) {
     return page.at(static_cast<int>(24 + 600 * x / 64), static_cast<int>(24 + 600 * y / 64));
 }
@@ -68,7 +68,7 @@ TEST(ShadowFigure, has_each_actor_in_his_colour_and_a_darker_one_where_several_a
     EXPECT_EQ(inFigure(page, 42, 40), kSecond);
     const Rgba8 both = inFigure(page, 32, 40);
     EXPECT_LT(both.r + both.g + both.b, std::min(kFirst.r + kFirst.g + kFirst.b, kSecond.r + kSecond.g + kSecond.b));
-    EXPECT_GT(inFigure(page, 10, 5).r, 240);  // paper
+    EXPECT_GT(inFigure(page, 10, 5).r, 240);  // the page
 }
 
 TEST(ShadowFigure, hatches_in_red_what_is_missed_and_in_dark_what_sticks_out) {
@@ -81,7 +81,7 @@ TEST(ShadowFigure, hatches_in_red_what_is_missed_and_in_dark_what_sticks_out) {
     EXPECT_LT(missedRed, missed / 2);
     EXPECT_GT(outDark, out / 10);
     EXPECT_LT(outDark, out / 2);
-    // Nothing is hatched if nothing is missed.
+    // Nothing is hatched if the target is not missed.
     const std::vector<ActorShadow> whole{{halves.target, "1.75 m", {}}};
     const RgbaImage matched = drawn(shadowFigure(whole, halves.target, {}));
     for (double x = 1; x < 63; x += 0.1) ASSERT_EQ(inFigure(matched, x, 40), kFirst);
@@ -93,7 +93,8 @@ TEST(ShadowFigure, has_the_targets_outline_above_all) {
     for (const double x : {10.0, 32.0, 42.0, 55.0}) EXPECT_LT(inFigure(page, x, 16).r, 60) << x;
 }
 
-// A picture is as large whatever the masks' resolution, without the empty rows and columns.
+// A picture has the same size at any resolution of the masks, and empty rows and columns are
+// cropped.
 TEST(ShadowFigure, magnifies_small_masks_and_leaves_out_what_is_empty) {
     const std::vector<ActorShadow> small{{rectangle(20, 20, 30, 30), "", {}}};
     const RgbaImage page = drawn(shadowFigure(small, rectangle(20, 20, 30, 30), {}));
@@ -104,7 +105,7 @@ TEST(ShadowFigure, magnifies_small_masks_and_leaves_out_what_is_empty) {
 TEST(ActorsFigure, shows_each_alone_before_the_others_in_grey) {
     const Halves halves;
     const RgbaImage page = drawn(actorsFigure(halves.actors, halves.target));
-    // Two cells beside each other, pictures of 300 x 300 from 58 points down.
+    // Two cells beside each other with pictures of 300 x 300 points, 58 points below the top.
     const auto inCell = [&](int cell, double x, double y) {
         return page.at(static_cast<int>(24 + cell * (page.width() - 24) / 2 + 300 * x / 64), static_cast<int>(58 + 300 * y / 64));
     };
@@ -150,7 +151,7 @@ TEST(Palette, has_eight_colours_that_are_far_from_each_other_and_comes_again) {
     EXPECT_EQ(actorColour(8), actorColour(0));
 }
 
-// Around a block of 2 x 1, by hand.
+// The expectation for a block of 2 x 1 is computed by hand.
 TEST(MaskOutline, runs_through_the_middles_of_the_sides) {
     BitMask mask(5, 4);
     mask.fill(1, 1, 3);
@@ -165,13 +166,13 @@ double area(const std::vector<glm::dvec2>& ring) {
     return sum;
 }
 
-// What touches the edge is closed there; pixels that touch at a corner are two rings; a hole runs
-// the other way around.
+// Rings are closed along the mask's edge. Pixels that touch at a corner are two rings. A hole's
+// ring runs the other way around.
 TEST(MaskOutline, finds_every_island_and_every_hole) {
     EXPECT_THAT(maskOutline(BitMask(6, 6)), SizeIs(0));
     BitMask full(6, 6);
     for (int y = 0; y < 6; ++y) full.fill(y, 0, 6);
-    EXPECT_THAT(maskOutline(full), ElementsAre(testing::ResultOf(area, 35.5)));  // without its corners
+    EXPECT_THAT(maskOutline(full), ElementsAre(testing::ResultOf(area, 35.5)));  // rings cut the corners
     BitMask diagonal(4, 4);
     diagonal.fill(1, 1, 2), diagonal.fill(2, 2, 3);
     EXPECT_THAT(maskOutline(diagonal), ElementsAre(testing::ResultOf(area, 0.5), testing::ResultOf(area, 0.5)));
@@ -184,7 +185,7 @@ TEST(MaskOutline, finds_every_island_and_every_hole) {
     EXPECT_THAT(maskOutline(ring), ElementsAre(testing::ResultOf(area, 24.5), testing::ResultOf(area, testing::Lt(-8))));
 }
 
-// Somebody in a T-pose who hovers: his shadow is on the screen, and his notes say what is wrong.
+// An actor hovers in a T-pose: his shadow is on the screen, and his notes say what is wrong.
 TEST(CastPicture, shows_who_throws_what_and_says_who_cannot_stand) {
     const theatre::Stage stage;
     GreyImage silhouette(80, 80);
@@ -213,7 +214,7 @@ TEST(CastPicture, shows_who_throws_what_and_says_who_cannot_stand) {
     EXPECT_THAT(picture.images[0].lines, Contains(HasSubstr("cannot stand so:")));
     EXPECT_THAT(picture.images[0].lines, Contains(HasSubstr(" 2")));
 
-    // On a second screen, to the side, is another shadow of the same people.
+    // A second screen at the side has another shadow of the same people.
     theatre::PoseProblem corner = problem;
     corner.stage.screens.push_back({{2.5, 1.5}, -std::numbers::pi / 2});
     corner.stage.beams.push_back({{-5, 0, 1.5}, 1});
@@ -228,7 +229,7 @@ TEST(CastPicture, shows_who_throws_what_and_says_who_cannot_stand) {
     EXPECT_GT(two.shadows().height(), 1.5 * picture.shadows().height());
     EXPECT_GT(two.each().height(), 1.5 * picture.each().height());
 
-    // Each has his number in the view: a ring in his colour.
+    // Each actor's number in the view is a badge in his colour.
     const RgbaImage stageView = drawn(stageFigure(picture.view, picture.view.overview(kStageAspect)));
     EXPECT_GT(count(stageView, kFirst), 30u);
     EXPECT_GT(count(stageView, kSecond), 30u);

@@ -20,8 +20,7 @@ using testing::DoubleEq;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// One square over the left half of a canvas of 80 x 40, large enough to reach beyond it at the
-// left.
+// A square over the left half of a canvas of 80 x 40. It extends beyond the canvas's left edge.
 pattern::ShapePattern leftHalf() {
     pattern::ShapePattern pattern;
     pattern.guide = "half.png";
@@ -36,7 +35,7 @@ pattern::ShapePattern leftHalf() {
     return pattern;
 }
 
-// Light in the lower half.
+// White in the lower half.
 GreyImage lowerHalf() {
     GreyImage guide(80, 40);
     for (int y = 20; y < 40; ++y)
@@ -62,8 +61,8 @@ TEST(DifferencePicture, is_blue_where_the_guide_alone_is_and_red_where_the_patte
 TEST(DifferencePicture, is_the_paler_the_less_they_differ) {
     const GreyImage grey(80, 40, 0.2f);
     const RgbaImage picture = differencePicture(leftHalf(), grey);
-    EXPECT_GT(picture.at(70, 5).r, 150);  // 0.2 of guide alone
-    EXPECT_LT(picture.at(10, 5).b, 90);   // 0.8 of pattern alone
+    EXPECT_GT(picture.at(70, 5).r, 150);  // only guide, 0.2
+    EXPECT_LT(picture.at(10, 5).b, 90);   // only pattern, 0.8
 }
 
 TEST(DifferenceFigure, shows_the_picture_with_its_cells_upright) {
@@ -73,7 +72,7 @@ TEST(DifferenceFigure, shows_the_picture_with_its_cells_upright) {
     const ScratchFolder folder;
     ASSERT_TRUE(differenceFigure(pattern, lowerHalf()).write(folder / "d.png"));
     const RgbaImage page = readRgba(folder / "d.png").value();
-    // The picture's four quarters, found in the page by their colours, keep their places.
+    // The picture's four quarters are found on the page by their colours, in the same arrangement.
     EXPECT_TRUE(isRed(page.at(page.width() / 8, 60)));
     EXPECT_TRUE(isBlue(page.at(page.width() * 7 / 8, 500)));
     const auto has = [&](auto fits) { return std::any_of(page.pixels().begin(), page.pixels().end(), fits); };
@@ -90,10 +89,10 @@ TEST(Page, is_written_as_png_and_as_svg_the_same_each_time) {
     EXPECT_EQ(readFile(folder / "a.png").value(), readFile(folder / "b.png").value());
     EXPECT_EQ(readFile(folder / "a.svg").value().size(), readFile(folder / "b.svg").value().size());
     EXPECT_THAT(readFile(folder / "a.svg").value(), HasSubstr("<svg"));
-    EXPECT_THAT(page.write(folder / "a.jpg").error().message(), HasSubstr("ends in .png or .svg"));
+    EXPECT_THAT(page.write(folder / "a.jpg").error().message(), HasSubstr("must end in .png or .svg"));
 }
 
-// Example failure: a text's end is where the next line begins.
+// Example failure: a line begins where the text before it ends.
 TEST(Page, a_line_begins_where_it_is_told) {
     const ScratchFolder folder;
     Page page(200, 100);
@@ -129,17 +128,15 @@ TEST(PowerSpectrum, of_a_wave_is_one_bin) {
     for (std::size_t bin = 0; bin < power.size(); ++bin) EXPECT_NEAR(power[bin], bin == 5 ? 96 * 96 : 0, 1e-9);
 }
 
-// The dashed line of the figure is where the excitation lies.
+// The figure's dashed line agrees with the excitation.
 TEST(PowerSpectrum, of_an_excitation_falls_by_two_beta) {
     Rng rng(1);
     const std::vector<double> power = powerSpectrum(pattern::Excitation(1, 2000, 30, 0).draw(rng));
     EXPECT_NEAR(std::log(power[900] / power[9]) / std::log(100), -2, 1e-6);
 }
 
-// Two patterns of one seed and settings move alike, and their figures say so by seed, group and
-// instance.
-// Example failure: the figures of two patterns are the same bytes, and nobody can tell which is
-// whose.
+// Patterns with the same seed and settings move alike, so figures name seed, group and instance.
+// Example failure: the figures of two patterns are the same bytes and cannot be told apart.
 TEST(Figures, a_spectrum_names_what_it_is_of) {
     const ScratchFolder folder;
     const auto drawnAs = [&](std::uint64_t seed, std::uint32_t id, std::uint32_t group) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr glm::vec3 kBlack(0), kRed(1, 0, 0), kBlue(0, 0, 1);
 
-// An upright square with this middle and half its side.
+// An upright square with its middle and half its side.
 TriangleMesh square(const glm::vec3& middle, float half) {
     return {{middle + glm::vec3(-half, -half, 0), middle + glm::vec3(half, -half, 0), middle + glm::vec3(half, half, 0),
              middle + glm::vec3(-half, half, 0)},
@@ -23,7 +23,7 @@ Surface plain(TriangleMesh mesh, const glm::vec3& colour, float opacity = 1) {
     return {std::move(mesh), [=](const glm::vec3&, const glm::vec3&) { return glm::vec4(colour, opacity); }, opacity < 1};
 }
 
-// At the height of 1 m, along -z; a metre at a distance of 5 m is 20 of 100 pixels.
+// At a height of 1 m, looking along -z. A metre at a distance of 5 m is 20 of 100 pixels.
 const Camera kAhead{{0, 1, 5}, {0, 1, 0}, 2 * std::atan(0.5)};
 
 TEST(Camera, puts_points_where_a_pinhole_does) {
@@ -41,7 +41,7 @@ TEST(Camera, fits_points_in_tightly) {
     for (const double aspect : {0.5, 1.0, 2.5}) {
         const Camera camera = Camera::fitting(points, {-0.7, -0.4, -0.6}, 0.6, aspect, 0.1);
         const int height = 1000, width = static_cast<int>(1000 * aspect);
-        double most = 0;  // of half the picture
+        double most = 0;  // share of half the picture
         for (const glm::dvec3& point : points) {
             const glm::dvec2 off = camera.pixelAt(point, width, height).value() / glm::dvec2(0.5 * width, 0.5 * height) - 1.0;
             most = std::max({most, std::abs(off.x), std::abs(off.y)});
@@ -68,8 +68,8 @@ TEST(Rendering, shows_the_nearer_before_the_farther_in_any_order) {
     }
 }
 
-// Half of the light comes through, whichever is listed first; what is behind something opaque is
-// not seen.
+// Half of the light comes through, in any order of the surfaces. Nothing shows through an opaque
+// surface.
 TEST(Rendering, blends_what_is_translucent) {
     const Surface veil = plain(square({0, 1, 1}, 0.5f), kRed, 0.5f), wall = plain(square({0, 1, 0}, 1), kBlue);
     const auto half = static_cast<std::uint8_t>(std::lround(255 * srgbFromLinear(0.5f)));
@@ -78,7 +78,7 @@ TEST(Rendering, blends_what_is_translucent) {
     EXPECT_EQ(rendered(std::vector{veil, door}, kAhead, kBlack, 200, 100).at(98, 47), (Rgba8{0, 0, 255}));
 }
 
-// Example failure: a floor that reaches behind the camera is turned inside out.
+// Example failure: a floor that extends behind the camera is drawn inside out.
 TEST(Rendering, cuts_what_reaches_behind_the_camera) {
     const Surface floor = plain({{{-50, 0, 50}, {50, 0, 50}, {50, 0, -500}, {-50, 0, -500}}, {{0, 1, 2}, {0, 2, 3}}}, kRed);
     const RgbaImage picture = rendered(std::vector{floor}, kAhead, kBlack, 200, 100);
@@ -92,7 +92,7 @@ TEST(Rendering, has_edges_between_its_pixels) {
     EXPECT_EQ(picture.at(110, 50), (Rgba8{third, 0, 0}));
 }
 
-// A ridge of 90 degrees stays sharp, one of 20 is rounded.
+// A ridge of 90 degrees stays sharp, one of 20 degrees is smoothed.
 TEST(Rendering, smooths_flat_edges_alone) {
     for (const double degrees : {10.0, 45.0}) {
         const auto deep = static_cast<float>(std::tan(degrees * std::numbers::pi / 180));

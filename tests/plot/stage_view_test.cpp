@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kWidth = 640, kHeight = 320;
 
-// A screen of 4 m x 2 m in pixels of 2 cm: the target is 1 m wide at its left, the shadow 1 m wide
-// at its right, both 1 m high.
+// A screen of 4 m x 2 m with pixels of 2 cm. The target, at the left, and the shadow, at the right,
+// are 1 m wide and high.
 StageView aView() {
     const theatre::Stage stage;
     StageView view{stage,
@@ -47,14 +47,14 @@ TEST(StageView, shows_shadow_and_target_where_they_are_on_the_screen) {
         const RgbaImage picture = view.draw(camera, kWidth, kHeight);
         EXPECT_LT(brightness(at(picture, camera, {1, 0.8, 0})), 250);   // in the shadow
         EXPECT_GT(brightness(at(picture, camera, {1, 1.5, 0})), 550);   // above it
-        EXPECT_GT(brightness(at(picture, camera, {-1, 0.5, 0})), 550);  // in the target, where nobody's shadow is
+        EXPECT_GT(brightness(at(picture, camera, {-1, 0.5, 0})), 550);  // in the target, without shadow
         EXPECT_TRUE(isRed(at(picture, camera, {-1, 1, 0})));            // on its upper edge
-        EXPECT_TRUE(isRed(at(picture, camera, {-1.5, 0.5, 0})));        // on its left one
+        EXPECT_TRUE(isRed(at(picture, camera, {-1.5, 0.5, 0})));        // on its left edge
     }
 }
 
-// From behind the lamp and the right: the right of two people of one size is not the one at the
-// left, and the nearer hides the farther.
+// The view is from behind the lamp and the right: each of two people of the same size has his own
+// colour, and the nearer hides the farther.
 TEST(StageView, shows_people_in_their_colours_the_nearer_before_the_farther) {
     StageView view = aView();
     view.actors = {{box({-0.2f, 0, 2}, {0.2f, 1.7f, 2.2f}), kGreen}, {box({-1, 0, 1}, {1, 1.6f, 1.2f}), kBlue}};
@@ -66,7 +66,7 @@ TEST(StageView, shows_people_in_their_colours_the_nearer_before_the_farther) {
     EXPECT_EQ(view.draw(ahead, kWidth, kHeight), picture);
 }
 
-// The second stands at the right and looks to the left, and has the same image the other way round.
+// The second screen stands at the right and faces left. It has the same image, mirrored.
 TEST(StageView, shows_every_screen_with_its_own_shadow) {
     StageView view = aView();
     view.stage.screens.push_back({{2.5, 3}, -std::numbers::pi / 2});
@@ -75,15 +75,15 @@ TEST(StageView, shows_every_screen_with_its_own_shadow) {
         {theatre::ScreenFrame(view.stage, -2, 2, 0.02, 200, 100, 1), view.images[0].target, view.images[0].shadow});
     for (const Camera& camera : {view.overview(2), view.closeUp(2)}) {
         const RgbaImage picture = view.draw(camera, kWidth, kHeight);
-        EXPECT_LT(brightness(at(picture, camera, {1, 0.8, 0})), 250);    // in the first's shadow
+        EXPECT_LT(brightness(at(picture, camera, {1, 0.8, 0})), 250);    // in the first screen's shadow
         EXPECT_GT(brightness(at(picture, camera, {-1, 0.5, 0})), 550);   // beside it
-        EXPECT_LT(brightness(at(picture, camera, {2.5, 0.8, 2})), 250);  // 1 m to the left on the second
+        EXPECT_LT(brightness(at(picture, camera, {2.5, 0.8, 2})), 250);  // 1 m to the left on the second screen
         EXPECT_GT(brightness(at(picture, camera, {2.5, 0.5, 4})), 550);  // in its target
         EXPECT_TRUE(isRed(at(picture, camera, {2.5, 1, 4})));
     }
 }
 
-// Each light takes half of the light from where its shadow is.
+// In each light's shadow, half of the light is missing.
 TEST(StageView, two_shadows_on_a_screen_are_twice_as_dark_where_they_meet) {
     StageView view = aView();
     view.stage.beams.push_back({{0.1, 0, 7}, 0});
@@ -123,7 +123,7 @@ TEST(StageView, shows_props) {
     EXPECT_TRUE(isGreen(at(view.draw(camera, kWidth, kHeight), camera, {0.3, 0.25, 3.2})));
 }
 
-// Example failure: people hover, for nothing on the floor says that they stand on it.
+// Example failure: people seem to hover, since nothing shows that they stand on the floor.
 TEST(StageView, darkens_the_floor_where_something_stands_on_it) {
     StageView view = aView();
     const Camera camera = view.overview(2);
@@ -134,7 +134,7 @@ TEST(StageView, darkens_the_floor_where_something_stands_on_it) {
         return brightness(at(before, camera, place)) - brightness(at(view.draw(camera, kWidth, kHeight), camera, place));
     };
     EXPECT_GT(darker(0, beside), 40);
-    EXPECT_LT(darker(0.8f, beside), darker(0, beside)) << "less below what is high";
+    EXPECT_LT(darker(0.8f, beside), darker(0, beside)) << "less below high things";
     EXPECT_EQ(darker(0, away), 0);
 }
 

@@ -20,14 +20,14 @@ Projection projectionOf(const WarpShape& shape, double blackLevel = 0) {
     return projection;
 }
 
-// Two pictures side by side on a canvas of twice their width, overlapping by a fifth of a picture.
+// Two pictures side by side on one canvas, overlapping by a fifth of a picture.
 std::vector<Projection> sideBySide(double blackLevel = 0) {
     return {projectionOf({.part = {{0, 0}, {0.5556, 1}}, .corners = rectangleCorners(kSize.x, kSize.y)}, blackLevel),
             projectionOf({.part = {{0.4444, 0}, {1, 1}}, .corners = rectangleCorners(kSize.x, kSize.y)}, blackLevel)};
 }
 
-// Four crooked pictures over a canvas, two by two, one of them bent, one upside down, one mirrored,
-// and no edge parallel to another.
+// Four crooked pictures on a canvas, two by two: one has a mesh, one is upside down, one mirrored,
+// and no edges are parallel.
 std::vector<Projection> crookedFour(double blackLevel) {
     const auto corners = [](double a, double b, double c, double d) {
         return std::array<glm::dvec2, 4>{{{10 + a, 12}, {300, 6 + b}, {312 - c, 172}, {6, 170 - d}}};
@@ -55,8 +55,8 @@ std::vector<BlendMap> mapsOf(const std::vector<Projection>& projections) {
     return maps;
 }
 
-// Light on a point of the canvas, by all projectors, when the whole canvas is to have `wanted`:
-// each pixel's, between the four nearest.
+// The light of all projectors at a point of the canvas if the whole canvas should have `wanted`. It
+// is interpolated between each projector's four nearest pixels.
 double lightOn(glm::dvec2 canvas, double wanted, const std::vector<Projection>& projections, const std::vector<BlendMap>& maps) {
     double sum = 0;
     for (std::size_t i = 0; i < projections.size(); ++i) {
@@ -77,9 +77,8 @@ double lightOn(glm::dvec2 canvas, double wanted, const std::vector<Projection>& 
     return sum;
 }
 
-// How far from each other the brightest and the darkest place of the canvas are, but for places
-// within a pixel or so of an edge, where black levels step and pixels of two projectors cannot meet
-// exactly.
+// The difference between the canvas's brightest and darkest places. Places within about a pixel of
+// an edge are left out: black levels step there, and the pixels of two projectors cannot coincide.
 double unevenness(double wanted, const std::vector<Projection>& projections, const std::vector<BlendMap>& maps) {
     double least = INFINITY, most = 0;
     for (int y = 0; y < 90; ++y)
@@ -110,14 +109,14 @@ TEST(BlendMap, shares_the_light_of_an_overlap_and_nothing_else) {
     const auto maps = mapsOf(projections);
     EXPECT_EQ(maps[0].at(10, 90), glm::vec2(1, 0));
     EXPECT_EQ(maps[1].at(310, 90), glm::vec2(1, 0));
-    // The overlap is a fifth of each picture: from 256 on. In its middle both give a half; it rises
-    // all the way.
+    // The overlap is a fifth of each picture, from column 256 on. In its middle both contribute a
+    // half; the share is monotonic.
     EXPECT_NEAR(maps[0].at(288, 90).x, 0.5, 0.03);
     EXPECT_LT(maps[0].at(319, 90).x, 0.01);
     EXPECT_GT(maps[0].at(257, 90).x, 0.99);
     for (int x = 257; x < 320; ++x) EXPECT_LE(maps[0].at(x, 90).x, maps[0].at(x - 1, 90).x + 1e-6f) << x;
-    // Top and bottom are edges of both: nothing is to be blended there. Example failure: the
-    // distance to the nearest edge of any kind.
+    // Top and bottom are edges of both pictures, so nothing is blended there. Example failure:
+    // shares follow the distance to the nearest edge of any kind.
     for (const int y : {0, 45, 179}) EXPECT_NEAR(maps[0].at(288, y).x, maps[0].at(288, 90).x, 1e-4) << y;
 }
 
@@ -132,8 +131,8 @@ TEST(BlendMap, makes_every_field_even_at_every_grey) {
         }
 }
 
-// Without the lift the overlap's black would be twice as bright as the rest; what is lifted is as
-// bright as that, not brighter.
+// Without the lift, the overlap's black would be twice as bright as the rest. The lifted black is
+// as bright as the overlap's, not brighter.
 TEST(BlendMap, lifts_the_blacks_around_an_overlap_to_its_own) {
     const auto projections = sideBySide(0.02);
     const auto maps = mapsOf(projections);
@@ -143,7 +142,7 @@ TEST(BlendMap, lifts_the_blacks_around_an_overlap_to_its_own) {
     EXPECT_NEAR(lightOn({0.2, 0.5}, 1, projections, maps), 1, 1e-6);
 }
 
-// Each share begins and ends without a kink, which an eye finds sooner than the blend itself.
+// Shares begin and end without a kink, which would be more visible than the blend itself.
 TEST(BlendMap, rises_smoothly) {
     const auto maps = mapsOf(sideBySide());
     const auto slope = [&](int x) { return double{maps[0].at(x + 1, 90).x} - double{maps[0].at(x, 90).x}; };
@@ -167,7 +166,7 @@ TEST(BlendMap, masks_hide_what_they_cover_with_soft_edges) {
     const BlendMap outside = blendMap(std::vector{projection}, 0, 1).value();
     for (int y = 0; y < kSize.y; ++y)
         for (int x = 0; x < kSize.x; ++x) ASSERT_NEAR(outside.at(x, y).x + inside.at(x, y).x, 1, 1e-5);
-    // A picture of half the size, dark on its right.
+    // An image of half the size, dark on its right.
     auto image = std::make_shared<GreyImage>(160, 90, 1.0f);
     for (int y = 0; y < 90; ++y)
         for (int x = 80; x < 160; ++x) image->at(x, y) = 0.25f;

@@ -1,4 +1,4 @@
-// What happens to a picture between its layers and the projector: blending, colours, gamma, dither.
+// The steps between layers and projector: blending, colours, gamma, dither.
 
 #include "render/scene.h"
 
@@ -26,15 +26,16 @@ Projection plain() { return projectionTo(kSize, rectangleCorners(kSize.x, kSize.
 
 int storedOf(double light) { return static_cast<int>(std::lround(255 * srgbFromLinear(static_cast<float>(light)))); }
 
-// A square in the picture's middle, so that a layer has covered places and others.
+// A square in the picture's middle, so that a layer has covered and uncovered places.
 PatternSource square(float grey) { return resting(squareAt({kAspect / 2, 0.5}, 0.3, glm::vec3(grey))); }
 
 struct Pixels {
-    int covered = 0, uncovered = 0;  // stored green in the middle and in a corner
+    int covered = 0, uncovered = 0;  // stored green values in the middle and in a corner
 };
 Pixels pixelsOf(const RgbaImage& image) { return {image.at(kSize.x / 2, kSize.y / 2).g, image.at(2, 2).g}; }
 
-// By the definition of each mode in linear light: what lies below a square of light 0.5 is 0.4.
+// The expectations follow from each mode's definition in linear light, for a square of light 0.5
+// over 0.4.
 TEST(Composer, blends_layers_in_linear_light) {
     DrawnOutput output(plain(), {SolidSource{glm::vec3(0.4f)}, square(0.5f)});
     const auto drawn = [&](Blend blend, float opacity) {
@@ -42,20 +43,19 @@ TEST(Composer, blends_layers_in_linear_light) {
     };
     struct Case {
         Blend blend;
-        double whole, half;  // where the square is
+        double whole, half;  // expected light in the square at opacity 1 and 0.5
     };
     for (const Case& wanted :
          {Case{Blend::Add, 0.9, 0.65}, {Blend::Over, 0.5, 0.45}, {Blend::Multiply, 0.2, 0.3}, {Blend::Screen, 0.7, 0.55}}) {
         for (const auto& [opacity, light] : {std::pair(1.0f, wanted.whole), {0.5f, wanted.half}}) {
             const Pixels pixels = drawn(wanted.blend, opacity);
             EXPECT_NEAR(pixels.covered, storedOf(light), 1) << static_cast<int>(wanted.blend) << " at " << opacity;
-            EXPECT_NEAR(pixels.uncovered, storedOf(0.4), 1) << "where a layer draws nothing it changes nothing";
+            EXPECT_NEAR(pixels.uncovered, storedOf(0.4), 1) << "a layer changes nothing where it covers nothing";
         }
     }
 }
 
-// The order counts, through as many layers as there are; what one pass cannot take is carried on
-// without loss.
+// The order of any number of layers is kept. Layers beyond one pass are carried on without loss.
 TEST(Composer, keeps_the_order_of_any_number_of_layers) {
     DrawnOutput output(plain(), {SolidSource{glm::vec3(0.8f)}, square(0.5f), SolidSource{glm::vec3(0.25f)}, square(0.125f)});
     const OutputState state{
@@ -69,8 +69,8 @@ TEST(Composer, keeps_the_order_of_any_number_of_layers) {
     EXPECT_NEAR(pixels.uncovered, storedOf(around), 1);
 }
 
-// A crossfade of two composed looks, over a light that both have: each picture is composed by
-// itself and then counts with its share.
+// A crossfade of two composed looks that share one light: each picture is composed separately and
+// then weighted with its share.
 TEST(Composer, adds_pictures_with_their_shares) {
     DrawnOutput output(plain(), {SolidSource{glm::vec3(0.1f)}, SolidSource{glm::vec3(0.8f)}, square(0.5f), square(0.25f)});
     const OutputState state{{{0, 1.0f}, {1, 1.0f}, {2, 1.0f, Blend::Multiply}, {1, 0.5f}, {3, 1.0f, Blend::Over}},
@@ -91,7 +91,7 @@ TEST(Composer, tints_in_linear_light) {
     EXPECT_NEAR(pixel.b, storedOf(0.1), 1);
 }
 
-// A projector of gamma 2.2 makes of each stored value the light that was asked for.
+// A projector of gamma 2.2 turns each sent value into the wanted light.
 TEST(Composer, sends_the_projector_values_of_its_own_gamma) {
     Projection projection = plain();
     projection.light.gamma = 2.2;
@@ -102,7 +102,7 @@ TEST(Composer, sends_the_projector_values_of_its_own_gamma) {
     }
 }
 
-// The table is of stored sRGB values, as the programs that write such tables show them.
+// The table maps stored sRGB values, as in the programs that write such tables.
 TEST(Composer, looks_colours_up_in_the_table) {
     const auto turned = [](glm::vec3 stored) { return glm::vec3(stored.g, 1 - stored.b, 0.5f * stored.r); };
     ColourCube cube;
@@ -120,14 +120,14 @@ TEST(Composer, looks_colours_up_in_the_table) {
     }
 }
 
-// A light between two stored values becomes a mixture of the two that has that light, in places
-// that no eye makes a pattern of: no row and no column has much more of the one than another.
+// A light between two stored values becomes a mixture of both with the same mean, without a visible
+// pattern: all rows and columns have about the same number of each.
 TEST(Composer, dithers_between_two_values_and_keeps_the_mean) {
     Projection projection = projectionTo({256, 256}, rectangleCorners(256, 256));
     projection.light.dither = true;
     for (const double between : {40.25, 40.5, 40.8}) {
-        // The layer's own 8 bits must not decide: half of a light of 1 is exact, the opacity does
-        // the rest.
+        // The layer's own 8 bits must not limit the light: white is exact in them, and the opacity
+        // does the rest.
         const float light = linearFromSrgb(static_cast<float>(between / 255));
         DrawnOutput output(projection, {SolidSource{glm::vec3(1)}});
         const RgbaImage& image = output.frame({{0, light}});
@@ -149,8 +149,8 @@ TEST(Composer, dithers_between_two_values_and_keeps_the_mean) {
     }
 }
 
-// What can be stored is not touched, black above all: a dark wall with a sparkling dot here and
-// there is worse than any step.
+// Storable values are not dithered, above all black: single sparkling pixels on a dark wall are
+// worse than any step.
 TEST(Composer, leaves_what_can_be_stored_as_it_is) {
     Projection projection = plain();
     projection.light.dither = true;
@@ -160,8 +160,8 @@ TEST(Composer, leaves_what_can_be_stored_as_it_is) {
             ASSERT_EQ(pixel.g, value);
 }
 
-// A slow gradient, as of a wide penumbra: without the dither it is a stair of some steps, with it
-// the mean over a few pixels follows the light.
+// A slow gradient, as in a wide penumbra, shows steps without dither. With dither, the mean over a
+// few pixels follows the light.
 TEST(Composer, hides_the_steps_of_a_gradient) {
     constexpr glm::ivec2 kWide{512, 64};
     const auto largestMiss = [&](bool dither) {
@@ -190,7 +190,7 @@ TEST(Composer, hides_the_steps_of_a_gradient) {
     EXPECT_LT(ditheredMiss, 0.1);
 }
 
-// The technician turns a knob while the show runs.
+// A technician changes settings while the show runs.
 TEST(Composer, follows_new_settings_and_goes_back) {
     DrawnOutput output(plain(), {SolidSource{glm::vec3(0.5f)}});
     const RgbaImage before = output.frame({{0, 1}});
@@ -202,8 +202,8 @@ TEST(Composer, follows_new_settings_and_goes_back) {
     EXPECT_EQ(output.frame({{0, 1}}), before);
 }
 
-// What the technician sees lies on the signal itself: neither colours nor blends nor the warp touch
-// it, and the show is seen around it.
+// The overlay lies on the signal itself: colours, blend and warp do not affect it, and the show is
+// visible around it.
 TEST(SettingUp, lays_the_overlay_over_all_pixel_by_pixel) {
     Projection projection = projectionTo(kSize, keystone(kSize));
     projection.light.gamma = 2.2;
@@ -228,8 +228,8 @@ TEST(SettingUp, lays_the_overlay_over_all_pixel_by_pixel) {
     EXPECT_EQ(output.frame({{0, 1}}), shown);
 }
 
-// A grey ramp is there to judge the colours: it passes all of them, from edge to edge whatever the
-// warp.
+// A grey ramp is for judging the colours: it passes all colour settings and fills the picture
+// whatever the warp.
 TEST(SettingUp, shows_a_card_through_the_colours_but_not_the_warp) {
     Projection projection = projectionTo(kSize, keystone(kSize));
     projection.light.gamma = 2.2;

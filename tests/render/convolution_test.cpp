@@ -1,4 +1,4 @@
-// The blur on the GPU against what it stands for: a sum over the filter, in double precision, on
+// Compares the blur on the GPU with its definition, a sum over the filter in double precision on
 // the CPU.
 
 #include "render/gpu/paint/convolution.h"
@@ -22,7 +22,7 @@
 namespace fantascope::render {
 namespace {
 
-// What single precision leaves of a sum of some thousand terms.
+// The error of a sum of some thousand terms in single precision.
 constexpr double kTransform = 2e-6;
 
 GreyImage randomPicture(glm::ivec2 size, std::uint64_t seed) {
@@ -32,7 +32,7 @@ GreyImage randomPicture(glm::ivec2 size, std::uint64_t seed) {
     return picture;
 }
 
-// A square over each pixel that is 1.
+// A pattern with a square over each pixel that is 1.
 pattern::ShapePattern mosaic(const GreyImage& picture) {
     pattern::ShapePattern pattern = squareAt({0, 0}, std::sqrt(0.5) / picture.height(), glm::vec3(1));
     pattern.width = picture.width();
@@ -48,7 +48,7 @@ pattern::ShapePattern mosaic(const GreyImage& picture) {
     return pattern;
 }
 
-// A context, and what it takes to blur in it.
+// An OpenGL context and everything needed to blur in it.
 struct Gpu {
     DrawnOutput context{{16, 16}, rectangleCorners(16, 16), {}};
     static constexpr int kSamples = 4;
@@ -59,7 +59,7 @@ struct Gpu {
                        kSamples,
                        Stopwatch(nullptr)};
 
-    // `picture` in black all round, painted, and blurred by the GPU.
+    // `picture`, painted with a black margin and blurred by the GPU.
     GreyImage blurred(const GreyImage& picture, const GreyImage& filter, glm::vec2 fromCoverage = {0, 1}, int block = 1) {
         const glm::ivec2 size(picture.width(), picture.height());
         auto convolution = gpu::Convolution::create(size, filter, block, kSamples, tools.programs);
@@ -84,8 +84,7 @@ struct Gpu {
     }
 };
 
-// Each pixel: the sum of the filter's values times the pixels that it is turned over onto; nothing
-// beyond the border.
+// The convolution at one pixel by definition, with 0 beyond the border.
 double convolved(const GreyImage& picture, const GreyImage& filter, int x, int y) {
     double sum = 0;
     for (int v = 0; v < filter.height(); ++v)
@@ -112,10 +111,9 @@ double sumOf(const GreyImage& image) {
     return sum;
 }
 
-// Odd and even sizes, primes, one pixel, wider filters than the picture, discs with fractional
-// diameters.
-// Example failures: the quarters of an odd picture overlap or leave a gap; the border wraps around;
-// the filter is off by a pixel.
+// Odd and even sizes, primes, one pixel, filters wider than the picture, discs with fractional
+// diameters. Example failures: the quarters of an odd picture overlap or leave a gap; the border
+// wraps around; the filter is off by a pixel.
 TEST(Convolution, is_the_sum_over_the_filter_for_every_size_and_diameter) {
     Gpu gpu;
     for (const glm::ivec2 size : {glm::ivec2(1, 1), {2, 3}, {37, 23}, {64, 48}, {101, 7}}) {
@@ -126,14 +124,14 @@ TEST(Convolution, is_the_sum_over_the_filter_for_every_size_and_diameter) {
     }
 }
 
-// Painted more finely than it is blurred: the same.
+// A picture that is painted more finely than it is blurred gives the same result.
 TEST(Convolution, averages_a_finer_picture) {
     Gpu gpu;
     const GreyImage picture = randomPicture({37, 23}, 5), disc = discFilter(7);
     for (const int block : {2, 4}) EXPECT_LT(largestError(gpu.blurred(picture, disc, {0, 1}, block), picture, disc), kTransform);
 }
 
-// Example failure: an upside-down or mirrored filter, which no disc shows.
+// Example failure: a filter that is upside down or mirrored, which a disc would not reveal.
 TEST(Convolution, keeps_any_filter_the_right_way_round) {
     Gpu gpu;
     GreyImage filter(9, 5);
@@ -142,7 +140,7 @@ TEST(Convolution, keeps_any_filter_the_right_way_round) {
     const GreyImage picture = randomPicture({41, 30}, 6);
     EXPECT_LT(largestError(gpu.blurred(picture, filter), picture, filter), kTransform * sumOf(filter));
 
-    // One hole throws the filter's picture itself.
+    // A single pixel gives the filter itself.
     GreyImage hole(21, 21);
     hole.at(10, 10) = 1;
     const GreyImage thrown = gpu.blurred(hole, filter);
@@ -150,7 +148,7 @@ TEST(Convolution, keeps_any_filter_the_right_way_round) {
         for (int x = 0; x < 9; ++x) EXPECT_NEAR(thrown.at(6 + x, 8 + y), filter.at(x, y), 1e-5) << x << ", " << y;
 }
 
-// Light beyond the canvas is white, and white stays white.
+// Beyond the canvas there is full light, and white stays white.
 TEST(Convolution, pads_with_white) {
     Gpu gpu;
     const GreyImage white = gpu.blurred(GreyImage(50, 40), discFilter(21), {1, -1});
@@ -158,7 +156,7 @@ TEST(Convolution, pads_with_white) {
     const GreyImage allDark(50, 40, 1.0f);
     const GreyImage lit = gpu.blurred(allDark, discFilter(21), {1, -1});
     EXPECT_NEAR(lit.at(25, 20), 0, 1.0 / 255);
-    EXPECT_NEAR(lit.at(0, 20), 0.5, 0.04) << "half of the disc reaches out into the light";
+    EXPECT_NEAR(lit.at(0, 20), 0.5, 0.04) << "half of the disc lies in the light outside";
     EXPECT_NEAR(lit.at(49, 39), 0.75, 0.04);
 }
 

@@ -1,5 +1,5 @@
 // draw_frames FILE: writes the stored values of some frames of a crossfade between two swaying
-// patterns, for comparing processes.
+// patterns, so that processes can be compared.
 
 #include "render/scene.h"
 

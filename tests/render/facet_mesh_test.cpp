@@ -17,7 +17,7 @@ std::array<glm::vec3, 3> cornersOf(const FacetMesh& facets, std::size_t triangle
 }
 
 // OpenGL takes a facet's normal from its last corner.
-// Example failure: a corner that two facets share carries the normal of the later one.
+// Example failure: a corner that two facets share has the normal of the later one.
 TEST(FacetMesh, each_facets_last_corner_is_its_own_and_has_its_normal) {
     const FacetMesh facets = facetMesh(kTetrahedron);
     ASSERT_EQ(facets.indices.size(), 12u);
@@ -27,7 +27,7 @@ TEST(FacetMesh, each_facets_last_corner_is_its_own_and_has_its_normal) {
         const auto [a, b, c] = cornersOf(facets, t);
         const glm::vec3 normal = glm::normalize(glm::cross(b - a, c - a));
         EXPECT_LT(glm::distance(facets.vertices[facets.indices[3 * t + 2]].normal, normal), 1e-6f);
-        EXPECT_GT(glm::dot(normal, a), 0) << "the triangle was turned over";
+        EXPECT_GT(glm::dot(normal, a), 0) << "the triangle was flipped";
     }
 }
 
@@ -44,7 +44,7 @@ TEST(FacetMesh, keeps_the_triangles_and_shares_their_other_corners) {
     }
 }
 
-// With more facets than corners some corners must be there twice.
+// With more facets than corners, some corners must be copied.
 TEST(FacetMesh, copies_a_corner_when_all_three_are_taken) {
     const TriangleMesh fan{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                            {{0, 1, 2}, {0, 2, 1}, {0, 1, 3}, {0, 3, 1}, {0, 2, 3}, {0, 3, 2}}};
@@ -60,7 +60,7 @@ TEST(FacetMesh, a_flat_shape_has_no_normals_whichever_way_its_triangles_turn) {
     for (const FacetVertex& vertex : facets.vertices) EXPECT_EQ(vertex.normal, glm::vec3(0));
 }
 
-// Only of a closed surface may the facets that are turned away be left out.
+// Back faces may be culled only on a closed surface.
 TEST(FacetMesh, knows_closed_surfaces_from_open_and_inverted_ones) {
     EXPECT_TRUE(facetMesh(kTetrahedron).closed);
     TriangleMesh open = kTetrahedron;

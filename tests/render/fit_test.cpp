@@ -1,4 +1,5 @@
-// Pictures of other shapes than the canvas: what is round stays round, measured in what is drawn.
+// Sources with another aspect than the canvas: round things must stay round, measured in the drawn
+// picture.
 
 #include "core/fit.h"
 
@@ -38,7 +39,7 @@ Projection straight(glm::ivec2 size, double canvasAspect) {
     return projection;
 }
 
-// ---- A disc in the middle of a square, of every kind that can show one
+// ---- A disc in the middle of a square, by every source kind that can show one
 
 RgbaImage discPicture() {
     RgbaImage picture(kPicture, kPicture);
@@ -68,8 +69,7 @@ struct Kind {
     std::function<PictureSource()> make;
 };
 
-// What a disc of light leaves is measured as what it lights, and a square shadow as what it
-// darkens.
+// A disc of light is measured by what it lights, a square shadow by what it darkens.
 class Fitting : public testing::Test {
 protected:
     std::vector<Kind> kinds() {
@@ -95,8 +95,8 @@ protected:
                 {"shadow", [] { return PictureSource(plate()); }}};
     }
 
-    // A square before a screen; its shadow is half as high as the picture. The actor stands far
-    // beside it.
+    // A square in front of a screen whose shadow is half as high as the picture. The actor is far
+    // out of sight.
     static ShadowSource plate() {
         theatre::Cast cast;
         cast.stage.beams[0].light = {0, 1, 8};
@@ -123,8 +123,7 @@ protected:
     const ScratchFolder folder_;
 };
 
-// The middle and the spread, in pixels, of what is light; of a shadow, of what is dark within its
-// light.
+// The centroid and the spread of the light, or of a shadow within its light, in pixels.
 struct Moments {
     glm::dvec2 middle{0}, spread{0};
 };
@@ -147,13 +146,13 @@ Moments momentsOf(const RgbaImage& image, bool ofShadow) {
     return {middle, glm::sqrt(second / sum - middle * middle)};
 }
 
-// Example failures: a circle drawn on a square is an ellipse 1.8 times as wide as high; one kind of
-// source is forgotten.
+// Example failures: a circle drawn on a square becomes an ellipse 1.8 times as wide as high; one
+// kind of source is forgotten.
 TEST_F(Fitting, what_is_round_on_a_square_is_round_on_a_wide_canvas_but_where_it_is_stretched) {
     for (const Kind& kind : kinds()) {
         const bool isShadow = kind.name == std::string("shadow");
         const PictureSource source = kind.make();
-        // Of a disc and of a square: the standard deviation along a side, for a width of 1.
+        // The standard deviation of a square and of a disc of width 1 along one axis.
         const double spread = isShadow ? 1 / std::sqrt(12.0) : 0.25;
         const struct {
             Fit fit;
@@ -170,8 +169,8 @@ TEST_F(Fitting, what_is_round_on_a_square_is_round_on_a_wide_canvas_but_where_it
     }
 }
 
-// Two projectors that share a canvas, one on its side, a keystone: the canvas's shape counts, not
-// the output's.
+// The canvas's aspect counts, not the output's: for projectors that share a canvas, that lie on
+// their side, or that have a keystone.
 TEST_F(Fitting, goes_by_the_canvas_whatever_part_an_output_shows_of_it) {
     WarpShape half{.corners = rectangleCorners(kSize.x, kSize.y)};
     half.part = {{0.25, 0}, {0.75, 1}};  // of a canvas twice as wide as the output
@@ -192,7 +191,8 @@ TEST_F(Fitting, goes_by_the_canvas_whatever_part_an_output_shows_of_it) {
     }
 }
 
-// Somebody sets the corners: the canvas gets another shape, and every picture another place on it.
+// If a technician moves the corners, the canvas gets another aspect and every source another place
+// on it.
 TEST_F(Fitting, follows_the_canvass_shape) {
     const Projection wide = straight(kSize, kCanvas), wider = straight(kSize, 2 * kCanvas);
     for (const Kind& kind : kinds()) {
@@ -209,7 +209,7 @@ TEST_F(Fitting, follows_the_canvass_shape) {
     }
 }
 
-// Example failure: leaves that sway over the drawing's edge hang into the dark beside it.
+// Example failure: leaves that sway over the drawing's edge are visible in the dark beside it.
 TEST_F(Fitting, nothing_is_seen_beside_a_contained_picture) {
     const glm::ivec2 beside{(kSize.x - kSize.y) / 2, 0};
     FoliageSource lit;
@@ -230,7 +230,7 @@ TEST_F(Fitting, nothing_is_seen_beside_a_contained_picture) {
     }
 }
 
-// Example failure: every show of old looks a little different.
+// Example failure: all existing shows look slightly different.
 TEST_F(Fitting, a_picture_of_the_canvass_own_shape_is_drawn_as_it_ever_was) {
     Projection bent = projectionTo(kSize, keystone(kSize));
     const std::vector<PictureSource> sources = {moving(smallPattern()),
@@ -238,7 +238,7 @@ TEST_F(Fitting, a_picture_of_the_canvass_own_shape_is_drawn_as_it_ever_was) {
     for (const PictureSource& source : sources) {
         bent.canvasAspect = 0;
         const RgbaImage before = drawn(bent, source);
-        bent.canvasAspect = 1.01 * kCanvas;  // as a canvas is that somebody measured
+        bent.canvasAspect = 1.01 * kCanvas;  // as if somebody had measured the canvas
         for (const Fit fit : {Fit::Contain, Fit::Cover, Fit::Stretch}) EXPECT_EQ(drawn(bent, fitted(source, fit)), before);
     }
 }
@@ -249,7 +249,7 @@ TEST(PlaceOnCanvas, is_in_the_middle_and_keeps_the_pictures_shape) {
     EXPECT_EQ(wide, (CanvasPart{{0, 0.25}, {1, 0.75}}));
     EXPECT_EQ(placeOnCanvas(1, 2, Fit::Cover), (CanvasPart{{0, -0.5}, {1, 1.5}}));
     EXPECT_EQ(placeOnCanvas(1, 2, Fit::Stretch), CanvasPart());
-    EXPECT_EQ(placeOnCanvas(2.03, 2, Fit::Contain), CanvasPart()) << "one shape, as far as anybody sees";
+    EXPECT_EQ(placeOnCanvas(2.03, 2, Fit::Contain), CanvasPart()) << "visibly the same aspect";
 }
 
 TEST(Warp, of_a_picture_on_a_canvas_throws_its_points_where_the_canvass_are) {

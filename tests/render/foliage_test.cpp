@@ -1,4 +1,4 @@
-// Light through leaves as an output shows it.
+// Light through leaves on an output.
 
 #include "render/output_renderer.h"
 #include "render/reference_picture.h"
@@ -33,11 +33,11 @@ pattern::ShapePattern rectangle(glm::dvec2 from, glm::dvec2 to) {
     return pattern;
 }
 
-// Leaves all over the canvas, none over its edge.
+// Leaves all over the canvas, but none over its edge.
 pattern::ShapePattern scatteredLeaves() {
     pattern::ShapePattern pattern = smallPattern();
     for (pattern::ShapeInstance& instance : pattern.instances) {
-        instance.shape %= 2;  // the flat ones
+        instance.shape %= 2;  // flat shapes only
         instance.centre = glm::clamp(instance.centre, glm::dvec2(instance.size), glm::dvec2(kAspect, 1) - instance.size);
     }
     return pattern;
@@ -51,11 +51,10 @@ double lightAt(const RgbaImage& image, int x, int y) {
     return double{linearFromSrgb(static_cast<float>(image.at(x, y).g) / 255)};
 }
 
-// Fine and coarse grids, and a disc wider than a third of the picture: the light of every pixel
-// against leaves drawn point by point and a sum over the disc in double precision, white all
-// around.
-// Example failures: a blur that darkens or shifts the picture; a border that repeats or wraps
-// around; a blur of half the width.
+// Fine and coarse grids, and a disc wider than a third of the picture. The expected light of every
+// pixel is a sum over the disc in double precision, of leaves drawn point by point, with full light
+// all around. Example failures: a blur that darkens or shifts the picture; a border that repeats or
+// wraps around; a blur of half the width.
 TEST(Foliage, is_what_a_sum_over_the_suns_disc_gives) {
     const pattern::ShapePattern pattern = scatteredLeaves();
     std::vector<pattern::InstancePose> poses;
@@ -90,7 +89,7 @@ TEST(Foliage, is_what_a_sum_over_the_suns_disc_gives) {
     }
 }
 
-// The paper's pinhole camera: a small slit throws a round picture of the sun.
+// The paper's pinhole camera: a small slit gives a round image of the sun.
 TEST(Foliage, shows_a_round_sun_behind_a_slit) {
     constexpr double kRadius = 40;  // pixels
     const glm::dvec2 middle(kAspect / 2, 0.5), half(heights(kRadius / 8), heights(kRadius / 80));
@@ -116,8 +115,8 @@ TEST(Foliage, shows_a_round_sun_behind_a_slit) {
     EXPECT_NEAR((least + most) / 2, kRadius, 1.5);
 }
 
-// An asymmetric filter through the whole renderer, on fine and coarse grids: a hole throws the
-// picture as it is, neither mirrored nor upside down.
+// An asymmetric filter through the whole renderer, on fine and coarse grids: a hole shows the
+// filter's picture neither mirrored nor upside down.
 TEST(Foliage, throws_a_filters_picture_upright) {
     GreyImage corner(16, 16);
     for (int y = 0; y < 8; ++y)
@@ -137,8 +136,8 @@ TEST(Foliage, throws_a_filters_picture_upright) {
     }
 }
 
-// Where the edges of two layers cross, half of half of the light is left, be they blurred or not.
-// Example failure: shadows that add, so that half and half leave nothing.
+// Where the edges of two layers cross, a quarter of the light is left, blurred or not. Example
+// failure: shadows add, so that two halves leave nothing.
 TEST(Foliage, multiplies_the_light_of_its_layers) {
     const pattern::ShapePattern left = rectangle({-0.5, -0.5}, {kAspect / 2, 1.5}),
                                 top = rectangle({-0.5, -0.5}, {kAspect + 0.5, 0.5});
@@ -157,16 +156,16 @@ TEST(Foliage, multiplies_the_light_of_its_layers) {
     EXPECT_NEAR(lightAt(sharp, 165, 170), 0.8, 0.01);
 }
 
-// A leaf half over the canvas's edge shades the canvas like any other, blurred or not.
-// Example failure: a bright border, because what lies outside was cut away before the blur.
+// A leaf half over the canvas's edge shades the canvas like any other, blurred or not. Example
+// failure: a bright border, because the outside was clipped before the blur.
 TEST(Foliage, goes_on_beyond_the_canvas) {
     const pattern::ShapePattern all = rectangle({-1, -1}, {kAspect + 1, 2});
     DrawnOutput output(kSize, upright(kSize), {FoliageSource{.layers = {leaves(all, 40)}}});
     for (const Rgba8 pixel : output.frame({{0, 1}}).pixels()) ASSERT_LE(pixel.g, 5);
 }
 
-// Sharp and blurred shadows have one centre, also on coarse grids: nothing shifts on the way over
-// the canvas's picture. Example failure: half a pixel of the coarse grid.
+// Sharp and blurred shadows have the same centre, on coarse grids too. Example failure: a shift by
+// half a pixel of the coarse grid.
 TEST(Foliage, stays_in_place_when_it_is_blurred) {
     const pattern::ShapePattern square = rectangle({0.7, 0.35}, {1.0, 0.6});
     const std::array<glm::dvec2, 4> corners = {{{20.5, 10.25}, {300.25, 10.25}, {300.25, 171.5}, {20.5, 171.5}}};
@@ -206,8 +205,8 @@ TEST(Foliage, looks_the_same_on_two_outputs_at_once) {
     EXPECT_EQ(first.frame({{0, 1}}), one);
 }
 
-// Caustics and a mirror ball too: everything is a function of show time, and nothing is allocated
-// while it runs.
+// This includes caustics and a mirror ball: everything is a function of show time, and drawing does
+// not allocate.
 TEST(Foliage, moves_with_show_time_alone_and_allocates_nothing) {
     const ShadowLayer swaying{moving(scatteredLeaves()), {heights(20), nullptr}}, sharp{moving(scatteredLeaves()), {}};
     DrawnOutput output(kSize, keystone(kSize),

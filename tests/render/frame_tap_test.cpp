@@ -30,7 +30,7 @@ DrawnOutput whiteSquareAtTheTopLeft() {
     return {kSize, rectangleCorners(kSize.x, kSize.y), {resting(squareAt({0, 0}, 0.7, glm::vec3(1)))}};
 }
 
-// Stands in for a function of OpenGL for as long as it lives.
+// Replaces an OpenGL function for as long as it exists.
 template <class Function>
 class Replaced {
 public:
@@ -51,12 +51,12 @@ void countedReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum f
     readPixels(x, y, width, height, format, type, pixels);
 }
 
-// A tap whose frames say which they are by their colour, on a display that shows each as long after
-// it is published as the test says.
+// A tap whose frames carry their number as a colour, on a display with a latency that the test
+// sets.
 class TapTest : public testing::Test {
 protected:
     TapTest() : display_(whiteSquareAtTheTopLeft()) {
-        display_.frame({{0, 1}});  // libepoxy puts a function in its place when it is first called
+        display_.frame({{0, 1}});  // libepoxy resolves functions at their first call
         readPixels = epoxy_glReadPixels;
         counting_.emplace(epoxy_glReadPixels, countedReadPixels);
         readbacks = 0;
@@ -72,7 +72,7 @@ protected:
         glDisable(GL_FRAMEBUFFER_SRGB);
         glClearNamedFramebufferfv(display_.sink().framebuffer(), GL_COLOR, 0, values);
     }
-    // Frame number `number` of 30 a second, visible at its show time.
+    // Frame `number` at 30 Hz, visible at its show time.
     void frame(std::int64_t number) {
         const Time showTime = tickTime(number, 30);
         draw(showTime);
@@ -80,7 +80,7 @@ protected:
         glFinish();
         tap_.publish({number, showTime});
     }
-    // The number of the frame that a reader is given, once it has proved whole; -1: none.
+    // Checks that a reader's frame is whole and returns its number; -1: no frame.
     static std::int64_t numberOf(const ShownFrame* frame) {
         if (frame == nullptr) return -1;
         const auto isIts = [&](Rgba8 pixel) { return pixel == colourOf(frame->showTime); };
@@ -98,7 +98,7 @@ protected:
     std::optional<Replaced<PFNGLREADPIXELSPROC>> counting_;
 };
 
-// Example failure: OpenGL's bottom row comes first, and the site's wall is upside down.
+// Example failure: OpenGL's bottom row comes first, so the simulated wall is upside down.
 TEST(FrameTap, gives_the_frame_with_its_top_row_first) {
     DrawnOutput output = whiteSquareAtTheTopLeft();
     const RgbaImage& image = output.frame({{0, 1}});
@@ -120,7 +120,7 @@ TEST_F(TapTest, says_what_was_shown_where_and_when) {
     EXPECT_EQ(frame->shown.at, shown.at);
 }
 
-// The copy is of the moment of capture(), although it is fetched later.
+// The copy is of the moment of capture(), although it is read later.
 // Example failure: the next frame is drawn over it before it is read.
 TEST_F(TapTest, captures_the_frame_before_the_next_one_is_drawn) {
     FrameReader& reader = tap_.addQueue();
@@ -132,8 +132,8 @@ TEST_F(TapTest, captures_the_frame_before_the_next_one_is_drawn) {
     EXPECT_EQ(numberOf(reader.next(1s)), 30);
 }
 
-// The display holds a finished frame until its refresh.
-// Example failure: the wall shows a frame up to a refresh before the projector does.
+// A display holds a finished frame until its refresh.
+// Example failure: the simulated wall shows a frame up to one refresh before the projector does.
 TEST_F(TapTest, shows_no_reader_a_frame_before_its_refresh) {
     FrameReader& queue = tap_.addQueue();
     FrameReader& newest = tap_.addNewest(kEveryFrame);
@@ -146,8 +146,8 @@ TEST_F(TapTest, shows_no_reader_a_frame_before_its_refresh) {
     }
 }
 
-// While the display holds a finished frame, the one before it is what people see.
-// Example failure: the slot has nothing but the frame to come, and the reader sees nothing although
+// While the display holds a finished frame, people see the one before it.
+// Example failure: the slot holds only the future frame, and the reader gets nothing although
 // something is shown.
 TEST_F(TapTest, the_newest_frame_is_the_one_before_while_the_display_still_holds_the_next) {
     FrameReader& newest = tap_.addNewest(kEveryFrame);
@@ -155,9 +155,9 @@ TEST_F(TapTest, the_newest_frame_is_the_one_before_while_the_display_still_holds
     const Time held = tickTime(10, 30);
     EXPECT_EQ(numberOf(newest.next(held - Time(1))), 9);
     EXPECT_EQ(newest.next(held - Time(1)), nullptr);
-    EXPECT_EQ(numberOf(newest.next(held)), 10) << "without another one having come";
+    EXPECT_EQ(numberOf(newest.next(held)), 10) << "although no further frame has come";
     frame(11);
-    EXPECT_EQ(newest.next(held), nullptr) << "it was taken";
+    EXPECT_EQ(newest.next(held), nullptr) << "it was taken before";
     EXPECT_EQ(numberOf(newest.next(tickTime(11, 30))), 11);
 }
 
@@ -174,8 +174,8 @@ TEST_F(TapTest, a_queue_gives_all_frames_in_order_and_a_slot_the_newest) {
     EXPECT_THAT(all(newest), IsEmpty());
 }
 
-// Example failure: a recorder that the machine holds up stops the show, or its frames change while
-// it reads them.
+// Example failure: a recorder that is held up stops the show, or its frames change while it reads
+// them.
 TEST_F(TapTest, goes_on_without_readers_that_do_not_read) {
     FrameReader& stalled = tap_.addQueue();
     FrameReader& asleep = tap_.addNewest(kEveryFrame);
@@ -192,7 +192,7 @@ TEST_F(TapTest, goes_on_without_readers_that_do_not_read) {
     EXPECT_THAT(all(asleep), ElementsAre(19));
 }
 
-// Example failure: a video with gaps that nobody is told of.
+// Example failure: a video has gaps that are not reported.
 TEST_F(TapTest, a_queue_counts_every_frame_that_it_leaves_out) {
     FrameQueue& queue = tap_.addQueue(10);
     ASSERT_TRUE(tap_.prepare());
@@ -248,13 +248,14 @@ TEST_F(TapTest, readers_get_frames_at_their_own_rates) {
         for (const std::int64_t seen : all(slow)) ofSlow.push_back(seen);
     }
     EXPECT_THAT(ofFast, ElementsAre(0, 3, 6, 9, 12, 15, 18, 21, 24, 27, 30));
-    EXPECT_THAT(ofSlow, ElementsAre(0, 8, 16, 24)) << "no frame is a quarter of a second after the first: the next one is taken";
+    EXPECT_THAT(ofSlow, ElementsAre(0, 8, 16, 24))
+        << "no frame is exactly a quarter of a second after the first, so the next one is taken";
     EXPECT_EQ(readbacks, 13) << "once where both want it";
 }
 
 TEST_F(TapTest, one_that_asks_gets_one_frame_the_first_of_that_moment) {
     NewestFrame& reader = tap_.addNewest(kOnlyAsked);
-    tap_.addQueue();  // for whom every frame is read back
+    tap_.addQueue();  // so that every frame is read back
     reader.ask(tickTime(5, 30));
     for (int number = 1; number <= 9; ++number) frame(number);
     EXPECT_THAT(all(reader), ElementsAre(5));
@@ -263,33 +264,32 @@ TEST_F(TapTest, one_that_asks_gets_one_frame_the_first_of_that_moment) {
     reader.ask(Time::zero());
     frame(20);
     frame(21);
-    EXPECT_THAT(all(reader), ElementsAre(20)) << "a moment that has passed is now";
+    EXPECT_THAT(all(reader), ElementsAre(20)) << "a past moment means the next frame";
 }
 
-// Example failure: the operator asks for a picture while a projector is unplugged and never gets
+// Example failure: an operator who asks for a picture while a projector is unplugged never gets
 // one.
 TEST_F(TapTest, a_frame_that_was_not_shown_is_given_to_nobody_and_the_next_one_counts) {
     NewestFrame& asks = tap_.addNewest(kOnlyAsked);
     FrameReader& sometimes = tap_.addNewest(1);
     asks.ask(Time::zero());
     draw(tickTime(1, 30));
-    tap_.capture(display_.sink().framebuffer(), tickTime(1, 30));  // and the cable is pulled
+    tap_.capture(display_.sink().framebuffer(), tickTime(1, 30));  // present() fails: the cable was pulled
     frame(2);
     EXPECT_THAT(all(asks), ElementsAre(2));
     EXPECT_THAT(all(sometimes), ElementsAre(2));
 }
 
-// The graphics card as slow as the test wants it.
+// Makes the GPU as slow as the test wants.
 bool isBehind = false;
 PFNGLCLIENTWAITSYNCPROC clientWaitSync = nullptr;
 GLenum slowClientWaitSync(GLsync sync, GLbitfield flags, GLuint64 timeout) {
     if (isBehind && timeout == 0) return GL_TIMEOUT_EXPIRED;
-    EXPECT_FALSE(isBehind) << "nobody waits for a graphics card that is behind";
+    EXPECT_FALSE(isBehind) << "a GPU that is behind is not waited for";
     return clientWaitSync(sync, flags, timeout);
 }
 
-// Example failure: the render thread waits for a copy, and the show stutters because somebody
-// looks.
+// Example failure: the render thread waits for a copy, and the show stutters because of a reader.
 TEST_F(TapTest, a_copy_that_is_not_done_is_handed_out_with_a_later_frame) {
     clientWaitSync = epoxy_glClientWaitSync;
     const Replaced<PFNGLCLIENTWAITSYNCPROC> slow(epoxy_glClientWaitSync, slowClientWaitSync);
@@ -303,7 +303,7 @@ TEST_F(TapTest, a_copy_that_is_not_done_is_handed_out_with_a_later_frame) {
     EXPECT_THAT(all(newest), ElementsAre(1));
     isBehind = false;
     frame(4);
-    EXPECT_THAT(all(queue), ElementsAre(2, 3, 4)) << "none was left out";
+    EXPECT_THAT(all(queue), ElementsAre(2, 3, 4)) << "none was dropped";
     EXPECT_THAT(all(newest), ElementsAre(4));
 
     isBehind = true;
@@ -311,7 +311,7 @@ TEST_F(TapTest, a_copy_that_is_not_done_is_handed_out_with_a_later_frame) {
     EXPECT_THAT(all(queue), IsEmpty());
     isBehind = false;
     tap_.finish();
-    EXPECT_THAT(all(queue), ElementsAre(5, 6, 7)) << "a card that does not keep up does not pile up copies";
+    EXPECT_THAT(all(queue), ElementsAre(5, 6, 7)) << "a GPU that does not keep up does not accumulate copies";
     EXPECT_EQ(queue.missed(), 13);
     frame(21);
     EXPECT_THAT(all(queue), ElementsAre(21));
@@ -339,8 +339,8 @@ TEST_F(TapTest, allocates_nothing_on_the_render_thread_once_it_is_prepared) {
     EXPECT_EQ(all(sleeps).size(), 1u);
 }
 
-// Real threads, for the thread sanitizer's eyes above all: whatever a reader gets is one whole
-// frame, and it never goes back.
+// Real threads, above all for the thread sanitizer: a reader gets only whole frames, in rising
+// order.
 TEST_F(TapTest, readers_on_threads_of_their_own_get_whole_frames_and_the_newest_in_the_end) {
     constexpr std::int64_t kFrames = 600;
     struct Reading {
@@ -354,7 +354,7 @@ TEST_F(TapTest, readers_on_threads_of_their_own_get_whole_frames_and_the_newest_
         for (Reading& reading : readings)
             threads.emplace_back([&] {
                 for (bool last = false; !last;) {
-                    last = shown == kFrames;  // asked before what may be the last look
+                    last = shown == kFrames;  // read before what may be the last next()
                     const Time now = tickTime(std::max<std::int64_t>(shown, 0), 30);
                     while (const ShownFrame* const frame = reading.reader.next(now)) {
                         EXPECT_LE(frame->shown.at, now);
@@ -373,7 +373,7 @@ TEST_F(TapTest, readers_on_threads_of_their_own_get_whole_frames_and_the_newest_
     for (const Reading& reading : readings) EXPECT_GT(reading.frames, 0);
     EXPECT_EQ(readings[1].newest, kFrames);
     EXPECT_EQ(readings[2].newest, kFrames);
-    EXPECT_EQ(readings[3].newest, 600) << "a ninth of a second is four frames, and 600 is the 150th of them";
+    EXPECT_EQ(readings[3].newest, 600) << "a ninth of a second is four frames, and 600 is a multiple of four";
 }
 
 }  // namespace

@@ -14,10 +14,10 @@ namespace fantascope {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double kMostRms = 1.5;
-constexpr int kMostDifference = 140;  // one sample of four, white on black, is stored as 137
+constexpr double kMaxRms = 1.5;
+constexpr int kMaxDifference = 140;  // one white sample of four on black is stored as 137
 
-// Golden, new, and eight times their difference.
+// Golden, new, and eight times their difference, side by side.
 RgbaImage sideBySide(const RgbaImage& golden, const RgbaImage& image) {
     RgbaImage all(3 * image.width(), image.height());
     for (int y = 0; y < image.height(); ++y)
@@ -35,8 +35,8 @@ RgbaImage sideBySide(const RgbaImage& golden, const RgbaImage& image) {
 
 std::string differsVisibly(const RgbaImage& golden, const RgbaImage& image) {
     const render::Difference apart = render::difference(golden, image);
-    if (apart.rms <= kMostRms && apart.most <= kMostDifference) return "";
-    return fmt::format("rms {:.2f} ({} is allowed), at most {} ({})", apart.rms, kMostRms, apart.most, kMostDifference);
+    if (apart.rms <= kMaxRms && apart.most <= kMaxDifference) return "";
+    return fmt::format("rms {:.2f} ({} is allowed), at most {} ({})", apart.rms, kMaxRms, apart.most, kMaxDifference);
 }
 
 testing::AssertionResult looksLikeGolden(const std::string& name, const RgbaImage& image) {

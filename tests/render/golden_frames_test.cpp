@@ -1,4 +1,4 @@
-// Frames as people will see them, and the same ones from everywhere.
+// Golden frames, and the reproducibility of frames.
 
 #include "render/golden.h"
 #include "render/scene.h"
@@ -18,7 +18,7 @@ namespace {
 
 constexpr glm::ivec2 kSize{480, 270};
 
-// Shapes, shading, warp and movement together: what no other test would notice, an eye does.
+// Shapes, shading, warp and movement together, for errors that no other test would find.
 TEST(GoldenFrames, a_swaying_pattern_through_a_keystone) {
     DrawnOutput output(kSize, keystone(kSize), {moving(smallPattern())});
     EXPECT_TRUE(looksLikeGolden("pattern-at-0s", output.frame({{0, 1}}, Time::zero())));
@@ -38,7 +38,8 @@ TEST(GoldenFrames, light_through_leaves_on_water_and_from_mirrors) {
         EXPECT_TRUE(looksLikeGolden(names[source], output.frame({{source, 1}}, std::chrono::seconds(12))));
 }
 
-// The comparison itself: a picture that is a pixel off, or a shade darker, is not the golden one.
+// Tests the comparison itself: a picture that is a pixel off, or a shade darker, differs from the
+// golden one.
 TEST(GoldenFrames, are_not_met_by_a_shifted_or_a_darker_picture) {
     DrawnOutput output(kSize, keystone(kSize), {moving(smallPattern())});
     const RgbaImage frame = output.frame({{0, 1}}, Time::zero());
@@ -58,7 +59,7 @@ std::string framesOfAnotherProcess(const std::string& environment) {
     return readFile(file).value();
 }
 
-// A night can be replayed byte by byte.
+// A show can be reproduced byte by byte.
 // Example failure: the software renderer's threads blend in the order in which they happen to
 // finish.
 TEST(Frames, are_the_same_bytes_in_every_run_and_on_every_number_of_threads) {

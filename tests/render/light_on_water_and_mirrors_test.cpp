@@ -1,4 +1,4 @@
-// Caustics and mirror-ball light against the optics that they stand for.
+// Compares caustics and a mirror ball's light with optics.
 
 #include "render/drawn_mirror_ball.h"
 #include "render/output_renderer.h"
@@ -32,10 +32,9 @@ TEST(Caustics, are_even_light_under_still_water) {
         ASSERT_NEAR(linearFromSrgb(static_cast<float>(pixel.g) / 255), 0.08, 0.003);
 }
 
-// Rays thrown at the surface by chance, bent and counted where they land: the same light, tile by
-// tile.
-// Example failures: a picture that is upside down; waves that scatter where they should gather;
-// light that comes from nowhere.
+// The expectation is a Monte Carlo simulation: random rays are refracted at the surface and counted
+// in tiles of the floor. Example failures: a picture that is upside down; waves that scatter where
+// they should focus; light from nowhere.
 TEST(Caustics, have_the_light_of_the_rays_that_land_there) {
     constexpr int kTile = 20, kColumns = kSize.x / kTile, kRows = kSize.y / kTile, kRays = 2'000'000;
     const Time time = std::chrono::seconds(5);
@@ -60,7 +59,7 @@ TEST(Caustics, have_the_light_of_the_rays_that_land_there) {
         if (tile.x >= 0 && tile.y >= 0 && tile.x < kColumns && tile.y < kRows)
             landed[static_cast<std::size_t>(tile.y * kColumns + tile.x)] += 1;
     }
-    const double each = kRays / ((high.x - low.x) * (high.y - low.y)) / (kRows * kRows);  // in a tile of still water
+    const double each = kRays / ((high.x - low.x) * (high.y - low.y)) / (kRows * kRows);  // per ray, in a tile under still water
     double squares = 0, contrast = 0, mean = 0;
     for (int row = 0; row < kRows; ++row)
         for (int column = 0; column < kColumns; ++column) {
@@ -76,12 +75,12 @@ TEST(Caustics, have_the_light_of_the_rays_that_land_there) {
     constexpr int kTiles = kColumns * kRows;
     std::printf("tiles: rms difference %.3f, contrast %.3f, mean %.3f\n", std::sqrt(squares / kTiles),
                 std::sqrt(contrast / kTiles), mean / kTiles);
-    EXPECT_GT(std::sqrt(contrast / kTiles), 0.08) << "there is something to be seen";
+    EXPECT_GT(std::sqrt(contrast / kTiles), 0.08) << "the caustics are visible";
     EXPECT_LT(std::sqrt(squares / kTiles), 0.25 * std::sqrt(contrast / kTiles));
     EXPECT_NEAR(mean / kTiles, 1, 0.05);
 }
 
-// Every mirror throws the lamp where the law of reflection says, and nothing is lit elsewhere.
+// Every mirror reflects the lamp to where the law of reflection says, and nothing else is lit.
 TEST(MirrorBall, throws_its_spots_by_the_law_of_reflection) {
     const MirrorBallSource source{glm::vec3(4), kCanvas, {0.3, 0.4, 2.2}, 0.3, 0.03, {2.5, 1.7, 1.1}, 0.02, 24};
     DrawnOutput output(kSize, rectangleCorners(kSize.x, kSize.y), {source});

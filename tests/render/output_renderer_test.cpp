@@ -20,8 +20,8 @@ using testing::HasSubstr;
 
 constexpr glm::ivec2 kSize{320, 180};
 constexpr double kAspect = 16.0 / 9;
-// A colour passes an 8-bit square root and an 8-bit sRGB value on its way: at most one stored value
-// is lost.
+// A colour is rounded twice, to an 8-bit square root and to an 8-bit sRGB value: the error is at
+// most one stored value.
 constexpr int kCoding = 1;
 
 std::array<glm::dvec2, 4> upright(glm::ivec2 size) { return rectangleCorners(size.x, size.y); }
@@ -33,7 +33,7 @@ std::vector<pattern::InstancePose> restingPoses(const pattern::ShapePattern& pat
     return poses;
 }
 
-// Where the light of a grey picture is on average, in pixels.
+// The centroid of a grey picture's light, in pixels.
 glm::dvec2 centroidOfLight(const RgbaImage& image) {
     glm::dvec2 sum(0);
     double light = 0;
@@ -58,9 +58,8 @@ glm::dvec2 centroid(const std::array<glm::dvec2, 4>& corners) {
     return sum / (3 * area);
 }
 
-// A solid fills exactly the quadrilateral that the technician asked for, and nothing is lit outside
-// it.
-// Example failure: the corners' order is taken for OpenGL's, with y up.
+// A solid fills exactly the quadrilateral that the technician has set.
+// Example failure: the corners' order is taken for one with y up, as in OpenGL.
 TEST(OutputRenderer, lights_the_warped_canvas_and_nothing_else) {
     const auto corners = keystone(kSize);
     DrawnOutput output(kSize, corners, {SolidSource{glm::vec3(0.5f, 1, 0)}});
@@ -69,7 +68,8 @@ TEST(OutputRenderer, lights_the_warped_canvas_and_nothing_else) {
     for (int y = 0; y < kSize.y; ++y)
         for (int x = 0; x < kSize.x; ++x) {
             const glm::dvec2 canvas = canvasFromProjector({x + 0.5, y + 0.5});
-            const double inside = std::min({canvas.x, canvas.y, 1 - canvas.x, 1 - canvas.y});  // some 1/150 a pixel
+            const double inside =
+                std::min({canvas.x, canvas.y, 1 - canvas.x, 1 - canvas.y});  // in canvas units; a pixel is some 1/150
             if (std::abs(inside) < 0.01) continue;
             const Rgba8 pixel = image.at(x, y);
             ASSERT_NEAR(pixel.r, inside > 0 ? 188 : 0, kCoding) << x << ", " << y;
@@ -80,14 +80,14 @@ TEST(OutputRenderer, lights_the_warped_canvas_and_nothing_else) {
     EXPECT_LT(glm::distance(found, wanted), 0.05);
 }
 
-// A square marker around a corner of the canvas shows the quarter of it that is on the canvas,
-// where the warp carries it. Example failure: half a pixel off, because pixel centres were taken
-// for corners.
+// Of a square marker around a corner of the canvas, the quarter on the canvas is visible where the
+// warp maps it. Example failure: half a pixel off, because pixel centres are taken for pixel
+// corners.
 TEST(OutputRenderer, carries_each_corner_of_the_canvas_to_the_asked_pixel) {
     const auto corners = keystone(kSize);
     const auto canvas = rectangleCorners(kAspect, 1);
     const Homography projectorFromCanvas = *Homography::fromCorners(canvas, corners);
-    constexpr double kEdge = 0.16;  // of the marker, in canvas heights: its quarter is some 14 pixels wide
+    constexpr double kEdge = 0.16;  // of the marker, in canvas heights: the visible quarter is some 14 pixels wide
     for (std::size_t corner = 0; corner < 4; ++corner) {
         DrawnOutput output(kSize, corners, {resting(squareAt(canvas[corner], kEdge / std::sqrt(2.0), glm::vec3(1), kAspect))});
         const glm::dvec2 inwards = glm::sign(glm::dvec2(kAspect / 2, 0.5) - canvas[corner]) * kEdge / 2.0;
@@ -99,7 +99,7 @@ TEST(OutputRenderer, carries_each_corner_of_the_canvas_to_the_asked_pixel) {
     }
 }
 
-// The light at a point of a picture, between the four nearest pixels; points in pixels.
+// The light at a point of a picture, in pixels, interpolated between the four nearest pixels.
 glm::dvec3 bilinear(const RgbaImage& picture, glm::dvec2 point) {
     const auto lightAt = [&](glm::ivec2 at) {
         at = glm::clamp(at, glm::ivec2(0), glm::ivec2(picture.width(), picture.height()) - 1);
@@ -115,8 +115,8 @@ glm::dvec3 bilinear(const RgbaImage& picture, glm::dvec2 point) {
                     glm::mix(lightAt(at + glm::ivec2(0, 1)), lightAt(at + glm::ivec2(1, 1)), part.x), part.y);
 }
 
-// Why shapes are drawn through the warp: the other way, a picture of the canvas that is then bent,
-// blurs every edge. Both have as many pixels and samples.
+// The reason for drawing shapes through the warp: warping a picture of the canvas blurs every edge.
+// Both have the same numbers of pixels and samples.
 TEST(OutputRenderer, is_nearer_to_the_truth_than_a_bent_picture_of_the_canvas) {
     constexpr glm::ivec2 kLarge{640, 360};
     const pattern::ShapePattern pattern = smallPattern();
@@ -144,9 +144,9 @@ TEST(OutputRenderer, is_nearer_to_the_truth_than_a_bent_picture_of_the_canvas) {
     EXPECT_LT(through, 0.8 * bentApart);
 }
 
-// The whole definition at once: warp, order of instances, facets and their shading, edges, linear
-// averaging, cut at the canvas's edge. What four samples a pixel cannot tell stays at the edges;
-// inside a facet the colour is right.
+// Everything together: warp, order of instances, facets and their shading, edges, linear averaging,
+// clipping at the canvas's edge. Four samples per pixel are inexact only at edges; inside a facet
+// the colour is exact.
 TEST(OutputRenderer, draws_what_a_point_by_point_reference_draws) {
     constexpr glm::ivec2 kLarge{640, 360};
     const pattern::ShapePattern pattern = smallPattern();
@@ -174,8 +174,8 @@ TEST(OutputRenderer, draws_what_a_point_by_point_reference_draws) {
     EXPECT_GT(insideFacets, 10'000);
 }
 
-// The same for a picture that is turned over, as rear projection needs it.
-// Example failure: the facets in front are taken for those behind and left out.
+// The same for a mirrored picture, as for rear projection.
+// Example failure: front faces are taken for back faces and culled.
 TEST(OutputRenderer, draws_the_mirror_image_through_mirrored_corners) {
     const pattern::ShapePattern pattern = smallPattern();
     const auto corners = upright(kSize);
@@ -185,8 +185,8 @@ TEST(OutputRenderer, draws_the_mirror_image_through_mirrored_corners) {
     RgbaImage turnedBack(kSize.x, kSize.y);
     for (int y = 0; y < kSize.y; ++y)
         for (int x = 0; x < kSize.x; ++x) turnedBack.at(x, y) = drawn.at(kSize.x - 1 - x, y);
-    // The samples of a pixel do not mirror, so edges differ a little; a missing front would differ
-    // by far more.
+    // The sample positions are not symmetric, so edges differ a little; missing front faces would
+    // differ by far more.
     EXPECT_LE(difference(seen.frame({{0, 1}}), turnedBack).rms, 8);
 }
 
@@ -195,7 +195,7 @@ TEST(OutputRenderer, adds_layers_as_linear_light) {
                        {SolidSource{glm::vec3(0.2f)}, SolidSource{glm::vec3(0.3f)}, SolidSource{glm::vec3(1)}});
     const auto grey = [&](const std::vector<show::LayerState>& layers) { return int{output.frame(layers).at(32, 18).g}; };
     EXPECT_NEAR(grey({{0, 1}, {1, 1}}), 188, 1);                 // 0.2 + 0.3 of the light; stored values would add to 123 + 149
-    EXPECT_NEAR(grey({{0, 1}, {1, 0.5f}, {2, 0.15f}}), 188, 1);  // more than one pass takes
+    EXPECT_NEAR(grey({{0, 1}, {1, 0.5f}, {2, 0.15f}}), 188, 1);  // more layers than one pass takes
     EXPECT_NEAR(grey({{2, 0.5f}}), 188, 1);
     EXPECT_NEAR(grey({{2, 0.25f}, {2, 0.25f}}), 188, 1);
     EXPECT_EQ(grey({{2, 1}, {0, 1}}), 255);
@@ -209,7 +209,7 @@ TEST(OutputRenderer, is_black_without_layers) {
     for (const Rgba8 pixel : output.frame(std::vector<show::LayerState>{}).pixels()) ASSERT_EQ(pixel, (Rgba8{0, 0, 0, 255}));
 }
 
-// Two squares over each other in a layer that fades above another layer: neither shines through the
+// Two overlapping squares in a layer that fades over another layer: neither is visible through the
 // other.
 TEST(OutputRenderer, fades_a_pattern_as_one_picture) {
     pattern::ShapePattern pattern = squareAt({0.8, 0.5}, 0.3, glm::vec3(1));
@@ -223,12 +223,12 @@ TEST(OutputRenderer, fades_a_pattern_as_one_picture) {
     EXPECT_NEAR(greyAt(0.2, 0.2), 137, 1) << "no square";
 }
 
-// Whatever their tilt: a later instance covers an earlier one as a whole, and instances never cut
-// into each other.
+// Whatever their tilt, a later instance entirely covers an earlier one, and instances never
+// intersect.
 TEST(OutputRenderer, puts_the_later_instance_on_top) {
     pattern::ShapePattern pattern = squareAt({0.8, 0.5}, 0.3, glm::vec3(1, 0, 0));
     pattern.instances.push_back(pattern.instances[0]);
-    pattern.instances[0].rotation.y = 1;  // its right half comes towards the viewer
+    pattern.instances[0].rotation.y = 1;  // its right half moves towards the viewer
     pattern.instances[1].rotation.y = -1;
     pattern.instances[1].colour = {0, 1, 0};
     const auto drawn = [&] { return DrawnOutput(kSize, keystone(kSize), {resting(pattern)}).frame({{0, 1}}); };
@@ -238,11 +238,11 @@ TEST(OutputRenderer, puts_the_later_instance_on_top) {
     EXPECT_FALSE(has(drawn(), {0, 255, 0, 255}));
 }
 
-// Shapes far outside the canvas, behind the horizon of a steep warp included, leave no trace.
+// Shapes far outside the canvas, even behind the horizon of a steep warp, leave no trace.
 TEST(OutputRenderer, cuts_shapes_at_the_canvas_and_never_lights_beyond_it) {
     const std::array<glm::dvec2, 4> steep = {{{150, 20}, {170, 20}, {300, 160}, {20, 160}}};
     const Homography projectorFromCanvas = *Homography::fromCorners(rectangleCorners(kAspect, 1), steep);
-    // The canvas y where w is 0: a little below the canvas, where the picture is wide.
+    // The canvas y at which w is 0: a little below the canvas, where the picture is wide.
     const double horizon = -projectorFromCanvas.matrix()[2].z / projectorFromCanvas.matrix()[1].z;
     ASSERT_GT(horizon, 1.06);
     pattern::ShapePattern pattern = squareAt({0.8, horizon}, 0.06, glm::vec3(1));
@@ -255,13 +255,13 @@ TEST(OutputRenderer, cuts_shapes_at_the_canvas_and_never_lights_beyond_it) {
     };
     const RgbaImage none = drawn(resting(pattern));
     for (const Rgba8 pixel : none.pixels()) ASSERT_EQ(pixel, (Rgba8{0, 0, 0, 255}));
-    // One that reaches from behind the horizon over the whole canvas lights all of the canvas.
+    // A shape that extends from behind the horizon over the whole canvas lights all of it.
     pattern.instances = {pattern.instances[0]};
     pattern.instances[0].size = 20;
     EXPECT_LE(difference(drawn(resting(pattern)), drawn(SolidSource{})).most, 1);
 }
 
-// Show time alone decides the picture: forwards, backwards, and round the loop.
+// The picture depends on show time alone: forwards, backwards, and over the end of the loop.
 TEST(OutputRenderer, shows_the_pattern_as_it_stands_at_the_show_time) {
     const PatternSource source = moving(smallPattern());
     DrawnOutput output(kSize, keystone(kSize), {source});
@@ -309,13 +309,13 @@ TEST(OutputRenderer, leaves_no_opengl_error_and_refuses_what_cannot_be_drawn) {
     OutputRenderer::Options options{projectionTo({64, 36}, upright({64, 36})), {}, 4, shaderFolder()};
     EXPECT_EQ(refusal(options), "accepted");
     options.samples = 1000;
-    EXPECT_THAT(refusal(options), HasSubstr("1000 samples a pixel: this OpenGL has 1 .. "));
+    EXPECT_THAT(refusal(options), HasSubstr("1000 samples per pixel: OpenGL has 1 .. "));
     options.samples = 4;
     options.projection.size.x = 1'000'000;
     EXPECT_THAT(refusal(options), HasSubstr("1000000 x 36 pixels"));
 }
 
-// Who edits a shader gets the compiler's words, with the file's name.
+// Somebody who edits a shader gets the compiler's message with the file's name.
 TEST(OutputRenderer, names_the_shader_that_does_not_compile) {
     DrawnOutput output({64, 36}, upright({64, 36}), {});
     const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "broken_shaders";

@@ -10,7 +10,7 @@ namespace fantascope::render {
 namespace {
 
 struct Moments {
-    double sum = 0, x = 0, y = 0, variance = 0;  // about the middle; the variance of one direction
+    double sum = 0, x = 0, y = 0, variance = 0;  // about the middle; variance along one axis
 };
 Moments momentsOf(const GreyImage& filter) {
     Moments moments;
@@ -25,14 +25,14 @@ Moments momentsOf(const GreyImage& filter) {
     return moments;
 }
 
-// The sun is 108 times as far away as it is wide.
-// Example failure: a blur of twice the width, because the paper's formula is taken for a radius.
+// The sun's distance is 108 times its diameter.
+// Example failure: a blur of twice the width, because the paper's formula is taken for the radius.
 TEST(Penumbra, is_as_wide_as_the_suns_picture_behind_a_pinhole) {
     EXPECT_NEAR(penumbraWidth(10, radians(0.53)), 10.0 / 108, 0.001);
     EXPECT_EQ(penumbraWidth(0, radians(0.53)), 0);
 }
 
-// A disc of diameter D has the variance D^2 / 16 in each direction; square pixels add 1/12.
+// A disc of diameter D has a variance of D^2 / 16 along each axis; square pixels add 1/12.
 TEST(DiscFilter, has_the_size_that_was_asked_for) {
     for (double diameter = 6; diameter < 90; diameter += 0.7) {
         const GreyImage disc = discFilter(diameter);
@@ -64,16 +64,15 @@ TEST(PictureFilter, keeps_the_pictures_middle_its_proportions_and_its_light) {
     }
 }
 
-// Whatever the blur, its grid is fine enough for it, and no finer by far: that is what bounds the
-// cost.
+// For every blur the grid is fine enough, but not much finer than necessary, which bounds the cost.
 TEST(BlurGrid, grows_with_the_blur) {
     constexpr double kAspect = 16.0 / 9, kRows = 360;
     for (double radius = 0.5; radius < 300; radius *= 1.1) {
         const BlurGrid grid = BlurGrid::forFilter({2 * radius / kRows, nullptr}, kAspect, kRows);
         const double onGrid = radius / kRows / grid.pitch;
-        EXPECT_LT(onGrid, 4 * BlurGrid::kLeastRadius);
+        EXPECT_LT(onGrid, 4 * BlurGrid::kMinRadius);
         if (grid.pitch > 1.01 / kRows) {
-            EXPECT_GE(onGrid, BlurGrid::kLeastRadius);
+            EXPECT_GE(onGrid, BlurGrid::kMinRadius);
         }
         EXPECT_GE((grid.size.x - 2) * grid.pitch, kAspect - 1e-9);
         EXPECT_GE((grid.size.y - 2) * grid.pitch, 1 - 1e-9);

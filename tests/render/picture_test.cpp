@@ -1,4 +1,4 @@
-// Images, videos and camera pictures as they lie on the canvas.
+// Images, videos and camera pictures on the canvas.
 
 #include "render/reference_picture.h"
 #include "render/scene.h"
@@ -27,7 +27,7 @@ T valueOf(Result<T> result) {
 
 ImageSource image(RgbaImage picture) { return {std::make_shared<const RgbaImage>(std::move(picture))}; }
 
-// Something of all that a picture has: soft colours, hard discs, thin lines at several slants, fine
+// A picture with a bit of everything: soft colours, hard discs, thin lines at several angles, fine
 // grain.
 RgbaImage detailed(glm::ivec2 size) {
     RgbaImage picture(size.x, size.y);
@@ -48,9 +48,9 @@ RgbaImage detailed(glm::ivec2 size) {
     return picture;
 }
 
-// A picture as it should be drawn, point by point: each pixel is the mean light of 8 x 8 points,
-// each of them the light of the picture's pixel that the warp carries it back to, or, for a picture
-// that is enlarged, between the four nearest; nothing beyond the picture.
+// The expected drawing of a picture, point by point: each pixel is the mean light of 8 x 8 points.
+// The inverse warp maps each point to the picture, where it has the light of the pixel, or, if
+// `smooth`, the light interpolated between the four nearest pixels; black beyond the picture.
 RgbaImage reference(const RgbaImage& picture, const std::array<glm::dvec2, 4>& corners, glm::ivec2 size, bool smooth) {
     constexpr int kPoints = 8;
     const int width = picture.width(), height = picture.height();
@@ -103,8 +103,8 @@ const Placed kPlaced[] = {
     {"enlarged", keystone(kSize), {160, 90}, true},
 };
 
-// Example failures: aliasing where the picture is far away, blur where it is near, half a pixel
-// off, means of stored values instead of light.
+// Example failures: aliasing where the picture is minified, blur where it is magnified, half a
+// pixel off, means of stored values instead of light.
 TEST(Pictures, are_filtered_as_a_point_by_point_reference_is) {
     for (const Placed& placed : kPlaced) {
         SCOPED_TRACE(placed.name);
@@ -117,10 +117,10 @@ TEST(Pictures, are_filtered_as_a_point_by_point_reference_is) {
     }
 }
 
-// White that is cut out of whatever colour the painting program left where it is clear, drawn
-// larger: neither a dark nor a coloured seam.
+// A painting program may leave any colour in transparent pixels. A magnified white shape must have
+// neither a dark nor a coloured seam.
 TEST(Pictures, have_no_seams_at_the_edges_of_their_alpha) {
-    constexpr int kEdge = 32;  // of the picture; 10 pixels of the output each
+    constexpr int kEdge = 32;  // of the picture; each pixel is 10 pixels of the output
     RgbaImage cutOut(64, 36, {255, 0, 0, 0});
     for (int y = 0; y < 36; ++y)
         for (int x = 0; x < kEdge; ++x) cutOut.at(x, y) = {255, 255, 255, 255};
@@ -130,13 +130,13 @@ TEST(Pictures, have_no_seams_at_the_edges_of_their_alpha) {
         const Rgba8 pixel = drawn.at(x, 180);
         ASSERT_EQ(pixel.r, pixel.g) << x;
         ASSERT_EQ(pixel.r, pixel.b) << x;
-        // Light goes from all to nothing between the middles of the two pixels at the edge.
+        // The light falls from 1 to 0 between the centres of the two pixels at the edge.
         const double share = std::clamp((320 + 5 - (x + 0.5)) / 10, 0.0, 1.0);
         ASSERT_NEAR(linearFromSrgb(static_cast<float>(pixel.r) / 255), share, 0.01) << x;
     }
 }
 
-// Half clear is half of the light, whatever its colour.
+// An alpha of 0.5 gives half of the light, whatever the colour.
 TEST(Pictures, are_as_bright_as_their_alpha) {
     DrawnOutput output(kSize, rectangleCorners(kSize.x, kSize.y), {image(RgbaImage(8, 8, {255, 188, 0, 128}))});
     const Rgba8 pixel = output.frame({{0, 1}}).at(320, 180);
@@ -145,7 +145,7 @@ TEST(Pictures, are_as_bright_as_their_alpha) {
     EXPECT_EQ(pixel.b, 0);
 }
 
-// Whichever corner is up, and through a mirror as for rear projection.
+// This holds for every orientation, and mirrored as for rear projection.
 TEST(Pictures, lie_with_their_corners_on_the_canvass) {
     const Rgba8 colours[] = {{255, 0, 0, 255}, {0, 255, 0, 255}, {0, 0, 255, 255}, {255, 255, 0, 255}};
     RgbaImage picture(90, 60);
@@ -164,7 +164,7 @@ TEST(Pictures, lie_with_their_corners_on_the_canvass) {
     }
 }
 
-// The number on what an output of the size of the pictures shows.
+// Shows a numbered video on an output of the same size.
 class VideoOnAnOutput : public testing::Test {
 protected:
     static constexpr glm::ivec2 kVideo{128, 72};
@@ -178,8 +178,8 @@ protected:
     const ScratchFolder folder_;
 };
 
-// Example failures: the frame before, since the texture is drawn before it is filled; a frame that
-// stays away after the first round.
+// Example failures: the previous frame is shown, since the texture is drawn before it is filled; a
+// frame is missing after the first loop.
 TEST_F(VideoOnAnOutput, shows_the_frame_of_the_moment) {
     for (const int rate : {24, 25, 30, 60}) {
         DrawnOutput output(kVideo, rectangleCorners(kVideo.x, kVideo.y), {video(rate, 31)});
@@ -205,7 +205,8 @@ TEST_F(VideoOnAnOutput, holds_its_last_frame_where_it_does_not_loop_and_goes_at_
     EXPECT_EQ(shown(1, tickTime(42, 25)), 1);
 }
 
-// In steady state the render thread only copies. At either pace, and with what changes every frame.
+// In steady state the render thread only copies, at either pace, even if the picture changes every
+// frame.
 TEST_F(VideoOnAnOutput, allocates_nothing_once_it_runs) {
     const auto feed = std::make_shared<PictureFeed>(kVideo);
     DrawnOutput output(kSize, keystone(kSize),
@@ -227,7 +228,7 @@ TEST(CameraOnAnOutput, shows_the_newest_picture_and_nothing_before_the_first) {
     constexpr glm::ivec2 kCamera{128, 72};
     const auto feed = std::make_shared<PictureFeed>(kCamera);
     const auto see = [&](int number) { feed->publish(std::make_shared<const RgbaImage>(numbered(kCamera, number))); };
-    see(9);  // nobody looks yet
+    see(9);  // there is no reader yet
     DrawnOutput left(kCamera, rectangleCorners(kCamera.x, kCamera.y), {CameraSource{feed}});
     for (const Rgba8 pixel : left.frame({{0, 1}}).pixels()) ASSERT_EQ(pixel, (Rgba8{0, 0, 0, 255}));
     DrawnOutput right(kCamera, rectangleCorners(kCamera.x, kCamera.y), {CameraSource{feed}});
@@ -239,7 +240,7 @@ TEST(CameraOnAnOutput, shows_the_newest_picture_and_nothing_before_the_first) {
         EXPECT_EQ(numberOn(left.frame({{0, 1}})), number);
     }
     feed->publish(std::make_shared<const RgbaImage>(64, 64));
-    EXPECT_EQ(numberOn(left.frame({{0, 1}})), 40000) << "one of another size is none of its own";
+    EXPECT_EQ(numberOn(left.frame({{0, 1}})), 40000) << "a picture of another size is ignored";
 }
 
 }  // namespace

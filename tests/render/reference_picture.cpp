@@ -17,7 +17,7 @@ struct Facet {
     glm::dvec3 light;  // linear
 };
 
-// The height above the canvas at which the facet covers a point, if it does.
+// The facet's height above the canvas at a point, if it covers the point.
 std::optional<double> heightOver(const Facet& facet, glm::dvec2 point) {
     const auto area = [](glm::dvec2 u, glm::dvec2 v) { return u.x * v.y - u.y * v.x; };
     const glm::dvec2 a = facet.a, b = facet.b, c = facet.c;
@@ -36,8 +36,8 @@ std::vector<Facet> facetsOf(const TriangleMesh& mesh, const pattern::InstancePos
     std::vector<Facet> facets;
     for (const glm::uvec3 t : mesh.triangles) facets.push_back({placed(t.x), placed(t.y), placed(t.z), colour});
 
-    // Facets are lit from above, a little left, in front: three quarters of the colour, and up to
-    // the whole towards the light.
+    // Facets are lit from above, a little left, in front. They have three quarters of the colour,
+    // and all of it when facing the light.
     const auto seenNormal = [](const Facet& facet) {
         const glm::dvec3 normal = glm::normalize(glm::cross(facet.b - facet.a, facet.c - facet.a));
         return normal.z < 0 ? -normal : normal;

@@ -13,12 +13,12 @@
 
 namespace fantascope::render {
 
-// The points of the canvas under a projector's pixels: exact at the pixels' corners, straight in
-// between.
+// The points of the canvas at a projector's pixels: exact at the pixels' corners, interpolated
+// linearly in between.
 class CanvasUnderPixels {
 public:
     CanvasUnderPixels(const Warp& warp, glm::ivec2 size);
-    // Nothing outside of the canvas's shown part. `pixel`: in [0, width] x [0, height].
+    // Nothing outside the canvas's shown part. `pixel`: in [0, width] x [0, height].
     std::optional<glm::dvec2> at(glm::dvec2 pixel) const;
 
 private:
@@ -27,11 +27,10 @@ private:
     std::vector<std::optional<glm::dvec2>> corners_;  // (size.x + 1) x (size.y + 1)
 };
 
-// The picture that the renderer should draw of a pattern in the given poses, worked out point by
-// point from the definitions alone: each pixel is the mean light of samples x samples points, each
-// point is carried back to the canvas, and there the last instance that covers it shows its nearest
-// facet. Slow and independent of OpenGL, matrices for clip space, depth buffers and meshes for
-// facets.
+// The picture that the renderer should draw of a pattern in the given poses, computed point by
+// point from the definitions alone: each pixel is the mean light of samples x samples points; each
+// point is mapped back to the canvas, where the last instance that covers it shows its nearest
+// facet. Slow, and independent of OpenGL, clip space matrices, depth buffers and FacetMesh.
 RgbaImage referencePicture(const pattern::ShapePattern& pattern, std::span<const pattern::InstancePose> poses, const Warp& warp,
                            glm::ivec2 size, int samples);
 

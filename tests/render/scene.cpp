@@ -59,7 +59,7 @@ pattern::ShapePattern smallPattern() {
     pattern.height = kHeight;
     pattern.seed = 7;
     pattern.shapes = {flatPolygon("triangle", 3), flatPolygon("square", 4), crystal(), roof()};
-    // Written out, so that the golden frames do not hang on defaults.
+    // Set explicitly, so that golden frames do not depend on defaults.
     pattern.motion.instancesPerGroup = 10;
     pattern.motion.groupMajor = {2, 0.25, 0.35, 0.05, 0.02};
     pattern.motion.groupMinor = {2, 0.25, 0.35, 0.015, 0.006};
@@ -128,7 +128,7 @@ DrawnOutput::DrawnOutput(const Projection& projection, const std::vector<Picture
 }
 
 DrawnOutput::~DrawnOutput() {
-    FANTASCOPE_CHECK(sink_->makeCurrent().has_value(), "objects go while their context is current");
+    FANTASCOPE_CHECK(sink_->makeCurrent().has_value(), "OpenGL objects are destroyed while their context is current");
     tap_.reset();
     renderer_.reset();
 }
@@ -141,12 +141,12 @@ const RgbaImage& DrawnOutput::frame(const show::OutputState& state, Time time, c
     tap_->publish(valueOf(sink_->present()));
     tap_->finish();
     const ShownFrame* const frame = newest_->next(Time::max());
-    FANTASCOPE_CHECK(frame != nullptr, "what was presented is published");
+    FANTASCOPE_CHECK(frame != nullptr, "a presented frame is published");
     return frame->image;
 }
 
 Difference difference(const RgbaImage& a, const RgbaImage& b) {
-    FANTASCOPE_CHECK(a.width() == b.width() && a.height() == b.height(), "only pictures of one size are compared");
+    FANTASCOPE_CHECK(a.width() == b.width() && a.height() == b.height(), "only pictures of the same size are compared");
     Difference difference;
     for (std::size_t i = 0; i < a.pixels().size(); ++i) {
         const Rgba8 p = a.pixels()[i], q = b.pixels()[i];

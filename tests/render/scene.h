@@ -1,5 +1,5 @@
 #pragma once
-// What the tests of the renderer draw, and how they get at the pixels.
+// Scenes for the tests of the renderer, and access to the drawn pixels.
 
 #include "drivers/site/world.h"
 
@@ -21,21 +21,21 @@
 
 namespace fantascope::render {
 
-// A small pattern with everything in it: flat triangles and squares, closed crystals, an open roof
-// that shows both sides, in overlapping clumps, some of them over the canvas's edge, in several
+// A small pattern with all kinds of content: flat triangles and squares, closed crystals, an open
+// roof that shows both sides; in overlapping clusters, partly over the canvas's edge, in several
 // colours and groups. 16:9.
 pattern::ShapePattern smallPattern();
 
 PatternSource resting(pattern::ShapePattern pattern);
 PatternSource moving(pattern::ShapePattern pattern);
 
-// A square of half-diagonal `size` that stands straight; its edges are size * sqrt(2) long.
+// An upright square with a half-diagonal of `size`; its edges are size * sqrt(2) long.
 pattern::ShapePattern squareAt(glm::dvec2 centre, double size, glm::vec3 colour, double aspect = 16.0 / 9);
 
-// Corners in a picture of `size`, with a clear keystone, all inside.
+// Corners inside a picture of `size` with a strong keystone.
 std::array<glm::dvec2, 4> keystone(glm::ivec2 size);
 
-// Corners in a picture of `size` for a projector that neither dithers nor colours.
+// A projection of `size` pixels with these corners, without dither and colour settings.
 Projection projectionTo(glm::ivec2 size, const std::array<glm::dvec2, 4>& corners);
 
 // One output of the named driver, its renderer and a tap of it.
@@ -48,9 +48,9 @@ public:
         : DrawnOutput(projectionTo(size, corners), sources, nullptr, driver) {}
     ~DrawnOutput();
 
-    // Draws and presents one frame, and returns it as it was shown.
+    // Draws and presents one frame, and returns the shown picture.
     const RgbaImage& frame(const show::OutputState& state, Time time = Time::zero(), const Wind& wind = {});
-    // All layers by source and opacity.
+    // The same for layers given by source and opacity.
     const RgbaImage& frame(const std::vector<show::LayerState>& layers, Time time = Time::zero()) {
         return frame(show::OutputState{layers}, time);
     }
@@ -66,8 +66,8 @@ private:
     FrameReader* newest_ = nullptr;
 };
 
-// How far two pictures of one size are apart, in stored values of 0 .. 255, over all colour
-// channels.
+// The difference of two pictures of the same size over all colour channels, in stored values 0 ..
+// 255.
 struct Difference {
     double rms = 0;
     int most = 0;

@@ -1,4 +1,4 @@
-// Shadow theatre as an output shows it, against shadows that were found without it.
+// Compares shadow theatre on an output with independently computed shadows.
 
 #include "render/output_renderer.h"
 #include "render/scene.h"
@@ -27,8 +27,7 @@ const glm::dvec2 kFrom{-0.5 * kSize.x * kPixel, -0.1}, kTo{0.5 * kSize.x * kPixe
 
 std::array<glm::dvec2, 4> upright() { return rectangleCorners(kSize.x, kSize.y); }
 
-// People in any poses that they can take, of three statures, turned to all sides; as many frames a
-// step apart.
+// People of three statures in random possible poses, facing all directions, over `frames` frames.
 Cast aCast(std::size_t actors, std::size_t frames, std::uint64_t seed) {
     Cast cast;
     cast.stage.beams[0].light = {0.2, 0.3, 7};
@@ -70,7 +69,7 @@ ShadowSource sourceOf(Cast cast) {
     return source;
 }
 
-// The shadow as the search for poses sees it, skins and all.
+// The shadow of the skins as the search for poses computes it.
 BitMask solversShadow(const Cast& cast, double frame, bool loops, const ScreenFrame& screen) {
     theatre::MovingCast moving(cast, loops);
     moving.pose(frame);
@@ -103,14 +102,14 @@ double agreement(const RgbaImage& image, const BitMask& mask) {
     std::int64_t both = 0, either = 0;
     for (int y = 0; y < image.height(); ++y)
         for (int x = 0; x < image.width(); ++x) {
-            const bool drawn = lightAt(image, x, y) < 0.6;  // half of its samples
+            const bool drawn = lightAt(image, x, y) < 0.6;  // at least half of its samples
             both += drawn && mask.at(x, y), either += drawn || mask.at(x, y);
         }
     return static_cast<double>(both) / static_cast<double>(either);
 }
 
-// Example failures: a skin that collapses at bent joints, a hand's prop left behind, somebody
-// mirrored, half of a body not drawn.
+// Example failures: a skin collapses at bent joints, a held prop is left behind, an actor is
+// mirrored, half of a body is not drawn.
 TEST(Shadow, is_the_one_that_the_poses_were_found_for) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         Cast cast = aCast(9, 1, seed);
@@ -122,7 +121,7 @@ TEST(Shadow, is_the_one_that_the_poses_were_found_for) {
     }
 }
 
-// Between two frames, too, and after the last.
+// It also holds between two frames, and after the last.
 TEST(Shadow, moves_as_its_poses_do) {
     Cast cast = aCast(3, 4, 7);
     furnish(cast);
@@ -158,7 +157,7 @@ TEST(Shadow, plays_once_in_a_loop_or_to_and_fro) {
     EXPECT_DOUBLE_EQ(at(0.78125), 2);
     EXPECT_EQ(lengthOf(source), std::chrono::milliseconds(625));
     for (double second = 0; second < 1.3; second += 0.001)
-        EXPECT_LE(std::abs(at(second + 0.001) - at(second)), 0.016 + 1e-9) << "never faster than its frames are";
+        EXPECT_LE(std::abs(at(second + 0.001) - at(second)), 0.016 + 1e-9) << "never faster than its frame rate";
     source.cast = std::make_shared<const Cast>(aCast(1, 1, 1));
     for (const auto play : {ShadowSource::Play::Once, ShadowSource::Play::Loop, ShadowSource::Play::ToAndFro}) {
         source.play = play;
@@ -167,8 +166,8 @@ TEST(Shadow, plays_once_in_a_loop_or_to_and_fro) {
     }
 }
 
-// A keystone, and a mesh on top: every pixel of the output is looked up on the screen.
-// Example failure: a platform's long edges that stay straight under the mesh.
+// A keystone, also with a mesh: every pixel of the output is looked up on the screen.
+// Example failure: a platform's long edges stay straight under the mesh.
 TEST(Shadow, goes_through_the_outputs_warp) {
     Cast cast = aCast(4, 1, 2);
     furnish(cast);
@@ -199,12 +198,12 @@ TEST(Shadow, goes_through_the_outputs_warp) {
                     screen.at(static_cast<int>(canvas->x * kSize.x * kFiner), static_cast<int>(canvas->y * kSize.y * kFiner));
                 both += drawn && wanted, either += drawn || wanted;
             }
-        // Pixels at the canvas's edge are dark for another reason.
+        // Pixels at the canvas's edge are partly dark anyway.
         EXPECT_GT(static_cast<double>(both) / static_cast<double>(either), 0.985) << mesh;
     }
 }
 
-// Everything on the stage but people: a wall whose edges are straight.
+// A stage with only a wall, whose edges are straight.
 Cast aWall(double z) {
     Cast cast = aCast(1, 1, 1);
     cast.stage.beams[0].light = {0, 1.25, 6};
@@ -213,9 +212,9 @@ Cast aWall(double z) {
     return cast;
 }
 
-// The share of a lamp's disc that a straight edge hides is a segment of it.
-// Example failures: light that is not as wide as the lamp; one that is twice as wide for a radius
-// taken as the diameter; steps.
+// The part of a lamp's disc that a straight edge hides is a circular segment.
+// Example failures: a penumbra of the wrong width, such as twice as wide because a radius is taken
+// for the diameter; visible steps.
 TEST(Shadow, has_edges_as_soft_as_the_lamp_is_wide) {
     for (const double z : {0.5, 2.0, 3.5}) {
         ShadowSource source = sourceOf(aWall(z));
@@ -226,16 +225,16 @@ TEST(Shadow, has_edges_as_soft_as_the_lamp_is_wide) {
         const double shadow = 0.0, radius = 0.15 * z / (6 - z);  // of the lamp's image about the wall's left edge at x = 0
         for (int x = 0; x < kSize.x; ++x) {
             const double off = std::clamp((kFrom.x + (x + 0.5) * kPixel - shadow) / radius, -1.0, 1.0);
-            if (kFrom.x + x * kPixel > 0.5) break;  // the other edge's
+            if (kFrom.x + x * kPixel > 0.5) break;  // the penumbra of the other edge
             const double seen = (std::acos(off) - off * std::sqrt(1 - off * off)) / std::numbers::pi;
             EXPECT_NEAR(lightAt(image, x, kSize.y / 2), seen, 0.05) << z << " at " << x;
         }
-        EXPECT_EQ(image.at(kSize.x / 2 + 60, kSize.y / 2).g, 0) << "in full shadow nothing is left";
+        EXPECT_EQ(image.at(kSize.x / 2 + 60, kSize.y / 2).g, 0) << "full shadow is black";
     }
 }
 
-// Two people in a row with the lamp: the one who is nearer to it gives the colour, whatever their
-// order.
+// Two people stand in line with the lamp: the one nearer to it sets the colour, whatever their
+// order in the cast.
 TEST(Shadow, has_the_colour_of_who_is_nearest_to_the_lamp) {
     for (const bool swapped : {false, true})
         for (const double size : {0.0, 0.02}) {
@@ -279,8 +278,8 @@ TEST(Shadow, of_several_lamps_is_where_each_of_them_is_kept_off) {
                 linearFromSrgb(static_cast<float>(std::array{pixel.r, pixel.g, pixel.b}[static_cast<std::size_t>(i)]) / 255);
         return light;
     };
-    // The wall is x 0 .. 0.8 at z = 2: from the middle its shadow is x 0 .. 1.2, from the left x 1
-    // .. 2.2.
+    // The wall is at x 0 .. 0.8, z = 2. Its shadow is x 0 .. 1.2 for the middle lamp, and x 1 ..
+    // 2.2 for the left one.
     const auto near = [](glm::vec3 a, glm::vec3 b) { return glm::distance(a, b) < 0.01f; };
     EXPECT_TRUE(near(colourAt(-1), {0.7f, 0.7f, 0.4f}));
     EXPECT_TRUE(near(colourAt(0.5), {0.2f, 0.4f, 0.35f}));
@@ -288,7 +287,7 @@ TEST(Shadow, of_several_lamps_is_where_each_of_them_is_kept_off) {
     EXPECT_TRUE(near(colourAt(1.8), {0.5f, 0.3f, 0.1f}));
 }
 
-// Beyond a projector's picture the screen is dark, light colour or not.
+// Outside a projector's picture the screen is black, whatever the light's colour.
 TEST(Shadow, is_seen_in_the_projectors_picture_alone) {
     Cast cast = aWall(2);
     cast.stage.beams[0].lit = theatre::Stage::Area{{-1.5, 0.2}, {1.9, 2.2}};
@@ -310,9 +309,9 @@ TEST(Shadow, is_seen_in_the_projectors_picture_alone) {
         }
 }
 
-// The screens of further beams, and curved ones, which the canvas shows unrolled: every pixel
-// against the ray from the lamp to its place. Example failures: a second screen that shows what is
-// on the first; one turned the wrong way round; a curve of the wrong sign.
+// Screens of further beams, and curved screens, which the canvas shows unrolled: every pixel is
+// compared with the ray from the lamp to its place. Example failures: a second screen shows the
+// image of the first; a screen is turned the wrong way round; a curve has the wrong sign.
 TEST(Shadow, falls_on_the_screen_of_its_beam) {
     for (const double radius : {0.0, 3.5, -4.0})
         for (const std::size_t beam : {std::size_t{0}, std::size_t{1}}) {
@@ -330,8 +329,8 @@ TEST(Shadow, falls_on_the_screen_of_its_beam) {
             DrawnOutput output(kSize, upright(), {source});
             const RgbaImage& image = output.frame({{0, 1}});
 
-            // A finer mask of the flat screen, looked up where the ray through the place on the
-            // curved one meets it.
+            // A finer mask of the flat screen, looked up where the ray to the place on the curved
+            // screen meets it.
             constexpr double kFine = 0.004;
             const ScreenFrame flat(cast.stage, -6, 5, kFine, 3000, 1400, beam);
             const BitMask mask = solversShadow(cast, 0, false, flat);
@@ -341,7 +340,7 @@ TEST(Shadow, falls_on_the_screen_of_its_beam) {
                 for (int x = 0; x < kSize.x; ++x) {
                     const glm::dvec2 place(kFrom.x + (x + 0.5) * kPixel, kTo.y - (y + 0.5) * kPixel);
                     const auto onFlat = theatre::flatFromUnrolled(screen, light, place);
-                    bool wanted = true;  // dark where no light comes
+                    bool wanted = true;  // dark where no light reaches
                     if (onFlat) {
                         const glm::ivec2 pixel(glm::floor(flat.pixelAt(onFlat->x, onFlat->y)));
                         const auto& lit = cast.stage.beams[beam].lit;
@@ -356,7 +355,7 @@ TEST(Shadow, falls_on_the_screen_of_its_beam) {
         }
 }
 
-// Who stands behind the lamp, or far beside, throws nothing; nobody is nothing's shadow.
+// Actors behind the lamp or far beside the screen throw no shadow.
 TEST(Shadow, of_what_is_behind_the_lamp_is_none) {
     Cast cast = aCast(2, 1, 5);
     for (Cast::Actor& actor : cast.actors) actor.poses[0].root.z = 8.5;

@@ -28,7 +28,7 @@ T valueOf(Result<T> result) {
     return std::move(result).value();
 }
 
-// What a reader shows, by the numbers on the frames; -1 before the first.
+// The number on the frame that a reader shows; -1 before the first.
 class Seen {
 public:
     explicit Seen(std::shared_ptr<VideoStream> stream) : reader_(std::move(stream)) {}
@@ -44,7 +44,7 @@ private:
 
 class Videos : public testing::Test {
 protected:
-    // A video whose frames carry their numbers, from 1 so that none is all dark.
+    // A video whose frames show their numbers, from 1, so that none is black.
     std::filesystem::path make(const std::string& name, const VideoCoding& coding, int frames) const {
         writeVideo(folder_ / name, coding, frames, [&](int i) { return numbered(coding.size, i + 1); });
         return folder_ / name;
@@ -64,10 +64,9 @@ struct Rate {
 };
 constexpr Rate kRates[] = {{24, 1}, {25, 1}, {30000, 1001}, {30, 1}, {24000, 1001}};
 
-// At every frame's first and last nanosecond, in files that keep exact times and in those that keep
-// milliseconds.
-// Example failures: the frame after; frames in the order of decoding; one lost with the decoder's
-// delay at the end.
+// Tests every frame's first and last nanosecond, in formats with exact times and in those with
+// milliseconds. Example failures: the next frame is shown; frames come in decoding order; the last
+// ones are lost to the decoder's delay.
 TEST_F(Videos, show_exactly_the_frame_of_the_moment) {
     for (const auto& [rate, divisor] : kRates)
         for (const int bFrames : {0, 3})
@@ -108,9 +107,9 @@ TEST_F(Videos, show_each_frame_for_as_long_as_the_file_says) {
     }
 }
 
-// The coder may have put its keyframes where it liked; whichever frame is asked for comes.
-// Example failure: a frame that is shown before the keyframe that it was coded after, with open
-// groups of pictures.
+// Every frame can be reached, wherever the encoder has put keyframes.
+// Example failure: with open groups of pictures, a frame that is shown before the keyframe after
+// which it was encoded.
 TEST_F(Videos, come_to_the_right_frame_from_any_other) {
     for (const char* name : {"a.mp4", "a.mkv", "a.ts", "a.mov"})
         for (const bool openGroups : {false, true}) {
@@ -143,15 +142,15 @@ TEST_F(Videos, of_other_coders_are_right_too) {
     }
 }
 
-// What a moment asks for never comes too late where the show waits, over many rounds: none twice,
-// none missing, in either way of asking.
+// If the show waits, no frame is late over many loops: none comes twice, none is missing, at either
+// rate.
 TEST_F(Videos, loop_without_a_gap) {
     const auto stream = open(make("a.mp4", {.rate = 30, .bFrames = 3, .keyEvery = 250}, 47));
     const VideoSource source{stream};
     Seen seen(stream);
     for (std::int64_t refresh = 0; refresh < 47 * 5; ++refresh)
         ASSERT_EQ(seen.at(positionAt(source, tickTime(refresh, 30))), refresh % 47 + 1) << refresh;
-    // At another rate than the video's, what follows is the same frame or the next.
+    // At another rate than the video's, each frame is followed by itself or by the next one.
     int before = seen.at(Time{});
     for (std::int64_t refresh = 1; refresh < 400; ++refresh) {
         const int now = seen.at(positionAt(source, tickTime(refresh, 50)));
@@ -160,7 +159,7 @@ TEST_F(Videos, loop_without_a_gap) {
     }
 }
 
-// Waits until the decoding thread has got to a frame, and counts what is seen on the way.
+// Waits until the decoding thread has reached a frame, and collects the frames seen until then.
 std::set<int> until(Seen& seen, Time position, int wanted) {
     std::set<int> numbers;
     for (int number = seen.at(position); number != wanted; number = seen.at(position)) {
@@ -170,23 +169,23 @@ std::set<int> until(Seen& seen, Time position, int wanted) {
     return numbers;
 }
 
-// A live show never waits: what is late stays away, and the last good frame stays.
+// A live show never waits: while a frame is late, the last one stays.
 TEST_F(Videos, keep_the_last_frame_until_a_late_one_comes) {
     const auto stream = open(make("a.mp4", {.bFrames = 3, .keyEvery = 250}, 200), Pace::Live);
     const auto begins = [&](std::size_t i) { return stream->content().frames[i].begins; };
     Seen seen(stream);
-    EXPECT_EQ(seen.at(begins(0)), 1) << "the first frame is there before the show";
+    EXPECT_EQ(seen.at(begins(0)), 1) << "the first frame is decoded before the show";
     until(seen, begins(3), 4);
     for (const int number : until(seen, begins(150), 151)) EXPECT_TRUE(number >= 4 && number <= 10) << number;
     EXPECT_GE(stream->lateFrames(), 1);
     const std::int64_t late = stream->lateFrames();
-    EXPECT_EQ(seen.at(begins(0)), 1) << "a video begins again at once";
+    EXPECT_EQ(seen.at(begins(0)), 1) << "a video restarts at once";
     EXPECT_EQ(seen.at(begins(2)), 3);
     EXPECT_EQ(stream->lateFrames(), late);
     until(seen, begins(151), 152);
 }
 
-// The same video that began at different times on two outputs: neither disturbs the other.
+// The same video began at different times on two outputs: neither disturbs the other.
 TEST_F(Videos, serve_outputs_that_are_at_different_moments) {
     const auto stream = open(make("a.mp4", {.bFrames = 3, .keyEvery = 250}, 300));
     Seen left(stream), right(stream), same(stream);
@@ -211,7 +210,7 @@ TEST_F(Videos, are_read_without_allocating) {
     }
 }
 
-// Colours by the matrix and the range that the file states, or the one that its height stands for.
+// Colours follow the matrix and range that the file states, or those implied by its height.
 TEST_F(Videos, keep_their_colours) {
     const Rgba8 colours[] = {{200, 60, 20, 255}, {20, 200, 60, 255}, {40, 20, 220, 255}, {0, 0, 0, 255}, {255, 255, 255, 255}};
     struct Case {
@@ -243,7 +242,7 @@ TEST_F(Videos, keep_their_colours) {
     }
 }
 
-// Straight alpha in the file; half of it is half of the light.
+// The file has straight alpha; an alpha of 0.5 gives half of the light.
 TEST_F(Videos, keep_their_alpha) {
     for (const auto& [name, encoder, pixels] : {std::array{"a.mov", "prores_ks", "yuva444p10le"}, {"a.mkv", "ffv1", "bgra"}}) {
         SCOPED_TRACE(name);
@@ -263,7 +262,7 @@ TEST_F(Videos, keep_their_alpha) {
     }
 }
 
-// Neither the picture nor the decoder's own memory may be touched behind its end.
+// Nothing may be written behind the end of the picture or of the decoder's own memory.
 Difference differenceOfFirstFrame(const std::filesystem::path& file, const RgbaImage& wanted) {
     const auto decoder = valueOf(VideoDecoder::open(valueOf(VideoDecoder::examine(file))));
     FANTASCOPE_CHECK(decoder->next() == 0u, "the first frame");
@@ -273,7 +272,7 @@ Difference differenceOfFirstFrame(const std::filesystem::path& file, const RgbaI
     return differenceOf(seen, wanted);
 }
 
-// Example failures: the heap is overwritten behind the picture; the last columns stay as they were.
+// Example failures: the heap behind the picture is overwritten; the last columns are not written.
 TEST_F(Videos, of_every_width_are_right_to_the_last_pixel_and_nothing_is_written_behind_it) {
     constexpr int kRows = 4;
     for (const char* pixels : {"yuv420p", "yuv422p", "yuv444p", "yuva420p", "yuv420p10le", "bgra"})
@@ -299,11 +298,11 @@ TEST_F(Videos, of_real_sizes_are_right_to_the_last_pixel) {
     }
 }
 
-// Of the formats that libav decodes, one that libswscale does not read.
+// A pixel format that libav decodes but libswscale cannot read.
 constexpr const char* kNotConverted = "uyyvyy411";
 
-// Example failure: a decoder counts the padding of an upright frame's rows as pixels, and finds too
-// many.
+// Example failure: a decoder counts the padding of a portrait frame's rows as pixels, and refuses
+// it as too large.
 TEST_F(Videos, of_the_largest_size_are_shown_lying_and_upright) {
     for (const glm::ivec2 size : {glm::ivec2(8192, 4320), {4320, 8192}}) {
         writeVideo(folder_ / "a.mov", {.encoder = "qtrle", .pixels = "gray", .size = size}, 1, [](int) { return RgbaImage(); });
@@ -316,13 +315,13 @@ TEST_F(Videos, that_are_broken_are_refused_with_advice) {
     EXPECT_THAT(refusal(folder_.file("text.mp4", "no video at all, only words\n")),
                 HasSubstr("text.mp4: not a video that can be read, or a truncated one"));
     EXPECT_THAT(refusal(folder_.file("empty.mp4", "")), HasSubstr("empty.mp4: "));
-    // Sound alone: a second of silence.
+    // Only sound: a second of silence.
     std::string wave("RIFF\x24\x3e\0\0WAVEfmt \x10\0\0\0\1\0\1\0\x40\x1f\0\0\x80\x3e\0\0\2\0\x10\0data\x80\x3e\0\0", 44);
     wave.resize(44 + 16000);
     EXPECT_THAT(refusal(folder_.file("sound.wav", wave)), HasSubstr("sound.wav: there is no video in it; "));
 
-    // 5 s, cut in the middle: with its table of contents before, as streams have it, after, and
-    // without one.
+    // 5 s, truncated in the middle: with the index at the beginning, as in streams, with it at the
+    // end, and without one.
     const auto cut = [&](const std::filesystem::path& file) {
         const std::string bytes = readFile(file).value();
         return folder_.file("cut-" + file.filename().string(), std::string_view(bytes).substr(0, bytes.size() / 2));
@@ -345,14 +344,14 @@ TEST_F(Videos, that_are_broken_are_refused_with_advice) {
     ASSERT_EQ(::mkfifo((folder_ / "pipe.mp4").c_str(), 0600), 0);
     EXPECT_EQ(refusal(folder_ / "pipe.mp4"), "pipe.mp4: is a pipe, a file is needed");
     EXPECT_EQ(refusal("/dev/zero"), "/dev/zero: is a device, a file is needed");
-    // A list of other files is none.
+    // A list of other files is not a video.
     make("part.mp4", {}, 5);
     for (const char* list : {"ffconcat version 1.0\nfile part.mp4\n", "#EXTM3U\n#EXTINF:1,\npart.mp4\n#EXT-X-ENDLIST\n"})
         EXPECT_THAT(refusal(folder_.file("list.mp4", list)), HasSubstr("list.mp4: ")) << list;
 }
 
-// Example failures: the show waits for ever for a frame that never comes; grey blocks on the wall;
-// the rest is lost too.
+// Example failures: the show waits forever for a frame that never comes; grey blocks appear; the
+// rest is lost too.
 TEST_F(Videos, leave_out_what_is_damaged_and_go_on) {
     for (const auto& [name, encoder, pixels] : {std::array{"a.mp4", "libx264", "yuv420p"}, {"a.mov", "png", "rgb24"}}) {
         SCOPED_TRACE(name);

@@ -160,7 +160,7 @@ TEST(Site, mistakes_are_refused_with_place_and_advice) {
     EXPECT_EQ(refusalAfter(", closes: go", ""),
               "site.yaml:27:5: contacts[0]: 'gate' asks for nothing; say what it does when it 'closes' or 'opens'");
     EXPECT_EQ(refusalAfter("look_at: [0, 1, 0], throw", "look_at: [0, 4, 9], throw"),
-              "site.yaml:9:16: outputs[0].projector: looks at the point where it stands; move the target or the position");
+              "site.yaml:9:16: outputs[0].projector: target and position are the same point; move one of them");
     EXPECT_EQ(refusal("fantascope: site\nversion: 1\noutputs: []\n"),
               "site.yaml:3:10: outputs: a list of at least 1 items is needed, here are 0");
     EXPECT_THAT(readSite("nowhere/site.yaml").error().message(), EndsWith("cannot be read: No such file or directory"));
@@ -304,10 +304,10 @@ TEST(Site, looking_straight_down_needs_up) {
     const std::string_view surface = "normal: [0, 0, 0.5]";
     const std::string flat = replaced(std::string(kSite), surface, "normal: [0, 1, 0]");
     EXPECT_EQ(refusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0]")),
-              "site.yaml:9:16: outputs[0].projector: looks along its own up direction, or that has no length; give another 'up'");
+              "site.yaml:9:16: outputs[0].projector: 'up' is zero or along the view; give another 'up'");
     EXPECT_EQ(refusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0], up: [0, 0, -1]")), "accepted");
     EXPECT_EQ(refusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0], up: [0, 0, 0]")),
-              "site.yaml:9:16: outputs[0].projector: looks along its own up direction, or that has no length; give another 'up'");
+              "site.yaml:9:16: outputs[0].projector: 'up' is zero or along the view; give another 'up'");
 }
 
 }  // namespace

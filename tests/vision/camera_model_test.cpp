@@ -16,9 +16,9 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 Pose somewhere() { return *Pose::lookingAt({1, 2, 9}, {-1, 1.5, 0}); }
 
-// A camera one metre from a wall that it looks at squarely sees the point half a metre to the right
-// at its right edge (field of view 2 atan(1/2)), and row 0 is up. Example failure: y up, or centres
-// taken at whole numbers.
+// A camera one metre from a wall, facing it squarely, sees the point half a metre to the right at
+// its right edge (field of view 2 atan(1/2)), and row 0 is up. Example failure: y up, or pixel
+// centres at integers.
 TEST(CameraModel, pixels_of_a_hand_worked_view) {
     const Pose pose = *Pose::lookingAt({0, 0, 1}, {0, 0, 0});
     const CameraModel camera = *CameraModel::fromFieldOfView(pose, {200, 100}, 2 * std::atan(0.5));
@@ -31,7 +31,7 @@ TEST(CameraModel, pixels_of_a_hand_worked_view) {
     EXPECT_FALSE(camera.pixelFromWorld({0, 0, 2})) << "behind the camera";
 }
 
-// Both signs of distortion, mixed terms, none: the ray through a point's pixel leads to the point.
+// Both signs of distortion, mixed terms, none: the ray through a point's pixel hits the point.
 TEST(CameraModel, the_ray_through_a_points_pixel_meets_the_point) {
     const std::array<glm::dvec2, 5> lenses{{{0, 0}, {-0.05, 0}, {-0.25, 0.06}, {0.2, 0}, {0.1, -0.02}}};
     Rng rng(7);
@@ -61,7 +61,7 @@ TEST(CameraModel, distortion_moves_a_point_along_its_radius_by_browns_polynomial
     EXPECT_NEAR(pixel->y, 500 + 500 * 0.488125 * 0.8, 1e-9);
 }
 
-// Such a lens would show two directions in one pixel and no iteration could undo it.
+// Such a lens would show two directions in one pixel, and no iteration could invert it.
 TEST(CameraModel, a_distortion_that_folds_the_picture_is_refused) {
     const auto folded = CameraModel::fromFieldOfView(somewhere(), {480, 270}, 90 * kDegree, -0.6);
     ASSERT_FALSE(folded);
@@ -97,8 +97,7 @@ TEST(Plane, is_met_from_its_front_alone) {
 }
 
 // The technician's question: which corners put the canvas straight on the wall? The homography
-// through them must carry the canvas's middle to the quadrilateral's middle, and not only its
-// corners.
+// through them must also carry the canvas's centre to the quadrilateral's centre.
 TEST(RectifyingCorners, put_the_canvas_on_the_quadrilateral) {
     const Pose pose = *Pose::lookingAt({3, 3, 6}, {0, 1, 0});
     const CameraModel projector = CameraModel::fromThrowRatio(pose, {640, 360}, 1.2, {0, 0});

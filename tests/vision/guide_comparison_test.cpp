@@ -1,4 +1,4 @@
-// Photographs of a wall made by hand, without the simulated site: pixel by pixel through the
+// Synthetic photographs of a wall, made without the simulated site: pixel by pixel through the
 // nominal geometry.
 
 #include "vision/guide_comparison.h"
@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kAspect = 16.0 / 9;
 
-// A projector that looks at a wall from the side, its picture put straight, and a camera with a
-// slightly barrel-shaped lens.
+// A projector that faces a wall from the side, with a rectified picture, and a camera with slight
+// barrel distortion.
 NominalView nominalView() {
     const Pose eye = Pose::lookingAt({0.3, 1.6, 5}, {0, 1.2, 0}).value(),
                lamp = Pose::lookingAt({1.6, 2, 4}, {0, 1.2, 0}).value();
@@ -34,7 +34,7 @@ NominalView nominalView() {
     return view;
 }
 
-// A spiral of light: the same at no other place and in no other orientation.
+// A spiral of light: different at every other place and orientation.
 GreyImage spiral() {
     GreyImage guide(320, 180);
     for (int y = 0; y < 180; ++y)
@@ -50,13 +50,13 @@ GreyImage spiral() {
 struct Photograph {
     glm::dvec3 scale{0.6};          // linear light of a white picture
     glm::dvec3 ambient{0.02};       // linear light of the wall without it
-    glm::dvec3 ambientAcross{0.0};  // what is added to that from the left to the right end of the wall in view
+    glm::dvec3 ambientAcross{0.0};  // added to ambient from the left to the right end of the visible wall
     double noise = 0;               // of the linear light
-    double turned = 0;              // degrees that the projector has been turned to the side
+    double turned = 0;              // degrees by which the projector is turned to the side
 };
 
-// The light of one pixel of a projector on a square metre of the wall: its pixels there, over those
-// at the picture's middle.
+// The light of a projector pixel per square metre of the wall: its pixels there, relative to the
+// picture's centre.
 double falloff(const CameraModel& projector, glm::dvec3 point) {
     const auto pixelsPerArea = [&](glm::dvec3 at) {
         const glm::dvec3 toLens = projector.pose.position - at;
@@ -105,7 +105,7 @@ TEST(GuideComparison, is_near_zero_for_the_guide_itself_and_far_from_it_for_othe
     for (int y = 0; y < 180; ++y) std::reverse(mirrored.row(y).begin(), mirrored.row(y).end());
     const double right = score(guide, photographed(guide, {}));
     EXPECT_LT(right, 0.015);
-    // An inverted picture is the same one with a negative exposure; no camera has that.
+    // An inverted picture equals the original with a negative exposure, which no camera has.
     EXPECT_GT(score(guide, photographed(inverted(guide), {})), 0.15);
     EXPECT_GT(score(guide, photographed(mirrored, {})), 0.1);
 }
@@ -134,7 +134,7 @@ TEST(GuideComparison, does_not_mind_exposure_fades_colours_ambient_light_and_noi
     for (const auto& [what, how] : ways) EXPECT_NEAR(score(guide, photographed(guide, how)), plain, 0.006) << what;
 }
 
-// A guide that is itself as smooth as ambient light must not be taken for it.
+// A guide as smooth as ambient light must not be taken for it.
 TEST(GuideComparison, keeps_a_guide_that_is_a_mere_gradient) {
     GreyImage ramp(320, 180), back(320, 180);
     for (int y = 0; y < 180; ++y)
@@ -160,8 +160,8 @@ TEST(GuideComparison, has_no_value_where_there_is_nothing_to_compare) {
     EXPECT_FALSE(GuideComparison(nominalView(), black).compare(photographed(spiral(), {}))) << "a guide without a drawing";
 }
 
-// Only stored pictures count, wherever they come from: a night's frames, kept as PNG, give the same
-// scores again.
+// Only the stored pictures matter, whatever their source: a night's frames, kept as PNG, give the
+// same scores again.
 TEST(GuideComparison, gives_a_stored_sequence_the_same_scores) {
     const GuideComparison comparison(nominalView(), spiral());
     const auto file = std::filesystem::path(testing::TempDir()) / "guide_comparison_frame.png";

@@ -45,7 +45,7 @@ protected:
 
     void open(const std::string& options) {
         const std::string text = "driver: v4l2\n" + options;
-        camera_ = V4l2Camera::fromConfig(ConfigNode::parse(text, "site.yaml").value()).value().open(around_).value();
+        camera_ = V4l2Camera::fromConfig(ConfigNode::parse(text, "site.yaml").value()).value().open(context_).value();
     }
     V4l2Camera& camera() { return dynamic_cast<V4l2Camera&>(*camera_); }
 
@@ -69,7 +69,7 @@ protected:
     void control(const std::string& what) { run(fmt::format("v4l2-ctl -d {} -c {}", vivid_, what)); }
 
     SteadyClock clock_;
-    Surroundings around_{clock_};
+    DriverContext context_{clock_};
     std::string vivid_;
     std::unique_ptr<CameraSource> camera_;
 };
@@ -131,7 +131,7 @@ TEST_F(RealNodes, share_dmabufs) {
     auto node = VideoNode::open(vivid_, error);
     ASSERT_TRUE(node) << error;
     VideoNode::Grant grant;
-    ASSERT_EQ(node->ask(FrameCoding::Yuyv, {640, 360}, 30, grant), 0);
+    ASSERT_EQ(node->setFormat(FrameCoding::Yuyv, {640, 360}, 30, grant), 0);
     EXPECT_FALSE(node->sharesDmabufs()) << "before it streams";
     ASSERT_EQ(node->start(), 0);
     EXPECT_TRUE(node->sharesDmabufs());
@@ -266,11 +266,11 @@ private:
     static bool runs(const Device& device) { return device.status().state == DeviceState::Running; }
     std::unique_ptr<CameraSource> open(int node) {
         const std::string text = fmt::format("driver: v4l2\ndevice: /dev/video{}\nsize: [320, 180]\nrate: 30\n", node);
-        return V4l2Camera::fromConfig(ConfigNode::parse(text, "site.yaml").value()).value().open(around_).value();
+        return V4l2Camera::fromConfig(ConfigNode::parse(text, "site.yaml").value()).value().open(context_).value();
     }
 
     SteadyClock clock_;
-    Surroundings around_{clock_};
+    DriverContext context_{clock_};
     FileHandle held_;
     std::unique_ptr<CameraSource> neighbour_ = open(11), port_;
 };

@@ -59,14 +59,14 @@ protected:
 
     std::unique_ptr<DmxPort> open(const std::string& driver, int number) {
         const auto node = ConfigNode::parse(fmt::format("driver: {}\nserial: {}\n", driver, serial(number)), "site.yaml").value();
-        return drivers::openDmxPort(node, number, around_).value();
+        return drivers::openDmxPort(node, number, context_).value();
     }
     static void await(const Device& device, DeviceState state) {
         eventually(nameOf(state), [&] { return device.status().state == state; });
     }
 
     SteadyClock clock_;
-    drivers::Surroundings around_{clock_};
+    drivers::DriverContext context_{clock_};
 };
 
 // A widget behind one of the adapters. It has no memory of what was on the line before it was

@@ -77,9 +77,9 @@ private:
     FileHandle end_;
 };
 
-std::unique_ptr<CueController> opened(const std::string& keys, const Surroundings& around) {
+std::unique_ptr<CueController> opened(const std::string& keys, const DriverContext& context) {
     const auto options = ConfigNode::parse("{driver: usb_hid, vendor: 16c0, product: 27d9" + keys + "}\n", "site.yaml").value();
-    return UsbHidController::fromConfig(options).value().open(around).value();
+    return UsbHidController::fromConfig(options).value().open(context).value();
 }
 
 class UsbHidOnTheKernel : public testing::Test {
@@ -94,7 +94,7 @@ protected:
     void unplug() { gadget_.unplug(); }
     void report(std::uint8_t state) { gadget_.report(state); }
     std::string holder() const { return gadget_.holder(); }
-    void open(const std::string& keys) { controller_ = opened(keys, around_); }
+    void open(const std::string& keys) { controller_ = opened(keys, context_); }
 
     // Whether something becomes so; a machine in software takes its time.
     bool becomes(const std::function<bool()>& so) {
@@ -121,7 +121,7 @@ protected:
         return events;
     }
     SteadyClock clock_;
-    Surroundings around_{clock_};
+    DriverContext context_{clock_};
     Gadget gadget_{"cue", 0, "CUE-7"};
     std::unique_ptr<CueController> controller_;
 };
@@ -248,7 +248,7 @@ class GadgetRig final : public contract::LamplessRig {
 public:
     GadgetRig() {
         for (Gadget* gadget : {&gadget_, &next_}) gadget->plugIn();
-        neighbour_ = opened(", serial: CUE-8", around_);
+        neighbour_ = opened(", serial: CUE-8", context_);
         reopen();
         letTimePass();
     }
@@ -256,7 +256,7 @@ public:
     CueController& port() override { return *port_; }
     void reopen() override {
         port_.reset();
-        port_ = std::make_unique<Marked>(opened(", serial: CUE-7", around_));
+        port_ = std::make_unique<Marked>(opened(", serial: CUE-7", context_));
     }
     void close() override { port_.reset(); }
     void unplug() override { gadget_.unplug(); }
@@ -295,7 +295,7 @@ private:
     static bool runs(const Device& device) { return device.status().state == DeviceState::Running; }
 
     SteadyClock clock_;
-    Surroundings around_{clock_};
+    DriverContext context_{clock_};
     Gadget gadget_{"cue", 0, "CUE-7"}, next_{"neighbour", 1, "CUE-8"};
     std::uint8_t down_ = 0, told_ = 0;  // a bit a button
     std::unique_ptr<CueController> neighbour_;

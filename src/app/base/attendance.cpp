@@ -3,7 +3,7 @@
 namespace fantascope::app {
 namespace {
 
-constexpr Time kLook = std::chrono::milliseconds(50);  // how often a paused run looks for a key
+constexpr Time kLook = std::chrono::milliseconds(50);  // how often paused work polls for a key
 constexpr char kPause = ' ', kEscape = '\x1b', kQuit = 'q';
 
 }  // namespace

@@ -10,20 +10,19 @@
 
 namespace fantascope::app {
 
-// The person who waits for long work: the space bar pauses it and goes on; escape, q and Ctrl-C end
-// it with the best so far. Keys come from the terminal, and from whatever else is listened to.
-// Thread: one at a time.
+// Lets a person control long work: the space bar pauses and resumes it; escape, q and Ctrl-C end it
+// with the best so far. Keys come from the terminal and from `listen`. Thread: one at a time.
 class Attendance {
 public:
-    using Listen = std::function<std::optional<char>()>;  // the next key, never waits
+    using Listen = std::function<std::optional<char>()>;  // the next key; never waits
 
     // The clock outlives it.
     explicit Attendance(Clock& clock, Listen listen = {}) : clock_(clock), listen_(std::move(listen)) {}
 
-    // To be asked between two steps of the work: whether it goes on. Waits while the work is
-    // paused, and calls whilePaused now and then.
+    // Call it between two steps of the work: false when the work is to end. Blocks while the work
+    // is paused, and calls whilePaused now and then.
     bool goesOn(const std::function<void()>& whilePaused = {});
-    // How long the work stood still so far; budgets leave it out.
+    // Total length of all pauses so far, which budgets leave out.
     Time paused() const { return paused_; }
 
 private:

@@ -12,16 +12,16 @@
 
 namespace fantascope::app {
 
-// What the chosen subcommand does, once the whole line has been understood. Error: the world
-// refused; main prints it and exits with 1.
+// The chosen subcommand's work, to be done once the whole command line is parsed. Error: main
+// prints it and exits with 1.
 using Action = std::function<Result<void>()>;
 
-// Every subcommand is one file with one function of this kind, listed in main.cpp: it declares the
-// subcommand on the program and, when the line chooses it, sets the action.
+// Every subcommand is one file with one function of this type, listed in main.cpp. It declares the
+// subcommand on the program and sets the action if the command line chooses it.
 using AddCommand = void (*)(CLI::App& program, Action& action);
 
 // The common body of those functions: `declare` binds the subcommand's options to the fields of one
-// struct, `run` is handed the filled struct.
+// struct, and `run` gets the filled struct.
 template <class Options>
 void addCommand(CLI::App& program, Action& action, const std::string& name, const std::string& description,
                 void (*declare)(CLI::App& command, Options& options), Result<void> (*run)(const Options& options)) {
@@ -31,7 +31,7 @@ void addCommand(CLI::App& program, Action& action, const std::string& name, cons
     command->callback([options, run, &action] { action = [options, run] { return run(*options); }; });
 }
 
-// An option whose value is one of some names, in the order in which --help lists them.
+// An option whose value is one of these names; --help lists them in this order.
 template <class Value, class Field>
 CLI::Option* addChoice(CLI::App& command, const std::string& name, Field& field,
                        const std::vector<std::pair<std::string, Value>>& choices, const std::string& description) {
@@ -49,14 +49,13 @@ CLI::Option* addChoice(CLI::App& command, const std::string& name, Field& field,
     return command.add_option(name, field, description)->transform(CLI::Validator(valueOf, ""))->type_name(all);
 }
 
-// `--output NAME`: the projector that is meant, by its name in the site. It refuses what is a
-// file's name.
+// `--output NAME`: an output, by its name in the site. It refuses a file's name.
 CLI::Option* addProjectorOption(CLI::App& command, std::string& projector, const std::string& description);
 
-// Lets a command that knows no projector tell whoever writes `--output FILE` what was meant.
+// Makes a command without outputs answer `--output FILE` with the right option, -o.
 void refuseProjectorOption(CLI::App& command);
 
-// `-o, --out`: the file or folder that a command writes. After addProjectorOption, where the
+// `-o, --out`: the file or folder that a command writes. Call it after addProjectorOption(), if the
 // command has that.
 template <class File>
 CLI::Option* addOutOption(CLI::App& command, File& file, const std::string& description) {

@@ -12,8 +12,8 @@ struct LabelledPicture {
     RgbaImage image;
 };
 
-// The pictures in a grid, each with its label, in order from the top left; all pictures of the
-// first one's size. Empty if there are none.
+// The pictures in a grid, each with its label, row by row from the top left. All pictures have the
+// size of the first one. Empty if there are none.
 RgbaImage contactSheet(const std::vector<LabelledPicture>& pictures, int columns = 2);
 
 }  // namespace fantascope::app

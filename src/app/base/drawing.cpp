@@ -14,7 +14,7 @@ namespace {
 constexpr float kPaper = 0.8f, kInk = 0.4f;
 constexpr double kEdgeOfPaper = 0.95, kMostlyPaper = 0.5, kLeastInk = 0.001;
 
-// Twice the area within a ring; its sign tells how it runs around.
+// Twice the signed area within a ring.
 double turnedArea(const std::vector<glm::dvec2>& ring) {
     double area = 0;
     for (std::size_t i = 0; i < ring.size(); ++i) {

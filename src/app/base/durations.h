@@ -7,16 +7,15 @@
 
 namespace fantascope::app {
 
-// Durations of one kind, counted in bins that are 1 % wide from a microsecond to a quarter of an
-// hour, so that a night's worth takes no more room than a minute's. Adding never allocates. Thread:
-// thread-bound.
+// A histogram of durations. Its bins are 1 % wide, from a microsecond to a quarter of an hour, so a
+// night takes no more memory than a minute. Adding never allocates. Thread: thread-bound.
 class Durations {
 public:
     void add(Time duration);
 
     std::uint64_t count() const { return count_; }
-    // The duration that the share `p` of all do not exceed (nearest rank), milliseconds, within 1
-    // %; 0 if there are none. 0 < p <= 1.
+    // The p-quantile (nearest rank) in milliseconds, accurate to 1 %; 0 if there are no durations.
+    // 0 < p <= 1.
     double quantileMs(double p) const;
     double maxMs() const { return seconds(max_) * 1e3; }  // exact
 

@@ -8,13 +8,12 @@
 
 namespace fantascope::app {
 
-// Makes frames 0, 1, ... `count` - 1, one after the other, while a person watches the bar and may
-// pause or end it (attendance.h). Returns how many were made. Error: make's.
+// Makes frames 0, 1, ... `count` - 1 in order, with a progress bar. A person may pause or end it
+// (attendance.h). Returns how many were made. Error: that of `make`.
 Result<std::int64_t> makeFrames(const std::string& label, std::int64_t count,
                                 const std::function<Result<void>(std::int64_t number)>& make);
 
-// What became of them, for the last line: "30 frames, 1.00 s" or what was kept at the end that came
-// early.
+// The result for the last line: "30 frames, 1.00 s", or what was kept after an early end.
 std::string outcomeOf(std::int64_t made, std::int64_t count, double frameRate);
 
 }  // namespace fantascope::app

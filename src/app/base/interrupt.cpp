@@ -16,13 +16,13 @@ namespace {
 
 constexpr int kAlways[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE};
 constexpr int kOfShows[] = {SIGPWR, SIGUSR1, SIGUSR2};
-constexpr int kStops[] = {SIGTSTP, SIGTTIN, SIGTTOU};  // a show that stands still has not ended: its guard would wait
+constexpr int kStops[] = {SIGTSTP, SIGTTIN, SIGTTOU};  // a stopped show has not ended, so its guard would wait
 
 // Lock-free, so a signal handler may write them.
 std::atomic<int> signals = 0, first = 0, bell = -1;
 std::atomic<bool> isShow = false;
 
-// Whether somebody can still read what the program prints. Safe in a signal handler.
+// Whether somebody can still read the program's output. Safe in a signal handler.
 bool isRead() {
     pollfd printed[] = {{STDOUT_FILENO, 0, 0}, {STDERR_FILENO, 0, 0}};
     return poll(printed, 2, 0) <= 0 || ((printed[0].revents | printed[1].revents) & (POLLERR | POLLHUP)) == 0;
@@ -30,8 +30,8 @@ bool isRead() {
 
 void note(int signal, siginfo_t* info, void*) {
     const int error = errno;
-    // A write of our own to somebody who is gone, such as an X server or a module, asks for
-    // nothing. That a show is not read any more the Supervisor sees without a write.
+    // A write to a peer that is gone, such as an X server or a module, does not ask for the end.
+    // The Supervisor notices by itself if nobody reads the show's output any more.
     if (signal == SIGPIPE && info->si_pid == getpid() && (isShow || isRead())) {
         errno = error;
         return;

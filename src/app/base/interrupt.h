@@ -6,10 +6,10 @@
 
 namespace fantascope::app {
 
-// While one lives, the signals that ask a program to end only raise a flag: SIGINT (Ctrl-C),
-// SIGTERM, SIGHUP (the terminal was closed), SIGQUIT, SIGPIPE (nobody reads what it prints). SIGHUP
-// and SIGPIPE have no effect where they had none at the start, as under nohup. At most one lives at
-// a time. Thread: const methods are thread-safe.
+// While an object lives, the signals that ask a program to end only set a flag: SIGINT (Ctrl-C),
+// SIGTERM, SIGHUP (the terminal was closed), SIGQUIT, SIGPIPE (nobody reads its output). If SIGHUP
+// or SIGPIPE was ignored at the start, as under nohup, it stays ignored. At most one object lives
+// at a time. Thread: const methods are thread-safe.
 class Interrupt {
 public:
     enum class Second {
@@ -18,15 +18,15 @@ public:
                    // terminal stops programs with, such as Ctrl-Z, has no effect
     };
     explicit Interrupt(Second second = Second::EndsProgram);
-    ~Interrupt();  // the signals do again what they did before
+    ~Interrupt();  // restores the signals' previous handlers
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;
 
     bool requested() const { return count() > 0; }
     int count() const;  // of signals so far
-    // The first signal's name: "SIGTERM"; "" while there was none.
+    // The first signal's name, "SIGTERM"; "" if there was none so far.
     std::string name() const;
-    // Can be read once an end was requested: for poll().
+    // A file descriptor for poll(): readable once an end was requested.
     int file() const;
 
 private:

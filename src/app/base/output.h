@@ -1,5 +1,5 @@
 #pragma once
-// What a command leaves behind, and what that refers to.
+// The files that a command writes, and the files that they refer to.
 
 #include "core/result.h"
 
@@ -10,25 +10,24 @@
 
 namespace fantascope::app {
 
-// Keeps a slip of the finger from writing over a picture: a name that ends in .yaml, such as
-// `example`.
+// Requires a name that ends in .yaml, such as `example`, so that a typing mistake cannot overwrite
+// a picture.
 CLI::Validator onlyYaml(const std::string& example);
-// The same of one ending, such as ".mp4"; `type`: how the help calls it.
+// The same for another extension, such as ".mp4". `type`: its name in the help.
 CLI::Validator onlyEnding(const std::string& ending, const std::string& type);
 
-// Whether `file` could be written, as far as can be told before the work; its folder need not be
-// there yet.
+// Checks before the work whether `file` can be written. Its folder need not exist yet.
 Result<void> checkWritable(const std::filesystem::path& file);
 
 // A file that an output refers to: where it is, and its name beside the output.
 struct Material {
     std::filesystem::path source;
     std::string name;  // relative to the output's folder
-    bool copied;       // it has to be put there
+    bool copied;       // it must be copied there
 };
 
-// What lies in the output's folder or below stays where it is; anything else becomes STEM.`suffix`
-// there, with the P of P.pattern.yaml for STEM.
+// A source in the output's folder or below stays where it is. Any other is to be copied there as
+// STEM.`suffix`; STEM is the P of P.pattern.yaml.
 Material materialFor(const std::filesystem::path& output, const std::filesystem::path& source, const std::string& suffix);
 
 Result<void> copyTo(const std::filesystem::path& folder, const Material& material);

@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 
 constexpr int kBarWidth = 24;  // characters
 constexpr Time kTerminalInterval = 100ms, kPlainInterval = 2s;
-constexpr double kLeastShareToForetell = 0.01;  // before this, the time left would be a guess
+constexpr double kMinShareToEstimate = 0.01;  // with less, the time left would be a guess
 
 }  // namespace
 
@@ -35,7 +35,7 @@ std::string Progress::line(std::optional<double> done, std::string_view value) c
     const Time elapsed = clock_.now() - start_;
     if (!done) return fmt::format("{}  {}  {}", label_, value, shortDuration(elapsed));
     const double share = std::clamp(*done, 0.0, 1.0);
-    const std::string left = share < kLeastShareToForetell
+    const std::string left = share < kMinShareToEstimate
                                  ? ""
                                  : fmt::format("  {} left", shortDuration(fromSeconds(seconds(elapsed) * (1 - share) / share)));
     const std::string percent = fmt::format("{:3.0f} %", 100 * share);

@@ -12,18 +12,17 @@
 
 namespace fantascope::app {
 
-// How far a long computation has come, for the person who waits: on a terminal one line that is
-// drawn over and over, with a bar where there is room, the current value and the time left;
-// elsewhere a plain line every two seconds. It goes to standard error, so that standard output
-// stays clean. Thread: one at a time.
+// The progress of a long computation. On a terminal it is one line that is redrawn, with a bar if
+// there is room, the current value and the time left. Elsewhere it is a plain line every two
+// seconds. It goes to standard error, so that standard output stays clean. Thread: one at a time.
 class Progress {
 public:
-    // `out` and `clock` outlive it; `columns`: of the terminal, where it is one.
+    // `out` and `clock` outlive it. `columns`: width of the terminal, if `terminal`.
     Progress(std::string label, const Clock& clock, std::ostream& out, bool terminal,
              std::function<int()> columns = standardErrorColumns);
 
-    // `done` is the share of the run behind us, 0..1, or nothing where the run has no end; `value`
-    // what is worth seeing, as "z 0.0312". Cheap to call often: draws at most ten times a second.
+    // `done`: finished share of the run, 0..1; nothing if the run has no end. `value`: the figure
+    // to show, such as "z 0.0312". Cheap to call often: it draws at most ten times a second.
     void update(std::optional<double> done, std::string_view value);
 
 private:
@@ -34,7 +33,7 @@ private:
     std::ostream& out_;
     std::optional<TerminalLine> terminal_;
     const Time start_;
-    std::optional<Time> drawn_;  // when the last line was
+    std::optional<Time> drawn_;  // time of the last line
 };
 
 }  // namespace fantascope::app

@@ -12,7 +12,7 @@ namespace fantascope::app {
 // is written as null.
 using Report = nlohmann::ordered_json;
 
-// Writes `--report FILE.json`, aside and renamed.
+// Writes `--report FILE.json`: first under another name, then renamed.
 Result<void> writeReport(const std::filesystem::path& file, const Report& report);
 
 }  // namespace fantascope::app

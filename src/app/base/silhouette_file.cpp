@@ -13,8 +13,8 @@
 namespace fantascope::app {
 namespace {
 
-// A pixel is coloured if its channels differ by more, and a picture if more than this share of its
-// pixels is: edges of a JPEG are, a little.
+// A pixel is coloured if its channels differ by more than this. A picture is coloured if more than
+// this share of its pixels is: JPEG colours edges a little.
 constexpr int kGreyish = 64;
 constexpr double kColouredShare = 0.01;
 

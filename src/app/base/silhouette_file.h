@@ -7,14 +7,14 @@
 
 namespace fantascope::app {
 
-// An artist's silhouette, white on black; its grey is cut at a half where it is used. Refused
-// before it is decoded if no target may be so large. Error: names the file: missing, no PNG or
-// JPEG, too large, or in colours, of which nobody could say which are shadow.
+// Reads an artist's silhouette, white on black. Whoever uses it cuts its grey at one half. A
+// picture larger than any target may be is refused before it is decoded. Error: names the file,
+// which is missing, no PNG or JPEG, too large, or coloured, so that nobody could tell what is
+// shadow.
 Result<GreyImage> readSilhouette(const std::filesystem::path& file);
 
-// The same of a drawing that work begins with. Warns of what looks like a mistake. `invert`: it is
-// black ink on white, and turned over here.
-// Error: also nothing is drawn.
+// The same for a drawing that work starts from. It warns of likely mistakes. `invert`: the drawing
+// is black ink on white, and is inverted here. Error: also if nothing is drawn.
 Result<GreyImage> readDrawnSilhouette(const std::filesystem::path& file, bool invert);
 
 }  // namespace fantascope::app

@@ -7,8 +7,8 @@
 namespace fantascope::app {
 namespace {
 
-// A process in the background that touches its terminal would be stopped, or take keys and settings
-// from the one in front.
+// A background process that touches its terminal would be stopped, or would take keys and settings
+// from the foreground process.
 bool isInFront() { return tcgetpgrp(STDIN_FILENO) == getpgrp(); }
 
 }  // namespace

@@ -5,10 +5,10 @@
 
 namespace fantascope::app {
 
-// Single key presses from the terminal on standard input, without echo or Enter, for as long as it
-// lives; nothing where standard input is no terminal, or while another program has it. The
-// terminal's own settings are put back at the end, and Ctrl-C goes on to work.
-// Thread: thread-bound.
+// While an object lives, it reads single key presses from the terminal on standard input, without
+// echo or Enter. It reads nothing if standard input is no terminal, or while another program has
+// the terminal. The destructor restores the terminal's settings. Ctrl-C keeps working. Thread:
+// thread-bound.
 class TerminalKeys {
 public:
     TerminalKeys();
@@ -17,7 +17,7 @@ public:
     TerminalKeys& operator=(const TerminalKeys&) = delete;
 
     bool listens() const { return saved_ != nullptr; }  // whether there is a terminal
-    std::optional<char> poll();                         // the next key, never waits
+    std::optional<char> poll();                         // the next key; never waits
 
 private:
     struct Settings;

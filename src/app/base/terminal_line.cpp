@@ -14,10 +14,10 @@ namespace fantascope::app {
 namespace {
 
 constexpr int kUsualColumns = 80;
-constexpr const char* kWipe = "\r\x1b[J";         // to the line's beginning, and clear from there to the screen's end
+constexpr const char* kWipe = "\r\x1b[J";         // to the line's beginning, then clear to the screen's end
 constexpr std::string_view kEllipsis = "\u2026";  // one column
 
-// While one lives, the C library reads UTF-8 on this thread, whatever the user's locale.
+// While an object lives, the C library reads UTF-8 on this thread, whatever the user's locale.
 class Utf8 {
 public:
     Utf8() : before_(uselocale(own())) {}
@@ -49,8 +49,7 @@ Glyph firstOf(std::string_view text) {
     return {text.substr(0, bytes), columns};
 }
 
-// Calls `use` with each character and how many bytes of the text it came from, for as long as `use`
-// returns true.
+// Calls `use` with each character and its number of bytes, as long as `use` returns true.
 void forEach(std::string_view text, auto use) {
     const Utf8 utf8;
     while (!text.empty()) {
@@ -106,8 +105,8 @@ TerminalLine::~TerminalLine() {
 
 int TerminalLine::columns() const { return std::max(0, columns_() - 1); }
 
-// The cursor goes back to the beginning: a terminal that is made narrower wraps what stands there,
-// and wiping from the beginning on takes all of it away.
+// The cursor goes back to the beginning. If the terminal is made narrower it wraps the line, and
+// clearing from the beginning removes all of it.
 void TerminalLine::draw(std::string_view text) {
     drawn_ = true;
     out_ << kWipe << fitted(text, columns()) << '\r' << std::flush;

@@ -40,7 +40,7 @@ struct Coding {
 
 Coding codingOf(VideoKind kind) {
     switch (kind) {
-        case VideoKind::Recording:  // the quickest preset that still holds fine light on black
+        case VideoKind::Recording:  // the fastest preset that still keeps fine light on black
             return {"libx264", "mp4", AV_PIX_FMT_YUV420P, {{"preset", "ultrafast"}, {"crf", "20"}}};
         case VideoKind::Film:
             return {"libx264", "mp4", AV_PIX_FMT_YUV420P, {{"preset", "fast"}, {"crf", "16"}}};
@@ -58,7 +58,8 @@ std::string reason(int code) {
     return text;
 }
 
-// libav writes by way of these, so that it writes to a file without a name. `file`: its descriptor.
+// libav writes through these functions, so that it can write to a file without a name. `file`: its
+// descriptor.
 int writeTo(void* file, std::uint8_t* bytes, int size) {
     for (int left = size; left > 0;) {
         const ssize_t written = ::write(*static_cast<int*>(file), bytes + (size - left), static_cast<std::size_t>(left));
@@ -87,7 +88,7 @@ struct VideoWriter::Impl {
     AVFrame* frame = nullptr;
     AVPacket* packet = nullptr;
     SwsContext* fromPicture = nullptr;
-    AVPixelFormat pictureFormat = AV_PIX_FMT_NONE;  // that fromPicture converts
+    AVPixelFormat pictureFormat = AV_PIX_FMT_NONE;  // the input of fromPicture
     PaddedRows<Rgba8> rows;                         // for libswscale
     PaddedRows<Rgba16> wideRows;
 
@@ -111,9 +112,8 @@ struct VideoWriter::Impl {
         int code = avcodec_send_frame(encoder, picture);
         if (code < 0) return error("encoding failed", code);
         while ((code = avcodec_receive_packet(encoder, packet)) >= 0) {
-            // Each frame's time on the screen is the distance to the next one, but nothing follows
-            // the last: without a duration of its own it would be shown for no time at all, and
-            // players drop it.
+            // A frame is shown until the next one. Nothing follows the last frame: without a
+            // duration of its own it would be shown for no time, and players drop it.
             packet->duration = ticks;
             av_packet_rescale_ts(packet, encoder->time_base, stream->time_base);
             packet->stream_index = stream->index;
@@ -203,7 +203,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const fs::path& file, glm
     impl->frame->format = encoder.pix_fmt;
     impl->frame->width = encoder.width;
     impl->frame->height = encoder.height;
-    // Some encoders ask the frame for these.
+    // Some encoders read these from the frame.
     impl->frame->color_primaries = encoder.color_primaries;
     impl->frame->color_trc = encoder.color_trc;
     impl->frame->colorspace = encoder.colorspace;

@@ -41,12 +41,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What is known of a file that is right.
+// What is known of a valid file.
 struct Finding {
     std::string summary;
     std::vector<fs::path> names{};        // the files that it names
-    std::vector<std::string> oddities{};  // what is no fault, but perhaps not what was meant; each with its place
-    bool isPicture = false;               // that may be odd for good reason where another file names it
+    std::vector<std::string> oddities{};  // valid, but perhaps not what was meant; each with its place
+    bool isPicture = false;               // its oddities are not reported if another file names it
 };
 
 // "1 cue", "6 cues".
@@ -57,7 +57,7 @@ std::string counted(std::size_t count, std::string_view thing) {
 // "1.78 : 1"
 std::string shape(double aspect) { return fmt::format("{:.2f} : 1", aspect); }
 
-// What becomes of a source's picture on a canvas of another shape.
+// What happens to a source's picture on a canvas of another shape.
 std::string fitAdvice(const show::Source& source, double aspect, const show::Output& output) {
     constexpr std::string_view kWhat[] = {"all of it is seen, with dark beside it (fit: contain)",
                                           "what hangs over the canvas is cut off (fit: cover)",
@@ -68,7 +68,7 @@ std::string fitAdvice(const show::Source& source, double aspect, const show::Out
         .message();
 }
 
-// What becomes of pictures on a canvas whose shape on the wall nobody has told.
+// What happens to pictures on a canvas whose shape on the wall is unknown.
 std::string unknownShape(const show::Site& site, const show::Output& output) {
     return fmt::format(
         "{}: the corners of '{}' do not tell the shape of the canvas '{}' on the wall: every picture fills it. Measure it and "
@@ -76,7 +76,7 @@ std::string unknownShape(const show::Site& site, const show::Output& output) {
         site.file.string(), output.name, output.canvas);
 }
 
-// Of every source and every canvas that it is shown on.
+// For every source, on every canvas that shows it.
 void noteShapes(const show::Show& show, const show::CueList& cues, const std::vector<std::optional<double>>& aspects,
                 const show::Site& site, std::vector<std::string>& oddities) {
     std::set<std::pair<std::size_t, std::string>> told;
@@ -98,7 +98,7 @@ void noteShapes(const show::Show& show, const show::CueList& cues, const std::ve
             }
 }
 
-// Shapes that were made as light stand where the drawing is white; as leaves their shadows would
+// Shapes that were found as light cover the white of the drawing. As leaves, their shadows would
 // show its negative.
 void noteNegatives(const show::Source& source, std::vector<std::string>& oddities) {
     const auto* foliage = std::get_if<show::FoliageSource>(&source.picture);
@@ -147,7 +147,7 @@ Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>&
         if (read)
             aspects.back() = render::aspectOf(*read);
         else if (std::all_of(files.begin(), files.end(), [&](const fs::path& file) { return checkFile(file, site).has_value(); }))
-            faults.add(read.error());  // each file is right, and they do not go together
+            faults.add(read.error());  // each file is valid, but they do not fit together
     }
     TRY(faults.result());
     if (site) {
@@ -157,8 +157,8 @@ Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>&
     return finding;
 }
 
-// A site of simulated devices is rehearsed, one of real ones is run; of a mixture `run` refuses the
-// simulated ones.
+// A site with simulated devices can be rehearsed, one with real devices can be run. In a mixture
+// `run` refuses the simulated devices.
 void noteSimulated(const show::Site& site, std::vector<std::string>& oddities) {
     std::vector<const show::DeviceConfig*> devices;
     for (const show::Universe& universe : site.universes) {
@@ -208,11 +208,11 @@ Result<Finding> checkPatternSettings(const fs::path& path, const std::optional<s
     return Finding{fmt::format("pattern settings, at most {}{}", counted(settings.search.instances, "instance"), shapes), {}};
 }
 
-// The drawing of a motion or of hints: NAME.png for NAME.motion.yaml. Without it white all over, so
-// that whatever it does not decide is looked at.
+// The drawing of a motion or of hints: NAME.png for NAME.motion.yaml. If it is missing, an
+// all-white one stands in, so that everything else can be checked.
 struct Drawing {
     GreyImage picture;
-    std::string note;  // of what was not looked at
+    std::string note;  // what was not checked
 
     static Result<Drawing> beside(const fs::path& path) {
         const fs::path file = path.parent_path() / (path.stem().stem().string() + ".png");
@@ -265,12 +265,12 @@ Result<Finding> checkCast(const fs::path& path, const std::optional<show::Site>&
 
 Result<Finding> checkStage(const fs::path& path, const std::optional<show::Site>&) {
     const theatre::Stage stage = TRY(theatre::readStage(path));
-    return Finding{fmt::format("stage, {}, {}, {}", stage.beams[0].lit ? "projector" : "lamp",
+    return Finding{fmt::format("stage, {}, {}, {}", stage.beams[0].lit ? "projector" : "light",
                                counted(stage.platforms.size(), "platform"), counted(stage.props.size(), "prop")),
                    {}};
 }
 
-// With NAME.stage.yaml, where it is there, for the props that are meant.
+// Uses NAME.stage.yaml, if there is one, for the props that the hints name.
 Result<Finding> checkHints(const fs::path& path, const std::optional<show::Site>&) {
     const Drawing drawing = TRY(Drawing::beside(path));
     const fs::path file = path.parent_path() / (path.stem().stem().string() + ".stage.yaml");
@@ -312,7 +312,7 @@ bool isVideoFile(const fs::path& path) {
     return kEndings.contains(endingOf(path));
 }
 
-// A picture may be a shape as well as a guide; it is taken for a guide.
+// A picture may be a shape or a guide; here it counts as a guide.
 bool isShapeFile(const fs::path& path) {
     static const std::set<std::string> kEndings = {".svg", ".fbx", ".obj", ".gltf", ".glb", ".ply", ".stl"};
     return kEndings.contains(endingOf(path));
@@ -325,7 +325,7 @@ Result<Finding> checkShape(const fs::path& path) {
 
 using Check = Result<Finding> (*)(const fs::path&, const std::optional<show::Site>&);
 
-// A YAML file says of itself of which kind it is.
+// A YAML file states its own kind.
 constexpr std::pair<std::string_view, Check> kKinds[] = {
     {"show", checkShow},     {"site", checkSite},           {"pattern", checkPattern}, {"pattern-settings", checkPatternSettings},
     {"motion", checkMotion}, {"sequence", checkSequence},   {"cast", checkCast},       {"stage", checkStage},
@@ -362,15 +362,15 @@ Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>&
 
 void declareOptions(CLI::App& command, CheckOptions& options) {
     command
-        .add_option("path", options.paths,
-                    "Show, site and sequence folders; show, site and pattern files; casts, stages, motions, hints and weights; "
-                    "guides and "
-                    "images, videos, shapes (SVG, meshes)")
+        .add_option(
+            "path", options.paths,
+            "Folders of shows, sites and sequences; files of shows, sites and patterns; casts, stages, motions, hints and "
+            "weights; guides and images, videos, shapes (SVG, meshes)")
         ->required()
         ->type_name("PATH");
     command
         .add_option("--site", options.site,
-                    "Look the shows' outputs, fixtures and relays up in this site: a folder or a site.yaml")
+                    "Look up the shows' outputs, fixtures and relays in this site: a folder or a site.yaml")
         ->type_name("SITE");
 }
 
@@ -383,7 +383,7 @@ Result<void> checkFiles(const CheckOptions& options, std::ostream& out) {
     std::optional<show::Site> site;
     if (options.site) {
         waiting.push_front(*options.site);
-        if (auto read = readSite(*options.site)) site = std::move(read).value();  // what is wrong with it is said in its turn
+        if (auto read = readSite(*options.site)) site = std::move(read).value();  // its faults are reported in its turn
     }
     std::set<fs::path> seen, given;
     for (const fs::path& path : options.paths) given.insert(path.lexically_normal());
@@ -413,7 +413,7 @@ Result<void> checkFiles(const CheckOptions& options, std::ostream& out) {
 }
 
 void addCheckCommand(CLI::App& program, Action& action) {
-    addCommand<CheckOptions>(program, action, "check", "Read files as the program would and say what is wrong with them",
+    addCommand<CheckOptions>(program, action, "check", "Read files as the program would, and report what is wrong with them",
                              declareOptions, runCheck);
 }
 

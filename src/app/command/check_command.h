@@ -14,12 +14,12 @@
 namespace fantascope::app {
 
 struct CheckOptions {
-    std::vector<std::filesystem::path> paths;   // shows (a folder or its show.yaml), and whatever else the program reads
-    std::optional<std::filesystem::path> site;  // looked at too; every show must find its outputs, fixtures and relays there
+    std::vector<std::filesystem::path> paths;   // shows (a folder or its show.yaml), and all other files that the program reads
+    std::optional<std::filesystem::path> site;  // checked too; every show must find its outputs, fixtures and relays there
 };
 
-// Reads every file, and every file that it names, once and as the program would, and prints one
-// line on each to `out`: "ok" and what it holds, or what is wrong and where. Error: how many were
+// Reads every file, and every file that it names, once and as the program would. It prints a line
+// for each to `out`: "ok" and what it holds, or what is wrong and where. Error: how many were
 // refused.
 Result<void> checkFiles(const CheckOptions& options, std::ostream& out);
 

@@ -24,7 +24,7 @@ struct Options {
 };
 
 void declare(CLI::App& command, Options& options) {
-    command.add_option("CAST", options.cast, "The poses or their motion, *.cast.yaml")->required();
+    command.add_option("CAST", options.cast, "A cast's poses or motion, *.cast.yaml")->required();
     addOutOption(
         command, options.output,
         "What to write: .glb or .gltf (all actors with their skins, props, light and screen) or .bvh (one actor's skeleton "
@@ -38,13 +38,14 @@ void declare(CLI::App& command, Options& options) {
                            : fmt::format("'{}' does not end in .glb, .gltf or .bvh", file);
             },
             "GLB|GLTF|BVH"));
-    command.add_option("--fps", options.frameRate, "Frames a second, with poses in between (default: the cast's)")
+    command.add_option("--fps", options.frameRate, "Frames per second, with interpolated poses (default: the cast's)")
         ->check(CLI::Range(1.0, 1000.0));
-    command.add_option("--actor", options.actor, "of a .bvh, from 1 (default: all, each in a file of its own)");
-    command.footer("docs/converting.md tells what other programs make of it.");
+    command.add_option("--actor", options.actor,
+                       "For a .bvh: the actor, counted from 1 (default: all, each in a file of its own)");
+    command.footer("docs/converting.md says how other programs read the files.");
 }
 
-// The actors that are wanted, each with his file.
+// The actors to write, each with his file.
 Result<std::vector<std::pair<std::size_t, fs::path>>> filesOf(const Options& options, std::size_t actors) {
     std::vector<std::pair<std::size_t, fs::path>> files;
     if (options.actor) {
@@ -63,13 +64,13 @@ Result<std::vector<std::pair<std::size_t, fs::path>>> filesOf(const Options& opt
 
 std::string lengthOf(const MotionScene& scene) {
     if (scene.framesPerSecond == 0) return "a still";
-    return fmt::format("{} frames at {:g} a second", scene.frames(), scene.framesPerSecond);
+    return fmt::format("{} frames at {:g} per second", scene.frames(), scene.framesPerSecond);
 }
 
 Result<void> run(const Options& options) {
     TRY(checkWritable(options.output));
     const std::string ending = options.output.extension().string();
-    if (options.actor && ending != ".bvh") return Error("--actor is for a .bvh, which holds one; a glTF holds all");
+    if (options.actor && ending != ".bvh") return Error("--actor is for a .bvh, which holds one actor; a glTF holds all");
     const MotionScene scene = TRY(readMotionScene(options.cast, options.frameRate));
     if (ending != ".bvh") {
         TRY(writeFile(options.output, gltfOf(scene, ending == ".glb")));

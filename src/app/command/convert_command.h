@@ -4,7 +4,7 @@
 
 namespace fantascope::app {
 
-// `fantascope convert`: a cast's motion as a scene that other programs read.
+// `fantascope convert`: writes a cast's poses or motion as a scene for other programs.
 void addConvertCommand(CLI::App& program, Action& action);
 
 }  // namespace fantascope::app

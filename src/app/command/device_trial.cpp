@@ -17,8 +17,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time kAtOnce = 10ms;     // soon enough for a finger
-constexpr Time kToBeSeen = 400ms;  // how long a lamp or a relay stays as it is
+constexpr Time kAtOnce = 10ms;     // fast enough for a finger
+constexpr Time kToBeSeen = 400ms;  // how long a fixture or a relay keeps its state
 
 std::string shown(const std::vector<bool>& states) {
     std::string text;
@@ -26,8 +26,8 @@ std::string shown(const std::vector<bool>& states) {
     return text;
 }
 
-// "sculpture intensity (slot 1)", "slot 1". People count slots from 1, and coils and inputs from 0
-// as the site file does.
+// "sculpture intensity (slot 1)", "slot 1". Slots count from 1, coils and inputs from 0, as in the
+// site file.
 std::string called(const DeviceTrial::Names& names, std::size_t place, std::string_view kind, std::size_t number) {
     const std::string plain = fmt::format("{} {}", kind, number);
     const auto found = names.find(place);
@@ -74,7 +74,7 @@ Result<void> DeviceTrial::chase(DmxPort& port, const std::vector<std::size_t>& s
         frame.fill(0);
         frame[slot] = 255;
         out_ << fmt::format("{} is at full", slotCalled(names, slot)) << std::endl;
-        (void)port.send(frame);  // lost in this moment: the next round tells
+        (void)port.send(frame);  // lost just now: the next round reports it
         return {};
     });
     frame.fill(0);

@@ -22,44 +22,43 @@
 
 namespace fantascope::app {
 
-// Tries one device, in a way that somebody on a ladder sees: a lamp after the other, a click, a
-// press, a picture. Each waits until the device is there, and goes on when it was lost and is back.
-// Error: it was not there all the while, or what it did is not what it was told to do. Thread: the
-// one that the port is bound to.
+// Tries one device in a way that a person on a ladder can see: one fixture after the other, a
+// click, a press, a picture. Each trial waits for the device, and resumes when a lost device is
+// back. Error: the device was never there, or it did something else than it was told. Thread: the
+// port's.
 class DeviceTrial {
 public:
-    // What the site calls a slot, a coil, a button or an input; what it does not name goes by its
+    // The site's names for slots, coils, buttons or inputs. One without a name is called by its
     // number.
     using Names = std::map<std::size_t, std::string>;
 
-    // All outlive it. It ends after `length`, or when interrupted. `out` is told what is to be
-    // seen, a line each.
+    // All outlive it. A trial ends after `length`, or when interrupted. It prints a line to `out`
+    // for each thing to be seen.
     DeviceTrial(Clock& clock, Time length, const Interrupt* interrupt, std::ostream& out)
         : clock_(clock), end_(clock.now() + length), interrupt_(interrupt), out_(out) {}
 
-    // Lights one of these slots (0 .. 511) after the other, the others dark, over and over; dark at
-    // the end.
+    // Lights these slots (0 .. 511) one after the other, again and again, with the others dark. All
+    // are dark at the end.
     Result<void> chase(DmxPort& port, const std::vector<std::size_t>& slots, const Names& names = {});
-    // Switches each relay to its unsafe state and back, one after the other, and asks the bank each
-    // time what it did; safe at the end. With names only the relays that have one. The guard, where
-    // relays are real, outlives the bank. Error: also that the bank has not confirmed the safe
-    // states at the end.
+    // Switches each relay to its unsafe state and back, one after the other, and reads the bank
+    // back each time. All are safe at the end. With names it switches only relays that have one.
+    // `guard`: for real relays; it outlives the bank. Error: also if the bank has not confirmed the
+    // safe states at the end.
     Result<void> click(RelayBank& bank, const std::vector<bool>& safeStates, const Names& names = {},
                        RelayGuard* guard = nullptr);
-    // Tells of every button that goes down or up, and of every contact.
+    // Prints every button that is pressed or released, and every contact that changes.
     Result<void> tellPresses(CueController& controller, const Names& names = {});
     Result<void> tellContacts(InputBank& bank, const Names& names = {});
-    // Tells who sends, and which slots change.
+    // Prints who sends, and which slots change.
     Result<void> tellDesk(DmxSource& source, const Names& names = {});
-    // Leaves the first picture in a PNG file and tells its size, brightness and how many come a
-    // second.
+    // Writes the first picture to a PNG file; prints its size, its brightness and the frame rate.
     Result<void> snapshot(CameraSource& camera, const std::filesystem::path& file);
 
 private:
-    // Not where nobody reads it any more.
+    // False also if nobody reads `out` any more.
     bool goesOn() const { return clock_.now() < end_ && out_.good() && (interrupt_ == nullptr || !interrupt_->requested()); }
-    // Does something every `period` while the device is there. Error: it never was, or what `step`
-    // says.
+    // Calls `step` every `period` while the device is there. Error: it never was there, or that of
+    // `step`.
     Result<void> every(Time period, const Device& device, const std::function<Result<void>()>& step);
 
     Clock& clock_;

@@ -35,7 +35,7 @@ struct Options {
     std::optional<double> length;  // seconds
 };
 
-// What a lamp's address is tried with where no site says which there are.
+// The slots to try if no site says which ones there are.
 constexpr std::size_t kSlotsWithoutFixtures = 16;
 
 std::string lineOf(const drivers::FoundDevice& device) {
@@ -62,7 +62,7 @@ Result<std::vector<DeviceStatus>> projectorsOf(const show::Site& site) {
     return drivers::lookForDisplays(questions);
 }
 
-// Takes the banks of these names, and what hangs on them, out of a site.
+// Removes the banks of these names from a site, with what is connected to them.
 template <class Member>
 void removeBanks(std::vector<show::Bank>& banks, std::vector<Member>& members, const std::set<std::string>& names) {
     for (std::size_t bank = banks.size(); bank-- > 0;) {
@@ -74,8 +74,8 @@ void removeBanks(std::vector<show::Bank>& banks, std::vector<Member>& members, c
     }
 }
 
-// The site without those of its devices, and without its outputs: they would cover the screen that
-// this is read on.
+// The site without these devices and without its outputs: they would cover the screen on which a
+// person reads this.
 show::Site without(const std::set<std::string>& names, show::Site site) {
     site.outputs.clear();
     std::erase_if(site.universes, [&](show::Universe& universe) {
@@ -89,13 +89,13 @@ show::Site without(const std::set<std::string>& names, show::Site site) {
     return site;
 }
 
-// The devices of a site as they are looked at: what another program has is not touched, the rest is
-// opened and never written to.
+// Watches the devices of a site. It does not touch what another program has. It opens the rest, and
+// never writes to them.
 class Look {
 public:
     Look(show::Site site, std::vector<DeclaredDevice> declared, Clock& clock)
         : site_(std::move(site)), declared_(std::move(declared)), clock_(clock) {}
-    // Opens what has become free, gives back what another program has claimed.
+    // Opens devices that have become free, and closes those that another program has claimed.
     Result<void> refresh() {
         std::set<std::string> held;
         for (const DeclaredDevice& device : declared_)
@@ -133,10 +133,10 @@ private:
     bool opened_ = false;
     std::set<std::string> held_;
     Devices devices_;
-    std::map<std::string, std::string> lines_;  // of what another program has
+    std::map<std::string, std::string> lines_;  // of devices that another program has
 };
 
-// Until every device has been looked for once.
+// Waits until every device has been looked for once.
 void waitForFirstLook(const Devices& devices, Clock& clock, const Interrupt& interrupt) {
     const auto isStarting = [&] {
         const auto statuses = devices.statuses();
@@ -165,7 +165,7 @@ Result<void> list(const std::optional<show::Site>& site) {
     return {};
 }
 
-// Tells what comes and goes until it is interrupted.
+// Prints what is plugged and unplugged until it is interrupted.
 Result<void> watch(const std::optional<show::Site>& site, Time length) {
     SteadyClock clock;
     const Interrupt interrupt;
@@ -173,7 +173,7 @@ Result<void> watch(const std::optional<show::Site>& site, Time length) {
     if (site) look.emplace(*site, TRY(declaredDevices(*site)), clock);
     std::set<std::string> there;
     std::map<std::string, std::string> said;
-    fmt::print("what comes and goes; Ctrl-C ends\n");
+    fmt::print("+ plugged, - unplugged; Ctrl-C ends\n");
     for (const Time end = clock.now() + length; clock.now() < end && !interrupt.requested();
          clock.sleepUntil(clock.now() + 200ms)) {
         std::set<std::string> now;
@@ -232,7 +232,7 @@ std::vector<std::size_t> firstSlots() {
     return slots;
 }
 
-// What is tried is this program's alone, or the test would fight with a show. Error: another
+// Claims the device under test, so that the test does not interfere with a show. Error: another
 // program has it.
 Result<std::optional<drivers::Claim>> claimForTest(const std::string& name, const std::string& claim) {
     if (claim.empty()) return std::optional<drivers::Claim>();
@@ -250,10 +250,10 @@ Result<std::optional<drivers::Claim>> claimForTest(const std::string& name, cons
     return std::optional<drivers::Claim>();
 }
 
-// A device of the site, by the name that its status has.
+// Tries a device of the site, by the name in its status.
 Result<void> testDeclared(const Options& options, const show::Site& site, const std::optional<drivers::Claim>& claim,
                           DeviceTrial& trial, Clock& clock) {
-    const drivers::Surroundings around{clock};
+    const drivers::DriverContext context{clock};
     std::vector<std::string> names;
     const auto isIt = [&](const std::string& name) {
         names.push_back(name);
@@ -261,7 +261,7 @@ Result<void> testDeclared(const Options& options, const show::Site& site, const 
     };
     for (const show::Universe& universe : site.universes)
         if (isIt(fmt::format("universe {}", universe.number))) {
-            const auto port = TRY(drivers::openDmxPort(universe.port.options, universe.number, around));
+            const auto port = TRY(drivers::openDmxPort(universe.port.options, universe.number, context));
             const auto names = slotNames(site, universe.number);
             std::vector<std::size_t> slots;
             for (const auto& [slot, name] : names) slots.push_back(slot);
@@ -269,35 +269,35 @@ Result<void> testDeclared(const Options& options, const show::Site& site, const 
         }
     for (const show::Universe& universe : site.universes)
         if (universe.desk && isIt(fmt::format("desk {}", universe.number)))
-            return trial.tellDesk(*TRY(drivers::openDmxSource(universe.desk->device.options, universe.number, around)),
+            return trial.tellDesk(*TRY(drivers::openDmxSource(universe.desk->device.options, universe.number, context)),
                                   slotNames(site, universe.number));
     for (std::size_t bank = 0; bank < site.relayBanks.size(); ++bank)
         if (const auto& [name, device] = site.relayBanks[bank]; isIt(name)) {
             const auto safe = show::safeCoils(site, bank);
             const auto guard = TRY(RelayGuard::start(site, claim ? std::vector{claim->file()} : std::vector<int>(), name));
-            return trial.click(*TRY(drivers::openRelayBank(device.options, name, safe, around)), safe, relayNames(site, bank),
+            return trial.click(*TRY(drivers::openRelayBank(device.options, name, safe, context)), safe, relayNames(site, bank),
                                guard.get());
         }
     if (site.cueController && isIt("cue controller"))
-        return trial.tellPresses(*TRY(drivers::openCueController(site.cueController->options, around)), buttonNames(site));
+        return trial.tellPresses(*TRY(drivers::openCueController(site.cueController->options, context)), buttonNames(site));
     for (std::size_t bank = 0; bank < site.contactBanks.size(); ++bank)
         if (const auto& [name, device] = site.contactBanks[bank]; isIt(name))
-            return trial.tellContacts(*TRY(drivers::openInputBank(device.options, name, site.inputCount(bank), around)),
+            return trial.tellContacts(*TRY(drivers::openInputBank(device.options, name, site.inputCount(bank), context)),
                                       contactNames(site, bank));
     if (site.camera && isIt("camera"))
-        return trial.snapshot(*TRY(drivers::openCamera(site.camera->options, around)), options.picture);
+        return trial.snapshot(*TRY(drivers::openCamera(site.camera->options, context)), options.picture);
     for (const show::Output& output : site.outputs)
         if (output.name == options.test)
             return Error(
-                fmt::format("'{}' is an output: run a show on the site and press e there for its test pictures "
+                fmt::format("'{}' is an output: run a show on the site, and press e for its test pictures "
                             "(docs/setting-up.md)",
                             output.name));
     return Error(fmt::format("{} has no device '{}'; it has {}", site.file.string(), options.test, listed(names)));
 }
 
-// A device that was found, by where it is, what it is, or its identity.
+// Tries a device that was found, by its place, its kind or its identity.
 Result<void> testFound(const Options& options, DeviceTrial& trial, Clock& clock) {
-    const drivers::Surroundings around{clock};
+    const drivers::DriverContext context{clock};
     const auto found = drivers::findDevices();
     std::vector<std::string> names;
     for (const drivers::FoundDevice& device : found) {
@@ -308,7 +308,7 @@ Result<void> testFound(const Options& options, DeviceTrial& trial, Clock& clock)
         const ConfigNode node = TRY(ConfigNode::parse(device.options, "the device that was found"));
         const auto alone = [&](const auto& opening, const auto& tryIt) -> Result<void> {
             const auto claim = TRY(claimForTest(device.what, opening.claim()));
-            return tryIt(*TRY(opening.open(around)));
+            return tryIt(*TRY(opening.open(context)));
         };
         if (device.family == "dmx")
             return alone(TRY(drivers::readDmxPort(node, 1)), [&](DmxPort& port) { return trial.chase(port, firstSlots()); });
@@ -318,12 +318,12 @@ Result<void> testFound(const Options& options, DeviceTrial& trial, Clock& clock)
         if (device.family == "camera")
             return alone(TRY(drivers::readCamera(node)),
                          [&](CameraSource& camera) { return trial.snapshot(camera, options.picture); });
-        return Error(fmt::format("how a device of the family {} is used stands in a site file: add --site", device.family));
+        return Error(fmt::format("a device of the family {} can only be tried with a site file: add --site", device.family));
     }
     return Error(fmt::format("no device '{}' was found; there is {}", options.test, names.empty() ? "none" : listed(names)));
 }
 
-// A trial of relays switches what hangs on them: only on somebody's word.
+// A trial of relays switches what is connected to them, so somebody must agree.
 Result<void> askBeforeClicking(const Options& options, const show::Site& site) {
     std::vector<std::string> relays;
     for (const show::Relay& relay : site.relays)
@@ -350,7 +350,7 @@ Result<void> devices(const Options& options) {
             TRY(askBeforeClicking(options, *site));
         }
         SteadyClock clock;
-        const Interrupt interrupt(Interrupt::Second::IsCounted);  // no lamp stays lit, no relay unsafe
+        const Interrupt interrupt(Interrupt::Second::IsCounted);  // no fixture stays lit, no relay unsafe
         DeviceTrial trial(clock, fromSeconds(options.length.value_or(kTrial)), &interrupt, std::cout);
         return site ? testDeclared(options, *site, claim, trial, clock) : testFound(options, trial, clock);
     }
@@ -359,23 +359,25 @@ Result<void> devices(const Options& options) {
 }
 
 void declare(CLI::App& command, Options& options) {
-    command.add_option("--site", options.site, "say of this site's devices how they are: a folder or a site.yaml");
-    CLI::Option* watches = command.add_flag("--watch", options.watch, "go on, and tell what comes and goes");
+    command.add_option("--site", options.site, "report the state of this site's devices: a folder or a site.yaml");
+    CLI::Option* watches = command.add_flag("--watch", options.watch, "keep running, and report what is plugged and unplugged");
     command
         .add_option(
             "--test", options.test,
-            "try one device: of the site by its name ('universe 1', 'desk 1', 'cue controller', 'camera', or a bank's own), "
-            "or one that was found by a part of its line. Lamps chase, relays click, presses are told, a camera leaves a picture")
+            "try one device: one of the site by its name ('universe 1', 'desk 1', 'cue controller', 'camera', or a bank's name), "
+            "or a found one by a part of its line. Fixtures chase, relays click, presses are printed, a camera leaves a picture")
         ->excludes(watches);
-    command.add_flag("--yes", options.yes, "a test of relays switches them without asking");
-    command.add_option("--seconds", options.length, "how long (default: a test 10 s)")->check(CLI::Range(0.1, 1e6));
-    addOutOption(command, options.picture, "where a camera's picture goes")->capture_default_str();
+    command.add_flag("--yes", options.yes, "switch relays in a test without asking");
+    command.add_option("--seconds", options.length, "end after this time (default for a test: 10 s)")
+        ->check(CLI::Range(0.1, 1e6));
+    addOutOption(command, options.picture, "file for a camera's picture")->capture_default_str();
 }
 
 }  // namespace
 
 void addDevicesCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "devices", "What is there: widgets, nodes, relays, controllers, cameras, projectors",
+    addCommand<Options>(program, action, "devices",
+                        "List the devices that are found: projectors, DMX widgets and nodes, relays, hand controllers, cameras",
                         declare, devices);
 }
 

@@ -4,8 +4,8 @@
 
 namespace fantascope::app {
 
-// `fantascope devices`: what is there, what a site's devices say of themselves, and a trial of one
-// of them.
+// `fantascope devices`: lists devices that it finds, reports the state of a site's devices, or
+// tries one of them.
 void addDevicesCommand(CLI::App& program, Action& action);
 
 }  // namespace fantascope::app

@@ -28,18 +28,18 @@ void declare(CLI::App& command, Options& options) {
         ->required();
     command
         .add_option("--seconds", film.seconds,
-                    "How much show time (default: a minute; a pattern or a single cue: one loop of the movement)")
+                    "Length in show time (default: 60; for a pattern or a single cue: one loop of the movement)")
         ->check(CLI::Range(0.001, 1e6));
-    command.add_option("--fps", film.frameRate, "Frames a second of show time (default: the output's; a pattern: 30)")
+    command.add_option("--fps", film.frameRate, "Frames per second of show time (default: the output's; for a pattern: 30)")
         ->check(CLI::Range(1.0, 1000.0));
-    addSizeOption(command, "--size", film.size, "Of a frame (default: the output's; a pattern or a canvas: 1080 rows)");
+    addSizeOption(command, "--size", film.size, "Frame size (default: the output's; for a pattern or a canvas: 1080 rows)");
     addChoice<Alpha>(
         command, "--alpha", options.alpha, {{"none", Alpha::None}, {"stored", Alpha::Stored}, {"linear", Alpha::Linear}},
-        "Black becomes clear, for programs that composite in stored or in linear values; none: the frame as the projector "
-        "gets it (default: stored; none in an .mp4, which has no alpha)");
-    command.add_flag("--canvas", film.canvas, "The picture before the output's keystone, as a light mask wants it");
+        "Make black transparent, for programs that composite stored or linear values; none: the frame as the projector "
+        "gets it (default: stored; none for an .mp4, which has no alpha)");
+    command.add_flag("--canvas", film.canvas, "The whole canvas, without the output's warp, as for a light mask");
     command.add_option("--report", options.report, "Also write figures, as JSON (docs/report.md)");
-    command.footer("Meanwhile the space bar pauses and goes on; escape, q and Ctrl-C end it with the frames so far.");
+    command.footer("During the export, the space bar pauses and resumes; Escape, q and Ctrl-C end it with the frames so far.");
 }
 
 Result<void> run(const Options& options) {
@@ -66,8 +66,7 @@ Result<void> run(const Options& options) {
 }  // namespace
 
 void addExportCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "export", "Write what an output shows as pictures with alpha or as a video", declare,
-                        run);
+    addCommand<Options>(program, action, "export", "Write an output's frames as pictures with alpha or as a video", declare, run);
 }
 
 }  // namespace fantascope::app

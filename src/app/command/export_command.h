@@ -4,9 +4,8 @@
 
 namespace fantascope::app {
 
-// `fantascope export SHOW --output NAME -o FILE|DIR`: what one output shows, frame by frame of show
-// time, for other programs: pictures with alpha, or a video. Also of a single pattern.
-// docs/drawing.md.
+// `fantascope export SHOW --output NAME -o FILE|DIR`: writes an output's frames for other programs,
+// as pictures with alpha or as a video. SHOW may be a single pattern. See docs/drawing.md.
 void addExportCommand(CLI::App& program, Action& action);
 
 }  // namespace fantascope::app

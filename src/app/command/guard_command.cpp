@@ -28,7 +28,7 @@ struct Options {
     std::string bank;
 };
 
-// Nothing but SIGKILL ends it: it ends by itself.
+// Only SIGKILL ends it from outside.
 void ignoreSignals() {
     for (int signal = 1; signal < NSIG; ++signal)
         if (signal != SIGSEGV && signal != SIGBUS && signal != SIGFPE && signal != SIGILL && signal != SIGABRT &&
@@ -39,7 +39,7 @@ void ignoreSignals() {
     sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-// Waits for the run's end. Whether it said that all is safe.
+// Waits for the run's end. Returns whether the run said that all is safe.
 bool runSaidSafe() {
     std::string said;
     char bytes[64];
@@ -52,7 +52,8 @@ bool runSaidSafe() {
 
 void say(const std::string& sentence) { std::fputs(("fantascope: " + sentence + "\n").c_str(), stderr); }
 
-// Writes the safe states until the bank has confirmed them. Error: it has not by `latest`, and why.
+// Writes the safe states until the bank has confirmed them. Error: it has not by `latest`; says
+// why.
 Result<void> makeSafe(RelayBank& bank, const std::vector<bool>& safe, Clock& clock, Time latest) {
     for (;;) {
         auto written = bank.write(safe);
@@ -82,7 +83,7 @@ Result<void> guard(const Options& options) {
         banks.push_back({name, std::move(safe), std::move(opened), {}});
     }
     {
-        std::vector<std::jthread> threads;  // a bank that is dead holds up no other
+        std::vector<std::jthread> threads;  // a dead bank delays no other
         for (Bank& bank : banks)
             threads.emplace_back(
                 [&] { bank.made = bank.device ? makeSafe(**bank.device, bank.safe, clock, latest) : bank.device.error(); });

@@ -38,13 +38,13 @@ using pattern::PatternSearch;
 using pattern::ShapePattern;
 
 constexpr double kDefaultSeconds = 30;
-constexpr int kLoopMoments = 200;  // of the animated loop are judged: one in ten of the default 2000 frames
+constexpr int kLoopMoments = 200;  // of the animated loop that are measured: one in ten of the default 2000 frames
 
 struct Options {
     fs::path guide, output;
     std::vector<std::string> shapes;
     std::optional<fs::path> settings, image, report, start;
-    std::vector<double> region;  // left, top, right, bottom; or none
+    std::vector<double> region;  // left, top, right, bottom; or empty
     std::optional<std::uint32_t> instances;
     std::optional<double> seconds, targetZ;
     std::optional<int> iterations;
@@ -59,18 +59,17 @@ void declare(CLI::App& command, Options& options) {
     command.add_option("GUIDE", options.guide, "The grey drawing: PNG, JPEG or TIFF")->required();
     addOutOption(command, options.output, "The pattern to write, P.pattern.yaml")->required()->check(onlyYaml("P.pattern.yaml"));
     command
-        .add_option(
-            "--shapes", options.shapes,
-            fmt::format("Elemental shapes, separated by commas: {}, or files (FBX, OBJ, glTF, PLY, STL, SVG, PNG); without, "
-                        "those that the settings name, or else triangle",
-                        pattern::builtInShapeList()))
+        .add_option("--shapes", options.shapes,
+                    fmt::format("Elemental shapes, separated by commas: {}, or files (FBX, OBJ, glTF, PLY, STL, SVG, PNG) "
+                                "(default: those of the settings, else triangle)",
+                                pattern::builtInShapeList()))
         ->delimiter(',')
-        ->allow_extra_args(false);  // what follows the list is the next argument
+        ->allow_extra_args(false);  // the argument after the list is not part of it
     command.add_option("--settings", options.settings, "The numerical parameters, *.pattern-settings.yaml");
-    command.add_option("--instances", options.instances, "The most instances")->check(CLI::Range(1, 100'000));
+    command.add_option("--instances", options.instances, "Maximum number of instances")->check(CLI::Range(1, 100'000));
     command
         .add_option("--seconds", options.seconds,
-                    fmt::format("Stop after so long (default {} s, unless --iterations is given)", kDefaultSeconds))
+                    fmt::format("Stop after so many seconds (default: {}, unless --iterations is given)", kDefaultSeconds))
         ->check(CLI::Range(0.0, 1e6));
     command.add_option("--iterations", options.iterations, "Stop after so many iterations; repeats a run exactly")
         ->check(CLI::Range(0, std::numeric_limits<int>::max()));
@@ -81,37 +80,35 @@ void declare(CLI::App& command, Options& options) {
                                      "refined: one exact move at a time; paper: Ji et al. 2015, section 4.1, as written")
         ->default_str("refined");
     auto* start = command.add_option("--start", options.start,
-                                     "Go on from this pattern, with its shapes, seed and movement; the refined method");
+                                     "Start from this pattern, with its shapes, seed and movement; refined method only");
     command
-        .add_option(
-            "--region", options.region,
-            "With --start: LEFT,TOP,RIGHT,BOTTOM in canvas heights; instances whose centre lies elsewhere stay as they are")
+        .add_option("--region", options.region,
+                    "With --start: LEFT,TOP,RIGHT,BOTTOM in canvas heights; instances whose centre lies outside stay as they are")
         ->delimiter(',')
         ->expected(4)
         ->needs(start);
-    command.add_option("--image", options.image, "Also write the pattern white on black, in the guide's size, as PNG");
+    command.add_option("--image", options.image, "Also write the pattern, white on black and in the guide's size, as PNG");
     command.add_flag("--shadows", options.shadows,
-                     "The shapes are dark and stand where the drawing is dark, as leaves do in a show's foliage");
-    command.add_flag("--invert", options.invert, "The drawing is dark ink on white paper: what is dark is wanted light");
-    command.add_option("--seed", options.seed, "Another seed, another pattern; the same seed, the same pattern")
+                     "The shapes are dark and cover what is dark in the drawing, like leaves in a show's foliage");
+    command.add_flag("--invert", options.invert, "The drawing is dark ink on white paper: what is dark becomes light");
+    command.add_option("--seed", options.seed, "Random seed: the same seed gives the same pattern")
         ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
         ->capture_default_str();
-    command.add_option("--threads", options.threads, "How many to use; the pattern is the same for any number")
-        ->check(CLI::Range(1, 256));
+    command.add_option("--threads", options.threads, "Number of threads; does not change the pattern")->check(CLI::Range(1, 256));
     command.add_option("--report", options.report, "Also write figures, as JSON");
-    command.add_flag("--watch", options.watch, "Show the pattern in a window while it is searched for");
-    command.footer("While it searches, the space bar pauses and goes on; escape, q and Ctrl-C end it with the best so far.");
+    command.add_flag("--watch", options.watch, "Show the search in a window");
+    command.footer(
+        "During the search, the space bar pauses and resumes; Escape, q and Ctrl-C end it with the best pattern so far.");
 }
 
-// The drawing turned over, in the 8 bits of the file that it becomes: of the shadows that shapes
-// are to fill, or of ink that is to be light.
+// The drawing inverted, rounded to 8 bits as in the file that it is written to.
 GreyImage turnedOver(GreyImage guide) {
     guide = inverted(std::move(guide));
     for (float& value : guide.pixels()) value = std::round(value * 255) / 255;
     return guide;
 }
 
-// Each with what the settings say of it alone.
+// The shapes to use, each with its own settings.
 Result<std::vector<pattern::ShapeSettings>> chosenShapes(const Options& options, const pattern::PatternSettings& settings,
                                                          const std::optional<ShapePattern>& start) {
     if (start) {
@@ -129,8 +126,7 @@ Result<std::vector<pattern::ShapeSettings>> chosenShapes(const Options& options,
     return chosen;
 }
 
-// Whether a .gltf keeps its points in files of their own; one that holds them itself can be copied
-// alone.
+// Whether a .gltf refers to further files. One with embedded buffers can be copied alone.
 bool hasOtherFiles(const fs::path& file) {
     const auto text = readFile(file);
     const Report gltf = Report::parse(text ? *text : "", nullptr, false);
@@ -141,7 +137,7 @@ bool hasOtherFiles(const fs::path& file) {
            });
 }
 
-// Names each file's shape as it will lie beside the pattern; what has to be put there is added to
+// Names each shape from a file by its place beside the pattern, and adds the files to put there to
 // `files`.
 Result<void> placeShapes(const fs::path& output, std::vector<pattern::ShapeSettings>& chosen, std::vector<Material>& files) {
     std::set<std::string> names;
@@ -152,12 +148,13 @@ Result<void> placeShapes(const fs::path& output, std::vector<pattern::ShapeSetti
             files.push_back(materialFor(output, file, file.filename().string()));
             if (files.back().copied && endingOf(file) == ".gltf" && hasOtherFiles(file))
                 return Error(fmt::format(
-                    "{}: keeps its points in a second file and cannot be copied beside the pattern; export it as .glb", given));
+                    "{}: keeps its vertices in a second file, so it cannot be copied beside the pattern; export it as .glb",
+                    given));
             shape.name = files.back().name;
             shape.file = fs::absolute(output).parent_path() / shape.name;
         }
         if (!names.insert(shape.name).second)
-            return Error(fmt::format("the shape {}, or another of that name, is given twice", given));
+            return Error(fmt::format("the shape {}, or another one of that name, is given twice", given));
     }
     return {};
 }
@@ -190,27 +187,28 @@ Report reportOf(PatternSearch::Method method, const PatternSearch::Found& found,
     return report;
 }
 
-// The pattern to go on from. Error: the file's; it cannot be gone on from as was asked.
+// The pattern of --start. Error: as readPattern(), or the other options do not fit it.
 Result<ShapePattern> startingPattern(const Options& options, const GreyImage& guide) {
     const std::string file = options.start->string();
     if (options.method != PatternSearch::Method::Refined)
-        return Error("--start: the paper's method begins with a random pattern; leave --method out");
-    if (!options.shapes.empty()) return Error(fmt::format("--start: {} has its shapes; leave --shapes out", file));
+        return Error("--start: the paper's method always starts from a random pattern; leave --method out");
+    if (!options.shapes.empty()) return Error(fmt::format("--start: {} brings its own shapes; leave --shapes out", file));
     ShapePattern pattern = TRY(pattern::readPattern(*options.start));
     const double aspect = double(guide.width()) / guide.height();
-    // A pattern's own is rounded to whole pixels.
+    // The pattern's aspect is that of its size in whole pixels.
     if (std::abs(aspect - pattern.aspect()) * pattern.height > 1)
-        return Error(fmt::format("{}: its canvas is {:.4f} times as wide as high, and {} {:.4f} times; they cannot be compared",
-                                 file, pattern.aspect(), options.guide.string(), aspect));
-    if (pattern.instances.empty()) return Error(fmt::format("{}: has no instances to go on from; leave --start out", file));
+        return Error(fmt::format("{}: its canvas has an aspect of {:.4f}, and {} one of {:.4f}; they cannot be compared", file,
+                                 pattern.aspect(), options.guide.string(), aspect));
+    if (pattern.instances.empty()) return Error(fmt::format("{}: has no instances to start from; leave --start out", file));
     return pattern;
 }
 
-// How often a window shows the search.
+// How often the window is updated, and its size.
 constexpr Time kShowEvery = std::chrono::milliseconds(50);
 constexpr glm::ivec2 kWindow{960, 540};
 
-// Searches until the settings, the clock or a person say stop. `window`: shows it; may be null.
+// Searches until the settings, the clock or a person stops it. `limit`: seconds. `window`: shows
+// the search; may be null.
 PatternSearch::Found search(const GreyImage& guide, ShapePattern pattern, const PatternSearch::Options& options,
                             std::optional<double> limit, int threads, Clock& clock, drivers::PictureWindow* window) {
     Attendance attendance(clock, [&] { return window != nullptr ? window->pollKey() : std::nullopt; });
@@ -219,8 +217,8 @@ PatternSearch::Found search(const GreyImage& guide, ShapePattern pattern, const 
     const Time start = worked();
     std::optional<int> planned;
     if (options.iterations < std::numeric_limits<int>::max()) planned = options.iterations;
-    // A search that cools by a plan is not stopped by the clock but by the plan: only then can it
-    // be repeated.
+    // The refined method stops by its plan and not by the clock, so that the search can be
+    // repeated.
     const bool planning = options.method == PatternSearch::Method::Refined;
     std::optional<Time> shown;
     const auto askStop = [&](const PatternSearch::Progress& now) -> std::optional<PatternSearch::StopReason> {
@@ -236,11 +234,11 @@ PatternSearch::Found search(const GreyImage& guide, ShapePattern pattern, const 
                             fmt::format("z {:.4f}  {} instances{}", now.z, now.instances, how));
         };
         tell("");
-        if (!attendance.goesOn([&] { tell("  paused, space goes on"); })) return PatternSearch::StopReason::Interrupted;
+        if (!attendance.goesOn([&] { tell("  paused, space resumes"); })) return PatternSearch::StopReason::Interrupted;
         if (limit && seconds(worked() - start) >= *limit && !(planning && planned)) return PatternSearch::StopReason::Time;
         return std::nullopt;
     };
-    // From the speed of the first tenth, once it runs.
+    // Plans by the speed of the first tenth, measured from the first iteration on.
     std::optional<Time> running;
     const auto plan = [&](const PatternSearch::Progress& now) -> std::optional<int> {
         if (!running) running = worked();
@@ -251,20 +249,28 @@ PatternSearch::Found search(const GreyImage& guide, ShapePattern pattern, const 
     return PatternSearch::run(guide, std::move(pattern), options, threads, askStop, plan);
 }
 
-Result<void> run(const Options& options) {
-    // Whatever can be refused is refused before the search begins.
-    TRY(checkWritable(options.output));
-    for (const auto& file : {options.image, options.report})
-        if (file) TRY(checkWritable(*file));
+// What the search needs, read and checked before it begins.
+struct Task {
+    GreyImage guide;
+    pattern::PatternSettings settings;
+    std::optional<double> limit;  // seconds
+    ShapePattern pattern;         // with the shapes; with instances if it is the one to start from
+    Material guideFile;
+    std::vector<Material> shapeFiles;
+};
+
+Result<GreyImage> readGuide(const Options& options) {
     GreyImage guide = TRY(readGrey(options.guide));
     TRY(checkDrawn(guide, options.guide));
     if (isInkOnPaper(guide) && !options.invert)
         log::warning("pattern",
-                     fmt::format("{}: looks like dark ink on white paper, and white is what becomes light; with --invert "
-                                 "the ink does",
+                     fmt::format("{}: looks like dark ink on white paper, but white becomes light; use --invert to light the ink",
                                  options.guide.string()));
-    const bool isTurnedOver = options.shadows != options.invert;
-    if (isTurnedOver) guide = turnedOver(std::move(guide));
+    return options.shadows != options.invert ? turnedOver(std::move(guide)) : guide;
+}
+
+// The settings file with the command line's options in place of its own.
+Result<pattern::PatternSettings> readSettings(const Options& options) {
     pattern::PatternSettings settings;
     if (options.settings) settings = TRY(pattern::readPatternSettings(*options.settings));
     settings.search.method = options.method;
@@ -272,57 +278,82 @@ Result<void> run(const Options& options) {
     if (options.targetZ) settings.search.targetZ = *options.targetZ;
     if (options.iterations || options.seconds)
         settings.search.iterations = options.iterations.value_or(std::numeric_limits<int>::max());
-    std::optional<ShapePattern> start;
-    if (options.start) start = TRY(startingPattern(options, guide));
     if (!options.region.empty())
         settings.search.region = {{options.region[0], options.region[1]}, {options.region[2], options.region[3]}};
-    TRY(settings.search.check());
-    const bool limited = settings.seconds || settings.search.iterations < std::numeric_limits<int>::max();
-    const std::optional<double> limit = options.seconds || options.iterations ? options.seconds
-                                        : limited                             ? settings.seconds
-                                                                              : kDefaultSeconds;
-    std::vector<pattern::ShapeSettings> shapes = TRY(chosenShapes(options, settings, start));
-    std::vector<Material> shapeFiles;
-    TRY(placeShapes(options.output, shapes, shapeFiles));
-    // Its name tells `check` what the shapes are for: shapes that were made as light are no leaves.
-    const std::string stem = options.output.stem().stem().string();
-    const Material guideFile = options.shadows ? Material{{}, stem + ".shadows.png", false}
-                               : options.invert
-                                   ? Material{{}, stem + ".inverted.png", false}
-                                   : materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
+    return settings;
+}
 
-    ShapePattern pattern;
+std::optional<double> timeLimit(const Options& options, const pattern::PatternSettings& settings) {
+    if (options.seconds || options.iterations) return options.seconds;
+    const bool limited = settings.seconds || settings.search.iterations < std::numeric_limits<int>::max();
+    return limited ? settings.seconds : kDefaultSeconds;
+}
+
+// The name tells `check` what the shapes are for: shapes made as light cannot serve as leaves.
+Material guideFileOf(const Options& options) {
+    const std::string stem = options.output.stem().stem().string();
+    if (options.shadows) return {{}, stem + ".shadows.png", false};
+    if (options.invert) return {{}, stem + ".inverted.png", false};
+    return materialFor(options.output, options.guide, "guide" + options.guide.extension().string());
+}
+
+Result<Task> prepare(const Options& options) {
+    TRY(checkWritable(options.output));
+    for (const auto& file : {options.image, options.report})
+        if (file) TRY(checkWritable(*file));
+    Task task;
+    task.guide = TRY(readGuide(options));
+    task.settings = TRY(readSettings(options));
+    std::optional<ShapePattern> start;
+    if (options.start) start = TRY(startingPattern(options, task.guide));
+    TRY(task.settings.search.check());
+    task.limit = timeLimit(options, task.settings);
+    std::vector<pattern::ShapeSettings> shapes = TRY(chosenShapes(options, task.settings, start));
+    TRY(placeShapes(options.output, shapes, task.shapeFiles));
+    task.guideFile = guideFileOf(options);
     if (start) {
-        pattern = *start;
-        pattern.shapes.clear();  // they come back by the names that they have beside the new file
+        task.pattern = std::move(*start);
+        task.pattern.shapes.clear();  // chosenShapes() has them, by the names that they get beside the new file
+        task.settings.fitMotion = false;
     } else {
-        pattern.guideTransfer = settings.guideTransfer;
-        pattern.seed = options.seed;
-        pattern.motion = settings.motion;
+        task.pattern.guideTransfer = task.settings.guideTransfer;
+        task.pattern.seed = options.seed;
+        task.pattern.motion = task.settings.motion;
     }
     for (auto& [shape, own] : shapes) {
-        pattern.shapes.push_back(std::move(shape));
-        settings.search.shapes.push_back(std::move(own));
+        task.pattern.shapes.push_back(std::move(shape));
+        task.settings.search.shapes.push_back(std::move(own));
     }
+    return task;
+}
+
+// Writes the files that the pattern names, then the pattern, so that it never names a file that is
+// not there.
+Result<void> writeFound(const Options& options, const Task& task, ShapePattern& found) {
+    const fs::path folder = fs::absolute(options.output).parent_path();
+    if (options.shadows || options.invert) TRY(writePng(folder / task.guideFile.name, task.guide));
+    TRY(copyTo(folder, task.guideFile));
+    for (const Material& file : task.shapeFiles) TRY(copyTo(folder, file));
+    found.guide = folder / task.guideFile.name;
+    TRY(writePattern(options.output, found));
+    if (options.image) TRY(writePng(*options.image, drawWhiteOnBlack(found, task.guide.width(), task.guide.height())));
+    return {};
+}
+
+Result<void> run(const Options& options) {
+    Task task = TRY(prepare(options));
     std::unique_ptr<drivers::PictureWindow> window;
     if (options.watch) window = TRY(drivers::PictureWindow::open(options.output.filename().string(), kWindow));
     SteadyClock clock;
-    PatternSearch::Found found = search(guide, std::move(pattern), settings.search, limit, options.threads, clock, window.get());
+    PatternSearch::Found found =
+        search(task.guide, std::move(task.pattern), task.settings.search, task.limit, options.threads, clock, window.get());
     const Time took = clock.now();
-    if (settings.fitMotion && !start) found.pattern.motion = fittedMotion(found.pattern, guide, options.threads);
+    if (task.settings.fitMotion) found.pattern.motion = fittedMotion(found.pattern, task.guide, options.threads);
+    TRY(writeFound(options, task, found.pattern));
 
-    // What the pattern names first, so that it never names what is not there.
-    const fs::path folder = fs::absolute(options.output).parent_path();
-    if (options.shadows || options.invert) TRY(writePng(folder / guideFile.name, guide));
-    TRY(copyTo(folder, guideFile));
-    for (const Material& file : shapeFiles) TRY(copyTo(folder, file));
-    found.pattern.guide = folder / guideFile.name;
-    TRY(writePattern(options.output, found.pattern));
-    if (options.image) TRY(writePng(*options.image, drawWhiteOnBlack(found.pattern, guide.width(), guide.height())));
-
-    const pattern::PatternQuality quality = measure(found.pattern, guide);
-    const pattern::LoopQuality loop = pattern::LoopMeasure(found.pattern, guide, options.threads).in({}, kLoopMoments);
-    if (options.report) TRY(writeReport(*options.report, reportOf(settings.search.method, found, quality, loop, took)));
+    const pattern::PatternQuality quality = measure(found.pattern, task.guide);
+    const pattern::LoopQuality loop = pattern::LoopMeasure(found.pattern, task.guide, options.threads).in({}, kLoopMoments);
+    if (options.report) TRY(writeReport(*options.report, reportOf(options.method, found, quality, loop, took)));
     fmt::print("{}: {}, {} instances, tone {:.4f}, moving tone {:.4f}\n", options.output.string(), found.summary.brief(),
                found.pattern.instances.size(), quality.tone, loop.tone);
     return {};

@@ -4,9 +4,9 @@
 
 namespace fantascope::app {
 
-// `fantascope pattern GUIDE -o P.pattern.yaml`: a light pattern that reads as the artist's drawing.
-// The file's folder then holds all that it needs: what lies elsewhere is copied beside it, as
-// P.guide.png and P.NAME.obj.
+// `fantascope pattern GUIDE -o P.pattern.yaml`: finds a light pattern that reads as the artist's
+// drawing. The pattern's folder holds everything that it needs: files from elsewhere are copied
+// into it, as P.guide.png and P.NAME.obj.
 void addPatternCommand(CLI::App& program, Action& action);
 
 }  // namespace fantascope::app

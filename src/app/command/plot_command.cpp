@@ -33,7 +33,7 @@ struct Entry {
     Figure figure;
     Subject of;
 };
-// The first of a subject is drawn unasked.
+// The first entry of a subject is the default.
 constexpr Entry kFigures[] = {{"difference", Figure::Difference, Subject::Pattern},
                               {"trajectories", Figure::Trajectories, Subject::Pattern},
                               {"spectrum", Figure::Spectrum, Subject::Pattern},
@@ -57,8 +57,7 @@ struct Options {
 };
 
 std::string onlyPlot(const std::string& file) {
-    return plot::Page::knows(file) ? ""
-                                   : fmt::format("'{}' is no picture that can be written: its name ends in .png or .svg", file);
+    return plot::Page::knows(file) ? "" : fmt::format("'{}' cannot be written: a picture's name must end in .png or .svg", file);
 }
 
 void declare(CLI::App& command, Options& options) {
@@ -72,10 +71,10 @@ void declare(CLI::App& command, Options& options) {
     for (const Entry& entry : kFigures) figures.emplace_back(entry.name, entry.figure);
     addChoice<Figure>(
         command, "--figure", options.figure, figures,
-        "of a pattern: difference (from its guide, the default), trajectories or spectrum (of its movement); of a report: "
-        "search (z over the iterations); of a cast: stage (seen from behind the lamp), side (seen from there), shadow (who "
-        "throws what), actors (each one's shadow), or cast (stage, shadow and actors, the default)");
-    command.add_option("--frame", options.frame, "of a cast that moves, from 0")->capture_default_str();
+        "For a pattern: difference (from its guide, the default), trajectories or spectrum (of its movement). For a report: "
+        "search (z over the iterations). For a cast: cast (stage, shadow and actors, the default), stage (from behind the "
+        "lamp), side (from the side), shadow (by actor) or actors (each actor's shadow)");
+    command.add_option("--frame", options.frame, "For a cast that moves: the frame, counted from 0")->capture_default_str();
 }
 
 Result<plot::SearchHistory> readHistory(const fs::path& file) {
@@ -88,10 +87,10 @@ Result<plot::SearchHistory> readHistory(const fs::path& file) {
                                        .accepted = history.at("accepted"),
                                        .zBound = report.at("z_bound")};
         if (read.zMin.size() == read.zMax.size() && read.zMin.size() == read.accepted.size()) return read;
-    } catch (const nlohmann::json::exception&) {  // a key that is missing, or of another type
+    } catch (const nlohmann::json::exception&) {  // a key is missing or has another type
     }
     return Error(
-        fmt::format("{}: is no report of a search; make one with 'fantascope pattern GUIDE -o P.pattern.yaml --report {}'",
+        fmt::format("{}: is not a report of a search; make one with 'fantascope pattern GUIDE -o P.pattern.yaml --report {}'",
                     file.string(), file.filename().string()));
 }
 

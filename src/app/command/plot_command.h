@@ -4,7 +4,7 @@
 
 namespace fantascope::app {
 
-// `fantascope plot PATTERN|REPORT|CAST -o PNG|SVG`: pictures where people would rather look.
+// `fantascope plot PATTERN|REPORT|CAST -o PNG|SVG`: draws figures.
 void addPlotCommand(CLI::App& program, Action& action);
 
 }  // namespace fantascope::app

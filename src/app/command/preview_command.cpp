@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFilmSeconds = 10, kFilmRate = 30;  // of a film without --seconds; frames a second
+constexpr double kFilmSeconds = 10, kFilmRate = 30;  // of a film without --seconds; frames per second
 
 struct Options {
     FilmRequest mask;
@@ -34,40 +34,42 @@ void declare(CLI::App& command, Options& options) {
         .add_option("PATTERN", options.mask.what,
                     "A *.pattern.yaml; a picture, such as the guide itself; or a show's folder, with --output and --cue")
         ->required();
-    command.add_option("--scene", options.scene, "The mesh that it falls on: FBX, OBJ, glTF, PLY or STL")->required();
+    command.add_option("--scene", options.scene, "The mesh to project on: FBX, OBJ, glTF, PLY or STL")->required();
     declareFilmOptions(command, options.mask);
-    addOutOption(command, options.file, "The picture to write, PNG, or a film of the sway, FILE.mp4")->required();
+    addOutOption(command, options.file, "What to write: FILE.png, a picture, or FILE.mp4, a film of the movement")->required();
     command
         .add_option("--seconds", options.seconds,
-                    fmt::format("The moment of the sway that is shown; of a film, where it ends (default: 0; {})", kFilmSeconds))
+                    fmt::format("For a picture: the moment of the movement (default: 0); for a film: its length (default: {})",
+                                kFilmSeconds))
         ->check(CLI::Range(0.0, 1e6));
     const std::string unit = ", in the mesh's unit, y up ";
-    addPointOption(command, "--projector", options.places.projector,
-                   "Where the projector stands" + unit + "(default: before it, upper left); far away it is the sun");
-    addPointOption(command, "--look-at", options.places.lookAt, "Where it looks (default: the scene's middle)");
+    addPointOption(
+        command, "--projector", options.places.projector,
+        "Where the projector stands" + unit + "(default: in front, upper left); put it far away to see the mesh in sunlight");
+    addPointOption(command, "--look-at", options.places.lookAt, "Where the projector looks (default: the scene's middle)");
     command
         .add_option("--throw", options.places.throwRatio,
-                    "Its distance / picture width (default: the picture just holds the scene)")
+                    "The projector's distance / picture width (default: the picture just contains the scene)")
         ->check(CLI::Range(0.01, 1e5));
-    addPointOption(command, "--viewer", options.places.viewer, "Where the viewer stands" + unit + "(default: before it)");
+    addPointOption(command, "--viewer", options.places.viewer, "Where the viewer stands" + unit + "(default: in front)");
     addPointOption(command, "--viewer-look-at", options.places.viewerLookAt,
                    "Where the viewer looks (default: the scene's middle)");
-    command.add_option("--field-of-view", options.fieldOfView, "Degrees across the viewer's picture (default: 35)")
+    command.add_option("--field-of-view", options.fieldOfView, "The viewer's horizontal field of view, degrees (default: 35)")
         ->check(CLI::Range(1.0, 150.0));
     command.add_option("--ambient", options.places.ambient, "Other light, as a share of the projector's white")
         ->check(CLI::Range(0.0, 100.0))
         ->capture_default_str();
-    command.add_flag("--ground", options.places.ground, "Lay a floor under the scene");
-    command.add_flag("--z-up", options.zUp, "The mesh has z up; points above are given as for a mesh that was turned to y up");
-    addSizeOption(command, "--size", options.size, "Of the picture (default: 1280x720)");
-    command.add_option("--threads", options.threads, "How many to use; the picture is the same for any number")
-        ->check(CLI::Range(1, 256));
+    command.add_flag("--ground", options.places.ground, "Add a floor under the scene");
+    command.add_flag("--z-up", options.zUp,
+                     "The mesh has z up; it is turned to y up, and the other options' points are given after that");
+    addSizeOption(command, "--size", options.size, "Size of the picture (default: 1280x720)");
+    command.add_option("--threads", options.threads, "Number of threads; does not change the picture")->check(CLI::Range(1, 256));
 }
 
-// What the projector is sent, at moments that rise.
+// The frames for the projector; their times rise from call to call.
 struct Mask {
-    std::optional<Film> film;                  // none: a picture that does not move
-    std::shared_ptr<const RgbaImage> picture;  // of which the mask consists then
+    std::optional<Film> film;                  // nothing: a still picture
+    std::shared_ptr<const RgbaImage> picture;  // the still picture
 
     static Result<Mask> open(const FilmRequest& request) {
         if (fs::is_regular_file(request.what) && request.what.extension() != ".yaml") {
@@ -75,7 +77,7 @@ struct Mask {
             return Mask{std::nullopt, std::move(picture)};
         }
         if (!request.output.empty() && request.cue.empty())
-            return Error(fmt::format("{}: which cue? Add --cue NAME", request.what.string()));
+            return Error(fmt::format("{}: a show needs a cue; add --cue NAME", request.what.string()));
         return Mask{TRY(Film::open(request)), nullptr};
     }
     glm::ivec2 size() const { return film ? film->size() : glm::ivec2(picture->width(), picture->height()); }
@@ -85,17 +87,18 @@ struct Mask {
 Result<void> run(const Options& options) {
     const bool film = options.file.extension() == ".mp4";
     if (!film && options.file.extension() != ".png")
-        return Error(fmt::format("{}: a preview is FILE.png, or FILE.mp4 for a film of the sway", options.file.string()));
+        return Error(
+            fmt::format("{}: a preview must be FILE.png, or FILE.mp4 for a film of the movement", options.file.string()));
     TriangleMesh mesh = TRY(readMesh(options.scene));
     if (options.zUp)
         for (glm::vec3& vertex : mesh.vertices) vertex = {vertex.x, vertex.z, -vertex.y};
     FilmRequest request = options.mask;
-    request.canvas = true;  // the scene's own shape bends the light
+    request.canvas = true;  // the warp is for the site's own surface, not for this scene
     Mask mask = TRY(Mask::open(request));
     PreviewPlaces places = options.places;
     if (options.fieldOfView) places.fieldOfView = radians(*options.fieldOfView);
     const glm::ivec2 size = options.size.value_or(glm::ivec2(1280, 720)), maskSize = mask.size();
-    if (std::min(maskSize.x, maskSize.y) < site::ProjectedLight::kLeastSide)
+    if (std::min(maskSize.x, maskSize.y) < site::ProjectedLight::kMinSide)
         return Error(fmt::format("{}: a picture of {} x {} pixels cannot be projected", options.mask.what.string(), maskSize.x,
                                  maskSize.y));
     LightPreview preview = TRY(LightPreview::create(std::move(mesh), places, maskSize, size,

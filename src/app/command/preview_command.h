@@ -4,8 +4,8 @@
 
 namespace fantascope::app {
 
-// `fantascope preview PATTERN --scene MESH -o PNG`: a pattern as a projective light mask on a 3D
-// scene, as a picture or a film of its sway. docs/drawing.md.
+// `fantascope preview PATTERN --scene MESH -o PNG`: shows a pattern as a light mask projected on a
+// 3D scene, as a picture or as a film of its movement. See docs/drawing.md.
 void addPreviewCommand(CLI::App& program, Action& action);
 
 }  // namespace fantascope::app

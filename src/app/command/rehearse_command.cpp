@@ -32,7 +32,7 @@ Result<void> runAndReport(const RunOptions& run) {
         RunConsole console(clock, std::cerr, standardErrorIsTerminal() ? standardErrorColumns : std::function<int()>());
         report = TRY(runShow(run, interrupt, [&](const RunStatus& status) { console.tell(status); }));
     }
-    // Where nobody reads it any more it is lost, and that is no error.
+    // If nobody reads the output any more, the summary is lost; that is no error.
     std::fputs((summaryOf(report) + "\n").c_str(), stdout);
     std::fflush(stdout);
     if (!report.unsafe.empty())
@@ -47,8 +47,8 @@ void declareCommon(CLI::App& command, Options& options) {
     command.add_option("--seconds", options.length, "end after this much show time")->check(CLI::Range(0.1, 1e6));
     command.add_option("--from", options.fromCue, "enter this cue at once, by its name");
     command.add_option("--record", options.record,
-                       "leave videos, traces and a contact sheet in this folder, or one video in FILE.mp4");
-    command.add_option("--pictures", options.pictures, "where the key s leaves a picture of every output")->capture_default_str();
+                       "write videos, traces and a contact sheet to this folder, or one video to FILE.mp4");
+    command.add_option("--pictures", options.pictures, "folder for the pictures that the key s takes")->capture_default_str();
     command.add_option("--report", options.report, "write the run's figures to this JSON file (docs/report.md)");
     command.footer(runKeysHelp());
 }
@@ -70,17 +70,17 @@ void declareRehearse(CLI::App& command, Options& options) {
     command.add_option("show", options.show, "a show's folder (default: shows/light-movement)");
     command.add_option("--site", options.site, "the site to simulate (default: config/simulated)");
     declareCommon(command, options);
-    command.add_option("--seed", options.seed, "of the simulated site's noise")->capture_default_str();
+    command.add_option("--seed", options.seed, "seed of the simulated site's noise")->capture_default_str();
     command.add_flag("--window", options.window, "show the pictures in windows");
-    command.add_flag("--as-fast-as-possible", options.asFastAsPossible, "on a stepped clock: the same bytes every time");
-    command.add_flag("--by-hand", options.byHand, "press no GO: wait for the keys below");
+    command.add_flag("--as-fast-as-possible", options.asFastAsPossible, "use a stepped clock: the same bytes every time");
+    command.add_flag("--by-hand", options.byHand, "press no GO, and wait for the keys below");
 }
 
 Result<void> rehearse(const Options& options) {
     RunOptions run = commonOf(options);
     if (run.show.empty()) run.show = TRY(dataFolder()) / "shows/light-movement";
     if (run.site.empty()) run.site = TRY(dataFolder()) / "config/simulated";
-    // Without an end there is nothing to spread the cues over; a minute is what a passer-by stays.
+    // The cues are spread over the length. A minute is how long a passer-by stays.
     if (!run.length && !options.byHand) run.length = std::chrono::seconds(60);
     if (!run.length && options.asFastAsPossible) return Error("--as-fast-as-possible needs an end: add --seconds T");
     run.backends = options.window ? Backends::SimulatedWindows : Backends::SimulatedHeadless;
@@ -100,11 +100,11 @@ Result<void> runNight(const Options& options) { return runAndReport(commonOf(opt
 }  // namespace
 
 void addRehearseCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "rehearse", "Plays a show on the simulated site", declareRehearse, rehearse);
+    addCommand<Options>(program, action, "rehearse", "Play a show on the simulated site", declareRehearse, rehearse);
 }
 
 void addRunCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "run", "Plays a show on the site's own devices", declareRun, runNight);
+    addCommand<Options>(program, action, "run", "Play a show on the site's own devices", declareRun, runNight);
 }
 
 }  // namespace fantascope::app

@@ -31,19 +31,17 @@ struct Options {
 
 void declare(CLI::App& command, Options& options) {
     command.add_option("SITE", options.site, "A site's folder, or a site.yaml")->required();
-    addProjectorOption(command, options.output, "The projector whose canvas it is")->required();
+    addProjectorOption(command, options.output, "The projector whose canvas to draw")->required();
     addOutOption(command, options.file, "The picture to write, PNG")->required();
     addSizeOption(
         command, "--size", options.size,
-        fmt::format("Of the picture, and the guide's to be (default: {} rows, as wide as the canvas on its surface asks)",
-                    kRows));
-    command.add_option("--grid", options.grid, "Metres between the grid's lines (default: some ten over the canvas)")
+        fmt::format("Size of the picture, and so of the guide (default: {} rows, in the canvas's aspect on its surface)", kRows));
+    command.add_option("--grid", options.grid, "Metres between grid lines (default: some ten lines on the canvas)")
         ->check(CLI::Range(0.001, 1000.0));
-    command.add_option("--threads", options.threads, "How many to use; the picture is the same for any number")
-        ->check(CLI::Range(1, 256));
+    command.add_option("--threads", options.threads, "Number of threads; does not change the picture")->check(CLI::Range(1, 256));
 }
 
-// Of 1, 2 or 5 times a power of ten what divides a length into about `parts`.
+// 1, 2 or 5 times a power of ten that divides a length into about `parts` parts.
 double handyStep(double length, double parts) {
     const double rough = length / parts, power = std::pow(10, std::floor(std::log10(rough)));
     for (const double factor : {1.0, 2.0, 5.0})
@@ -55,11 +53,11 @@ Result<void> run(const Options& options) {
     const show::Site site = TRY(readSite(options.site));
     const std::size_t index = TRY(outputNamed(site, options.output));
     if (!site.simulation)
-        return Error(
-            fmt::format("{}: has no 'simulation' section, so nobody knows what stands there: list ground, wall and objects under "
-                        "simulation: objects (drivers/site/README.md), or draw over a photograph taken from the projector's lens "
-                        "while it shows a white canvas, cropped to that canvas",
-                        site.file.string()));
+        return Error(fmt::format(
+            "{}: has no 'simulation' section, so it is not known what stands there: list ground, wall and objects under "
+            "simulation: objects (drivers/site/README.md), or draw over a photograph taken from the projector's lens "
+            "while it shows a white canvas, cropped to that canvas",
+            site.file.string()));
     const site::NominalSite nominal = TRY(simulationOf(site));
     const site::Simulation simulation = TRY(site::readSimulation(*site.simulation, nominal));
     const show::Output& output = site.outputs[index];
@@ -80,7 +78,7 @@ Result<void> run(const Options& options) {
         return 100 * static_cast<double>(count) / static_cast<double>(drawn.meets.pixels().size());
     };
     fmt::print(
-        "{}: {} x {}, the canvas of '{}'{}; {:.1f} % of it falls on other things, {:.1f} % on nothing, {:.1f} % gets no light\n",
+        "{}: {} x {}, the canvas of '{}'{}; {:.1f} % of it falls on other objects, {:.1f} % on nothing, {:.1f} % gets no light\n",
         options.file.string(), size.x, size.y, output.name,
         metres ? fmt::format(", {:.2f} x {:.2f} m", metres->x, metres->y) : "",
         share([](Meets meets) { return meets == Meets::Object; }), share([](Meets meets) { return meets == Meets::Nothing; }),
@@ -91,8 +89,8 @@ Result<void> run(const Options& options) {
 }  // namespace
 
 void addTemplateCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "template", "Draw what a projector sees of the site: the picture to draw a guide over",
-                        declare, run);
+    addCommand<Options>(program, action, "template",
+                        "Draw the site from a projector's point of view, as a picture to draw a guide over", declare, run);
 }
 
 }  // namespace fantascope::app

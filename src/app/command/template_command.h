@@ -4,8 +4,8 @@
 
 namespace fantascope::app {
 
-// `fantascope template SITE --output NAME -o PNG`: the picture to draw a guide over, the scene from
-// the projector's point of view. docs/drawing.md.
+// `fantascope template SITE --output NAME -o PNG`: draws the scene from the projector's point of
+// view, as a picture to draw a guide over. See docs/drawing.md.
 void addTemplateCommand(CLI::App& program, Action& action);
 
 }  // namespace fantascope::app

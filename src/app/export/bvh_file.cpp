@@ -12,14 +12,14 @@
 namespace fantascope::app {
 namespace {
 
-// A still is shown for one frame of this rate.
+// A still lasts one frame at this rate.
 constexpr double kStillRate = 30;
 
-// The degrees by which a turn goes about z, then x, then y: R = Rz Rx Ry.
+// The Euler angles of R = Rz Rx Ry, as (z, x, y), degrees.
 glm::dvec3 zxy(const glm::dquat& turn) {
     const glm::dmat3 r = glm::mat3_cast(turn);  // columns
     const double sine = std::clamp(r[1][2], -1.0, 1.0);
-    constexpr double kUpright = 1 - 1e-12;  // there z and y turn about one axis
+    constexpr double kUpright = 1 - 1e-12;  // gimbal lock: z and y rotate about the same axis
     const double z = std::abs(sine) < kUpright ? std::atan2(-r[1][0], r[1][1]) : std::atan2(r[0][1], r[0][0]),
                  y = std::abs(sine) < kUpright ? std::atan2(-r[0][2], r[2][2]) : 0;
     return glm::dvec3(z, std::asin(sine), y) * (180 / std::numbers::pi);
@@ -29,7 +29,7 @@ class Writer {
 public:
     explicit Writer(const theatre::Body& body) : body_(body) {}
 
-    // The order in which their channels come.
+    // The joints in the order of their channels.
     std::vector<std::size_t> order{};
     std::string text = "HIERARCHY\n";
 

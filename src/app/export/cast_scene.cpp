@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMaskRows = 512;  // of the target
 
-// The frame of a cast's poses, from 0, that are the principal ones.
+// The frame, counted from 0, of a cast's principal poses.
 std::size_t principalOf(const theatre::Cast::Sequence& sequence, std::size_t frames, std::size_t all) {
     const std::size_t own = (sequence.representative + all - sequence.first % all) % all;
     return own < frames ? own : 0;
@@ -35,8 +35,8 @@ Result<theatre::PoseTarget> targetOf(const theatre::Cast& cast, std::optional<st
     if (!read) return namedIn(file, name, read.error());
     const theatre::SilhouetteSequence& sequence = *read;
     if (representative >= sequence.pictures.size())
-        return Error(
-            fmt::format("{}: has no frame {}, which the poses of {} are of", name.string(), representative + 1, file.string()));
+        return Error(fmt::format("{}: has no frame {}, for which the poses of {} were found", name.string(), representative + 1,
+                                 file.string()));
     if (!frame) frame = principalOf(*cast.sequence, cast.actors[0].poses.size(), sequence.pictures.size());
     std::vector<GreyImage> pictures;
     for (const fs::path& picture : sequence.pictures) {
@@ -55,7 +55,7 @@ Result<CastScene> readCastScene(const fs::path& file, std::optional<std::size_t>
     theatre::Cast cast = TRY(theatre::readCast(file));
     const std::size_t frames = cast.actors[0].poses.size();
     if (frame && *frame >= frames)
-        return Error(fmt::format("{}: --frame {} is beyond its last, {}", file.string(), *frame, frames - 1));
+        return Error(fmt::format("{}: --frame {} is beyond the last frame, {}", file.string(), *frame, frames - 1));
     theatre::PoseTarget target = TRY(targetOf(cast, frame, file));
     theatre::PoseProblem problem{cast.stage, {std::move(target)}, {}, {}};
     for (std::size_t beam = 1; beam < cast.targets.size(); ++beam) {

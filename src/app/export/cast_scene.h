@@ -12,16 +12,15 @@
 
 namespace fantascope::app {
 
-// One frame of a cast's file, with its silhouette: people in their skins, on their stage, before
-// their target.
+// One frame of a cast file: its actors with skins, their stage, and the silhouette as target.
 struct CastScene {
     theatre::Cast cast;
     std::size_t frame;  // from 0
     theatre::PoseProblem problem;
-    std::vector<double> dofs;  // of all actors, one after the other
+    std::vector<double> dofs;  // all actors' degrees of freedom, one actor after the other
 };
-// Without a frame that of the principal poses. Error: as readCast() and readSequence(); there is no
-// such frame; no picture of the silhouette.
+// `frame`: default: that of the principal poses. Error: as readCast() and readSequence(); there is
+// no such frame, or no picture of the silhouette.
 Result<CastScene> readCastScene(const std::filesystem::path& file, std::optional<std::size_t> frame);
 
 }  // namespace fantascope::app

@@ -22,11 +22,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kShowSeconds = 60;  // of a show without --seconds, as in a rehearsal
-constexpr double kPatternRate = 30;  // frames a second of a pattern without --fps
+constexpr double kPatternRate = 30;  // frames per second of a pattern without --fps
 constexpr int kCanvasRows = 1080;    // of a pattern or a canvas without --size
-constexpr double kMostFrames = 1e7;  // days of any show
+constexpr double kMaxFrames = 1e7;   // four days at 30 Hz
 
-// The patterns that a picture is made of.
+// The patterns in a source.
 std::vector<const render::PatternSource*> patternsIn(const render::PictureSource& source) {
     std::vector<const render::PatternSource*> patterns;
     if (const auto* pattern = std::get_if<render::PatternSource>(&source)) patterns.push_back(pattern);
@@ -35,7 +35,7 @@ std::vector<const render::PatternSource*> patternsIn(const render::PictureSource
     return patterns;
 }
 
-// How long a picture takes to come round; 0 where nothing moves, or goes on for ever.
+// The length of a source's loop, seconds; 0 if it does not move or does not loop.
 double loopOf(const render::PictureSource& source) {
     if (const auto* video = std::get_if<render::VideoSource>(&source))
         return seconds(video->stream->content().length) / video->speed;
@@ -46,14 +46,14 @@ double loopOf(const render::PictureSource& source) {
     return longest;
 }
 
-// Of all movements the slowest.
+// The length of the longest loop.
 double loopOf(const std::vector<render::PictureSource>& sources) {
     double longest = 0;
     for (const render::PictureSource& source : sources) longest = std::max(longest, loopOf(source));
     return longest;
 }
 
-// Of the first canvas that has one.
+// The aspect of the first source that has one.
 std::optional<double> aspectOf(const std::vector<render::PictureSource>& sources) {
     for (const render::PictureSource& source : sources)
         if (const auto aspect = render::aspectOf(source)) return aspect;
@@ -62,10 +62,10 @@ std::optional<double> aspectOf(const std::vector<render::PictureSource>& sources
 
 double shapeOf(glm::ivec2 size) { return static_cast<double>(size.x) / size.y; }
 
-// Even, for the sake of videos.
+// The width is even, as videos need it.
 glm::ivec2 sizeOfCanvas(int rows, double aspect) { return {2 * std::max(1L, std::lround(rows * aspect / 2)), rows}; }
 
-// Plays a show without its devices: GO is pressed as in a rehearsal.
+// Plays a show without its devices; GO is pressed as in a rehearsal.
 class ShowFrames {
 public:
     ShowFrames(show::CueList cues, std::optional<show::Input> firstInput, std::size_t presses, Time length)
@@ -87,7 +87,7 @@ private:
     show::ShowState state_;
 };
 
-// Of what kind a file is it says itself.
+// Whether the file is a pattern. The kind is read from the file's header.
 bool isPattern(const fs::path& path) {
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored)) return false;
@@ -102,18 +102,18 @@ bool isPattern(const fs::path& path) {
 }  // namespace
 
 void declareFilmOptions(CLI::App& command, FilmRequest& request) {
-    addProjectorOption(command, request.output, "For a show: the projector whose picture is wanted");
-    command.add_option("--site", request.site, "For a show: the site that it plays on (default: config/simulated)");
+    addProjectorOption(command, request.output, "For a show: the projector whose picture to show");
+    command.add_option("--site", request.site, "For a show: the site to play on (default: config/simulated)");
     CLI::Option* const cue =
-        command.add_option("--cue", request.cue, "For a show: this cue alone, faded in, the movement from its beginning");
-    command.add_option("--from", request.from, "For a show: enter this cue at once and play on from there")->excludes(cue);
+        command.add_option("--cue", request.cue, "For a show: only this cue, faded in, with the movement from its beginning");
+    command.add_option("--from", request.from, "For a show: enter this cue at once and play on")->excludes(cue);
 }
 
 Result<Film> Film::open(const FilmRequest& request) {
     if (!fs::exists(request.what)) return readFile(request.what).error();
     Film film = TRY(isPattern(request.what) ? ofPattern(request) : ofShow(request));
     const double wanted = film.seconds_ * film.frameRate_;
-    if (wanted > kMostFrames) return Error(fmt::format("{:.0f} frames are too many; give a smaller --seconds or --fps", wanted));
+    if (wanted > kMaxFrames) return Error(fmt::format("{:.0f} frames are too many; lower --seconds or --fps", wanted));
     film.frames_ = std::max<std::int64_t>(1, std::llround(wanted));
     return film;
 }
@@ -121,7 +121,7 @@ Result<Film> Film::open(const FilmRequest& request) {
 Result<Film> Film::ofPattern(const FilmRequest& request) {
     if (!request.output.empty() || !request.cue.empty() || !request.from.empty() || !request.site.empty())
         return Error(
-            fmt::format("{}: is a single pattern; --output, --site, --cue and --from are for shows", request.what.string()));
+            fmt::format("{}: is a single pattern; --output, --site, --cue and --from are for shows only", request.what.string()));
     const std::vector<render::PictureSource> sources = {TRY(readPatternSource(request.what))};
     Film film;
     film.size_ = request.size.value_or(sizeOfCanvas(kCanvasRows, *aspectOf(sources)));
@@ -134,12 +134,11 @@ Result<Film> Film::ofPattern(const FilmRequest& request) {
 
 Result<Film> Film::ofShow(const FilmRequest& request) {
     if (request.output.empty())
-        return Error(
-            fmt::format("{}: a show needs --output NAME, the output of the site whose picture is wanted", request.what.string()));
+        return Error(fmt::format("{}: a show needs --output NAME, one of the site's outputs", request.what.string()));
     RunOptions run;
     run.show = request.what;
     run.site = request.site.empty() ? TRY(dataFolder()) / "config/simulated" : request.site;
-    run.asFastAsPossible = true;  // nobody watches: a frame may wait for its video
+    run.asFastAsPossible = true;  // not in real time: a frame waits for its video
     run.fromCue = request.cue.empty() ? request.from : request.cue;
     Programme programme = TRY(readProgramme(run));
     const std::size_t index = TRY(outputNamed(programme.site, request.output));
@@ -164,7 +163,7 @@ Result<Film> Film::ofShow(const FilmRequest& request) {
     show::CueList& cues = programme.cues;
     std::size_t toCome = cues.cues.size() - (programme.firstInput ? static_cast<std::size_t>(programme.firstInput->cue) + 1 : 0);
     film.seconds_ = request.seconds.value_or(kShowSeconds);
-    if (!request.cue.empty()) {  // it stands already, and nothing comes after it
+    if (!request.cue.empty()) {  // it is entered at once and nothing follows it
         show::CueList::Cue& cue = cues.cues[static_cast<std::size_t>(programme.firstInput->cue)];
         programme.firstInput->at = -cue.fade;
         cue.follow.reset();

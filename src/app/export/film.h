@@ -17,35 +17,36 @@
 
 namespace fantascope::app {
 
-// Which pictures are wanted of a show, or of a single pattern, and when.
+// Which frames of a show, or of a single pattern, are wanted.
 struct FilmRequest {
     std::filesystem::path what;       // a show's folder, or a *.pattern.yaml
-    std::string output;               // of the site; for shows, which need it
-    std::filesystem::path site;       // for shows; empty: the simulated one
-    std::string cue;                  // this one alone, faded in, the movement from its beginning
-    std::string from;                 // or: enter this one at once and play on; neither: from the beginning
-    std::optional<double> seconds;    // default: a minute; of a pattern or a single cue one loop of the movement
-    std::optional<double> frameRate;  // default: the output's; of a pattern 30 Hz
-    std::optional<glm::ivec2> size;   // default: the output's; of a pattern or a canvas 1080 rows in its shape
-    bool canvas = false;              // without the output's keystone; a pattern has none
+    std::string output;               // name of the site's output; required for shows
+    std::filesystem::path site;       // for shows; empty: config/simulated
+    std::string cue;                  // show only this cue, faded in, with the movement from its beginning
+    std::string from;                 // or enter this cue at once and play on; if both are empty, play from the beginning
+    std::optional<double> seconds;    // default: a minute; for a pattern or a single cue one loop of the movement
+    std::optional<double> frameRate;  // Hz; default: the output's; for a pattern 30
+    std::optional<glm::ivec2> size;   // pixels; default: the output's; for a pattern or a canvas 1080 rows in its aspect
+    bool canvas = false;              // the whole canvas, without the output's warp; a pattern has none anyway
 };
 
-// The options --output, --site, --cue and --from, the same wherever a show may be named.
+// Declares --output, --site, --cue and --from, for every command that takes a show.
 void declareFilmOptions(CLI::App& command, FilmRequest& request);
 
-// An output's frames by show time, as the projector would get them: the show plays without its
-// devices, GO is pressed as in a rehearsal.
+// An output's frames by show time, as the projector would get them. The show plays without its
+// devices, and GO is pressed as in a rehearsal.
 // Thread: thread-bound.
 class Film {
 public:
-    // Error: as readProgramme; an output or cue that is not there; options that are for shows
-    // alone; more frames than anybody wants.
+    // Error: as readProgramme(); no such output or cue; options for shows with a pattern; far too
+    // many frames.
     static Result<Film> open(const FilmRequest& request);
 
     glm::ivec2 size() const { return size_; }
     double frameRate() const { return frameRate_; }
     std::int64_t frames() const { return frames_; }  // at least 1
-    // Stored values at show time `time`; times rise from call to call. Valid until the next call.
+    // The frame at show time `time`, stored values; `time` must rise from call to call. Valid until
+    // the next call.
     const RgbaImage& at(Time time) {
         const Seen seen = seenAt_(time);
         return screen_->draw(seen.picture, seen.wind, time);

@@ -29,16 +29,16 @@ Result<std::unique_ptr<FrameFile>> FrameFile::open(const fs::path& target, glm::
             return file;
         }
     if (target.has_extension())
-        return Error(
-            fmt::format("{}: frames go into FILE.mp4, FILE.mov or FILE.mkv, or as PNG pictures into a folder, whose name has no "
-                        "ending",
-                        target.string()));
+        return Error(fmt::format(
+            "{}: frames are written to FILE.mp4, FILE.mov or FILE.mkv, or as PNG pictures to a folder, whose name has no "
+            "ending",
+            target.string()));
     std::error_code failure;
     fs::create_directories(target, failure);
-    if (failure) return Error(fmt::format("{}: the folder cannot be made: {}", target.string(), failure.message()));
-    // Of a longer export before, the last frames would stay and pass for this one's.
+    if (failure) return Error(fmt::format("{}: the folder cannot be created: {}", target.string(), failure.message()));
+    // The last frames of a longer previous export would be left and look like part of this one.
     if (fs::exists(pictureOf(target, 0), failure))
-        return Error(fmt::format("{}: there are frames in it already; name another folder, or remove them", target.string()));
+        return Error(fmt::format("{}: already has frames in it; name another folder, or remove them", target.string()));
     return file;
 }
 

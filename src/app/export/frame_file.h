@@ -15,23 +15,25 @@
 
 namespace fantascope::app {
 
-// Frames for other programs, in what the target's name asks for:
-//   FILE.mp4  H.264, no alpha        FILE.mov  ProRes 4444       FILE.mkv  FFV1, 16 bits a channel, lossless
-//   a folder  frame-000000.png, frame-000001.png, ...: 16 bits a channel with alpha, 8 bits without
+// Frames for other programs, in the format of the target's name:
+//   FILE.mp4  H.264, no alpha
+//   FILE.mov  ProRes 4444
+//   FILE.mkv  FFV1, 16 bits per channel, lossless
+//   a folder  frame-000000.png, frame-000001.png, ...: 16 bits per channel with alpha, 8 without
 // Alpha is that of withAlpha().
 // Thread: thread-bound.
 class FrameFile {
 public:
-    // `alpha` where there is none: Stored, or None in an MP4. Error: another ending, alpha for an
-    // MP4, a folder with frames in it already, or it cannot be made.
+    // `alpha`: default: Stored, or None for an MP4. Error: another ending, alpha for an MP4, a
+    // folder that already has frames, or the target cannot be created.
     static Result<std::unique_ptr<FrameFile>> open(const std::filesystem::path& target, glm::ivec2 size, double frameRate,
                                                    std::optional<Alpha> alpha);
 
     Alpha alpha() const { return alpha_; }
-    // The next frame.
+    // Writes the next frame.
     Result<void> write(const RgbaImage& frame);
-    // Ends the file after at least one frame. Without it no video is left behind, but the pictures
-    // are.
+    // Completes the file, after at least one frame. Without it, a video is removed, but pictures
+    // stay.
     Result<void> finish();
 
 private:

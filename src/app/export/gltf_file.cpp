@@ -22,11 +22,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The numbers of the specification.
+// Constants of the glTF specification.
 constexpr int kUnsignedByte = 5121, kUnsignedInt = 5125, kFloat = 5126, kVertices = 34962, kIndices = 34963;
-constexpr std::uint32_t kCurvedColumns = 32;                // of a curved screen
-constexpr double kLightPower = 1000;                        // candela: as bright a lamp as lights a stage
-constexpr double kScreenMargin = 4 / 3.0, kScreenWide = 2;  // its height, of the silhouette's; its width, of its height
+constexpr std::uint32_t kCurvedColumns = 32;                               // of a curved screen
+constexpr double kLightPower = 1000;                                       // candela: a bright stage lamp
+constexpr double kScreenMargin = 4 / 3.0, kScreenWide = 2;                 // height / the silhouette's height; width / height
 constexpr glm::dvec3 kThings{0.46, 0.33, 0.23}, kCloth{0.97, 0.95, 0.90};  // sRGB
 
 std::string base64(const std::string& bytes) {
@@ -76,7 +76,7 @@ public:
 private:
     template <class Value>
     static void append(std::string& bytes, const Value& value) {
-        static_assert(std::endian::native == std::endian::little, "as the format has it");
+        static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
         bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
     }
     static Json& add(Json& list, Json item) {
@@ -85,7 +85,7 @@ private:
     }
     std::size_t count(const char* list) const { return file_[list].size(); }
 
-    // Into the buffer; `target` is what a view of vertices or indices says of itself.
+    // Appends values to the buffer. `target`: the bufferView's target, for vertices and indices.
     template <class Value>
     std::size_t accessor(const std::vector<Value>& values, const char* type, int component, std::optional<int> target = {}) {
         Json view{{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", values.size() * sizeof(Value)}};
@@ -109,7 +109,8 @@ private:
         return count("materials") - 1;
     }
 
-    // With smooth normals: of each vertex the mean of its triangles', by their areas.
+    // A primitive with smooth normals: per vertex the mean of its triangles' normals, weighted by
+    // area.
     Json primitive(const TriangleMesh& mesh, std::size_t material) {
         std::vector<glm::vec3> normals(mesh.vertices.size(), glm::vec3(0));
         std::vector<std::uint32_t> indices;
@@ -140,7 +141,7 @@ private:
     void addActor(std::size_t index, Json& roots) {
         const MotionScene::Actor& actor = scene_.actors[index];
         const std::string name = fmt::format("actor {}", index + 1);
-        // The skeleton, in its first pose: a joint's node stands before its children's.
+        // The skeleton in its first pose. A joint's node precedes its children's.
         const std::size_t first = count("nodes"), joints = actor.body.joints.size();
         Json numbers = Json::array();
         std::vector<glm::mat4> jointFromRest;
@@ -239,12 +240,12 @@ private:
             roots.push_back(node({{"name", numbered("light")},
                                   {"translation", listOf(stage.beams[beam].light)},
                                   {"extensions", {{"KHR_lights_punctual", {{"light", lights.size()}}}}}}));
-            // Importers look for a light by its node's name.
+            // Importers match a light by its node's name.
             lights.push_back({{"type", "point"}, {"name", numbered("light")}, {"intensity", kLightPower}});
         }
     }
 
-    // As much of a beam's screen as is before its light.
+    // The part of a beam's screen in front of its light.
     TriangleMesh screenOf(std::size_t beam) const {
         const theatre::Screen& screen = scene_.stage.screenOf(beam);
         const double top = kScreenMargin * scene_.screenHeight, most = theatre::Screen::kMostArc * std::abs(screen.radius);

@@ -17,23 +17,23 @@
 namespace fantascope::app {
 namespace {
 
-constexpr double kOffSurface = 0.05;  // metres: farther than this from the surface's plane is something else
-constexpr int kSide = 2;              // samples across and down a pixel
-constexpr int kBand = 32;             // rows that are worked on together
-constexpr int kReach = 2;             // samples that an outline looks to every side, half its width
-constexpr float kCrease = 0.75f;      // cosine between the normals of a fold that is outlined
-constexpr float kStep = 0.03f;        // of the distance: a jump in depth that is outlined
-constexpr float kFlat = 0.97f;        // a surface turned to an axis by more has no lines of it: they would be noise
+constexpr double kOffSurface = 0.05;  // metres: what is farther from the surface's plane is another object
+constexpr int kSide = 2;              // samples per pixel in each direction
+constexpr int kBand = 32;             // rows that are processed together
+constexpr int kReach = 2;             // half an outline's width, samples
+constexpr float kCrease = 0.75f;      // cosine of the angle between normals below which a fold is outlined
+constexpr float kStep = 0.03f;        // jump in depth that is outlined, as a share of the distance
+constexpr float kFlat = 0.97f;        // no lines of an axis if its cosine with the normal is greater: they would be noise
 
 constexpr glm::vec3 kOutline{0.05f, 0.05f, 0.08f}, kGrid{0.12f, 0.2f, 0.32f}, kInTheWay{0.95f, 0.5f, 0.05f},
     kNoLight{0.85f, 0.1f, 0.1f}, kNothing{0.1f, 0.13f, 0.2f};
 constexpr std::array<glm::vec3, 3> kAxes{{{0.85f, 0.15f, 0.15f}, {0.1f, 0.6f, 0.15f}, {0.15f, 0.3f, 0.9f}}};  // x, y, z
 
-// What one point of the canvas meets.
+// What the light from one point of the canvas hits.
 struct Sample {
     Meets meets = Meets::NoLight;
     std::int32_t object = -1;
-    bool inTheWay = false;  // before the surface, which is in its shadow
+    bool inTheWay = false;  // in front of the surface, shading it
     float distance = 0;
     glm::vec3 point{0}, normal{0}, reflectance{0};
 };
@@ -64,7 +64,7 @@ public:
         return sample;
     }
 
-    // Where in the picture a point of the world stands, or nothing: behind the projector.
+    // Where a point of the world lies in the picture; nothing if it is behind the projector.
     std::optional<glm::dvec2> pixelOf(glm::dvec3 point) const {
         const auto sent = view_.projector.pixelFromWorld(point);
         if (!sent) return std::nullopt;
@@ -83,8 +83,8 @@ private:
     const CanvasPart part_;
 };
 
-// The number of the line of equal coordinate on an axis that runs between two samples of one
-// object, if one does.
+// The index of the grid line of `axis` that runs between two samples of one object, if there is
+// one.
 std::optional<int> lineBetween(const Sample& a, const Sample& b, int axis, double grid) {
     if (a.object != b.object || a.object < 0) return std::nullopt;
     if (std::max(std::abs(a.normal[axis]), std::abs(b.normal[axis])) > kFlat) return std::nullopt;
@@ -99,7 +99,7 @@ bool outlined(const Sample& a, const Sample& b) {
     return glm::dot(a.normal, b.normal) < kCrease || std::abs(a.distance - b.distance) > kStep * std::min(a.distance, b.distance);
 }
 
-// Stored values, as the eye wants them: this is a picture to look at, not light.
+// Shades in stored values, since this is a picture to look at and not light.
 glm::vec3 shaded(const Sample& sample, glm::vec3 towardsProjector) {
     const float cosine = std::abs(glm::dot(sample.normal, towardsProjector));
     glm::vec3 colour;
@@ -107,7 +107,7 @@ glm::vec3 shaded(const Sample& sample, glm::vec3 towardsProjector) {
     return colour * (0.45f + 0.55f * cosine);
 }
 
-// Slanting lines.
+// Whether a pixel is on a line of the hatching.
 bool hatched(glm::dvec2 pixel, bool rising, double scale) {
     const double period = 16 * scale, along = (rising ? pixel.x + pixel.y : pixel.x - pixel.y) / period;
     return along - std::floor(along) < 0.18;
@@ -161,7 +161,7 @@ private:
         for (const Sample* near : {&samples.at(x - 1, y), &samples.at(x + 1, y), &samples.at(x, y - 1), &samples.at(x, y + 1)})
             for (int axis = 0; axis < 3; ++axis)
                 if (const auto line = lineBetween(sample, *near, axis, grid_)) {
-                    // The line of coordinate 0 in the colour of its axis.
+                    // The line at coordinate 0 has the colour of its axis.
                     if (*line == 0) return glm::mix(colour, kAxes[static_cast<std::size_t>(axis)], 0.9f);
                     return glm::mix(colour, kGrid, 0.55f);
                 }
@@ -169,10 +169,11 @@ private:
     }
 
     const Survey& survey_;
-    const double grid_, scale_;  // metres; of marks, with the picture's size
+    const double grid_, scale_;  // metres; scale of marks, by the picture's size
 };
 
-// Lines and letters over the picture, light with a dark rim, so that they can be read on anything.
+// Draws lines and letters over the picture, light with a dark rim, to be readable on any
+// background.
 class Lettering {
 public:
     explicit Lettering(RgbaImage& picture)
@@ -183,7 +184,7 @@ public:
     cv::Size sizeOf(const std::string& text) const {
         return cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, 0.7 * unit_, thickness(), nullptr);
     }
-    // The text's bottom left corner; it is moved into the picture.
+    // Writes with the bottom left corner at `at`, moved into the picture if necessary.
     void write(const std::string& text, glm::dvec2 at) {
         const cv::Size size = sizeOf(text);
         const int margin = static_cast<int>(6 * unit_);
@@ -213,8 +214,7 @@ private:
     double unit_;
 };
 
-// Each line of the grid on the surface gets its coordinate where it comes to the picture's lower
-// and left border.
+// Labels each grid line on the surface with its coordinate at the picture's lower and left borders.
 void labelGrid(const Survey& survey, double grid, Lettering& lettering) {
     const glm::ivec2 size = survey.size();
     const double inset = 14 * lettering.unit();
@@ -238,7 +238,7 @@ void labelGrid(const Survey& survey, double grid, Lettering& lettering) {
          28 * lettering.unit());
 }
 
-// Where the world's axes point, each arrow as long as the grid is wide.
+// Draws the world's axes as arrows as long as a grid cell.
 void drawAxes(const Survey& survey, double grid, Lettering& lettering) {
     const glm::dvec2 middle = glm::dvec2(survey.size()) / 2.0;
     const Sample sample = survey.at(middle);
@@ -255,8 +255,7 @@ void drawAxes(const Survey& survey, double grid, Lettering& lettering) {
     }
 }
 
-// Everything that stands in the picture but the surface gets its name, in the middle of what is
-// seen of it.
+// Labels every visible object except the surface with its name, in the middle of its visible part.
 void labelObjects(const GuideTemplate& drawn, const std::vector<site::SceneObject>& objects, Lettering& lettering) {
     struct Seen {
         glm::dvec2 sum{0.0};
@@ -270,9 +269,9 @@ void labelObjects(const GuideTemplate& drawn, const std::vector<site::SceneObjec
                 object.sum += glm::dvec2(x, y);
                 ++object.pixels;
             }
-    constexpr double kLeast = 2e-4;  // of the picture: smaller than its name
+    constexpr double kMin = 2e-4;  // share of the picture below which an object is smaller than its name
     for (std::size_t i = 0; i < objects.size(); ++i) {
-        if (static_cast<double>(seen[i].pixels) < kLeast * static_cast<double>(drawn.meets.pixels().size())) continue;
+        if (static_cast<double>(seen[i].pixels) < kMin * static_cast<double>(drawn.meets.pixels().size())) continue;
         const glm::dvec2 half(lettering.sizeOf(objects[i].name).width / 2.0, 0);
         lettering.write(objects[i].name, seen[i].sum / static_cast<double>(seen[i].pixels) - half);
     }
@@ -281,7 +280,7 @@ void labelObjects(const GuideTemplate& drawn, const std::vector<site::SceneObjec
 }  // namespace
 
 GuideTemplate drawGuideTemplate(const CanvasView& view, glm::ivec2 size, double grid, int threads) {
-    FANTASCOPE_CHECK(size.x > 0 && size.y > 0 && grid > 0, "a picture with a grid");
+    FANTASCOPE_CHECK(size.x > 0 && size.y > 0 && grid > 0, "the picture has pixels and a grid");
     GuideTemplate drawn{RgbaImage(size.x, size.y), Image<Meets>(size.x, size.y), Image<std::int32_t>(size.x, size.y)};
     const Survey survey(view, size);
     const Painter painter(survey, grid);

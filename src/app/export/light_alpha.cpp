@@ -14,7 +14,7 @@ std::uint16_t toWord(float value) { return static_cast<std::uint16_t>(std::lroun
 }  // namespace
 
 Rgba16Image withAlpha(const RgbaImage& frame, Alpha alpha) {
-    FANTASCOPE_CHECK(alpha != Alpha::None, "there is an alpha to work out");
+    FANTASCOPE_CHECK(alpha != Alpha::None, "alpha is Stored or Linear");
     std::array<float, 256> lightOf;
     for (std::size_t stored = 0; stored < lightOf.size(); ++stored) {
         const float value = static_cast<float>(stored) / 255;

@@ -6,24 +6,26 @@
 
 namespace fantascope::app {
 
-// How black becomes clear for another program, by the values in which that one lays one picture
-// over another.
+// How black becomes transparent for another program. It depends on the values in which that program
+// composites.
 enum class Alpha {
-    None,    // it does not: the frame as it is, opaque
-    Stored,  // sRGB values as they are stored: most editing, painting and presenting programs
-    Linear   // linear light: renderers, and compositors that work in it
+    None,    // not at all: the frame as it is, opaque
+    Stored,  // it composites stored sRGB values, as most editing, painting and presenting programs do
+    Linear   // it composites linear light, as renderers and some compositors do
 };
+// As options and reports write it.
 constexpr std::string_view name(Alpha alpha) {
     return alpha == Alpha::None ? "none" : alpha == Alpha::Stored ? "stored" : "linear";
-}  // in options and reports
+}
 
-// A frame of light as a picture with alpha: black is clear, and what shines covers as much as it
-// shines. Per pixel, with L the frame's red, green and blue in those values, 0..1:
-//     alpha = max(L.r, L.g, L.b),  colour = L / alpha (not premultiplied), and colour = 0 where alpha = 0.
-// So alpha * colour = L: laid over black ("over", Porter & Duff 1984) it gives the frame again, to
-// half a step of its 8 bits. The colour is stored as sRGB in either case, and alpha as it is. Over
-// anything else it covers: light that is to be added, as a second projector's would be, needs no
-// alpha but the frame itself and the program's "add" in linear light.
+// A frame of light as a picture with alpha: black is transparent, and light is as opaque as it is
+// bright. Per pixel, with L the frame's red, green and blue in those values, 0..1:
+//         alpha = max(L.r, L.g, L.b)
+//     colour = L / alpha (not premultiplied), or 0 where alpha = 0
+// So alpha * colour = L: composited over black ("over", Porter & Duff 1984) it gives the frame
+// again, within half a step of 8 bits. The colour is stored as sRGB in either case, alpha as it is.
+// Over another picture it hides it. Light that should add to another picture, like a second
+// projector's, needs no alpha: use the frame itself and the program's "add" in linear light.
 // `alpha` is not None.
 Rgba16Image withAlpha(const RgbaImage& frame, Alpha alpha);
 

@@ -18,13 +18,15 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kGamma = 2.2;
 constexpr float kReflectance = 0.8f, kGroundReflectance = 0.6f;
-constexpr double kWhite = 0.95;                         // what the projector's full light on the mesh becomes, linear
+constexpr double kWhite = 0.95;                         // the projector's full light on the mesh in the picture, linear
 constexpr glm::dvec3 kBackground(0.004, 0.005, 0.008);  // linear
-constexpr int kBand = 16;                               // rows that are worked on together
-constexpr double kDiagonal = 10;  // metres of the bounding box in the scene's own space, in which a millimetre means nothing
+constexpr int kBand = 16;                               // rows that are processed together
+// The bounding box's diagonal in the scene's space, metres: large enough that a millimetre is
+// negligible.
+constexpr double kDiagonal = 10;
 constexpr glm::dvec3 kProjectorSide(-0.55, 0.6, 0.7), kViewerSide(0.4, 0.3, 1);
-constexpr double kProjectorDistance = 3;  // radii of the sphere around the box
-constexpr double kRoom = 1.05;            // between what should be seen and the picture's edge
+constexpr double kProjectorDistance = 3;  // in radii of the sphere around the box
+constexpr double kRoom = 1.05;            // factor for a margin at the picture's edge
 
 struct Bounds {
     glm::dvec3 low, high;
@@ -50,8 +52,8 @@ Bounds boundsOf(const TriangleMesh& mesh) {
     return bounds;
 }
 
-// Where to stand on a side of the box so that a picture whose half width and height are so many
-// distances just holds it.
+// The place in the direction `side` of the box from which a picture just contains it. `half`: the
+// picture's half width and height at distance 1.
 glm::dvec3 standAt(const Bounds& bounds, glm::dvec3 side, glm::dvec2 half) {
     const glm::dvec3 towards = glm::normalize(side);
     const Pose pose = Pose::lookingAt(bounds.middle() + towards, bounds.middle()).value();
@@ -63,9 +65,10 @@ glm::dvec3 standAt(const Bounds& bounds, glm::dvec3 side, glm::dvec2 half) {
     return pose.position + towards * (kRoom * away);
 }
 
-// The throw ratio whose picture, of that aspect, just holds the box; 0.5 if part of it lies behind.
+// The throw ratio at which a picture of that aspect just contains the box; 0.5 if a part of the box
+// lies behind.
 double throwThatHolds(const Bounds& bounds, const Pose& pose, double aspect) {
-    double half = 0;  // of the width, at the distance 1
+    double half = 0;  // half width at distance 1
     for (const glm::dvec3& corner : bounds.corners()) {
         const glm::dvec3 local = pose.localFromWorld(corner);
         if (local.z <= 0) return 0.5;
@@ -85,11 +88,11 @@ TriangleMesh floorUnder(const Bounds& bounds) {
 struct LightPreview::Stage {
     site::Scene scene;
     vision::CameraModel projector, viewer;
-    double lumens = 0;        // so that white on what faces the projector there makes pi lux
+    double lumens = 0;        // such that white makes pi lux on a surface that faces the projector there
     glm::dvec3 ambient{0.0};  // lux
-    site::Lamp fromViewer;    // shows the shape of what is in the dark
-    double exposure = 1;      // stored linear light for a cd/m2
-    int finer = 1;            // camera pixels across a pixel of the picture
+    site::Lamp fromViewer;    // shows the shape of unlit parts
+    double exposure = 1;      // linear light in the picture per cd/m2
+    int finer = 1;            // camera pixels per pixel of the picture, each way
     bool keep = false;
     int threads = 1;
 };
@@ -98,7 +101,7 @@ Result<LightPreview> LightPreview::create(TriangleMesh mesh, const PreviewPlaces
                                           Use use, int threads) {
     Bounds bounds = boundsOf(mesh);
     if (!(bounds.radius() > 0)) return Error("the mesh has no extent");
-    // Into a space of its own, so that the unit of the file does not matter.
+    // Scales the mesh to a fixed size, so that the file's unit does not matter.
     const double scale = kDiagonal / (2 * bounds.radius());
     for (glm::vec3& vertex : mesh.vertices) vertex = glm::dvec3(vertex) * scale;
     bounds = boundsOf(mesh);

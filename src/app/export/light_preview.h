@@ -19,37 +19,37 @@
 
 namespace fantascope::app {
 
-// Where projector and viewer stand around a mesh, in the mesh's own unit; what is absent follows
-// from the mesh's bounding box.
+// The places of projector and viewer around a mesh, in the mesh's unit. Absent ones follow from the
+// mesh's bounding box.
 struct PreviewPlaces {
-    std::optional<glm::dvec3> projector;  // default: before it, from the upper left
-    std::optional<glm::dvec3> lookAt;     // of the projector; default: the middle
-    std::optional<double> throwRatio;     // distance / picture width; default: its picture just holds all of the mesh
-    std::optional<glm::dvec3> viewer;  // default: before it, from a little to the right and above, so far that all of it is seen
-    std::optional<glm::dvec3> viewerLookAt;  // default: the middle
-    double fieldOfView = radians(35);        // across the viewer's picture, 0 < fieldOfView < pi
-    bool ground = false;                     // lay a floor under it
-    double ambient = 0.06;                   // light from everywhere and from the viewer, as a share of the projector's white
+    std::optional<glm::dvec3> projector;  // default: in front, upper left
+    std::optional<glm::dvec3> lookAt;     // where the projector looks; default: the box's middle
+    std::optional<double> throwRatio;     // distance / picture width; default: the picture just contains the mesh
+    std::optional<glm::dvec3> viewer;     // default: in front, a little to the right and above, far enough to see the whole mesh
+    std::optional<glm::dvec3> viewerLookAt;  // default: the box's middle
+    double fieldOfView = radians(35);        // horizontal, of the viewer, 0 < fieldOfView < pi
+    bool ground = false;                     // add a floor under the mesh
+    double ambient = 0.06;  // other light, from all sides and from the viewer, as a share of the projector's white
 };
 
-// A mesh in a projector's light, seen from somewhere (Ji et al. 2015, Figures 7d and 9): a site
-// with one projector and no other lamp. Every surface is matt and grey; what the projector does not
-// see stays in the ambient light. The projector's gamma is 2.2, and its white on a surface that
-// faces it at the distance of `lookAt` is just below full white. Thread-bound.
+// A mesh in a projector's light, seen by a viewer (Ji et al. 2015, Figures 7d and 9): a site with
+// one projector and no other lamp. Every surface is matt and grey; parts that the projector does
+// not reach get only ambient light. The projector's gamma is 2.2. Its white, on a surface that
+// faces it at the distance of `lookAt`, is just below full white. Thread: thread-bound.
 class LightPreview {
 public:
-    // How often it is drawn. A still has 16 samples a pixel and keeps nothing; a film has 4 and
-    // keeps them, some 350 bytes a pixel.
+    // A still has 16 samples per pixel and keeps nothing. A film has 4 and keeps them between
+    // frames, some 350 bytes per pixel.
     enum class Use { Still, Film };
 
-    // `frameSize`: of the frames that will be projected, at least 2 each way; `size`: of the
-    // picture. y is up. Error: a place that is what it looks at, or straight above it; a mesh
-    // without extent.
+    // `mesh`: y up. `frameSize`: of the projected frames, pixels, at least 2 each way. `size`: of
+    // the picture, pixels. Error: projector or viewer is where it looks or straight above that, or
+    // the mesh has no extent.
     static Result<LightPreview> create(TriangleMesh mesh, const PreviewPlaces& places, glm::ivec2 frameSize, glm::ivec2 size,
                                        Use use, int threads);
 
-    // `frame`: stored values, as sent to a projector. The picture does not depend on the number of
-    // threads.
+    // Returns what the viewer sees. `frame`: stored values, as sent to a projector. The picture
+    // does not depend on the number of threads.
     RgbaImage draw(std::shared_ptr<const RgbaImage> frame);
 
 private:
@@ -58,8 +58,8 @@ private:
     std::unique_ptr<site::CameraView> viewOf(int band) const;
 
     std::shared_ptr<const Stage> stage_;
-    std::vector<site::ProjectedLight> light_;               // one
-    std::vector<std::unique_ptr<site::CameraView>> views_;  // of each band of rows, once it is needed
+    std::vector<site::ProjectedLight> light_;               // exactly one
+    std::vector<std::unique_ptr<site::CameraView>> views_;  // per band of rows, made when needed
 };
 
 }  // namespace fantascope::app

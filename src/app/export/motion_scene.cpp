@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// So that whoever goes straight from one to the next goes the shorter way.
+// Flips quaternions, so that linear interpolation from one to the next takes the shorter way.
 void keepSides(std::vector<theatre::ActorPose>& poses) {
     for (std::size_t i = 1; i < poses.size(); ++i)
         for (std::size_t j = 0; j < poses[i].turns.size(); ++j)
@@ -26,7 +26,7 @@ void keepSides(std::vector<theatre::ActorPose>& poses) {
 Result<MotionScene> readMotionScene(const fs::path& file, std::optional<double> framesPerSecond) {
     const theatre::Cast cast = TRY(theatre::readCast(file));
     if (framesPerSecond && cast.framesPerSecond == 0)
-        return Error(fmt::format("{}: --fps is for a cast that moves, and this is a still; leave it out", file.string()));
+        return Error(fmt::format("{}: --fps is for casts that move, and this is a still; leave it out", file.string()));
     const std::size_t frames = cast.actors[0].poses.size();
     const bool loops = framesPerSecond && TRY(theatre::loops(cast));
     MotionScene scene{cast.stage, cast.targets[0].height, framesPerSecond.value_or(cast.framesPerSecond), {}};

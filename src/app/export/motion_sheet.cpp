@@ -11,11 +11,11 @@
 namespace fantascope::app {
 namespace {
 
-constexpr int kCell = 288, kColumns = 6;  // pixels of its longer side
-constexpr std::size_t kMostFrames = 47;   // with the one at rest eight full rows
+constexpr int kCell = 288, kColumns = 6;  // the longer side, pixels; columns of cells
+constexpr std::size_t kMaxFrames = 47;    // eight full rows together with the one at rest
 const cv::Scalar kGrid(60, 110, 200, 255), kMoving(240, 120, 20, 255), kFixed(40, 120, 255, 255);
 
-// The picture in the size of a cell, to draw on.
+// A picture scaled to a cell, to draw on.
 class Cell {
 public:
     explicit Cell(const GreyImage& picture)
@@ -36,7 +36,7 @@ private:
     static constexpr int kShift = 4;  // fractional bits of a coordinate
     cv::Mat canvas() { return {picture_.height(), picture_.width(), CV_8UC4, picture_.pixels().data()}; }
     cv::Point at(glm::dvec2 place) const {
-        // OpenCV's pixels have their centres at whole numbers.
+        // OpenCV's pixel centres are at integers.
         const glm::dvec2 scaled = (place * scale_ - 0.5) * double(1 << kShift);
         return {static_cast<int>(std::lround(scaled.x)), static_cast<int>(std::lround(scaled.y))};
     }
@@ -73,7 +73,7 @@ RgbaImage motionSheet(const theatre::TriangulatedSilhouette& silhouette, const t
             first.line(rest.vertices[triangle[corner]], rest.vertices[triangle[(corner + 1) % 3]], kGrid);
     std::vector<LabelledPicture> cells = {
         {fmt::format("at rest, {} triangles", silhouette.rest.triangles.size()), withHandles(std::move(first), rest)}};
-    const std::size_t count = std::min(frames.size(), kMostFrames);
+    const std::size_t count = std::min(frames.size(), kMaxFrames);
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t number = count == 1 ? 0 : i * (frames.size() - 1) / (count - 1);
         const DeformedFrame& frame = frames[number];

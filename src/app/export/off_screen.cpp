@@ -40,7 +40,7 @@ OffScreen::~OffScreen() {
 }
 
 const RgbaImage& OffScreen::draw(const show::OutputState& state, const Wind& wind, Time showTime) {
-    FANTASCOPE_CHECK(display_->makeCurrent().has_value(), "nobody unplugs it");
+    FANTASCOPE_CHECK(display_->makeCurrent().has_value(), "a headless display is never lost");
     renderer_->draw(state, wind, showTime, display_->framebuffer());
     tap_->capture(display_->framebuffer(), showTime);
     tap_->publish({});

@@ -17,21 +17,21 @@
 
 namespace fantascope::app {
 
-// An output's pictures as files need them: drawn by the show's own renderer, at any moment of show
-// time and in any order, shown to nobody.
-// Thread: thread-bound, with the OpenGL context that it makes.
+// Draws an output's pictures for files: by the show's own renderer, at any show time and in any
+// order, without a window.
+// Thread: thread-bound, with an OpenGL context of its own.
 class OffScreen {
 public:
-    // `blend`: as the output's renderer has it. Error: no OpenGL here, or a size that it does not
-    // have.
+    // `blend`: as for OutputRenderer. Error: there is no OpenGL here, or the size is too large for
+    // it.
     static Result<std::unique_ptr<OffScreen>> open(const Projection& projection,
                                                    const std::shared_ptr<const render::BlendMap>& blend,
                                                    const std::vector<render::PictureSource>& sources);
-    // The whole canvas from edge to edge of `size` pixels, as it is before any projector.
+    // Fills `size` pixels with the whole canvas, without a projector's warp and colours.
     static Result<std::unique_ptr<OffScreen>> open(glm::ivec2 size, const std::vector<render::PictureSource>& sources);
     ~OffScreen();
 
-    // Stored values as they would go to a projector. Valid until the next call.
+    // Returns stored values, as they would be sent to a projector. Valid until the next call.
     const RgbaImage& draw(const show::OutputState& state, const Wind& wind, Time showTime);
 
 private:

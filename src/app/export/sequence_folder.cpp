@@ -22,49 +22,49 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kSequence = "sequence.yaml", kBegin = "frame-", kEnd = ".png";
 
-// One of a sequence's own.
+// Whether the name is that of a sequence's picture.
 bool isFrame(std::string_view name) {
     if (!name.starts_with(kBegin) || !name.ends_with(kEnd) || name.size() <= kBegin.size() + kEnd.size()) return false;
     const std::string_view number = name.substr(kBegin.size(), name.size() - kBegin.size() - kEnd.size());
     return std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-// Where it really is, without a slash at its end.
+// The folder's canonical path, without a trailing slash.
 fs::path plain(const fs::path& folder) {
     const fs::path path = fs::weakly_canonical(fs::absolute(folder));
     return path.has_filename() ? path : path.parent_path();
 }
 
-// Beside the folder, so that what is made can be renamed.
+// Beside the folder, so that its contents can be renamed into it.
 fs::path makingOf(const fs::path& folder) {
     fs::path making = plain(folder);
     making += ".unfinished";
     return making;
 }
 
-// A folder whose lock is held by nobody else now.
+// Locks the folder. Error: another run holds the lock.
 Result<drivers::FileHandle> locked(const fs::path& making) {
     drivers::FileHandle folder(::open(making.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!folder.isOpen()) return Error(fmt::format("{}: cannot be opened: {}", making.string(), std::strerror(errno)));
     if (::flock(folder.get(), LOCK_EX | LOCK_NB) != 0)
         return Error(
-            fmt::format("{}: another run is making this sequence; wait for it, or choose another folder", making.string()));
+            fmt::format("{}: another run is writing this sequence; wait for it, or choose another folder", making.string()));
     return folder;
 }
 
-// Whether the path still leads to this folder: whoever held the lock before may have removed it.
+// Whether the path still names this folder: the previous holder of the lock may have removed it.
 bool isStillThere(const drivers::FileHandle& folder, const fs::path& path) {
     struct stat opened {
     }, named{};
     return ::fstat(folder.get(), &opened) == 0 && ::stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino;
 }
 
-// What a run leaves that was killed. Error: somebody keeps other files there.
+// Checks a folder that a killed run may have left. Error: there are other files in it.
 Result<void> checkLeftover(const fs::path& making) {
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(making, ignored))
         if (const std::string name = entry.path().filename(); name != kSequence && !isFrame(name))
-            return Error(fmt::format("{}: is needed to make the sequence in, and has another file in it: {}; move it away",
+            return Error(fmt::format("{}: is needed for writing the sequence, but has another file in it: {}; move it away",
                                      making.string(), name));
     return {};
 }
@@ -76,9 +76,9 @@ Result<void> SequenceFolder::check(const fs::path& folder) {
     const fs::path path = plain(folder);
     if (fs::exists(path, ignored)) {
         if (!fs::is_directory(path, ignored))
-            return Error(fmt::format("{}: is a file, and a folder is to be written; choose another name", folder.string()));
+            return Error(fmt::format("{}: is a file, a folder is needed; choose another name", folder.string()));
         if (!fs::is_empty(path, ignored) && !fs::exists(path / kSequence, ignored))
-            return Error(fmt::format("{}: has other files in it and no {}; name a folder of the sequence's own", folder.string(),
+            return Error(fmt::format("{}: has other files in it and no {}; name a folder for the sequence alone", folder.string(),
                                      kSequence));
     }
     TRY(checkWritable(path / kSequence));
@@ -95,7 +95,7 @@ Result<std::unique_ptr<SequenceFolder>> SequenceFolder::open(const fs::path& fol
     for (;;) {
         std::error_code failure;
         fs::create_directories(making, failure);
-        if (failure) return Error(fmt::format("{}: the folder cannot be made: {}", making.string(), failure.message()));
+        if (failure) return Error(fmt::format("{}: the folder cannot be created: {}", making.string(), failure.message()));
         drivers::FileHandle lock = TRY(locked(making));
         if (!isStillThere(lock, making)) continue;
         TRY(checkLeftover(making));
@@ -119,8 +119,8 @@ fs::path SequenceFolder::frame(std::int64_t number) const { return making_ / fmt
 
 Result<void> SequenceFolder::finish(const theatre::SilhouetteSequence& sequence) {
     TRY(theatre::writeSequence(making_ / kSequence, sequence));
-    // The old one's own name goes first and the new one's comes last: whoever finds it finds all of
-    // its pictures.
+    // The old sequence.yaml is removed first and the new one is put in place last: whoever finds a
+    // sequence.yaml finds all of its pictures.
     std::vector<fs::path> old, made;
     std::error_code failure;
     fs::create_directories(folder_, failure);

@@ -9,7 +9,7 @@
 namespace fantascope::app {
 namespace {
 
-// A light, the rectangle of its screen that the target's picture is laid on, and the picture's
+// A beam's light, the rectangle of its screen that the target's picture covers, and the picture's
 // size.
 Report beamOf(const theatre::PoseProblem& problem, std::size_t beam) {
     const theatre::ScreenFrame& picture = problem.targets[beam].given;
@@ -22,7 +22,7 @@ Report beamOf(const theatre::PoseProblem& problem, std::size_t beam) {
     report["screen"] = {{"origin", list(origin)},
                         {"u", list(screen.stageFromScreen({leftTop.x + size.x, leftTop.y, 0}) - origin)},
                         {"v", list(screen.stageFromScreen({leftTop.x, leftTop.y - size.y, 0}) - origin)}};
-    // The rectangle is rolled up around the upright through the frame's x = 0.
+    // The rectangle is rolled around the vertical through the frame's x = 0.
     if (screen.isCurved())
         report["screen"]["radius"] = screen.radius, report["screen"]["touches"] = list(screen.stageFromScreen({0, 0, 0}));
     report["target_px"] = {picture.width(), picture.height()};

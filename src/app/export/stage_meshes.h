@@ -9,12 +9,13 @@
 
 namespace fantascope::app {
 
-// What anybody needs to cast the shadow of poses again (all degrees of freedom of a problem with
-// skins): a Wavefront OBJ for each actor, actor-1.obj and so on, and for each platform and prop,
-// prop-NAME.obj, in the stage's frame, metres; and stage.json with the light, where the target's
-// picture hangs on the screen, and its size, and the same of further_beams. On a curved screen it
-// hangs on the plane that the screen `touches` at a point, and is to be rolled up around the
-// upright through it by the `radius` (screen.h). Error: a file cannot be written.
+// Writes everything needed to reproduce the shadow of poses in another program. `dofs`: all actors'
+// degrees of freedom, of a problem with skins. The files are a Wavefront OBJ per actor, actor-1.obj
+// and so on, and per platform and prop, prop-NAME.obj, in the stage's frame, metres; and stage.json
+// with the light, the place and size of the target's picture on the screen, and the same for each
+// of further_beams. For a curved screen, the picture lies on the plane that `touches` the screen at
+// a point, and is to be rolled with the `radius` around the vertical through that point (screen.h).
+// Error: a file cannot be written.
 Result<void> writeStageMeshes(const std::filesystem::path& folder, const theatre::PoseProblem& problem,
                               std::span<const double> dofs);
 

@@ -140,7 +140,7 @@ Result<void> Lighting::bringTo(const Coils& wanted, std::size_t number, Time mom
         return written;
     }
     bank.written = wanted;
-    bank.backOff.began(clock_.now());
+    bank.backOff.succeeded(clock_.now());
     bank.confirmed = clock_.now();
     if (recording_ != nullptr) recording_->relays(moment - start_, site_.relayBanks[number].name, bank.written);
     return {};

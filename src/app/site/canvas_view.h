@@ -14,16 +14,16 @@
 
 namespace fantascope::app {
 
-// One output's canvas as the scene in the projector's light.
+// What one output's canvas meets in the scene, through its projector.
 struct CanvasView {
     std::string name;  // the output's
     vision::CameraModel projector;
-    std::optional<vision::Plane> surface;  // what the output is meant for
+    std::optional<vision::Plane> surface;  // where the output's picture is to fall
     Warp warp;
     const std::vector<site::SceneObject>& objects;
 
-    // Metres across and down the canvas on the surface, each the mean of two sides; nothing where
-    // no surface is declared, or it is not reached.
+    // Width and height of the canvas on the surface in metres, each the mean of two sides. Nothing
+    // if no surface is declared, or the light misses it.
     std::optional<glm::dvec2> sizeOnSurface() const;
 };
 

@@ -7,7 +7,7 @@
 namespace fantascope::app {
 namespace {
 
-// A driver without keys of its own in the place of the declared one.
+// A driver without any keys, in place of the declared one.
 Result<ConfigNode> plain(const std::string& driver, const show::DeviceConfig& declared) {
     return ConfigNode::parse("driver: " + driver + "\n", declared.options.file());
 }
@@ -19,8 +19,8 @@ Result<ConfigNode> optionsOf(const show::DeviceConfig& declared, Backends backen
     return plain(kSimulated, declared);
 }
 
-// Of a display: at home there are none of the site's monitors, so that even of its own driver it
-// keeps no keys.
+// For a display. A rehearsal has none of the site's monitors, so no keys are kept, even of the same
+// driver.
 Result<ConfigNode> displayOptions(const show::DeviceConfig& declared, Backends backends) {
     if (backends == Backends::AsDeclared) return declared.options;
     return plain(backends == Backends::SimulatedWindows ? "glfw" : "headless", declared);
@@ -28,15 +28,15 @@ Result<ConfigNode> displayOptions(const show::DeviceConfig& declared, Backends b
 
 }  // namespace
 
-Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::Surroundings& around) {
-    // All are read before the first opens, so that what is wrong with any is told at once and
-    // nothing has lit up.
+Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::DriverContext& context) {
+    // All are read before the first is opened, so that a fault in any is reported before anything
+    // lights up.
     ConfigFaults faults;
     const auto read = [&](auto opening, const ConfigNode& options, auto& all) {
         faults.take(std::move(opening), [&](auto good) {
-            if (good.simulated && around.world == nullptr)
-                faults.add(
-                    options.error("driver 'simulated' needs a simulated site and here is none; rehearse, or name a real driver"));
+            if (good.simulated && context.world == nullptr)
+                faults.add(options.error(
+                    "driver 'simulated' needs a simulated site, and there is none; rehearse, or name a real driver"));
             all.push_back(std::move(good));
         });
     };
@@ -77,18 +77,18 @@ Result<Devices> openDevices(const show::Site& site, Backends backends, const dri
     TRY(faults.result());
 
     Devices devices;
-    for (const auto& display : displays) devices.displays.push_back(TRY(display.open(around)));
+    for (const auto& display : displays) devices.displays.push_back(TRY(display.open(context)));
     auto desk = desks.begin();
     for (std::size_t i = 0; i < site.universes.size(); ++i) {
-        auto port = TRY(ports[i].open(around));
+        auto port = TRY(ports[i].open(context));
         Devices::Line line{site.universes[i].number, std::move(port), nullptr};
-        if (site.universes[i].desk) line.desk = TRY((desk++)->open(around));
+        if (site.universes[i].desk) line.desk = TRY((desk++)->open(context));
         devices.lines.push_back(std::move(line));
     }
-    for (const auto& bank : relayBanks) devices.relayBanks.push_back(TRY(bank.open(around)));
-    for (const auto& controller : controllers) devices.cueController = TRY(controller.open(around));
-    for (const auto& bank : contactBanks) devices.contactBanks.push_back(TRY(bank.open(around)));
-    for (const auto& camera : cameras) devices.camera = TRY(camera.open(around));
+    for (const auto& bank : relayBanks) devices.relayBanks.push_back(TRY(bank.open(context)));
+    for (const auto& controller : controllers) devices.cueController = TRY(controller.open(context));
+    for (const auto& bank : contactBanks) devices.contactBanks.push_back(TRY(bank.open(context)));
+    for (const auto& camera : cameras) devices.camera = TRY(camera.open(context));
     return devices;
 }
 

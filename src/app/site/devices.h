@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/common/surroundings.h"
+#include "drivers/common/opening.h"
 
 #include "show/site.h"
 
@@ -19,12 +19,12 @@
 
 namespace fantascope::app {
 
-// Every device of a site, opened. What the site does not have is null or missing here.
+// All devices of a site, opened. A device that the site does not have is null or missing here.
 struct Devices {
     struct Line {
         int universe = 1;
         std::unique_ptr<DmxPort> port;
-        std::unique_ptr<DmxSource> desk;  // null: nobody else sends this universe
+        std::unique_ptr<DmxSource> desk;  // null: the site declares no desk
     };
     std::vector<std::unique_ptr<DisplaySink>> displays;  // one for each of Site::outputs
     std::vector<Line> lines;                             // one for each of Site::universes
@@ -38,13 +38,13 @@ struct Devices {
 
 // Which drivers to open.
 enum class Backends {
-    AsDeclared,         // what the site file names: the night
-    SimulatedHeadless,  // the simulated ones, pictures in memory, whatever the site file names: a rehearsal
-    SimulatedWindows    // the same with the pictures in windows of the desktop
+    AsDeclared,         // those that the site file names, for a night
+    SimulatedHeadless,  // simulated ones with pictures in memory, for a rehearsal
+    SimulatedWindows    // the same, with the pictures in windows of the desktop
 };
 
-// Error: what a driver says of its part of the site file. A device that is not there is no error.
-// Thread: the render thread, since displays are bound to it.
-Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::Surroundings& around);
+// Error: a driver's, about its part of the site file. A missing device is no error. Thread: the
+// render thread, because displays are bound to it.
+Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::DriverContext& context);
 
 }  // namespace fantascope::app

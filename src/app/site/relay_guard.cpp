@@ -17,8 +17,8 @@
 namespace fantascope::app {
 namespace {
 
-// A crash that leaves gigabytes in a file, or in the system's collector of crashes, would keep the
-// relays' line for as long. 1 turns off both (core(5)).
+// A crash that dumps gigabytes, to a file or to the system's crash handler, would hold the relays'
+// line for that time. 1 turns both off (core(5)).
 void crashAtOnce() {
     rlimit limit{};
     getrlimit(RLIMIT_CORE, &limit);
@@ -28,7 +28,7 @@ void crashAtOnce() {
 
 Error notStarted(int reason) { return Error("no relay guard can be started: " + drivers::systemMessage(reason)); }
 
-// A file that only this program and those that it starts can open.
+// A file that only this program and its children can open.
 Result<drivers::FileHandle> inMemory(std::string_view text) {
     drivers::FileHandle file(memfd_create("site", MFD_CLOEXEC));
     if (!file.isOpen()) return notStarted(errno);
@@ -61,7 +61,7 @@ void RelayGuard::arm() {
 
 bool RelayGuard::hasDied() const {
     const std::lock_guard lock(mutex_);
-    pollfd far{pipe_.get(), 0, 0};  // a file of -1 is left out
+    pollfd far{pipe_.get(), 0, 0};  // poll() ignores a file of -1
     return !dismissed_ && (process_ < 0 || (poll(&far, 1, 0) > 0 && (far.revents & POLLERR) != 0));
 }
 
@@ -75,8 +75,8 @@ Result<void> RelayGuard::restart() {
     const drivers::FileHandle far(ends[0]);
     pipe_ = drivers::FileHandle(ends[1]);
 
-    // A session of its own: what a terminal sends to the run does not reach it. All signals wait
-    // until it ignores them.
+    // A session of its own, so that a terminal's signals to the run do not reach it. All signals
+    // are blocked until it ignores them.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     sigset_t all;

@@ -17,36 +17,35 @@
 
 namespace fantascope::app {
 
-// The subcommand that a RelayGuard starts. It is not for people, so no help names it.
+// The subcommand that a RelayGuard starts. It is not for people, so the help does not list it.
 constexpr const char* kGuardCommand = "guard-relays";
-// What a run that has ended in order leaves in the guard's pipe.
+// A run that ends in order writes this into the guard's pipe.
 constexpr std::string_view kAllIsSafe = "safe\n";
 
 // A small process of this program that outlives a run
-// (docs/decisions/0030-a-guard-outlives-the-run.md): when the run ends without a word, whatever
-// ended it, the guard writes the safe states of the site's relays until every bank has confirmed
-// them, for kPatience at most.
-// Thread: thread-safe.
+// (docs/decisions/0030-a-guard-outlives-the-run.md). If the run ends without that word, for any
+// reason, the guard writes the safe states of the site's relays until every bank has confirmed
+// them, for at most kPatience. Thread: thread-safe.
 class RelayGuard {
 public:
     static constexpr Time kPatience = std::chrono::seconds(30);
 
-    // Starts it. The guard reads the site as the run has read it, whatever the file says meanwhile,
-    // and keeps `held` (files of claims) open until it ends. Of one `bank` alone, where it is
-    // named. Error: no process can be started.
+    // Starts it. The guard reads the site as the run has read it, even if the file has changed
+    // since. It keeps `held` (files of claims) open until it ends. A `bank` limits it to that bank.
+    // Error: no process can be started.
     static Result<std::unique_ptr<RelayGuard>> start(const show::Site& site, std::vector<int> held, std::string bank = {});
-    // Unless it was armed, nothing was switched and it is dismissed; an armed one sets to work.
+    // Dismisses a guard that was never armed: nothing was switched. An armed one starts to work.
     ~RelayGuard();
     RelayGuard(const RelayGuard&) = delete;
     RelayGuard& operator=(const RelayGuard&) = delete;
 
-    // From now on relays may be unsafe.
+    // Call it before the first relay is switched: from now on relays may be unsafe.
     void arm();
     bool hasDied() const;
-    // Another one in its place. Error: as start().
+    // Starts another one in its place. Error: as start().
     Result<void> restart();
-    // The relays are safe: it ends, and with it its hold on the claims. Returns once it has, after
-    // two seconds at the latest.
+    // The relays are safe: the guard ends and gives its claims up. Returns once it has ended, after
+    // at most two seconds.
     void dismiss();
 
 private:

@@ -58,13 +58,13 @@ Result<std::vector<DeclaredDevice>> declaredDevices(const show::Site& site) {
 }
 
 Result<SiteClaims> SiteClaims::take(const show::Site& site, const Interrupt& interrupt) {
-    // In one order, so that of two runs that begin together one has all.
+    // In a fixed order, so that one of two runs that start together gets all.
     std::set<std::string> ofDevices;
     for (const DeclaredDevice& device : TRY(declaredDevices(site))) ofDevices.insert(device.claim());
     for (const show::Output& output : site.outputs)
         ofDevices.insert(
             TRY(drivers::readDisplay(output.display.options, {output.name, output.size(), output.refreshRate})).claim());
-    ofDevices.erase("");  // many may use it
+    ofDevices.erase("");  // many programs may use it
     std::vector<std::string> names{claimOf(site)};
     names.insert(names.end(), ofDevices.begin(), ofDevices.end());
     SteadyClock clock;

@@ -8,9 +8,9 @@
 
 namespace fantascope::app {
 
-// Reads a site file (or the site.yaml of a folder) whole: show's part, every device's own keys by
-// its driver, what devices share, and the simulated site. Every output knows the shape of its
-// canvas. Opens nothing. Whatever passes can be opened. Error: all that is wrong, a line for each.
+// Reads a whole site file, or the site.yaml of a folder: the site, every device's own keys by its
+// driver, what devices share, and the simulated site. Sets the shape of every output's canvas.
+// Opens no device; what it accepts can be opened. Error: all faults, one a line.
 Result<show::Site> readSite(const std::filesystem::path& fileOrFolder);
 
 }  // namespace fantascope::app

@@ -38,15 +38,15 @@ double aspectInPixels(const show::Output& output) {
     return size.x / size.y;
 }
 
-// As precisely as somebody sets corners by hand.
+// The precision of corners that are set by hand.
 bool isRectangle(const std::array<glm::dvec2, 4>& c) {
     return isSameShape(glm::distance(c[0], c[1]), glm::distance(c[3], c[2])) &&
            isSameShape(glm::distance(c[0], c[3]), glm::distance(c[1], c[2])) &&
            isSameShape(glm::distance(c[0], c[2]), glm::distance(c[1], c[3]));
 }
 
-// Width / height of an output's canvas in metres on its surface; nothing where the site does not
-// say where both are.
+// Width / height of an output's canvas in metres on its surface. Nothing if the site does not say
+// where projector and surface are.
 std::optional<double> aspectOnSurface(const show::Output& output) {
     if (!output.projector || !output.surface) return std::nullopt;
     const std::vector<site::SceneObject> nothing;
@@ -56,7 +56,7 @@ std::optional<double> aspectOnSurface(const show::Output& output) {
     return size->x / size->y;
 }
 
-// The mean of what a canvas's outputs say; nothing where one of them says nothing.
+// The mean over a canvas's outputs; nothing if one of them has no value.
 template <class Aspect>
 std::optional<double> meanAspect(const show::Site& site, const std::string& canvas, const Aspect& aspectOf) {
     double sum = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// The site file's numbers as the models of those who see: the simulated site, and the comparison
-// with the guide.
+// From the site file's numbers to models: of the simulated site, and of the comparison with the
+// guide.
 
 #include "drivers/site/simulated_site.h"
 
@@ -13,15 +13,15 @@
 
 namespace fantascope::app {
 
-// The index of an output. Error: the site has none of this name; says which one was perhaps meant.
+// The index of an output. Error: the site has none of this name; it suggests a similar one.
 Result<std::size_t> outputNamed(const show::Site& site, const std::string& name);
 
-// What an output gives to each pixel beside the others on its canvas; null where it gives all of
-// its light.
+// The share of the light that an output gives to each pixel, where outputs of a canvas overlap;
+// null if it gives all of it.
 std::shared_ptr<const render::BlendMap> blendOf(const show::Site& site, std::size_t output);
 
-// Error: the site lacks a projector's place, the camera or a usable optic; names what to add to the
-// site file.
+// Error: the site lacks a projector's place, the camera, or usable optics; it names what to add to
+// the site file.
 Result<site::NominalSite> simulationOf(const show::Site& site);
 
 // Width / height of a canvas in the projectors' pixels: the mean over its outputs.
@@ -31,9 +31,9 @@ double canvasAspectInPixels(const show::Site& site, const std::string& canvas);
 // corners form a rectangle. Keystoned corners alone do not tell the shape on the wall.
 double canvasAspectOf(const show::Site& site, const std::string& canvas);
 
-// What the comparison may know of one output for a picture of this aspect (width / height), which
-// lies on the canvas as `fit` says. Nothing where the site does not say where the projector, its
-// surface or the camera are: then the output is not scored.
+// What the comparison may know of one output, for a picture of this aspect (width / height) that
+// lies on the canvas as `fit` says. Nothing if the site does not say where projector, surface and
+// camera are: then the output is not scored.
 Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site, std::size_t output, double pictureAspect,
                                                          Fit fit);
 

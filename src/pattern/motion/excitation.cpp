@@ -17,7 +17,7 @@ using Spectrum = std::vector<std::complex<double>>;
 
 fftw_complex* fftwBins(Spectrum& spectrum) { return reinterpret_cast<fftw_complex*>(spectrum.data()); }
 
-// FFTW's planner keeps state of its own; only executing a plan is reentrant.
+// FFTW's planner has global state; only executing a plan is reentrant.
 std::mutex& plannerMutex() {
     static std::mutex mutex;
     return mutex;
@@ -25,7 +25,7 @@ std::mutex& plannerMutex() {
 
 }  // namespace
 
-// The inverse Fourier transform of a spectrum that is conjugate symmetric: bins 0 .. frames / 2 in,
+// The inverse Fourier transform of a conjugate-symmetric spectrum: bins 0 .. frames / 2 in,
 // `frames` real samples out.
 class Excitation::InverseTransform {
 public:
@@ -33,8 +33,8 @@ public:
         Spectrum spectrum(static_cast<std::size_t>(frames) / 2 + 1);
         std::vector<double> samples(static_cast<std::size_t>(frames));
         const std::lock_guard lock(plannerMutex());
-        // Estimate: the choice of a plan depends on nothing that was measured. Unaligned: nor does
-        // a result depend on where its memory lies.
+        // FFTW_ESTIMATE: the plan does not depend on measured times. FFTW_UNALIGNED: the result
+        // does not depend on the memory's alignment. Both keep results reproducible.
         plan_ = fftw_plan_dft_c2r_1d(frames, fftwBins(spectrum), samples.data(), FFTW_ESTIMATE | FFTW_UNALIGNED);
         FANTASCOPE_CHECK(plan_ != nullptr, "FFTW has a plan for every length");
     }
@@ -45,7 +45,7 @@ public:
     InverseTransform(const InverseTransform&) = delete;
     InverseTransform& operator=(const InverseTransform&) = delete;
 
-    // The conjugate half is implied. The spectrum is spent.
+    // The conjugate half is implied. FFTW overwrites the spectrum.
     void operator()(Spectrum& spectrum, std::vector<double>& samples) const {
         fftw_execute_dft_c2r(plan_, fftwBins(spectrum), samples.data());
     }
@@ -57,7 +57,7 @@ private:
 Excitation::Excitation(double beta, int frames, double rate, double deviation) : frames_(frames), deviation_(deviation) {
     FANTASCOPE_CHECK(frames >= 4 && frames % 2 == 0, "an excitation needs an even number of frames, 4 or more");
     FANTASCOPE_CHECK(beta >= 0 && rate > 0 && deviation >= 0, "an excitation's parameters are out of range");
-    // Step 1: bin 0 is zero, so that shapes fluctuate around their place.
+    // Step 1: bin 0 is zero, so that shapes fluctuate around their rest.
     // Step 2: bin i stands for the frequency i * frequencyStep.
     const double frequencyStep = rate / frames;
     meanAmplitude_.assign(static_cast<std::size_t>(frames) / 2 + 1, 0.0);
@@ -78,8 +78,8 @@ std::vector<double> Excitation::draw(Rng& rng) const {
     Spectrum spectrum(bins);
     for (std::size_t i = 1; i < bins; ++i)
         spectrum[i] = std::polar(amplitude[i], rng.uniform(-std::numbers::pi, std::numbers::pi));
-    // The last bin is its own conjugate, so it must be real: it keeps its amplitude and the nearer
-    // sign.
+    // The last bin is its own conjugate, so it must be real. It keeps its amplitude and takes the
+    // sign of its real part.
     spectrum.back() = std::copysign(amplitude.back(), spectrum.back().real());
     // Step 5: the conjugate half and the inverse transform.
     std::vector<double> samples(static_cast<std::size_t>(frames_));

@@ -7,21 +7,21 @@
 
 namespace fantascope::pattern {
 
-// Random forces that resemble a breeze: their amplitude spectrum falls as 1/f^beta, so their power
+// Random forces that resemble a breeze. Their amplitude spectrum falls as 1/f^beta, so their power
 // falls as 1/f^(2 beta).
-// Source: Ji et al. 2015, section 4.2, stage 1. There the samples "are in the range of [0, 1]",
-// which a signal without an offset cannot be; here the peak is 1 on either side of 0. Thread: every
-// const method is reentrant.
+// Source: Ji et al. 2015, section 4.2, stage 1. The paper says that the samples "are in the range
+// of [0, 1]", which is impossible for a signal with mean 0. Here the largest absolute value is 1.
+// Thread: every const method is reentrant.
 class Excitation {
 public:
-    // Forces of `frames` (even, >= 4) samples at `rate` (> 0) Hz. `deviation` (>= 0, the paper's m
-    // << 1) is the spread of each spectral amplitude relative to its mean: the paper's "variance
-    // sigma = m mu" is a standard deviation. beta >= 0.
+    // `frames`: samples in a period; even, >= 4. `rate`: Hz, > 0. `deviation`: standard deviation
+    // of each spectral amplitude relative to its mean, >= 0. It is the paper's m << 1, whose
+    // "variance sigma = m mu" is a standard deviation. `beta`: >= 0.
     Excitation(double beta, int frames, double rate, double deviation);
     Excitation(Excitation&&) noexcept;
     ~Excitation();
 
-    // One period of a force: mean 0, peak 1, no seam when it is repeated.
+    // One period of a force: mean 0, largest absolute value 1, no seam when it repeats.
     std::vector<double> draw(Rng& rng) const;
 
 private:

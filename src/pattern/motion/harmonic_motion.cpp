@@ -16,7 +16,7 @@ double segmentPeak(MotionState from, MotionState to, double step) {
     const double slopeFrom = step * from.y, slopeTo = step * to.y;
     const double ends = std::max(std::abs(from.x), std::abs(to.x));
     // displacement(s) = a s^3 + b s^2 + slopeFrom s + from.x; its extrema are the roots of 3 a s^2
-    // + 2 b s + slopeFrom, found without subtracting nearly equal numbers.
+    // + 2 b s + slopeFrom, computed without cancellation.
     const double a = 2 * (from.x - to.x) + slopeFrom + slopeTo;
     const double b = 3 * (to.x - from.x) - 2 * slopeFrom - slopeTo;
     const double discriminant = b * b - 3 * a * slopeFrom;
@@ -42,8 +42,8 @@ glm::dmat2 Oscillator::freeVibration(double time) const {
     const double envelope = std::exp(-decay * time);
     const double cosine = envelope * std::cos(dampedFrequency * time);
     const double sine = envelope * std::sin(dampedFrequency * time) / dampedFrequency;
-    return {cosine + decay * sine, -angularFrequency_ * angularFrequency_ * sine,  // what a unit displacement becomes
-            sine, cosine - decay * sine};                                          // what a unit velocity becomes
+    return {cosine + decay * sine, -angularFrequency_ * angularFrequency_ * sine,  // the response to a unit displacement
+            sine, cosine - decay * sine};                                          // the response to a unit velocity
 }
 
 std::vector<MotionState> Oscillator::steadyState(std::span<const double> force, double step) const {
@@ -51,9 +51,9 @@ std::vector<MotionState> Oscillator::steadyState(std::span<const double> force, 
     const glm::dmat2 free = freeVibration(step);
     std::vector<MotionState> loop(frames);
 
-    // Fills the loop from its first state on; returns the state after the last. Under a force with
-    // a constant slope one solution follows the force at a constant lag with its slope as velocity,
-    // and whatever the state differs from that vibrates freely.
+    // Fills the loop from its first state on and returns the state after the last. Under a force
+    // with a constant slope, one solution follows the force at a constant lag with that slope as
+    // its velocity. The difference between the state and that solution vibrates freely.
     const auto follow = [&](MotionState state) {
         for (std::size_t i = 0; i < frames; ++i) {
             loop[i] = state;
@@ -65,8 +65,8 @@ std::vector<MotionState> Oscillator::steadyState(std::span<const double> force, 
         return state;
     };
 
-    // A period later a first state x has become fromRest + freeVibration(period) x; the steady one
-    // is itself again.
+    // One period takes a first state x to fromRest + freeVibration(period) x. The steady state is
+    // the fixed point of that map.
     const MotionState fromRest = follow(MotionState(0));
     follow(glm::inverse(glm::dmat2(1) - freeVibration(static_cast<double>(frames) * step)) * fromRest);
     return loop;
@@ -81,8 +81,8 @@ double peakDisplacement(std::span<const MotionState> loop, double step) {
     double peak = 0;
     for (std::size_t i = 0; i < loop.size(); ++i) {
         const MotionState from = loop[i], to = loop[(i + 1) % loop.size()];
-        // Between its ends a segment overshoots them by at most the slopes' weights, 4/27 each: few
-        // segments can raise the peak.
+        // Between its ends a segment overshoots them by at most 4/27 of each slope, so few segments
+        // can raise the peak.
         const double bound = std::max(std::abs(from.x), std::abs(to.x)) + 4.0 / 27 * step * (std::abs(from.y) + std::abs(to.y));
         if (bound > peak) peak = std::max(peak, segmentPeak(from, to, step));
     }
@@ -97,8 +97,8 @@ HarmonicMotion::HarmonicMotion(const AxisMotion& axis, const MotionSettings& set
 
 std::vector<MotionState> HarmonicMotion::draw(Rng& rng) const {
     std::vector<MotionState> loop = oscillator_.steadyState(excitation_.draw(rng), step_);
-    // Everything is linear, so the magnitude may come after the oscillator, and so may the range: a
-    // clamp would make shapes stick.
+    // The oscillator is linear, so the magnitude may be applied after it. The range is kept by
+    // scaling and not by clamping, which would make shapes stick.
     const double peak = axis_.magnitude * peakDisplacement(loop, step_);
     const double scale = peak > axis_.range ? axis_.magnitude * axis_.range / peak : axis_.magnitude;
     for (MotionState& state : loop) state *= scale;

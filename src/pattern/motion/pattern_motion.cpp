@@ -14,16 +14,16 @@
 namespace fantascope::pattern {
 namespace {
 
-// The axes of an instance and of a group; the number is part of its random stream's identity.
+// The axes of an instance and of a group. An axis's number is part of its random stream's identity.
 enum Axis : std::size_t { kX, kY, kTiltX, kTiltY, kTurn, kAxes };
 enum GroupAxis : std::size_t { kMajor, kMinor, kGroupAxes };
 
-// The movement of an instance or a group at one frame, relative to its rest. Floats keep a movement
-// to 1e-7 of its range.
+// The movement of an instance or a group at one frame, relative to its rest. As floats,
+// displacements are accurate to 1e-7 of their range.
 template <std::size_t axes>
 struct Key {
     std::array<float, axes> displacement;
-    std::array<float, axes> slope;  // displacement a frame
+    std::array<float, axes> slope;  // displacement per frame
 
     void set(std::size_t axis, MotionState state, double rate) {
         displacement[axis] = static_cast<float>(state.x);
@@ -33,7 +33,6 @@ struct Key {
 using GroupKey = Key<kGroupAxes>;
 using InstanceKey = Key<kAxes>;
 
-// The displacements between two keys.
 template <std::size_t axes>
 std::array<double, axes> between(const Key<axes>& from, const Key<axes>& to, const std::array<double, 4>& weights) {
     std::array<double, axes> moved;
@@ -43,7 +42,8 @@ std::array<double, axes> between(const Key<axes>& from, const Key<axes>& to, con
     return moved;
 }
 
-// Step 2: the movement of each group along the major direction and across it, frame by frame.
+// Stage 2, step 2: the movement of each group along the major direction and across it, frame by
+// frame.
 std::vector<GroupKey> groupKeys(const ShapePattern& pattern, int threads) {
     const MotionSettings& motion = pattern.motion;
     const HarmonicMotion major(motion.groupMajor, motion), minor(motion.groupMinor, motion);
@@ -61,7 +61,7 @@ std::vector<GroupKey> groupKeys(const ShapePattern& pattern, int threads) {
     return keys;
 }
 
-// Step 3: the movement of each instance, to be added to its group's, frame by frame.
+// Stage 2, step 3: the movement of each instance relative to its group's, frame by frame.
 std::vector<InstanceKey> instanceKeys(const ShapePattern& pattern, int threads) {
     const MotionSettings& motion = pattern.motion;
     const std::size_t instances = pattern.instances.size();
@@ -93,7 +93,8 @@ struct PatternMotion::Tables {
     glm::dvec2 direction;  // of the groups' major movement, a unit vector
     std::size_t groups;
     std::vector<Rest> rest;
-    // Frame by frame, groups and rest.size() each: a call reads two runs of neighbours.
+    // Frame by frame, `groups` and rest.size() keys each, so that posesAt() reads two contiguous
+    // runs of each.
     std::vector<GroupKey> groupKeys;
     std::vector<InstanceKey> instanceKeys;
 };
@@ -120,8 +121,8 @@ void PatternMotion::posesAt(Time time, const Wind& wind, std::span<InstancePose>
     const Tables& tables = *tables_;
     const std::size_t instances = tables.rest.size();
     FANTASCOPE_CHECK(out.size() == instances, "posesAt fills one pose for every instance");
-    // The phase is taken in whole nanoseconds, so that the millionth loop is the first one, bit for
-    // bit.
+    // The phase is computed in whole nanoseconds, so that the millionth loop equals the first bit
+    // for bit.
     const Time remainder = time % tables.period;
     const Time phase = remainder < Time::zero() ? remainder + tables.period : remainder;
     const double position =
@@ -129,7 +130,7 @@ void PatternMotion::posesAt(Time time, const Wind& wind, std::span<InstancePose>
     const std::size_t frame = std::min(static_cast<std::size_t>(position), tables.frames - 1);
     const std::size_t next = (frame + 1) % tables.frames;
     std::array<double, 4> weights = hermiteWeights(position - static_cast<double>(frame));
-    for (double& weight : weights) weight *= wind.strength;  // a curve is linear in its states
+    for (double& weight : weights) weight *= wind.strength;  // the curve is linear in its states
 
     const glm::dvec2 along = wind.ownDirection * tables.direction + wind.direction, across(-along.y, along.x);
     const GroupKey *groupFrom = &tables.groupKeys[frame * tables.groups], *groupTo = &tables.groupKeys[next * tables.groups];

@@ -20,33 +20,33 @@ struct PixelRectangle {
     std::int64_t area() const { return std::int64_t{end.x - begin.x} * (end.y - begin.y); }
 };
 
-// Which pixels a set of silhouettes covers, one bit each: a shape pattern drawn white on black,
-// without colours (Ji et al. 2015, section 4.1).
+// The pixels that a set of silhouettes covers, one bit each: a shape pattern drawn white on black
+// (Ji et al. 2015, section 4.1).
 class Coverage {
 public:
-    // Nothing is covered; width, height > 0.
+    // Covers nothing; width, height > 0.
     Coverage(int width, int height);
 
     int width() const { return width_; }
     int height() const { return height_; }
     void clear();
-    // Unites the silhouette of one instance; see SilhouetteScanner.
+    // Adds the silhouette of one instance; see SilhouetteScanner.
     void add(const Silhouette& shape, const InstancePose& pose);
 
     bool at(int x, int y) const { return (word(x, y) >> (x % kBits) & 1) != 0; }
-    // How many pixels of the rectangle are covered; it must lie in the picture.
+    // How many pixels of the rectangle are covered. It must lie in the picture.
     std::int64_t count(const PixelRectangle& cell) const;
-    // Calls use(y, begin, end) for each unbroken run begin <= x < end of covered pixels, from the
+    // Calls use(y, begin, end) for each maximal run begin <= x < end of covered pixels, from the
     // top left on.
     template <class Use>
     void forEachRun(Use use) const {
         const std::uint64_t* next = words_.data();
         for (int y = 0; y < height_; ++y) {
-            int begin = -1;            // of the run at hand
+            int begin = -1;            // of the current run
             std::uint64_t before = 0;  // the pixel left of this word
             for (int first = 0; first < width_; first += kBits) {
                 const std::uint64_t bits = *next++;
-                // Set where a pixel differs from the one left of it: there a run begins or ends.
+                // Set where a pixel differs from the one to its left: a run begins or ends there.
                 for (std::uint64_t changes = bits ^ (bits << 1 | before); changes != 0; changes &= changes - 1) {
                     const int x = first + std::countr_zero(changes);
                     if (begin >= 0)
@@ -70,7 +70,7 @@ private:
     void addSpan(int y, int begin, int end);
 
     int width_, height_;
-    std::size_t stride_;                // words a row
+    std::size_t stride_;                // words per row
     std::vector<std::uint64_t> words_;  // pixel x is bit x % 64 of its word; bits beyond the width are 0
     SilhouetteScanner scanner_;
 };

@@ -36,7 +36,7 @@ double Goal::mean() const {
 
 double Goal::bound() const {
     const std::size_t columns = static_cast<std::size_t>(width_) + 1;
-    std::int64_t gain = 0;  // of covering exactly the pixels that are lighter than a half
+    std::int64_t gain = 0;  // of covering exactly the pixels lighter than 0.5
     for (int y = 0; y < height_; ++y) {
         const std::int32_t* costs = whiteCosts_.data() + static_cast<std::size_t>(y) * columns;
         for (int x = 0; x < width_; ++x) gain += std::min(0, costs[x + 1] - costs[x]);

@@ -9,24 +9,25 @@
 
 namespace fantascope::pattern {
 
-// The guide as the search compares it: the goal function z and the difference indices g_i of Ji et
-// al. 2015, section 4.1. The guide's values are held as whole numbers, so every sum is exact and
-// does not depend on its order. Thread: every const method is reentrant.
+// The goal of a search: the goal function z and the difference indices g_i of Ji et al. 2015,
+// section 4.1, for one guide. The guide's values are stored as integers, so every sum is exact and
+// independent of its order. Thread: every const method is reentrant.
 class Goal {
 public:
     // `guide`: stored values 0..1, in the pattern's resolution.
     explicit Goal(const GreyImage& guide);
 
-    // A 16-bit PNG's values are exact in these units, and an 8-bit one's too: 65535 = 257 * 255.
+    // White in integer units. The values of 16-bit and 8-bit PNGs are exact in them, as 65535 = 257
+    // * 255.
     static constexpr int kWhite = 65535;
 
     int width() const { return width_; }
     int height() const { return height_; }
     double mean() const;   // of the guide
-    double bound() const;  // the least z that any pattern of white shapes on black could have: mean min(I, 1 - I)
+    double bound() const;  // lower bound of z for any pattern of white shapes on black: mean min(I, 1 - I)
 
-    // In units of 1 / kWhite: what covering the pixels begin <= x < end of row y adds to sum |I -
-    // I'|; the guide's sum over a rectangle; and sum |I - I'| for a pattern without instances.
+    // In units of 1 / kWhite: by how much covering the pixels begin <= x < end of row y changes sum
+    // |I - I'|; the guide's sum over a rectangle; and sum |I - I'| of a pattern without instances.
     std::int64_t cost(int y, int begin, int end) const { return whiteCosts_[index(end, y)] - whiteCosts_[index(begin, y)]; }
     std::int64_t guideSum(const PixelRectangle& cell) const;
     std::int64_t allBlack() const { return guideSum({{0, 0}, {width_, height_}}); }
@@ -35,7 +36,7 @@ public:
     // z(I') = mean |I - I'|, in [0, 1].
     double z(const Coverage& pattern) const;
     // g_i: the mean of the difference image R = I - I' over one evaluation cell, in [-1, 1];
-    // positive where more coverage is wanted. The cell lies in the picture and has pixels.
+    // positive where more coverage is needed. The cell lies in the picture and is not empty.
     double differenceIndex(const PixelRectangle& cell, const Coverage& pattern) const;
 
 private:
@@ -43,8 +44,8 @@ private:
         return static_cast<std::size_t>(y) * (static_cast<std::size_t>(width_) + 1) + static_cast<std::size_t>(x);
     }
     int width_, height_;
-    std::vector<std::int64_t> sums_;        // summed-area table of the guide, a row and a column of zeros first
-    std::vector<std::int32_t> whiteCosts_;  // by row: running sums of what covering a pixel adds to z, a zero first
+    std::vector<std::int64_t> sums_;        // summed-area table of the guide; its first row and column are 0
+    std::vector<std::int32_t> whiteCosts_;  // per row: running sums of cost(), beginning with 0
 };
 
 }  // namespace fantascope::pattern

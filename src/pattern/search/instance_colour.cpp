@@ -25,7 +25,8 @@ double linear(std::uint8_t stored) {
     return kTable[stored];
 }
 
-// The mean of what lies under the middle of an instance, a square of side `size`; at least a pixel.
+// The picture's mean over a square of side `size` around the instance's centre, at least one pixel.
+// Linear light, multiplied by alpha.
 glm::dvec3 meanUnder(const ShapeInstance& instance, double aspect, const RgbaImage& picture) {
     const glm::ivec2 pixels(picture.width(), picture.height());
     const glm::dvec2 scale = glm::dvec2(pixels) / glm::dvec2(aspect, 1);

@@ -7,9 +7,9 @@
 
 namespace fantascope::pattern {
 
-// The colour of an instance, from those that the options allow its shape; linear light, in short
-// decimals. What is random about it depends on the seed and the instance's id alone. `aspect`: the
-// canvas's.
+// Chooses an instance's colour from those that the options give its shape. Linear light, rounded to
+// 4 decimals. The random choice depends on the seed and the instance's id alone. `aspect`: of the
+// canvas.
 glm::vec3 colourOf(const ShapeInstance& instance, double aspect, std::uint64_t seed, const PatternSearch::Options& options);
 
 }  // namespace fantascope::pattern

@@ -40,10 +40,9 @@ double meanDifference(const GreyImage& a, const GreyImage& b) {
     return sum / static_cast<double>(a.pixels().size());
 }
 
-// The share of covered pixels that are covered by more than one instance; 0 where nothing is
-// covered.
+// The share of the covered pixels that more than one instance covers; 0 if none is covered.
 double overlapOf(const ShapePattern& pattern, const std::vector<Silhouette>& silhouettes) {
-    Image<std::uint8_t> layers(pattern.width, pattern.height);  // 0, 1, or 2 for more
+    Image<std::uint8_t> layers(pattern.width, pattern.height);  // 0, 1, or 2 for two and more
     Coverage alone(pattern.width, pattern.height);
     for (const ShapeInstance& instance : pattern.instances) {
         alone.clear();
@@ -61,34 +60,34 @@ double overlapOf(const ShapePattern& pattern, const std::vector<Silhouette>& sil
     return covered == 0 ? 0 : static_cast<double>(several) / static_cast<double>(covered);
 }
 
-// The tone of many pictures of one pattern's size. A wide Gaussian is as well taken of a smaller
-// picture, in a fraction of the time.
+// Measures the tone of many pictures of one pattern. A wide Gaussian is taken of a smaller picture,
+// which is nearly as exact and much faster.
 class ToneOfMany {
 public:
     ToneOfMany(const GreyImage& guide, double sigma)
-        : sigma_(sigma), factor_(std::max(1, static_cast<int>(sigma / kLeastSigma))), guide_(blurredSmall(guide)) {}
+        : sigma_(sigma), factor_(std::max(1, static_cast<int>(sigma / kMinSigma))), guide_(blurredSmall(guide)) {}
 
     double operator()(const GreyImage& picture) const { return meanDifference(guide_, blurredSmall(picture)); }
 
 private:
-    static constexpr double kLeastSigma = 5;  // pixels of the smaller picture
+    static constexpr double kMinSigma = 5;  // pixels of the smaller picture
 
     GreyImage blurredSmall(const GreyImage& picture) const {
         const int width = std::max(1, picture.width() / factor_), height = std::max(1, picture.height() / factor_);
-        // Averaging over a square is a part of the blur.
+        // Resizing averages over squares, which already is a part of the blur.
         const double squared = factor_ * factor_;
         return blurred(resized(picture, width, height), std::sqrt((sigma_ * sigma_ - (squared - 1) / 12) / squared));
     }
 
     double sigma_;     // pixels
-    int factor_;       // by which a picture is made smaller
-    GreyImage guide_;  // blurred
+    int factor_;       // by which pictures are shrunk
+    GreyImage guide_;  // shrunk and blurred
 };
 
-// Where a shape's vertices lie, on average.
+// The first and second moments of a mesh's vertices.
 struct VertexMoments {
-    glm::dvec3 first{0.0};   // of v
-    glm::dmat3 second{0.0};  // of v v^T
+    glm::dvec3 first{0.0};   // mean of v
+    glm::dmat3 second{0.0};  // mean of v v^T
 
     explicit VertexMoments(const TriangleMesh& mesh) {
         const double count = static_cast<double>(mesh.vertices.size());
@@ -98,7 +97,7 @@ struct VertexMoments {
         }
     }
 
-    // The mean square of |shift + (map v).xy|.
+    // The mean of |shift + (map v).xy|^2 over the vertices v.
     double meanSquare(glm::dvec2 shift, const glm::dmat3& map) const {
         const glm::dvec2 mean(map * first);
         const glm::dmat3 spread = map * second * glm::transpose(map);
@@ -136,7 +135,8 @@ struct LoopMeasure::Parts {
     std::vector<VertexMoments> vertices = verticesOf(pattern);
     PatternMotion motion = PatternMotion(pattern, threads);
 
-    // The sum of the mean square displacements of all instances, in canvas heights.
+    // The sum over all instances of their vertices' mean squared displacement, in squared canvas
+    // heights.
     double squares(std::span<const InstancePose> poses) const {
         double sum = 0;
         for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -155,7 +155,7 @@ LoopMeasure::LoopMeasure(const ShapePattern& pattern, const GreyImage& guide, in
 LoopMeasure::~LoopMeasure() = default;
 
 LoopQuality LoopMeasure::in(const Wind& wind, int moments) const {
-    FANTASCOPE_CHECK(moments > 0, "a mean has terms");
+    FANTASCOPE_CHECK(moments > 0, "there is a moment to measure");
     const ShapePattern& pattern = parts_->pattern;
     const Wind groupsAtRest{.strength = wind.strength, .ownDirection = 0};
     struct Moment {

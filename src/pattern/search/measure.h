@@ -9,37 +9,37 @@
 
 namespace fantascope::pattern {
 
-// How well a pattern at rest reads as its guide, all in the pattern's resolution and in the guide's
+// How well a pattern at rest reads as its guide, in the pattern's resolution and in the guide's
 // stored values.
 struct PatternQuality {
     double z = 1;        // mean |I - I'| (Ji et al. 2015, section 4.1)
-    double zBound = 0;   // mean min(I, 1 - I): no white shapes on black have less
-    double tone = 1;     // mean |G*I - G*I'|, G a Gaussian of sigma = height / 36: what the eye sees from afar
-    double overlap = 0;  // the share of covered pixels that several instances cover
+    double zBound = 0;   // mean min(I, 1 - I), the lower bound of z for white shapes on black
+    double tone = 1;     // mean |G*I - G*I'|, G a Gaussian of sigma = height / 36: the difference seen from afar
+    double overlap = 0;  // share of the covered pixels that more than one instance covers
 };
 
-// `guide`: stored values, in any resolution; the pattern's is used.
+// `guide`: stored values, in any resolution; it is resampled to the pattern's.
 PatternQuality measure(const ShapePattern& pattern, const GreyImage& guide);
 
-// The animated loop, which is what an audience sees.
+// The same of the animated loop, which is what an audience sees.
 struct LoopQuality {
     double z = 1;     // mean over the loop
-    double tone = 1;  // mean over the loop; of a smaller picture, which is off by 2 % at most, at the border
-    // How far the corners of the shapes stray from their rest by the local movements, translation
-    // and rotations as they show on the canvas: root mean square over instances, time and the
-    // vertices of each mesh, as a share of the mean size. Groups stand still.
+    double tone = 1;  // mean over the loop, of a smaller picture; the error is at most 2 %, at the border
+    // How far local movement displaces the shapes' vertices on the canvas: root mean square over
+    // instances, time and the vertices of each mesh, as a share of the mean size. Group movement is
+    // left out.
     double localDisplacement = 0;
 };
 
-// Judges one pattern's loop. Thread: reentrant.
+// Measures one pattern's loop. Thread: reentrant.
 class LoopMeasure {
 public:
-    // Computes the pattern's movement. Refers to `pattern`, which must stay; threads change nothing
-    // but the time that it takes.
+    // Computes the pattern's movement. `pattern` must outlive it. The result does not depend on
+    // `threads`.
     LoopMeasure(const ShapePattern& pattern, const GreyImage& guide, int threads);
     ~LoopMeasure();
 
-    // At so many moments, evenly spread over one period, in a steady wind.
+    // Measures `moments` moments, evenly spaced over one period, in a constant wind.
     LoopQuality in(const Wind& wind, int moments) const;
 
 private:
@@ -47,7 +47,7 @@ private:
     std::unique_ptr<const Parts> parts_;
 };
 
-// The pattern at rest, white on black, as it is compared with the guide.
+// The pattern at rest, white on black, as the search compares it with the guide.
 GreyImage drawWhiteOnBlack(const ShapePattern& pattern, int width, int height);
 
 }  // namespace fantascope::pattern

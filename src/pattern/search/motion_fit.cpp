@@ -9,19 +9,20 @@
 namespace fantascope::pattern {
 namespace {
 
-constexpr double kDisplacement = 0.155;     // of the mean size
-constexpr double kToneGiven = 0.009;        // how much worse the mean tone over the loop may be than that at rest
-constexpr int kMoments = 24;                // of the loop are looked at
-constexpr double kMajor = 1, kMinor = 0.3;  // ranges of the groups, in mean sizes, before they are fitted
-constexpr double kMagnitude = 2.5;          // in ranges: the range is reached by nearly all
+constexpr double kDisplacement = 0.155;     // wanted LoopQuality::localDisplacement
+constexpr double kToneLoss = 0.009;         // by which the mean tone over the loop may exceed the tone at rest
+constexpr int kMoments = 24;                // of the loop that are measured
+constexpr double kMajor = 1, kMinor = 0.3;  // maximum ranges of the groups, in mean sizes
+constexpr double kMagnitude = 2.5;          // in ranges: large enough that nearly every movement reaches its range
 
-// The parts that the local axes have in a movement: ranges in mean sizes and in degrees.
+// The composition of local movement: translation range in mean sizes, tilt and turn ranges in
+// degrees.
 struct Mix {
     double translation, tilt, turn;
 };
-// A tilt costs the most tone, for a shape that tilts gets narrower, and a turn the least.
+// Tilts harm the tone most, since a tilted shape is narrower; turns least.
 constexpr Mix kLively{0.15, 8, 26};
-constexpr Mix kTurning{0.05, 3, 40};  // for drawings that do not bear the other
+constexpr Mix kTurning{0.05, 3, 40};  // for drawings whose tone does not allow kLively
 
 double rounded(double value, double steps) { return std::round(value * steps) / steps; }
 
@@ -34,7 +35,7 @@ void setAngle(AxisMotion& axis, double degrees) {
     axis.magnitude = radians(rounded(kMagnitude * degrees, 10));
 }
 
-// `local` and `groups`: shares of the mix and of the groups' ranges.
+// `local`, `groups`: factors of the mix and of the groups' ranges.
 MotionSettings motionOf(const ShapePattern& pattern, const Mix& mix, double local, double groups) {
     const double size = pattern.meanSize();
     MotionSettings motion = pattern.motion;
@@ -46,7 +47,7 @@ MotionSettings motionOf(const ShapePattern& pattern, const Mix& mix, double loca
     return motion;
 }
 
-// The largest share 0..1, to 1/32, that is good; 0 is.
+// The largest good share 0..1, to a precision of 1/32; 0 is taken to be good.
 template <class Good>
 double largestGood(Good good) {
     if (good(1)) return 1;
@@ -58,22 +59,22 @@ double largestGood(Good good) {
 
 struct Fit {
     MotionSettings motion;
-    bool borne;  // the local movement alone keeps to the tone
+    bool isGood;  // local movement alone keeps the tone
 };
 
 Fit fit(const ShapePattern& pattern, const Mix& mix, const GreyImage& guide, int threads) {
-    // The movement is linear in its ranges, and so is the wind: one construction serves all that is
-    // tried.
+    // The movement is linear in its ranges and in the wind's strength, so one LoopMeasure serves
+    // all trials.
     ShapePattern whole = pattern;
     whole.motion = motionOf(pattern, mix, 1, 1);
     const LoopMeasure loop(whole, guide, threads);
     const double atRest = loop.in({.strength = 0}, 1).tone;
     const double local = kDisplacement / loop.in({}, kMoments).localDisplacement;
     const auto good = [&](double groups) {
-        return loop.in({.strength = local, .ownDirection = groups / local}, kMoments).tone <= atRest + kToneGiven;
+        return loop.in({.strength = local, .ownDirection = groups / local}, kMoments).tone <= atRest + kToneLoss;
     };
-    const bool borne = good(0);
-    return {motionOf(pattern, mix, local, borne ? largestGood(good) : 0), borne};
+    const bool isGood = good(0);
+    return {motionOf(pattern, mix, local, isGood ? largestGood(good) : 0), isGood};
 }
 
 }  // namespace
@@ -81,7 +82,7 @@ Fit fit(const ShapePattern& pattern, const Mix& mix, const GreyImage& guide, int
 MotionSettings fittedMotion(const ShapePattern& pattern, const GreyImage& guide, int threads) {
     if (pattern.instances.empty()) return motionOf(pattern, kLively, 1, 1);
     const Fit lively = fit(pattern, kLively, guide, threads);
-    return lively.borne ? lively.motion : fit(pattern, kTurning, guide, threads).motion;
+    return lively.isGood ? lively.motion : fit(pattern, kTurning, guide, threads).motion;
 }
 
 }  // namespace fantascope::pattern

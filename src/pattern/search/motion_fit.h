@@ -6,13 +6,13 @@
 
 namespace fantascope::pattern {
 
-// The pattern's own motion with magnitudes and ranges that suit it, for an artist who names none:
-// the local ones so large that the shapes' corners stray from their rest by 15.5 % of the mean size
-// (LoopQuality::localDisplacement), and the groups' as large, up to one mean size, as the mean tone
-// over the loop stays within .009 of the tone at rest. Where the local movement alone takes more
-// than that it is made of turns above all, and the groups stand still if that does not help.
-// Everything else of the motion stays as it is; what comes out is rounded for its reader. `guide`:
-// stored values, in any resolution. The result does not depend on `threads`. Thread: reentrant.
+// The pattern's motion settings with magnitudes and ranges fitted to it, for an artist who sets
+// none. Local movement is scaled so that LoopQuality::localDisplacement is 15.5 % of the mean size.
+// The groups' range is the largest, up to one mean size, that keeps the mean tone over the loop
+// within .009 of the tone at rest. If local movement alone exceeds that, it is composed mainly of
+// turns; if it still does, the groups stand still. All other settings stay. The results are
+// rounded, to be easy to read. `guide`: stored values, in any resolution. The result does not
+// depend on `threads`. Thread: reentrant.
 MotionSettings fittedMotion(const ShapePattern& pattern, const GreyImage& guide, int threads);
 
 }  // namespace fantascope::pattern

@@ -16,27 +16,27 @@ namespace {
 
 using Options = PatternSearch::Options;
 
-// The random pattern at the start has this share of the most instances, which leaves room on both
-// sides.
+// The random start has this share of the maximum number of instances, so that the number can grow
+// and shrink.
 constexpr double kStartShare = 0.5;
-// The share of widely perturbed instances at the start, and how fast it follows the success.
+// The initial share of widely perturbed instances, and the factor by which it adapts.
 constexpr double kFirstShare = 0.02, kShareStep = 1.1;
 
-// A shape pattern that is a candidate for the solution, drawn and judged.
+// A candidate for the solution, drawn and evaluated.
 struct Candidate {
     std::vector<ShapeInstance> instances;
-    std::uint32_t nextId = 1;  // never given so far
+    std::uint32_t nextId = 1;  // not given yet
     Coverage coverage;         // I'
     double z = 1;
 };
 
-// What the difference image tells about the reference solution; the same as long as that stays.
+// What the difference image says about one reference solution.
 struct Heuristics {
     struct Vacancy {
         PixelRectangle cell;
         double createProbability;  // p_cre
     };
-    std::vector<Vacancy> vacancies;       // the cells of the lattice with g_i > lambda_cre
+    std::vector<Vacancy> vacancies;       // the lattice cells with g_i > lambda_cre
     std::vector<double> instanceIndices;  // g_i of the instance cells, in the order of the reference's instances
 };
 
@@ -50,7 +50,7 @@ public:
             for (int x = 0; x < pixels_.x; x += side) lattice_.push_back({{x, y}, glm::min(glm::ivec2(x, y) + side, pixels_)});
     }
 
-    // Section 4.1, from the random start to a reason to stop.
+    // Section 4.1 of the paper, from the random start to a reason to stop.
     PatternSearch::Summary run(std::vector<ShapeInstance>& instances, int threads, const PatternSearch::AskStop& askStop) const {
         PatternSearch::Summary summary;
         Candidate reference = randomPattern();
@@ -85,8 +85,8 @@ public:
     }
 
 private:
-    // The three stop criteria of the paper, and a number of iterations, so that a run that was
-    // stopped by time can be repeated.
+    // The paper's three stop criteria, and a number of iterations, by which a run that the clock
+    // stopped can be repeated.
     std::optional<PatternSearch::StopReason> whyStop(int iterations, const Candidate& reference,
                                                      const PatternSearch::AskStop& askStop) const {
         if (reference.z < options_.targetZ) return PatternSearch::StopReason::TargetReached;
@@ -116,7 +116,7 @@ private:
     }
 
     // Makes `candidate` from the reference solution: deletes, reduces, increases and perturbs its
-    // instances, creates new ones, and evaluates.
+    // instances, creates new ones, and evaluates the result.
     void adjust(const Candidate& reference, const Heuristics& heuristics, double share, Rng& rng, Candidate& candidate) const {
         candidate.instances.clear();
         candidate.nextId = reference.nextId;
@@ -128,7 +128,8 @@ private:
         std::vector<const PixelRectangle*> cells;
         for (const Heuristics::Vacancy& vacancy : heuristics.vacancies)
             if (rng.uniform() < vacancy.createProbability) cells.push_back(&vacancy.cell);
-        // Where there is room for some only, every cell has the same chance.
+        // In random order: if there is room for only some new instances, every cell has the same
+        // chance.
         for (std::size_t i = 0; i < cells.size() && candidate.instances.size() < options_.instances; ++i) {
             std::swap(cells[i], cells[i + rng.below(static_cast<std::uint32_t>(cells.size() - i))]);
             create(*cells[i], rng, candidate);
@@ -137,10 +138,10 @@ private:
     }
 
     // The paper perturbs every instance by "a small amount of random perturbation". If all amounts
-    // are alike, the good of one is undone by the rest and hardly a candidate is better. So they
-    // are long-tailed: largestAmount * u^(1 / share), of which about `share` are larger than 1/e of
-    // the largest, while most are a fraction of a pixel. The share follows the success, see
-    // adapted().
+    // were alike, the gain of one perturbation would be undone by the rest, and hardly any
+    // candidate would be better. So the amounts are long-tailed: largestAmount * u^(1 / share).
+    // About `share` of them exceed 1/e of the maximum, and most are a fraction of a pixel. The
+    // share adapts, see adapted().
     ShapeInstance adjusted(ShapeInstance instance, double g, double share, Rng& rng) const {
         const double amount = paper_.largestAmount * std::pow(rng.uniform(), 1 / share);
         if (g < paper_.lambdaReduce) instance.size *= 1 - std::min(amount, 1.0) * rng.uniform();
@@ -157,9 +158,9 @@ private:
         return space_.allowed(instance);
     }
 
-    // A success rule after Rechenberg's (1973): more is perturbed after an acceptance and less
-    // after a rejection, in such steps that the share stays when the wanted share of iterations is
-    // accepted. At least one instance moves widely, at most all do.
+    // A success rule after Rechenberg (1973): the share grows after an acceptance and shrinks after
+    // a rejection, such that it is stationary at the wanted success rate. At least one instance
+    // moves widely, at most all do.
     double adapted(double share, bool accepted, std::size_t instances) const {
         const double down = paper_.successRate / (1 - paper_.successRate);
         share *= std::pow(kShareStep, accepted ? 1 : -down);
@@ -178,7 +179,7 @@ private:
         candidate.z = goal_.z(candidate.coverage);
     }
 
-    // The square around the instance's centre, as far as it lies in the picture; at least a pixel.
+    // The square around the instance's centre, clipped to the picture; at least one pixel.
     PixelRectangle instanceCell(const ShapeInstance& instance) const {
         const double half = paper_.instanceCell * space_.side(instance.shape) * instance.size / 2;
         const glm::dvec2 begin = glm::round((instance.centre - half) * double(pixels_.y)),

@@ -22,7 +22,7 @@ namespace {
 
 using Options = PatternSearch::Options;
 
-// Finds the first number that is out of its bounds.
+// Fields for declareSearch() etc. that find the first number out of its bounds.
 struct Bounds {
     Result<void> broken;
 
@@ -36,22 +36,18 @@ struct Bounds {
     }
 };
 
-// The ranges: what no bounds of a single number say.
 Result<void> checkSize(const std::optional<glm::dvec2>& size) {
     if (!size || (0 < size->x && size->x <= size->y && size->y <= 2)) return {};
-    return Error(
-        fmt::format("size = [{}, {}] must be the smallest and the largest, 0 < smallest <= largest <= 2", size->x, size->y));
+    return Error(fmt::format("size = [{}, {}] must be [smallest, largest] with 0 < smallest <= largest <= 2", size->x, size->y));
 }
 
-Result<void> checkRotation(std::string_view option, const std::optional<glm::dvec2>& range, double mostDegrees) {
-    const double most = radians(mostDegrees);
-    if (!range || (-most <= range->x && range->x <= range->y && range->y <= most && range->y - range->x <= radians(360)))
-        return {};
+Result<void> checkRotation(std::string_view option, const std::optional<glm::dvec2>& range, double maxDegrees) {
+    const double max = radians(maxDegrees);
+    if (!range || (-max <= range->x && range->x <= range->y && range->y <= max && range->y - range->x <= radians(360))) return {};
     const glm::dvec2 degrees = *range * (180 / std::numbers::pi);
     return Error(
-        fmt::format("{0} = [{1:.6g}, {2:.6g}] degrees must run from the smaller to the larger, -{3} .. {3}, and not further "
-                    "than once round",
-                    option, degrees.x, degrees.y, mostDegrees));
+        fmt::format("{0} = [{1:.6g}, {2:.6g}] degrees must be [from, to] with -{3} <= from <= to <= {3} and to - from <= 360",
+                    option, degrees.x, degrees.y, maxDegrees));
 }
 
 void checkColours(Bounds& bounds, const std::vector<Options::Colours>& colours) {
@@ -84,19 +80,19 @@ Result<void> PatternSearch::Options::check() const {
     if (!(-1 < lambdaDelete && lambdaDelete <= lambdaReduce && lambdaReduce <= 0 && 0 <= lambdaIncrease &&
           lambdaIncrease <= lambdaCreate && lambdaCreate < 1))
         return Error(fmt::format(
-            "-1 < lambda_delete <= lambda_reduce <= 0 <= lambda_increase <= lambda_create < 1 must hold, here are {}, {}, {}, {}",
+            "-1 < lambda_delete <= lambda_reduce <= 0 <= lambda_increase <= lambda_create < 1 must hold; they are {}, {}, {}, {}",
             lambdaDelete, lambdaReduce, lambdaIncrease, lambdaCreate));
     TRY(checkSize(size));
     for (const Shape& shape : shapes) {
         TRY(checkSize(shape.size));
-        TRY(checkRotation("tilt", shape.tilt, kMostTilt));
-        TRY(checkRotation("turn", shape.turn, kMostTurn));
+        TRY(checkRotation("tilt", shape.tilt, kMaxTilt));
+        TRY(checkRotation("turn", shape.turn, kMaxTurn));
     }
     if (colours.empty()) return Error("colours: at least one is needed");
     if (region && !(region->from.x < region->to.x && region->from.y < region->to.y))
-        return Error("region: its left top corner comes first, then its right bottom one, in canvas heights");
+        return Error("region: must be the top left corner, then the bottom right one, in canvas heights");
     if (region && method == Method::Paper)
-        return Error("region: the paper's method changes the whole pattern; only the refined one keeps to a region");
+        return Error("region: only the refined method keeps to a region; the paper's method changes the whole pattern");
     return {};
 }
 
@@ -123,10 +119,10 @@ std::string_view name(PatternSearch::StopReason reason) {
 std::string_view name(PatternSearch::Method method) { return method == PatternSearch::Method::Refined ? "refined" : "paper"; }
 
 std::optional<int> PatternSearch::iterationsWithin(double budget, int done, double elapsed) {
-    constexpr double kEnough = 0.1;  // of the budget; less than the refined method's warm part
+    constexpr double kEnough = 0.1;  // share of the budget; below the refined method's kWarm
     if (done == 0 || elapsed < kEnough * budget) return std::nullopt;
-    // A cool search keeps fewer moves, which takes less time; the first moves, which sort out the
-    // start, take the most.
+    // A cool search accepts fewer moves and is faster. The first moves, which rearrange the start,
+    // are the slowest.
     const double faster = 1.12 + 10.0 / done;
     return static_cast<int>(std::min(faster * done * budget / elapsed, double(std::numeric_limits<int>::max() - 1)));
 }
@@ -134,7 +130,7 @@ std::optional<int> PatternSearch::iterationsWithin(double budget, int done, doub
 PatternSearch::Found PatternSearch::run(const GreyImage& guide, ShapePattern pattern, const Options& options, int threads,
                                         const AskStop& askStop, const Plan& plan) {
     FANTASCOPE_CHECK(options.check().has_value() && !pattern.shapes.empty() && !guide.empty(),
-                     "the search is given what it needs");
+                     "options pass check(), and guide and shapes are not empty");
     pattern.height = std::min(options.rows, guide.height());
     pattern.width = std::max(1, static_cast<int>(std::lround(double(pattern.height) * guide.width() / guide.height())));
     const GreyImage compared = pattern.height == guide.height() ? guide : resized(guide, pattern.width, pattern.height);
@@ -143,18 +139,19 @@ PatternSearch::Found PatternSearch::run(const GreyImage& guide, ShapePattern pat
     const std::vector<ShapeInstance> given = pattern.instances;
     Summary summary = options.method == Method::Paper ? searchByPaper(space, pattern.instances, threads, askStop)
                                                       : searchRefined(space, pattern.instances, askStop, plan);
-    const auto dress = [&](ShapeInstance& instance) {
+    const auto colour = [&](ShapeInstance& instance) {
         instance.colour = colourOf(instance, pattern.aspect(), pattern.seed, options);
     };
     if (given.empty()) {
-        for (ShapeInstance& instance : pattern.instances) dress(instance);
+        for (ShapeInstance& instance : pattern.instances) colour(instance);
         assignGroups(pattern);
     } else {
-        // What was there keeps its colour and its movement.
+        // Given instances keep their colour and movement. A new one joins the group of the nearest
+        // given one.
         const std::uint32_t last = std::max_element(given.begin(), given.end(), byId)->id;
         for (ShapeInstance& instance : pattern.instances) {
             if (instance.id <= last) continue;
-            dress(instance);
+            colour(instance);
             instance.group = std::min_element(given.begin(), given.end(), [&](const ShapeInstance& a, const ShapeInstance& b) {
                                  return glm::distance(a.centre, instance.centre) < glm::distance(b.centre, instance.centre);
                              })->group;

@@ -20,14 +20,14 @@
 
 namespace fantascope::pattern {
 
-// Creates a shape pattern from an artist's sketch.
+// Searches for a shape pattern that reads as an artist's drawing, the guide.
 struct PatternSearch {
     enum class Method {
-        Refined,  // one move at a time, judged exactly; see refined_method.h
+        Refined,  // one move at a time, evaluated exactly; see refined_method.h
         Paper     // Ji et al. 2015, section 4.1, as written; see paper_method.h
     };
 
-    // A rectangle of the canvas, in canvas heights; its edges belong to it.
+    // A rectangle of the canvas, in canvas heights, including its edges.
     struct Region {
         glm::dvec2 from{0.0}, to{1.0};
         bool contains(glm::dvec2 point) const {
@@ -35,83 +35,83 @@ struct PatternSearch {
         }
     };
 
-    // All defaults work with any guide and any shapes.
+    // The defaults work with any guide and any shapes.
     struct Options {
         Method method = Method::Refined;
 
-        // Where a pattern that is given may change: instances whose centre lies elsewhere stay as
-        // they are. The refined method only.
+        // Where a given pattern may change: instances whose centre lies outside stay as they are.
+        // The refined method only.
         std::optional<Region> region;
 
-        // When it stops; the caller may stop it as well.
-        double targetZ = 0;                                // z_0: once z is below it, 0..1
-        int iterations = std::numeric_limits<int>::max();  // after so many, >= 0
+        // When to stop. The caller may stop the search as well, see AskStop.
+        double targetZ = 0;                                // z_0: stop once z is below it, 0..1
+        int iterations = std::numeric_limits<int>::max();  // stop after so many, >= 0
 
-        // What is compared: the guide is resampled to so many rows of pixels, unless it has fewer.
-        // 16 .. 4096.
+        // The resolution of the comparison: the guide is resampled to so many rows of pixels,
+        // unless it has fewer. 16 .. 4096.
         int rows = 720;
 
-        std::uint32_t instances = 1000;  // the pattern never has more; 1 .. 100,000
-        // The smallest and the largest instance in canvas heights, 0 < x <= y <= 2. Without it,
-        // sizes around that of which `instances` would light the guide's white, and a little more.
+        std::uint32_t instances = 1000;  // maximum, 1 .. 100,000
+        // The sizes of the smallest and the largest instance in canvas heights, 0 < x <= y <= 2.
+        // Absent: derived from the guide, so that `instances` of them together are a little larger
+        // than its white.
         std::optional<glm::dvec2> size;
-        double tilt = radians(40);   // the largest rotation about x and y, 0 .. pi: beyond, flat shapes are slivers
-        double turn = radians(180);  // the largest rotation about z, 0 .. pi
+        double tilt = radians(40);   // maximum rotation about x and y, 0 .. pi; larger ones turn flat shapes into slivers
+        double turn = radians(180);  // maximum rotation about z, 0 .. pi
 
-        // Colours in linear light, 0..1: those between two, or those of a picture of stored sRGB
-        // values that is laid over the canvas, each instance's the mean of what lies under it.
+        // Colours to choose from. Either a range between two colours in linear light, 0..1, or a
+        // picture of stored sRGB values that is laid over the canvas: an instance's colour is the
+        // mean of the picture under it.
         struct Colours {
             glm::dvec3 from{1.0}, to{1.0};
-            std::shared_ptr<const RgbaImage> picture = nullptr;  // never empty
+            std::shared_ptr<const RgbaImage> picture = nullptr;  // null: the range; never an empty picture
         };
-        // An instance gets a colour of one entry; never empty.
+        // Each instance draws one entry. Never empty.
         std::vector<Colours> colours = std::vector<Colours>(1);
 
-        // What one shape has of its own; what is absent is as for all.
+        // The options of one shape; absent ones are those of all shapes.
         struct Shape {
-            double share = 1;  // of the new instances, in proportion to the other shapes' shares; 0.001 .. 1000
+            double share = 1;  // of new instances, relative to the other shapes' shares; 0.001 .. 1000
             std::optional<glm::dvec2> size;
             std::optional<glm::dvec2> tilt;  // [from, to], -pi <= from <= to <= pi
             std::optional<glm::dvec2> turn;  // [from, to], -2 pi <= from <= to <= 2 pi, at most 2 pi apart
-            std::vector<Colours> colours;    // empty: as for all
+            std::vector<Colours> colours;    // empty: those of all shapes
         };
-        // In the order of the pattern's; a shape beyond the last entry has nothing of its own.
+        // In the order of ShapePattern::shapes. Shapes beyond the last entry have no options of
+        // their own.
         std::vector<Shape> shapes;
 
         struct Refined {
-            // What a wrong pixel, a wrong tone and a pixel that several instances cover weigh
-            // against each other; 0 .. 100.
+            // The weights of wrong pixels, wrong tone and overlap in the goal; 0 .. 100.
             double zWeight = 1, toneWeight = 0.5, overlapWeight = 0.12;
-            // The share of the covered pixels that several instances may cover at no cost where the
-            // guide is white; 0 .. 1. Shapes that lie a little on each other open no gaps when they
-            // sway.
+            // Where the guide is white, this share of the covered pixels may overlap at no cost; 0
+            // .. 1. Shapes that overlap a little open no gaps when they sway.
             double overlapFree = 0.13;
-            // The temperature at the start, as the share of a typical instance's pixels that may be
-            // lost in a move; 0 .. 10.
+            // The temperature at the start, as a share of a typical instance's pixels; 0 .. 10.
             double temperature = 0.015;
-            // The share of the iterations, the last ones, that accept nothing worse; 0 .. 1.
+            // The share of the iterations, at the end, that accept no worsening; 0 .. 1.
             double polish = 0.1;
         } refined;
 
         struct Paper {
-            // The thresholds for the difference indices; -1 < delete <= reduce <= 0 <= increase <=
-            // create < 1. Small ones keep the greys of a drawing better, large ones its edges.
+            // The thresholds of the difference indices; -1 < delete <= reduce <= 0 <= increase <=
+            // create < 1. Small ones preserve a drawing's greys better, large ones its edges.
             double lambdaCreate = 0.1, lambdaIncrease = 0.05, lambdaReduce = -0.05, lambdaDelete = -0.1;
-            // The sides of the evaluation cells, as multiples of the side of a square as large as a
-            // shape: in the lattice a typical one, in an instance cell this instance's. > 0. At 2,
-            // an instance that stands alone in the dark has g_i = -1/4.
+            // The sides of the evaluation cells, > 0. The unit is the side of a square with the
+            // area of a shape: of a typical shape for lattice cells, of the instance for its cell.
+            // At 2, an instance alone in the dark has g_i = -1/4.
             double latticeCell = 2, instanceCell = 2;
 
-            int candidates = 12;  // new ones in each iteration (Figure 5), 1 .. 1000
-            // The largest amount of a perturbation, as a share of the instance's size (radians for
-            // rotations): 0 .. 10.
+            int candidates = 12;  // per iteration (Figure 5), 1 .. 1000
+            // The maximum perturbation, as a share of the instance's size (radians for rotations),
+            // 0 .. 10.
             double largestAmount = 0.5;
-            // The share of iterations that should be accepted; perturbations grow when more are.
-            // 0.01 .. 0.99.
+            // The wanted share of accepted iterations, 0.01 .. 0.99. Perturbations grow if more are
+            // accepted.
             double successRate = 0.5;
         } paper;
 
-        // Error: names the option, its value and the rule.
+        // Error: names the option, its value and the rule it breaks.
         Result<void> check() const;
     };
 
@@ -124,28 +124,29 @@ struct PatternSearch {
         std::size_t instances = 0;
         std::function<GreyImage()> picture;  // draws the reference solution, white on black as it is compared
     };
-    // Asked before every iteration: a reason to stop now, with the best pattern so far, or nothing.
+    // Called before every iteration. Returns a reason to stop with the best pattern so far, or
+    // nothing to go on.
     using AskStop = std::function<std::optional<StopReason>(const Progress&)>;
-    // How many iterations the whole run will have, once the caller can tell: asked before each
-    // iteration until it answers, unless Options::iterations says. The refined method cools by it,
-    // and stops there with the reason Time. With the same number as Options::iterations the run
-    // repeats.
+    // Returns the run's total number of iterations once the caller can tell. It is called before
+    // each iteration until it returns one, unless Options::iterations is set. The refined method
+    // cools towards that iteration and stops there with the reason Time. A run with this number as
+    // Options::iterations gives the same result.
     using Plan = std::function<std::optional<int>(const Progress&)>;
 
-    // What a Plan may answer: how many iterations fit into `budget` seconds when the first `done`
-    // took `elapsed`; nothing while that is too few to tell.
+    // For a Plan: how many iterations fit into `budget` seconds if the first `done` took `elapsed`
+    // seconds; nothing while it is too early to tell.
     static std::optional<int> iterationsWithin(double budget, int done, double elapsed);
 
-    // Iteration by iteration, for a picture as Figure 5.
+    // One iteration, for a figure like Figure 5.
     struct Iteration {
-        double zMin = 1, zMax = 1;  // of the candidates; with the refined method both are z after the iteration
-        bool accepted = false;      // zMin was better than the reference solution's
+        double zMin = 1, zMax = 1;  // of the candidates; both are z after the iteration for the refined method
+        bool accepted = false;      // zMin was below the reference solution's z
     };
     struct Summary {
         StopReason reason = StopReason::NotRun;
         double z = 1;
         int iterations = 0;
-        std::int64_t evaluations = 0;  // of the goal function: whole pictures (paper) or single moves (refined)
+        std::int64_t evaluations = 0;  // of the goal function: of whole pictures (paper) or single moves (refined)
         std::vector<Iteration> history;
 
         std::string brief() const;
@@ -155,19 +156,19 @@ struct PatternSearch {
         Summary summary;
     };
 
-    // `guide`: stored values, in any resolution. `pattern` brings seed, shapes (at least one),
-    // motion and what else the search does not touch; its resolution, instances and groups are
-    // filled. The refined method goes on from instances that it brings; what remains of them keeps
-    // its id, colour and group. The result depends on these, the options and the number of
-    // iterations alone, not on `threads`. Options must pass check(). Thread: reentrant; askStop is
-    // called on the caller's.
+    // `guide`: stored values, in any resolution. `pattern`: has seed, shapes (at least one), motion
+    // and everything else that the search leaves alone; its resolution, instances and groups are
+    // filled in. The refined method starts from its instances, if any; those that remain keep their
+    // id, colour and group. The result depends on these arguments and the number of iterations
+    // alone, not on `threads`. `options` must pass check(). Thread: reentrant; askStop and plan are
+    // called on the calling thread.
     static Found run(const GreyImage& guide, ShapePattern pattern, const Options& options, int threads, const AskStop& askStop,
                      const Plan& plan = {});
 };
 
-// As reports say it: "target_reached", "iterations", "time", "interrupted".
+// As reports write it: "target_reached", "iterations", "time", "interrupted".
 std::string_view name(PatternSearch::StopReason reason);
-// As the command line and reports say it: "refined", "paper".
+// As the command line and reports write it: "refined", "paper".
 std::string_view name(PatternSearch::Method method);
 
 }  // namespace fantascope::pattern

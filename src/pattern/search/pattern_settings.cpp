@@ -22,7 +22,7 @@ using Options = PatternSearch::Options;
 
 constexpr int kVersion = 1;
 
-// Fields of which each may be absent.
+// Fields for declareSearch() etc. in which every key is optional.
 struct OptionalFields {
     ConfigFields& fields;
 
@@ -40,13 +40,13 @@ struct OptionalFields {
     }
 };
 
-// What no single key can break: the order of the thresholds and of the sizes.
+// Checks the rules between keys: the order of thresholds and of sizes.
 Result<Options> checked(const ConfigNode& node, const Options& options) {
     if (const auto good = options.check(); !good) return node.error(good.error().message());
     return options;
 }
 
-// One section: the numbers that `declare` declares of it.
+// Reads one section, whose numbers `declare` declares.
 template <class Declare>
 Result<Options> readSection(const ConfigNode& node, Options options, Declare declare) {
     ConfigFields fields(node);
@@ -56,8 +56,8 @@ Result<Options> readSection(const ConfigNode& node, Options options, Declare dec
     return checked(node, options);
 }
 
-// A picture as it is needed to pick colours from: much smaller than an instance its pixels need not
-// be.
+// A picture to choose colours from. It is shrunk, since pixels much smaller than an instance make
+// no difference.
 Result<std::shared_ptr<const RgbaImage>> readColourPicture(const ConfigNode& node) {
     constexpr int kLongestSide = 1024;
     auto picture = readRgba(TRY(node.path()));
@@ -79,26 +79,26 @@ Result<Options::Colours> readColours(const ConfigNode& node) {
     fields.optional().read("to", to, readColour);
     fields.optional().read("picture", colours.picture, readColourPicture);
     TRY(fields.finish());
-    if (!from && !colours.picture) return node.error("'from' is missing, or a 'picture' to pick colours from");
+    if (!from && !colours.picture) return node.error("'from' or 'picture' is missing");
     if (colours.picture && (from || to))
-        return node.error("a 'picture' has its own colours; 'from' and 'to' go into another entry");
+        return node.error("'picture' excludes 'from' and 'to'; put them into an entry of their own");
     if (from) colours.from = *from;
     colours.to = to.value_or(colours.from);
     return colours;
 }
 
-// Checked as part of the whole: the smallest comes first.
+// checked() checks their order.
 Result<std::optional<glm::dvec2>> readSize(const ConfigNode& node) {
     return std::optional(TRY(node.vector2(1e-6, 2, "canvas heights")));
 }
 
-// One angle for both sides, or from where to where; radians.
-Result<std::optional<glm::dvec2>> readRotation(const ConfigNode& node, double most) {
+// One angle, +-, or a pair [from, to]; the result is in radians.
+Result<std::optional<glm::dvec2>> readRotation(const ConfigNode& node, double max) {
     if (!node.isList()) {
-        const double angle = radians(TRY(node.number(0, std::min(most, 180.0), "degrees")));
+        const double angle = radians(TRY(node.number(0, std::min(max, 180.0), "degrees")));
         return std::optional(glm::dvec2(-angle, angle));
     }
-    const glm::dvec2 degrees = TRY(node.vector2(-most, most, "degrees"));
+    const glm::dvec2 degrees = TRY(node.vector2(-max, max, "degrees"));
     return std::optional(glm::dvec2(radians(degrees.x), radians(degrees.y)));
 }
 
@@ -110,8 +110,8 @@ Result<ShapeSettings> readShape(const ConfigNode& node) {
     named.declare(fields);
     declareShape(optional, own);
     fields.optional().read("size", own.size, readSize);
-    fields.optional().read("tilt", own.tilt, [](const ConfigNode& at) { return readRotation(at, kMostTilt); });
-    fields.optional().read("turn", own.turn, [](const ConfigNode& at) { return readRotation(at, kMostTurn); });
+    fields.optional().read("tilt", own.tilt, [](const ConfigNode& at) { return readRotation(at, kMaxTilt); });
+    fields.optional().read("turn", own.turn, [](const ConfigNode& at) { return readRotation(at, kMaxTurn); });
     fields.optional().list("colours", own.colours, readColours, 1);
     TRY(fields.finish());
     Options alone;
@@ -121,7 +121,7 @@ Result<ShapeSettings> readShape(const ConfigNode& node) {
     return ShapeSettings{std::move(shape), std::move(own)};
 }
 
-// A built-in shape has its name, a file its place.
+// Built-in shapes are compared by name, others by file.
 bool areSame(const ElementalShape& a, const ElementalShape& b) {
     if (a.file.empty() || b.file.empty()) return a.file.empty() && b.file.empty() && a.name == b.name;
     std::error_code different;
@@ -180,7 +180,7 @@ Result<PatternSettings> readPatternSettings(const std::filesystem::path& file) {
     fields.optional().list("colours", settings.search.colours, readColours, 1);
     fields.optional().read("motion", settings.motion, [&](const ConfigNode& node) -> Result<MotionSettings> {
         const MotionSettings motion = TRY(readMotion(node));
-        settings.fitMotion = !TRY(namesAmplitude(node));
+        settings.fitMotion = !TRY(setsAmplitude(node));
         return motion;
     });
     TRY(fields.finish());

@@ -12,32 +12,34 @@
 namespace fantascope::pattern {
 namespace {
 
-constexpr int kMoves = 1000;  // an iteration
-// The share of the run before the temperature begins to fall; the caller has so long to say how
-// long the run will be.
+constexpr int kMoves = 1000;  // per iteration
+// The share of the run before the temperature begins to fall. In this time the caller has to plan
+// the run's length.
 constexpr double kWarm = 0.12;
-// How far the temperature falls until the polish.
+// The factor by which the temperature falls before the polish.
 constexpr double kCoolest = 0.03;
-// Of how many places the best is taken when the search begins.
+// At the start, each instance takes the best of so many places.
 constexpr int kTries = 4;
-// How often the search looks where light is lacking: while it begins, and then in iterations.
+// How often dark places are looked for: so many times while the start is built, then every
+// kLookEvery iterations.
 constexpr std::size_t kLooks = 50;
 constexpr int kLookEvery = 4;
-// Pixels that an instance must be worth: one that lies hidden under others is not.
+// What an instance must improve, in pixels, to be created or kept. An instance hidden under others
+// improves nothing.
 constexpr double kWorth = 0.5;
 
-// How far the moves of one kind go: farther when more of them are accepted than one in three, less
-// far when fewer are.
+// The step size of one kind of move. It grows if more than one in three moves are accepted, and
+// shrinks if fewer are.
 class Step {
 public:
-    explicit Step(double most) : step_(most), most_(most) {}
+    explicit Step(double max) : step_(max), max_(max) {}
     double amount(Rng& rng) const { return step_ * rng.uniform(-kReach, kReach); }
-    void learn(bool accepted) { step_ = std::clamp(step_ * (accepted ? kGrow : kShrink), kLeast * most_, most_); }
+    void learn(bool accepted) { step_ = std::clamp(step_ * (accepted ? kGrow : kShrink), kMin * max_, max_); }
 
 private:
-    static constexpr double kReach = 1.7;                                 // of a standard deviation of 1, nearly
-    static constexpr double kGrow = 1.02, kShrink = 0.99, kLeast = 0.02;  // kGrow * kShrink^2 is 1, nearly
-    double step_, most_;
+    static constexpr double kReach = 1.7;                               // uniform in +-1.7: a standard deviation of nearly 1
+    static constexpr double kGrow = 1.02, kShrink = 0.99, kMin = 0.02;  // kGrow * kShrink^2 is nearly 1
+    double step_, max_;
 };
 
 class RefinedSearch {
@@ -47,7 +49,7 @@ public:
           scanner_(space.pixels().x, space.pixels().y),
           score_(space),
           rng_(streamSeed(space.seed(), {Stream::RefinedMoves})),
-          most_(std::min<std::size_t>(space.options().instances, LayerCounts::kMost)),
+          maxInstances_(std::min<std::size_t>(space.options().instances, LayerCounts::kMax)),
           counts_(space.shapeCount()) {
         const glm::dvec2 sizes = space.sizes();
         typicalArea_ = std::pow(space.meanSide() * space.pixels().y, 2) * sizes.x * sizes.y;
@@ -73,8 +75,8 @@ public:
             }
             if (!planned && plan)
                 if (const auto total = plan(progress))
-                    // Nothing has cooled yet: the run is the one that --iterations with this number
-                    // gives.
+                    // At least so many that cooling has not begun: the run then equals one with
+                    // this number as Options::iterations.
                     planned = std::max(*total, static_cast<int>(std::ceil(summary.iterations / kWarm)));
             temperature_ = temperatureAt(summary.iterations, planned);
             const double before = score_.z();
@@ -86,8 +88,7 @@ public:
         summary.evaluations = evaluations_;
         instances = std::move(instances_);
         instances.insert(instances.end(), kept_.begin(), kept_.end());
-        // In the order of their ids: the order in which they lie on each other does not depend on
-        // deletions.
+        // By id, so that the stacking order does not depend on deletions.
         std::sort(instances.begin(), instances.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
         return summary;
     }
@@ -101,7 +102,7 @@ private:
         return askStop(progress);
     }
 
-    // In pixels of full difference.
+    // The temperature, in pixels of full difference.
     double temperatureAt(int iteration, std::optional<int> planned) const {
         const PatternSearch::Options::Refined& refined = space_.options().refined;
         const double hot = refined.temperature * typicalArea_;
@@ -111,17 +112,18 @@ private:
         return hot * std::pow(kCoolest, cooled);
     }
 
-    // As many instances as would light as much as the guide is white, each where light is lacking.
+    // Places as many instances as together are as large as the guide's white, each where light is
+    // lacking.
     void start() {
         const double light = space_.goal().mean() * space_.pixels().x * space_.pixels().y;
-        const auto most = std::min(most_, static_cast<std::size_t>(std::ceil(light / typicalArea_)));
-        for (std::size_t count = 0; count < most; ++count) {
-            if (count % std::max<std::size_t>(1, most / kLooks) == 0) score_.findDarkPlaces();
-            double least = std::numeric_limits<double>::max();
+        const auto wanted = std::min(maxInstances_, static_cast<std::size_t>(std::ceil(light / typicalArea_)));
+        for (std::size_t count = 0; count < wanted; ++count) {
+            if (count % std::max<std::size_t>(1, wanted / kLooks) == 0) score_.findDarkPlaces();
+            double lowest = std::numeric_limits<double>::max();
             ShapeInstance best;
             for (int i = 0; i < kTries; ++i) {
                 place(newInstance());
-                if (const double change = score_.propose(kNothing, mask_); change < least) least = change, best = proposed_;
+                if (const double change = score_.propose(kNothing, mask_); change < lowest) lowest = change, best = proposed_;
             }
             place(best);
             score_.propose(kNothing, mask_);
@@ -159,7 +161,7 @@ private:
         ++evaluations_;
         const double kind = rng_.uniform();
         if (kind < 0.03 || instances_.empty()) {
-            if (instances_.size() + kept_.size() >= most_) return;
+            if (instances_.size() + kept_.size() >= maxInstances_) return;
             place(newInstance());
             if (isGood(kNothing, mask_, -kWorth)) keepNew();
             return;
@@ -195,14 +197,15 @@ private:
         }
     }
 
-    // One of its points stays where it is: what fits there goes on to fit.
+    // Moves the instance so that a random one of its points stays in place: what fits there keeps
+    // fitting.
     void aboutPivot(ShapeInstance& instance, std::size_t index, const glm::dmat2& change) {
         if (drawn_[index].empty()) return;
         const glm::dvec2 pivot = (glm::dvec2(drawn_[index].randomPixel(rng_)) + 0.5) / double(space_.pixels().y);
         instance.centre = pivot + change * (instance.centre - pivot);
     }
 
-    // Puts another instance in the place of one, if that is good.
+    // Replaces an instance by another one if that is good. True: it did.
     bool replace(std::size_t index, const ShapeInstance& instance) {
         place(space_.allowed(instance));
         if (!isInRegion(proposed_) || !isGood(drawn_[index], mask_, 0)) return false;
@@ -213,15 +216,14 @@ private:
         return true;
     }
 
-    // Whether a move is kept: one that makes the pattern worse by c with probability exp(-c /
-    // temperature). `bonus` pixels may be lost besides. How much worse it may be is drawn first, so
-    // that a move beyond it can be given up early.
+    // Whether a move is accepted: if it raises the goal by c, with probability exp((bonus - c) /
+    // temperature). The limit of c is drawn first, so that the score can reject a move early.
     bool isGood(const PixelMask& out, const PixelMask& in, double bonus) {
-        const double most = bonus + (temperature_ > 0 ? -temperature_ * std::log(1 - rng_.uniform()) : 0);
-        return score_.propose(out, in, most) <= most;
+        const double limit = bonus + (temperature_ > 0 ? -temperature_ * std::log(1 - rng_.uniform()) : 0);
+        return score_.propose(out, in, limit) <= limit;
     }
 
-    // Draws the instance that is proposed into mask_.
+    // Makes `instance` the proposed one and draws it into mask_.
     void place(const ShapeInstance& instance) {
         proposed_ = instance;
         mask_.draw(scanner_, space_.silhouette(instance.shape), {instance.centre, instance.size, instance.rotation});
@@ -246,16 +248,17 @@ private:
     SilhouetteScanner scanner_;
     RunningScore score_;
     Rng rng_;
-    const std::size_t most_;  // instances
-    double typicalArea_ = 1;  // of an instance, pixels
-    bool continues_ = false;  // from given instances
+    const std::size_t maxInstances_;
+    double typicalArea_ = 1;  // pixels
+    bool continues_ = false;  // it started from given instances
     double temperature_ = 0;
-    // In sizes of the instance; radians; natural logarithms.
+    // In sizes of the instance; in radians (turn_, tilt_); as natural logarithms of the size's
+    // factor.
     Step shift_{0.3}, turn_{0.8}, tilt_{0.3}, scale_{0.3};
-    std::vector<ShapeInstance> instances_;  // those that may change
-    std::vector<PixelMask> drawn_;          // of each
-    std::vector<ShapeInstance> kept_;       // those that may not
-    std::vector<std::uint32_t> counts_;     // of each shape, among both
+    std::vector<ShapeInstance> instances_;  // inside the region: may change
+    std::vector<PixelMask> drawn_;          // of instances_
+    std::vector<ShapeInstance> kept_;       // outside the region
+    std::vector<std::uint32_t> counts_;     // instances of each shape, in both
     std::uint32_t nextId_ = 1;
     std::int64_t evaluations_ = 0;
     ShapeInstance proposed_;

@@ -7,15 +7,15 @@
 
 namespace fantascope::pattern {
 
-// One move at a time: an instance is shifted, turned, tilted, scaled, put elsewhere, created or
-// deleted, the change of the goal is computed exactly from its own pixels (RunningScore), and the
-// move is kept when the goal falls, or, with a probability that shrinks with the temperature, when
-// it rises (Metropolis et al. 1953, Kirkpatrick et al. 1983). The goal is detail, tone and overlap,
-// with the weights of Options::Refined. An iteration is a thousand moves.
+// Simulated annealing, one move at a time: a move shifts, turns, tilts, scales, relocates, creates
+// or deletes one instance. The change of the goal is computed exactly from that instance's pixels
+// (RunningScore). The move is accepted if the goal falls, or, with a probability that shrinks with
+// the temperature, if it rises (Metropolis et al. 1953, Kirkpatrick et al. 1983). The goal is the
+// sum of detail, tone and overlap with the weights of Options::Refined. An iteration is 1000 moves.
 //
-// Begins with the given instances, if there are any, and then cold, so that what is good stays;
-// with Options::region, those whose centre lies outside of it are left as they are. Fills
-// `instances`, colours and groups of new ones aside; new ones come last.
+// Given instances are the start, and the search then begins cold, to preserve what is good. With
+// Options::region, instances whose centre lies outside stay as they are. Fills `instances`, except
+// the colours and groups of new ones, which come last.
 PatternSearch::Summary searchRefined(const SearchSpace& space, std::vector<ShapeInstance>& instances,
                                      const PatternSearch::AskStop& askStop, const PatternSearch::Plan& plan);
 

@@ -1,7 +1,5 @@
 #include "pattern/search/running_score.h"
 
-#include "core/check.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -12,24 +10,23 @@
 namespace fantascope::pattern {
 namespace {
 
-// The nodes of the finer Gaussian are so far from each other, as a share of the height; its sigma
-// is height / 36.
+// The distance between nodes of the finer Gaussian, as a share of the height. Its sigma is height /
+// 36.
 constexpr double kSpacing = 1 / 45.0;
-// One axis of the Gaussian's kernel at the nodes around, as whole numbers: sigma 1.217 nodes, which
-// with the square that a node stands for (variance 1/12) makes 1.25.
+// One axis of the Gaussian kernel at the surrounding nodes, in integers. Its sigma is 1.217 nodes;
+// together with the square of a node (variance 1/12) it is 1.25.
 constexpr int kReach = 3;
 constexpr std::array<double, 2 * kReach + 1> kKernel = {16, 86, 241, 338, 241, 86, 16};
 constexpr double kKernelSum = 1024;
-// A guide is black or white where it is no farther from it than about this.
+// The guide counts as black or white within about this distance.
 constexpr double kBinary = 0.02;
-// A guide that is lighter is as good as white to the overlap: light has no room there to lie side
-// by side.
+// The overlap counts a lighter guide as white: instances there have no room side by side.
 constexpr double kWhite = 0.9;
-// What the edges of greys weigh: at 1 they are as sharp as those of black and white, and greys
-// become outlines.
+// The weight of the edges of greys. At 1 they would be as sharp as those of black and white, and
+// greys would become outlines.
 constexpr double kEdges = 0.25;
 
-// How many bits of each byte are set, in that byte.
+// The number of set bits of each byte, in that byte.
 std::uint64_t bitsOfBytes(std::uint64_t x) {
     x -= x >> 1 & 0x5555555555555555;
     x = (x & 0x3333333333333333) + (x >> 2 & 0x3333333333333333);
@@ -39,76 +36,6 @@ std::uint64_t bitsOfBytes(std::uint64_t x) {
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
-
-void PixelMask::draw(SilhouetteScanner& scanner, const Silhouette& shape, const InstancePose& pose) {
-    runs_.clear();
-    int begin = std::numeric_limits<int>::max(), end = 0;
-    scanner.scan(shape, pose, [&](int y, int from, int to) {
-        runs_.push_back({y, from, to});
-        begin = std::min(begin, from);
-        end = std::max(end, to);
-    });
-    clear();
-    if (runs_.empty()) return;
-    left_ = begin / kBits, right_ = (end - 1) / kBits + 1;
-    top_ = runs_.front().y, bottom_ = runs_.back().y + 1;
-    const auto rows = at(bottom_ - top_);
-    words_.assign(at(right_ - left_) * rows, 0);
-    for (const Run& run : runs_) {
-        const int last = (run.end - 1) / kBits;
-        for (int column = run.begin / kBits; column <= last; ++column) {
-            const int first = column * kBits;
-            std::uint64_t mask = ~std::uint64_t{0};
-            if (run.begin > first) mask <<= run.begin - first;
-            if (run.end < first + kBits) mask &= (std::uint64_t{1} << (run.end - first)) - 1;
-            words_[at(column - left_) * rows + at(run.y - top_)] |= mask;
-        }
-    }
-}
-
-std::int64_t PixelMask::count() const {
-    std::int64_t count = 0;
-    if (!empty())
-        for (std::size_t i = 0; i < at(right_ - left_) * at(bottom_ - top_); ++i) count += std::popcount(words_[i]);
-    return count;
-}
-
-glm::ivec2 PixelMask::randomPixel(Rng& rng) const {
-    auto left = static_cast<int>(rng.below(static_cast<std::uint32_t>(count())));
-    for (int index = left_;; ++index)
-        for (int y = top_; y < bottom_; ++y) {
-            std::uint64_t bits = column(index).at(y);
-            if (const int here = std::popcount(bits); here <= left) {
-                left -= here;
-                continue;
-            }
-            for (; left > 0; --left) bits &= bits - 1;
-            return {index * kBits + std::countr_zero(bits), y};
-        }
-}
-
-LayerCounts::LayerCounts(std::size_t words) : planes_(2, std::vector<std::uint64_t>(words, 0)) {}
-
-void LayerCounts::add(std::size_t word, std::uint64_t mask) {
-    for (std::size_t plane = 0; mask != 0; ++plane) {
-        FANTASCOPE_CHECK(plane < kPlanes, "fewer than 65536 instances lie on a pixel");
-        if (plane == planes_.size()) planes_.emplace_back(planes_[0].size(), 0);
-        std::uint64_t& bits = planes_[plane][word];
-        const std::uint64_t carry = bits & mask;
-        bits ^= mask;
-        mask = carry;
-    }
-}
-
-void LayerCounts::take(std::size_t word, std::uint64_t mask) {
-    for (std::size_t plane = 0; mask != 0; ++plane) {
-        FANTASCOPE_CHECK(plane < planes_.size(), "only what lies on a pixel is taken from it");
-        std::uint64_t& bits = planes_[plane][word];
-        const std::uint64_t borrow = ~bits & mask;
-        bits ^= mask;
-        mask = borrow;
-    }
-}
 
 RunningScore::RunningScore(const SearchSpace& space)
     : space_(space),
@@ -124,7 +51,7 @@ RunningScore::RunningScore(const SearchSpace& space)
     measureDetail();
 }
 
-// What a black picture lacks.
+// Fills lack_ and each scale's `lack` for a black picture.
 void RunningScore::measureGuide() {
     for (int y = 0; y < blocks_.y; ++y)
         for (int x = 0; x < blocks_.x; ++x)
@@ -149,11 +76,11 @@ void RunningScore::measureGuide() {
     }
 }
 
-// The pull of every pixel.
+// Fills words_ and pulls_ from the guide.
 void RunningScore::measureDetail() {
     const Goal& goal = space_.goal();
-    // The guide's mean around each node: what a black picture lacks there, as a share of what it
-    // would lack of a white guide.
+    // The guide's mean around each node: the lack of a black picture divided by its lack if the
+    // guide were white.
     Scale& scale = scales_[0];
     const std::vector<double> lack = scale.lack;
     for (int y = 0; y < height_; ++y)
@@ -205,8 +132,8 @@ std::int64_t RunningScore::pullOf(const Word& word, std::uint64_t pixels) const 
     return sum;
 }
 
-// The blocks of one column of words and one row of blocks: so many pixels more and less are
-// covered. `covered` and `freed` hold a byte for each block of 8; of smaller blocks the pixels
+// Notes the changed blocks in one column of words and one row of blocks. `covered` and `freed`: for
+// blocks of 8, the number of pixels per block in its byte; for smaller blocks, the pixels
 // themselves, of one row.
 void RunningScore::noteBlocks(int column, int row, std::uint64_t covered, std::uint64_t freed, int part) {
     const std::uint64_t lane = ~std::uint64_t{0} >> (PixelMask::kBits - block_);
@@ -214,7 +141,7 @@ void RunningScore::noteBlocks(int column, int row, std::uint64_t covered, std::u
         return static_cast<std::int32_t>(block_ == kLargestBlock ? pixels & lane
                                                                  : static_cast<unsigned>(std::popcount(pixels & lane)));
     };
-    // The words of the last column may reach over the picture's edge, their pixels do not.
+    // The words of the last column may extend beyond the picture's edge; their pixels do not.
     for (std::int32_t x = column * (PixelMask::kBits >> blockShift_); (covered | freed) != 0;
          ++x, covered >>= block_, freed >>= block_) {
         const std::int32_t pixels = count(covered) - count(freed);
@@ -223,70 +150,81 @@ void RunningScore::noteBlocks(int column, int row, std::uint64_t covered, std::u
     }
 }
 
-double RunningScore::propose(const PixelMask& out, const PixelMask& in, double most) {
-    blockChanges_.clear();
-    coveredWhiteChange_ = severalWhiteChange_ = 0;
-    std::int64_t several = 0, detail = 0;
-    const auto difference = [&](int left, int right, int top, int bottom, int part) {
-        for (int column = left; column < right; ++column) {
-            const PixelMask::Column outgoing = out.column(column), incoming = in.column(column);
-            const Word* words = words_.data() + wordAt(column, 0);
-            for (int y = top; y < bottom;) {
-                std::uint64_t coveredOfBlocks = 0, freedOfBlocks = 0;
-                const int row = y >> blockShift_;
-                const int end = block_ == kLargestBlock ? std::min(bottom, (row + 1) * block_) : y + 1;
-                for (; y < end; ++y) {
-                    const std::uint64_t before = outgoing.at(y), after = incoming.at(y);
-                    if (before == after) continue;
-                    const Word& word = words[y];
-                    const std::uint64_t comes = after & ~before, goes = before & ~after;
-                    const std::uint64_t second = word.one & comes, alone = word.two & goes;
-                    several += std::popcount(second) - std::popcount(alone);
-                    severalWhiteChange_ += std::popcount(second & word.white) - std::popcount(alone & word.white);
-                    if (const std::uint64_t first = word.none & comes; first != 0) {
-                        coveredWhiteChange_ += std::popcount(first & word.white);
-                        detail += pullOf(word, first);
-                        coveredOfBlocks += block_ == kLargestBlock ? bitsOfBytes(first) : first;
-                    }
-                    if (const std::uint64_t freed = word.one & goes; freed != 0) {
-                        coveredWhiteChange_ -= std::popcount(freed & word.white);
-                        detail -= pullOf(word, freed);
-                        freedOfBlocks += block_ == kLargestBlock ? bitsOfBytes(freed) : freed;
-                    }
+// Adds what replacing `out` by `in` changes in a window.
+void RunningScore::compare(const PixelMask& out, const PixelMask& in, const Window& window, int part) {
+    Change change;
+    for (int column = window.left; column < window.right; ++column) {
+        const PixelMask::Column outgoing = out.column(column), incoming = in.column(column);
+        const Word* words = words_.data() + wordAt(column, 0);
+        for (int y = window.top; y < window.bottom;) {
+            std::uint64_t coveredOfBlocks = 0, freedOfBlocks = 0;
+            const int row = y >> blockShift_;
+            const int end = block_ == kLargestBlock ? std::min(window.bottom, (row + 1) * block_) : y + 1;
+            for (; y < end; ++y) {
+                const std::uint64_t before = outgoing.at(y), after = incoming.at(y);
+                if (before == after) continue;
+                const Word& word = words[y];
+                const std::uint64_t comes = after & ~before, goes = before & ~after;
+                const std::uint64_t second = word.one & comes, alone = word.two & goes;
+                change.several += std::popcount(second) - std::popcount(alone);
+                change.severalWhite += std::popcount(second & word.white) - std::popcount(alone & word.white);
+                if (const std::uint64_t first = word.none & comes; first != 0) {
+                    change.coveredWhite += std::popcount(first & word.white);
+                    change.detail += pullOf(word, first);
+                    coveredOfBlocks += block_ == kLargestBlock ? bitsOfBytes(first) : first;
                 }
-                if ((coveredOfBlocks | freedOfBlocks) != 0) noteBlocks(column, row, coveredOfBlocks, freedOfBlocks, part);
+                if (const std::uint64_t freed = word.one & goes; freed != 0) {
+                    change.coveredWhite -= std::popcount(freed & word.white);
+                    change.detail -= pullOf(word, freed);
+                    freedOfBlocks += block_ == kLargestBlock ? bitsOfBytes(freed) : freed;
+                }
             }
+            if ((coveredOfBlocks | freedOfBlocks) != 0) noteBlocks(column, row, coveredOfBlocks, freedOfBlocks, part);
         }
-    };
-    // Masks that are far from each other would make a rectangle that is mostly empty.
+    }
+    change_.detail += change.detail;
+    change_.several += change.several;
+    change_.coveredWhite += change.coveredWhite;
+    change_.severalWhite += change.severalWhite;
+}
+
+double RunningScore::propose(const PixelMask& out, const PixelMask& in, double limit) {
+    blockChanges_.clear();
+    change_ = {};
+    // A rectangle around masks far from each other would be mostly empty.
     const bool apart = out.empty() || in.empty() || out.right() <= in.left() || in.right() <= out.left() ||
                        out.bottom() <= in.top() || in.bottom() <= out.top();
     if (apart) {
-        difference(out.left(), out.right(), out.top(), out.bottom(), 0);
-        difference(in.left(), in.right(), in.top(), in.bottom(), 1);
+        compare(out, in, {out.left(), out.right(), out.top(), out.bottom()}, 0);
+        compare(out, in, {in.left(), in.right(), in.top(), in.bottom()}, 1);
     } else {
-        difference(std::min(out.left(), in.left()), std::max(out.right(), in.right()), std::min(out.top(), in.top()),
-                   std::max(out.bottom(), in.bottom()), 0);
+        compare(out, in,
+                {std::min(out.left(), in.left()), std::max(out.right(), in.right()), std::min(out.top(), in.top()),
+                 std::max(out.bottom(), in.bottom())},
+                0);
     }
     const PatternSearch::Options::Refined& weights = space_.options().refined;
-    const double overlapChange = static_cast<double>(several - severalWhiteChange_) +
-                                 overlap(coveredWhite_ + coveredWhiteChange_, severalWhite_ + severalWhiteChange_) -
-                                 overlap(coveredWhite_, severalWhite_);
-    const double others = weights.zWeight * static_cast<double>(detail) / kPull + weights.overlapWeight * overlapChange;
-    // A pixel more or less changes the tone by one pixel at most.
+    const double others = weights.zWeight * static_cast<double>(change_.detail) / kPull + weights.overlapWeight * overlapChange();
+    // Covering or freeing a pixel changes the tone by one pixel at most.
     Scale& finest = scales_[0];
     gather(finest);
     double pixels = 0;
     for (const Box& box : finest.touched)
-        for (int y = box.least.y; y <= box.most.y; ++y)
-            for (int x = box.least.x; x <= box.most.x; ++x) pixels += std::abs(finest.change[finest.at({x, y})]);
-    const double least = others - weights.toneWeight * pixels;
-    if (least <= most) return others + weights.toneWeight * toneChange();
-    for (const Change& change : blockChanges_) finest.change[finest.at(finest.nodeOf(change.block))] = 0;
-    return least;
+        for (int y = box.low.y; y <= box.high.y; ++y)
+            for (int x = box.low.x; x <= box.high.x; ++x) pixels += std::abs(finest.change[finest.at({x, y})]);
+    const double lowerBound = others - weights.toneWeight * pixels;
+    if (lowerBound <= limit) return others + weights.toneWeight * toneChange();
+    for (const BlockChange& change : blockChanges_) finest.change[finest.at(finest.nodeOf(change.block))] = 0;
+    return lowerBound;
 }
 
-double RunningScore::overlap(std::int64_t coveredWhite, std::int64_t severalWhite) const {
+double RunningScore::overlapChange() const {
+    return static_cast<double>(change_.several - change_.severalWhite) +
+           overlapAtWhite(coveredWhite_ + change_.coveredWhite, severalWhite_ + change_.severalWhite) -
+           overlapAtWhite(coveredWhite_, severalWhite_);
+}
+
+double RunningScore::overlapAtWhite(std::int64_t coveredWhite, std::int64_t severalWhite) const {
     const double free = space_.options().refined.overlapFree * static_cast<double>(coveredWhite);
     return std::max(0.0, static_cast<double>(severalWhite) - free);
 }
@@ -294,23 +232,23 @@ double RunningScore::overlap(std::int64_t coveredWhite, std::int64_t severalWhit
 void RunningScore::gather(Scale& scale) {
     scale.touched = {};
     scale.spread.clear();
-    for (const Change& change : blockChanges_) {
+    for (const BlockChange& change : blockChanges_) {
         const glm::ivec2 node = scale.nodeOf(change.block);
         scale.change[scale.at(node)] += change.pixels;
         scale.touched[at(change.part)].add(node);
     }
 }
 
-// What the move at hand changes at the nodes.
+// The change of the tone by the current move.
 double RunningScore::toneChange() {
     double sum = 0;
     for (Scale& scale : scales_) {
         if (&scale != &scales_[0]) gather(scale);
-        // Where two changes reach the same nodes they are one.
+        // Boxes whose changes reach the same nodes are merged.
         auto& [first, second] = scale.touched;
-        if (!first.empty() && !second.empty() && glm::all(glm::lessThanEqual(first.least, second.most + 2 * kReach)) &&
-            glm::all(glm::lessThanEqual(second.least, first.most + 2 * kReach))) {
-            first.add(second.least), first.add(second.most);
+        if (!first.empty() && !second.empty() && glm::all(glm::lessThanEqual(first.low, second.high + 2 * kReach)) &&
+            glm::all(glm::lessThanEqual(second.low, first.high + 2 * kReach))) {
+            first.add(second.low), first.add(second.high);
             second = {};
         }
         for (const Box& box : scale.touched)
@@ -319,18 +257,18 @@ double RunningScore::toneChange() {
     return sum / (kScales * kKernelSum * kKernelSum * Goal::kWhite);
 }
 
-// Spreads the changes of a box over the nodes around and gives what that adds to the sum of |lack|.
-// The changes are taken.
+// Spreads the changes of a box over the surrounding nodes and returns by how much that changes the
+// sum of |lack|. Resets the changes to 0.
 double RunningScore::spreadChange(Scale& scale, const Box& box) {
-    const glm::ivec2 from = glm::max(box.least - kReach, glm::ivec2(0)), to = glm::min(box.most + kReach, scale.nodes - 1);
+    const glm::ivec2 from = glm::max(box.low - kReach, glm::ivec2(0)), to = glm::min(box.high + kReach, scale.nodes - 1);
     const int width = to.x - from.x + 1;
     const std::size_t start = scale.spread.size();
     scale.spread.resize(start + at(width) * at(to.y - from.y + 1), 0);
     row_.resize(at(width));
-    for (int y = box.least.y; y <= box.most.y; ++y) {
+    for (int y = box.low.y; y <= box.high.y; ++y) {
         std::fill(row_.begin(), row_.end(), 0);
         double* changes = scale.change.data() + at(y) * at(scale.nodes.x);
-        for (int x = box.least.x; x <= box.most.x; ++x) {
+        for (int x = box.low.x; x <= box.high.x; ++x) {
             const double pixels = std::exchange(changes[x], 0.0);
             if (pixels == 0) continue;
             const int first = std::max(x - kReach, from.x), last = std::min(x + kReach, to.x);
@@ -380,7 +318,7 @@ void RunningScore::accept(const PixelMask& out, const PixelMask& in) {
         const std::uint64_t freed = word.one & goes, several = goes & ~(word.one | word.two);
         if (freed != 0) sum_ -= costOf(word, column, y, freed);
         const std::uint64_t third = several != 0 ? counts_.three(index) & several : 0;
-        counts_.take(index, goes);
+        counts_.remove(index, goes);
         word.none |= freed;
         word.one = (word.one & ~goes) | (word.two & goes);
         word.two = (word.two & ~goes) | third;
@@ -394,15 +332,14 @@ void RunningScore::accept(const PixelMask& out, const PixelMask& in) {
         word.one = (word.one & ~comes) | covered;
         word.none &= ~comes;
     });
-    coveredWhite_ += coveredWhiteChange_, severalWhite_ += severalWhiteChange_;
-    for (const Change& change : blockChanges_)
+    coveredWhite_ += change_.coveredWhite, severalWhite_ += change_.severalWhite;
+    for (const BlockChange& change : blockChanges_)
         lack_[at(change.block.y * blocks_.x + change.block.x)] -= std::int64_t{Goal::kWhite} * change.pixels;
     for (Scale& scale : scales_) {
         const double* change = scale.spread.data();
         for (const Box& box : scale.touched) {
             if (box.empty()) continue;
-            const glm::ivec2 from = glm::max(box.least - kReach, glm::ivec2(0)),
-                             to = glm::min(box.most + kReach, scale.nodes - 1);
+            const glm::ivec2 from = glm::max(box.low - kReach, glm::ivec2(0)), to = glm::min(box.high + kReach, scale.nodes - 1);
             for (int y = from.y; y <= to.y; ++y)
                 for (int x = from.x; x <= to.x; ++x) scale.lack[at(y) * at(scale.nodes.x) + at(x)] += *change++;
         }

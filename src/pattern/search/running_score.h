@@ -1,5 +1,7 @@
 #pragma once
 
+#include "pattern/search/layer_counts.h"
+#include "pattern/search/pixel_mask.h"
 #include "pattern/search/search_space.h"
 
 #include "core/random.h"
@@ -14,153 +16,93 @@
 
 namespace fantascope::pattern {
 
-// The pixels of one instance, 64 neighbours of a row in a word: the words of the rectangle around
-// it, column by column.
-class PixelMask {
-public:
-    static constexpr int kBits = 64;
-
-    // Nothing.
-    void clear() { left_ = right_ = top_ = bottom_ = 0; }
-    // What the scanner draws of an instance.
-    void draw(SilhouetteScanner& scanner, const Silhouette& shape, const InstancePose& pose);
-
-    bool empty() const { return left_ == right_; }
-    int left() const { return left_; }  // columns of words, from `left` to before `right`
-    int right() const { return right_; }
-    int top() const { return top_; }  // rows
-    int bottom() const { return bottom_; }
-    // One column of words, whether it lies in the rectangle or not: at any row, 0 outside.
-    struct Column {
-        const std::uint64_t* words = nullptr;
-        int top = 0;
-        unsigned rows = 0;
-        std::uint64_t at(int y) const {
-            const auto row = static_cast<unsigned>(y - top);
-            return row < rows ? words[row] : 0;
-        }
-    };
-    Column column(int index) const {
-        if (index < left_ || index >= right_) return {};
-        const auto rows = static_cast<unsigned>(bottom_ - top_);
-        return {words_.data() + static_cast<std::size_t>(index - left_) * rows, top_, rows};
-    }
-    std::int64_t count() const;
-    // One of its pixels, all equally likely; it must have some.
-    glm::ivec2 randomPixel(Rng& rng) const;
-
-private:
-    struct Run {
-        int y, begin, end;
-    };
-    std::vector<Run> runs_;  // scratch, kept for its memory
-    std::vector<std::uint64_t> words_;
-    int left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;
-};
-
-// How many instances lie on each pixel, in bit planes: bit k of 64 neighbouring counts is one word,
-// so that an instance comes and goes by a few operations on words, with a carry from plane to
-// plane, instead of one on every pixel. Counts up to 65535.
-class LayerCounts {
-public:
-    static constexpr int kPlanes = 16, kMost = (1 << kPlanes) - 1;
-
-    explicit LayerCounts(std::size_t words);
-
-    // Of the pixels of a word: those with just three instances.
-    std::uint64_t three(std::size_t word) const { return planes_[0][word] & planes_[1][word] & ~above(word, 2); }
-    // One more, or one less, on the pixels of a mask; there must be one to take.
-    void add(std::size_t word, std::uint64_t mask);
-    void take(std::size_t word, std::uint64_t mask);
-
-private:
-    // The pixels with a bit in plane `first` or beyond.
-    std::uint64_t above(std::size_t word, std::size_t first) const {
-        std::uint64_t any = 0;
-        for (std::size_t plane = first; plane < planes_.size(); ++plane) any |= planes_[plane][word];
-        return any;
-    }
-    std::vector<std::vector<std::uint64_t>> planes_;  // those that were needed so far
-};
-
-// A pattern that is judged move by move: what one instance more or less would change is known from
-// its own pixels alone. All sums are whole numbers; after any number of moves they are those of a
-// fresh drawing.
+// The goal of the refined method, kept up to date move by move: what a move changes is computed
+// from the pixels of one instance. All sums are integers, so after any number of moves they equal
+// those of a fresh drawing.
 //
-// What is held against the guide I, with I' the pattern white on black, in pixels of full
-// difference:
-//   detail   z = sum |I - I'|, the paper's goal (section 4.1), less what the tone sees better: where the guide is black or white
-//   a covered
-//            pixel adds 1 - 2 I, as in z; where it is grey, for which z would have black or white too, only a quarter of what 1 -
-//            2 I differs from its mean around, which keeps the edges of greys.
-//   tone     sum |G*I - G*I'|, the mean for two Gaussians G of sigma height/36 and height/18: what remains when the eye blurs
-//   overlap  the pixels that several instances cover; where the guide is white, as far as they are more than a given share of
-//   those that any
-//            covers
+// Its terms, with I the guide and I' the pattern white on black, in pixels of full difference:
+//   detail   The paper's goal, z = sum |I - I'| (section 4.1), less what the tone measures better.
+//            Where the guide is black or white, covering a pixel adds 1 - 2 I, as in z. Where it is
+//            grey, z alone would favour black or white; so covering a pixel adds only a quarter of
+//            the difference of 1 - 2 I from its local mean. This preserves the edges of greys.
+//   tone     sum |G*I - G*I'|, the mean for two Gaussians G of sigma height/36 and height/18: the
+//            difference that remains when the eye blurs.
+//   overlap  The number of pixels that several instances cover. Where the guide is white, only the
+//            part above a given share of all covered pixels counts.
 //
 // Thread: thread-bound.
 class RunningScore {
 public:
     explicit RunningScore(const SearchSpace& space);
 
-    // The change of the weighted sum if `out` (an instance that is drawn, or nothing) went and `in`
-    // came instead; if it is more than `most`, something above `most` that took less to find.
-    // Nothing changes yet.
-    double propose(const PixelMask& out, const PixelMask& in, double most = std::numeric_limits<double>::infinity());
-    // Makes the change that was proposed last, with the same masks.
+    // The change of the weighted sum if `out` (a drawn instance, or empty) were replaced by `in`
+    // (or empty). If the change exceeds `limit`, it may return a lower bound of it that exceeds
+    // `limit` too and takes less time. Changes nothing yet.
+    double propose(const PixelMask& out, const PixelMask& in, double limit = std::numeric_limits<double>::infinity());
+    // Makes the change of the last propose(), which had the same masks.
     void accept(const PixelMask& out, const PixelMask& in);
 
-    double z() const;           // mean, 0..1
-    GreyImage picture() const;  // the pattern white on black
+    double z() const;           // mean |I - I'|, 0..1
+    GreyImage picture() const;  // I'
 
-    // Looks where light is lacking, in the search's region if it has one. What the next one gives
-    // is of this moment until it is called again.
+    // Finds where light is lacking, in the search's region if it has one. darkPlace() uses the
+    // result until the next call.
     void findDarkPlaces();
-    // A pixel without light in a block that lacks light, as does its surrounding, the likelier the
-    // more; any pixel where none does.
+    // A random dark pixel in a block that lacks light and whose neighbourhood does, with a
+    // probability proportional to the lack. Any pixel if there is no such block.
     glm::ivec2 darkPlace(Rng& rng) const;
 
 private:
-    // Everything that a move asks of 64 pixels, side by side in memory; the words of a column are
-    // neighbours.
+    // Everything that a move needs to know of 64 pixels, together in memory. The words of a column
+    // are contiguous.
     struct Word {
-        std::uint64_t none, one, two;  // the pixels with no instance, with just one, with just two
-        std::uint64_t white;           // of the guide
-        // Of each pixel, where it is the same for all: what covering it adds to the detail, in 1 /
-        // kPull, and to sum |I - I'|, in Goal's units.
+        std::uint64_t none, one, two;  // the pixels with no, exactly one, exactly two instances
+        std::uint64_t white;           // pixels that are white in the guide
+        // If they are the same for all pixels: what covering one adds to the detail, in 1 / kPull,
+        // and to sum |I - I'|, in Goal's units.
         std::int32_t pull, cost;
-        std::int32_t pulls;  // else the index in pulls_; -1
+        std::int32_t pulls;  // otherwise the index in pulls_, else -1
     };
-    // What changes is counted in square blocks. Those of 8 pixels, which all but small pictures
-    // have, are counted together: the counts of a word's eight blocks are its bytes.
+    // Changes are counted in square blocks. All but small pictures have blocks of 8 pixels, which
+    // are counted together: the counts of a word's eight blocks are the bytes of one word.
     static constexpr int kLargestBlock = 8, kScales = 2;
-    struct Change {
+    struct BlockChange {
         glm::ivec2 block;
         std::int32_t pixels;
-        std::int32_t part;  // of the two masks' difference: those far from each other are spread apart
+        std::int32_t part;  // 0 or 1: masks far from each other are spread separately
     };
-    // A rectangle of nodes, ends included.
+    // What a move changes, but for the blocks.
+    struct Change {
+        std::int64_t detail = 0;                          // in 1 / kPull
+        std::int64_t several = 0;                         // pixels with several instances
+        std::int64_t coveredWhite = 0, severalWhite = 0;  // white pixels with at least one, with several
+    };
+    // Columns of words left <= column < right, rows top <= y < bottom.
+    struct Window {
+        int left, right, top, bottom;
+    };
+    // A rectangle of nodes, including `low` and `high`.
     struct Box {
-        glm::ivec2 least{std::numeric_limits<int>::max()}, most{-1};
-        bool empty() const { return most.x < 0; }
-        void add(glm::ivec2 node) { least = glm::min(least, node), most = glm::max(most, node); }
+        glm::ivec2 low{std::numeric_limits<int>::max()}, high{-1};
+        bool empty() const { return high.x < 0; }
+        void add(glm::ivec2 node) { low = glm::min(low, node), high = glm::max(high, node); }
     };
-    // One Gaussian, sampled at nodes a little closer than its sigma. All values are whole numbers,
-    // in doubles.
+    // One Gaussian, sampled at nodes a little closer than its sigma. All values are integers,
+    // stored as doubles.
     struct Scale {
         glm::ivec2 nodes{0};
-        std::vector<std::int32_t> columns,
-            rows;  // which node's each column and row of blocks is; each has a square of blocks around it
+        // The node of each column and row of blocks; each node has a square of blocks around it.
+        std::vector<std::int32_t> columns, rows;
         glm::ivec2 nodeOf(glm::ivec2 block) const {
             return {columns[static_cast<std::size_t>(block.x)], rows[static_cast<std::size_t>(block.y)]};
         }
         std::size_t at(glm::ivec2 node) const {
             return static_cast<std::size_t>(node.y) * static_cast<std::size_t>(nodes.x) + static_cast<std::size_t>(node.x);
         }
-        std::vector<double> lack;    // of each node: the Gaussian mean of I - I', in Goal's units * kKernelSum^2
-        std::vector<double> change;  // pixels covered more by the move at hand, in each square; zero between moves
-        std::array<Box, 2> touched;  // where they are
-        std::vector<double> spread;  // the changes of `lack` by the move at hand, box by box
+        std::vector<double> lack;    // per node: the Gaussian mean of I - I', in Goal's units * kKernelSum^2
+        std::vector<double> change;  // per node: pixels that the current move covers more; zero between moves
+        std::array<Box, 2> touched;  // the nodes with changes, by part
+        std::vector<double> spread;  // the changes of `lack` by the current move, box by box
     };
     std::size_t wordAt(int column, int y) const {
         return static_cast<std::size_t>(column) * static_cast<std::size_t>(height_) + static_cast<std::size_t>(y);
@@ -168,8 +110,10 @@ private:
     void measureGuide();
     void measureDetail();
     std::int64_t pullOf(const Word& word, std::uint64_t pixels) const;
+    void compare(const PixelMask& out, const PixelMask& in, const Window& window, int part);
     void noteBlocks(int column, int row, std::uint64_t covered, std::uint64_t freed, int part);
-    double overlap(std::int64_t coveredWhite, std::int64_t severalWhite) const;
+    double overlapAtWhite(std::int64_t coveredWhite, std::int64_t severalWhite) const;
+    double overlapChange() const;
     double toneChange();
     void gather(Scale& scale);
     double spreadChange(Scale& scale, const Box& box);
@@ -177,23 +121,23 @@ private:
     const SearchSpace& space_;
     const std::optional<PatternSearch::Region> region_;
     const int width_, height_;
-    const int block_;          // the side of a block, pixels: 1, 2, 4 or 8
-    const int blockShift_;     // its logarithm to base 2
-    const glm::ivec2 blocks_;  // so many, those cut by the edges included
+    const int block_;          // side of a block, pixels: 1, 2, 4 or 8
+    const int blockShift_;     // log2(block_)
+    const glm::ivec2 blocks_;  // how many, including those cut by the edges
     LayerCounts counts_;
     std::vector<Word> words_;
-    // The pulls of 64 pixels, each + kOffset, in bit planes: a sum over any of them is a few counts
-    // of bits.
+    // The pulls of 64 pixels, each + kOffset, in bit planes: the sum over any subset takes a few
+    // bit counts.
     static constexpr int kPull = 63, kOffset = 64, kPullPlanes = 7;
     std::vector<std::array<std::uint64_t, kPullPlanes>> pulls_;
-    std::vector<std::int64_t> lack_;  // of each block: sum I - I', in Goal's units
+    std::vector<std::int64_t> lack_;  // per block: sum I - I', in Goal's units
     std::array<Scale, kScales> scales_;
 
-    std::int64_t sum_ = 0;                              // |I - I'| in Goal's units
-    std::int64_t coveredWhite_ = 0, severalWhite_ = 0;  // white pixels with an instance, with several
-    // By the move at hand.
-    std::int64_t coveredWhiteChange_ = 0, severalWhiteChange_ = 0;
-    std::vector<Change> blockChanges_;
+    std::int64_t sum_ = 0;                              // sum |I - I'|, in Goal's units
+    std::int64_t coveredWhite_ = 0, severalWhite_ = 0;  // white pixels with at least one instance, with several
+    // Of the current move.
+    Change change_;
+    std::vector<BlockChange> blockChanges_;
     std::vector<double> row_;  // scratch
 
     std::vector<std::int64_t> darkness_;  // running sums over the blocks

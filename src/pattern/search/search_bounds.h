@@ -6,9 +6,9 @@
 
 namespace fantascope::pattern {
 
-// The numbers of PatternSearch::Options, each with its key and bounds, section by section as in a
-// settings file. `fields` has number(), integer() and angle() as ConfigFields has them: one reads
-// them from a file, another tests those of a program.
+// The numbers of PatternSearch::Options, each with its key and bounds, in the sections of a
+// settings file. `fields` has number(), integer() and angle() as ConfigFields has. One kind of
+// Fields reads them from a file, another checks values that a program has set.
 template <class Fields>
 void declareSearch(Fields& fields, PatternSearch::Options& options) {
     fields.number("target_z", options.targetZ, 0, 1);
@@ -50,7 +50,7 @@ template <class Fields>
 void declareShape(Fields& fields, PatternSearch::Options::Shape& shape) {
     fields.number("share", shape.share, 0.001, 1000);
 }
-// The ends of a shape's own rotations, degrees to both sides.
-constexpr double kMostTilt = 180, kMostTurn = 360;
+// The bounds of a shape's own rotations, degrees in both directions.
+constexpr double kMaxTilt = 180, kMaxTurn = 360;
 
 }  // namespace fantascope::pattern

@@ -12,16 +12,17 @@ namespace {
 
 using Options = PatternSearch::Options;
 
-// Without given sizes, the instances together are as large as `fill` times the guide's white,
-// overlaps and gaps taking the difference, and vary around the middle size by the factor `spread`.
-// The refined method grows what it may: a smaller spread keeps shapes many and alike. No middle is
-// smaller (pixels) or larger (canvas heights) than a shape can be seen.
+// If no sizes are given, the maximum number of instances of the middle size are together `fill`
+// times as large as the guide's white; overlaps and gaps account for the rest. Sizes range from
+// middle / spread to middle * spread. The refined method enlarges shapes where it can, so a smaller
+// spread keeps them many and alike.
 struct Sizes {
     double fill, spread;
 };
 constexpr Sizes sizesFor(PatternSearch::Method method) {
     return method == PatternSearch::Method::Paper ? Sizes{1.3, 2} : Sizes{1.2, 1.4};
 }
+// Bounds of the middle size at which a shape can still be recognised: pixels; canvas heights.
 constexpr double kSmallestMiddle = 2, kLargestMiddle = 0.25;
 
 double typicalSide(const Silhouette& shape, glm::dvec2 tilt, glm::dvec2 turn, Rng rng) {
@@ -29,7 +30,7 @@ double typicalSide(const Silhouette& shape, glm::dvec2 tilt, glm::dvec2 turn, Rn
     std::int64_t covered = 0;
     for (int i = 0; i < kViews; ++i) {
         Coverage view(kPixels, kPixels);
-        // In this order: it is part of what a seed means.
+        // The order of these draws is part of what a seed means.
         const double z = rng.uniform(turn.x, turn.y), y = rng.uniform(tilt.x, tilt.y), x = rng.uniform(tilt.x, tilt.y);
         view.add(shape, {{0.5, 0.5}, 0.5, {x, y, z}});
         covered += view.count({{0, 0}, {kPixels, kPixels}});
@@ -78,10 +79,10 @@ void SearchSpace::setSizes() {
         areCommon = areCommon && limits_[i].sizes == common;
         typicalSizes_ += shares_[i] * sides_[i] / meanSide_ * limits_[i].sizes;
     }
-    if (areCommon) typicalSizes_ = common;  // to the last bit
+    if (areCommon) typicalSizes_ = common;  // exactly
 }
 
-// Sizes with which the most instances light as much as the guide is white, and a little more.
+// The sizes if none are given, see Sizes.
 glm::dvec2 SearchSpace::fittingSizes() const {
     const double light = goal_.mean() * aspect_;
     const auto [fill, spread] = sizesFor(options_.method);
@@ -121,7 +122,7 @@ ShapeInstance SearchSpace::allowed(ShapeInstance instance) const {
     instance.centre.x = std::clamp(rounded(instance.centre.x, 1e6), 0.0, right);
     instance.centre.y = std::clamp(rounded(instance.centre.y, 1e6), 0.0, 1.0);
     instance.size = rounded(std::clamp(instance.size, sizes.x, sizes.y), 1e6);
-    // A free turn has no ends: the one of equal turns that is nearest to the middle.
+    // Of all equivalent turns, the nearest to the middle of the range.
     const double middle = (turn.x + turn.y) / 2;
     const double turned = middle + std::remainder(instance.rotation.z - middle, 2 * std::numbers::pi);
     instance.rotation = {roundedAngle(std::clamp(instance.rotation.x, tilt.x, tilt.y)),

@@ -14,11 +14,11 @@
 
 namespace fantascope::pattern {
 
-// What every search method looks for and may choose from: the guide, the shapes, and how large and
-// how turned an instance may be. Constant during a search. Thread: every method is reentrant.
+// What a search method aims at and may choose from: the guide, the shapes, and the allowed sizes
+// and rotations of instances. Constant during a search. Thread: every method is reentrant.
 class SearchSpace {
 public:
-    // `guide`: stored values in the pattern's resolution. Both outlive it.
+    // `guide`: stored values in the pattern's resolution. `options` outlives it.
     SearchSpace(const GreyImage& guide, std::span<const ElementalShape> shapes, std::uint64_t seed,
                 const PatternSearch::Options& options);
 
@@ -29,26 +29,26 @@ public:
     double aspect() const { return aspect_; }
     std::size_t shapeCount() const { return silhouettes_.size(); }
     const Silhouette& silhouette(std::uint32_t shape) const { return silhouettes_[shape]; }
-    // The side of a square as large as the shape is at size 1, on average over the allowed
-    // rotations; and the mean by the shapes' shares.
+    // The side of a square with the shape's area at size 1, averaged over the allowed rotations;
+    // and the mean over all shapes, weighted by their shares.
     double side(std::uint32_t shape) const { return sides_[shape]; }
     double meanSide() const { return meanSide_; }
-    // The smallest and the largest instance of a shape; and those of a typical shape, whose side is
+    // The smallest and the largest size of a shape; and those of a typical shape, whose side is
     // meanSide().
     glm::dvec2 sizes(std::uint32_t shape) const { return limits_[shape].sizes; }
     glm::dvec2 sizes() const { return typicalSizes_; }
 
-    // An instance of a random shape, size and rotation, at a random point of `cell`; without an id.
-    // The shape is drawn by the shares; where `counts` says how many instances of each shape there
-    // are, from those of which there are too few for the shares.
+    // An instance of a random shape, size and rotation at a random point of `cell`, without an id.
+    // The shape is drawn by the shares. `counts`, if given, is how many instances of each shape
+    // there are; shapes with too few for their share are then drawn.
     ShapeInstance randomInstance(const PixelRectangle& cell, Rng& rng, std::span<const std::uint32_t> counts = {}) const;
-    // The nearest instance that is allowed and whose numbers are short decimals, with its centre on
-    // the canvas: a file then holds, in few digits, exactly what was compared.
+    // The nearest allowed instance with its centre on the canvas and rounded numbers, so that a
+    // file holds exactly what was compared in few digits.
     ShapeInstance allowed(ShapeInstance instance) const;
 
 private:
     struct Limits {
-        glm::dvec2 sizes, tilt, turn;  // each from, to; canvas heights, radians
+        glm::dvec2 sizes, tilt, turn;  // each (from, to); canvas heights, radians
     };
     void setSizes();
     glm::dvec2 fittingSizes() const;
@@ -62,7 +62,7 @@ private:
     std::vector<Silhouette> silhouettes_;
     std::vector<double> sides_;
     std::vector<Limits> limits_;
-    std::vector<double> shares_;  // of 1
+    std::vector<double> shares_;  // of each shape; their sum is 1
     bool areAlike_ = true;        // every shape has the same share
     double meanSide_ = 0;
     glm::dvec2 typicalSizes_{0.0};

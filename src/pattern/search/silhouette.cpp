@@ -12,7 +12,7 @@
 namespace fantascope::pattern {
 namespace {
 
-// The first pixel whose centre is at or right of (below) `edge`, cut to 0 .. size.
+// The first pixel whose centre is at or right of (below) `edge`, clamped to 0 .. size.
 int firstPixel(double edge, int size) {
     const double first = edge - 0.5;
     if (first <= 0) return 0;
@@ -21,9 +21,10 @@ int firstPixel(double edge, int size) {
     return whole + (first > whole ? 1 : 0);
 }
 
-// The corners of a flat convex mesh's outline, anticlockwise as seen from +z; of another mesh none.
+// The corners of a flat convex mesh's outline, anticlockwise as seen from +z; empty for any other
+// mesh.
 std::vector<std::uint32_t> convexOutlineOf(const TriangleMesh& mesh) {
-    std::map<std::uint32_t, std::uint32_t> next;  // along the edges that belong to one triangle
+    std::map<std::uint32_t, std::uint32_t> next;  // along the edges that belong to one triangle only
     std::set<std::pair<std::uint32_t, std::uint32_t>> directed;
     for (const glm::uvec3& t : mesh.triangles) {
         const glm::dvec3 a = mesh.vertices[t.x], b = mesh.vertices[t.y], c = mesh.vertices[t.z];
@@ -49,7 +50,7 @@ std::vector<std::uint32_t> convexOutlineOf(const TriangleMesh& mesh) {
         if (turn < 0) return {};
         turned += turn;
     }
-    return turned < 3 * std::numbers::pi ? outline : std::vector<std::uint32_t>{};  // once around
+    return turned < 3 * std::numbers::pi ? outline : std::vector<std::uint32_t>{};  // it winds once
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ void SilhouetteScanner::project(const Silhouette& shape, const InstancePose& pos
 }
 
 // Calls cross(y, x) for each row that the edge crosses, with the first pixel whose centre is right
-// of it. Edges are always computed from their upper to their lower end, so that those with the same
+// of it. Edges are always computed from their upper to their lower end, so that edges with the same
 // ends cross every row at the same pixel.
 template <class Cross>
 void SilhouetteScanner::followEdge(glm::dvec2 upper, glm::dvec2 lower, Cross cross) {
@@ -93,8 +94,8 @@ void SilhouetteScanner::followEdge(glm::dvec2 upper, glm::dvec2 lower, Cross cro
     top_ = std::min(top_, top);
     bottom_ = std::max(bottom_, bottom);
     const double slope = (lower.x - upper.x) / (lower.y - upper.y);
-    // In steps of 2^-32 pixel; from one row to the next is an addition. A slope that does not fit
-    // belongs to an edge of one row.
+    // Fixed point in units of 2^-32 pixel, so that the next row takes one addition. A slope that
+    // overflows belongs to an edge in one row, which needs none.
     constexpr double kOne = 0x1p32;
     auto x = static_cast<std::int64_t>((upper.x + (top + 0.5 - upper.y) * slope - 0.5) * kOne);
     const auto step = bottom - top > 1 ? static_cast<std::int64_t>(slope * kOne) : 0;
@@ -103,7 +104,7 @@ void SilhouetteScanner::followEdge(glm::dvec2 upper, glm::dvec2 lower, Cross cro
 }
 
 void SilhouetteScanner::followConvexOutline(const std::vector<std::uint32_t>& outline) {
-    // Turned over, the outline runs the other way round.
+    // The sign of the area says whether the shape is seen from behind, with its outline reversed.
     double doubledArea = 0;
     glm::dvec2 from = projected_[outline.back()];
     for (const std::uint32_t corner : outline) {
@@ -116,7 +117,7 @@ void SilhouetteScanner::followConvexOutline(const std::vector<std::uint32_t>& ou
         const glm::dvec2 to = projected_[corner];
         const bool down = to.y > from.y;
         const glm::dvec2 upper = down ? from : to, lower = down ? to : from;
-        // Clockwise as seen, the way down is on the right.
+        // If the outline runs clockwise as seen, it runs down on the right.
         if (down == (doubledArea > 0))
             followEdge(upper, lower, [&](int y, int x) { rows[y].end = x; });
         else
@@ -132,9 +133,8 @@ void SilhouetteScanner::followOutline(const Silhouette& shape) {
         const double turn = u.x * v.y - u.y * v.x;
         facing_.push_back(turn > 0 ? 1 : turn < 0 ? -1 : 0);
     }
-    // Along a row, the number of triangles above each other changes at edges only, and at an edge
-    // between two triangles that face the same way it does not change either: what remains is the
-    // outline.
+    // Along a row, the number of layered triangles changes only at edges. It does not change at an
+    // edge between two triangles that face the same way, so only the outline remains.
     crossingCount_ = 0;
     for (const Silhouette::Edge& edge : shape.edges_) {
         int weight = 0;
@@ -143,7 +143,7 @@ void SilhouetteScanner::followOutline(const Silhouette& shape) {
         if (weight == 0) continue;
         const glm::dvec2 from = projected_[edge.from], to = projected_[edge.to];
         const bool down = to.y >= from.y;
-        if (down) weight = -weight;  // clockwise, the way up is on the left
+        if (down) weight = -weight;  // a clockwise outline runs up on the left
         followEdge(down ? from : to, down ? to : from, [&](int y, int x) {
             if (crossings_.size() == static_cast<std::size_t>(crossingCount_)) crossings_.resize(2 * crossings_.size() + 64);
             Crossing* crossings = crossings_.data();

@@ -11,7 +11,7 @@
 
 namespace fantascope::pattern {
 
-// A mesh prepared for SilhouetteScanner: its edges, each with the triangles beside it.
+// A mesh prepared for SilhouetteScanner: its edges, each with its adjacent triangles.
 class Silhouette {
 public:
     explicit Silhouette(const TriangleMesh& mesh);
@@ -31,21 +31,21 @@ private:
     std::vector<glm::uvec3> triangles_;
     std::vector<Edge> edges_;
     std::vector<Side> sides_;
-    // Of a flat convex shape, the corners of its outline in order; else empty.
+    // The corners of a flat convex shape's outline in order; empty for other shapes.
     std::vector<std::uint32_t> convexOutline_;
 };
 
-// Turns silhouettes into runs of pixels, as an orthographic view sees them whose height is one
-// canvas unit. A pixel belongs to a silhouette when its centre is inside a triangle; of two
-// triangles with a common edge each pixel goes to one. What lies off the picture is cut off. This
-// is the inner loop of every search: of a mesh only the edges of its outline are followed, and
-// after the first few silhouettes nothing is allocated. Thread: thread-bound.
+// Rasterises silhouettes into runs of pixels, in an orthographic view whose height is one canvas
+// height. A pixel belongs to a silhouette if its centre is inside a triangle; a centre on the
+// common edge of two triangles counts once. The picture's edges clip. This is the inner loop of
+// every search: only the edges of the outline are followed, and after the first few silhouettes it
+// no longer allocates. Thread: thread-bound.
 class SilhouetteScanner {
 public:
     SilhouetteScanner(int width, int height);  // of the picture, pixels
 
-    // Calls use(y, begin, end) for runs begin <= x < end of the silhouette of one instance, from
-    // the top left on; no pixel is in two of them.
+    // Calls use(y, begin, end) for disjoint runs begin <= x < end of one instance's silhouette,
+    // from the top left on.
     template <class Use>
     void scan(const Silhouette& shape, const InstancePose& pose, Use use) {
         project(shape, pose);
@@ -72,8 +72,8 @@ public:
 private:
     struct Crossing {
         int x;       // the first pixel whose centre is right of the edge
-        int change;  // of the number of triangles above each other, from there on
-        int next;    // in the same row, x ascending; -1: none
+        int change;  // of the number of layered triangles, from there on
+        int next;    // in the same row, by rising x; -1: none
     };
     struct Row {
         int begin, end;
@@ -85,10 +85,10 @@ private:
     void followEdge(glm::dvec2 upper, glm::dvec2 lower, Cross cross);
 
     int width_, height_;
-    // The silhouette at hand.
+    // The current silhouette.
     std::vector<glm::dvec2> projected_;  // vertices, in pixels
     std::vector<int> facing_;            // triangles: 1 clockwise as seen, -1 anticlockwise, 0 edge-on
-    std::vector<Crossing> crossings_;    // the first crossingCount_ of them
+    std::vector<Crossing> crossings_;    // the first crossingCount_ are in use
     int crossingCount_ = 0;
     std::vector<int> rows_;  // the first crossing of each row; -1: none
     std::vector<Row> convexRows_;

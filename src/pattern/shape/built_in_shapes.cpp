@@ -20,14 +20,14 @@ namespace {
 
 constexpr std::string_view kLetter = "letter-";
 
-// A convex outline, anticlockwise, as a fan.
+// A triangle fan over a convex, anticlockwise outline.
 TriangleMesh fan(std::vector<glm::vec3> outline) {
     TriangleMesh mesh{std::move(outline), {}};
     for (std::uint32_t i = 2; i < mesh.vertices.size(); ++i) mesh.triangles.emplace_back(0, i - 1, i);
     return mesh;
 }
 
-// Corners on the unit circle, standing on a side.
+// A polygon with its corners on the unit circle that stands on a side.
 TriangleMesh regularPolygon(int corners) {
     std::vector<glm::vec3> outline;
     for (int i = 0; i < corners; ++i) {
@@ -37,9 +37,9 @@ TriangleMesh regularPolygon(int corners) {
     return fan(std::move(outline));
 }
 
-// Two arcs that meet in a tip above and below, as wide as a half of its length.
+// Two arcs that meet in a tip above and below; half as wide as long.
 TriangleMesh leaf() {
-    constexpr int kSides = 8;  // straight pieces an arc
+    constexpr int kSides = 8;  // straight pieces per arc
     // The arc through the tips (0, +-1) and the flank (1/2, 0) has its centre at (-3/4, 0).
     const double radius = 1.25, tip = std::asin(1 / radius);
     std::vector<glm::vec3> outline;
@@ -51,7 +51,7 @@ TriangleMesh leaf() {
     return fan(std::move(outline));
 }
 
-// A right side from the top down, and its mirror image.
+// `ring`: the right half of the outline, from the top down; its mirror image is added.
 TriangleMesh symmetric(std::vector<glm::dvec2> ring) {
     for (std::size_t i = ring.size(); i-- > 0;)
         if (ring[i].x > 0) ring.emplace_back(-ring[i].x, ring[i].y);
@@ -81,8 +81,8 @@ TriangleMesh mapleLeaf() {
                       {11, -205}});
 }
 
-// A blade seven times as long as wide, widest below the middle, on a short stalk; it bends over to
-// the right.
+// A blade seven times as long as wide, widest below the middle, on a short stalk; it bends to the
+// right.
 TriangleMesh bambooLeaf() {
     constexpr int kPieces = 12;  // of each side
     constexpr double kWidth = 0.235, kBend = 0.18, kStalk = 0.16, kHalfStalk = 0.016;
@@ -107,10 +107,10 @@ TriangleMesh bambooLeaf() {
 TriangleMesh snowflake() {
     constexpr double kHalfArm = 0.06, kHalfBranch = 0.055;
     const double sixth = std::numbers::pi / 3;
-    const glm::dvec2 along(std::sin(sixth), std::cos(sixth)), across(along.y, -along.x);  // a branch of the arm that points up
+    const glm::dvec2 along(std::sin(sixth), std::cos(sixth)), across(along.y, -along.x);  // of a branch of the arm that points up
     std::vector<glm::dvec2> right = {{kHalfArm, kHalfArm / std::tan(sixth / 2)}};
     for (const auto& [root, length] : {std::pair(0.44, 0.36), {0.71, 0.24}}) {
-        // Where the branch's lower and upper side leave the arm's side x = kHalfArm.
+        // Where the branch's lower and upper sides leave the arm's side x = kHalfArm.
         for (const double side : {1.0, -1.0}) {
             const glm::dvec2 start = glm::dvec2(0, root) + side * kHalfBranch * across;
             if (side < 0) right.push_back(glm::dvec2(0, root) + length * along);
@@ -142,7 +142,7 @@ const std::vector<std::pair<std::string, TriangleMesh (*)()>>& builtIns() {
     return shapes;
 }
 
-// The character of a letter's name; nothing if it is no such name.
+// The character of a name such as "letter-A"; nothing for any other name.
 std::optional<char32_t> letterOf(std::string_view name) {
     if (!name.starts_with(kLetter)) return std::nullopt;
     try {
@@ -176,7 +176,7 @@ Result<TriangleMesh> builtInMesh(const std::string& name) {
     for (const auto& [known, mesh] : builtIns())
         if (known == name) return mesh();
     const std::string nearest = nearestName(name, builtInShapeNames());
-    return Error(fmt::format("'{}' is not one of {}{}", name, builtInShapeList(),
+    return Error(fmt::format("'{}' is no built-in shape; there are {}{}", name, builtInShapeList(),
                              nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest)));
 }
 

@@ -9,19 +9,19 @@
 
 namespace fantascope::pattern {
 
-// The shapes that need no file, flat, facing the viewer, the right way up. Their names stand in
-// pattern files: none is ever renamed. Besides these there is a letter for every character that can
-// be seen: "letter-A".
+// The names of the built-in shapes, which need no file. They are flat, upright and face the viewer.
+// Pattern files use these names, so none is ever renamed. Every visible character is a built-in
+// shape too, as in "letter-A".
 const std::vector<std::string>& builtInShapeNames();
 
-// How a message lists them all: "triangle, ..., snowflake, letter-A (any character)".
+// All of them as messages list them: "triangle, ..., snowflake, letter-A (any character)".
 std::string builtInShapeList();
 
-// Whether the name is one of these, whatever a font makes of its letter.
+// Whether `name` is a built-in shape. A letter counts even if no font has it.
 bool isBuiltInShape(std::string_view name);
 
-// The mesh of a built-in shape, in a size of its own. Error: names `name` and what is near to it,
-// or why there is no such letter.
+// The mesh of a built-in shape, in arbitrary units. Error: quotes `name` and suggests the nearest
+// name, or says why there is no such letter.
 Result<TriangleMesh> builtInMesh(const std::string& name);
 
 }  // namespace fantascope::pattern

@@ -16,13 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A front view with less area than this (in radius^2) is a line to the eye.
-constexpr double kLeastFrontArea = 1e-3;
-// A thousand copies of more are drawn and compared in no useful time.
-constexpr std::size_t kMostTriangles = 20'000;
+// A front view with less area than this (in radius^2) looks like a line.
+constexpr double kMinFrontArea = 1e-3;
+// A thousand copies of a larger mesh cannot be drawn and compared in a useful time.
+constexpr std::size_t kMaxTriangles = 20'000;
 
-// The area that the triangles cover when projected along z, those in front of each other counted
-// each; a fold of a surface cannot hide all.
+// The sum of the triangles' areas projected along z. It is an upper bound of the visible area, and
+// it is 0 only if the front view shows nothing.
 double projectedArea(const TriangleMesh& mesh) {
     double doubled = 0;
     for (const glm::uvec3& t : mesh.triangles) {
@@ -47,20 +47,19 @@ glm::dvec3 surfaceCentre(const TriangleMesh& mesh) {
 }  // namespace
 
 Result<ElementalShape> makeShape(std::string name, TriangleMesh mesh) {
-    if (mesh.triangles.empty()) return Error(fmt::format("{}: shows nothing that has an area", name));
-    if (mesh.triangles.size() > kMostTriangles)
-        return Error(
-            fmt::format("{}: has {} triangles, {} may be, for each is drawn in every copy; reduce the mesh to some hundred", name,
-                        mesh.triangles.size(), kMostTriangles));
+    if (mesh.triangles.empty()) return Error(fmt::format("{}: has no surface", name));
+    if (mesh.triangles.size() > kMaxTriangles)
+        return Error(fmt::format(
+            "{}: has {} triangles, at most {} are allowed, since every copy draws them all; reduce the mesh to a few hundred",
+            name, mesh.triangles.size(), kMaxTriangles));
     const glm::dvec3 centre = surfaceCentre(mesh);
     double radius = 0;
     for (const glm::uvec3& t : mesh.triangles)
         for (const std::uint32_t corner : {t.x, t.y, t.z})
             radius = std::max(radius, glm::length(glm::dvec3(mesh.vertices[corner]) - centre));
     for (glm::vec3& vertex : mesh.vertices) vertex = (glm::dvec3(vertex) - centre) / radius;
-    if (projectedArea(mesh) < kLeastFrontArea)
-        return Error(fmt::format(
-            "{}: seen from the front (along -z) the shape has no area; turn it so that its face looks along +z, y up", name));
+    if (projectedArea(mesh) < kMinFrontArea)
+        return Error(fmt::format("{}: has no area seen from the front (along -z); turn it so that it faces +z, with y up", name));
     return ElementalShape{std::move(name), std::move(mesh)};
 }
 

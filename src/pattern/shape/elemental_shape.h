@@ -10,19 +10,21 @@
 
 namespace fantascope::pattern {
 
-// A mesh made an elemental shape: moved so that the centre of its surface (by area) is the origin,
-// and scaled to radius 1.
-// Error: it has no triangles or too many, or its front view, along -z, shows (nearly) no area.
+// An elemental shape from a mesh: moved so that the centroid of its surface is the origin, and
+// scaled to radius 1.
+// Error: the mesh has no triangles or too many, or has (nearly) no area seen from the front, along
+// -z.
 Result<ElementalShape> makeShape(std::string name, TriangleMesh mesh);
 
-// A built-in shape, as "maple-leaf" or "letter-A". Error: lists them.
+// A built-in shape, such as "maple-leaf" or "letter-A". Error: as builtInMesh().
 Result<ElementalShape> builtInShape(const std::string& name);
 
 // A mesh (see readMesh), or a flat shape from an SVG or a picture (see readOutline). Error: names
-// the file and the reason.
+// the file and says why.
 Result<ElementalShape> readShapeFile(const std::filesystem::path& file, const std::string& name);
 
-// A built-in shape by its name, or else the file of that path. Error: as theirs.
+// The built-in shape of that name, else the shape in the file at that path. Error: as
+// builtInShape() and readShapeFile().
 Result<ElementalShape> loadShape(const std::string& nameOrFile);
 
 }  // namespace fantascope::pattern

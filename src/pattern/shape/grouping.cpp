@@ -17,7 +17,7 @@ namespace {
 
 double squaredDistance(glm::dvec2 a, glm::dvec2 b) { return glm::dot(a - b, a - b); }
 
-// The first index whose accumulated weight is greater than a uniform random share of the whole.
+// The first index whose cumulative weight exceeds a uniform random share of the total.
 std::size_t drawIndex(std::span<const double> weights, Rng& rng) {
     const double draw = rng.uniform() * std::accumulate(weights.begin(), weights.end(), 0.0);
     double accumulated = 0;
@@ -25,11 +25,12 @@ std::size_t drawIndex(std::span<const double> weights, Rng& rng) {
         accumulated += weights[i];
         if (accumulated > draw) return i;
     }
-    return weights.size() - 1;  // all weights are zero, or rounding ate the last of them
+    return weights.size() - 1;  // all weights are zero, or the cumulative sum was rounded down
 }
 
-// Points themselves, each next one the likelier the farther it is from those before (k-means++,
-// Arthur & Vassilvitskii 2007): a start that leaves no cluster of points without a centre.
+// Chooses points as first centres. Each further point is drawn with a probability proportional to
+// its squared distance from the nearest one before (k-means++, Arthur & Vassilvitskii 2007), so
+// that hardly a cluster of points starts without a centre.
 std::vector<glm::dvec2> firstCentres(std::span<const glm::dvec2> points, std::uint32_t clusters, Rng& rng) {
     std::vector<glm::dvec2> centres;
     std::vector<double> nearest(points.size(), std::numeric_limits<double>::max());
@@ -43,11 +44,11 @@ std::vector<glm::dvec2> firstCentres(std::span<const glm::dvec2> points, std::ui
     }
 }
 
-// How a point belongs to each centre: by (1 / distance^2)^(1 / (m - 1)). Taken relative to the
-// nearest centre no power can overflow, and a point on a centre belongs to it (or to all that lie
-// there) alone.
+// How much a point belongs to each centre: (1 / distance^2)^(1 / (m - 1)). It is computed relative
+// to the nearest centre, so that no power overflows and a point on a centre belongs to it alone (or
+// to all centres that coincide there).
 struct Belonging {
-    std::vector<double> ratio;  // squared distance of the nearest centre / that of this one; 0..1
+    std::vector<double> ratio;  // squared distance of the nearest centre / that of this centre; 0..1
     std::vector<double> share;  // ratio^(1 / (m - 1))
     double nearest = 0;         // squared distance
     double sum = 0;             // of all shares
@@ -62,7 +63,7 @@ struct Belonging {
         sum = 0;
         for (std::size_t k = 0; k < centres.size(); ++k) {
             ratio[k] = ratio[k] > nearest ? nearest / ratio[k] : 1.0;
-            // The default's power, 2, would else be most of the work.
+            // std::pow would take most of the time for the default, whose exponent is 2.
             sum += share[k] = exponent == 2 ? ratio[k] * ratio[k] : std::pow(ratio[k], exponent);
         }
     }
@@ -86,9 +87,9 @@ FuzzyClusters fuzzyCMeans(std::span<const glm::dvec2> points, const FuzzyCluster
         std::fill(weightSum.begin(), weightSum.end(), 0.0);
         std::fill(weightedSum.begin(), weightedSum.end(), glm::dvec2(0));
         double objective = 0, change = 0;
-        // The best memberships for these centres. A point's weight for a centre, membership^m =
-        // (share / sum)^m, needs no power of its own: share^m = share * ratio, and so weight *
-        // distance^2 = nearest * share / sum^m.
+        // The best memberships for these centres. A point's weight for a centre is membership^m =
+        // (share / sum)^m. It needs no further power, since share^m = share * ratio, and so weight
+        // * distance^2 = nearest * share / sum^m.
         for (std::size_t i = 0; i < points.size(); ++i) {
             belonging.measure(points[i], result.centres, m);
             const double sumToM = std::pow(belonging.sum, m);
@@ -107,7 +108,7 @@ FuzzyClusters fuzzyCMeans(std::span<const glm::dvec2> points, const FuzzyCluster
             result.summary.reason = FuzzyClusters::StopReason::Converged;
             break;
         }
-        // The best centres for these memberships. A centre to which nothing belongs stays.
+        // The best centres for these memberships. A centre without members stays.
         for (std::size_t k = 0; k < clusters; ++k)
             if (weightSum[k] > 0) result.centres[k] = weightedSum[k] / weightSum[k];
     }
@@ -115,7 +116,7 @@ FuzzyClusters fuzzyCMeans(std::span<const glm::dvec2> points, const FuzzyCluster
 }
 
 std::uint32_t groupCount(std::size_t instances, double instancesPerGroup) {
-    FANTASCOPE_CHECK(instancesPerGroup > 0, "a group needs more than no instance");
+    FANTASCOPE_CHECK(instancesPerGroup > 0, "instances per group must be > 0");
     return static_cast<std::uint32_t>(std::max(1.0, std::round(static_cast<double>(instances) / instancesPerGroup)));
 }
 

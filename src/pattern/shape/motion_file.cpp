@@ -10,7 +10,7 @@ namespace {
 struct AxisKey {
     const char* key;
     AxisMotion MotionSettings::*axis;
-    bool turns;  // an angle, else a length
+    bool turns;  // about an axis, in radians; else along it, in canvas heights
 };
 constexpr AxisKey kAxisKeys[] = {
     {"group_major", &MotionSettings::groupMajor, false},
@@ -21,12 +21,13 @@ constexpr AxisKey kAxisKeys[] = {
 };
 
 Result<int> readFrames(const ConfigNode& node) {
-    const std::int64_t frames = TRY(node.integer(4, 20'000));  // 40 bytes each for every instance: 20,000 are 2.4 GB for 3000
-    if (frames % 2 != 0) return node.error(fmt::format("{} is odd, an even number is needed", frames));
+    const std::int64_t frames =
+        TRY(node.integer(4, 20'000));  // 40 bytes per frame and instance: 20,000 frames of 3000 instances take 2.4 GB
+    if (frames % 2 != 0) return node.error(fmt::format("{} is odd, must be even", frames));
     return static_cast<int>(frames);
 }
 
-// Starts from `axis`, the default.
+// `axis`: the defaults.
 Result<AxisMotion> readAxis(const ConfigNode& node, AxisMotion axis, bool turns) {
     ConfigFields fields(node);
     fields.optional().number("beta", axis.beta, 0, 10);
@@ -69,7 +70,7 @@ Result<MotionSettings> readMotion(const ConfigNode& node) {
     return motion;
 }
 
-Result<bool> namesAmplitude(const ConfigNode& node) {
+Result<bool> setsAmplitude(const ConfigNode& node) {
     for (const auto& [key, value] : TRY(node.entries())) {
         if (!value.isMap()) continue;
         for (const auto& [ofAxis, number] : TRY(value.entries()))

@@ -9,12 +9,12 @@
 
 namespace fantascope::pattern {
 
-// The value of a `motion:` key (docs/pattern-format.md). Strict; what is absent keeps its default.
-// Whatever is accepted lies within the bounds that MotionSettings states. Thread: reentrant.
+// Reads the value of a `motion:` key (docs/pattern-format.md). Strict; absent keys keep their
+// defaults. The result lies within the bounds that MotionSettings states. Thread: reentrant.
 Result<MotionSettings> readMotion(const ConfigNode& node);
-// Whether it names a magnitude or a range of any axis. `node`: one that readMotion accepts.
-Result<bool> namesAmplitude(const ConfigNode& node);
-// The key and its value at the margin of a file, as whole lines, every setting spelled out.
+// Whether `node`, which readMotion() accepts, sets the magnitude or the range of any axis.
+Result<bool> setsAmplitude(const ConfigNode& node);
+// The `motion:` key and its value as whole lines without indentation, with every setting.
 std::string motionText(const MotionSettings& motion);
 
 }  // namespace fantascope::pattern

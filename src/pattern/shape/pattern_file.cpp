@@ -20,14 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kVersion = 1;
-constexpr std::int64_t kMostPixels = 16'384;  // a side; more than any projector has
-constexpr std::int64_t kMostInstances =
-    100'000;  // far more than can be moved in time; keeps a mistyped file from taking all memory
-constexpr double kLeastSize = 1e-6, kMostSize = 10;  // canvas heights
+constexpr std::int64_t kMaxPixels = 16'384;  // per side; more than any projector has
+// Far more than can be moved in real time; keeps a mistyped file from taking all memory.
+constexpr std::int64_t kMaxInstances = 100'000;
+constexpr double kMinSize = 1e-6, kMaxSize = 10;  // canvas heights
 
 Result<glm::ivec2> readSize(const ConfigNode& node) {
     const auto sides = TRY(node.items(2, 2));
-    return glm::ivec2(TRY(sides[0].integer(1, kMostPixels)), TRY(sides[1].integer(1, kMostPixels)));
+    return glm::ivec2(TRY(sides[0].integer(1, kMaxPixels)), TRY(sides[1].integer(1, kMaxPixels)));
 }
 
 Result<ElementalShape> readShape(const ConfigNode& node) {
@@ -49,7 +49,7 @@ Result<ShapeInstance> readInstance(const ConfigNode& node, const ShapePattern& p
         return glm::dvec2(TRY(parts[0].number(0, pattern.aspect(), "canvas heights")),
                           TRY(parts[1].number(0, 1, "canvas heights")));
     });
-    fields.number("size", instance.size, kLeastSize, kMostSize, "canvas heights");
+    fields.number("size", instance.size, kMinSize, kMaxSize, "canvas heights");
     fields.read("rotation", instance.rotation, [](const ConfigNode& at) -> Result<glm::dvec3> {
         return TRY(at.vector3(-360, 360, "degrees")) * std::numbers::pi / 180.0;
     });
@@ -69,7 +69,7 @@ Result<ShapePattern> patternOf(const ConfigNode& root) {
     fields.choice("guide_transfer", pattern.guideTransfer, {name(GuideTransfer::Srgb), name(GuideTransfer::Linear)});
     fields.read("size", size, readSize);
     fields.integer("seed", pattern.seed, 0, std::numeric_limits<std::int64_t>::max());
-    fields.integer("groups", pattern.groups, 1, kMostInstances);
+    fields.integer("groups", pattern.groups, 1, kMaxInstances);
     fields.list("shapes", pattern.shapes, readShape, 1);
     fields.optional().read("motion", pattern.motion, readMotion);
     fields.read("instances", instances, [](const ConfigNode& node) -> Result<ConfigNode> { return node; });
@@ -77,13 +77,13 @@ Result<ShapePattern> patternOf(const ConfigNode& root) {
     pattern.width = size.x;
     pattern.height = size.y;
 
-    // Only now is it known which shapes and groups there are, in whatever order the file names
-    // them.
+    // Instances are read last, since their bounds depend on shapes and groups, and keys may come in
+    // any order.
     std::unordered_set<std::uint32_t> ids;
-    for (const ConfigNode& node : TRY(instances.items(0, kMostInstances))) {
+    for (const ConfigNode& node : TRY(instances.items(0, kMaxInstances))) {
         const ShapeInstance instance = TRY(readInstance(node, pattern));
         if (!ids.insert(instance.id).second)
-            return node.error(fmt::format("id {} is given twice; each instance has its own", instance.id));
+            return node.error(fmt::format("id {} is given twice; every instance needs its own", instance.id));
         pattern.instances.push_back(instance);
     }
     return pattern;
@@ -94,7 +94,8 @@ std::string instanceText(const ShapeInstance& instance) {
     return fmt::format(
         "  - {{id: {}, shape: {}, group: {}, centre: [{}, {}], size: {}, rotation: [{}, {}, {}], colour: [{}, {}, {}]}}\n", id,
         shape, group, shortest(centre.x), shortest(centre.y), shortest(size), shortestDegrees(rotation.x),
-        shortestDegrees(rotation.y), shortestDegrees(rotation.z), colour.r, colour.g, colour.b);  // fmt writes the shortest float
+        shortestDegrees(rotation.y), shortestDegrees(rotation.z), colour.r, colour.g,
+        colour.b);  // fmt writes the shortest text that reads back as the same float
 }
 
 }  // namespace
@@ -119,7 +120,7 @@ Result<void> writePattern(const fs::path& file, const ShapePattern& pattern) {
     text += pattern.instances.empty() ? "instances: []\n" : "instances:\n";
     for (const ShapeInstance& instance : pattern.instances) text += instanceText(instance);
 
-    // What could not be read back is found before a good file is lost to it.
+    // A text that cannot be read back must not replace a good file.
     if (const auto readable = patternOf(TRY(ConfigNode::parse(text, file))); !readable)
         return readable.error().in("not written, as it could not be read again");
     return writeFile(file, text);

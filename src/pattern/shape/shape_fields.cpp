@@ -9,7 +9,7 @@
 namespace fantascope::pattern {
 namespace {
 
-// The shape, its error led by the place of the node that names it.
+// Adds the node's place in the file to the shape's error.
 Result<ElementalShape> placed(const ConfigNode& node, Result<ElementalShape> shape) {
     if (!shape) return node.error(shape.error().message());
     return shape;
@@ -30,8 +30,7 @@ void ShapeFields::declare(ConfigFields& fields) {
 }
 
 Result<ElementalShape> ShapeFields::chosen(const ConfigNode& node) && {
-    if (builtIn_.has_value() == fromFile_.has_value())
-        return node.error("exactly one kind of shape is needed: 'builtin' or 'file'");
+    if (builtIn_.has_value() == fromFile_.has_value()) return node.error("exactly one of 'builtin' and 'file' is needed");
     return std::move(builtIn_ ? *builtIn_ : *fromFile_);
 }
 

@@ -9,13 +9,12 @@
 
 namespace fantascope::pattern {
 
-// The keys by which a file names an elemental shape: `builtin` or `file`, of which exactly one must
-// stand there.
+// The keys by which a file names an elemental shape: exactly one of `builtin` and `file`.
 class ShapeFields {
 public:
     void declare(ConfigFields& fields);
-    // After fields.finish(). A file's shape has the name by which the file calls it. Error: both
-    // keys, or none.
+    // The shape that was named; called after fields.finish(). A shape from a file is named as the
+    // `file` key writes it. Error: both keys, or none.
     Result<ElementalShape> chosen(const ConfigNode& node) &&;
 
 private:

@@ -17,45 +17,44 @@
 
 namespace fantascope::pattern {
 
-// A mesh to be copied into instances. Its geometric centre is the origin and its farthest vertex at
-// distance 1; x right, y up, z to the viewer.
+// A mesh that is copied into instances. Its centroid is the origin, and its farthest vertex is at
+// distance 1; x right, y up, z towards the viewer.
 struct ElementalShape {
-    std::string name;  // "triangle", or the file as the pattern names it: "sculpture.obj"
+    std::string name;  // "triangle", or the file as the pattern file writes it: "sculpture.obj"
     TriangleMesh mesh;
-    std::filesystem::path file = {};  // that the mesh came from, absolute or relative to the working directory; empty: built in
+    std::filesystem::path file = {};  // the mesh's file, absolute or relative to the working directory; empty: built in
 };
 
-// One copy of an elemental shape in the picture plane.
+// One copy of an elemental shape in the canvas plane.
 struct ShapeInstance {
-    std::uint32_t id =
-        0;  // stable for the life of the pattern, never given twice; its random streams derive from (seed, id, axis)
+    // Stable for the life of the pattern, never given twice. The instance's random streams derive
+    // from (seed, id, axis).
+    std::uint32_t id = 0;
     std::uint32_t shape = 0;   // index into ShapePattern::shapes
-    std::uint32_t group = 0;   // its movement group, below ShapePattern::groups
+    std::uint32_t group = 0;   // movement group, below ShapePattern::groups
     glm::dvec2 centre{0.0};    // canvas units: [0, aspect] x [0, 1], y down
-    double size = 0;           // canvas units: the radius of the sphere around the shape
-    glm::dvec3 rotation{0.0};  // radians about x, y, z in the shape's frame, see rotationXyz
+    double size = 0;           // canvas heights: the radius of the sphere around the shape
+    glm::dvec3 rotation{0.0};  // radians about x, y, z in the shape's frame, see rotationXyz()
     glm::vec3 colour{1.0f};    // linear light, 0..1
 };
 
-// Where an instance is at one moment: its rest values plus its movement.
+// The pose of an instance at one moment: its rest plus its movement.
 struct InstancePose {
     glm::dvec2 centre{0.0};
     double size = 0;
     glm::dvec3 rotation{0.0};
 };
 
-// How a guide's stored values become linear light.
+// How a guide's stored values map to linear light.
 enum class GuideTransfer { Srgb, Linear };
-constexpr std::string_view name(GuideTransfer transfer) {
-    return transfer == GuideTransfer::Srgb ? "srgb" : "linear";
-}  // in files and reports
+// As files and reports write it.
+constexpr std::string_view name(GuideTransfer transfer) { return transfer == GuideTransfer::Srgb ? "srgb" : "linear"; }
 
-// A shape pattern: everything that is needed to draw it at any time. Value type; thread-safe to
-// read.
+// A shape pattern: everything needed to draw it at any time. Value type; thread-safe to read.
 struct ShapePattern {
-    std::filesystem::path guide;  // the drawing it reads as, absolute or relative to the working directory; for comparisons
+    std::filesystem::path guide;  // the drawing that it reads as, absolute or relative to the working directory
     GuideTransfer guideTransfer = GuideTransfer::Srgb;
-    int width = 0, height = 0;  // pixels in which it was compared with the guide; the canvas's aspect is width / height
+    int width = 0, height = 0;  // pixels of the comparison with the guide; the canvas's aspect is width / height
     std::uint64_t seed = 0;     // below 2^63 in files
     std::uint32_t groups = 1;
     std::vector<ElementalShape> shapes;
@@ -64,22 +63,22 @@ struct ShapePattern {
 
     double aspect() const { return static_cast<double>(width) / height; }
     std::size_t triangleCount() const;  // of all instances
-    double meanSize() const;            // of all instances, canvas heights; 0 without any
+    double meanSize() const;            // of all instances, canvas heights; 0 without instances
 };
 
-// Rotation, size and the turned-over y of an orthographic view: canvas point = centre + (m * v).xy,
-// and (m * v).z grows towards the viewer.
+// Rotation, size and the flip of y of an orthographic view: canvas point = centre + (m * v).xy, and
+// (m * v).z grows towards the viewer.
 glm::dmat3 canvasFromShape(const InstancePose& pose);
 
-// *.pattern.yaml (docs/pattern-format.md), strict; its shape files and its guide stand in the same
-// folder or below it. The guide is not looked for: a show plays without. Error: names file, line,
-// column, key.
+// Reads a *.pattern.yaml (docs/pattern-format.md), strictly. Its shape files and its guide lie in
+// its folder or below it. The guide need not exist: a show plays without it. Error: names file,
+// line, column, key.
 Result<ShapePattern> readPattern(const std::filesystem::path& file);
-// Written aside and renamed; the same pattern gives the same bytes, whatever the folder. Reading it
-// gives the same pattern, but for the last bit of some angles (files have degrees); a pattern that
-// was read comes back exactly. Shapes and guide must lie in the file's folder or below it (copied
-// there by the caller). Error: they do not, or readPattern would refuse the file; then nothing is
-// written.
+// Writes to a temporary file and renames it. The same pattern gives the same bytes in any folder.
+// Reading the file gives the same pattern, except for the last bit of some angles (files have
+// degrees); a pattern that was read from a file is written exactly. Shape files and guide must lie
+// in the file's folder or below it; the caller copies them there. Error: they do not, or
+// readPattern() would refuse the file; then nothing is written.
 Result<void> writePattern(const std::filesystem::path& file, const ShapePattern& pattern);
 
 }  // namespace fantascope::pattern

@@ -14,10 +14,10 @@
 namespace fantascope::render {
 namespace {
 
-// Distances are worked out for a lattice over the canvas and are straight in between: they bend
+// Distances are computed on a lattice over the canvas and interpolated linearly. They have kinks
 // only where two edges are equally near.
 constexpr int kLattice = 192;  // cells each way
-constexpr int kPieces = 48;    // of each of a picture's four edges, since a mesh bends them
+constexpr int kPieces = 48;    // straight pieces per edge of a picture, since a mesh bends edges
 
 bool within(glm::dvec2 point, glm::dvec2 low, glm::dvec2 high) {
     return point.x >= low.x && point.y >= low.y && point.x <= high.x && point.y <= high.y;
@@ -30,27 +30,28 @@ double distanceTo(glm::dvec2 point, glm::dvec2 from, glm::dvec2 to) {
     return glm::distance(point, from + share * along);
 }
 
-// One projector's reach over the canvas.
+// What one projector covers of the canvas. Points of the unit canvas are in widths and heights of
+// the canvas, 0..1.
 class Reach {
 public:
     explicit Reach(const Projection& projection) : projection_(projection) {}
 
-    // Whether its pixels, lit or black, fall onto a point of the canvas's plane.
-    bool shines(glm::dvec2 canvas) const {
-        return within(projection_.warp.projectorFromCanvas(canvas), glm::dvec2(0), glm::dvec2(projection_.size));
+    // Whether one of its pixels, lit or black, falls on a point of the canvas's plane.
+    bool shines(glm::dvec2 unitCanvas) const {
+        return within(projection_.warp.projectorFromCanvas(unitCanvas), glm::dvec2(0), glm::dvec2(projection_.size));
     }
-    // Whether its part of the picture does.
-    bool shows(glm::dvec2 canvas) const {
+    // Whether the part of the canvas that it shows contains the point.
+    bool shows(glm::dvec2 unitCanvas) const {
         const CanvasPart& part = projection_.warp.shape().part;
-        return within(canvas, part.low, part.high) && shines(canvas);
+        return within(unitCanvas, part.low, part.high) && shines(unitCanvas);
     }
 
-    // Finds those edges of its picture that lie inside another one, and how far the canvas is from
-    // them.
+    // Finds those edges of its picture that lie inside another picture, and the canvas's distances
+    // from them.
     void measure(std::span<const Reach> all, int threads) {
         std::vector<std::pair<glm::dvec2, glm::dvec2>> pieces;
-        // `beyond`: just outside of the picture. An edge that ends the other picture too is none to
-        // blend at.
+        // `beyond`: a point just outside the picture. There is nothing to blend at an edge where
+        // the other picture ends too.
         const auto keep = [&](glm::dvec2 from, glm::dvec2 to, glm::dvec2 beyond) {
             const auto covers = [&](const Reach& other) { return &other != this && other.shows(beyond); };
             if (std::any_of(all.begin(), all.end(), covers)) pieces.emplace_back(from, to);
@@ -63,10 +64,10 @@ public:
                 const auto at = [&](double end) {
                     return glm::mix(corners[edge], corners[(edge + 1) % 4], (piece + end) / kPieces);
                 };
-                // An edge of the canvas's part where it is seen,
+                // Edges of the canvas's part, where the projector shows them,
                 const auto onPart = [&](double end) { return glm::mix(part.low, part.high, at(end)); };
                 if (shines(onPart(0.5))) keep(onPart(0), onPart(1), onPart(0.5) + kBeyond * outwards[edge]);
-                // and of the projector's own raster where that cuts the part off.
+                // and edges of the projector's raster, where it clips that part.
                 const auto onRaster = [&](double end, double pixels) {
                     return projection_.warp.canvasFromProjector(at(end) * size + pixels * outwards[edge]);
                 };
@@ -82,29 +83,29 @@ public:
                 }
         });
     }
-    // How much it wants to have of the light at a point of the canvas, beside what the others want;
-    // none where it shows nothing.
-    double claim(glm::dvec2 canvas) const {
-        if (!shows(canvas)) return 0;
-        const glm::dvec2 at = glm::clamp(canvas, 0.0, 1.0) * double(kLattice);
+    // Its claim on the light at a point of the canvas, relative to the other projectors' claims; 0
+    // where it shows nothing.
+    double claim(glm::dvec2 unitCanvas) const {
+        if (!shows(unitCanvas)) return 0;
+        const glm::dvec2 at = glm::clamp(unitCanvas, 0.0, 1.0) * double(kLattice);
         const glm::ivec2 cell = glm::min(glm::ivec2(at), kLattice - 1);
         const glm::dvec2 share = at - glm::dvec2(cell);
         const double* corner = distances_.data() + cell.y * (kLattice + 1) + cell.x;
         const double distance = glm::mix(glm::mix(corner[0], corner[1], share.x),
                                          glm::mix(corner[kLattice + 1], corner[kLattice + 2], share.x), share.y);
-        return std::max(distance * distance, 1e-12);  // its square starts and ends without a kink
+        return std::max(distance * distance, 1e-12);  // the square makes shares start and end smoothly
     }
     double blackLevel() const { return projection_.light.blackLevel; }
 
 private:
     static constexpr double kBeyond = 1e-3;  // widths and heights of the canvas
-    static constexpr double kFar = 2;        // from an edge that is none: more than the canvas is wide
+    static constexpr double kFar = 2;        // distance if there is no edge: more than the canvas's width
 
     const Projection& projection_;
     std::vector<double> distances_;  // [row][column] of the lattice, in widths and heights of the canvas
 };
 
-// Light that a mask leaves at a pixel, 0..1.
+// The share of the light that a mask lets through at a pixel, 0..1.
 double lightThrough(const Mask& mask, glm::dvec2 pixel, glm::ivec2 size) {
     if (mask.image) {
         const GreyImage& image = *mask.image;
@@ -116,8 +117,8 @@ double lightThrough(const Mask& mask, glm::dvec2 pixel, glm::ivec2 size) {
         const glm::dvec2 share = at - corner;
         return glm::mix(glm::mix(value(0, 0), value(1, 0), share.x), glm::mix(value(0, 1), value(1, 1), share.x), share.y);
     }
-    // How far inside the polygon: a point is inside when a ray from it crosses the edges an odd
-    // number of times.
+    // The signed distance from the polygon's edges. A point is inside if a ray from it crosses the
+    // edges an odd number of times.
     double distance = INFINITY;
     bool inside = false;
     for (std::size_t i = 0; i < mask.polygon.size(); ++i) {
@@ -126,7 +127,7 @@ double lightThrough(const Mask& mask, glm::dvec2 pixel, glm::ivec2 size) {
         if ((a.y > pixel.y) != (b.y > pixel.y) && pixel.x < a.x + (pixel.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
     }
     if (!inside) distance = -distance;
-    // An edge is never sharper than a pixel, so that it does not show steps.
+    // An edge is at least a pixel soft, so that it shows no steps.
     const double hidden = std::clamp(distance / std::max(mask.feather, 1.0) + 0.5, 0.0, 1.0);
     return mask.hidesOutside ? hidden : 1 - hidden;
 }
@@ -139,22 +140,22 @@ std::optional<BlendMap> blendMap(std::span<const Projection> onCanvas, std::size
     std::vector<Reach> reaches(onCanvas.begin(), onCanvas.end());
     for (Reach& reach : reaches) reach.measure(reaches, threads);
 
-    // The blacks of all projectors that shine on a point, and how many they are.
-    const auto blackAt = [&](glm::dvec2 canvas) {
+    // The sum of the black levels of all projectors that shine on a point, and their number.
+    const auto blackAt = [&](glm::dvec2 unitCanvas) {
         std::pair<double, int> black{0, 0};
         for (const Reach& reach : reaches)
-            if (reach.shines(canvas)) black = {black.first + reach.blackLevel(), black.second + 1};
+            if (reach.shines(unitCanvas)) black = {black.first + reach.blackLevel(), black.second + 1};
         return black;
     };
-    // Every place where several projectors shine is on one of them: a look at some of the pixels of
-    // each is enough.
+    // Every overlap lies in some projector's picture, so it is enough to sample each picture's
+    // pixels.
     double brightestBlack = 0;
     for (const Projection& projection : onCanvas) {
         constexpr int kLooks = 96;
         for (int i = 0; i < kLooks * kLooks; ++i) {
             const glm::dvec2 pixel = (glm::dvec2(i % kLooks, i / kLooks) + 0.5) / double(kLooks) * glm::dvec2(projection.size);
-            if (const auto canvas = projection.warp.canvasFromProjector(pixel))
-                brightestBlack = std::max(brightestBlack, blackAt(*canvas).first);
+            if (const auto unitCanvas = projection.warp.canvasFromProjector(pixel))
+                brightestBlack = std::max(brightestBlack, blackAt(*unitCanvas).first);
         }
     }
 
@@ -164,12 +165,12 @@ std::optional<BlendMap> blendMap(std::span<const Projection> onCanvas, std::size
         for (int x = 0; x < own.size.x; ++x) {
             const glm::dvec2 pixel(x + 0.5, y + 0.5);
             double share = 1, lift = 0;
-            if (const auto canvas = own.warp.canvasFromProjector(pixel)) {
+            if (const auto unitCanvas = own.warp.canvasFromProjector(pixel)) {
                 double claims = 0;
-                for (const Reach& reach : reaches) claims += reach.claim(*canvas);
-                const double claim = reaches[which].claim(*canvas);
+                for (const Reach& reach : reaches) claims += reach.claim(*unitCanvas);
+                const double claim = reaches[which].claim(*unitCanvas);
                 if (claims > 0) share = claim / claims;
-                const auto [black, count] = blackAt(*canvas);
+                const auto [black, count] = blackAt(*unitCanvas);
                 if (count > 0) lift = (brightestBlack - black) / count / range;
             }
             for (const Mask& mask : own.masks) share *= lightThrough(mask, pixel, own.size);

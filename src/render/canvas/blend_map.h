@@ -11,18 +11,18 @@
 
 namespace fantascope::render {
 
-// What becomes of the light that an output draws, pixel by pixel: x times that light plus y, all
-// linear, 1 is the projector's white.
+// How an output's light is changed pixel by pixel: to x times that light plus y. Linear light; 1 is
+// the projector's white.
 using BlendMap = Image<glm::vec2>;
 
-// The map of one of the projectors that throw parts of one canvas: where pictures overlap, each
-// gives a share of the light and the shares add up to one; every black is lifted to that of the
-// place where most projectors shine on, since none of them is dark; masks dim. Nothing if there is
-// nothing to do: alone on its canvas and without a mask.
+// The map of projector `which` of those that show parts of one canvas. Where pictures overlap, each
+// contributes a share of the light, and the shares add up to one. Projectors leak light when black,
+// so all blacks are raised to that of the brightest overlap. Masks dim. Nothing if the projector is
+// alone on its canvas and has no mask.
 //
-// A share grows from nothing at those edges of the projector's picture that lie in another one,
-// with the distance from there (after Raskar et al. 1999, section 5), and has no kink at its ends.
-// It follows from the warps alone. `threads`: to work on it with.
+// A share is 0 at those edges of the projector's picture that lie inside another picture, and grows
+// with the distance from them (after Raskar et al. 1999, section 5), smoothly at both ends. It
+// follows from the warps alone. `threads`: how many to use.
 std::optional<BlendMap> blendMap(std::span<const Projection> onCanvas, std::size_t which, int threads);
 
 }  // namespace fantascope::render

@@ -8,18 +8,18 @@
 namespace fantascope::render {
 namespace {
 
-// Projector pixels, y down, to OpenGL's picture, y up and -1 .. 1.
+// From projector pixels, y down, to clip space, y up and -1 .. 1.
 glm::dmat3 clipFromProjector(glm::ivec2 size) { return {2.0 / size.x, 0, 0, 0, -2.0 / size.y, 0, -1, 1, 1}; }
 
 }  // namespace
 
 glm::dmat3 clipFromPicture(const CanvasPlace& place) {
     const glm::dmat3 warp = clipFromProjector(place.size) * place.warp.keystoneFromPicture().matrix();
-    // A projective map is free in scale: the least w of the picture becomes 1, so that depths of 0
-    // .. 1 stay in front of the far plane.
-    double least = INFINITY;
-    for (const glm::dvec2 corner : rectangleCorners(1, 1)) least = std::min(least, (warp * glm::dvec3(corner, 1)).z);
-    return warp / least;
+    // The scale of a homography is free. It is set so that the minimum w in the picture is 1, which
+    // keeps depths of 0 .. 1 in front of the far plane.
+    double minW = INFINITY;
+    for (const glm::dvec2 corner : rectangleCorners(1, 1)) minW = std::min(minW, (warp * glm::dvec3(corner, 1)).z);
+    return warp / minW;
 }
 
 CanvasPart shownInPicture(const CanvasPlace& place) {

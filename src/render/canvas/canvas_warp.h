@@ -13,15 +13,15 @@ struct CanvasPlace {
     Warp warp = Warp::straight({1, 1});
 };
 
-// The keystone of a canvas [0, aspect] x [0, 1] in OpenGL's picture: (x, y, w) = result * (canvas
-// x, canvas y, 1), w >= 1 all over the part of the canvas that is shown.
+// The keystone from a canvas [0, aspect] x [0, 1] to clip space: (x, y, w) = result * (canvas x,
+// canvas y, 1), with w >= 1 on the whole part of the canvas that is shown.
 glm::dmat3 clipFromCanvas(double aspect, const CanvasPlace& place);
 
-// The same of the picture's own square, 0 .. 1 from its top left.
+// The same from the picture's unit square, 0 .. 1 from its top left.
 glm::dmat3 clipFromPicture(const CanvasPlace& place);
 
-// What is seen of the canvas, in the picture's own square: all of that, unless the canvas ends
-// before the picture does.
+// The part of the picture's unit square that shows canvas: all of it, unless the canvas ends inside
+// the picture.
 CanvasPart shownInPicture(const CanvasPlace& place);
 
 }  // namespace fantascope::render

@@ -13,7 +13,8 @@
 namespace fantascope::render {
 namespace {
 
-// Facets whose normals differ by less (1 - cosine; some 0.8 degrees) are parallel.
+// Facets count as parallel if 1 - cosine of the angle between their normals is smaller; some 0.8
+// degrees.
 constexpr float kParallel = 1e-4f;
 
 glm::vec3 normalOf(const TriangleMesh& mesh, glm::uvec3 triangle) {
@@ -23,7 +24,7 @@ glm::vec3 normalOf(const TriangleMesh& mesh, glm::uvec3 triangle) {
     return length > 0 ? across / length : glm::vec3(0);
 }
 
-// Whether every edge is walked once in each direction, and the facets look outwards.
+// Whether triangles traverse every edge once in each direction, and facets face outwards.
 bool isClosed(const TriangleMesh& mesh) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> walked;
     float volume = 0;
@@ -42,7 +43,7 @@ TriangleMesh cutUp(TriangleMesh mesh, double longest) {
     for (bool cut = true; cut;) {
         cut = false;
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
-        // The middle of an edge that is too long.
+        // The vertex in the middle of an edge that is too long.
         const auto middle = [&](std::uint32_t a, std::uint32_t b) -> std::optional<std::uint32_t> {
             if (static_cast<double>(glm::distance(mesh.vertices[a], mesh.vertices[b])) <= longest) return std::nullopt;
             const auto [place, isNew] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.vertices.size()));
@@ -54,7 +55,7 @@ TriangleMesh cutUp(TriangleMesh mesh, double longest) {
             std::array<std::optional<std::uint32_t>, 3> cuts = {middle(t.x, t.y), middle(t.y, t.z), middle(t.z, t.x)};
             const auto count = std::count_if(cuts.begin(), cuts.end(), [](const auto& place) { return place.has_value(); });
             cut |= count > 0;
-            // Turned round so that the edges that are cut come first: xy, then yz, then zx.
+            // Rotates the corners so that the cut edges come first: xy, then yz, then zx.
             while (count > 0 && !(cuts[0] && (count == 1 || cuts[1]))) {
                 t = {t.y, t.z, t.x};
                 std::rotate(cuts.begin(), cuts.begin() + 1, cuts.end());
@@ -88,8 +89,8 @@ FacetMesh facetMesh(const TriangleMesh& mesh) {
     for (const glm::vec3 position : mesh.vertices) facets.vertices.push_back({position, glm::vec3(0)});
     std::vector<bool> taken(mesh.vertices.size(), false);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        // Turn the triangle round until its last corner is one that no other triangle has taken;
-        // failing that, copy one.
+        // Rotates the corners until the last one is not the last of another triangle; if there is
+        // none, copies one.
         std::array<std::uint32_t, 3> corners = {mesh.triangles[t].x, mesh.triangles[t].y, mesh.triangles[t].z};
         for (int turn = 0; turn < 2 && taken[corners[2]]; ++turn)
             std::rotate(corners.begin(), corners.begin() + 1, corners.end());

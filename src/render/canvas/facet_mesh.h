@@ -9,28 +9,29 @@
 
 namespace fantascope::render {
 
-// A vertex whose normal speaks for one whole facet.
+// A vertex whose normal is that of a whole facet.
 struct FacetVertex {
     glm::vec3 position{0};
-    glm::vec3 normal{
-        0};  // unit, of the facet whose last corner this is; zero: the facet is not shaded, or it is nobody's last corner
+    // Unit normal of the facet whose last corner this is. Zero: that facet is not shaded, or there
+    // is no such facet.
+    glm::vec3 normal{0};
 };
 
-// A mesh in which every triangle's last corner belongs to it alone, so that this corner can carry
-// what holds for the whole facet (OpenGL's provoking vertex) while the other corners are shared:
-// about as many vertices as triangles, where separate facets would need three times as many.
+// A mesh in which every triangle is the only one with its last corner. That corner carries the
+// facet's data (OpenGL's provoking vertex), and the other corners are shared. It has about as many
+// vertices as triangles; separate facets would need three times as many.
 struct FacetMesh {
     std::vector<FacetVertex> vertices;
     std::vector<std::uint32_t> indices;  // three for each triangle
-    bool closed = false;                 // the surface has an inside, so that facets turned away can never be seen
+    bool closed = false;                 // the surface is closed, so back faces are never seen
 };
 
-// The same surface with no edge longer than `longest`: long edges get a point in their middle, on
-// both sides alike, until none is long.
+// The same surface with no edge longer than `longest`: longer edges are halved, in both their
+// triangles, until none is left.
 TriangleMesh cutUp(TriangleMesh mesh, double longest);
 
-// The same triangles with their facets' normals; those of a flat mesh (all facets parallel) are
-// zero, since a paper shape has no facets to tell apart.
+// The same triangles with their facets' normals. Those of a flat mesh (all facets parallel) are
+// zero, since a flat shape is not shaded.
 FacetMesh facetMesh(const TriangleMesh& mesh);
 
 }  // namespace fantascope::render

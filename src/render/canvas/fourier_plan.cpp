@@ -12,14 +12,14 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// A transform's radices, largest first, and its length.
+// A transform's radices, in falling order, and its length.
 struct Passes {
     std::vector<int> radices;
     long long length = 1;
     long long cost() const { return length * static_cast<long long>(radices.size()); }
 };
 
-// Tries all radices that may follow `begun` until there are enough points; keeps the cheapest in
+// Extends `begun` by further radices until there are enough points; keeps the cheapest result in
 // `best`.
 void extend(const Passes& begun, int points, Passes& best) {
     if (begun.length >= points && !begun.radices.empty()) {
@@ -45,7 +45,7 @@ std::vector<Complex> unitRoots(int n) {
 }  // namespace
 
 FourierPlan::FourierPlan(int points) {
-    FANTASCOPE_CHECK(points > 0, "a transform has a point at least");
+    FANTASCOPE_CHECK(points > 0, "a transform has at least one point");
     Passes best;
     extend({}, points, best);
     radices_ = best.radices;
@@ -64,14 +64,14 @@ int FourierPlan::frequencyAt(int place) const {
 }
 
 std::vector<std::complex<float>> filterSpectrum(const GreyImage& filter, const FourierPlan& rows, const FourierPlan& columns) {
-    FANTASCOPE_CHECK(filter.width() % 2 == 1 && filter.height() % 2 == 1, "a filter has a pixel in its centre");
+    FANTASCOPE_CHECK(filter.width() % 2 == 1 && filter.height() % 2 == 1, "a filter's sides are odd");
     const auto width = static_cast<std::size_t>(rows.length());
     const std::vector<Complex> rootsOfRows = unitRoots(rows.length()), rootsOfColumns = unitRoots(columns.length());
     const auto root = [](const std::vector<Complex>& roots, int frequency, int at) {
         const auto n = static_cast<long long>(roots.size());
         return roots[static_cast<std::size_t>(((static_cast<long long>(frequency) * at) % n + n) % n)];
     };
-    // Every row of the filter, then every column of those.
+    // Transforms every row of the filter, then every column of the result.
     std::vector<std::vector<Complex>> ofRows(static_cast<std::size_t>(filter.height()), std::vector<Complex>(width));
     for (int y = 0; y < filter.height(); ++y)
         for (int place = 0; place < rows.length(); ++place) {

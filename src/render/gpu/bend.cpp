@@ -10,11 +10,10 @@
 namespace fantascope::render::gpu {
 namespace {
 
-// The warp is looked up in a lattice so fine that what lies between its points may be taken as
-// straight.
+// The lattice is so fine that interpolation between its nodes may be linear.
 constexpr int kNodes = 129;
 
-// Of assets/shaders/bend.glsl.
+// Uniform location and texture unit of assets/shaders/bend.glsl.
 constexpr GLint kPictureFromClip = 40;
 constexpr GLuint kMoves = 15;
 

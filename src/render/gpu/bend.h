@@ -12,30 +12,30 @@
 
 namespace fantascope::render::gpu {
 
-// A warp's mesh as vertex shaders look it up: how far each point of the picture is moved from where
-// the keystone has it. Triangles are bent at their corners alone, so those who draw keep them
-// small. Thread: the context's.
+// A warp's mesh as a table for vertex shaders: the offset of each point of the picture from where
+// the keystone has it. It bends triangles only at their corners, so callers keep triangles small.
+// Thread: the context's.
 class Bend {
 public:
-    // What a vertex shader needs to call bent(clip), as loadProgram()'s definitions. Error: the
-    // file cannot be read.
+    // The definitions for loadProgram() that let a vertex shader call bent(clip). Error: the file
+    // cannot be read.
     static Result<std::string> definitions(const std::filesystem::path& shaders);
-    // Canvas heights that a triangle's edge may be long: in a mesh of 4 x 4 points that are moved
-    // by 50 pixels of 1080, what is between its ends is then a tenth of a pixel off.
+    // Maximum length of a triangle's edge, canvas heights. In a mesh of 4 x 4 points with offsets
+    // of 50 pixels of 1080, the error along such an edge is a tenth of a pixel.
     static constexpr double kLongestEdge = 1.0 / 32;
 
     Bend();
 
-    // Takes the mesh of `place`, if its warp has one. No allocation after the first.
+    // Takes over the mesh of `place`, if its warp has one. Allocates only in the first call.
     void follow(const CanvasPlace& place);
     bool any() const { return any_; }
-    // For the program in use, made with definitions().
+    // Binds the table for the current program, which was made with definitions().
     void use() const;
 
 private:
     bool any_ = false;
     glm::mat3 pictureFromClip_{1};
-    Texture moves_;  // clip units; from the picture's top left
+    Texture moves_;  // offsets in clip units; from the picture's top left
     std::vector<glm::vec2> nodes_;
 };
 

@@ -7,9 +7,9 @@
 namespace fantascope::render::gpu {
 namespace {
 
-// Of assets/shaders/canvas.vert.
+// Uniform locations of assets/shaders/canvas.vert.
 constexpr GLint kClipFromCanvas = 0, kPart = 41;
-constexpr int kCells = 48;  // each way, where a mesh bends the canvas: no wider than Bend::kLongestEdge on a canvas of 3 : 2
+constexpr int kCells = 48;  // each way, if a mesh bends the canvas: at most Bend::kLongestEdge wide on a canvas of 3 : 2
 
 }  // namespace
 

@@ -14,19 +14,20 @@
 
 namespace fantascope::render::gpu {
 
-// The shown part of a canvas as something to draw on, through the output's warp: one rectangle, or
-// many small ones where a mesh bends it. A fragment shader is given `onCanvas`, 0 .. 1 in both
-// directions. Thread: the context's.
+// The geometry of a canvas's shown part, through the output's warp: one rectangle, or many small
+// ones if a mesh bends it. The fragment shader gets `onCanvas`, 0 .. 1 in both directions. Thread:
+// the context's.
 class CanvasSurface {
 public:
-    // `bend`: the mesh of the places that it follows. `programs` and `bend` outlive it. Error: the
-    // fragment shader does not compile.
+    // `bend`: the mesh of the same output. `programs` and `bend` outlive it. Error: the fragment
+    // shader does not compile.
     static Result<CanvasSurface> create(const std::string& fragmentShader, const std::string& definitions, const Bend& bend,
                                         ProgramCache& programs);
 
-    // Where the output shows the canvas. Before the first drawing, and again whenever that changes.
+    // Sets where the output shows the canvas; called before the first draw() and after every
+    // change.
     void follow(const CanvasPlace& place);
-    // Makes the fragment shader's program current, for its uniforms to be set; then draw() draws.
+    // Makes the fragment shader's program current, so that its uniforms can be set before draw().
     void use();
     void draw();
 

@@ -40,7 +40,7 @@ unsigned ProgramKind::create() { return glCreateProgram(); }
 void ProgramKind::destroy(unsigned name) { glDeleteProgram(name); }
 
 Result<void> checkMemory() {
-    constexpr int kMaxErrors = 8;  // that OpenGL remembers, a kind each
+    constexpr int kMaxErrors = 8;  // OpenGL remembers one error of each kind
     for (int errors = 0; errors < kMaxErrors; ++errors) {
         const GLenum error = glGetError();
         if (error == GL_NO_ERROR) return {};

@@ -6,8 +6,8 @@
 
 namespace fantascope::render::gpu {
 
-// While it lives, handles and fences on this thread are destroyed without OpenGL calls: their
-// context is lost, and they with it.
+// While it exists, handles and fences on this thread are destroyed without OpenGL calls: they were
+// lost with their context.
 class Forgetting {
 public:
     Forgetting() : before_(std::exchange(on_, true)) {}
@@ -21,8 +21,8 @@ private:
     bool before_;
 };
 
-// Owns one OpenGL object; typed, so that a buffer cannot pass for a framebuffer. Made and destroyed
-// while its context is current; it dies with the context at the latest. Thread: the context's.
+// Owns one OpenGL object; typed, so that a buffer cannot be used as a framebuffer. It is created
+// and destroyed while its context is current, and must not outlive it. Thread: the context's.
 template <class Kind>
 class Handle {
 public:
@@ -83,10 +83,11 @@ using MultisampleTexture = Handle<MultisampleTextureKind>;
 using Framebuffer = Handle<FramebufferKind>;
 using Program = Handle<ProgramKind>;
 
-// Error: OpenGL ran out of memory since the last call, and what was made since may have none.
+// Error: OpenGL has run out of memory since the last call, so objects created since may be
+// unusable.
 Result<void> checkMemory();
 
-// A point in the stream of commands that can be waited for. Empty until set().
+// A point in OpenGL's command stream that can be polled or waited for. Empty until set().
 class Fence {
 public:
     Fence() = default;
@@ -96,12 +97,12 @@ public:
         std::swap(sync_, other.sync_);
         return *this;
     }
-    // After all commands so far.
+    // Sets the point behind all commands so far.
     void set();
-    // Whether that point is passed, and sees to it that it will be; never waits. An empty fence is
-    // passed.
+    // Whether the point has been passed. Flushes, so that it eventually is; never waits. An empty
+    // fence has been passed.
     bool passed();
-    // Returns once that point is passed and empties the fence; at once if it is empty.
+    // Waits until the point has been passed and empties the fence. Returns at once if it is empty.
     void wait();
 
 private:

@@ -68,8 +68,8 @@ void InstancedMeshes::draw() {
     glBindVertexArray(vertexArray_.name());
     glFrontFace(mirrored_ ? GL_CW : GL_CCW);
     for (const Part& part : parts_) {
-        // Half of a closed surface is turned away; a software OpenGL would spend half of its time
-        // on it.
+        // Half of a closed surface faces away; without culling, a software OpenGL spends half of
+        // its time on it.
         (part.closed ? glEnable : glDisable)(GL_CULL_FACE);
         glDrawElementsInstancedBaseVertexBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(part.indexCount), GL_UNSIGNED_INT,
                                                       reinterpret_cast<const void*>(part.firstIndex * sizeof(std::uint32_t)),

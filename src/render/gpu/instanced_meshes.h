@@ -20,7 +20,7 @@ struct Instance {
     glm::vec3 colour{0};        // linear light
 };
 
-// Meshes with a fixed number of instances each, whose places change every frame. Thread: the
+// Meshes, each with a fixed number of instances whose places change every frame. Thread: the
 // context's.
 class InstancedMeshes {
 public:
@@ -28,26 +28,25 @@ public:
         FacetMesh mesh;
         std::size_t instances = 0;
     };
-    // `mirrored`: clipFromShape turns the shapes inside out, as a picture for rear projection does.
+    // `mirrored`: clipFromShape mirrors, as for rear projection.
     InstancedMeshes(std::span<const Mesh> meshes, bool mirrored);
 
     void setMirrored(bool mirrored) { mirrored_ = mirrored; }
-    // The instances of the next draw(), those of the first mesh first; to be written whole. May
-    // wait for the drawing of three frames ago.
+    // The instances of the next draw(), mesh by mesh; the caller writes all of them. May wait for
+    // the draw() of three frames ago.
     std::span<Instance> place();
-    // Draws all instances as they were placed last, with the program and the depth test that are
-    // set.
+    // Draws all instances where they were placed last, with the current program and depth test.
     void draw();
 
 private:
-    // One mesh's share of the buffers.
+    // One mesh's range of the buffers.
     struct Part {
         unsigned indexCount, firstIndex;
         int firstVertex;
         unsigned instanceCount, firstInstance;
         bool closed;
     };
-    // The GPU may still read the instances of the frames before while the next are written.
+    // The GPU may still read earlier frames' instances while the next ones are written.
     static constexpr std::size_t kFramesInFlight = 3;
 
     std::vector<Part> parts_;
@@ -57,7 +56,7 @@ private:
     Buffer vertices_, indices_, instances_;
     Instance* mapped_ = nullptr;  // all of instances_: kFramesInFlight times instanceCount_
     std::array<Fence, kFramesInFlight> drawn_;
-    std::size_t frame_ = 0;  // the third of instances_ that was placed last
+    std::size_t frame_ = 0;  // which third of instances_ was placed last
 };
 
 }  // namespace fantascope::render::gpu

@@ -13,13 +13,13 @@ constexpr GLfloat kUncovered[] = {0, 0, 0, 0};
 }  // namespace
 
 Result<LayerPicture> LayerPicture::create(glm::ivec2 size, int samples) {
-    GLint mostSamples = 0, largest = 0;
-    glGetIntegerv(GL_MAX_COLOR_TEXTURE_SAMPLES, &mostSamples);
+    GLint maxSamples = 0, largest = 0;
+    glGetIntegerv(GL_MAX_COLOR_TEXTURE_SAMPLES, &maxSamples);
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
-    if (samples < 1 || samples > mostSamples)
-        return Error(fmt::format("{} samples a pixel: this OpenGL has 1 .. {}", samples, mostSamples));
+    if (samples < 1 || samples > maxSamples)
+        return Error(fmt::format("{} samples per pixel: OpenGL has 1 .. {} here", samples, maxSamples));
     if (std::min(size.x, size.y) < 1 || std::max(size.x, size.y) > largest)
-        return Error(fmt::format("{} x {} pixels: this OpenGL draws 1 .. {} in each dimension", size.x, size.y, largest));
+        return Error(fmt::format("{} x {} pixels: OpenGL draws 1 .. {} per dimension here", size.x, size.y, largest));
 
     LayerPicture picture(size);
     const GLuint framebuffer = picture.framebuffer_.name();
@@ -29,7 +29,8 @@ Result<LayerPicture> LayerPicture::create(glm::ivec2 size, int samples) {
     glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, picture.roots_.name(), 0);
     glNamedFramebufferRenderbuffer(framebuffer, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, picture.depth_.name());
     if (glCheckNamedFramebufferStatus(framebuffer, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        return Error(fmt::format("{} x {} pixels with {} samples: this OpenGL cannot draw them", size.x, size.y, samples));
+        return Error(
+            fmt::format("{} x {} pixels with {} samples per pixel: OpenGL cannot draw them here", size.x, size.y, samples));
     return picture;
 }
 

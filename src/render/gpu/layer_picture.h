@@ -8,21 +8,21 @@
 
 namespace fantascope::render::gpu {
 
-// The picture of one layer while it is painted, at full opacity, with several samples a pixel for
-// smooth edges and a depth for each.
+// The picture into which one layer is painted at full opacity. It has several samples per pixel for
+// smooth edges, each with a depth.
 //
-// A sample holds the square root of its linear light in 8 bits: nearly the spacing of sRGB, and
-// cheap, where a software OpenGL would spend most of a frame on encoding every sample. Its alpha is
-// the square root of how much is covered: 1 where shapes are, else 0. Thread: the context's.
+// A sample holds the square root of its linear light in 8 bits. That is nearly as evenly spaced as
+// sRGB, and cheap: a software OpenGL would spend most of a frame on encoding every sample as sRGB.
+// Its alpha is the square root of the coverage: 1 where shapes are, else 0. Thread: the context's.
 class LayerPicture {
 public:
-    // Error: more samples or pixels than this OpenGL has.
+    // Error: more samples or pixels than OpenGL allows here.
     static Result<LayerPicture> create(glm::ivec2 size, int samples);
 
-    // Makes it the target of drawing, all black and uncovered.
+    // Makes it the render target, black and uncovered.
     void begin();
 
-    int samples() const { return samples_; }  // a pixel; at least as many as were asked for
+    int samples() const { return samples_; }  // per pixel; at least as many as were asked for
     unsigned texture() const { return roots_.name(); }
 
 private:

@@ -11,7 +11,7 @@ Result<LightCanvas> LightCanvas::create(glm::ivec2 size) {
     GLint largest = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     if (std::max(size.x, size.y) > largest)
-        return Error(fmt::format("{} x {} pixels: this OpenGL draws at most {} in each dimension", size.x, size.y, largest));
+        return Error(fmt::format("{} x {} pixels: OpenGL draws at most {} per dimension here", size.x, size.y, largest));
     LightCanvas canvas(size);
     const GLuint light = canvas.light_.name();
     glTextureStorage2D(light, 1, GL_R16F, size.x, size.y);

@@ -8,14 +8,14 @@
 
 namespace fantascope::render::gpu {
 
-// A picture of the canvas in which light adds up: one channel of half floats, of linear light, row
-// 0 at the canvas's top. Thread: the context's.
+// A picture of the canvas that accumulates light: one channel of half floats, linear light, row 0
+// at the canvas's top. Thread: the context's.
 class LightCanvas {
 public:
-    // Error: more pixels than this OpenGL draws.
+    // Error: more pixels than OpenGL allows here.
     static Result<LightCanvas> create(glm::ivec2 size);
 
-    // Makes it the target of drawing, all dark; what is drawn until end() adds up.
+    // Makes it the render target, black. Everything drawn until end() adds up.
     void begin();
     void end();
 

@@ -15,7 +15,7 @@ Result<PictureTexture> PictureTexture::create(glm::ivec2 size, Mipmaps mipmaps) 
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     if (std::min(size.x, size.y) < 1 || std::max(size.x, size.y) > largest)
         return Error(
-            fmt::format("a picture of {} x {} pixels: this OpenGL has at most {} in each dimension", size.x, size.y, largest));
+            fmt::format("a picture of {} x {} pixels: OpenGL has at most {} per dimension here", size.x, size.y, largest));
     PictureTexture picture(size, mipmaps);
     const GLuint texture = picture.pixels_.name();
     const GLsizei levels = mipmaps == Mipmaps::None ? 1 : std::bit_width(static_cast<unsigned>(std::max(size.x, size.y)));
@@ -28,7 +28,7 @@ Result<PictureTexture> PictureTexture::create(glm::ivec2 size, Mipmaps mipmaps) 
 }
 
 void PictureTexture::set(const RgbaImage& picture) {
-    FANTASCOPE_CHECK(glm::ivec2(picture.width(), picture.height()) == size_, "a picture of the texture's size");
+    FANTASCOPE_CHECK(glm::ivec2(picture.width(), picture.height()) == size_, "the picture has the texture's size");
     setFrom(picture.pixels().data());
 }
 
@@ -44,12 +44,12 @@ Result<PictureUploader> PictureUploader::create(glm::ivec2 size) {
     glNamedBufferStorage(uploader.pixels_.name(), bytes, nullptr, kAccess | GL_CLIENT_STORAGE_BIT);
     uploader.mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(uploader.pixels_.name(), 0, bytes, kAccess));
     if (uploader.mapped_ == nullptr)
-        return Error(fmt::format("OpenGL has no memory for {} x {} pixels on their way", size.x, size.y));
+        return Error(fmt::format("OpenGL has no memory for uploading {} x {} pixels", size.x, size.y));
     return uploader;
 }
 
 void PictureUploader::upload(const RgbaImage& picture, PictureTexture& texture) {
-    FANTASCOPE_CHECK(std::as_bytes(picture.pixels()).size() == bytes_, "a picture of the uploader's size");
+    FANTASCOPE_CHECK(std::as_bytes(picture.pixels()).size() == bytes_, "the picture has the uploader's size");
     turn_ = (turn_ + 1) % kInFlight;
     copied_[turn_].wait();
     const std::size_t offset = turn_ * bytes_;

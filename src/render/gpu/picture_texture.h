@@ -12,17 +12,17 @@
 
 namespace fantascope::render::gpu {
 
-// Whether a picture has smaller copies of itself, for where it is drawn very small.
+// Whether a texture has smaller copies of itself, for minified drawing.
 enum class Mipmaps { None, All };
 
-// A picture to be looked up as light: sRGB values, colours multiplied by alpha as premultiply()
-// does, row 0 at the top. Thread: the context's.
+// A picture as a texture that is sampled as linear light: sRGB values, colours multiplied by alpha
+// as by premultiply(), row 0 at the top. Thread: the context's.
 class PictureTexture {
 public:
-    // Clear. Error: more pixels than this OpenGL has.
+    // A transparent texture. Error: more pixels than OpenGL allows here.
     static Result<PictureTexture> create(glm::ivec2 size, Mipmaps mipmaps);
 
-    // Gives it the pixels of a picture of its size.
+    // Copies a picture of its size into it.
     void set(const RgbaImage& picture);
 
     unsigned texture() const { return pixels_.name(); }
@@ -38,14 +38,14 @@ private:
     Texture pixels_;
 };
 
-// Changes a texture's picture from frame to frame without stopping the drawing: the pixels go by
-// way of memory that both sides see. Thread: the context's.
+// Changes a texture's picture every frame without stalling the GPU: the pixels go through memory
+// that is mapped on both sides. Thread: the context's.
 class PictureUploader {
 public:
     // Error: OpenGL has no memory left.
     static Result<PictureUploader> create(glm::ivec2 size);
 
-    // Queues it; `picture` is not needed any longer afterwards. Both have the uploader's size. May
+    // Copies `picture` and queues its upload. Picture and texture have the uploader's size. May
     // wait for the upload of three pictures ago.
     void upload(const RgbaImage& picture, PictureTexture& texture);
 

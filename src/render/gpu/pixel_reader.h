@@ -9,23 +9,23 @@
 
 namespace fantascope::render::gpu {
 
-// Copies a framebuffer's pixels to memory without stopping the drawing: start() only queues the
-// copy. The memory is the program's too for as long as the reader lives, so that whoever wants the
-// pixels takes them without the context. Thread: the context's, but for copyTo().
+// Copies a framebuffer's pixels to memory without stalling the GPU: start() only queues the copy.
+// The memory stays mapped as long as the reader exists, so copyTo() needs no context. Thread: the
+// context's, except for copyTo().
 class PixelReader {
 public:
     // Error: OpenGL has no memory left.
     static Result<PixelReader> create(glm::ivec2 size);
 
-    // Queues a copy of `framebuffer`'s stored values as they are after all drawing so far. It takes
-    // the place of the one before.
+    // Queues a copy of `framebuffer`'s stored values after all drawing so far. It replaces the
+    // previous copy.
     void start(unsigned framebuffer);
-    // Whether the copy that start() queued is done; never waits.
+    // Whether the copy is complete; never waits.
     bool finished() { return copied_.passed(); }
-    // Waits until it is.
+    // Waits until the copy is complete.
     void wait() { copied_.wait(); }
-    // Puts a finished copy into `image` of the same size, row 0 at the top. Thread: any, until the
-    // next start().
+    // Writes a complete copy into `image` of the same size, row 0 at the top. Thread: any, until
+    // the next start().
     void copyTo(RgbaImage& image) const;
 
 private:
@@ -33,7 +33,7 @@ private:
 
     glm::ivec2 size_;
     Buffer pixels_;
-    const Rgba8* mapped_ = nullptr;  // GL's row order: the bottom row first
+    const Rgba8* mapped_ = nullptr;  // in OpenGL's row order, the bottom row first
     Fence copied_;
 };
 

@@ -10,20 +10,20 @@
 
 namespace fantascope::render::gpu {
 
-// The programs of one folder's shaders, each loaded once for all who use it. Thread: the context's.
+// The programs made from one folder's shaders, each loaded once and shared. Thread: the context's.
 class ProgramCache {
 public:
     explicit ProgramCache(std::filesystem::path shaders) : shaders_(std::move(shaders)) {}
 
     const std::filesystem::path& folder() const { return shaders_; }
-    // The names of programs that live as long as the cache. Error: as loadProgram().
+    // OpenGL names of programs, which live as long as the cache. Error: as loadProgram().
     Result<unsigned> compute(const std::string& shader, const std::string& definitions);
     Result<unsigned> drawing(const std::string& vertexShader, const std::string& fragmentShader,
                              const std::string& definitions = {});
 
 private:
     std::filesystem::path shaders_;
-    std::map<std::string, Program> programs_;  // by files and definitions
+    std::map<std::string, Program> programs_;  // by file names and definitions
 };
 
 }  // namespace fantascope::render::gpu

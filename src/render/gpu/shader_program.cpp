@@ -11,7 +11,7 @@
 namespace fantascope::render::gpu {
 namespace {
 
-// A shader matters only until its program is linked.
+// A shader is needed only until its program is linked.
 template <GLenum kStage>
 struct ShaderKind {
     static unsigned create() { return glCreateShader(kStage); }
@@ -31,8 +31,8 @@ std::string logOf(unsigned name, GetParameter getParameter, GetLog getLog) {
 template <GLenum kStage>
 Result<Handle<ShaderKind<kStage>>> compiled(const std::filesystem::path& file, const std::string& definitions) {
     std::string source = TRY(readFile(file));
-    // Nothing but comments may stand before #version; after it the compiler is told that line 2 of
-    // the file comes next.
+    // Only comments may precede #version, so the definitions follow it. #line keeps the compiler's
+    // line numbers those of the file.
     if (!definitions.empty()) source.insert(source.find('\n') + 1, definitions + "#line 2\n");
     Handle<ShaderKind<kStage>> shader;
     const char* text = source.data();
@@ -47,7 +47,7 @@ Result<Handle<ShaderKind<kStage>>> compiled(const std::filesystem::path& file, c
     return shader;
 }
 
-// Links what is attached; `files` for the message.
+// Links the attached shaders. `files`: for the message.
 Result<Program> linked(Program program, const std::string& files) {
     glLinkProgram(program.name());
     GLint good = GL_FALSE;

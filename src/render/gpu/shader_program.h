@@ -9,12 +9,12 @@
 
 namespace fantascope::render::gpu {
 
-// A program of a vertex and a fragment shader, each read from its file, whose first line is the
-// #version. `definitions`: lines of preprocessor for both, put after it. Error: names the file and
-// gives the compiler's or linker's log.
+// Loads a program of a vertex and a fragment shader from their files, whose first lines are the
+// #version. `definitions`: preprocessor lines for both, inserted after the first line. Error: names
+// the file and gives the compiler's or linker's log.
 Result<Program> loadProgram(const std::filesystem::path& vertexShader, const std::filesystem::path& fragmentShader,
                             const std::string& definitions = {});
-// The same of a compute shader.
+// The same for a compute shader.
 Result<Program> loadProgram(const std::filesystem::path& computeShader, const std::string& definitions);
 
 }  // namespace fantascope::render::gpu

@@ -10,10 +10,10 @@
 namespace fantascope::render {
 namespace {
 
-// Finer painting than this is not seen behind the blur that asked for the grid.
+// Finer painting makes no visible difference behind the blur.
 constexpr int kLargestBlock = 4;
 
-// Of a filter that reaches `radius` pixels from its middle.
+// The side of a filter with a radius of `radius` pixels.
 int sideFor(double radius) { return 2 * std::max(0, static_cast<int>(std::ceil(radius - 0.5))) + 1; }
 
 GreyImage divided(GreyImage filter, double sum) {
@@ -21,8 +21,8 @@ GreyImage divided(GreyImage filter, double sum) {
     return filter;
 }
 
-// How much of each of `count` equal parts of a picture lies in each of `side` pixels, when the
-// picture is `width` pixels wide and its middle is theirs: [pixel][part], in parts.
+// A picture of `width` pixels, divided into `count` equal parts, is centred on `side` pixels:
+// [pixel][part] is the share of each part that lies in each pixel.
 std::vector<std::vector<double>> overlaps(int side, double width, int count) {
     std::vector<std::vector<double>> all(static_cast<std::size_t>(side), std::vector<double>(static_cast<std::size_t>(count)));
     for (int pixel = 0; pixel < side; ++pixel)
@@ -39,8 +39,8 @@ std::vector<std::vector<double>> overlaps(int side, double width, int count) {
 double penumbraWidth(double distance, double angle) { return distance * std::tan(angle); }
 
 GreyImage discFilter(double diameter) {
-    // Inside a pixel the disc's border is followed by so many strips, each measured exactly along
-    // itself.
+    // A pixel is divided into so many strips; each strip's overlap with the disc is exact along the
+    // strip.
     constexpr int kStrips = 64;
     const double radius = diameter / 2;
     const int side = sideFor(radius);
@@ -82,7 +82,7 @@ GreyImage pictureFilter(const GreyImage& light, double width) {
             sum += value;
         }
     }
-    FANTASCOPE_CHECK(sum > 0, "a filter lets some light through");
+    FANTASCOPE_CHECK(sum > 0, "a filter is not all 0");
     return divided(std::move(filter), sum);
 }
 
@@ -90,16 +90,16 @@ BlurGrid BlurGrid::forFilter(const ShadowFilter& filter, double aspect, double r
     const double finest = 1 / rows;
     BlurGrid grid;
     grid.pitch = finest;
-    while (filter.width / 2 / (2 * grid.pitch) >= (grid.block == 1 ? kLeastRadius : 2 * kLeastRadius)) {
+    while (filter.width / 2 / (2 * grid.pitch) >= (grid.block == 1 ? kMinRadius : 2 * kMinRadius)) {
         grid.pitch *= 2;
         grid.block = std::min(2 * grid.block, kLargestBlock);
     }
     grid.size = glm::ivec2(std::ceil(aspect / grid.pitch), std::ceil(1 / grid.pitch)) + 2;
     const double width = filter.width / grid.pitch;
     if (!filter.picture) {
-        // A coarse pixel's area, the filter's and the interpolation between pixels blur too, by
-        // variances of 1/12, 1/12 and 1/6 square pixels; that of a disc is a sixteenth of its
-        // squared diameter.
+        // A coarse grid blurs by itself: its pixels' area, the filter's pixels and the
+        // interpolation between pixels add variances of 1/12, 1/12 and 1/6 square pixels. The disc
+        // is made smaller to compensate; its variance is 1/16 of its squared diameter.
         const double coarse = grid.pitch > finest ? 16.0 / 3 : 0;
         grid.filter = discFilter(std::sqrt(std::max(width * width - coarse, 0.0)));
     } else {

@@ -11,18 +11,18 @@
 
 namespace fantascope::render {
 
-// Pictures from elsewhere in the program, as a camera gives them: each output that shows them takes
-// the newest. Thread: publish() from one thread, next to it the readers of another.
+// Pictures from another part of the program, such as a camera. Each output that shows them takes
+// the newest. Thread: publish() from one thread, the readers from another.
 class PictureFeed {
 public:
     using Picture = std::shared_ptr<const RgbaImage>;
-    using Slot = LatestValue<Picture>;  // the writer gives pictures free, so that nobody's drawing does
+    using Slot = LatestValue<Picture>;  // the writer frees pictures, so that drawing never does
 
     // `size`: of its pictures, pixels.
     explicit PictureFeed(glm::ivec2 size) : size_(size) {}
 
     glm::ivec2 size() const { return size_; }
-    // Stored sRGB values, straight alpha of 255. One of another size is left out.
+    // Stored sRGB values, alpha 255. A picture of another size is ignored.
     void publish(const Picture& picture) {
         if (glm::ivec2(picture->width(), picture->height()) != size_) return;
         const std::lock_guard lock(mutex_);
@@ -32,7 +32,7 @@ public:
                 slot->publish();
             }
     }
-    // A further reader, of what comes from now on.
+    // Adds a reader of the pictures published from now on.
     std::shared_ptr<Slot> addReader() {
         const std::lock_guard lock(mutex_);
         std::erase_if(slots_, [](const auto& slot) { return slot.expired(); });

@@ -9,8 +9,8 @@
 namespace fantascope::render {
 
 Time positionAt(const VideoSource& source, Time time) {
-    // Neither a display's refreshes nor a file's time stamps are exact: a frame that begins within
-    // so much is on.
+    // Neither a display's refreshes nor a file's time stamps are exact, so a frame that begins
+    // within this time is shown.
     constexpr Time kTolerance = std::chrono::milliseconds(1);
     const Time length = source.stream->content().length;
     const Time played(std::llround(static_cast<double>((time + kTolerance).count()) * source.speed));
@@ -20,8 +20,8 @@ Time positionAt(const VideoSource& source, Time time) {
 
 namespace {
 
-// A motion in frames, there and back where it plays so: it begins to move within a frame and comes
-// to rest within one, at either end.
+// The length of a motion in frames, there and back if it plays so. Playing to and fro, it
+// accelerates and comes to rest within one frame at either end.
 double framesOf(const ShadowSource& source) {
     const std::size_t count = source.cast->actors.front().poses.size();
     const auto last = static_cast<double>(count - 1);

@@ -24,10 +24,10 @@ struct Cast;
 
 namespace fantascope::render {
 
-// A light pattern; shared by the outputs that show it.
+// A light pattern, shared by the outputs that show it.
 struct PatternSource {
     std::shared_ptr<const pattern::ShapePattern> pattern;
-    std::shared_ptr<const pattern::PatternMotion> motion;  // null: the shapes rest
+    std::shared_ptr<const pattern::PatternMotion> motion;  // null: the shapes stand still
     Fit fit = Fit::Contain;
 };
 
@@ -36,32 +36,32 @@ struct SolidSource {
     glm::vec3 colour{1};  // linear light, 0..1
 };
 
-// What a point of light through a hole becomes, and so what every edge is blurred with.
+// The picture that a small hole throws, with which every edge is blurred.
 struct ShadowFilter {
     double width = 0;                          // canvas heights; 0: sharp
-    std::shared_ptr<const GreyImage> picture;  // linear light, upright as it falls on the canvas, `width` wide; null: a disc
+    std::shared_ptr<const GreyImage> picture;  // linear light, upright as seen on the canvas, `width` wide; null: a disc
 };
 
-// Leaves at one distance, in the light.
+// Leaves at one distance from the canvas.
 struct ShadowLayer {
     PatternSource leaves;
     ShadowFilter filter;
-    bool holes = false;  // the shapes are holes in what lets no other light through
+    bool holes = false;  // the shapes are holes in an opaque layer
 };
 
-// The light that falls through layers of leaves: the product of what each lets through. Where no
-// shape is, beyond the canvas too, a layer of leaves lets all of it through and one of holes none.
-// Source: Ji et al. 2015, section 5.
+// The light that falls through layers of leaves: the product of the layers' transmission. Where
+// there is no shape, also beyond the canvas, a layer of leaves transmits everything and a layer of
+// holes nothing. Source: Ji et al. 2015, section 5.
 struct FoliageSource {
-    glm::vec3 light{1};               // where nothing keeps it off: linear light, may exceed 1 where holes make little of it
-    glm::vec3 shadow{0};              // what is left in full shadow
-    std::vector<ShadowLayer> layers;  // at least one; all patterns of one aspect; holes are blurred
+    glm::vec3 light{1};               // without shadow: linear light; may exceed 1, since holes let little of it through
+    glm::vec3 shadow{0};              // in full shadow: linear light
+    std::vector<ShadowLayer> layers;  // at least one; all patterns have the same aspect; layers of holes are blurred
     Fit fit = Fit::Contain;           // of all layers together
 };
 
-// Sunlight on the floor of wavy water, as the waves gather and scatter it.
+// Caustics: sunlight that waves focus and scatter on the floor under water.
 struct CausticsSource {
-    glm::vec3 light{1};     // of still water: linear light; the bright lines have several times as much
+    glm::vec3 light{1};     // under still water: linear light; the bright lines are several times brighter
     glm::dvec2 size{1};     // of the canvas on the floor, metres
     double depth = 0;       // of the water, metres
     double waveLength = 1;  // metres, on average
@@ -70,67 +70,65 @@ struct CausticsSource {
     Fit fit = Fit::Contain;
 };
 
-// The spots of a mirror ball that turns in a lamp's beam, on a wall. Places are metres from the
-// canvas's middle: right, up, out of the wall.
+// The spots that a mirror ball turning in a lamp's beam throws on a wall. Places are in metres from
+// the canvas's middle: right, up, out of the wall.
 struct MirrorBallSource {
-    glm::vec3 light{1};     // of a spot as far from the lamp as the wall behind the ball, and as straight: linear light
+    glm::vec3 light{1};     // of a spot at the same distance as the wall behind the ball, at normal incidence: linear light
     glm::dvec2 size{1};     // of the canvas on the wall, metres
-    glm::dvec3 ball{0};     // its centre; before the wall
+    glm::dvec3 ball{0};     // its centre; in front of the wall
     double radius = 0;      // metres
     double facet = 0;       // a mirror's edge, metres
-    glm::dvec3 lamp{0};     // outside the ball, before the wall
+    glm::dvec3 lamp{0};     // outside the ball, in front of the wall
     double lampRadius = 0;  // metres
-    double turn = 1;        // seconds for one turn; below 0 the other way round
+    double turn = 1;        // seconds per turn; negative: the other way round
     Fit fit = Fit::Contain;
 };
 
-// A picture that stands still.
+// A still picture.
 struct ImageSource {
     std::shared_ptr<const RgbaImage> picture;  // stored sRGB values, straight alpha
     Fit fit = Fit::Contain;
 };
 
-// A video; its stream is shared by the outputs that show it. Once it is over, its last frame stays.
+// A video, whose stream is shared by the outputs that show it. After its end, its last frame stays.
 struct VideoSource {
     std::shared_ptr<VideoStream> stream;
     bool loop = true;
     double speed = 1;  // positive
     Fit fit = Fit::Contain;
 };
-// The moment of the video that is seen at a layer's time `time`.
+// The position in the video at layer time `time`.
 Time positionAt(const VideoSource& source, Time time);
 
-// Shadow theatre: a cast's people between lamps and the screen, as they move. Lamps' light adds up.
-// Source: Won & Lee 2016; soft light and several lights are of its section 7.
+// Shadow theatre: a cast's moving people between lamps and a screen. The lamps' light adds up.
+// Source: Won & Lee 2016; section 7 for soft light and several lights.
 struct ShadowSource {
     struct Lamp {
         glm::dvec3 place{0};            // stage frame, metres
         double size = 0;                // its diameter, facing the screen, metres; 0: a point
-        glm::vec3 light{1}, shadow{0};  // what the screen is where it shines, and where somebody keeps it off: linear light
-        std::vector<glm::vec3>
-            actors;  // the shadow of each actor, where he is the nearest to the lamp; empty: all throw `shadow`
+        glm::vec3 light{1}, shadow{0};  // the screen's linear light where the lamp shines, and in shadow
+        std::vector<glm::vec3> actors;  // per actor: his shadow's colour where he is nearest to the lamp; empty: `shadow`
     };
     enum class Play {
-        Once,  // then the last frame stays
-        Loop,  // after the last frame comes the first
+        Once,  // the last frame stays
+        Loop,  // the first frame follows the last
         ToAndFro
     };
     std::shared_ptr<const theatre::Cast> cast;
-    std::size_t beam = 0;     // of its stage, whose screen the canvas lies on
-    std::vector<Lamp> lamps;  // at least one
-    glm::dvec2 from{0},
-        to{1};         // the canvas's lower left and upper right corner on the screen, which is unrolled if it is curved; metres
-    int samples = 16;  // points of light in a lamp that has a size
+    std::size_t beam = 0;       // index of the stage's beam whose screen the canvas lies on
+    std::vector<Lamp> lamps;    // at least one
+    glm::dvec2 from{0}, to{1};  // the canvas's lower left and upper right corners on the screen, unrolled if curved; metres
+    int samples = 16;           // points of light per lamp that has a size
     Play play = Play::Once;
     double speed = 1;  // positive
     Fit fit = Fit::Contain;
 };
-// The moment of the cast's motion that is seen at a layer's time `time`, in frames from the first.
+// The position in the cast's motion at layer time `time`, in frames since the first.
 double frameAt(const ShadowSource& source, Time time);
-// How long the motion takes, there and back where it plays so; 0: a still.
+// The duration of the motion, there and back if it plays so; 0: a still.
 Time lengthOf(const ShadowSource& source);
 
-// What a camera sees; nothing before its first picture.
+// A camera's picture; nothing before the first one.
 struct CameraSource {
     std::shared_ptr<PictureFeed> feed;
     Fit fit = Fit::Contain;
@@ -140,13 +138,13 @@ struct CameraSource {
 using PictureSource = std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource, ImageSource,
                                    VideoSource, CameraSource, ShadowSource>;
 
-// Width / height of a source's own picture; nothing where it has no shape.
+// Width / height of a source's own picture; nothing for a source without an aspect.
 std::optional<double> aspectOf(const PictureSource& source);
 
-// Where on a canvas (width / height; 0: the source's own shape) a source lies.
+// The part of a canvas that a source covers. `canvasAspect`: width / height; 0: the source's own.
 CanvasPart placeOf(const PictureSource& source, double canvasAspect);
 
-// A source that fits otherwise. What has no shape stays as it is.
+// The source with another fit. A source without an aspect is returned as it is.
 PictureSource fitted(PictureSource source, Fit fit);
 
 }  // namespace fantascope::render

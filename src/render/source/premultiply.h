@@ -6,8 +6,8 @@
 
 namespace fantascope::render {
 
-// Straight alpha to what adds up and can be filtered: each colour becomes the sRGB value of its
-// light times alpha. Thread-safe.
+// Converts straight alpha to premultiplied alpha, which can be filtered: each colour becomes the
+// sRGB value of its linear light times alpha. Thread-safe.
 void premultiply(std::span<Rgba8> pixels);
 
 }  // namespace fantascope::render

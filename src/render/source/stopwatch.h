@@ -4,7 +4,7 @@
 
 namespace fantascope::render {
 
-// Adds up the time that some of the work takes. Thread: thread-bound.
+// Accumulates the time that pieces of work take. Thread: thread-bound.
 class Stopwatch {
 public:
     // Without a clock nothing is measured. The clock outlives it.
@@ -16,7 +16,7 @@ public:
         sum_ += now() - began;
     }
     void reset() { sum_ = Time{}; }
-    // What was added up since the last reset().
+    // Since the last reset().
     Time sum() const { return sum_; }
 
 private:

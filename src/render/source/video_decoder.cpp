@@ -31,9 +31,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kLargestSide = 8192;
-constexpr std::int64_t kMostPixels = std::int64_t{kLargestSide} * 4320;   // of a frame: 8K, upright too
-constexpr std::int64_t kMostDecoded = std::int64_t{kLargestSide} * 4352;  // with libav's padding of an upright one's rows
-constexpr double kMostMissing = 1;                                        // seconds that a file may be shorter than it says
+constexpr std::int64_t kMaxPixels = std::int64_t{kLargestSide} * 4320;   // per frame: 8K, in landscape or portrait
+constexpr std::int64_t kMaxDecoded = std::int64_t{kLargestSide} * 4352;  // with libav's padding of a portrait frame's rows
+constexpr double kMaxMissing = 1;                                        // seconds by which a file may be shorter than it says
 constexpr AVRational kNanoseconds{1, 1'000'000'000};
 constexpr std::string_view kExportAgain = "export it again, as MP4 or MOV with H.264, HEVC or ProRes";
 
@@ -64,13 +64,13 @@ using Codec = std::unique_ptr<AVCodecContext, CodecDeleter>;
 using Packet = std::unique_ptr<AVPacket, PacketDeleter>;
 using Frame = std::unique_ptr<AVFrame, FrameDeleter>;
 
-// A file that is open, and the one of its streams that is the video.
+// An open file and its video stream.
 struct Opened {
     Format format;
     AVStream* stream = nullptr;
 };
 
-// libav's names of all formats but those that are lists of other files.
+// libav's names of all formats, except those that are lists of other files.
 const std::string& formatsOfOneFile() {
     static const std::string formats = [] {
         constexpr std::string_view kLists[] = {"concat", "dash", "hls", "image2", "imf", "rtsp", "sdp"};
@@ -85,11 +85,11 @@ const std::string& formatsOfOneFile() {
 }
 
 Result<Opened> openFile(const fs::path& file) {
-    av_log_set_level(AV_LOG_FATAL);  // what is wrong with a file is said once, by us
+    av_log_set_level(AV_LOG_FATAL);  // we report a file's fault ourselves, once
     TRY(checkRegular(file));
     AVFormatContext* context = avformat_alloc_context();
     context->flags |= AVFMT_FLAG_GENPTS;
-    // A file may name others, pipes and the network too; nothing but itself is read.
+    // A file may refer to other files, pipes and the network. Only the file itself is read.
     AVDictionary* options = nullptr;
     av_dict_set(&options, "protocol_whitelist", "file", 0);
     av_dict_set(&options, "format_whitelist", formatsOfOneFile().c_str(), 0);
@@ -120,10 +120,10 @@ Result<Codec> openCodec(const fs::path& file, const AVStream& stream) {
     Codec context(avcodec_alloc_context3(codec));
     avcodec_parameters_to_context(context.get(), stream.codecpar);
     context->pkt_timebase = stream.time_base;
-    context->max_pixels = kMostDecoded;  // of any frame, whatever the file says beforehand
+    context->max_pixels = kMaxDecoded;  // for every frame, whatever the file's header says
     context->thread_count = std::min(hardwareThreads(), VideoDecoder::kThreads);
-    // Decoding begins only where it may, which a decoder does not know: after some keyframes it
-    // would keep good frames back.
+    // We start decoding only at frames where this is possible. A decoder does not know that, and
+    // would withhold good frames after some keyframes without this flag.
     context->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
     if (const int code = avcodec_open2(context.get(), codec, nullptr); code < 0)
         return refusal(file, fmt::format("coded as '{}', in a way that cannot be decoded here ({})", codec->name, reason(code)),
@@ -134,11 +134,11 @@ Result<Codec> openCodec(const fs::path& file, const AVStream& stream) {
 Result<void> checkPicture(const fs::path& file, const AVStream& stream) {
     const AVCodecParameters& picture = *stream.codecpar;
     if (picture.width < 1 || picture.height < 1) return refusal(file, "its video has no size", kExportAgain);
-    if (std::max(picture.width, picture.height) > kLargestSide || std::int64_t{picture.width} * picture.height > kMostPixels)
+    if (std::max(picture.width, picture.height) > kLargestSide || std::int64_t{picture.width} * picture.height > kMaxPixels)
         return refusal(file, fmt::format("{} x {} pixels are too many", picture.width, picture.height),
                        "at most 8192 x 4320, or 4320 x 8192");
     const auto pixels = static_cast<AVPixelFormat>(picture.format);
-    if (pixels != AV_PIX_FMT_NONE && sws_isSupportedInput(pixels) == 0)  // libav does not know them of every file beforehand
+    if (pixels != AV_PIX_FMT_NONE && sws_isSupportedInput(pixels) == 0)  // for some files it is known only after decoding
         return refusal(file, fmt::format("its pixels are stored as '{}', which cannot be converted", av_get_pix_fmt_name(pixels)),
                        kExportAgain);
     if (picture.color_trc == AVCOL_TRC_SMPTE2084 || picture.color_trc == AVCOL_TRC_ARIB_STD_B67)
@@ -147,13 +147,12 @@ Result<void> checkPicture(const fs::path& file, const AVStream& stream) {
             reinterpret_cast<const std::int32_t*>(av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr))) {
         const double angle = av_display_rotation_get(matrix);
         if (!std::isnan(angle) && std::lround(angle) % 360 != 0)
-            return refusal(file, fmt::format("its pictures are to be turned by {:.0f} degrees", -angle),
-                           "export it again upright");
+            return refusal(file, fmt::format("its pictures are rotated by {:.0f} degrees", -angle), "export it again upright");
     }
     return {};
 }
 
-// A coded frame, as the file holds it.
+// A coded frame in the file.
 struct Entry {
     std::int64_t stamp = 0, duration = 0;
     std::uint32_t decoded = 0;
@@ -161,8 +160,8 @@ struct Entry {
 };
 
 struct Scan {
-    std::vector<Entry> entries;  // in the order of showing, each stamp once
-    double lasts = 0;            // seconds, of whatever lasts longest in the file
+    std::vector<Entry> entries;  // in presentation order, each time stamp once
+    double lasts = 0;            // seconds, of the longest stream in the file
     bool damaged = false;
 };
 
@@ -183,7 +182,7 @@ Result<Scan> scan(const fs::path& file, const Opened& opened) {
         scan.damaged = scan.damaged || (packet->flags & AV_PKT_FLAG_CORRUPT) != 0;
         if (stamp == AV_NOPTS_VALUE) return refusal(file, "its frames have no time stamps", kExportAgain);
         const std::uint32_t place = decoded++;
-        if ((packet->flags & AV_PKT_FLAG_DISCARD) != 0) continue;  // only there to be referred to
+        if ((packet->flags & AV_PKT_FLAG_DISCARD) != 0) continue;  // needed by other frames but not shown
         scan.entries.push_back({stamp, packet->duration, place, (packet->flags & AV_PKT_FLAG_KEY) != 0});
     }
     scan.damaged = scan.damaged || code != AVERROR_EOF;
@@ -193,13 +192,13 @@ Result<Scan> scan(const fs::path& file, const Opened& opened) {
     return scan;
 }
 
-// For every frame the last keyframe that is decoded and shown no later than it. One that is shown
-// before the keyframe that it is decoded after still refers to what came before that keyframe.
+// Sets each frame's entry to the last keyframe that is neither decoded nor shown after it. A frame
+// that is decoded after a keyframe but shown before it refers to frames before that keyframe.
 void findEntries(const std::vector<Entry>& entries, std::vector<VideoContent::Frame>& frames) {
     std::vector<std::uint32_t> keys;
     for (std::uint32_t i = 0; i < entries.size(); ++i)
         if (entries[i].key) keys.push_back(i);
-    if (keys.empty()) return;  // from the first frame on, then
+    if (keys.empty()) return;  // then decoding always begins at the first frame
     std::sort(keys.begin(), keys.end(),
               [&](std::uint32_t a, std::uint32_t b) { return entries[a].decoded < entries[b].decoded; });
     for (std::uint32_t i = 0; i < entries.size(); ++i) {
@@ -210,8 +209,8 @@ void findEntries(const std::vector<Entry>& entries, std::vector<VideoContent::Fr
     }
 }
 
-// How long the last frame is seen, in the stream's time: as the file says, else as the one before
-// it.
+// How long the last frame is shown, in the stream's time base: as the file says, else as long as
+// the one before.
 std::int64_t lastDuration(const std::vector<Entry>& entries, const AVStream& stream) {
     if (entries.back().duration > 0) return entries.back().duration;
     if (entries.size() > 1) return entries.back().stamp - entries[entries.size() - 2].stamp;
@@ -233,12 +232,12 @@ int matrixOf(const AVFrame& frame) {
         case AVCOL_SPC_BT2020_NCL:
         case AVCOL_SPC_BT2020_CL:
             return SWS_CS_BT2020;
-        default:  // files that say nothing are meant as every player takes them: by their height
+        default:  // a file without this information: by its height, as players do
             return frame.height >= 720 ? SWS_CS_ITU709 : SWS_CS_ITU601;
     }
 }
 
-// How a frame's values stand for colours.
+// How a frame's values encode colours.
 struct Coding {
     glm::ivec2 size{0};
     AVPixelFormat format = AV_PIX_FMT_NONE;
@@ -270,21 +269,21 @@ struct VideoDecoder::Impl {
     Packet packet{av_packet_alloc()};
     Frame frame{av_frame_alloc()};
     SwsContext* toRgba = nullptr;
-    Coding coding;            // that toRgba converts
-    PaddedRows<Rgba8> rows;   // for libswscale
-    std::uint32_t least = 0;  // the frame that next() may give at the earliest
-    bool waiting = false;     // `packet` is still to be decoded
-    bool drained = false;     // the decoder has been told that nothing more comes
+    Coding coding;               // of the frames that toRgba converts
+    PaddedRows<Rgba8> rows;      // for libswscale
+    std::uint32_t earliest = 0;  // the lowest frame number that next() may return
+    bool waiting = false;        // `packet` is not decoded yet
+    bool drained = false;        // the decoder has been told that the file ended
     std::string damage;
 
     ~Impl() { sws_freeContext(toRgba); }
 
     void note(std::string_view what, int code) {
         if (damage.empty())
-            damage = fmt::format("{}: after frame {}: {} ({})", content->file.string(), least, what, reason(code));
+            damage = fmt::format("{}: after frame {}: {} ({})", content->file.string(), earliest, what, reason(code));
     }
 
-    // The number of the frame with this stamp, or of the one before it.
+    // The number of the frame with this time stamp, or of the last one before it.
     std::uint32_t numberOf(std::int64_t stamp) const {
         const auto& frames = content->frames;
         const auto after =
@@ -293,14 +292,14 @@ struct VideoDecoder::Impl {
         return after == frames.begin() ? 0 : static_cast<std::uint32_t>(after - frames.begin()) - 1;
     }
 
-    // Makes toRgba for the frame. False: its pixels cannot be converted.
+    // Sets toRgba up for the frame. False: its pixels cannot be converted.
     bool converts() {
         const Coding newest(*frame);
         if (newest == coding) return toRgba != nullptr;
         coding = newest;
         sws_freeContext(toRgba);
-        // Without SWS_ACCURATE_RND most videos are converted in .7 ms instead of 11 (1920 x 1080),
-        // and lose less than a step of 255.
+        // Without SWS_ACCURATE_RND, most videos are converted in .7 ms instead of 11 ms (1920 x
+        // 1080), with an error of less than 1 of 255.
         toRgba = sws_getContext(coding.size.x, coding.size.y, coding.format, content->size.x, content->size.y, AV_PIX_FMT_RGBA,
                                 SWS_BILINEAR | SWS_FULL_CHR_H_INT, nullptr, nullptr, nullptr);
         if (toRgba == nullptr) return false;
@@ -310,7 +309,7 @@ struct VideoDecoder::Impl {
         return true;
     }
 
-    // The video's next packet. False at the end.
+    // Reads the video's next packet. False at the end.
     bool read() {
         for (;;) {
             av_packet_unref(packet.get());
@@ -323,8 +322,8 @@ struct VideoDecoder::Impl {
         }
     }
 
-    // Goes to where `entry` or something before it is read next. Containers keep their keyframes by
-    // either time stamp, and some only guess.
+    // Seeks to `entry` or before it. Containers index keyframes by decoding or by presentation time
+    // stamps, and some only guess.
     void reach(std::uint32_t entry) {
         for (std::uint32_t target = entry;; target = content->frames[target - 1].entry) {
             const int code =
@@ -351,7 +350,7 @@ Result<std::shared_ptr<const VideoContent>> VideoDecoder::examine(const fs::path
     const bool knows = opened.format->duration > 0 && opened.format->duration_estimation_method == AVFMT_DURATION_FROM_STREAM;
     Scan found = TRY(scan(file, opened));
     if (found.entries.empty()) return refusal(file, "there is no frame in it", kExportAgain);
-    if (found.damaged || (knows && found.lasts < says - kMostMissing))
+    if (found.damaged || (knows && found.lasts < says - kMaxMissing))
         return refusal(file, fmt::format("truncated: it ends after {:.1f} s of {:.1f} s", found.lasts, says),
                        "copy it again, whole");
 
@@ -385,11 +384,11 @@ VideoDecoder::~VideoDecoder() = default;
 const std::string& VideoDecoder::damage() const { return impl_->damage; }
 
 void VideoDecoder::seek(std::uint32_t frame) {
-    FANTASCOPE_CHECK(frame < impl_->content->frames.size(), "a frame of the video");
+    FANTASCOPE_CHECK(frame < impl_->content->frames.size(), "the frame is one of the video's");
     const std::uint32_t entry = impl_->content->frames[frame].entry;
     avcodec_flush_buffers(impl_->codec.get());
     impl_->reach(entry);
-    impl_->least = entry;
+    impl_->earliest = entry;
     impl_->drained = false;
 }
 
@@ -414,17 +413,18 @@ std::optional<std::uint32_t> VideoDecoder::next() {
         }
         const AVFrame& frame = *impl.frame;
         const std::int64_t stamp = frame.best_effort_timestamp;
-        const std::uint32_t number = stamp == AV_NOPTS_VALUE ? impl.least : impl.numberOf(stamp);
-        if (number < impl.least || number >= impl.content->frames.size()) continue;  // it refers to what was not decoded
+        const std::uint32_t number = stamp == AV_NOPTS_VALUE ? impl.earliest : impl.numberOf(stamp);
+        if (number < impl.earliest || number >= impl.content->frames.size())
+            continue;  // it refers to frames that were not decoded
         if (frame.decode_error_flags != 0) {
             impl.note("damaged", AVERROR_INVALIDDATA);
             continue;
         }
-        if (!impl.converts()) {  // a file may change its format halfway
+        if (!impl.converts()) {  // a file's pixel format may change midway
             impl.note(fmt::format("its pixels are stored as '{}'", av_get_pix_fmt_name(impl.coding.format)), AVERROR(ENOSYS));
             continue;
         }
-        impl.least = number + 1;
+        impl.earliest = number + 1;
         return number;
     }
 }
@@ -432,7 +432,7 @@ std::optional<std::uint32_t> VideoDecoder::next() {
 void VideoDecoder::picture(RgbaImage& picture) {
     Impl& impl = *impl_;
     const AVFrame& frame = *impl.frame;
-    FANTASCOPE_CHECK(glm::ivec2(picture.width(), picture.height()) == impl.content->size, "a picture of the video's size");
+    FANTASCOPE_CHECK(glm::ivec2(picture.width(), picture.height()) == impl.content->size, "the picture has the video's size");
     impl.rows.fill(picture, [&](std::uint8_t* rows, int stride) {
         sws_scale(impl.toRgba, frame.data, frame.linesize, 0, frame.height, &rows, &stride);
     });

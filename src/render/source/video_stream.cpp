@@ -10,7 +10,7 @@
 namespace fantascope::render {
 namespace {
 
-// What going elsewhere in the file costs, in frames that could be decoded meanwhile.
+// The cost of a seek, in frames that could be decoded in the same time.
 constexpr std::uint32_t kSeekCost = 8;
 
 }  // namespace
@@ -89,26 +89,26 @@ bool VideoStream::has(std::uint32_t frame) const {
 void VideoStream::fetch(std::uint32_t frame) {
     Playhead& head = playheadFor(frame);
     head.used = ++steps_;
-    if (frame < head.target || frame > head.target + kAhead) head.from = frame;  // the wishes have gone elsewhere
+    if (frame < head.target || frame > head.target + kAhead) head.from = frame;  // the readers have jumped
     head.target = frame;
     const auto number = head.decoder->next();
     if (!damageTold_ && !head.decoder->damage().empty()) {
         damageTold_ = true;
-        log::warning("render", head.decoder->damage() + "; what is damaged in it is left out from now on");
+        log::warning("render", head.decoder->damage() + "; damaged frames are skipped from now on");
     }
-    // What was passed over is damaged.
+    // Frames that were skipped are damaged.
     const auto end = number.value_or(static_cast<std::uint32_t>(content_->frames.size()));
     for (const std::uint32_t passed : wanted_)
         if (passed >= head.next && passed < end && !has(passed)) publish(passed, nullptr);
     head.next = end;
     if (!number) return;
     head.next = *number + 1;
-    // A frame that the wishes have overtaken since is better than one that is older still.
+    // A frame that the readers have passed in the meantime is still better than an older one.
     const bool late = *number >= head.from && *number < frame;
     if ((late || wanted(*number)) && !has(*number)) publish(*number, head.decoder.get());
 }
 
-// The decoder that gets to a frame soonest.
+// The decoder that reaches a frame soonest.
 VideoStream::Playhead& VideoStream::playheadFor(std::uint32_t frame) {
     const auto distance = [&](const Playhead& head) { return head.next <= frame ? frame - head.next : std::uint32_t{~0u}; };
     const auto nearest = std::ranges::min_element(playheads_, {}, distance);
@@ -125,17 +125,17 @@ VideoStream::Playhead& VideoStream::playheadFor(std::uint32_t frame) {
     return *rested;
 }
 
-// How many moments of the video are asked for that one decoder cannot serve together.
+// How many moments are asked for that are too far apart for one decoder.
 std::size_t VideoStream::moments() const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < asked_.size(); ++i) {
         const auto near = [&](std::uint32_t other) { return std::max(other, asked_[i]) - std::min(other, asked_[i]) <= kAhead; };
         if (std::none_of(asked_.begin(), asked_.begin() + static_cast<std::ptrdiff_t>(i), near)) ++count;
     }
-    return std::min(count, kMostMoments);
+    return std::min(count, kMaxMoments);
 }
 
-// A slot that nobody needs; null only while readers hold all of those.
+// A slot that is not needed; null only while readers hold all such slots.
 VideoStream::Slot* VideoStream::reclaim() {
     for (Slot& slot : slots_) {
         const Tag tag = slot.tag;
@@ -145,7 +145,7 @@ VideoStream::Slot* VideoStream::reclaim() {
     return nullptr;
 }
 
-// What `decoder` has decoded, or without one that a frame is damaged.
+// Publishes the frame that `decoder` has decoded; null: that the frame is damaged.
 void VideoStream::publish(std::uint32_t frame, VideoDecoder* decoder) {
     Slot* const slot = reclaim();
     if (slot == nullptr) return;
@@ -184,9 +184,8 @@ VideoStream::Slot* VideoStream::Reader::take(Time position) {
     const auto lag = [&](std::uint32_t other) { return (frame + count - other) % count; };
     for (;;) {
         const std::uint32_t published = stream.published_.load(std::memory_order_acquire);
-        // The frame itself; else the one that comes nearest before it, if that is nearer than what
-        // is shown.
-        std::uint32_t least = shown_ ? lag(*shown_) : count;
+        // The frame itself, else the nearest one before it, if that is nearer than the one shown.
+        std::uint32_t smallest = shown_ ? lag(*shown_) : count;
         Slot* nearest = nullptr;
         for (Slot& slot : stream.slots_) {
             const Tag tag = slot.tag;
@@ -194,15 +193,15 @@ VideoStream::Slot* VideoStream::Reader::take(Time position) {
                 if (!std::exchange(damaged_, true)) ++stream.damagedFrames_;
                 return nullptr;
             }
-            if (tag.state != State::Ready || lag(tag.frame) >= least) continue;
-            least = lag(tag.frame);
+            if (tag.state != State::Ready || lag(tag.frame) >= smallest) continue;
+            smallest = lag(tag.frame);
             nearest = &slot;
         }
-        const bool there = nearest != nullptr && least == 0;
-        const std::uint32_t number = (frame + count - least) % count;
+        const bool there = nearest != nullptr && smallest == 0;
+        const std::uint32_t number = (frame + count - smallest) % count;
         if (stream.pace_ == Pace::Live && !there && !std::exchange(late_, true)) ++stream.lateFrames_;
         if (there || (nearest != nullptr && stream.pace_ == Pace::Live)) {
-            // It may be made another frame at this very moment.
+            // The decoding thread may be reusing the slot at this moment.
             if (nearest->change({State::Ready, number}, State::InUse)) {
                 shown_ = number;
                 return nearest;

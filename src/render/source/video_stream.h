@@ -18,42 +18,42 @@
 
 namespace fantascope::render {
 
-// The frames of a video, decoded ahead on a thread of its own for all outputs that show it. Whoever
-// shows it asks for a moment of the video; where outputs ask for different moments, as when it
-// began earlier on one of them, each has a decoder.
+// The frames of a video, decoded ahead on a thread of its own for all outputs that show it. An
+// output asks for a moment of the video. If outputs ask for different moments, as when the video
+// began earlier on one of them, each gets its own decoder.
 //
-// Frames are kept as RGBA, 4 bytes a pixel: kOpening of the beginning, kAhead for every moment that
-// is asked for, and kSpare; for one moment and 1920 x 1080 some 100 MB. A video that begins, begins
-// again or comes round shows its opening at once while the rest is fetched. A frame that cannot be
-// decoded is left out: the one before it stays.
+// Frames are kept as RGBA, 4 bytes per pixel: kOpening of the beginning, kAhead for every moment
+// asked for, and kSpare; some 100 MB for one moment of 1920 x 1080. A video that begins, restarts
+// or loops shows its opening at once while further frames are decoded. If a frame cannot be
+// decoded, the one before it stays.
 class VideoStream {
 public:
-    // What is to be done about a frame that is not decoded yet.
+    // What happens if a frame is not decoded in time.
     enum class Pace {
-        Live,  // the one before it stays, and it counts as late: the show goes on
-        Exact  // it is waited for, so that the same moments always show the same
+        Live,  // the one before it stays, and the frame counts as late: the show goes on
+        Exact  // wait for it, so that the same moments always show the same frames
     };
 
-    // Decodes the first frame. Error: as VideoDecoder::examine(); the first frame cannot be
-    // decoded.
+    // Opens a video and decodes its first frame. Error: as VideoDecoder::examine(), or the first
+    // frame cannot be decoded.
     static Result<std::shared_ptr<VideoStream>> open(const std::filesystem::path& file, Pace pace);
     ~VideoStream();
 
     const VideoContent& content() const { return *content_; }
-    // How often a frame was not there in time, over all readers. Thread-safe.
+    // How often a frame was not decoded in time, over all readers. Thread-safe.
     std::int64_t lateFrames() const { return lateFrames_; }
-    // How often one was asked for of which there is no picture, over all readers. Thread-safe.
+    // How often a frame was asked for that cannot be decoded, over all readers. Thread-safe.
     std::int64_t damagedFrames() const { return damagedFrames_; }
 
 private:
-    enum class State : std::uint32_t { Free, Ready, Damaged, InUse };  // Damaged: there is no picture of it
+    enum class State : std::uint32_t { Free, Ready, Damaged, InUse };  // Damaged: it cannot be decoded
     struct Tag {
         State state = State::Free;
         std::uint32_t frame = 0;  // its number
         friend bool operator==(const Tag&, const Tag&) = default;
     };
-    // A frame in memory: the decoding thread's while Free, of the reader who made it so while
-    // InUse.
+    // A frame in memory. While Free it belongs to the decoding thread, while InUse to the reader
+    // that set it so.
     struct Slot {
         std::atomic<Tag> tag;
         RgbaImage picture;
@@ -65,15 +65,15 @@ private:
 
 public:
     // One output's view of the video. Thread: all readers of a stream are bound to one thread. At
-    // Pace::Live it never blocks, but while it is made and destroyed.
+    // Pace::Live, only construction and destruction may block.
     class Reader {
     public:
         explicit Reader(std::shared_ptr<VideoStream> stream);
         ~Reader();
         Reader(Reader&& other) = default;
 
-        // Calls show(picture) with what is to be seen at `position`, 0 <= position < length, unless
-        // that was shown the last time. Colours are multiplied by alpha, as premultiply() does.
+        // Calls show(picture) with the frame of `position`, 0 <= position < length, unless the last
+        // call showed it already. Colours are multiplied by alpha, as by premultiply().
         template <class Show>
         void at(Time position, Show show) {
             Slot* const slot = take(position);
@@ -88,21 +88,21 @@ public:
         std::shared_ptr<VideoStream> stream_;
         std::shared_ptr<Asked> asked_;
         std::optional<std::uint32_t> shown_;
-        bool late_ = false, damaged_ = false;  // what is asked for was counted as such
+        bool late_ = false, damaged_ = false;  // the frame asked for was counted as such
     };
 
 private:
     static constexpr std::size_t kOpening = 4, kAhead = 6, kSpare = 2;
-    static constexpr std::size_t kMostMoments = 8;  // of more only the next frames are fetched
-    static constexpr std::size_t kSlots = kOpening + kMostMoments * kAhead + kSpare;
+    static constexpr std::size_t kMaxMoments = 8;  // with more of them, fewer frames ahead of each are decoded
+    static constexpr std::size_t kSlots = kOpening + kMaxMoments * kAhead + kSpare;
 
     // A decoder on its way through the file.
     struct Playhead {
         std::unique_ptr<VideoDecoder> decoder;
-        std::uint32_t next = 0;    // the frame that it gives next
-        std::uint32_t target = 0;  // what it was last on its way to
-        std::uint32_t from = 0;    // before it lies only what is needed to get there
-        std::uint64_t used = 0;    // when, in steps of fetch()
+        std::uint32_t next = 0;    // the next frame it will decode
+        std::uint32_t target = 0;  // the frame it was last heading for
+        std::uint32_t from = 0;    // frames before it are decoded only to get there
+        std::uint64_t used = 0;    // when it was last used, in calls of fetch()
     };
 
     VideoStream(std::shared_ptr<const VideoContent> content, std::unique_ptr<VideoDecoder> decoder, std::uint32_t decoded,
@@ -121,12 +121,12 @@ private:
     const std::shared_ptr<const VideoContent> content_;
     const Pace pace_;
     std::array<Slot, kSlots> slots_;
-    std::atomic<std::uint32_t> wishes_ = 0, published_ = 0;  // counters to wait on
+    std::atomic<std::uint32_t> wishes_ = 0, published_ = 0;  // counters that threads wait on
     std::atomic<std::int64_t> lateFrames_ = 0, damagedFrames_ = 0;
     std::mutex mutex_;
     std::vector<std::shared_ptr<Asked>> readers_;  // under mutex_
 
-    // The decoding thread's.
+    // For the decoding thread only.
     std::vector<Playhead> playheads_;
     std::vector<std::uint32_t> asked_;   // by each reader
     std::vector<std::uint32_t> wanted_;  // the most urgent first

@@ -12,7 +12,7 @@ namespace fantascope::render {
 namespace {
 
 constexpr double kGravity = 9.81, kRefraction = 1.333;
-constexpr double kOctave = 2;  // the waves are from half to twice their mean length
+constexpr double kOctave = 2;  // wave lengths are between 1/2 and 2 times the mean
 constexpr double kTurn = 2 * std::numbers::pi;
 
 }  // namespace
@@ -21,11 +21,11 @@ Water::Water(const CausticsSource& source) {
     Rng rng(source.seed);
     double variance = 0;
     for (int i = 0; i < kWaves; ++i) {
-        // Directions and lengths evenly spread, so that no few of them make a lattice.
+        // Directions and lengths are evenly spread, so that the waves form no lattice.
         const double direction = kTurn * (i + rng.uniform()) / kWaves;
         const double length = source.waveLength * std::pow(kOctave, rng.uniform(-1, 1));
         const double k = kTurn / length;
-        // Waves of all lengths focus alike: their curvature, height k^2, is the same.
+        // Waves of all lengths focus equally: their curvature, height k^2, is the same.
         const double height = 1 / (k * k);
         variance += height * height / 2;
         waves_.push_back({k * glm::dvec2(std::cos(direction), std::sin(direction)), height,
@@ -44,7 +44,7 @@ Water::Water(const CausticsSource& source) {
 }
 
 void Water::at(Time time, std::span<glm::vec4> out) const {
-    FANTASCOPE_CHECK(out.size() == waves_.size(), "one place for each wave");
+    FANTASCOPE_CHECK(out.size() == waves_.size(), "there is one place per wave");
     for (std::size_t i = 0; i < waves_.size(); ++i) {
         const Wave& wave = waves_[i];
         out[i] = glm::vec4(glm::dvec4(wave.k, wave.strength, std::fmod(wave.phase - wave.omega * seconds(time), kTurn)));

@@ -12,22 +12,22 @@
 
 namespace fantascope::render {
 
-// Waves on water and how they bend light: a sum of plane waves from all directions, each as fast as
-// gravity makes it (omega^2 = g k tanh(k depth)), over a floor that is looked at from above in
-// sunlight from above. Rays are bent by (1 - 1/n) times the slope, which holds for waves that are
-// not steep. Lengths in canvas heights: [0, aspect] x [0, 1].
+// Water waves and how they refract light: a sum of plane gravity waves from all directions (omega^2
+// = g k tanh(k depth)) over a floor, lit and seen from above. Rays are deflected by (1 - 1/n) times
+// the slope, which holds for small slopes. Lengths in canvas heights: [0, aspect] x [0, 1].
 class Water {
 public:
     static constexpr int kWaves = 24;
     explicit Water(const CausticsSource& source);
 
-    // Of each wave at show time `time`: the wave vector k, a strength b and a phase p, so that the
-    // ray that passes the surface at x meets the floor at x - sum of b k sin(k x + p): under a
-    // crest rays gather. `out`: kWaves. A function of the time alone. No allocation.
+    // Fills `out` with the kWaves waves at show time `time`: wave vector k, strength b and phase p.
+    // The ray that passes the surface at x meets the floor at x - sum of b k sin(k x + p), so rays
+    // converge under crests. A function of the time alone. Does not allocate.
     void at(Time time, std::span<glm::vec4> out) const;
 
     double shortestWave() const { return shortestWave_; }
-    // The largest of these ways between surface and floor, as good as never exceeded.
+    // Four standard deviations of a ray's horizontal shift between surface and floor: practically
+    // its maximum.
     double reach() const { return reach_; }
 
 private:

@@ -148,7 +148,7 @@ TEST(Check, a_shape_is_checked_as_a_pattern_would_take_it) {
     const Checked checked = check(folder, {{drawing, empty, floor, settings, broken}, std::nullopt});
     EXPECT_THAT(checked.lines, HasSubstr("ok a.svg: elemental shape, 2 triangles\n"));
     EXPECT_THAT(checked.lines, HasSubstr("\nb.SVG: draws nothing that has an area"));
-    EXPECT_THAT(checked.lines, HasSubstr("\nc.obj: seen from the front"));
+    EXPECT_THAT(checked.lines, HasSubstr("\nc.obj: has no area seen from the front"));
     EXPECT_THAT(checked.lines, HasSubstr("\nok s.yaml: pattern settings, at most 1000 instances, 2 shapes\n"));
     EXPECT_THAT(checked.lines, HasSubstr("\nt.yaml:3:24: shapes.each[0].file: b.SVG: draws nothing"));
     EXPECT_EQ(checked.refusal, "3 of 5 files refused");
@@ -180,7 +180,7 @@ TEST(Check, what_the_theatre_reads_is_checked_as_it_would_be_read) {
               "ok free.motion.yaml: motion, 1 handle, 1.3 s, 12 frames a second, loops; there is no free.png to say whether its "
               "points are in the white\n"
               "ok moves.yaml: sequence, 2 frames, 80 x 60 px, 10 a second\n"
-              "ok bar.stage.yaml: stage, lamp, 0 platforms, 1 prop\n"
+              "ok bar.stage.yaml: stage, light, 0 platforms, 1 prop\n"
               "ok bar.hints.yaml: hints, 1 point\n"
               "ok w.yaml: pose weights\n");
 
@@ -307,7 +307,7 @@ TEST(Check, a_cast_is_checked_with_what_it_is_of) {
     EXPECT_EQ(check(folder, {{folder / "c.cast.yaml"}, std::nullopt}).lines,
               "ok c.cast.yaml: cast, 1 actor, 2 frames, 10 a second, 1.7 m high\n"
               "ok t.png: guide, 80 x 60 px\n"
-              "ok a.stage.yaml: stage, lamp, 0 platforms, 0 props\n"
+              "ok a.stage.yaml: stage, light, 0 platforms, 0 props\n"
               "ok s.yaml: sequence, 2 frames, 80 x 60 px, 10 a second\n");
 }
 

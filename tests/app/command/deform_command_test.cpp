@@ -260,7 +260,7 @@ TEST_F(DeformCommand, bad_input_is_refused_with_one_message_and_leaves_nothing) 
     EXPECT_THAT(with("bar.png", {"--sheet", "out/frame-0007.png"}), HasSubstr("the folder's own files are called so"));
     folder_.file("out.unfinished/letter.txt", "mine");
     EXPECT_THAT(with("bar.png"),
-                HasSubstr("out.unfinished: is needed to make the sequence in, and has another file in it: letter.txt"));
+                HasSubstr("out.unfinished: is needed for writing the sequence, but has another file in it: letter.txt"));
     EXPECT_EQ(text("out.unfinished/letter.txt"), "mine");
     fs::remove_all(folder_ / "out.unfinished");
     // Too much of it.
@@ -324,7 +324,7 @@ TEST_F(DeformCommand, what_a_killed_run_leaves_is_taken_over_and_what_a_running_
     motion(1, "");
     const Outcome beside = deform();
     EXPECT_THAT(beside, exits(1));
-    EXPECT_THAT(beside.errors, HasSubstr("out.unfinished: another run is making this sequence"));
+    EXPECT_THAT(beside.errors, HasSubstr("out.unfinished: another run is writing this sequence"));
     first.stop(SIGKILL);
     ASSERT_TRUE(fs::exists(folder_ / "out.unfinished/frame-0002.png"));
     EXPECT_THAT(deform(), exits(0));

@@ -47,14 +47,14 @@ protected:
 
     SteppedClock clock_;
     site::World world_{clock_};
-    drivers::Surroundings around_{clock_, &world_};
+    drivers::DriverContext context_{clock_, &world_};
     ConfigNode simulated_ = ConfigNode::parse("driver: simulated\n", "site.yaml").value();
     std::ostringstream out_;
     DeviceTrial trial_{clock_, 5s, nullptr, out_};
 };
 
 TEST_F(TrialOfADevice, lamps_light_up_one_after_the_other_and_are_dark_at_the_end) {
-    const auto port = opened(drivers::openDmxPort(simulated_, 1, around_));
+    const auto port = opened(drivers::openDmxPort(simulated_, 1, context_));
     std::set<std::size_t> lit;
     clock_.setParts({{"lamps", 10, 50ms, [&](Time) {
                           const auto slots = world_.slots(1);
@@ -74,7 +74,7 @@ TEST_F(TrialOfADevice, lamps_light_up_one_after_the_other_and_are_dark_at_the_en
 
 TEST_F(TrialOfADevice, relays_click_one_after_the_other_and_are_safe_at_the_end) {
     const std::vector<bool> safe = {true, false};
-    const auto bank = opened(drivers::openRelayBank(simulated_, "road", safe, around_));
+    const auto bank = opened(drivers::openRelayBank(simulated_, "road", safe, context_));
     std::set<std::vector<bool>> seen;
     clock_.setParts({{"relays", 10, 50ms, [&](Time) { seen.insert(world_.relays("road")); }}});
     EXPECT_TRUE(trial_.click(*bank, safe));
@@ -84,7 +84,7 @@ TEST_F(TrialOfADevice, relays_click_one_after_the_other_and_are_safe_at_the_end)
 
 // Example failure: on the ladder nobody knows what slot 10 is.
 TEST_F(TrialOfADevice, calls_things_by_the_names_that_the_site_has_for_them) {
-    const auto port = opened(drivers::openDmxPort(simulated_, 1, around_));
+    const auto port = opened(drivers::openDmxPort(simulated_, 1, context_));
     EXPECT_TRUE(trial_.chase(*port, {9}, {{9, "fountain red"}}));
     EXPECT_EQ(told()[1], "fountain red (slot 10) is at full");
 }
@@ -92,7 +92,7 @@ TEST_F(TrialOfADevice, calls_things_by_the_names_that_the_site_has_for_them) {
 // A coil that the site does not name may hold anything.
 TEST_F(TrialOfADevice, switches_the_relays_that_have_a_name_and_no_others) {
     const std::vector<bool> safe = {true, false, true};
-    const auto bank = opened(drivers::openRelayBank(simulated_, "road", safe, around_));
+    const auto bank = opened(drivers::openRelayBank(simulated_, "road", safe, context_));
     std::set<std::vector<bool>> seen;
     clock_.setParts({{"relays", 10, 50ms, [&](Time) { seen.insert(world_.relays("road")); }}});
     EXPECT_TRUE(trial_.click(*bank, safe, {{1, "fog"}}));
@@ -117,7 +117,7 @@ private:
     std::unique_ptr<RelayBank> good_;
 };
 TEST_F(TrialOfADevice, a_relay_that_sticks_is_found) {
-    Welded bank(opened(drivers::openRelayBank(simulated_, "road", {false, false}, around_)));
+    Welded bank(opened(drivers::openRelayBank(simulated_, "road", {false, false}, context_)));
     const auto tried = trial_.click(bank, {false, false});
     ASSERT_FALSE(tried);
     EXPECT_EQ(tried.error().message(), "road was told on off and says on on");
@@ -127,7 +127,7 @@ TEST_F(TrialOfADevice, a_relay_that_sticks_is_found) {
 
 // Example failure: the module loses its power in the middle of a click, and the trial ends well.
 TEST_F(TrialOfADevice, relays_that_are_not_safe_at_the_end_are_told) {
-    const auto bank = opened(drivers::openRelayBank(simulated_, "road", {true}, around_));
+    const auto bank = opened(drivers::openRelayBank(simulated_, "road", {true}, context_));
     eachSecond([&](int second) { world_.setPlugged("road", second != 4); });
     const auto tried = trial_.click(*bank, {true});
     ASSERT_FALSE(tried);
@@ -138,7 +138,7 @@ TEST_F(TrialOfADevice, relays_that_are_not_safe_at_the_end_are_told) {
 TEST_F(TrialOfADevice, an_interrupted_trial_does_nothing_more) {
     const Interrupt interrupt(Interrupt::Second::IsCounted);
     DeviceTrial trial(clock_, 5s, &interrupt, out_);
-    const auto port = opened(drivers::openDmxPort(simulated_, 1, around_));
+    const auto port = opened(drivers::openDmxPort(simulated_, 1, context_));
     eachSecond([&](int second) {
         if (second == 1) std::raise(SIGINT);
     });
@@ -149,7 +149,7 @@ TEST_F(TrialOfADevice, an_interrupted_trial_does_nothing_more) {
 
 // Example failure: `fantascope devices --test street | head -1` goes on clicking for nobody.
 TEST_F(TrialOfADevice, a_trial_that_nobody_reads_ends) {
-    const auto port = opened(drivers::openDmxPort(simulated_, 1, around_));
+    const auto port = opened(drivers::openDmxPort(simulated_, 1, context_));
     eachSecond([&](int second) {
         if (second == 1) out_.setstate(std::ios::badbit);
     });
@@ -159,14 +159,14 @@ TEST_F(TrialOfADevice, a_trial_that_nobody_reads_ends) {
 }
 
 TEST_F(TrialOfADevice, presses_and_contacts_are_told_as_they_come) {
-    const auto controller = opened(drivers::openCueController(simulated_, around_));
+    const auto controller = opened(drivers::openCueController(simulated_, context_));
     eachSecond([&](int second) { world_.press(3, second % 2 == 1); });
     EXPECT_TRUE(trial_.tellPresses(*controller));
     EXPECT_THAT(told(), ElementsAre(HasSubstr("is there"), "button 3 down", "button 3 up", "button 3 down", "button 3 up"));
 }
 
 TEST_F(TrialOfADevice, contacts_are_told_and_whether_they_were_found_so) {
-    const auto bank = opened(drivers::openInputBank(simulated_, "doors", 2, around_));
+    const auto bank = opened(drivers::openInputBank(simulated_, "doors", 2, context_));
     world_.setContact("doors", 1, true);
     eachSecond([&](int second) { world_.setContact("doors", 0, second % 2 == 1); });
     EXPECT_TRUE(trial_.tellContacts(*bank));
@@ -175,7 +175,7 @@ TEST_F(TrialOfADevice, contacts_are_told_and_whether_they_were_found_so) {
 }
 
 TEST_F(TrialOfADevice, a_desk_is_told_by_the_slots_that_it_moves) {
-    const auto desk = opened(drivers::openDmxSource(simulated_, 1, around_));
+    const auto desk = opened(drivers::openDmxSource(simulated_, 1, context_));
     eachSecond([&](int second) {
         DmxInput frame;
         frame.source = "FOH";
@@ -190,7 +190,7 @@ TEST_F(TrialOfADevice, a_desk_is_told_by_the_slots_that_it_moves) {
 
 TEST_F(TrialOfADevice, a_camera_leaves_its_first_picture_and_tells_how_many_came) {
     const ScratchFolder folder;
-    const auto camera = opened(drivers::openCamera(simulated_, around_));
+    const auto camera = opened(drivers::openCamera(simulated_, context_));
     clock_.setParts({{"camera", 4, 100ms, [&](Time moment) {
                           auto frame = std::make_shared<CameraFrame>();
                           frame->image = RgbaImage(8, 4);
@@ -207,7 +207,7 @@ TEST_F(TrialOfADevice, a_camera_leaves_its_first_picture_and_tells_how_many_came
 
 TEST_F(TrialOfADevice, says_why_a_device_is_missing_and_when_it_comes) {
     world_.setPlugged("cue controller", false);
-    const auto controller = opened(drivers::openCueController(simulated_, around_));
+    const auto controller = opened(drivers::openCueController(simulated_, context_));
     eachSecond([&](int second) {
         world_.setPlugged("cue controller", second == 2);
         world_.press(1, second == 2);
@@ -218,7 +218,7 @@ TEST_F(TrialOfADevice, says_why_a_device_is_missing_and_when_it_comes) {
 
 TEST_F(TrialOfADevice, is_refused_where_the_device_never_came) {
     world_.setPlugged("camera", false);
-    const auto camera = opened(drivers::openCamera(simulated_, around_));
+    const auto camera = opened(drivers::openCamera(simulated_, context_));
     const auto tried = trial_.snapshot(*camera, "nowhere.png");
     ASSERT_FALSE(tried);
     EXPECT_EQ(tried.error().message(), "camera was not there");

@@ -239,7 +239,7 @@ TEST_F(ExportCommand, refuses_with_advice) {
     EXPECT_THAT(refusal({"export", show, "--output", "left", "-o", "a.gif"}), HasSubstr("FILE.mov"));
     EXPECT_THAT(refusal({"export", show, "--output", "left", "-o", "a.mp4", "--alpha", "stored"}), HasSubstr("no alpha"));
     ASSERT_THAT(exportLeft("frames"), exits(0));
-    EXPECT_THAT(exportLeft("frames").errors, HasSubstr("there are frames in it already"));
+    EXPECT_THAT(exportLeft("frames").errors, HasSubstr("already has frames in it"));
     EXPECT_THAT(run({"export", show, "--output", "left", "-o", "a.mp4", "--size", "160"}), exits(2));
     EXPECT_THAT(run({"export", show, "--output", "left", "-o", "a.mp4", "--cue", "Full", "--from", "Full"}), exits(2));
     EXPECT_FALSE(fs::exists(folder_ / "a.mp4"));

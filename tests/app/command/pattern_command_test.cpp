@@ -233,7 +233,7 @@ TEST_F(PatternCommand, bad_input_is_refused_with_one_message_and_leaves_nothing)
     folder_.file("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
     EXPECT_THAT(refusal("guide.png", {"--shapes", "points.obj"}), HasSubstr("points.obj: "));
     folder_.file("floor.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
-    EXPECT_THAT(refusal("guide.png", {"--shapes", "floor.obj"}), HasSubstr("floor.obj: seen from the front"));
+    EXPECT_THAT(refusal("guide.png", {"--shapes", "floor.obj"}), HasSubstr("floor.obj: has no area seen from the front"));
     folder_.file("empty.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>");
     EXPECT_THAT(refusal("guide.png", {"--shapes", "empty.svg"}), HasSubstr("empty.svg: draws nothing that has an area"));
     ASSERT_TRUE(writePng(folder_ / "white.png", GreyImage(9, 9, 1)));
@@ -307,7 +307,7 @@ TEST_F(PatternCommand, goes_on_from_a_pattern_in_a_region) {
     };
     EXPECT_THAT(refused({"--method", "paper"}).errors, HasSubstr("leave --method out"));
     EXPECT_THAT(refused({"--shapes", "leaf"}).errors, HasSubstr("leave --shapes out"));
-    EXPECT_THAT(refused({"--region", "1,0,0.5,1"}).errors, HasSubstr("left top corner comes first"));
+    EXPECT_THAT(refused({"--region", "1,0,0.5,1"}).errors, HasSubstr("must be the top left corner, then the bottom right one"));
     EXPECT_THAT(refused({"--region", "1,0,1.5"}), exits(2));
     EXPECT_THAT(find({"--region", "0,0,1,1"}), exits(2)) << "a region of what?";
     GreyImage square(36, 36);

@@ -67,7 +67,8 @@ TEST_F(PlotCommand, draws_a_cast) {
     EXPECT_NE(readFile(folder_ / "stage.png").value(), readFile(folder_ / "side.png").value());
     EXPECT_THAT(run({"plot", "c.cast.yaml", "--frame", "1", "-o", "second.png"}), exits(0));
     EXPECT_NE(readFile(folder_ / "second.png").value(), readFile(folder_ / "cast.png").value());
-    EXPECT_THAT(run({"plot", "c.cast.yaml", "--frame", "2", "-o", "x.png"}).errors, HasSubstr("--frame 2 is beyond its last, 1"));
+    EXPECT_THAT(run({"plot", "c.cast.yaml", "--frame", "2", "-o", "x.png"}).errors,
+                HasSubstr("--frame 2 is beyond the last frame, 1"));
     EXPECT_THAT(run({"plot", "c.cast.yaml", "--figure", "search", "-o", "x.png"}).errors, HasSubstr("needs the report"));
     EXPECT_THAT(run({"plot", "p.pattern.yaml", "--figure", "stage", "-o", "x.png"}).errors, HasSubstr("needs a cast"));
 }
@@ -78,7 +79,7 @@ TEST_F(PlotCommand, says_what_it_cannot_draw) {
     for (const char* file : {"other.json", "broken.json"}) {
         const Outcome refused = run({"plot", file, "-o", "x.png"});
         EXPECT_THAT(refused, exits(1));
-        EXPECT_THAT(refused.errors, HasSubstr(std::string(file) + ": is no report of a search"));
+        EXPECT_THAT(refused.errors, HasSubstr(std::string(file) + ": is not a report of a search"));
     }
     EXPECT_THAT(run({"plot", "p.json", "--figure", "spectrum", "-o", "x.png"}).errors, HasSubstr("needs a pattern"));
     EXPECT_THAT(run({"plot", "p.pattern.yaml", "--figure", "search", "-o", "x.png"}).errors, HasSubstr("needs the report"));

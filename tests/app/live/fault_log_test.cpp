@@ -81,9 +81,9 @@ protected:
 };
 
 TEST_F(WatchOfDevices, reports_one_that_is_missing_at_the_start_and_when_it_comes) {
-    look(0s, DeviceState::Starting, 0, "it is being looked for");
+    look(0s, DeviceState::Starting, 0, "looking for it");
     look(1s, DeviceState::Absent, 0, "there is no eth7");
-    look(2s, DeviceState::Starting, 0, "it is being looked for");
+    look(2s, DeviceState::Starting, 0, "looking for it");
     look(3s, DeviceState::Running, 0);
     EXPECT_THAT(told_, ElementsAre("universe 1 (sacn) is missing: there is no eth7", "universe 1 (sacn) is back after 2.0 s"));
     EXPECT_THAT(reported(), ElementsAre("1-3 universe 1: universe 1 (sacn) is missing: there is no eth7"));
@@ -91,10 +91,10 @@ TEST_F(WatchOfDevices, reports_one_that_is_missing_at_the_start_and_when_it_come
 
 // Example failure: a bus that hangs while it is opened is starting all night, and nobody is told.
 TEST_F(WatchOfDevices, reports_one_that_does_not_get_beyond_its_start) {
-    look(1s, DeviceState::Starting, 0, "it is being looked for");
+    look(1s, DeviceState::Starting, 0, "looking for it");
     EXPECT_TRUE(told_.empty());
-    look(DeviceWatch::kPatience, DeviceState::Starting, 0, "it is being looked for");
-    EXPECT_THAT(told_, ElementsAre("universe 1 (sacn) is missing: it is being looked for"));
+    look(DeviceWatch::kPatience, DeviceState::Starting, 0, "looking for it");
+    EXPECT_THAT(told_, ElementsAre("universe 1 (sacn) is missing: looking for it"));
 }
 
 // Example failure: a cable that is pulled and put back between two looks leaves no trace.
@@ -109,13 +109,13 @@ TEST_F(WatchOfDevices, reports_a_loss_that_is_over_before_it_looked) {
 // says that nothing was wrong.
 TEST_F(WatchOfDevices, reports_what_a_device_does_not_do_although_it_is_there) {
     DeviceStatus status{"cue controller", "usb_hid", DeviceState::Running, LossAction::Hold, "", 0};
-    for (const auto& [at, trouble] : {std::pair{1s, "it takes no lights"}, {2s, "it takes no lights"}, {4s, ""}}) {
+    for (const auto& [at, trouble] : {std::pair{1s, "it refuses lights"}, {2s, "it refuses lights"}, {4s, ""}}) {
         status.trouble = trouble;
         watch_.look(at, std::vector{status});
     }
-    EXPECT_THAT(told_, ElementsAre("cue controller (usb_hid): it takes no lights",
+    EXPECT_THAT(told_, ElementsAre("cue controller (usb_hid): it refuses lights",
                                    "cue controller (usb_hid) is all right again after 3.0 s"));
-    EXPECT_THAT(reported(), ElementsAre("1-4 cue controller: cue controller (usb_hid): it takes no lights"));
+    EXPECT_THAT(reported(), ElementsAre("1-4 cue controller: cue controller (usb_hid): it refuses lights"));
 }
 
 // Relays that a hand switched are a loss to their bank, and Lighting says which they are.

@@ -294,11 +294,11 @@ TEST_F(SiteFileTest, devices_that_cannot_share_a_line_are_refused_with_both_plac
                                               HasSubstr("the device at"), HasSubstr(":14:13")));
     parts.contacts.clear();
     parts.port = "{driver: open_dmx, port: /dev/fantascope-none}";
-    EXPECT_THAT(refusal(siteOf(parts)), HasSubstr("/dev/fantascope-none is taken by the device at"));
+    EXPECT_THAT(refusal(siteOf(parts)), HasSubstr("/dev/fantascope-none is already used by the device at"));
     parts.relays.clear();
     parts.port = "{driver: enttec_pro, port: /dev/fantascope-none}";
     parts.desk = parts.port;
-    EXPECT_THAT(refusal(siteOf(parts)), HasSubstr("/dev/fantascope-none is taken by the device at"));
+    EXPECT_THAT(refusal(siteOf(parts)), HasSubstr("/dev/fantascope-none is already used by the device at"));
 }
 
 TEST_F(SiteFileTest, a_simulation_is_read_beside_the_devices) {
@@ -318,7 +318,7 @@ TEST_F(SiteFileTest, check_says_what_a_run_would_refuse) {
     parts.relays = "{driver: modbus_tcp, host: relay.local}";
     std::ostringstream out;
     EXPECT_FALSE(checkFiles({{folder_.file("site.yaml", siteOf(parts))}, std::nullopt}, out));
-    EXPECT_THAT(out.str(), HasSubstr("'relay.local' is no IPv4 address"));
+    EXPECT_THAT(out.str(), HasSubstr("'relay.local' is not an IPv4 address"));
 }
 
 }  // namespace

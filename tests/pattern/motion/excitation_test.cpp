@@ -15,7 +15,7 @@ constexpr int kFrames = 2000;
 constexpr double kRate = 30;
 constexpr double kDeviation = 0.1;
 
-// Bins 0 .. N/2 of the Fourier transform, by its definition: independent of the library under test.
+// Bins 0 .. N/2 of the Fourier transform by its definition, independent of FFTW.
 std::vector<std::complex<double>> transform(const std::vector<double>& samples) {
     const std::size_t count = samples.size();
     std::vector<std::complex<double>> turn(count), bins(count / 2 + 1);
@@ -26,7 +26,7 @@ std::vector<std::complex<double>> transform(const std::vector<double>& samples) 
     return bins;
 }
 
-// The slope of log power over log frequency, least squares over all bins but the first.
+// The slope of log power over log frequency: a least-squares fit over all bins but the first.
 double powerSlope(const std::vector<double>& samples) {
     const auto bins = transform(samples);
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
@@ -71,10 +71,9 @@ TEST(Excitation, has_a_peak_of_one_on_either_side) {
     EXPECT_TRUE(above && below) << "normalised by the maximum or the minimum instead of the peak";
 }
 
-// The bin at half the rate is its own conjugate and must be real; a complex one would lose the part
-// that is not.
-// Example failure: with a random phase the last bin's amplitude is cos(phase) of what the model
-// says, anything from 0 to 1.
+// The bin at half the rate is its own conjugate and must be real; a complex one would lose its
+// imaginary part. Example failure: with a random phase, the last bin's amplitude is multiplied by
+// |cos(phase)|.
 TEST(Excitation, keeps_the_amplitude_of_the_last_bin) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         const auto bins = transform(drawn(1, seed, 64, 0.0));
@@ -84,8 +83,8 @@ TEST(Excitation, keeps_the_amplitude_of_the_last_bin) {
 }
 
 // The relative spread of an amplitude about its mean is m: the paper's "variance sigma = m mu" is a
-// standard deviation. Example failure: a variance of m mu would spread bin 1 of this one (mu =
-// 66.7) by 1/8 of that, and bin 1000 (mu = .067) by 4 times as much.
+// standard deviation. Example failure: with a variance of m mu, the spread of bin 1 (mu = 66.7)
+// would be 1/8 of that, and the spread of bin 1000 (mu = .067) four times as much.
 TEST(Excitation, scatters_amplitudes_relative_to_their_mean) {
     const auto bins = transform(drawn(1, 11));
     double sum = 0, squares = 0;
@@ -98,8 +97,8 @@ TEST(Excitation, scatters_amplitudes_relative_to_their_mean) {
     EXPECT_NEAR(std::sqrt(squares / count - mean * mean) / mean, kDeviation, 0.01);
 }
 
-// Gaussian numbers below zero become no amplitude at all; an excitation without any is a calm, not
-// a division by zero.
+// Amplitudes that would be negative become 0. If all are 0, the excitation is 0, without a division
+// by zero.
 TEST(Excitation, is_finite_for_a_deviation_that_silences_bins) {
     bool calm = false;
     for (std::uint64_t seed = 1; seed <= 200; ++seed) {

@@ -15,7 +15,7 @@ constexpr double kStep = 1.0 / 30;
 struct OscillatorCase {
     double naturalFrequency, damping;
 };
-// Slow and fast beside the 30 Hz of the samples, nearly undamped and nearly critical.
+// Slow and fast relative to the 30 Hz of the samples, nearly undamped and nearly critical.
 constexpr OscillatorCase kOscillators[] = {{0.02, 0.3}, {0.25, 0.35}, {1.0, 0.02}, {1.0, 0.2},
                                            {0.8, 0.99}, {4.0, 0.1},   {14.0, 0.5}};
 
@@ -24,9 +24,9 @@ std::vector<double> excitation(double beta, int frames, std::uint64_t seed) {
     return Excitation(beta, frames, 1 / kStep, 0.1).draw(rng);
 }
 
-// The equation of motion by the classical Runge-Kutta method in `substeps` of one sample interval;
-// calls see(fraction, state) after each. An authority that shares nothing with the recurrence under
-// test.
+// Solves the equation of motion over one sample interval in `substeps` steps of the classical
+// Runge-Kutta method; calls see(fraction, state) after each. It shares nothing with the recurrence
+// under test.
 template <class See>
 MotionState rungeKutta(OscillatorCase oscillator, MotionState state, double before, double after, int substeps, See see) {
     const double w = 2 * std::numbers::pi * oscillator.naturalFrequency;
@@ -57,8 +57,8 @@ double displacement(std::span<const MotionState> loop, std::size_t index, double
     return a * from.x + b * kStep * from.y + c * to.x + d * kStep * to.y;
 }
 
-// Example failure: a sum over samples in the place of Duhamel's integral errs by several per cent
-// at these steps.
+// Example failure: a sum over samples instead of Duhamel's integral is off by several per cent at
+// these steps.
 TEST(Oscillator, follows_the_equation_of_motion_to_1e_9) {
     constexpr std::size_t kFrames = 300;
     const auto force = excitation(1, kFrames, 3);
@@ -108,8 +108,7 @@ TEST(Oscillator, answers_twice_the_force_with_twice_the_movement) {
     for (std::size_t i = 0; i < once.size(); ++i) EXPECT_EQ(twice[i], 2.0 * once[i]);
 }
 
-// A vibration that nothing drives keeps its frequency sqrt(1 - damping^2) w and loses exp(-damping
-// w t).
+// A free vibration has the frequency sqrt(1 - damping^2) w and decays as exp(-damping w t).
 TEST(Oscillator, vibrates_freely_as_in_closed_form) {
     const double w = 2 * std::numbers::pi * 0.5, damping = 0.1,
                  period = 2 * std::numbers::pi / (w * std::sqrt(1 - damping * damping));
@@ -119,8 +118,8 @@ TEST(Oscillator, vibrates_freely_as_in_closed_form) {
     EXPECT_NEAR(after.y, -0.3 * left, 1e-12);
 }
 
-// Between the samples the curve is no longer exact: with the oscillators of the default settings it
-// strays by at most 4e-6 of what a steady force of the same peak would move, a thousandth of a
+// Between the samples the curve is not exact. With the oscillators of the default settings, its
+// error is at most 4e-6 of the displacement by a constant force of the same peak: a thousandth of a
 // pixel in 250.
 TEST(Hermite, stays_near_the_equation_of_motion_between_samples) {
     constexpr std::size_t kFrames = 300;
@@ -141,8 +140,8 @@ TEST(Hermite, stays_near_the_equation_of_motion_between_samples) {
     }
 }
 
-// A peak between samples counts: two samples at rest displacement with opposite velocities enclose
-// an arc.
+// A peak between samples counts: the curve between two samples at displacement 0 with opposite
+// velocities is an arc.
 TEST(Hermite, peak_is_that_of_the_curve_not_of_the_samples) {
     // u(s) = s (1 - s) on the first interval, its reflection on the second.
     const double slope = 1 / kStep;
@@ -152,8 +151,7 @@ TEST(Hermite, peak_is_that_of_the_curve_not_of_the_samples) {
 
 TEST(Hermite, peak_matches_a_dense_search) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-        // Few samples to a swing, so that the peak lies far from them; every other curve has a
-        // cubic term of nothing.
+        // Few samples per swing, so that the peak lies far from them.
         const auto loop = Oscillator(6.0, 0.3).steadyState(excitation(0, 16, seed), kStep);
         double dense = 0;
         for (std::size_t i = 0; i < loop.size(); ++i)
@@ -175,8 +173,7 @@ std::vector<MotionState> drawn(const AxisMotion& axis, std::uint64_t seed) {
     return HarmonicMotion(axis, shortLoop()).draw(rng);
 }
 
-// Example failure: scaled by the largest sample, the curve between two samples still leaves the
-// range.
+// Example failure: scaled by the largest sample, the curve still exceeds the range between samples.
 TEST(HarmonicMotion, reaches_its_range_but_never_leaves_it) {
     const AxisMotion axis{0, 5.0, 0.2, 1.0, 0.01};
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {

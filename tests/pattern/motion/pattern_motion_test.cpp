@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Instances on a grid in `groups` groups, by turns. Motion needs no shapes.
+// Instances on a grid, assigned to `groups` groups in turn. Motion needs no shapes.
 ShapePattern gridPattern(std::uint32_t instances, std::uint32_t groups) {
     ShapePattern pattern;
     pattern.width = 160;
@@ -42,7 +42,7 @@ std::vector<InstancePose> poses(const PatternMotion& motion, Time time, std::siz
 
 bool sameBytes(const InstancePose& a, const InstancePose& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-// What an instance does between its rest and its pose.
+// The movement of an instance: its pose relative to its rest.
 struct Movement {
     glm::dvec2 shift;
     glm::dvec3 turn;
@@ -75,8 +75,8 @@ TEST(PatternMotion, loops_over_frames_by_rate_seconds) {
     EXPECT_EQ(PatternMotion(pattern).period(), 66'666'666'667ns);
 }
 
-// A frame shown after a seek is the frame shown in passing; far and negative times are ordinary
-// ones.
+// A frame after a seek equals the frame of continuous play. Distant and negative times are no
+// exception.
 TEST(PatternMotion, seeks_to_what_it_plays) {
     const ShapePattern pattern = gridPattern(kCount, 3);
     const PatternMotion motion(pattern);
@@ -93,8 +93,8 @@ TEST(PatternMotion, seeks_to_what_it_plays) {
         for (const InstancePose& pose : poses(motion, time, kCount)) EXPECT_TRUE(std::isfinite(pose.centre.x));
 }
 
-// No seam where the loop closes, nor at any sample: over a nanosecond nothing moves by more than a
-// nanosecond's worth.
+// There is no seam where the loop closes, nor at any sample: within a nanosecond nothing moves
+// farther than its velocity allows.
 TEST(PatternMotion, moves_continuously_through_the_loop_s_end) {
     const ShapePattern pattern = gridPattern(kCount, 3);
     const PatternMotion motion(pattern);
@@ -105,16 +105,16 @@ TEST(PatternMotion, moves_continuously_through_the_loop_s_end) {
         for (std::size_t i = 0; i < kCount; ++i) {
             EXPECT_LT(glm::length(at[i].centre - before[i].centre), 1e-9);
             EXPECT_LT(glm::length(after[i].centre - at[i].centre), 1e-9);
-            // Nor does the velocity jump: what is left over a microsecond is the change that
-            // acceleration and rounding make.
+            // Nor does the velocity jump: within a microsecond it changes only by acceleration and
+            // rounding.
             EXPECT_LT(glm::length((late[i].centre - at[i].centre) - (at[i].centre - early[i].centre)), 1e-11);
             EXPECT_LT(glm::length((late[i].rotation - at[i].rotation) - (at[i].rotation - early[i].rotation)), 1e-9);
         }
     }
 }
 
-// Example failure: streams that derive from the index in the list, or from one engine for all,
-// shift for everybody behind a new instance.
+// Example failure: streams derive from the index in the list, or all share one engine; then a new
+// instance changes all that follow it.
 TEST(PatternMotion, of_an_instance_depends_on_no_other) {
     ShapePattern pattern = gridPattern(kCount, 3);
     const PatternMotion before(pattern);
@@ -167,7 +167,7 @@ TEST(PatternMotion, differs_from_seed_to_seed_and_from_instance_to_instance) {
     EXPECT_GT(glm::length(first[1].turn - reseeded[1].turn), 1e-6);
 }
 
-// How far two movements follow one line: 1 is a straight one.
+// The correlation of two movements: 1 if they are proportional.
 template <class First, class Second>
 double correlation(const std::vector<Movement>& path, First first, Second second) {
     double both = 0, firsts = 0, seconds = 0;
@@ -178,8 +178,8 @@ double correlation(const std::vector<Movement>& path, First first, Second second
     return std::abs(both) / std::sqrt(firsts * seconds);
 }
 
-// Every axis has an excitation of its own. Example failure: two that shared a stream would move
-// along a line or turn as one.
+// Every axis has an excitation of its own. Example failure: two axes share a stream, so that they
+// move along a line or turn as one.
 TEST(PatternMotion, moves_each_axis_by_itself) {
     ShapePattern local = gridPattern(1, 1), group = groupsOnly(1, 1);
     local.motion.groupMajor.range = local.motion.groupMinor.range = 0;
@@ -196,12 +196,12 @@ TEST(PatternMotion, moves_each_axis_by_itself) {
 TEST(PatternMotion, stays_within_group_and_local_ranges_all_the_loop) {
     ShapePattern pattern = gridPattern(8, 2);
     MotionSettings& motion = pattern.motion;
-    // Magnitudes far beyond what the ranges allow, so that every range is reached.
+    // The magnitudes are so large that every range is reached.
     for (AxisMotion* axis :
          {&motion.groupMajor, &motion.groupMinor, &motion.localTranslation, &motion.localTilt, &motion.localTurn})
         axis->magnitude = 100;
     const PatternMotion moving(pattern);
-    // Floats may round the last bit up.
+    // Allows for rounding to float.
     constexpr double kOne = 1 + 1e-6;
     const double along = motion.groupMajor.range + motion.localTranslation.range,
                  across = motion.groupMinor.range + motion.localTranslation.range;
@@ -219,7 +219,7 @@ TEST(PatternMotion, stays_within_group_and_local_ranges_all_the_loop) {
 }
 
 // The artist's direction: from the canvas's x axis towards its y axis, which points down.
-// Example failure: the angle taken the other way round, or major and minor exchanged.
+// Example failure: the angle is measured the other way round, or major and minor are exchanged.
 TEST(PatternMotion, moves_groups_along_the_direction) {
     ShapePattern pattern = groupsOnly(6, 3);
     const double direction = std::numbers::pi / 6;
@@ -267,8 +267,8 @@ TEST(PatternMotion, keeps_the_size_of_every_instance) {
     for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(moved[i].size, pattern.instances[i].size);
 }
 
-// A range is a range times the strength, above 1 too. Example failure: one that is cut off, or a
-// strength that moves the range's peak but not what lies below it.
+// All displacements are proportional to the strength, above 1 too. Example failure: the range clips
+// them, or the strength scales only the range.
 TEST(PatternMotion, is_proportional_to_the_strength_of_the_wind) {
     const ShapePattern pattern = gridPattern(kCount, 3);
     const PatternMotion motion(pattern);
@@ -296,9 +296,8 @@ TEST(PatternMotion, without_wind_is_rest) {
     }
 }
 
-// A wind from a pattern's own direction is no other wind; one from elsewhere turns what the groups
-// do and leaves the shapes' own movement alone. Example failure: the pattern's direction and the
-// wind's add up.
+// A wind along a pattern's own direction changes nothing; any other turns the groups' movement and
+// leaves the local movement alone. Example failure: the pattern's direction and the wind's add up.
 TEST(PatternMotion, groups_sway_along_the_wind) {
     ShapePattern pattern = groupsOnly(6, 3);
     pattern.motion.direction = 0.7;
@@ -318,7 +317,7 @@ TEST(PatternMotion, groups_sway_along_the_wind) {
     EXPECT_EQ(poses(still, 3s, 3, across)[1].rotation, poses(still, 3s, 3)[1].rotation);
 }
 
-// The render thread asks with every frame and must not wait for the heap.
+// The render thread calls it for every frame and must not wait for the heap.
 TEST(PatternMotion, asking_allocates_nothing) {
     const ShapePattern pattern = gridPattern(kCount, 3);
     const PatternMotion motion(pattern);

@@ -16,10 +16,11 @@
 namespace fantascope::pattern {
 namespace {
 
-// Where the centre of a pixel lies, seen from one triangle.
+// Where the centre of a pixel lies relative to a triangle.
 enum class Where { Inside, Outside, OnTheEdge };
 
-// By the signs of three cross products. Within a millionth of a pixel of an edge, rounding decides.
+// By the signs of three cross products. Within a millionth of a pixel from an edge, either side is
+// right.
 Where whereIs(glm::dvec2 point, glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
     const auto distance = [&](glm::dvec2 from, glm::dvec2 to) {
         const glm::dvec2 along = to - from, out = point - from;
@@ -79,7 +80,7 @@ TriangleMesh unitSquare() { return {{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1,
 
 TEST(Coverage, is_what_a_test_of_every_pixel_against_every_triangle_gives) {
     Rng rng(1);
-    for (const int width : {64, 100, 130}) {  // a whole word, and not
+    for (const int width : {64, 100, 130}) {  // multiples of a word, and others
         for (const std::string& shape : builtInShapeNames())
             for (int i = 0; i < 6; ++i) expectAsBruteForce(loadShape(shape)->mesh, randomPose(rng), width, 60);
         // Triangles that share no corner, cross each other and face either way.
@@ -87,9 +88,8 @@ TEST(Coverage, is_what_a_test_of_every_pixel_against_every_triangle_gives) {
     }
 }
 
-// A closed surface seen from all sides, where inner edges cancel out and the outline of the far
-// side lies behind.
-// Example failure: an edge between a facing and an averted triangle is skipped, and the silhouette
+// A closed surface seen from all sides: inner edges cancel out, and the far side is hidden.
+// Example failure: an edge between a front face and a back face is skipped, and the silhouette
 // opens there.
 TEST(Coverage, of_a_rotated_solid_is_its_whole_silhouette) {
     const auto sculpture = loadShape(sourceFolder() + "/shows/light-movement/shapes/sculpture.obj");
@@ -98,10 +98,10 @@ TEST(Coverage, of_a_rotated_solid_is_its_whole_silhouette) {
     for (int i = 0; i < 30; ++i) expectAsBruteForce(sculpture->mesh, randomPose(rng), 100, 60);
 }
 
-// Shapes that touch must neither leave a dark seam nor count a pixel twice. Example failure: both
+// Adjacent triangles must neither leave a dark seam nor count a pixel twice. Example failure: both
 // round the common edge outwards.
 TEST(Coverage, gives_each_pixel_of_a_common_edge_to_one_triangle) {
-    // Edges run through pixel centres exactly, where rounding cannot help.
+    // The edges run exactly through pixel centres, where rounding decides nothing.
     Coverage one(64, 64), other(64, 64), both(64, 64);
     const TriangleMesh lower{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}}, {{0, 1, 2}}};
     const TriangleMesh upper{{{-1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}}};

@@ -7,7 +7,7 @@
 namespace fantascope::pattern {
 namespace {
 
-constexpr double kExact = 1e-12;  // of a few sums of whole numbers, divided once
+constexpr double kExact = 1e-12;  // for a few sums of integers, divided once
 
 // A guide of 4 x 2 pixels, and a pattern that covers the left half of its upper row.
 GreyImage smallGuide() {

@@ -33,7 +33,7 @@ LoopQuality loop(const ShapePattern& pattern, const GreyImage& guide, int thread
     return LoopMeasure(pattern, guide, threads).in({}, 20);
 }
 
-// A square's corners are not round numbers; its sides may round to one pixel more or less.
+// A square's corners are not on pixel edges, so its sides may be a pixel longer or shorter.
 constexpr double kOnePixelASide = 0.07;
 
 TEST(Measure, overlap_is_the_share_of_covered_pixels_that_are_covered_twice) {
@@ -53,8 +53,8 @@ TEST(Measure, a_pattern_that_is_its_guide_differs_in_nothing) {
     EXPECT_EQ(quality.tone, 0);
 }
 
-// Seen from afar, a chequer of black and white is grey: z says as different as can be, tone says
-// alike.
+// Seen from afar, a black and white chequerboard is grey: z is as bad as it can be, and tone is
+// good.
 TEST(Measure, tone_sees_a_grey_where_z_sees_black_and_white) {
     ShapePattern chequer;
     chequer.width = 120, chequer.height = 90;
@@ -100,8 +100,8 @@ TEST(Measure, loop_tone_without_movement_is_that_at_rest) {
     EXPECT_EQ(LoopMeasure(pattern, guide, 1).in({.strength = 0}, 1).localDisplacement, 0);
 }
 
-// Vertex by vertex, over the same moments. Example failure: the groups' movement counts, or sizes
-// are taken for widths.
+// The expectation is computed vertex by vertex at the same moments. Example failure: the groups'
+// movement counts, or sizes are taken for widths.
 TEST(Measure, local_displacement_is_how_far_the_vertices_stray_whatever_the_groups_do) {
     ShapePattern pattern = squares({{30, 30}, {80, 60}});
     pattern.instances[0].rotation = {0.3, -0.4, 1};

@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
 
-// Shapes all over the canvas in a grid of `columns`, a little apart, or only in the middle third of
-// it.
+// Shapes on a grid of `columns` columns, a little apart, on the whole canvas or only on its middle
+// third.
 ShapePattern gridOf(const std::string& shape, int columns, bool middleOnly) {
     ShapePattern pattern;
     pattern.width = kWidth, pattern.height = kHeight;
@@ -35,8 +35,8 @@ ShapePattern gridOf(const std::string& shape, int columns, bool middleOnly) {
 
 GreyImage guideOf(const ShapePattern& pattern) { return drawWhiteOnBlack(pattern, kWidth, kHeight); }
 
-// Whatever the shape and however large: an absolute range moves small shapes over each other and
-// large ones not at all.
+// This holds for any shape and size. Example failure: an absolute range, which moves small shapes
+// over each other and large ones hardly at all.
 TEST(MotionFit, lets_shapes_of_any_size_stray_by_the_same_share_of_it) {
     for (const char* shape : {"triangle", "circle", "leaf"})
         for (const int columns : {12, 40}) {
@@ -49,8 +49,8 @@ TEST(MotionFit, lets_shapes_of_any_size_stray_by_the_same_share_of_it) {
         }
 }
 
-// A white band in the dark tells every shift of its edge, a single small shape tells next to none.
-// Example failure: groups move without regard to the drawing.
+// The tone of a white band in the dark shows every shift of its edges. Example failure: groups move
+// without regard to the drawing.
 TEST(MotionFit, lets_groups_move_as_far_as_the_tone_allows) {
     ShapePattern band = gridOf("square", 30, true), single = band;
     single.instances.resize(1);
@@ -62,7 +62,7 @@ TEST(MotionFit, lets_groups_move_as_far_as_the_tone_allows) {
     const LoopMeasure loop(band, guide, 2);
     const double added = loop.in({}, 100).tone - loop.in({.strength = 0}, 1).tone;
     EXPECT_LT(added, 0.01);
-    EXPECT_GT(added, 0.007);  // and not a bit less than they may
+    EXPECT_GT(added, 0.007);  // and not much less than allowed
 }
 
 TEST(MotionFit, leaves_everything_but_magnitudes_and_ranges_alone) {

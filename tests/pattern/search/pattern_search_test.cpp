@@ -52,8 +52,8 @@ TEST(PatternSearch, reads_as_the_drawing_after_a_few_hundred_iterations) {
     EXPECT_EQ(inTheWhite, found.pattern.instances.size());
 }
 
-// Only a better candidate replaces the reference solution. Example failure: the best of an
-// iteration is taken although it is worse.
+// Only a better candidate replaces the reference solution. Example failure: the best candidate of
+// an iteration always does.
 TEST(PatternSearch, z_never_rises_and_an_iteration_is_accepted_when_its_best_is_better) {
     double reference = 2;
     std::vector<double> seen;
@@ -79,15 +79,15 @@ TEST(PatternSearch, z_never_rises_and_an_iteration_is_accepted_when_its_best_is_
     EXPECT_EQ(found.summary.evaluations, 1 + 12 * 120);
 }
 
-// Example failure: every slot draws the same numbers, and twelve candidates are worth one.
+// Example failure: every slot draws the same numbers, so that twelve candidates are as good as one.
 TEST(PatternSearch, candidates_of_an_iteration_differ) {
     const auto history = search(halfWhite(), fewInstances(20)).summary.history;
     EXPECT_TRUE(
         std::all_of(history.begin(), history.end(), [](const auto& iteration) { return iteration.zMin < iteration.zMax; }));
 }
 
-// Example failure: candidates draw from one common stream, and whoever comes first takes the first
-// numbers.
+// Example failure: candidates draw from one common stream, in the order in which threads happen to
+// run.
 TEST(PatternSearch, gives_the_same_pattern_on_any_number_of_threads) {
     const auto one = search(halfWhite(), fewInstances(40), 7, 1);
     for (const int threads : {2, 5}) {
@@ -98,7 +98,7 @@ TEST(PatternSearch, gives_the_same_pattern_on_any_number_of_threads) {
     EXPECT_FALSE(same(one.pattern.instances, search(halfWhite(), fewInstances(40), 8).pattern.instances));
 }
 
-// A run that was stopped by the clock is repeated by its number of iterations.
+// A run that the caller stopped is repeated by its number of iterations.
 TEST(PatternSearch, repeats_a_run_that_the_caller_stopped) {
     const auto stopped = PatternSearch::run(halfWhite(), withShapes({"triangle", "square"}), fewInstances(1000), 1,
                                             [](const PatternSearch::Progress& progress) -> std::optional<StopReason> {
@@ -129,8 +129,8 @@ TEST(PatternSearch, without_an_iteration_is_the_random_start) {
     EXPECT_TRUE(found.summary.history.empty());
 }
 
-// Too much coverage everywhere: instance cells delete. A threshold that no cell reaches keeps every
-// instance.
+// With too much coverage everywhere, instances are deleted. A threshold that no cell reaches keeps
+// them all.
 TEST(PatternSearch, deletes_where_the_guide_is_dark_unless_the_threshold_forbids) {
     const GreyImage black(96, 54, 0.0f);
     PatternSearch::Options options = fewInstances(100);
@@ -143,8 +143,8 @@ TEST(PatternSearch, deletes_where_the_guide_is_dark_unless_the_threshold_forbids
     EXPECT_EQ(search(black, options).pattern.instances.size(), 30u);
 }
 
-// Too little coverage everywhere: the lattice creates, up to the most instances. A threshold that
-// no cell reaches creates none.
+// With too little coverage everywhere, instances are created up to the maximum. A threshold that no
+// cell reaches creates none.
 TEST(PatternSearch, creates_where_the_guide_is_light_unless_the_threshold_forbids) {
     const GreyImage white(96, 54, 0.9f);
     PatternSearch::Options options = fewInstances(100);
@@ -158,7 +158,7 @@ TEST(PatternSearch, creates_where_the_guide_is_light_unless_the_threshold_forbid
 
 TEST(PatternSearch, grows_where_the_guide_is_light_and_shrinks_where_it_is_dark) {
     PatternSearch::Options options = fewInstances(150);
-    options.paper.lambdaCreate = 0.999, options.paper.lambdaDelete = -0.999;  // sizes alone
+    options.paper.lambdaCreate = 0.999, options.paper.lambdaDelete = -0.999;  // only sizes change
     options.size = {0.01, 0.2};
     const auto meanSize = [](const PatternSearch::Found& found) {
         double sum = 0;
@@ -201,8 +201,8 @@ TEST(PatternSearch, keeps_every_instance_within_the_settings) {
     EXPECT_LT(blue, static_cast<int>(ids.size()));
 }
 
-// What is random about an instance comes from (seed, id). Example failure: colours are dealt out in
-// the order of the list, and one instance less recolours all that follow.
+// An instance's random colour comes from (seed, id). Example failure: colours are drawn in the
+// order of the list, so that removing an instance recolours all that follow.
 TEST(PatternSearch, gives_an_instance_the_same_colour_whatever_the_others_are) {
     PatternSearch::Options options = fewInstances(5);
     options.colours = {{{0, 0, 0}, {1, 1, 1}}};
@@ -230,10 +230,10 @@ TEST(PatternSearch, resamples_a_guide_with_more_rows_than_asked) {
     EXPECT_EQ(search(halfWhite(96, 54), options).pattern.height, 54);
 }
 
-// What is written is what was compared, to the last pixel. Example failure: z in the report belongs
-// to unrounded instances.
+// The written pattern is exactly the one that was compared. Example failure: z in the report is of
+// unrounded instances.
 TEST(PatternSearch, z_is_that_of_the_pattern_as_it_is_read_back) {
-    GreyImage guide(97, 54);  // white where shapes press against the border, at an aspect that no decimal hits
+    GreyImage guide(97, 54);  // white up to the border, with an aspect that is no short decimal
     for (int y = 0; y < 54; ++y)
         for (int x = 80; x < 97; ++x) guide.at(x, y) = 1;
     auto found = search(guide, fewInstances(60));
@@ -256,7 +256,7 @@ TEST(PatternSearch, options_that_break_a_rule_are_refused_with_name_value_and_ru
     EXPECT_THAT(refusal(options), HasSubstr("instances = 0"));
     options = {};
     options.size = {0.2, 0.1};
-    EXPECT_THAT(refusal(options), HasSubstr("size = [0.2, 0.1] must be the smallest and the largest"));
+    EXPECT_THAT(refusal(options), HasSubstr("size = [0.2, 0.1] must be [smallest, largest]"));
     options = {};
     options.colours.clear();
     EXPECT_THAT(refusal(options), HasSubstr("colours"));

@@ -138,8 +138,8 @@ TEST(PatternSettings, what_is_wrong_with_a_shape_is_refused_with_its_place) {
     const auto refusal = [&](const std::string& shape) { return folder.refusal("shapes: {each: [" + shape + "]}\n"); };
     const std::string at = "light.pattern-settings.yaml:3:";
     EXPECT_THAT(refusal(""), HasSubstr("at least 1"));
-    EXPECT_THAT(refusal("{share: 1}"), HasSubstr(at + "17: shapes.each[0]: exactly one kind of shape is needed"));
-    EXPECT_THAT(refusal("{builtin: mapel-leaf}"), HasSubstr("shapes.each[0].builtin: 'mapel-leaf' is not one of"));
+    EXPECT_THAT(refusal("{share: 1}"), HasSubstr(at + "17: shapes.each[0]: exactly one of 'builtin' and 'file' is needed"));
+    EXPECT_THAT(refusal("{builtin: mapel-leaf}"), HasSubstr("shapes.each[0].builtin: 'mapel-leaf' is no built-in shape"));
     EXPECT_THAT(refusal("{builtin: mapel-leaf}"), HasSubstr("did you mean 'maple-leaf'?"));
     EXPECT_THAT(refusal("{file: none.svg}"), HasSubstr("none.svg: cannot be read"));
     EXPECT_THAT(refusal("{file: ../leaf.svg}"), HasSubstr("shapes.each[0].file: "));
@@ -147,18 +147,19 @@ TEST(PatternSettings, what_is_wrong_with_a_shape_is_refused_with_its_place) {
     EXPECT_THAT(refusal("{builtin: leaf, share: 0}"), HasSubstr("shapes.each[0].share: 0 is out of range"));
     EXPECT_THAT(refusal("{builtin: leaf, size: [0.2, 0.1]}"), HasSubstr(at + "17: shapes.each[0]: size = [0.2, 0.1]"));
     EXPECT_THAT(refusal("{builtin: leaf, turn: [50, 20]}"),
-                HasSubstr("turn = [50, 20] degrees must run from the smaller to the larger"));
-    EXPECT_THAT(refusal("{builtin: leaf, turn: [-200, 200]}"), HasSubstr("once round"));
+                HasSubstr("turn = [50, 20] degrees must be [from, to] with -360 <= from <= to <= 360"));
+    EXPECT_THAT(refusal("{builtin: leaf, turn: [-200, 200]}"), HasSubstr("to - from <= 360"));
     EXPECT_THAT(refusal("{builtin: leaf, turn: -5}"), HasSubstr("0 .. 180 degrees"));
     EXPECT_THAT(refusal("{builtin: leaf, tilt: [0, 200]}"), HasSubstr("-180 .. 180 degrees"));
     EXPECT_THAT(refusal("{builtin: leaf, colours: []}"), HasSubstr("at least 1"));
     EXPECT_THAT(refusal("{builtin: leaf, colours: [{picture: none.png}]}"), HasSubstr("none.png: cannot be read"));
-    EXPECT_THAT(refusal("{builtin: leaf, colours: [{picture: autumn.png, from: [1, 1, 1]}]}"), HasSubstr("another entry"));
+    EXPECT_THAT(refusal("{builtin: leaf, colours: [{picture: autumn.png, from: [1, 1, 1]}]}"),
+                HasSubstr("'picture' excludes 'from' and 'to'"));
     EXPECT_THAT(refusal("{builtin: leaf}, {builtin: leaf}"), HasSubstr("shapes.each[1]: leaf is given twice"));
     EXPECT_THAT(refusal("{file: roof.obj}, {file: shapes/../roof.obj}"), HasSubstr("twice"));
 }
 
-// A file that names one amplitude has thought of them.
+// A file that sets one amplitude is taken to have set them all on purpose.
 TEST(PatternSettings, movement_is_fitted_unless_an_amplitude_is_named) {
     EXPECT_TRUE(read("")->fitMotion);
     EXPECT_TRUE(read("motion: {direction: 20, local_turn: {beta: 2, damping: 0.5}}\n")->fitMotion);
@@ -183,8 +184,8 @@ std::map<std::string, double> numbersOf(PatternSearch::Options options) {
     return collected.numbers;
 }
 
-// The file that people copy from. Example failure: a default was changed, or a new number is not in
-// it.
+// People copy from this file. Example failure: a default was changed, or a new number is missing
+// from the file.
 TEST(PatternSettings, the_file_of_defaults_holds_every_number_and_changes_nothing) {
     const std::string file = sourceFolder() + "/assets/defaults.pattern-settings.yaml";
     const auto settings = readPatternSettings(file);
@@ -209,7 +210,7 @@ TEST(PatternSettings, what_is_wrong_is_refused_with_its_place) {
     EXPECT_THAT(refusal("shapes: {size: [0.2, 0.1]}\n"), HasSubstr(":3:9: shapes: size"));
     EXPECT_THAT(refusal("shapes: {tilt: 200}\n"), HasSubstr("0 .. 180 degrees is allowed"));
     EXPECT_THAT(refusal("colours: []\n"), HasSubstr("at least 1"));
-    EXPECT_THAT(refusal("colours: [{to: [1, 1, 1]}]\n"), HasSubstr("'from' is missing"));
+    EXPECT_THAT(refusal("colours: [{to: [1, 1, 1]}]\n"), HasSubstr("'from' or 'picture' is missing"));
     EXPECT_THAT(refusal("motion: {group_major: {damping: two}}\n"), HasSubstr("motion.group_major.damping: a number"));
 }
 

@@ -13,7 +13,7 @@
 namespace fantascope::pattern {
 namespace {
 
-// Grey from black at the left to white at the right, at a width that is no whole number of words.
+// A ramp from black at the left to white at the right. Its width is not a multiple of a word.
 GreyImage ramp(int width = 150, int height = 90) {
     GreyImage guide(width, height);
     for (int y = 0; y < height; ++y)
@@ -42,7 +42,7 @@ PatternSearch::Found search(const GreyImage& guide, const PatternSearch::Options
     return PatternSearch::run(guide, withShapes({"triangle", "leaf"}, seed), options, threads, never);
 }
 
-// Up to many on one pixel and down again. Example failure: a carry is lost between two planes.
+// The counts rise to many and fall again. Example failure: a carry is lost between two planes.
 TEST(LayerCounts, counts_what_comes_and_goes) {
     LayerCounts counts(6);
     std::vector<int> expected(64, 0);
@@ -61,17 +61,17 @@ TEST(LayerCounts, counts_what_comes_and_goes) {
             counts.add(4, mask);
             lying.push_back(mask);
         } else {
-            counts.take(4, mask);
+            counts.remove(4, mask);
             lying.erase(lying.begin() + static_cast<std::ptrdiff_t>(which));
         }
         ASSERT_EQ(counts.three(4), three) << step;
     }
-    EXPECT_EQ(counts.three(3), 0u) << "the neighbour is left alone";
+    EXPECT_EQ(counts.three(3), 0u) << "another word is unchanged";
 }
 
-// However a pattern came about, the changes on the way add up to the same: z, tone and overlap with
-// their weights. Example failure: a rejected move leaves a trace, or a cell that lies in two words
-// is counted twice.
+// The changes of z, tone and overlap with their weights add up to the same, whatever moves led to a
+// pattern. Example failure: a rejected move leaves a trace, or a block that lies in two words is
+// counted twice.
 TEST(RunningScore, changes_add_up_whatever_the_way) {
     PatternSearch::Options options = refined(1);
     options.refined.zWeight = 0.7, options.refined.toneWeight = 1.3, options.refined.overlapWeight = 0.4,
@@ -94,11 +94,11 @@ TEST(RunningScore, changes_add_up_whatever_the_way) {
         const bool takes = !lying.empty() && rng.uniform() < 0.6, puts = !takes || rng.uniform() < 0.7;
         const std::size_t which = takes ? rng.below(static_cast<std::uint32_t>(lying.size())) : 0;
         const PixelMask out = takes ? lying[which] : PixelMask{}, in = puts ? randomMask() : PixelMask{};
-        const double most = rng.uniform(-30, 30), limited = moved.propose(out, in, most), change = moved.propose(out, in);
-        if (change <= most)
+        const double limit = rng.uniform(-30, 30), limited = moved.propose(out, in, limit), change = moved.propose(out, in);
+        if (change <= limit)
             ASSERT_EQ(limited, change);
         else
-            ASSERT_GT(limited, most) << "found sooner, not found otherwise";
+            ASSERT_GT(limited, limit) << "the bound rejects only what the change itself would";
         if (rng.uniform() < 0.5) continue;
         moved.accept(out, in);
         onTheWay += change;
@@ -114,8 +114,8 @@ TEST(RunningScore, changes_add_up_whatever_the_way) {
     EXPECT_EQ(moved.z(), fresh.z());
 }
 
-// What is weighed is what the eye sees: the mean difference behind two Gaussians. Example failure:
-// cells instead, or a Gaussian of another width.
+// Tone is the mean difference after two Gaussian blurs. Example failure: means over cells instead,
+// or a Gaussian of another width.
 TEST(RunningScore, tone_is_the_difference_behind_two_gaussians) {
     PatternSearch::Options options = refined(1);
     options.refined.zWeight = 0, options.refined.toneWeight = 1, options.refined.overlapWeight = 0;
@@ -139,8 +139,8 @@ TEST(RunningScore, tone_is_the_difference_behind_two_gaussians) {
     }
     const GreyImage drawn = coverage.picture();
     EXPECT_THAT(score.picture().pixels(), testing::ElementsAreArray(drawn.pixels()));
-    // From a black picture to this one; all of it far from the picture's edges, beyond which
-    // nothing is.
+    // The change from a black picture to this one. Everything is far from the picture's edges,
+    // where a blur depends on the border.
     double expected = 0;
     for (const double sigma : {kHeight / 36.0, kHeight / 18.0}) {
         const GreyImage wanted = blurred(guide, sigma), seen = blurred(drawn, sigma);
@@ -151,8 +151,8 @@ TEST(RunningScore, tone_is_the_difference_behind_two_gaussians) {
     EXPECT_NEAR(change, expected, 0.03 * std::abs(expected));
 }
 
-// The running sum is a whole number and that of a fresh drawing. Example failure: a pixel under two
-// instances is freed when one goes.
+// The running sum is exact. Example failure: a pixel under two instances is freed when one of them
+// goes.
 TEST(RefinedMethod, after_many_moves_z_is_that_of_a_fresh_drawing) {
     for (const GreyImage& guide : {ramp(), bars(), ramp(64, 33), ramp(1, 1), bars(200, 7)}) {
         for (const int iterations : {0, 1, 60}) {
@@ -180,7 +180,7 @@ TEST(RefinedMethod, reads_as_the_drawing_better_than_it_began_and_than_the_paper
     }
 }
 
-// A grey drawing is no black and white one. Example failure: z alone, which throws greys away.
+// Example failure: z alone is minimised, which turns greys into black or white.
 TEST(RefinedMethod, keeps_greys) {
     constexpr int kWidth = 300, kHeight = 180;
     PatternSearch::Options options = refined(100);
@@ -206,14 +206,14 @@ TEST(RefinedMethod, overlap_is_what_its_weight_allows) {
         return measure(search(guide, options).pattern, guide).overlap;
     };
     EXPECT_LT(overlap(1), 0.5 * overlap(0));
-    // Where it is free shapes use it, and no more than is free.
+    // Shapes use the free overlap, and no more.
     options.refined.overlapFree = 0.3;
     EXPECT_GT(overlap(1), 0.25);
     EXPECT_LT(overlap(1), 0.32);
 }
 
-// Only white leaves no room to lie side by side. Example failure: shapes are spent on each other
-// where the drawing is grey.
+// Example failure: shapes lie on each other where the drawing is grey, although there is room side
+// by side.
 TEST(RefinedMethod, overlap_is_free_in_white_alone) {
     PatternSearch::Options options = refined(60);
     options.refined.overlapWeight = 1, options.refined.overlapFree = 1;
@@ -247,8 +247,8 @@ TEST(RefinedMethod, the_same_seed_gives_the_same_pattern_on_any_number_of_thread
     EXPECT_FALSE(same(one.pattern.instances, search(ramp(), refined(10), 8, 1).pattern.instances));
 }
 
-// The caller tells after a while how long the run will be. Example failure: what it cools by in the
-// meantime is not what a run of that many iterations cools by.
+// The caller plans the run's length after it has begun. Example failure: until then the run cools
+// differently from a run of that many iterations.
 TEST(RefinedMethod, a_planned_run_is_repeated_by_its_iterations) {
     for (const int toldAt : {0, 5, 20}) {
         const auto planned =
@@ -263,16 +263,17 @@ TEST(RefinedMethod, a_planned_run_is_repeated_by_its_iterations) {
         if (toldAt <= 5)
             EXPECT_EQ(planned.summary.iterations, 60);
         else
-            EXPECT_GT(planned.summary.iterations, 5 * toldAt) << "what was told late still has all of its cooling before it";
+            EXPECT_GT(planned.summary.iterations, 5 * toldAt)
+                << "a late plan is lengthened so that the whole cooling still follows";
     }
 }
 
-// A pattern is mended in one place, as when a lamp post stands before it. Example failure: the rest
-// is moved, recoloured or regrouped.
+// A pattern is changed in one place, as when a lamp post turns out to stand before it. Example
+// failure: the rest is moved, recoloured or regrouped.
 TEST(RefinedMethod, goes_on_from_a_pattern_and_leaves_all_but_a_region_alone) {
     const GreyImage guide = bars();
     const auto first = search(guide, refined(20));
-    GreyImage changed = guide;  // the left half is dark now
+    GreyImage changed = guide;  // its left half becomes dark
     for (int y = 0; y < guide.height(); ++y)
         for (int x = 0; x < guide.width() / 2; ++x) changed.at(x, y) = 0;
     PatternSearch::Options options = refined(20);
@@ -300,7 +301,7 @@ TEST(RefinedMethod, goes_on_from_a_pattern_and_leaves_all_but_a_region_alone) {
                              [&](const ShapeInstance& instance) { return !options.region->contains(instance.centre); })));
 }
 
-// Example failure: it begins hot, and shakes to pieces what it was given.
+// Example failure: the search begins hot and destroys the given pattern.
 TEST(RefinedMethod, going_on_makes_a_pattern_no_worse) {
     const GreyImage guide = bars();
     const auto first = search(guide, refined(40));
@@ -334,7 +335,7 @@ TEST(RefinedMethod, stops_below_the_target_and_when_it_is_asked_to) {
     EXPECT_EQ(stopped.summary.reason, StopReason::Interrupted);
 }
 
-// Example failure: what lies hidden costs nothing, and a pattern fills up with it.
+// Example failure: hidden instances cost nothing, and a pattern fills up with them.
 TEST(RefinedMethod, keeps_no_instance_that_shows_nothing) {
     PatternSearch::Options options = refined(100);
     options.instances = 100'000;

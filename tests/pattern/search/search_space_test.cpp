@@ -38,7 +38,7 @@ PatternSearch::Found search(const Options& options) {
     return PatternSearch::run(halfWhite(), withShapes({"circle", "leaf", "triangle"}), options, 1, never);
 }
 
-// Example failure: only new instances obey, and a move takes them anywhere.
+// Example failure: only new instances keep the limits, and moves do not.
 TEST(SearchSpace, every_shape_keeps_its_own_limits_in_every_method) {
     for (const PatternSearch::Method method : kMethods) {
         SCOPED_TRACE(name(method));
@@ -70,8 +70,7 @@ TEST(SearchSpace, every_shape_keeps_its_own_limits_in_every_method) {
     }
 }
 
-// A turn has no ends: 190 degrees is -170. Example failure: clamped into 150 .. 230, -170 becomes
-// 150.
+// 190 degrees and -170 are the same turn. Example failure: -170 clamped to 150 .. 230 becomes 150.
 TEST(SearchSpace, the_nearest_of_equal_turns_is_allowed) {
     const GreyImage guide = halfWhite();
     const ShapePattern pattern = withShapes({"leaf"});
@@ -109,14 +108,14 @@ TEST(SearchSpace, shapes_are_drawn_by_their_shares) {
     EXPECT_NEAR(shares[1], 0.05, 0.015);
     EXPECT_NEAR(shares[2], 0.45, 0.03);
 
-    // Told what there is, it makes up for what a search threw away: here every circle.
+    // Given the counts, it makes up for deleted instances: here all circles.
     std::array<std::uint32_t, 3> counts{0, 5, 45};
     for (int i = 0; i < 50; ++i) ++counts[space.randomInstance({{0, 0}, {96, 54}}, rng, counts).shape];
     EXPECT_THAT(counts, testing::ElementsAre(testing::Ge(47u), testing::Le(6u), testing::Le(48u)));
 }
 
-// Example failure: what fits badly is thrown away, drawn anew as anything, and at the end there are
-// circles.
+// Example failure: instances that fit badly are replaced by any shape, and only circles are left at
+// the end.
 TEST(SearchSpace, the_refined_pattern_has_the_shares) {
     const GreyImage guide(320, 180, 0.5f);
     Options options = smallSearch(PatternSearch::Method::Refined);
@@ -132,7 +131,7 @@ TEST(SearchSpace, the_refined_pattern_has_the_shares) {
     EXPECT_NEAR(shares[2], 2 / 6.0, 0.1);
 }
 
-// The typical size is what the methods set their cells and temperatures by.
+// The methods set their cells and temperatures by the typical size.
 TEST(SearchSpace, the_typical_instance_lies_between_the_shapes) {
     const GreyImage guide = halfWhite();
     const ShapePattern pattern = withShapes({"circle", "square"});
@@ -144,11 +143,11 @@ TEST(SearchSpace, the_typical_instance_lies_between_the_shapes) {
     const SearchSpace space(guide, pattern.shapes, 1, options);
     EXPECT_EQ(space.sizes(0), glm::dvec2(0.1, 0.2));
     EXPECT_EQ(space.sizes(1), glm::dvec2(0.01, 0.02));
-    const double typical = space.meanSide() * space.sizes().x;  // half of it each shape's
+    const double typical = space.meanSide() * space.sizes().x;  // each shape has half of the instances
     EXPECT_NEAR(typical, (space.side(0) * 0.1 + space.side(1) * 0.01) / 2, 1e-9);
 }
 
-// Example failure: another draw of chance, and every pattern made so far changes.
+// Example failure: an additional random draw, which changes every pattern made so far.
 TEST(SearchSpace, shapes_with_nothing_of_their_own_change_nothing) {
     for (const PatternSearch::Method method : kMethods) {
         Options options = smallSearch(method);
@@ -174,9 +173,9 @@ TEST(SearchSpace, a_shape_has_its_own_colours_or_those_of_all) {
         EXPECT_EQ(i.colour, i.shape == 1 ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0));
 }
 
-// The picture is laid over the canvas, whatever its own size: its left third red, the rest a
-// chequer of black and white pixels, whose mean in linear light is a half. Example failures: x by
-// the picture's height; the mean of stored values, which is .21.
+// The picture is stretched over the canvas. Its left third is red, the rest a chequerboard of black
+// and white pixels, whose mean in linear light is 0.5. Example failures: x is scaled by the
+// picture's height; stored values are averaged, which gives .21.
 TEST(SearchSpace, colours_are_picked_from_a_picture_at_the_instances_place) {
     RgbaImage picture(300, 50);
     for (int y = 0; y < 50; ++y)
@@ -215,7 +214,7 @@ TEST(SearchSpace, limits_that_break_a_rule_are_refused) {
     EXPECT_THAT(refusal([](auto& shape) { shape.share = 0; }), HasSubstr("share = 0"));
     EXPECT_THAT(refusal([](auto& shape) { shape.size = {0.2, 0.1}; }), HasSubstr("size = [0.2, 0.1]"));
     EXPECT_THAT(refusal([](auto& shape) { shape.tilt = {1, 0}; }), HasSubstr("tilt = ["));
-    EXPECT_THAT(refusal([](auto& shape) { shape.turn = {-4, 4}; }), HasSubstr("once round"));
+    EXPECT_THAT(refusal([](auto& shape) { shape.turn = {-4, 4}; }), HasSubstr("to - from <= 360"));
     EXPECT_THAT(refusal([](auto& shape) { shape.turn = {NAN, 4}; }), HasSubstr("turn"));
     EXPECT_THAT(refusal([](auto& shape) { shape.colours.resize(1), shape.colours[0].to.r = 2; }), HasSubstr("colours = 2"));
 }

@@ -37,8 +37,8 @@ bool covers(const TriangleMesh& mesh, glm::vec2 point) {
     });
 }
 
-// The share of a raster of points that two meshes of radius 1 agree about, of those that any
-// covers, the second seen through `turned`.
+// The intersection over union of two meshes of radius 1, sampled on a raster; `turned` maps points
+// for the second.
 template <class Turned>
 double likeness(const TriangleMesh& a, const TriangleMesh& b, Turned turned) {
     int both = 0, any = 0;
@@ -52,7 +52,7 @@ double likeness(const TriangleMesh& a, const TriangleMesh& b, Turned turned) {
 
 TriangleMesh mesh(const std::string& name) { return loadShape(name).value().mesh; }
 
-// Their names stand in pattern files.
+// Pattern files use these names.
 TEST(BuiltInShapes, keep_their_names) {
     EXPECT_THAT(builtInShapeNames(),
                 ElementsAre("triangle", "square", "circle", "leaf", "maple-leaf", "bamboo-leaf", "snowflake"));
@@ -64,7 +64,7 @@ TEST(BuiltInShapes, keep_their_names) {
         EXPECT_FALSE(isBuiltInShape(name)) << name;
 }
 
-// Each triangle is drawn in every one of a thousand copies.
+// Each triangle is drawn a thousand times, once per copy.
 TEST(BuiltInShapes, have_few_triangles_which_face_the_viewer) {
     std::vector<std::string> names = builtInShapeNames();
     for (char c = '!'; c <= '~'; ++c) names.push_back(std::string("letter-") + c);
@@ -109,8 +109,8 @@ TEST(BuiltInShapes, a_snowflake_has_six_arms) {
     EXPECT_LT(area(flake), 1);
 }
 
-// FreeType fills the same outlines with a rasterizer of its own. Example failure: the dot of the i
-// is lost, the hole of the o filled, or what two parts of a glyph share left empty.
+// The reference is FreeType's own rasteriser. Example failure: the dot of the i is lost, the hole
+// of the o is filled, or the overlap of two parts of a glyph is left empty.
 TEST(BuiltInShapes, letters_cover_what_the_font_covers) {
     FT_Library library = nullptr;
     FT_Face face = nullptr;
@@ -141,11 +141,11 @@ TEST(BuiltInShapes, letters_cover_what_the_font_covers) {
 
 TEST(BuiltInShapes, what_is_none_is_refused_with_the_list) {
     const auto refusal = [](const std::string& name) { return builtInShape(name).error().message(); };
-    EXPECT_THAT(refusal("triangel"),
-                AllOf(HasSubstr("'triangel' is not one of triangle, square"), HasSubstr("did you mean 'triangle'?")));
+    EXPECT_THAT(refusal("triangel"), AllOf(HasSubstr("'triangel' is no built-in shape; there are triangle, square"),
+                                           HasSubstr("did you mean 'triangle'?")));
     EXPECT_THAT(refusal("letter-AB"), HasSubstr("letter-A (any character)"));
     EXPECT_THAT(refusal("letter-\u6f22"),
-                HasSubstr("letter-\u6f22: the font of the letters, DejaVu Sans Bold, has no such character"));
+                HasSubstr("letter-\u6f22: the font for letters, DejaVu Sans Bold, has no such character"));
     EXPECT_THAT(refusal("letter- "), HasSubstr("draws nothing for this character"));
 }
 

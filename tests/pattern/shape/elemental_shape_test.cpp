@@ -36,8 +36,8 @@ TEST(ElementalShape, built_in_shapes_reach_to_radius_one) {
     }
 }
 
-// The centre is that of the surface, whatever the points are. Example failure: a side with more
-// points pulls the centre to it.
+// The centre is the surface's centroid, wherever the vertices are. Example failure: a side with
+// more vertices attracts the centre.
 TEST(ElementalShape, is_centred_by_area_and_scaled_to_its_farthest_corner) {
     // A rectangle 4 x 2 with its lower left corner at (10, 20), its left half cut into more
     // triangles.
@@ -46,7 +46,7 @@ TEST(ElementalShape, is_centred_by_area_and_scaled_to_its_farthest_corner) {
         {{0, 1, 6}, {1, 4, 6}, {4, 5, 6}, {5, 0, 6}, {1, 2, 3}, {1, 3, 4}}};
     const auto shape = makeShape("rectangle", mesh);
     ASSERT_TRUE(shape) << shape.error().message();
-    const float scale = std::sqrt(5.0f);  // half of the diagonal; the point that no triangle uses does not count
+    const float scale = std::sqrt(5.0f);  // half of the diagonal; a vertex that no triangle uses does not count
     const glm::vec3 corner = shape->mesh.vertices[3];
     EXPECT_NEAR(corner.x, 2 / scale, 1e-6);
     EXPECT_NEAR(corner.y, 1 / scale, 1e-6);
@@ -55,12 +55,12 @@ TEST(ElementalShape, is_centred_by_area_and_scaled_to_its_farthest_corner) {
 
 TEST(ElementalShape, a_mesh_without_a_front_view_is_refused_with_advice) {
     const TriangleMesh floor{{{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}}, {{0, 1, 2}}};
-    EXPECT_THAT(refusal(makeShape("leaf.obj", floor)), HasSubstr("leaf.obj: seen from the front"));
-    EXPECT_THAT(refusal(makeShape("leaf.obj", {})), HasSubstr("leaf.obj: shows nothing"));
+    EXPECT_THAT(refusal(makeShape("leaf.obj", floor)), HasSubstr("leaf.obj: has no area seen from the front"));
+    EXPECT_THAT(refusal(makeShape("leaf.obj", {})), HasSubstr("leaf.obj: has no surface"));
 }
 
-// Example failure: a scan of a million triangles is taken, and a thousand copies of it are drawn
-// for a week.
+// Example failure: a scan of a million triangles is accepted, and a thousand copies of it take a
+// week to draw.
 TEST(ElementalShape, a_huge_mesh_is_refused_with_advice) {
     TriangleMesh strip;
     for (std::uint32_t i = 0; i < 200'000; ++i) {
@@ -71,7 +71,8 @@ TEST(ElementalShape, a_huge_mesh_is_refused_with_advice) {
                 AllOf(HasSubstr("scan.obj: has 199998 triangles"), HasSubstr("reduce the mesh")));
 }
 
-// A relief's depth does not show, but turns with it: the front view is orthographic.
+// The front view is orthographic. The depth of a relief is kept, since it shows when the shape
+// turns.
 TEST(ElementalShape, of_a_mesh_in_space_the_front_is_seen) {
     const ScratchFolder folder;
     const auto roof = readShapeFile(
@@ -85,7 +86,7 @@ TEST(ElementalShape, of_a_mesh_in_space_the_front_is_seen) {
     EXPECT_NEAR(nearest - farthest, 1 / std::sqrt(1 + 1 + 0.25), 1e-6) << "deep as it was, in shares of its radius";
 }
 
-// However a file draws it, the shape is one: a plate twice as wide as high.
+// Every kind of file gives the same shape, a plate twice as wide as high.
 TEST(ElementalShape, meshes_svg_and_pictures_are_all_shapes) {
     const ScratchFolder folder;
     GreyImage picture(100, 80, 1);
@@ -111,12 +112,12 @@ TEST(ElementalShape, meshes_svg_and_pictures_are_all_shapes) {
 TEST(ElementalShape, an_unknown_name_is_answered_with_the_nearest) {
     EXPECT_THAT(refusal(loadShape("triangel")), HasSubstr("did you mean 'triangle'?"));
     EXPECT_THAT(refusal(loadShape("zzz")),
-                HasSubstr("neither a file nor built in: 'zzz' is not one of triangle, square, circle, leaf"));
+                HasSubstr("neither a file nor built in: 'zzz' is no built-in shape; there are triangle, square, circle, leaf"));
     EXPECT_THAT(refusal(loadShape("nowhere/leaf.obj")), HasSubstr("nowhere/leaf.obj: cannot be read"));
 }
 
-// The renderer draws 330 of them on an output within 20,000 triangles, and both it and the search
-// rely on a closed surface.
+// Renderer and search rely on a closed surface, and 330 of them must stay within 20,000 triangles
+// on an output.
 TEST(ElementalShape, the_sculpture_of_the_default_show_is_closed_and_of_few_triangles) {
     const auto mesh = readMesh(sourceFolder() + "/shows/light-movement/shapes/sculpture.obj");
     ASSERT_TRUE(mesh) << mesh.error().message();

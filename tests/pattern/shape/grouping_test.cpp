@@ -39,8 +39,8 @@ void expectRowsSumToOne(const FuzzyClusters& clusters) {
 
 const std::vector<glm::dvec2> kPlaces{{0.2, 0.2}, {1.5, 0.3}, {0.9, 0.9}};
 
-// From any start. Example failure: with first centres drawn evenly two of them fall into one
-// cluster and another gets none.
+// This holds for any start. Example failure: with first centres drawn uniformly, two of them fall
+// into one cluster and another gets none.
 TEST(FuzzyCMeans, finds_clusters_that_lie_apart) {
     std::vector<glm::dvec2> places;
     for (int i = 0; i < 12; ++i) places.emplace_back(0.4 * (i % 4), 0.4 * (i / 4));
@@ -69,7 +69,7 @@ TEST(FuzzyCMeans, never_lets_its_objective_rise) {
     }
 }
 
-// The fixed point that Bezdek gives: each membership by the ratios of distances, each centre the
+// Bezdek's fixed point: each membership follows from the ratios of distances, each centre is the
 // mean weighted by membership^m.
 TEST(FuzzyCMeans, ends_where_memberships_and_centres_agree) {
     const auto points = around({{0.5, 0.5}}, 60, 0.5);
@@ -93,7 +93,7 @@ TEST(FuzzyCMeans, ends_where_memberships_and_centres_agree) {
     }
 }
 
-// A small m is nearly k-means, a large one nearly no opinion; neither overflows a power.
+// A small m is nearly k-means, a large one makes memberships nearly equal. No power overflows.
 TEST(FuzzyCMeans, blurs_its_clusters_with_m) {
     const auto points = around(kPlaces, 30, 0.2);
     double sharpestBefore = 2;
@@ -115,8 +115,7 @@ TEST(FuzzyCMeans, blurs_its_clusters_with_m) {
 
 // Example failure: a distance of zero divides, and every number turns into NaN.
 TEST(FuzzyCMeans, gives_a_point_on_a_centre_to_that_centre_alone) {
-    // Coordinates whose mean is free of rounding, so that the final centres lie on their heaps
-    // exactly.
+    // The mean of these coordinates is exact, so that the final centres coincide with their points.
     std::vector<glm::dvec2> points(16, {0.125, 0.25});
     points.insert(points.end(), 16, {0.875, 0.5});
     const auto clusters = clustered(points, {.clusters = 2, .fuzziness = 2});
@@ -126,8 +125,8 @@ TEST(FuzzyCMeans, gives_a_point_on_a_centre_to_that_centre_alone) {
     EXPECT_EQ(clusters.summary.objective.back(), 0);
 }
 
-// Nearly sharp clusters can lose their last point to their neighbours, here after some of the
-// possible starts; a centre without any weight stays where it is. Example failure: 0 / 0.
+// Nearly sharp clusters can lose their last point to their neighbours, here for some of the starts.
+// A centre without any weight stays where it is. Example failure: 0 / 0.
 TEST(FuzzyCMeans, keeps_a_centre_to_which_nothing_belongs) {
     const std::vector<glm::dvec2> points{{7, 6}, {6, 5}, {5, 0}, {10, 0}, {6, 1}, {8, 5}, {7, 6}};
     for (std::uint64_t seed = 1; seed <= 200; ++seed)
@@ -170,7 +169,7 @@ TEST(DrawGroup, follows_the_memberships) {
     constexpr std::uint32_t kIds = 20'000;
     std::vector<double> share(4, 0.0);
     for (std::uint32_t id = 0; id < kIds; ++id) share[drawGroup(memberships, 77, id)] += 1.0 / kIds;
-    // Five standard deviations of a share of one half among so many.
+    // Five standard deviations of a share of 0.5 among kIds draws.
     const double bound = 5 * std::sqrt(0.25 / kIds);
     for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(share[k], memberships[k], bound) << "group " << k;
     EXPECT_EQ(share[1], 0);

@@ -42,14 +42,14 @@ instances:
   - {id: 7, shape: 0, group: 1, centre: [1.5, 1], size: 0.1, rotation: [0, 0, 0], colour: [0, 0, 0]}
 )";
 
-// A folder with a pattern's shape file.
+// A folder with the shape file of a pattern.
 struct PatternFolder : ScratchFolder {
     PatternFolder() { file("shapes/sculpture.obj", kMesh); }
     std::filesystem::path pattern() const { return path() / "tree.pattern.yaml"; }
     std::string bytes() const { return readFile(pattern()).value(); }
 };
 
-// What readPattern says of the text, led by the file's name.
+// readPattern()'s error for the text.
 std::string refusal(const std::string& text) {
     const PatternFolder folder;
     const auto pattern = readPattern(folder.file("tree.pattern.yaml", text));
@@ -61,7 +61,7 @@ std::string refusalAfter(std::string_view what, std::string_view by) {
 
 ShapePattern sample(const PatternFolder& folder) { return readPattern(folder.file("tree.pattern.yaml", kPattern)).value(); }
 
-// Every number as the search finds them: no short decimals.
+// A pattern whose numbers are no short decimals.
 ShapePattern randomPattern(const PatternFolder& folder, std::uint32_t instances) {
     ShapePattern pattern = sample(folder);
     pattern.instances.clear();
@@ -80,7 +80,7 @@ ShapePattern randomPattern(const PatternFolder& folder, std::uint32_t instances)
     return pattern;
 }
 
-// Example failure: '#' begins a comment where it is not quoted.
+// Example failure: an unquoted '#' begins a comment.
 TEST(PatternFile, every_kind_of_shape_comes_back) {
     const PatternFolder folder;
     folder.file("leaf.svg", "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='M1 1 h6 v3 h-6 z'/></svg>");
@@ -138,7 +138,7 @@ TEST(PatternFile, is_read_in_canvas_units_and_radians) {
     EXPECT_EQ(pattern.motion.localTilt.beta, 0.5);
 }
 
-// A key that is absent keeps the default of its own axis, not that of another.
+// An absent key has the default of its own axis, not that of another one.
 TEST(PatternFile, absent_motion_keeps_every_default) {
     const PatternFolder folder;
     const ShapePattern pattern = sample(folder);
@@ -146,8 +146,9 @@ TEST(PatternFile, absent_motion_keeps_every_default) {
     EXPECT_EQ(motionText(readMotion(ConfigNode::parse("{}", "settings.yaml").value()).value()), motionText(MotionSettings{}));
 }
 
-// Everything but angles comes back bit for bit at once; angles to one unit in the last place, and
-// exactly from then on. Example failure: colours written as doubles, or coordinates to six digits.
+// Everything except angles is read back bit for bit. Angles are off by at most one unit in the last
+// place, and exact from the second round on. Example failure: colours are written as doubles, or
+// coordinates with six digits.
 TEST(PatternFile, what_was_written_is_read_back) {
     const PatternFolder folder;
     const ShapePattern written = randomPattern(folder, 500);
@@ -177,8 +178,7 @@ TEST(PatternFile, what_was_written_is_read_back) {
     }
 }
 
-// What a person wrote stays as it was written. Example failure: 0.7 degrees come back as
-// 0.7000000000000001.
+// Example failure: 0.7 degrees are written back as 0.7000000000000001.
 TEST(PatternFile, angles_keep_the_digits_that_a_person_wrote) {
     for (int tenth = -3600; tenth <= 3600; ++tenth) {
         const double degrees = tenth / 10.0;
@@ -186,7 +186,7 @@ TEST(PatternFile, angles_keep_the_digits_that_a_person_wrote) {
     }
 }
 
-// A folder can be moved whole, and two runs in different places can be compared by their bytes.
+// So a folder can be moved, and runs in different places can be compared byte by byte.
 TEST(PatternFile, the_same_pattern_gives_the_same_bytes_in_whatever_folder) {
     const PatternFolder one, other;
     ASSERT_TRUE(writePattern(one.pattern(), randomPattern(one, 20)));
@@ -211,7 +211,7 @@ TEST(PatternFile, what_is_wrong_is_refused_with_place_and_advice) {
     EXPECT_EQ(refusalAfter("group: 1", "group: 2"),
               "tree.pattern.yaml:16:30: instances[1].group: 2 is out of range, 0 .. 1 is allowed");
     EXPECT_EQ(refusalAfter("id: 7", "id: 3"),
-              "tree.pattern.yaml:16:5: instances[1]: id 3 is given twice; each instance has its own");
+              "tree.pattern.yaml:16:5: instances[1]: id 3 is given twice; every instance needs its own");
     EXPECT_THAT(refusalAfter("size: 0.05", "size: .nan"),
                 HasSubstr(":15:60: instances[0].size: a number in 1e-06 .. 10 canvas heights"));
     EXPECT_THAT(refusalAfter("size: 0.05", "size: nan"), HasSubstr("instances[0].size: a number"));
@@ -233,11 +233,12 @@ TEST(PatternFile, a_shape_or_guide_that_cannot_be_had_is_refused_with_the_patter
     EXPECT_THAT(refusalAfter("guides/tree.png", "/tree.png"), HasSubstr(":3:8: guide: '/tree.png' is absolute"));
     EXPECT_THAT(refusalAfter("guides/tree.png", "../tree.png"), HasSubstr("guide: '../tree.png' leaves this file's folder"));
     EXPECT_THAT(refusalAfter("{builtin: triangle}", "{builtin: triangel}"),
-                HasSubstr(":9:15: shapes[0].builtin: 'triangel' is not one of "));
+                HasSubstr(":9:15: shapes[0].builtin: 'triangel' is no built-in shape; there are "));
     EXPECT_THAT(refusalAfter("{builtin: triangle}", "{builtin: triangel}"), HasSubstr("(did you mean 'triangle'?)"));
-    EXPECT_THAT(refusalAfter("{builtin: triangle}", "{}"), HasSubstr(":9:5: shapes[0]: exactly one kind of shape is needed"));
+    EXPECT_THAT(refusalAfter("{builtin: triangle}", "{}"),
+                HasSubstr(":9:5: shapes[0]: exactly one of 'builtin' and 'file' is needed"));
     EXPECT_THAT(refusalAfter("{builtin: triangle}", "{builtin: square, file: shapes/sculpture.obj}"),
-                HasSubstr(":9:5: shapes[0]: exactly one kind of shape is needed"));
+                HasSubstr(":9:5: shapes[0]: exactly one of 'builtin' and 'file' is needed"));
 
     const PatternFolder folder;
     folder.file("shapes/sculpture.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
@@ -247,7 +248,7 @@ TEST(PatternFile, a_shape_or_guide_that_cannot_be_had_is_refused_with_the_patter
     EXPECT_THAT(pattern.error().message(), HasSubstr("has no triangles"));
 }
 
-// A search that went wrong must not cost the pattern of last night.
+// A failed search must not destroy an earlier pattern.
 TEST(PatternFile, what_could_not_be_read_again_is_not_written) {
     const PatternFolder folder;
     const ShapePattern good = sample(folder);
@@ -273,8 +274,8 @@ std::string motionRefusal(const std::string& motion) {
     return read ? "accepted" : read.error().message();
 }
 
-// At both ends of every range the motion can be computed, and is finite: no file that is accepted
-// stops the program.
+// The motion can be computed and is finite at both ends of every range, so no accepted file stops
+// the program.
 TEST(MotionFile, the_bounds_of_every_key_can_be_moved) {
     const PatternFolder folder;
     for (const std::string frames : {"4", "1000"})
@@ -304,7 +305,7 @@ TEST(MotionFile, the_bounds_of_every_key_can_be_moved) {
 }
 
 TEST(MotionFile, what_lies_beyond_the_bounds_is_refused) {
-    EXPECT_EQ(motionRefusal("frames: 7"), "m.yaml:1:9: frames: 7 is odd, an even number is needed");
+    EXPECT_EQ(motionRefusal("frames: 7"), "m.yaml:1:9: frames: 7 is odd, must be even");
     EXPECT_EQ(motionRefusal("frames: 2"), "m.yaml:1:9: frames: 2 is out of range, 4 .. 20000 is allowed");
     EXPECT_EQ(motionRefusal("group_minor: {damping: 1}"),
               "m.yaml:1:24: group_minor.damping: 1 is out of range, 0.001 .. 0.999 is allowed");
@@ -317,7 +318,7 @@ TEST(MotionFile, what_lies_beyond_the_bounds_is_refused) {
     EXPECT_EQ(motionRefusal("local_turn: {range: 360}"), "accepted");
 }
 
-// The words that stand between two marks.
+// All words between an opening and a closing mark.
 std::set<std::string> keysBetween(const std::string& text, const std::string& open, const std::string& close) {
     std::set<std::string> keys;
     for (std::size_t end = 0; (end = text.find(close, end)) != std::string::npos; ++end) {
@@ -328,8 +329,7 @@ std::set<std::string> keysBetween(const std::string& text, const std::string& op
     return keys;
 }
 
-// A pattern that was written spells out every key, so its keys are those that the document must
-// explain.
+// A written pattern has every key, so the document must explain exactly its keys.
 TEST(PatternDocs, explain_every_key_and_no_other) {
     const PatternFolder folder;
     ASSERT_TRUE(writePattern(folder.pattern(), sample(folder)));

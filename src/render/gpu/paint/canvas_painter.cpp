@@ -9,7 +9,7 @@
 namespace fantascope::render::gpu {
 namespace {
 
-// Of assets/shaders/canvas.frag.
+// Uniform locations of assets/shaders/canvas.frag.
 constexpr GLint kDark = 1, kBright = 2, kPlace = 3;
 constexpr GLuint kSharp = 0, kPictures = 1;
 

@@ -11,7 +11,7 @@
 namespace fantascope::render::gpu {
 namespace {
 
-// Of assets/shaders/caustics.vert.
+// Uniform locations of assets/shaders/caustics.vert.
 constexpr GLint kColumns = 0, kGrid = 1, kAspect = 2, kWaves = 3;
 
 }  // namespace

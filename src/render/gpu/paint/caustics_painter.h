@@ -12,14 +12,15 @@
 
 namespace fantascope::render::gpu {
 
-// Paints the light under waves into the LightCanvas that has begun. Thread: the context's.
+// Paints the light under waves into the current LightCanvas. Thread: the context's.
 class CausticsPainter {
 public:
-    // In canvas heights: how far the rays' grid reaches over the canvas, and its largest step.
-    // `waves`: how many paint() is given. `programs` outlives it. Error: a shader does not compile.
+    // `margin`: by how much the grid of rays extends beyond the canvas; `step`: its maximum
+    // spacing; both in canvas heights. `waves`: how many paint() gets. `programs` outlives it.
+    // Error: a shader does not compile.
     static Result<CausticsPainter> create(double aspect, double margin, double step, int waves, ProgramCache& programs);
 
-    // `waves`: as Water::at() gives them.
+    // `waves`: from Water::at().
     void paint(std::span<const glm::vec4> waves);
 
 private:

@@ -14,12 +14,14 @@ namespace {
 
 constexpr GLfloat kBlack[] = {0, 0, 0, 1};
 
-// Of assets/shaders/compose.frag. Of arrays the first; the others follow.
+// Uniform locations of assets/shaders/compose.frag. An array's is that of its first element; the
+// others follow.
 constexpr GLint kBlend = 0, kTurn = 4, kWeight = 8, kTint = 9, kCubeFrom = 10, kGamma = 12;
 constexpr GLuint kRoots = 0, kCarriedSum = 4, kCarriedPicture = 5, kCube = 6, kBlendMap = 7;
 
-// What the picture below loses by the layer's coverage and by its light, and what the layer adds.
-glm::vec3 numbersOf(show::Blend blend) {
+// The factors of a blend mode: what the picture below loses by the layer's coverage and by its
+// light, and what the layer adds.
+glm::vec3 factorsOf(show::Blend blend) {
     switch (blend) {
         case show::Blend::Add:
             return {0, 0, 1};
@@ -74,10 +76,10 @@ Result<unsigned> Composer::programFor(std::size_t layers, bool carries, End end)
     return programs_->drawing("compose.vert", "compose.frag", definitions);
 }
 
-void Composer::bringCube() {
+void Composer::uploadCube() {
     cube_.reset();
-    if (!cubeThere_) return;
-    const ColourCube& cube = *cubeThere_;
+    if (!uploadedCube_) return;
+    const ColourCube& cube = *uploadedCube_;
     const GLuint texture = cube_.emplace().name();
     glTextureStorage3D(texture, 1, GL_RGB16F, cube.side, cube.side, cube.side);
     glTextureSubImage3D(texture, 0, 0, 0, 0, cube.side, cube.side, cube.side, GL_RGB, GL_FLOAT, cube.colours.data());
@@ -87,14 +89,14 @@ void Composer::bringCube() {
     cubeFrom_[1] = 0.5f / static_cast<float>(cube.side) - cube.low * cubeFrom_[0];
 }
 
-void Composer::bringBlendMap() {
+void Composer::uploadBlendMap() {
     blendMap_.reset();
-    if (!blendThere_) return;
-    const BlendMap& blend = *blendThere_;
-    FANTASCOPE_CHECK(glm::ivec2(blend.width(), blend.height()) == size_, "a blend map of the projector's size");
+    if (!uploadedBlend_) return;
+    const BlendMap& blend = *uploadedBlend_;
+    FANTASCOPE_CHECK(glm::ivec2(blend.width(), blend.height()) == size_, "the blend map has the projector's size");
     const GLuint texture = blendMap_.emplace().name();
     glTextureStorage2D(texture, 1, GL_RG16F, size_.x, size_.y);
-    // OpenGL has its row 0 at the bottom.
+    // OpenGL's row 0 is at the bottom.
     for (int y = 0; y < size_.y; ++y)
         glTextureSubImage2D(texture, 0, 0, size_.y - 1 - y, size_.x, 1, GL_RG, GL_FLOAT, blend.row(y).data());
 }
@@ -104,13 +106,14 @@ Result<void> Composer::follow(const ProjectorLight& light, const std::shared_ptr
     gamma_ = static_cast<float>(light.gamma.value_or(0));
     finishing_ = {tint_ != glm::vec3(1), light.cube != nullptr, blend != nullptr, light.dither || light.gamma.has_value(),
                   light.dither};
-    // A technician who moves a corner changes neither, and there is much to bring.
-    if (std::exchange(cubeThere_, light.cube) != light.cube) bringCube();
-    if (std::exchange(blendThere_, blend) != blend) bringBlendMap();
+    // Uploading is expensive, and a technician who moves a corner changes neither.
+    if (std::exchange(uploadedCube_, light.cube) != light.cube) uploadCube();
+    if (std::exchange(uploadedBlend_, blend) != blend) uploadBlendMap();
     for (std::size_t layers = 0; layers <= kTogether; ++layers)
         for (const bool carries : {false, true})
             for (const End end : {End::Carry, End::Finish}) {
-                // Only a full pass carries on, and one without layers is a frame without any.
+                // Only a full pass is carried on, and a pass without layers is that of an empty
+                // frame.
                 if (end == End::Carry ? layers < kTogether : layers == 0 && carries) continue;
                 passes_[layers][carries][static_cast<std::size_t>(end)] = TRY(programFor(layers, carries, end));
             }
@@ -130,12 +133,12 @@ LayerPicture& Composer::nextPicture() {
 }
 
 void Composer::lay(float opacity, show::Blend blend) {
-    layers_[count_++] = {opacity * numbersOf(blend), fresh_ ? glm::vec2(weight_, 0) : glm::vec2(0, 1)};
+    layers_[count_++] = {opacity * factorsOf(blend), fresh_ ? glm::vec2(weight_, 0) : glm::vec2(0, 1)};
     fresh_ = false;
 }
 
 void Composer::endPicture(float weight) {
-    if (std::exchange(fresh_, true)) return;  // without a layer there is none
+    if (std::exchange(fresh_, true)) return;  // a picture without layers does not count
     weight_ = weight;
 }
 

@@ -20,39 +20,37 @@
 
 namespace fantascope::render::gpu {
 
-// Composes painted layers into what one projector is sent: their samples are averaged as light,
-// layers blend in their order, and the sum passes the projector's colours, the blend with its
-// neighbours, its gamma and the dither once a pixel.
+// Composes painted layers into the picture for one projector. Samples are averaged in linear light,
+// and layers blend in their order. The result then passes the projector's colours, the blend with
+// its neighbours, its gamma and the dither, once per pixel.
 //
-// A frame: begin(); for each layer from the bottom paint nextPicture() and lay() it; endPicture()
-// after each picture's last; finish().
+// For each frame call: begin(); for each layer from the bottom up, paint nextPicture() and lay()
+// it; endPicture() after the last layer of each picture; finish().
 // Thread: the context's.
 class Composer {
 public:
-    // As many layers as one pass over the picture takes: in a crossfade there are two.
+    // The maximum number of layers per pass. A crossfade has two.
     static constexpr std::size_t kTogether = 2;
 
-    // `size`: pixels of the projector; `samples`: a pixel, at least. `programs` outlives it. Error:
-    // more pixels or samples than this OpenGL has.
+    // `size`: pixels of the projector. `samples`: minimum per pixel. `programs` outlives it. Error:
+    // more pixels or samples than OpenGL allows here.
     static Result<Composer> create(glm::ivec2 size, int samples, ProgramCache& programs);
 
     int samples() const { return pictures_[0].samples(); }
-    // The projector's colours from now on, and what it gives to each pixel beside its neighbours
-    // (null: all of its light). Compiles what was not needed before. Error: a shader does not
-    // compile.
+    // Sets the projector's colours and its share of the light beside its neighbours (null: all of
+    // it). Compiles programs that were not needed before. Error: a shader does not compile.
     Result<void> follow(const ProjectorLight& light, const std::shared_ptr<const BlendMap>& blend);
 
     void begin();
-    // Where the next layer is to be painted.
+    // The picture into which the next layer is to be painted.
     LayerPicture& nextPicture();
-    // What was painted there lies on top of the picture so far.
+    // Blends the layer painted there over the picture so far.
     void lay(float opacity, show::Blend blend);
-    // The layers so far are one picture, whose light counts with this weight; what follows begins
-    // another.
+    // Ends a picture, whose light counts with this weight. The next layer begins another one.
     void endPicture(float weight);
-    // Into the display's framebuffer of stored values.
+    // Writes the result into the display's framebuffer, as stored values.
     void finish(unsigned framebuffer);
-    // Runs every pass that a frame could need, so that none is compiled while people watch.
+    // Runs every pass that a frame could need, so that none is compiled during the show.
     void warmUp(unsigned framebuffer);
 
 private:
@@ -60,14 +58,14 @@ private:
         glm::vec3 blend{0};  // assets/shaders/compose.frag says how these are used
         glm::vec2 turn{0, 1};
     };
-    // What the layers before those of one pass have come to: the sum of the pictures that ended,
-    // and the one that did not.
+    // The result of earlier passes: the sum of the pictures that have ended, and the picture that
+    // has not.
     struct Carried {
         explicit Carried(glm::ivec2 size);
         Texture sum, picture;
         Framebuffer framebuffer;
     };
-    struct Finishing {  // what is needed besides the sum
+    struct Finishing {  // the steps after the sum that are needed
         bool tint = false, cube = false, blend = false, encode = false, dither = false;
     };
     enum class End { Carry, Finish };
@@ -76,8 +74,8 @@ private:
         : size_(size), pictures_(std::move(pictures)), programs_(&programs) {}
     Result<unsigned> programFor(std::size_t layers, bool carries, End end) const;
     void pass(End end, unsigned framebuffer);
-    void bringCube();
-    void bringBlendMap();
+    void uploadCube();
+    void uploadBlendMap();
 
     glm::ivec2 size_;
     std::array<LayerPicture, kTogether> pictures_;
@@ -88,20 +86,20 @@ private:
     glm::vec3 tint_{1};
     std::array<glm::vec3, 2> cubeFrom_{};
     float gamma_ = 0;
-    // What was brought to the GPU, and as what; null: nothing.
-    std::shared_ptr<const ColourCube> cubeThere_;
+    // What has been uploaded; null: nothing.
+    std::shared_ptr<const ColourCube> uploadedCube_;
     std::optional<Texture3> cube_;
-    std::shared_ptr<const BlendMap> blendThere_;
+    std::shared_ptr<const BlendMap> uploadedBlend_;
     std::optional<Texture> blendMap_;
     std::array<std::array<std::array<unsigned, 2>, 2>, kTogether + 1> passes_{};  // programs: [layers][carries][end]
 
-    // The frame that is being made.
+    // The current frame.
     std::array<Layer, kTogether> layers_;
-    std::size_t count_ = 0;                            // of the layers that wait for their pass
-    bool carries_ = false;                             // there was a pass already
-    float weight_ = 0;                                 // of the picture that ended last
+    std::size_t count_ = 0;                            // of layers that wait for their pass
+    bool carries_ = false;                             // there was a pass before
+    float weight_ = 0;                                 // of the last picture that ended
     bool fresh_ = true;                                // the next layer begins a picture
-    std::array<std::unique_ptr<Carried>, 2> carried_;  // made when first needed, written in turn
+    std::array<std::unique_ptr<Carried>, 2> carried_;  // made when first needed, written alternately
     std::size_t newest_ = 0;                           // of carried_
 };
 

@@ -11,16 +11,16 @@
 namespace fantascope::render::gpu {
 namespace {
 
-// Of assets/shaders/coverage.comp.
+// Bindings of assets/shaders/coverage.comp.
 constexpr GLuint kPainted = 0;   // texture
 constexpr GLuint kCoverage = 0;  // image
 
-// Of assets/shaders/convolve.comp.
+// Bindings of assets/shaders/convolve.comp.
 constexpr const char* kShader = "convolve.comp";
 constexpr GLint kAlong = 0, kSpan = 1, kCount = 2, kQuarter = 3, kMargin = 4, kFromCoverage = 5;
 constexpr GLuint kField = 0, kBlurred = 1;     // images
 constexpr GLuint kPicture = 0, kSpectrum = 0;  // textures, of different passes
-constexpr unsigned kTogether = 32;             // butterflies of a work group, side by side
+constexpr unsigned kTogether = 32;             // butterflies per work group, side by side
 
 void store(const Texture& texture, GLenum format, glm::ivec2 size) {
     glTextureStorage2D(texture.name(), 1, format, size.x, size.y);
@@ -37,7 +37,7 @@ Result<Convolution> Convolution::create(glm::ivec2 size, const GreyImage& filter
     GLint largest = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     if (std::max(size.x, size.y) > largest)
-        return Error(fmt::format("{} x {} pixels: this OpenGL blurs at most {} in each dimension", size.x, size.y, largest));
+        return Error(fmt::format("{} x {} pixels: OpenGL blurs at most {} per dimension here", size.x, size.y, largest));
 
     Convolution made(size, glm::ivec2(filter.width(), filter.height()) / 2);
     const glm::ivec2 quarterAndMargin = made.quarter_ + 2 * made.margin_;
@@ -50,7 +50,8 @@ Result<Convolution> Convolution::create(glm::ivec2 size, const GreyImage& filter
     const auto spectrum = filterSpectrum(filter, rows, columns);
     glTextureSubImage2D(made.spectrum_.name(), 0, 0, 0, field.x, field.y, GL_RG, GL_FLOAT, spectrum.data());
 
-    // Rows, columns, and the same way back; the last pass over the columns is the first one back.
+    // Rows, columns, and back in reverse order. The last forward pass over the columns is also the
+    // first one back.
     const auto add = [&](bool inRows, std::size_t number, const std::string& kind) -> Result<void> {
         const FourierPlan& plan = inRows ? rows : columns;
         const int radix = plan.radices()[number];

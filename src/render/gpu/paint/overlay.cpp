@@ -12,7 +12,7 @@ Result<Overlay> Overlay::create(glm::ivec2 size, ProgramCache& programs) {
 
 void Overlay::show(const RgbaImage* picture) {
     if (picture == nullptr) return picture_.reset();
-    FANTASCOPE_CHECK(glm::ivec2(picture->width(), picture->height()) == size_, "an overlay of the projector's size");
+    FANTASCOPE_CHECK(glm::ivec2(picture->width(), picture->height()) == size_, "the overlay has the projector's size");
     if (!picture_) {
         picture_ = std::make_unique<Texture>();
         glTextureStorage2D(picture_->name(), 1, GL_RGBA8, size_.x, size_.y);

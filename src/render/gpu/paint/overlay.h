@@ -12,17 +12,16 @@
 
 namespace fantascope::render::gpu {
 
-// A picture in a projector's own pixels that lies over everything and passes nothing of what
-// becomes of light. Thread: the context's.
+// A picture in a projector's own pixels that lies over everything, unaffected by the projector's
+// colours, blend and warp. Thread: the context's.
 class Overlay {
 public:
     // `size`: pixels of the projector. `programs` outlives it. Error: a shader does not compile.
     static Result<Overlay> create(glm::ivec2 size, ProgramCache& programs);
 
-    // Stored values of the projector's size, colours multiplied by alpha; null: nothing lies over
-    // the picture.
+    // `picture`: stored values, of the projector's size, colours multiplied by alpha; null: none.
     void show(const RgbaImage* picture);
-    // Over what `framebuffer` holds.
+    // Paints it over `framebuffer`.
     void paint(unsigned framebuffer);
 
 private:
@@ -31,7 +30,7 @@ private:
     glm::ivec2 size_;
     unsigned program_;
     VertexArray noVertices_;
-    std::unique_ptr<Texture> picture_;  // null: nothing lies over the picture
+    std::unique_ptr<Texture> picture_;  // null: none
 };
 
 }  // namespace fantascope::render::gpu

@@ -11,8 +11,7 @@ constexpr GLuint kPicture = 0;  // of assets/shaders/picture.frag
 }  // namespace
 
 Result<PicturePainter> PicturePainter::create(const Bend& bend, ProgramCache& programs) {
-    return PicturePainter(
-        TRY(CanvasSurface::create("picture.frag", fmt::format("#define MOST {}\n", kMostTaps), bend, programs)));
+    return PicturePainter(TRY(CanvasSurface::create("picture.frag", fmt::format("#define MOST {}\n", kMaxTaps), bend, programs)));
 }
 
 void PicturePainter::paint(const PictureTexture& picture) {

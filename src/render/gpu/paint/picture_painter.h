@@ -13,17 +13,17 @@ namespace fantascope::render::gpu {
 // the context's.
 class PicturePainter {
 public:
-    // A pixel that covers more texels along a side takes them from mipmaps.
-    static constexpr int kMostTaps = 8;
+    // A pixel that covers more texels along a side samples mipmaps.
+    static constexpr int kMaxTaps = 8;
 
-    // `bend`: the mesh of the places that it follows. `programs` and `bend` outlive it. Error: a
-    // shader does not compile.
+    // `bend`: the mesh of the same output. `programs` and `bend` outlive it. Error: a shader does
+    // not compile.
     static Result<PicturePainter> create(const Bend& bend, ProgramCache& programs);
 
     // As CanvasSurface::follow().
     void follow(const CanvasPlace& place) { surface_.follow(place); }
 
-    // Paints into the picture that has begun.
+    // Paints into the current layer picture.
     void paint(const PictureTexture& picture);
 
 private:

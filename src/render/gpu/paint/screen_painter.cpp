@@ -11,7 +11,7 @@
 namespace fantascope::render::gpu {
 namespace {
 
-// Of assets/shaders/screen.frag.
+// Uniform locations of assets/shaders/screen.frag.
 constexpr GLint kDark = 1, kBright = 2, kLit = 3, kScreen = 4, kCurve = 5;
 constexpr GLuint kTaken = 0;
 

@@ -12,16 +12,16 @@
 namespace fantascope::render::gpu {
 namespace {
 
-// Of assets/shaders/skin.comp.
+// Buffer bindings and uniform locations of assets/shaders/skin.comp.
 constexpr GLuint kAtRest = 0, kMoved = 1;
 constexpr GLint kRange = 0, kMotions = 1;
-constexpr unsigned kTogether = 64;  // vertices of a work group
+constexpr unsigned kTogether = 64;  // vertices per work group
 
-// Of assets/shaders/shadow.vert and shadow.frag.
+// Attribute and uniform locations of assets/shaders/shadow.vert and shadow.frag.
 constexpr GLuint kPosition = 0;
 constexpr GLint kScreenFromStage = 0, kClipFromScreen = 1, kColour = 2, kInside = 3, kCurve = 7;
 
-static_assert(sizeof(ShadowCaster::Vertex) == 8 * sizeof(float), "the shader reads two vectors a vertex");
+static_assert(sizeof(ShadowCaster::Vertex) == 8 * sizeof(float), "the shader reads two vectors per vertex");
 
 }  // namespace
 
@@ -33,7 +33,7 @@ Result<ShadowCaster> ShadowCaster::create(std::span<const Piece> pieces, bool cu
         const auto bending = TRY(programs.drawing("shadow.vert", "shadow.frag", bent));
         return Programs{straight, bending};
     };
-    caster.skin_ = TRY(programs.compute("skin.comp", fmt::format("#define JOINTS {}\n", kMostJoints)));
+    caster.skin_ = TRY(programs.compute("skin.comp", fmt::format("#define JOINTS {}\n", kMaxJoints)));
     const std::string screen = curved ? "#define CURVED\n" : "";
     caster.anywhere_ = TRY(made(screen));
     caster.inside_ = TRY(made(screen + "#define INSIDE\n"));
@@ -86,7 +86,7 @@ void ShadowCaster::draw(const Light& light, std::span<const glm::vec3> colours) 
 
 void ShadowCaster::draw(const Programs& programs, const Light& light, std::span<const glm::vec3> colours,
                         const std::array<glm::vec3, 4>* inside) {
-    FANTASCOPE_CHECK(colours.size() == parts_.size(), "one colour for each piece");
+    FANTASCOPE_CHECK(colours.size() == parts_.size(), "there is one colour per piece");
     // Depth is 0 at the light.
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     const bool bends = bend_->any();
@@ -97,7 +97,7 @@ void ShadowCaster::draw(const Programs& programs, const Light& light, std::span<
     if (curved_) glUniform4fv(kCurve, 1, glm::value_ptr(light.curve));
     if (inside != nullptr) glUniform3fv(kInside, static_cast<GLsizei>(inside->size()), glm::value_ptr((*inside)[0]));
     glBindVertexArray(vertexArray_.name());
-    // The screen has y up, as OpenGL: the warp of an upright picture does not turn over.
+    // Screen and OpenGL have y up, so the warp of an upright picture does not flip.
     glFrontFace(glm::determinant(light.clipFromScreen) > 0 ? GL_CCW : GL_CW);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const Part& part = parts_[i];

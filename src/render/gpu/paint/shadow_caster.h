@@ -19,46 +19,48 @@
 
 namespace fantascope::render::gpu {
 
-// Meshes that follow joints, and their shadows, straight through a screen and an output's warp.
-// Thread: the context's.
+// Skinned meshes whose shadows are drawn straight through a screen and an output's warp. Thread:
+// the context's.
 class ShadowCaster {
 public:
-    static constexpr std::size_t kMostJoints = 64;
+    static constexpr std::size_t kMaxJoints = 64;
 
     // A vertex as assets/shaders/skin.comp reads it.
     struct Vertex {
         glm::vec3 atRest{0};                 // metres
-        std::array<std::uint8_t, 4> joints;  // of its piece
-        std::array<float, 4> shares;         // of each, adding up to 1
+        std::array<std::uint8_t, 4> joints;  // indices of its piece's joints
+        std::array<float, 4> shares;         // weights of the joints; their sum is 1
     };
     struct Piece {
         std::vector<Vertex> vertices;
         std::vector<glm::uvec3> triangles;
-        bool closed = false;  // anticlockwise as seen from outside: half of them need not be drawn
+        bool closed = false;  // triangles are anticlockwise from outside: back faces need not be drawn
     };
-    // One point of light, and the screen before it.
+    // One point of light and the screen in front of it.
     struct Light {
-        glm::mat4x3 screenFromStage{
-            1};  // (X, Y, W), the shadow being at X / W, Y / W on the screen; W: metres from the light, along its axis
-        glm::mat3 clipFromScreen{1};  // (x, y, w), w >= 1 where W is 1; of a curved screen unrolled
-        glm::vec4 curve{0};           // of a curved screen: where the light is in its frame, and the cylinder's radius; metres
+        // To (X, Y, W): the shadow falls at X / W, Y / W on the screen; W is the distance from the
+        // light along its axis, metres.
+        glm::mat4x3 screenFromStage{1};
+        glm::mat3 clipFromScreen{1};  // to (x, y, w), w >= 1 where W is 1; from the unrolled screen if it is curved
+        glm::vec4 curve{0};           // of a curved screen: the light's place in its frame, and the cylinder's radius; metres
     };
 
-    // `curved`: the screen is. `bend` and `programs` outlive it. Error: a shader does not compile.
+    // `curved`: whether the screen is. `bend` and `programs` outlive it. Error: a shader does not
+    // compile.
     static Result<ShadowCaster> create(std::span<const Piece> pieces, bool curved, const Bend& bend, ProgramCache& programs);
 
-    // How each joint of a piece has moved from rest: two vectors each, the parts w, x, y, z of a
-    // unit dual quaternion. Before the first drawing, and whenever it has moved.
+    // Sets how each joint of a piece has moved from rest: two vectors per joint, the w, x, y, z of
+    // a unit dual quaternion's two parts. Called before the first drawing and after every movement.
     void move(std::size_t piece, std::span<const glm::vec4> motions);
-    // After the last move() of a frame.
+    // Called after the last move() of a frame.
     void moved();
 
-    // Paints a light's shadow into the picture that has begun: of pieces that are behind each other
-    // the one nearest to the light. `colours`: of each piece, as the picture holds them. `inside`:
-    // four half planes that bound where it is seen; a point with clip coordinates (x, y, z, w) is
-    // in when dot(inside[i], (x, y, w)) >= 0 for each.
+    // Paints a light's shadow into the current layer picture; where pieces overlap, the one nearest
+    // to the light shows. `colours`: per piece, as the picture holds them. `inside`: four half
+    // planes that clip it; a point with clip coordinates (x, y, z, w) is inside if dot(inside[i],
+    // (x, y, w)) >= 0 for each i.
     void paint(const Light& light, std::span<const glm::vec3> colours, const std::array<glm::vec3, 4>& inside);
-    // The same into the target that is set, by the tests that are set, wherever it falls.
+    // The same into the current render target, with the current tests and without clipping.
     void draw(const Light& light, std::span<const glm::vec3> colours);
 
 private:

@@ -6,13 +6,14 @@
 namespace fantascope::render::gpu {
 namespace {
 
-constexpr int kMostMarks = 255;  // a stencil of 8 bits, 0 being nobody's
+constexpr int kMaxMarks = 255;  // a stencil has 8 bits; 0 marks no light
 
 }  // namespace
 
 Result<ShadowSum> ShadowSum::create(glm::ivec2 size, int samples) {
     ShadowSum made(size);
-    // Half floats would leave a grey of rounding where a hundred points of light are all kept off.
+    // With half floats, rounding would leave some grey where a hundred points of light are all in
+    // shadow.
     glTextureStorage2DMultisample(made.sum_.name(), samples, GL_RGBA32F, size.x, size.y, GL_TRUE);
     glGetTextureLevelParameteriv(made.sum_.name(), 0, GL_TEXTURE_SAMPLES, &made.samples_);
     glNamedRenderbufferStorageMultisample(made.depth_.name(), samples, GL_DEPTH24_STENCIL8, size.x, size.y);
@@ -20,8 +21,8 @@ Result<ShadowSum> ShadowSum::create(glm::ivec2 size, int samples) {
     glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, made.sum_.name(), 0);
     glNamedFramebufferRenderbuffer(framebuffer, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, made.depth_.name());
     if (glCheckNamedFramebufferStatus(framebuffer, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        return Error(
-            fmt::format("{} x {} pixels with {} samples: this OpenGL cannot sum up shadows in them", size.x, size.y, samples));
+        return Error(fmt::format("{} x {} pixels with {} samples per pixel: OpenGL cannot sum up shadows in them here", size.x,
+                                 size.y, samples));
     return made;
 }
 
@@ -41,15 +42,15 @@ void ShadowSum::begin() {
 void ShadowSum::add(ShadowCaster& caster, const ShadowCaster::Light& light, std::span<const glm::vec3> taken, bool alike) {
     constexpr GLint kNobodys = 0;
     constexpr GLfloat kFarthest = 1;
-    // A sample that this light's shadow has reached is marked, so that no second mesh takes away
-    // the same light.
-    if (++mark_ > kMostMarks) {
+    // Marks the samples in this light's shadow, so that a second mesh does not take away the same
+    // light.
+    if (++mark_ > kMaxMarks) {
         glClearNamedFramebufferiv(framebuffer_.name(), GL_STENCIL, 0, &kNobodys);
         mark_ = 1;
     }
     (alike ? glDisable : glEnable)(GL_DEPTH_TEST);
     if (!alike) {
-        // First who is nearest, then his colour.
+        // Finds the nearest piece first, then draws its colour.
         glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &kFarthest);
         glDepthFunc(GL_LESS);
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);

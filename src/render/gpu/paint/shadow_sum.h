@@ -12,17 +12,18 @@
 
 namespace fantascope::render::gpu {
 
-// What shadows take away of the light of many points, summed up in a picture of an output, several
-// samples a pixel. A frame: begin(), add() each point of light, end(). Thread: the context's.
+// Sums up the light of many points that shadows take away, in a picture of an output with several
+// samples per pixel. For each frame call begin(), add() for each point of light, end(). Thread: the
+// context's.
 class ShadowSum {
 public:
-    // Error: more pixels or samples than this OpenGL has.
+    // Error: more pixels or samples than OpenGL allows here.
     static Result<ShadowSum> create(glm::ivec2 size, int samples);
 
     void begin();
-    // What each piece takes away in its shadow, linear light. Where shadows of pieces meet, that of
-    // the piece nearest to the light counts; `alike`: all pieces take the same, so that it need not
-    // be found out which that is.
+    // `taken`: linear light that each piece takes away in its shadow. Where shadows overlap, the
+    // piece nearest to the light counts. `alike`: all pieces take the same, so the nearest one need
+    // not be found.
     void add(ShadowCaster& caster, const ShadowCaster::Light& light, std::span<const glm::vec3> taken, bool alike);
     void end();
 
@@ -37,7 +38,7 @@ private:
     MultisampleTexture sum_;
     Renderbuffer depth_;
     Framebuffer framebuffer_;
-    int mark_ = 0;  // of the samples that the shadow of the light of now has reached
+    int mark_ = 0;  // stencil value of the samples in the current light's shadow
 };
 
 }  // namespace fantascope::render::gpu

@@ -8,7 +8,7 @@
 namespace fantascope::render::gpu {
 namespace {
 
-// Of assets/shaders/shape.vert.
+// Uniform locations of assets/shaders/shape.vert.
 constexpr GLint kInside = 0;
 
 }  // namespace

@@ -13,16 +13,15 @@
 
 namespace fantascope::render::gpu {
 
-// Paints instanced meshes into a LayerPicture: opaque to each other, the nearest on top. Thread:
-// the context's.
+// Paints instanced meshes into a LayerPicture: opaque, the nearest on top. Thread: the context's.
 class ShapePainter {
 public:
     // Error: a shader in the folder `shaders` is missing or does not compile.
     static Result<ShapePainter> create(const std::filesystem::path& shaders);
 
-    // Paints into the picture that has begun. `inside`: four half planes that bound what is lit; a
-    // point with clip coordinates (x, y, z, w) is in when dot(inside[i], (x, y, w)) >= 0 for each.
-    // `bend`: the mesh on top of the keystone, or null.
+    // Paints into the current layer picture. `inside`: four half planes that clip it; a point with
+    // clip coordinates (x, y, z, w) is inside if dot(inside[i], (x, y, w)) >= 0 for each i. `bend`:
+    // the mesh on top of the keystone, or null.
     void paint(InstancedMeshes& meshes, const std::array<glm::vec3, 4>& inside, const Bend* bend);
 
 private:

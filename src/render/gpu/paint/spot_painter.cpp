@@ -11,7 +11,7 @@
 namespace fantascope::render::gpu {
 namespace {
 
-// Of assets/shaders/spot.vert.
+// Attribute and uniform locations of assets/shaders/spot.vert.
 constexpr GLuint kOutwards = 0, kNormal = 1;
 constexpr GLint kBall = 0, kLamp = 1, kMeasures = 2, kCanvas = 3;
 constexpr GLuint kCorners = 0;  // the buffer binding point of the vertex array
@@ -20,8 +20,8 @@ constexpr GLuint kCorners = 0;  // the buffer binding point of the vertex array
 
 Result<SpotPainter> SpotPainter::create(std::span<const Facet> facets, const Scene& scene, ProgramCache& programs) {
     const unsigned program = TRY(programs.drawing("spot.vert", "spot.frag"));
-    // Four corners for each facet instead of an instance: a software OpenGL draws every instance by
-    // itself.
+    // Four vertices per facet instead of an instance: a software OpenGL draws every instance
+    // separately.
     std::vector<Facet> corners;
     std::vector<std::uint32_t> indices;
     for (const Facet& facet : facets) {

@@ -13,12 +13,12 @@
 
 namespace fantascope::render::gpu {
 
-// Paints a mirror ball's spots of light into the LightCanvas that has begun. Thread: the context's.
+// Paints a mirror ball's spots of light into the current LightCanvas. Thread: the context's.
 class SpotPainter {
 public:
     // One mirror of the ball, at rest; unit vectors.
     struct Facet {
-        glm::vec3 outwards{0};  // its middle, from the ball's centre
+        glm::vec3 outwards{0};  // direction of its middle from the ball's centre
         glm::vec3 normal{0};
     };
     // In metres from the canvas's middle: right, up, out of the wall.
@@ -30,7 +30,7 @@ public:
     // `programs` outlives it. Error: a shader does not compile.
     static Result<SpotPainter> create(std::span<const Facet> facets, const Scene& scene, ProgramCache& programs);
 
-    // The ball turned by `angle` radians, seen from above against the clock.
+    // Paints the spots of the ball turned by `angle` radians, anticlockwise as seen from above.
     void paint(float angle);
 
 private:
