@@ -21,7 +21,7 @@ struct People {
 inline ShadowSource swayingPeople(const People& people) {
     constexpr int kFrames = 16;
     theatre::Cast cast;
-    cast.stage.light = {0, 0.3, 7};
+    cast.stage.beams[0].light = {0, 0.3, 7};
     cast.framesPerSecond = 12;
     Rng rng(1);
     for (int i = 0; i < people.count; ++i) {
@@ -38,7 +38,7 @@ inline ShadowSource swayingPeople(const People& people) {
         cast.actors.push_back(std::move(actor));
     }
     ShadowSource source;
-    source.lamps = {{cast.stage.light, people.lampSize, {1, 0.9f, 0.7f}, {}, {}}};
+    source.lamps = {{cast.stage.beams[0].light, people.lampSize, {1, 0.9f, 0.7f}, {}, {}}};
     source.cast = std::make_shared<const theatre::Cast>(std::move(cast));
     source.from = {-2.4, 0};
     source.to = {2.4, 2.7};

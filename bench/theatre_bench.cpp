@@ -88,23 +88,22 @@ BENCHMARK(skinAndShadow)->ArgName("shadow")->Arg(0)->Arg(1)->Unit(benchmark::kMi
 // without skins.
 void evaluation(benchmark::State& state) {
     PoseProblem problem = aScene({1.75, 1.75, 1.75});
-    if (state.range(0) != 0) problem.dress(), problem = simpler(std::move(problem));
+    if (state.range(0) != 0) problem.buildSkins(), problem = simpler(std::move(problem));
     const std::vector<double> start = aRow(problem, {-0.8, 0, 0.8}, 2);
     makeTarget(problem, start);
-    problem.weights.stiffen(static_cast<double>(state.range(1)) / 100);
     Rng rng(1);
     std::vector<std::vector<double>> poses;
     for (int i = 0; i < 64; ++i) {
         poses.push_back(nudged(problem, start, rng, 0.15));
-        for (std::size_t actor = 0; actor < 3; ++actor) poses.back()[problem.firstFreedom(actor) + 1] = start[1];
+        for (std::size_t actor = 0; actor < 3; ++actor) poses.back()[problem.firstDof(actor) + 1] = start[1];
     }
     SceneEnergy energy(problem);
-    energy.pose(start);
+    energy.pose(start, static_cast<double>(state.range(1)) / 100);
     std::size_t turn = 0;
     double sum = 0;
     for (auto _ : state) {
-        const std::size_t actor = turn % 3, first = problem.firstFreedom(actor);
-        energy.pose(actor, std::span(poses[turn++ % poses.size()]).subspan(first, problem.actors[actor].freedoms));
+        const std::size_t actor = turn % 3, first = problem.firstDof(actor);
+        energy.pose(actor, std::span(poses[turn++ % poses.size()]).subspan(first, problem.actors[actor].dofs));
         sum += energy.energy();
     }
     benchmark::DoNotOptimize(sum);

@@ -33,11 +33,11 @@ std::vector<std::string> notesOf(const PoseSearch::Actor& actor) {
 
 }  // namespace
 
-CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const double> freedoms) {
+CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const double> dofs) {
     FANTASCOPE_CHECK(problem.skins.size() == problem.actors.size(), "every actor has a skin");
-    const PoseSearch::Quality quality = PoseSearch::measure(problem, freedoms);
+    const PoseSearch::Quality quality = PoseSearch::measure(problem, dofs);
     theatre::SceneEnergy scene(problem);
-    scene.pose(freedoms);
+    scene.pose(dofs);
     scene.terms();
     CastPicture picture{{problem.stage, {}, {}}, {}};
     const auto things = scene.things();
@@ -49,7 +49,7 @@ CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const dou
         picture.view.actors.push_back({{{skin.begin(), skin.end()}, problem.skins[i]->atRest.triangles}, actorColour(i)});
         if (!quality.actors[i].isValid()) fallen += fmt::format("{} {}", fallen.empty() ? "" : ",", i + 1);
     }
-    for (std::size_t k = 0; k < problem.beams(); ++k) {
+    for (std::size_t k = 0; k < problem.targets.size(); ++k) {
         const theatre::BeamEnergy& beam = scene.beam(k);
         const theatre::PoseTarget& target = beam.target();
         picture.view.images.push_back({target.frameAsSeen(), target.asSeen(beam.shadow()), target.maskAsSeen()});
@@ -63,7 +63,7 @@ CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const dou
         if (!things.empty())
             image.actors.push_back({target.asSeen(beam.propShadow()), things.size() == 1 ? things[0].name : "props", {}});
         const PoseSearch::Quality::Match& match = quality.matches[k];
-        if (problem.beams() > 1) image.lines.push_back(fmt::format("beam {}", k + 1));
+        if (problem.targets.size() > 1) image.lines.push_back(fmt::format("beam {}", k + 1));
         for (const std::string& line : std::vector<std::string>{
                  fmt::format("IoU {:.3f}", match.iou), fmt::format("contour off by {:.1f} px of 256,", match.contourMean),
                  fmt::format("{:.0f} px at most", match.contourMost),

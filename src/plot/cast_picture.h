@@ -29,7 +29,7 @@ struct CastPicture {
     Page each() const;
 };
 
-// `freedoms`: all actors' freedoms, one actor after the other.
-CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const double> freedoms);
+// `dofs`: all actors' degrees of freedom, one actor after the other.
+CastPicture castPicture(const theatre::PoseProblem& problem, std::span<const double> dofs);
 
 }  // namespace fantascope::plot

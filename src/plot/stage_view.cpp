@@ -170,10 +170,10 @@ Surface mattSurface(TriangleMesh mesh, const glm::vec3& colour, const glm::vec3&
 }
 
 Surface floorOf(const StageView& view, const ContactShade& contact) {
-    const glm::vec3 middle(float(view.stage.light.x), 0, float(0.45 * view.stage.light.z));
-    // The floor extends to the farthest lamp.
+    const glm::vec3 middle(float(view.stage.beams[0].light.x), 0, float(0.45 * view.stage.beams[0].light.z));
+    // The floor extends to the farthest light.
     float reach = static_cast<float>(kFloorReach);
-    for (const theatre::Stage::Beam& beam : view.stage.further)
+    for (const theatre::Stage::Beam& beam : std::span(view.stage.beams).subspan(1))
         reach = std::max(reach, 1.5f * glm::distance(middle, glm::vec3(beam.light)));
     TriangleMesh mesh;
     addFace(mesh, middle + glm::vec3(-reach, 0, reach), {2 * reach, 0, 0}, {0, 0, -2 * reach});
@@ -262,7 +262,7 @@ TriangleMesh standsOf(const StageView& view) {
         for (const float x : {left - bar, right}) add({x, 0, -foot}, {x + bar, bar, foot});
     }
     const float lamp = static_cast<float>(kLamp);
-    for (std::size_t i = 0; i < view.stage.beams(); ++i) {
+    for (std::size_t i = 0; i < view.stage.beams.size(); ++i) {
         const theatre::Screen& screen = view.stage.screenOf(i);
         const glm::vec3 light(view.stage.lightOnScreen(i));
         const auto toStage = [&](const glm::vec3& v) { return glm::vec3(screen.stageFromScreen(v)); };
@@ -292,7 +292,7 @@ void addRay(TriangleMesh& mesh, const glm::vec3& from, const glm::vec3& to) {
 // Adds the pyramid from a lamp to the bounding box of its target: faint sides, and edges.
 void addBeam(const StageView& view, const ShownScreen& shown, std::size_t beam, std::vector<Surface>& surfaces) {
     const Extent box = extentOfWhite(view.images[beam].frame, view.images[beam].target);
-    const glm::vec3 light(view.stage.beam(beam).light);
+    const glm::vec3 light(view.stage.beams[beam].light);
     std::vector<glm::vec3> around;  // the box's border, clockwise from its top left
     const std::vector<double> cuts = shown.cuts(box.leftTop.x, box.rightBottom.x);
     for (const double x : cuts) around.emplace_back(shown.at(x, box.leftTop.y));
@@ -341,10 +341,10 @@ std::vector<glm::dvec3> peopleAndScreens(const StageView& view) {
 }
 
 void addLamps(const StageView& view, std::vector<glm::dvec3>& points) {
-    for (std::size_t i = 0; i < view.stage.beams(); ++i) {
+    for (std::size_t i = 0; i < view.stage.beams.size(); ++i) {
         const theatre::Screen& screen = view.stage.screenOf(i);
         const glm::dvec3 light = view.stage.lightOnScreen(i);
-        points.push_back(view.stage.beam(i).light);
+        points.push_back(view.stage.beams[i].light);
         for (const double x : {-kBase, kBase})
             for (const double z : {-kBase, kBase})
                 points.push_back(screen.stageFromScreen({light.x + x, 0, light.z + 2 * kLamp + z}));
@@ -380,7 +380,7 @@ Camera StageView::fromTheSide(double aspect) const {
 }
 
 RgbaImage StageView::draw(const Camera& camera, int width, int height) const {
-    FANTASCOPE_CHECK(images.size() == stage.beams(), "each beam of the stage has its image");
+    FANTASCOPE_CHECK(images.size() == stage.beams.size(), "each beam of the stage has its image");
     for (const auto& [frame, shadow, target] : images)
         FANTASCOPE_CHECK(shadow.width() == frame.width() && shadow.height() == frame.height() &&
                              target.width() == frame.width() && target.height() == frame.height(),
@@ -391,14 +391,14 @@ RgbaImage StageView::draw(const Camera& camera, int width, int height) const {
     for (const Actor& actor : actors) surfaces.push_back(mattSurface(actor.mesh, linear(actor.colour), eye));
     for (const Actor& prop : props) surfaces.push_back(mattSurface(prop.mesh, linear(prop.colour), eye));
     surfaces.push_back(mattSurface(standsOf(*this), kMetal, eye));
-    for (std::size_t i = 0; i < stage.beams(); ++i)
-        surfaces.push_back(glowing(ball(glm::vec3(stage.beam(i).light), static_cast<float>(kLamp)), {1, 0.95f, 0.8f}, 1));
+    for (std::size_t i = 0; i < stage.beams.size(); ++i)
+        surfaces.push_back(glowing(ball(glm::vec3(stage.beams[i].light), static_cast<float>(kLamp)), {1, 0.95f, 0.8f}, 1));
     const std::vector<ShownScreen> screens = screensOf(*this);
     for (const ShownScreen& shown : screens) surfaces.push_back(surfaceOf(*this, shown));
     surfaces.push_back(floorOf(*this, contact));
     for (const ShownScreen& shown : screens)
         for (const std::size_t beam : shown.beams) addBeam(*this, shown, beam, surfaces);
-    for (std::size_t i = 0; i < stage.beams(); ++i) surfaces.push_back(haloOf(glm::vec3(stage.beam(i).light), eye));
+    for (std::size_t i = 0; i < stage.beams.size(); ++i) surfaces.push_back(haloOf(glm::vec3(stage.beams[i].light), eye));
     return rendered(surfaces, camera, kBackground, width, height);
 }
 

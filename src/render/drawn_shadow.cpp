@@ -131,7 +131,7 @@ private:
         : source_(source),
           tools_(tools),
           cast_(*source.cast, source.play == ShadowSource::Play::Loop),
-          beam_(source.cast->stage.beam(source.beam)),
+          beam_(source.cast->stage.beams[source.beam]),
           onto_(source.cast->stage.screenOf(source.beam)) {}
 
     // Actors first, then the props that each holds, then platforms and standing props.

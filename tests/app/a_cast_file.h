@@ -22,9 +22,9 @@ inline theatre::Cast writeACast(const ScratchFolder& folder, const std::string& 
                                 const std::string& stage = "") {
     EXPECT_TRUE(writePng(folder / "target.png", pictureOf(120, 100, [](int x, int y) { return isIn(x, y, 5, 10, 110, 90); })));
     theatre::Cast cast;
-    cast.target = folder / "target.png";
-    cast.height = 2.4;
-    cast.stage.light = {0.1, 0.05, 7};
+    cast.targets[0].file = folder / "target.png";
+    cast.targets[0].height = 2.4;
+    cast.stage.beams[0].light = {0.1, 0.05, 7};
     if (!stage.empty()) cast.stageFile = folder / stage;
     cast.framesPerSecond = frames > 1 ? 12.5 : 0;
     for (const double x : {-0.6, 0.5}) {

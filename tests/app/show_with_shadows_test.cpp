@@ -139,7 +139,7 @@ TEST(Menagerie, is_played_by_people_who_can_do_it) {
         for (std::size_t frame = 0; frame < frames; ++frame) {
             const auto scene = app::readCastScene(file, frame);
             ASSERT_TRUE(scene) << scene.error().message();
-            const auto quality = theatre::PoseSearch::measure(scene->problem, scene->freedoms);
+            const auto quality = theatre::PoseSearch::measure(scene->problem, scene->dofs);
             EXPECT_TRUE(quality.isValid()) << name << ", frame " << frame;
             EXPECT_GE(quality.iou, 0.88) << name << ", frame " << frame;
             mean += quality.iou / static_cast<double>(frames);

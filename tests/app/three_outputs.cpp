@@ -2,7 +2,7 @@
 
 #include "render/scene.h"
 #include "theatre/stage/cast.h"
-#include "theatre/stage/surroundings.h"
+#include "theatre/stage/stage_set.h"
 
 #include "core/check.h"
 #include "test_video.h"
@@ -81,7 +81,7 @@ render::ShadowSource turning() {
                                 std::make_shared<const theatre::Prop::Shape>(meshOf(box)),
                                 theatre::Prop::Holder{0, theatre::BodyPart::LeftHand}});
     render::ShadowSource source;
-    source.lamps = {{cast.stage.light, 0, {1, 0.9f, 0.7f}, {0, 0, 0.05f}, {}}};
+    source.lamps = {{cast.stage.beams[0].light, 0, {1, 0.9f, 0.7f}, {0, 0, 0.05f}, {}}};
     source.cast = std::make_shared<const theatre::Cast>(std::move(cast));
     source.from = {-2, 0};
     source.to = {2, 2.25};

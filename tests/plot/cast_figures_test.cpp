@@ -191,22 +191,22 @@ TEST(CastPicture, shows_who_throws_what_and_says_who_cannot_stand) {
     GreyImage silhouette(80, 80);
     for (int y = 10; y < 70; ++y)
         for (int x = 10; x < 70; ++x) silhouette.at(x, y) = 1;
-    theatre::PoseProblem problem{stage, theatre::PoseTarget::from(silhouette, stage, 1.8, 128).value(), {}, {}};
+    theatre::PoseProblem problem{stage, {theatre::PoseTarget::from(silhouette, stage, 1.8, 128).value()}, {}, {}};
     problem.actors = {theatre::humanBody(1.75), theatre::humanBody(1.5)};
-    problem.dress();
-    std::vector<double> freedoms;
+    problem.buildSkins();
+    std::vector<double> dofs;
     for (std::size_t i = 0; i < 2; ++i) {
         const theatre::Body& body = problem.actors[i];
         const double height = body.joints[0].offset.y + (i == 0 ? 0 : 0.5);
         const std::vector<double> rest = body.restPose({i == 0 ? -0.5 : 0.5, height, 1.5}, {1, 0, 0, 0});
-        freedoms.insert(freedoms.end(), rest.begin(), rest.end());
+        dofs.insert(dofs.end(), rest.begin(), rest.end());
     }
-    const CastPicture picture = castPicture(problem, freedoms);
+    const CastPicture picture = castPicture(problem, dofs);
     ASSERT_THAT(picture.images[0].actors, SizeIs(2));
     BitMask both = picture.images[0].actors[0].mask;
     both.add(picture.images[0].actors[1].mask);
     EXPECT_EQ(both, picture.view.images[0].shadow);
-    const glm::dvec2 chest = problem.target.frame.shadow({-0.5, 1.2, 1.5});
+    const glm::dvec2 chest = problem.targets[0].frame.shadow({-0.5, 1.2, 1.5});
     EXPECT_TRUE(picture.images[0].actors[0].mask.at(static_cast<int>(chest.x), static_cast<int>(chest.y)));
     EXPECT_FALSE(picture.images[0].actors[1].mask.at(static_cast<int>(chest.x), static_cast<int>(chest.y)));
     EXPECT_EQ(picture.images[0].actors[1].name, "actor 2, 1.50 m");
@@ -217,12 +217,12 @@ TEST(CastPicture, shows_who_throws_what_and_says_who_cannot_stand) {
     // A second screen at the side has another shadow of the same people.
     theatre::PoseProblem corner = problem;
     corner.stage.screens.push_back({{2.5, 1.5}, -std::numbers::pi / 2});
-    corner.stage.further.push_back({{-5, 0, 1.5}, 1});
-    corner.further.push_back(theatre::PoseTarget::from(silhouette, corner.stage, 1.8, 128, {1}).value());
-    const CastPicture two = castPicture(corner, freedoms);
+    corner.stage.beams.push_back({{-5, 0, 1.5}, 1});
+    corner.targets.push_back(theatre::PoseTarget::from(silhouette, corner.stage, 1.8, 128, {1}).value());
+    const CastPicture two = castPicture(corner, dofs);
     ASSERT_THAT(two.images, SizeIs(2));
     EXPECT_EQ(two.images[0].actors[0].mask, picture.images[0].actors[0].mask);
-    const glm::dvec2 side = corner.further[0].frame.shadow({-0.5, 1.2, 1.5});
+    const glm::dvec2 side = corner.targets[1].frame.shadow({-0.5, 1.2, 1.5});
     EXPECT_TRUE(two.images[1].actors[0].mask.at(static_cast<int>(side.x), static_cast<int>(side.y)));
     EXPECT_THAT(two.images[1].lines, Contains("beam 2"));
     EXPECT_THAT(picture.images[0].lines, testing::Not(Contains("beam 1")));

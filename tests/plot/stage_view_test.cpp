@@ -70,7 +70,7 @@ TEST(StageView, shows_people_in_their_colours_the_nearer_before_the_farther) {
 TEST(StageView, shows_every_screen_with_its_own_shadow) {
     StageView view = aView();
     view.stage.screens.push_back({{2.5, 3}, -std::numbers::pi / 2});
-    view.stage.further.push_back({{-4, 0, 3}, 1});
+    view.stage.beams.push_back({{-4, 0, 3}, 1});
     view.images.push_back(
         {theatre::ScreenFrame(view.stage, -2, 2, 0.02, 200, 100, 1), view.images[0].target, view.images[0].shadow});
     for (const Camera& camera : {view.overview(2), view.closeUp(2)}) {
@@ -86,7 +86,7 @@ TEST(StageView, shows_every_screen_with_its_own_shadow) {
 // In each light's shadow, half of the light is missing.
 TEST(StageView, two_shadows_on_a_screen_are_twice_as_dark_where_they_meet) {
     StageView view = aView();
-    view.stage.further.push_back({{0.1, 0, 7}, 0});
+    view.stage.beams.push_back({{0.1, 0, 7}, 0});
     const theatre::BitMask shadow = view.images[0].shadow, none(200, 100);
     view.images[0].target = none;
     view.images.push_back({theatre::ScreenFrame(view.stage, -2, 2, 0.02, 200, 100, 1), none, none});
@@ -140,11 +140,11 @@ TEST(StageView, darkens_the_floor_where_something_stands_on_it) {
 
 TEST(StageView, has_the_lamp_and_all_people_in_its_pictures) {
     StageView view = aView();
-    view.stage.light = {0.5, 1.2, 6};
+    view.stage.beams[0].light = {0.5, 1.2, 6};
     view.actors = {{box({-3, 0, 2}, {-2.6f, 1.7f, 2.2f}), kGreen}};
     for (const Camera& camera : {view.overview(2), view.fromTheSide(2)}) {
         const RgbaImage picture = view.draw(camera, kWidth, kHeight);
-        EXPECT_GT(brightness(at(picture, camera, view.stage.light)), 680);
+        EXPECT_GT(brightness(at(picture, camera, view.stage.beams[0].light)), 680);
         for (const glm::vec3& vertex : view.actors[0].mesh.vertices) {
             const glm::dvec2 pixel = camera.pixelAt(vertex, kWidth, kHeight).value();
             EXPECT_TRUE(pixel.x > 0 && pixel.x < kWidth && pixel.y > 0 && pixel.y < kHeight);

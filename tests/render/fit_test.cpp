@@ -99,9 +99,9 @@ protected:
     // out of sight.
     static ShadowSource plate() {
         theatre::Cast cast;
-        cast.stage.light = {0, 1, 8};
+        cast.stage.beams[0].light = {0, 1, 8};
         cast.stage.props.push_back(theatre::aBox({0.5, 0.5, 0.002}, {0, 1, 4}));
-        theatre::PoseProblem problem{cast.stage, theatre::aScene({}).target, {theatre::humanBody(1.7)}, {}};
+        theatre::PoseProblem problem{cast.stage, {theatre::aScene({}).targets[0]}, {theatre::humanBody(1.7)}, {}};
         const std::vector<double> pose = problem.actors[0].restPose({60, 1, 4}, {1, 0, 0, 0});
         cast.actors.push_back({1.7, {theatre::poseOf(problem.actors[0], pose)}});
         ShadowSource shadow;

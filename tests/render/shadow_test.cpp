@@ -30,12 +30,12 @@ std::array<glm::dvec2, 4> upright() { return rectangleCorners(kSize.x, kSize.y);
 // People of three statures in random possible poses, facing all directions, over `frames` frames.
 Cast aCast(std::size_t actors, std::size_t frames, std::uint64_t seed) {
     Cast cast;
-    cast.stage.light = {0.2, 0.3, 7};
+    cast.stage.beams[0].light = {0.2, 0.3, 7};
     cast.framesPerSecond = 8;
     Rng rng(seed);
     for (std::size_t i = 0; i < actors; ++i) {
         Cast::Actor actor{1.5 + 0.15 * static_cast<double>(i % 3), {}};
-        theatre::PoseProblem problem{cast.stage, theatre::aScene({}).target, {theatre::humanBody(actor.stature)}, {}};
+        theatre::PoseProblem problem{cast.stage, {theatre::aScene({}).targets[0]}, {theatre::humanBody(actor.stature)}, {}};
         const glm::dvec3 place(-1.2 + 2.4 * static_cast<double>(i) / static_cast<double>(actors), 0.9, rng.uniform(1, 4.5));
         std::vector<double> pose = problem.actors[0].restPose(place, theatre::rotationOf({0, rng.uniform(-3, 3), 0}));
         pose = theatre::nudged(problem, pose, rng, 1.2);
@@ -62,7 +62,7 @@ void furnish(Cast& cast) {
 
 ShadowSource sourceOf(Cast cast) {
     ShadowSource source;
-    source.lamps = {{cast.stage.light, 0, glm::vec3(1), glm::vec3(0), {}}};
+    source.lamps = {{cast.stage.beams[0].light, 0, glm::vec3(1), glm::vec3(0), {}}};
     source.cast = std::make_shared<const Cast>(std::move(cast));
     source.from = kFrom;
     source.to = kTo;
@@ -206,7 +206,7 @@ TEST(Shadow, goes_through_the_outputs_warp) {
 // A stage with only a wall, whose edges are straight.
 Cast aWall(double z) {
     Cast cast = aCast(1, 1, 1);
-    cast.stage.light = {0, 1.25, 6};
+    cast.stage.beams[0].light = {0, 1.25, 6};
     cast.actors[0].poses[0].root = {30, 1, 1};  // out of sight
     cast.stage.platforms.push_back({"wall", {0.4, 2, z}, {0.8, 4, 0.001}, 0});
     return cast;
@@ -239,7 +239,7 @@ TEST(Shadow, has_the_colour_of_who_is_nearest_to_the_lamp) {
     for (const bool swapped : {false, true})
         for (const double size : {0.0, 0.02}) {
             Cast cast = aCast(2, 1, 3);
-            cast.stage.light = {0, 1.2, 7};
+            cast.stage.beams[0].light = {0, 1.2, 7};
             for (std::size_t i = 0; i < 2; ++i) {
                 const theatre::Body body = theatre::humanBody(cast.actors[i].stature);
                 const double z = (i == 1) != swapped ? 4 : 1;
@@ -290,7 +290,7 @@ TEST(Shadow, of_several_lamps_is_where_each_of_them_is_kept_off) {
 // Outside a projector's picture the screen is black, whatever the light's colour.
 TEST(Shadow, is_seen_in_the_projectors_picture_alone) {
     Cast cast = aWall(2);
-    cast.stage.lit = theatre::Stage::Area{{-1.5, 0.2}, {1.9, 2.2}};
+    cast.stage.beams[0].lit = theatre::Stage::Area{{-1.5, 0.2}, {1.9, 2.2}};
     ShadowSource source = sourceOf(cast);
     source.lamps[0].shadow = glm::vec3(0.2f);
     DrawnOutput output(kSize, upright(), {source});
@@ -319,9 +319,9 @@ TEST(Shadow, falls_on_the_screen_of_its_beam) {
             furnish(cast);
             cast.stage.screens[0].radius = radius;
             cast.stage.screens.push_back({{2.6, 2.2}, -1.4, radius});
-            cast.stage.further.push_back({{-5.5, 0.6, 1.6}, 1, {}});
-            if (radius > 0) cast.stage.lit = cast.stage.further[0].lit = theatre::Stage::Area{{-2.1, 0.1}, {1.7, 2.3}};
-            const glm::dvec3 lamp = cast.stage.beam(beam).light;
+            cast.stage.beams.push_back({{-5.5, 0.6, 1.6}, 1, {}});
+            if (radius > 0) cast.stage.beams[0].lit = cast.stage.beams[1].lit = theatre::Stage::Area{{-2.1, 0.1}, {1.7, 2.3}};
+            const glm::dvec3 lamp = cast.stage.beams[beam].light;
             ShadowSource source = sourceOf(cast);
             source.beam = beam;
             source.lamps[0].place = lamp;
@@ -343,7 +343,7 @@ TEST(Shadow, falls_on_the_screen_of_its_beam) {
                     bool wanted = true;  // dark where no light reaches
                     if (onFlat) {
                         const glm::ivec2 pixel(glm::floor(flat.pixelAt(onFlat->x, onFlat->y)));
-                        const auto& lit = cast.stage.beam(beam).lit;
+                        const auto& lit = cast.stage.beams[beam].lit;
                         wanted = (lit && lit->outside(*onFlat) > 0) ||
                                  (pixel.x >= 0 && pixel.y >= 0 && pixel.x < 3000 && pixel.y < 1400 && mask.at(pixel.x, pixel.y));
                     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "theatre/a_stage.h"
 #include "theatre/energy/scene_energy.h"
 
 #include "core/random.h"
@@ -10,22 +11,22 @@
 namespace fantascope::theatre {
 
 // A target's outline and its measures from a mask of its frame.
-inline void setTarget(PoseProblem& problem, const BitMask& mask) {
-    PoseTarget& target = problem.target;
+inline void setTarget(PoseTarget& target, const BitMask& mask) {
     target.mask = mask;
     target.area = static_cast<double>(mask.count());
     target.contour.clear();
-    const ContourDisc disc(kDiscRadius / target.pixelsOf256);
+    const ContourDisc disc(kDiscRadius / target.refPixelsPerPixel);
     for (const glm::ivec2 pixel : sampled(outerContour(mask), kContourPoints)) target.contour.push_back(disc.at(mask, pixel));
 }
+inline void setTarget(PoseProblem& problem, const BitMask& mask) { setTarget(problem.targets[0], mask); }
 
 // Actors of these statures on a stage, before a screen of some 7 m x 3.3 m; 128 rows are 2.5 m
 // high. The target is yet to be set.
 inline PoseProblem aScene(const std::vector<double>& statures) {
-    const Stage stage{{0, 0.1, 7}};
+    const Stage stage = aStage({0, 0.1, 7});
     const double pixel = 2.5 / 128;
     PoseTarget target{ScreenFrame(stage, -180 * pixel, 170 * pixel, pixel, 360, 170), BitMask(360, 170), 0, {}, 2};
-    PoseProblem problem{stage, std::move(target), {}, {}};
+    PoseProblem problem{stage, {std::move(target)}, {}, {}};
     for (const double stature : statures) problem.actors.push_back(humanBody(stature));
     return problem;
 }
@@ -46,8 +47,8 @@ inline std::vector<double> nudged(const PoseProblem& problem, std::vector<double
     for (double& number : poses) number += rng.uniform(-size, size);
     std::span<double> rest(poses);
     for (const Body& body : problem.actors) {
-        body.limit(rest.first(body.freedoms));
-        rest = rest.subspan(body.freedoms);
+        body.limit(rest.first(body.dofs));
+        rest = rest.subspan(body.dofs);
     }
     return poses;
 }
@@ -61,7 +62,7 @@ inline Prop aBox(const glm::dvec3& size, const glm::dvec3& place) {
 
 // The shadow of poses becomes the target.
 inline void makeTarget(PoseProblem& problem, const std::vector<double>& poses) {
-    setTarget(problem, BitMask(problem.target.mask.width(), problem.target.mask.height()));
+    setTarget(problem, BitMask(problem.targets[0].mask.width(), problem.targets[0].mask.height()));
     SceneEnergy energy(problem);
     energy.pose(poses);
     energy.terms();

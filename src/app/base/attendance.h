@@ -35,4 +35,19 @@ private:
     Time paused_{};
 };
 
+// A clock that leaves pauses out: the budget of work that a person may pause. It stands still once
+// a pause is over, by as much as that took.
+// Thread: bound to that of the attendance.
+class WorkClock final : public Clock {
+public:
+    // Both outlive it.
+    WorkClock(Clock& clock, const Attendance& attendance) : clock_(clock), attendance_(attendance) {}
+    Time now() const override { return clock_.now() - attendance_.paused(); }
+    void sleepUntil(Time time) override { clock_.sleepUntil(time + attendance_.paused()); }
+
+private:
+    Clock& clock_;
+    const Attendance& attendance_;
+};
+
 }  // namespace fantascope::app

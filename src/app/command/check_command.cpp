@@ -262,8 +262,9 @@ Result<Finding> checkCast(const fs::path& path, const std::optional<show::Site>&
     const std::size_t frames = cast.actors[0].poses.size();
     const std::string motion =
         cast.framesPerSecond > 0 ? fmt::format("{}, {:g} a second", counted(frames, "frame"), cast.framesPerSecond) : "still";
-    Finding finding{fmt::format("cast, {}, {}, {:g} m high", counted(cast.actors.size(), "actor"), motion, cast.height),
-                    {cast.target}};
+    Finding finding{
+        fmt::format("cast, {}, {}, {:g} m high", counted(cast.actors.size(), "actor"), motion, cast.targets[0].height), {}};
+    for (const theatre::Cast::Target& target : cast.targets) finding.names.push_back(target.file);
     if (cast.stageFile) finding.names.push_back(*cast.stageFile);
     if (cast.sequence) finding.names.push_back(cast.sequence->file);
     return finding;
@@ -271,7 +272,7 @@ Result<Finding> checkCast(const fs::path& path, const std::optional<show::Site>&
 
 Result<Finding> checkStage(const fs::path& path, const std::optional<show::Site>&) {
     const theatre::Stage stage = TRY(theatre::readStage(path));
-    return Finding{fmt::format("stage, {}, {}, {}", stage.lit ? "projector" : "light",
+    return Finding{fmt::format("stage, {}, {}, {}", stage.beams[0].lit ? "projector" : "light",
                                counted(stage.platforms.size(), "platform"), counted(stage.props.size(), "prop")),
                    {}};
 }

@@ -97,8 +97,8 @@ Report reportOf(const Options& options, const CastScene& scene, const Fabricatio
     report["self_intersections"] = made.check.crossings.size();
     report["detail_mm"] = made.cell;
     report["wall_mm"] = options.print.wall;
-    report["least_wall_mm"] = made.leastWall;
-    report["least_wall_at"] = made.leastWallAt;
+    report["least_wall_mm"] = made.thinnestWall;
+    report["least_wall_at"] = made.thinnestWallAt;
     report["share_below_wall"] = made.shareBelowWall;
     report["thickened"] = std::move(thin);
     report["contacts"] = std::move(contacts);
@@ -113,7 +113,7 @@ Report reportOf(const Options& options, const CastScene& scene, const Fabricatio
 Result<Fabrication> fabricate(const Options& options, const CastScene& scene, const Clock& clock) {
     const Interrupt interrupt;
     Progress progress("fabricate", clock, std::cerr, standardErrorIsTerminal());
-    return theatre::fabricate(scene.problem, scene.freedoms, options.print,
+    return theatre::fabricate(scene.problem, scene.dofs, options.print,
                               {.tell = [&](double share, const char* what) { progress.update(share, what); },
                                .askStop = [&] { return interrupt.requested(); }});
 }
@@ -129,7 +129,7 @@ Result<void> run(const Options& options) {
     const CastScene scene = TRY(readCastScene(options.cast, options.frame));
     const Fabrication made = TRY(fabricate(options, scene, clock));
     TRY(writeStl(options.output, made.mesh));
-    if (options.sheet) TRY(plot::fabricationSheet(made, scene.problem.target).writeAsPaper(*options.sheet));
+    if (options.sheet) TRY(plot::fabricationSheet(made, scene.problem.targets[0]).writeAsPaper(*options.sheet));
     if (options.view) TRY(writePng(*options.view, plot::fabricationView(made, kView.x, kView.y)));
     if (options.report) TRY(writeReport(*options.report, reportOf(options, scene, made, seconds(clock.now() - start))));
     for (const std::string& warning : made.warnings) fmt::print(stderr, "fantascope: {}\n", warning);
@@ -150,7 +150,7 @@ Result<void> run(const Options& options) {
     for (const auto& part : made.thin)
         fmt::print("{} is {:.2f} mm thick: made {:g} mm; thick enough by itself at --height {:.0f}\n", part.who, part.thickness,
                    options.print.wall, std::ceil(part.height));
-    if (!made.leastWallAt.empty()) fmt::print("thinnest now: {:.2f} mm, {}\n", made.leastWall, made.leastWallAt);
+    if (!made.thinnestWallAt.empty()) fmt::print("thinnest now: {:.2f} mm, {}\n", made.thinnestWall, made.thinnestWallAt);
     fmt::print("lamp: {:.1f} mm before the screen, {:.1f} mm above the plate's upper side\n", made.screen - made.light.y,
                made.light.z);
     return {};

@@ -106,7 +106,7 @@ Result<plot::Page> drawPattern(const fs::path& file, Figure figure) {
 
 Result<plot::Page> drawCast(const fs::path& file, std::size_t frame, Figure figure) {
     const CastScene scene = TRY(readCastScene(file, frame));
-    const plot::CastPicture cast = plot::castPicture(scene.problem, scene.freedoms);
+    const plot::CastPicture cast = plot::castPicture(scene.problem, scene.dofs);
     std::vector<plot::Page> pages;
     const auto has = [&](Figure part) { return figure == part || figure == Figure::Cast; };
     if (has(Figure::Stage)) pages.push_back(plot::stageFigure(cast.view, cast.view.overview(plot::kStageAspect)));

@@ -25,9 +25,10 @@ std::size_t principalOf(const theatre::Cast::Sequence& sequence, std::size_t fra
 Result<theatre::PoseTarget> targetOf(const theatre::Cast& cast, std::optional<std::size_t>& frame, const fs::path& file) {
     if (!cast.sequence) {
         frame = frame.value_or(0);
-        const auto silhouette = readGrey(cast.target);
-        if (!silhouette) return namedIn(file, cast.target, silhouette.error());
-        return theatre::PoseTarget::from(*silhouette, cast.stage, cast.height, kMaskRows).in(cast.target.string());
+        const auto& [target, height, middle] = cast.targets[0];
+        const auto silhouette = readGrey(target);
+        if (!silhouette) return namedIn(file, target, silhouette.error());
+        return theatre::PoseTarget::from(*silhouette, cast.stage, height, kMaskRows).in(target.string());
     }
     const auto& [name, representative, first] = *cast.sequence;
     const auto read = theatre::readSequence(name);
@@ -43,8 +44,8 @@ Result<theatre::PoseTarget> targetOf(const theatre::Cast& cast, std::optional<st
         if (!grey) return namedIn(name, picture, grey.error());
         pictures.push_back(std::move(*grey));
     }
-    auto targets =
-        TRY(theatre::PoseTarget::ofSequence(pictures, representative, cast.stage, cast.height, kMaskRows).in(name.string()));
+    auto targets = TRY(theatre::PoseTarget::ofSequence(pictures, representative, cast.stage, cast.targets[0].height, kMaskRows)
+                           .in(name.string()));
     return std::move(targets[(first + *frame) % targets.size()]);
 }
 
@@ -56,22 +57,22 @@ Result<CastScene> readCastScene(const fs::path& file, std::optional<std::size_t>
     if (frame && *frame >= frames)
         return Error(fmt::format("{}: --frame {} is beyond the last frame, {}", file.string(), *frame, frames - 1));
     theatre::PoseTarget target = TRY(targetOf(cast, frame, file));
-    theatre::PoseProblem problem{cast.stage, std::move(target), {}, {}};
-    for (const auto& [picture, height, middle] : cast.further) {
+    theatre::PoseProblem problem{cast.stage, {std::move(target)}, {}, {}};
+    for (std::size_t beam = 1; beam < cast.targets.size(); ++beam) {
+        const auto& [picture, height, middle] = cast.targets[beam];
         const auto silhouette = readGrey(picture);
         if (!silhouette) return namedIn(file, picture, silhouette.error());
-        const theatre::TargetPlace place{1 + problem.further.size(), middle};
-        problem.further.push_back(
-            TRY(theatre::PoseTarget::from(*silhouette, cast.stage, height, kMaskRows, place).in(picture.string())));
+        problem.targets.push_back(
+            TRY(theatre::PoseTarget::from(*silhouette, cast.stage, height, kMaskRows, {beam, middle}).in(picture.string())));
     }
-    std::vector<double> freedoms;
+    std::vector<double> dofs;
     for (const theatre::Cast::Actor& actor : cast.actors) {
         problem.actors.push_back(theatre::humanBody(actor.stature));
-        const std::vector<double> his = theatre::freedomsOf(problem.actors.back(), actor.poses[*frame]);
-        freedoms.insert(freedoms.end(), his.begin(), his.end());
+        const std::vector<double> his = theatre::dofsOf(problem.actors.back(), actor.poses[*frame]);
+        dofs.insert(dofs.end(), his.begin(), his.end());
     }
-    problem.dress();
-    return CastScene{std::move(cast), *frame, std::move(problem), std::move(freedoms)};
+    problem.buildSkins();
+    return CastScene{std::move(cast), *frame, std::move(problem), std::move(dofs)};
 }
 
 }  // namespace fantascope::app

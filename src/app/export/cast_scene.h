@@ -17,7 +17,7 @@ struct CastScene {
     theatre::Cast cast;
     std::size_t frame;  // from 0
     theatre::PoseProblem problem;
-    std::vector<double> freedoms;  // all actors' freedoms, one actor after the other
+    std::vector<double> dofs;  // all actors' degrees of freedom, one actor after the other
 };
 // `frame`: default: that of the principal poses. Error: as readCast() and readSequence(); there is
 // no such frame, or no picture of the silhouette.

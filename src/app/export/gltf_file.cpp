@@ -1,6 +1,6 @@
 #include "app/export/motion_scene.h"
 
-#include "theatre/stage/surroundings.h"
+#include "theatre/stage/stage_set.h"
 
 #include "plot/palette.h"
 
@@ -53,7 +53,7 @@ public:
     std::string write(bool binary) {
         Json roots = Json::array();
         for (std::size_t i = 0; i < scene_.actors.size(); ++i) addActor(i, roots);
-        addSurroundings(roots);
+        addStageSet(roots);
         Json file{{"asset", {{"version", "2.0"}, {"generator", "fantascope"}}},
                   {"extensionsUsed", {"KHR_lights_punctual"}},
                   {"scene", 0},
@@ -217,7 +217,7 @@ private:
                      {"mesh", mesh(name, primitive(prop.shape->mesh, things()))}});
     }
 
-    void addSurroundings(Json& roots) {
+    void addStageSet(Json& roots) {
         for (const theatre::Prop& prop : scene_.stage.props)
             if (!prop.holder) roots.push_back(addProp(prop, prop.place));
         for (const theatre::Stage::Platform& platform : scene_.stage.platforms) {
@@ -228,17 +228,17 @@ private:
         const std::size_t cloth = material("screen", kCloth);
         Json& lights = file_["extensions"]["KHR_lights_punctual"]["lights"];
         std::vector<bool> hung(stage.screens.size());
-        for (std::size_t beam = 0; beam < stage.beams(); ++beam) {
+        for (std::size_t beam = 0; beam < stage.beams.size(); ++beam) {
             const auto numbered = [&](const std::string& thing) {
                 return beam == 0 ? thing : fmt::format("{} {}", thing, beam + 1);
             };
-            const std::size_t screen = stage.beam(beam).screen;
+            const std::size_t screen = stage.beams[beam].screen;
             if (!hung[screen])
                 roots.push_back(
                     node({{"name", numbered("screen")}, {"mesh", mesh(numbered("screen"), primitive(screenOf(beam), cloth))}}));
             hung[screen] = true;
             roots.push_back(node({{"name", numbered("light")},
-                                  {"translation", listOf(stage.beam(beam).light)},
+                                  {"translation", listOf(stage.beams[beam].light)},
                                   {"extensions", {{"KHR_lights_punctual", {{"light", lights.size()}}}}}}));
             // Importers match a light by its node's name.
             lights.push_back({{"type", "point"}, {"name", numbered("light")}, {"intensity", kLightPower}});

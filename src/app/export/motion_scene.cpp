@@ -29,7 +29,7 @@ Result<MotionScene> readMotionScene(const fs::path& file, std::optional<double> 
         return Error(fmt::format("{}: --fps is for casts that move, and this is a still; leave it out", file.string()));
     const std::size_t frames = cast.actors[0].poses.size();
     const bool loops = framesPerSecond && TRY(theatre::loops(cast));
-    MotionScene scene{cast.stage, cast.height, framesPerSecond.value_or(cast.framesPerSecond), {}};
+    MotionScene scene{cast.stage, cast.targets[0].height, framesPerSecond.value_or(cast.framesPerSecond), {}};
     std::map<double, std::shared_ptr<const theatre::BodyMesh>> skins;
     for (const theatre::Cast::Actor& given : cast.actors) {
         MotionScene::Actor actor{theatre::humanBody(given.stature), {}, {}};
@@ -44,7 +44,7 @@ Result<MotionScene> readMotionScene(const fs::path& file, std::optional<double> 
                 actor.poses.push_back(theatre::poseOf(actor.body, spline.at(double(i) * step)));
         } else {
             for (const theatre::ActorPose& pose : given.poses)
-                actor.poses.push_back(theatre::poseOf(actor.body, theatre::freedomsOf(actor.body, pose)));
+                actor.poses.push_back(theatre::poseOf(actor.body, theatre::dofsOf(actor.body, pose)));
         }
         keepSides(actor.poses);
         scene.actors.push_back(std::move(actor));

@@ -134,11 +134,11 @@ Result<Picture> readPicture(const show::ShadowSource& source, const Reading&) {
     shadow.samples = source.samples;
     shadow.play = TRY(playOf(source, *cast));
     shadow.speed = source.speed;
-    if (static_cast<std::size_t>(source.beam) > cast->stage.beams())
+    if (static_cast<std::size_t>(source.beam) > cast->stage.beams.size())
         return Error(
-            fmt::format("'beam' is {}, and the stage of {} has {}", source.beam, source.cast.string(), cast->stage.beams()));
+            fmt::format("'beam' is {}, and the stage of {} has {}", source.beam, source.cast.string(), cast->stage.beams.size()));
     shadow.beam = static_cast<std::size_t>(source.beam - 1);
-    const glm::dvec3 light = cast->stage.beam(shadow.beam).light;
+    const glm::dvec3 light = cast->stage.beams[shadow.beam].light;
     for (const show::ShadowSource::Lamp& lamp : source.lamps) {
         const glm::dvec3 place = lamp.at.value_or(light);
         if (cast->stage.screenOf(shadow.beam).screenFromStage(place).z <= 0)
@@ -155,17 +155,14 @@ Result<Picture> readPicture(const show::ShadowSource& source, const Reading&) {
         shadow.to = {source.picture->x.y, source.picture->y.y};
         return Picture{std::move(shadow), {}};
     }
-    if (shadow.beam > cast->further.size())
+    if (shadow.beam >= cast->targets.size())
         return Error(fmt::format("{} has no target for beam {}; say with 'picture' what of its screen is seen",
                                  source.cast.string(), source.beam));
-    const theatre::Cast::Target own{cast->target, cast->height, 0},
-        &wanted = shadow.beam == 0 ? own : cast->further[shadow.beam - 1];
-    theatre::TargetPlace where;
-    if (shadow.beam > 0) where = {shadow.beam, wanted.middle};
+    const theatre::Cast::Target& wanted = cast->targets[shadow.beam];
     auto read = readGrey(wanted.file);
     if (!read) return namedIn(source.cast, wanted.file, read.error());
     GreyImage drawing = std::move(*read);
-    auto target = theatre::PoseTarget::from(drawing, cast->stage, wanted.height, kRows, where);
+    auto target = theatre::PoseTarget::from(drawing, cast->stage, wanted.height, kRows, {shadow.beam, wanted.middle});
     if (!target) return target.error().in(wanted.file.string());
     const theatre::ScreenFrame& given = target->given;
     shadow.from = given.metresAt({0, given.height()});

@@ -17,9 +17,9 @@ struct ActorPose {
     glm::dvec3 root{0};
     std::vector<glm::dquat> turns;  // of all joints, the root's first
 };
-ActorPose poseOf(const Body& body, std::span<const double> freedoms);
-// The freedoms nearest to a pose, within the joints' limits.
-std::vector<double> freedomsOf(const Body& body, const ActorPose& pose);
-void freedomsOf(const Body& body, const ActorPose& pose, std::vector<double>& freedoms);
+ActorPose poseOf(const Body& body, std::span<const double> dofs);
+// The degrees of freedom nearest to a pose, within the joints' limits.
+std::vector<double> dofsOf(const Body& body, const ActorPose& pose);
+void dofsOf(const Body& body, const ActorPose& pose, std::vector<double>& dofs);
 
 }  // namespace fantascope::theatre

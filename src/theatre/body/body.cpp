@@ -31,15 +31,15 @@ public:
 
     std::uint32_t root(dvec3 place) { return add("pelvis", 0, place, {}, 0); }
     // `place`: of the joint in the T-pose, from the floor's middle.
-    std::uint32_t add(std::string name, std::uint32_t parent, dvec3 place, JointMotion motion, std::size_t freedoms) {
+    std::uint32_t add(std::string name, std::uint32_t parent, dvec3 place, JointMotion motion, std::size_t dofs) {
         places_.push_back(place);
         Body::Joint joint;
         joint.name = std::move(name);
         joint.parent = parent;
         joint.offset = stature_ * (body_.joints.empty() ? place : place - places_[parent]);
         joint.motion = motion;
-        joint.first = body_.freedoms;
-        body_.freedoms += freedoms;
+        joint.first = body_.dofs;
+        body_.dofs += dofs;
         body_.joints.push_back(std::move(joint));
         return static_cast<std::uint32_t>(body_.joints.size() - 1);
     }
@@ -220,7 +220,7 @@ std::uint32_t Body::joint(std::string_view name) const {
 }
 
 std::vector<double> Body::restPose(glm::dvec3 rootPosition, const glm::dquat& rootOrientation) const {
-    std::vector<double> pose(freedoms, 0);
+    std::vector<double> pose(dofs, 0);
     const dvec3 turn = vectorOf(rootOrientation);
     for (int i = 0; i < 3; ++i)
         pose[static_cast<std::size_t>(i)] = rootPosition[i], pose[static_cast<std::size_t>(i) + 3] = turn[i];
@@ -229,14 +229,14 @@ std::vector<double> Body::restPose(glm::dvec3 rootPosition, const glm::dquat& ro
     return pose;
 }
 
-void Body::limit(std::span<double> freedoms) const {
-    const dvec3 turn(freedoms[3], freedoms[4], freedoms[5]);
+void Body::limit(std::span<double> dofs) const {
+    const dvec3 turn(dofs[3], dofs[4], dofs[5]);
     if (glm::length(turn) > std::numbers::pi) {
         const dvec3 same = vectorOf(rotationOf(turn));
-        for (int i = 0; i < 3; ++i) freedoms[static_cast<std::size_t>(i) + 3] = same[i];
+        for (int i = 0; i < 3; ++i) dofs[static_cast<std::size_t>(i) + 3] = same[i];
     }
     for (std::size_t i = 1; i < joints.size(); ++i)
-        joints[i].motion.limit(freedoms.subspan(joints[i].first, joints[i].motion.size()));
+        joints[i].motion.limit(dofs.subspan(joints[i].first, joints[i].motion.size()));
 }
 
 }  // namespace fantascope::theatre

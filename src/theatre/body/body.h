@@ -43,10 +43,10 @@ struct Body {
         double mass = 0;        // of the segment that turns with it
         glm::dvec3 massCentre{0};
     };
-    static constexpr std::size_t kRootFreedoms = 6;
+    static constexpr std::size_t kRootDofs = 6;
     // A step of a search that is neither large nor small: metres for the root's place, radians for
     // all else.
-    static constexpr double scaleOf(std::size_t freedom) { return freedom < 3 ? 0.3 : freedom < kRootFreedoms ? 0.5 : 0.35; }
+    static constexpr double scaleOf(std::size_t dof) { return dof < 3 ? 0.3 : dof < kRootDofs ? 0.5 : 0.35; }
 
     double stature = 0;
     std::vector<Joint> joints;
@@ -55,7 +55,7 @@ struct Body {
     // The pairs of capsules that must not run into each other: neither on one joint or on
     // neighbours, nor in each other at rest.
     std::vector<std::array<std::uint32_t, 2>> apart;
-    std::size_t freedoms = kRootFreedoms;
+    std::size_t dofs = kRootDofs;
     glm::dvec3 eyes{0}, gaze{0, 0, 1};  // in the head's frame
     std::uint32_t head = 0;
     // Where each BodyPart is: a point of the skin, fixed to a joint, in its frame. Of limbs it is
@@ -74,7 +74,7 @@ struct Body {
     // to it as they can.
     std::vector<double> restPose(glm::dvec3 rootPosition, const glm::dquat& rootOrientation) const;
     // Brings all numbers within the limits, the root's rotation vector to no more than pi.
-    void limit(std::span<double> freedoms) const;
+    void limit(std::span<double> dofs) const;
 };
 
 // A person of this stature, metres. Lengths of segments: Drillis & Contini 1966 (after Winter 2009,

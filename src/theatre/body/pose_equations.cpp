@@ -7,30 +7,30 @@ namespace fantascope::theatre {
 namespace {
 
 double square(double x) { return x * x; }
-double scaleOf(Eigen::Index freedom) { return Body::scaleOf(static_cast<std::size_t>(freedom)); }
+double scaleOf(Eigen::Index dof) { return Body::scaleOf(static_cast<std::size_t>(dof)); }
 
 }  // namespace
 
 PoseEquations::PoseEquations(const Body& body)
     : body_(body),
-      jointOf_(body.freedoms, 0),
+      jointOf_(body.dofs, 0),
       above_(body.joints.size(), 1),
-      axes_(body.freedoms),
-      screws_(body.freedoms),
+      axes_(body.dofs),
+      screws_(body.dofs),
       squares_(body.joints.size()),
       pulls_(body.joints.size()) {
     for (std::size_t i = 1; i < body.joints.size(); ++i) {
         for (std::size_t k = 0; k < body.joints[i].motion.size(); ++k) jointOf_[body.joints[i].first + k] = i;
         above_[i] = above_[body.joints[i].parent] | std::uint64_t{1} << i;
     }
-    const auto size = static_cast<Eigen::Index>(body.freedoms);
+    const auto size = static_cast<Eigen::Index>(body.dofs);
     hessian_.resize(size, size);
     damped_.resize(size, size);
     for (Eigen::VectorXd* vector : {&gradient_, &row_, &step_}) vector->resize(size);
 }
 
-void PoseEquations::begin(const PosedBody& posed, std::span<const double> freedoms) {
-    posed.axes(body_, freedoms, axes_);
+void PoseEquations::begin(const PosedBody& posed, std::span<const double> dofs) {
+    posed.axes(body_, dofs, axes_);
     for (std::size_t k = 0; k < screws_.size(); ++k) {
         const glm::dvec3 turn = k < 3 ? glm::dvec3(0) : axes_[k];
         const glm::dvec3 shift = k < 3 ? axes_[k] : glm::cross(posed.place(jointOf_[k]), axes_[k]);
@@ -106,8 +106,8 @@ void PoseEquations::finish() {
         squares_[body_.joints[i].parent] += squares_[i];
         pulls_[body_.joints[i].parent] += pulls_[i];
     }
-    // Two freedoms move together what hangs on the lower of their joints, if one is above the
-    // other.
+    // Two degrees of freedom move together what hangs on the lower of their joints, if one is above
+    // the other.
     for (std::size_t k = 0; k < screws_.size(); ++k) {
         const std::size_t joint = jointOf_[k];
         const Spatial asked = squares_[joint] * screws_[k];

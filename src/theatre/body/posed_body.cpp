@@ -31,20 +31,20 @@ CapsuleTouch touching(const PlacedCapsule& a, const PlacedCapsule& b) {
     return touch;
 }
 
-void PosedBody::pose(const Body& body, std::span<const double> freedoms) {
+void PosedBody::pose(const Body& body, std::span<const double> dofs) {
     places_.resize(body.joints.size());
     turns_.resize(body.joints.size());
     spheres_.resize(body.spheres.size());
     capsules_.resize(body.capsules.size());
-    places_[0] = {freedoms[0], freedoms[1], freedoms[2]};
-    turns_[0] = rotationOf({freedoms[3], freedoms[4], freedoms[5]});
+    places_[0] = {dofs[0], dofs[1], dofs[2]};
+    turns_[0] = rotationOf({dofs[3], dofs[4], dofs[5]});
     glm::dvec3 moment(0);
     double mass = 0;
     for (std::size_t i = 0; i < body.joints.size(); ++i) {
         const Body::Joint& joint = body.joints[i];
         if (i > 0) {
             places_[i] = point(joint.parent, joint.offset);
-            turns_[i] = turns_[joint.parent] * joint.motion.orientation(freedoms.subspan(joint.first, joint.motion.size()));
+            turns_[i] = turns_[joint.parent] * joint.motion.orientation(dofs.subspan(joint.first, joint.motion.size()));
         }
         moment += joint.mass * point(i, joint.massCentre);
         mass += joint.mass;
@@ -62,17 +62,17 @@ void PosedBody::pose(const Body& body, std::span<const double> freedoms) {
         capsules_[i] = {spheres_[body.capsules[i].from], spheres_[body.capsules[i].to]};
 }
 
-void PosedBody::axes(const Body& body, std::span<const double> freedoms, std::span<glm::dvec3> axes) const {
+void PosedBody::axes(const Body& body, std::span<const double> dofs, std::span<glm::dvec3> axes) const {
     for (int i = 0; i < 3; ++i) {
         glm::dvec3 unit(0);
         unit[i] = 1;
         axes[static_cast<std::size_t>(i)] = unit;
-        axes[static_cast<std::size_t>(i) + 3] = leftJacobian({freedoms[3], freedoms[4], freedoms[5]}, unit);
+        axes[static_cast<std::size_t>(i) + 3] = leftJacobian({dofs[3], dofs[4], dofs[5]}, unit);
     }
     for (std::size_t i = 1; i < body.joints.size(); ++i) {
         const Body::Joint& joint = body.joints[i];
         const auto own = axes.subspan(joint.first, joint.motion.size());
-        joint.motion.axes(freedoms.subspan(joint.first, own.size()), own);
+        joint.motion.axes(dofs.subspan(joint.first, own.size()), own);
         for (glm::dvec3& axis : own) axis = turns_[joint.parent] * axis;
     }
 }

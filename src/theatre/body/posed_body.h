@@ -54,7 +54,7 @@ inline double penetration(const PlacedCapsule& a, const PlacedCapsule& b) { retu
 // Thread: thread-bound.
 class PosedBody {
 public:
-    void pose(const Body& body, std::span<const double> freedoms);
+    void pose(const Body& body, std::span<const double> dofs);
 
     const glm::dvec3& place(std::size_t joint) const { return places_[joint]; }
     const glm::dquat& turn(std::size_t joint) const { return turns_[joint]; }
@@ -74,10 +74,10 @@ public:
         return true;
     }
 
-    // What a small change of each freedom turns about: `axes` of the rotations, about the place of
-    // the freedom's joint; the root's first three freedoms are shifts along x, y and z. All of
-    // body.freedoms, in the stage's frame.
-    void axes(const Body& body, std::span<const double> freedoms, std::span<glm::dvec3> axes) const;
+    // What a small change of each degree of freedom turns about: `axes` of the rotations, about the
+    // place of the degree of freedom's joint; the root's first three degrees of freedom are shifts
+    // along x, y and z. All of body.dofs, in the stage's frame.
+    void axes(const Body& body, std::span<const double> dofs, std::span<glm::dvec3> axes) const;
 
 private:
     std::vector<glm::dvec3> places_;

@@ -46,8 +46,8 @@ double areaBeyond(const ScreenFrame& frame, const PosedBody& body) {
 
 BeamEnergy::BeamEnergy(const PoseProblem& problem, std::size_t beam, std::span<const PlacedProp> standing)
     : problem_(problem),
-      target_(problem.targetOf(beam)),
-      disc_(std::max(1.0, kDiscRadius / target_.pixelsOf256)),
+      target_(problem.targets[beam]),
+      disc_(std::max(1.0, kDiscRadius / target_.refPixelsPerPixel)),
       actors_(problem.actors.size()) {
     shadow_ = shadowBefore_ = BitMask(target_.mask.width(), target_.mask.height());
     for (Actor& actor : actors_) actor.shadow = shadow_;
@@ -68,7 +68,7 @@ void BeamEnergy::pose(std::size_t index, const PosedBody& body, std::span<const 
     else
         meshShadow_.add(target_.frame, *problem_.skins[index], skin, actor.shadow);
     target_.cut(problem_.stage, actor.shadow);
-    if (!problem_.stage.beam(target_.beam).lit) actor.beyond = areaBeyond(target_.frame, body);
+    if (!problem_.stage.beams[target_.beam].lit) actor.beyond = areaBeyond(target_.frame, body);
     if (held.empty()) return;
     if (actor.held.width() == 0) actor.held = BitMask(shadow_.width(), shadow_.height());
     actor.held.clear();
@@ -119,7 +119,7 @@ bool BeamEnergy::isAsBefore(std::size_t point) const {
 // first; nobody if it is a prop's.
 void BeamEnergy::compareContours(EnergyTerms& terms) {
     const PoseTarget& target = target_;
-    const double scale = target.pixelsOf256 * target.pixelsOf256, each = target.perPoint();
+    const double scale = target.refPixelsPerPixel * target.refPixelsPerPixel, each = target.perPoint();
     changes_.find(shadow_, shadowBefore_);
     if (changes_.isAny() || !hasNearest_) contour_.find(shadow_);
     int owner = 0;

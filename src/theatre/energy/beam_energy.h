@@ -3,7 +3,7 @@
 #include "theatre/energy/pose_problem.h"
 #include "theatre/stage/capsule_shadow.h"
 #include "theatre/stage/mesh_shadow.h"
-#include "theatre/stage/surroundings.h"
+#include "theatre/stage/stage_set.h"
 
 #include <span>
 #include <vector>

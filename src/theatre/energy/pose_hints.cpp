@@ -82,7 +82,7 @@ Result<glm::dvec2> readPlace(const ConfigNode& node, const std::string& hint, co
     const glm::dvec2 inMask = glm::clamp(pixel, glm::dvec2(0), glm::dvec2(frame.width(), frame.height()) - 1e-9);
     const double outside =
         std::max(0.0, -double(inWhite.at(static_cast<int>(inMask.x), static_cast<int>(inMask.y)))) + glm::distance(pixel, inMask);
-    const double share256 = outside * target.pixelsOf256 / 256;
+    const double share256 = outside * target.refPixelsPerPixel / 256;
     if (share256 > kFarFromTarget)
         return node.error(
             fmt::format("hint '{}' is {:.0f} % of the silhouette's height away from the white, and no shadow may fall "

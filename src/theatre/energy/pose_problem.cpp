@@ -1,7 +1,7 @@
 #include "theatre/energy/pose_problem.h"
 
 #include "theatre/mask/distance_field.h"
-#include "theatre/stage/surroundings.h"
+#include "theatre/stage/stage_set.h"
 
 #include "core/disjoint_sets.h"
 
@@ -64,7 +64,7 @@ std::vector<Island> findIslands(const BitMask& mask) {
 
 void sampleContour(PoseTarget& target, std::size_t points) {
     target.area = static_cast<double>(target.mask.count());
-    const ContourDisc disc(std::max(1.0, kDiscRadius / target.pixelsOf256));
+    const ContourDisc disc(std::max(1.0, kDiscRadius / target.refPixelsPerPixel));
     for (const glm::ivec2 point : sampled(outerContour(target.mask), points))
         target.contour.push_back(disc.at(target.mask, point));
 }
@@ -153,7 +153,7 @@ Result<void> checkWay(const TargetPlace& place, const Stage& stage, double left,
                     fmt::format("its silhouette is to reach from {:.2f} m to {:.2f} m along its curved screen, and the light "
                                 "does not come to {:.2f} m; move it, make the silhouette less high, or the radius larger",
                                 left, right, x));
-            const glm::dvec3 from = stage.beam(place.beam).light, to = own.stageFromScreen(own.surface({x, y}));
+            const glm::dvec3 from = stage.beams[place.beam].light, to = own.stageFromScreen(own.surface({x, y}));
             glm::dvec3 outward;
             for (std::size_t k = 0; k < stage.screens.size(); ++k)
                 for (int step = 0; step <= kSteps; ++step)
@@ -163,6 +163,28 @@ Result<void> checkWay(const TargetPlace& place, const Stage& stage, double left,
                             "the light from {:.2f} m; move either away from the other, or make the silhouette less high",
                             left, right, k + 1, x));
         }
+    return {};
+}
+
+// Error: [left, right] x [0, top] of the unrolled screen is not all in a projector's picture, which
+// is measured on the flat screen.
+Result<void> checkLit(const TargetPlace& place, const Stage& stage, double left, double right, double top) {
+    const auto lit = stage.beams[place.beam].lit;
+    if (!lit) return {};
+    glm::dvec2 least(left, 0), most(right, top);
+    const glm::dvec3 light = stage.lightOnScreen(place.beam);
+    for (const double along : {left, 0.5 * (left + right), right})
+        for (const double up : {0.0, top})
+            if (const auto flat = flatFromUnrolled(stage.screenOf(place.beam), light, {along, up}))
+                least = glm::min(least, *flat), most = glm::max(most, *flat);
+    // Below the floor's line it is not to be lit.
+    const glm::dvec2 from = lit->from, to = lit->to;
+    if (least.x < from.x || most.x > to.x || from.y > 0 || most.y > to.y)
+        return Error(
+            fmt::format("its silhouette is to be x {:.2f} .. {:.2f} m and y 0 .. {:.2f} m on the screen, and the projector "
+                        "lights x {:.2f} .. {:.2f} m "
+                        "and y {:.2f} .. {:.2f} m only; make it less high, or the projector's picture larger",
+                        least.x, most.x, most.y, from.x, to.x, from.y, to.y));
     return {};
 }
 
@@ -180,7 +202,7 @@ PoseTarget onFlatScreen(PoseTarget&& laid, const Stage& stage, double left, doub
             if (const auto at = flatFromUnrolled(screen, light, {std::lerp(left, right, double(i) / kAlong), y}))
                 least = glm::min(least, *at), most = glm::max(most, *at);
     const double pixel = laid.frame.pixel();
-    const int rows = static_cast<int>(std::lround(256 / laid.pixelsOf256)),
+    const int rows = static_cast<int>(std::lround(256 / laid.refPixelsPerPixel)),
               margin = static_cast<int>(std::lround(kMargin * rows));
     const int columns = static_cast<int>(std::ceil((most.x - least.x) / pixel));
     const int width = columns + 2 * margin, below = static_cast<int>(std::ceil(std::max(0.0, -least.y) / pixel));
@@ -190,7 +212,7 @@ PoseTarget onFlatScreen(PoseTarget&& laid, const Stage& stage, double left, doub
                       BitMask(width, height),
                       0,
                       {},
-                      laid.pixelsOf256,
+                      laid.refPixelsPerPixel,
                       laid.given,
                       laid.beam,
                       PoseTarget::Unrolled{screen, light, BitMask(width, height), laid.frame, std::move(laid.mask)}};
@@ -237,23 +259,7 @@ Result<std::vector<PoseTarget>> laidOut(std::span<const Silhouette> silhouettes,
     const int width = columns + 2 * margin, above = std::max(rows, static_cast<int>(std::ceil(high - 1e-6))) + margin;
     const double x = TRY(middleOf(place, stage)), reach = half * pixel;
     TRY(checkWay(place, stage, x - reach, x + reach, high * pixel));
-    if (const auto lit = stage.beam(place.beam).lit) {
-        // On the flat screen, which is what a projector's picture is measured on.
-        glm::dvec2 least(x - reach, 0), most(x + reach, high * pixel);
-        const glm::dvec3 light = stage.lightOnScreen(place.beam);
-        for (const double along : {x - reach, x, x + reach})
-            for (const double up : {0.0, high * pixel})
-                if (const auto flat = flatFromUnrolled(stage.screenOf(place.beam), light, {along, up}))
-                    least = glm::min(least, *flat), most = glm::max(most, *flat);
-        // Below the floor's line it is not to be lit.
-        const glm::dvec2 from = lit->from, to = lit->to;
-        if (least.x < from.x || most.x > to.x || from.y > 0 || most.y > to.y)
-            return Error(
-                fmt::format("its silhouette is to be x {:.2f} .. {:.2f} m and y 0 .. {:.2f} m on the screen, and the projector "
-                            "lights x {:.2f} .. {:.2f} m "
-                            "and y {:.2f} .. {:.2f} m only; make it less high, or the projector's picture larger",
-                            least.x, most.x, most.y, from.x, to.x, from.y, to.y));
-    }
+    TRY(checkLit(place, stage, x - reach, x + reach, high * pixel));
     std::vector<PoseTarget> targets;
     for (std::size_t i = 0; i < silhouettes.size(); ++i) {
         const BitMask& whole = silhouettes[i].mask;
@@ -297,7 +303,7 @@ Result<void> PoseTarget::checkSize(int width, int height) {
 TargetPlace TargetPlace::on(const Stage& stage, std::size_t beam) {
     if (beam == 0) return {};
     constexpr double kBefore = 1.8;  // the first screen, metres: the middle of where a search begins
-    glm::dvec3 people(stage.light.x, 0, std::min(kBefore, 0.5 * stage.light.z));
+    glm::dvec3 people(stage.beams[0].light.x, 0, std::min(kBefore, 0.5 * stage.beams[0].light.z));
     if (const auto& area = stage.standing) {
         const glm::dvec2 floor = glm::clamp(glm::dvec2(people.x, people.z), area->from, area->to);
         people.x = floor.x, people.z = floor.y;
@@ -364,7 +370,7 @@ PoseTarget PoseTarget::halved(const Stage& stage) const {
                       BitMask(width, height),
                       0,
                       {},
-                      2 * pixelsOf256,
+                      2 * refPixelsPerPixel,
                       given,
                       beam,
                       unrolled};
@@ -394,7 +400,7 @@ PoseTarget PoseTarget::reshaped(BitMask given) const {
     return target;
 }
 
-void PoseProblem::dress() {
+void PoseProblem::buildSkins() {
     skins.clear();
     for (const Body& actor : actors) {
         const auto first =
@@ -405,9 +411,8 @@ void PoseProblem::dress() {
 }
 
 PoseProblem in256Rows(PoseProblem problem) {
-    while (problem.target.pixelsOf256 < 1) halve(problem.target, problem.stage);
-    for (PoseTarget& target : problem.further)
-        while (target.pixelsOf256 < 1) halve(target, problem.stage);
+    for (PoseTarget& target : problem.targets)
+        while (target.refPixelsPerPixel < 1) halve(target, problem.stage);
     return problem;
 }
 
@@ -418,8 +423,7 @@ PoseProblem simpler(PoseProblem problem) {
 }
 
 PoseProblem forFirstLook(PoseProblem problem) {
-    halve(problem.target, problem.stage);
-    for (PoseTarget& target : problem.further) halve(target, problem.stage);
+    for (PoseTarget& target : problem.targets) halve(target, problem.stage);
     problem.skins.clear();
     return problem;
 }

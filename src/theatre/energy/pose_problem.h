@@ -70,7 +70,7 @@ struct PoseTarget {
     BitMask mask;
     double area = 0;  // pixels
     std::vector<ContourPoint> contour;
-    double pixelsOf256 = 1;  // of the target's height, a pixel of the mask is so many of 256
+    double refPixelsPerPixel = 1;  // of the target's height, a pixel of the mask is so many of 256
     ScreenFrame given{Stage{}, 0, 0,
                       1,       0, 0};  // the whole picture as it was given, on the unrolled screen; empty if there was none
     std::size_t beam = 0;              // of the stage's
@@ -101,26 +101,22 @@ struct PoseTarget {
 
 struct PoseProblem {
     Stage stage;
-    PoseTarget target;
+    std::vector<PoseTarget> targets;  // of each beam of the stage
     std::vector<Body> actors;
     PoseWeights weights;
     // Of the actors; with them shadows and what touches the floor are the skins', without the
     // capsules'.
     std::vector<std::shared_ptr<const BodyMesh>> skins{};
     // Gives them their skins; actors of one stature share one.
-    void dress();
+    void buildSkins();
     std::vector<PoseHint> hints{};
     std::vector<Continuity> continuity{};  // of the actors, at a frame of a motion; none: a still
-    std::vector<PoseTarget> further{};     // of the stage's further beams, one each
 
-    std::size_t beams() const { return 1 + further.size(); }
-    const PoseTarget& targetOf(std::size_t beam) const { return beam == 0 ? target : further[beam - 1]; }
-
-    std::size_t freedoms() const { return firstFreedom(actors.size()); }
+    std::size_t dofs() const { return firstDof(actors.size()); }
     // Of an actor's, among those of all.
-    std::size_t firstFreedom(std::size_t actor) const {
+    std::size_t firstDof(std::size_t actor) const {
         std::size_t first = 0;
-        for (std::size_t i = 0; i < actor; ++i) first += actors[i].freedoms;
+        for (std::size_t i = 0; i < actor; ++i) first += actors[i].dofs;
         return first;
     }
 };

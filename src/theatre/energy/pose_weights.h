@@ -1,32 +1,19 @@
 #pragma once
 
-#include <cmath>
-
 namespace fantascope::theatre {
 
-// Of the terms, by the paper's names (Won & Lee 2016, Table 1; the paper gives no units, ours are
-// those of EnergyTerms). The defaults are the paper's for simple shapes.
+// The weights of the energy's terms, named as in Won & Lee 2016, Table 1. The paper gives no units;
+// ours are those of EnergyTerms. The defaults are the paper's for simple shapes.
 struct PoseWeights {
     double w1 = 0.01, w2 = 0.005, w3 = 0.005;  // contour: points, normals, curvatures
     double w4 = 1000;                          // coverage
     double w5 = 5;                             // coherence
     double w6 = 0.1;                           // visible
     double w7 = 3, w8 = 0.001, w9 = 10;        // physics: floor, support area, margin
-    double w10 = 0.04, w11 = 0.04;             // physics: penetration of people, with the surroundings
+    double w10 = 0.04, w11 = 0.04;             // physics: penetration of people, of the stage set
     double w12 = 0.25;                         // hints
     double w13 = 300, w14 = 40;                // motion: from the frames beside, from the principal poses
     double w15 = 0.04, w16 = 100;              // contact: places, turns
-    // A factor on all of physics: the paper's balance is near 0.1 in our units, a pose that a
-    // person can hold needs 1.
-    double stiffness = 1;
-    double bearing = kBearing;  // how gradually what is higher bears less: findBearings(), metres
-    static constexpr double kBearing = 0.005;
-
-    // What is not stiff is not sharp either: a foot far above the ground bears a little.
-    void stiffen(double to) {
-        stiffness = to;
-        bearing = kBearing / std::sqrt(to);
-    }
 };
 
 // The terms of equations 1 to 11 without their weights; what is unstated in the paper is chosen so
@@ -42,22 +29,24 @@ struct EnergyTerms {
     double supportArea = 0;       // (6) sum of what the areas lack of kAmpleArea, square centimetres: a larger one is better
     double margin = 0;            // (6) sum of lackOfMargin(), centimetres
     double people = 0;            // (6) sum of squared depths in themselves and in others, square millimetres
-    double surroundings =
-        0;            // (6) the same in floor, screen, platforms and props, and of how far people stand outside where they may
-    double hint = 0;  // (7) sum of squared distances, pixels as in contourPoint
+    double stageSet = 0;  // (6) the same in floor, screens, platforms and props, and how far people stand outside their area
+    double hint = 0;      // (7) sum of squared distances, pixels as in contourPoint
     // Of poses that move (continuity.h); 0 for stills.
     double smooth = 0, regular = 0;            // (8), (10) sums of poseDifference()
     double contactPlace = 0, contactTurn = 0;  // (11) sums of contactDrift()
 
     double contour(const PoseWeights& w) const { return w.w1 * contourPoint + w.w2 * contourNormal + w.w3 * contourCurvature; }
-    double physics(const PoseWeights& w) const {
-        return w.stiffness * (w.w7 * floor + w.w8 * supportArea + w.w9 * margin + w.w10 * people + w.w11 * surroundings);
+    // `stiffness`: a factor on all of physics. The paper's balance is near 0.1 in our units; a pose
+    // that a person can hold needs 1.
+    double physics(const PoseWeights& w, double stiffness = 1) const {
+        return stiffness * (w.w7 * floor + w.w8 * supportArea + w.w9 * margin + w.w10 * people + w.w11 * stageSet);
     }
     double motion(const PoseWeights& w) const {
         return w.w13 * smooth + w.w14 * regular + w.w15 * contactPlace + w.w16 * contactTurn;
     }
-    double total(const PoseWeights& w) const {
-        return contour(w) + w.w4 * coverage + w.w5 * coherence + w.w6 * visible + physics(w) + w.w12 * hint + motion(w);
+    double total(const PoseWeights& w, double stiffness = 1) const {
+        return contour(w) + w.w4 * coverage + w.w5 * coherence + w.w6 * visible + physics(w, stiffness) + w.w12 * hint +
+               motion(w);
     }
 };
 

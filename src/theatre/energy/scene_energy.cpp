@@ -5,38 +5,41 @@
 #include "core/check.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace fantascope::theatre {
 
 SceneEnergy::SceneEnergy(const PoseProblem& problem) : problem_(problem), actors_(problem.actors.size()) {
-    FANTASCOPE_CHECK(problem.beams() == problem.stage.beams(), "each beam of a stage has a target");
+    FANTASCOPE_CHECK(problem.targets.size() == problem.stage.beams.size(), "each beam of a stage has a target");
     placeStanding(problem.stage, standing_);
-    for (std::size_t i = 0; i < problem.beams(); ++i) beams_.emplace_back(problem, i, standing_);
+    for (std::size_t i = 0; i < problem.targets.size(); ++i) beams_.emplace_back(problem, i, standing_);
     depthsInOthers_.resize(actors_.size() * actors_.size());
 }
 
-void SceneEnergy::pose(std::span<const double> freedoms) {
+void SceneEnergy::pose(std::span<const double> dofs, double stiffness) {
+    stiffness_ = stiffness;
+    bearingDepth_ = kBearingDepth / std::sqrt(stiffness);
     for (std::size_t i = 0; i < actors_.size(); ++i) {
-        pose(i, freedoms.first(problem_.actors[i].freedoms));
-        freedoms = freedoms.subspan(problem_.actors[i].freedoms);
+        pose(i, dofs.first(problem_.actors[i].dofs));
+        dofs = dofs.subspan(problem_.actors[i].dofs);
     }
 }
 
-void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
+void SceneEnergy::pose(std::size_t index, std::span<const double> dofs) {
     const Body& body = problem_.actors[index];
     Actor& actor = actors_[index];
-    actor.body.pose(body, freedoms);
+    actor.body.pose(body, dofs);
     actor.hasMoved = true;
     const Stage& stage = problem_.stage;
     const auto spheres = overFloor(stage, actor.body.spheres(), actor.aboveGround);
     if (problem_.skins.empty()) {
-        findBearings(spheres, problem_.weights.bearing, actor.contacts);
+        findBearings(spheres, bearingDepth_, actor.contacts);
     } else {
         const BodyMesh& mesh = *problem_.skins[index];
         mesh.skin(body, actor.body, actor.skin);
         const auto vertices = overFloor(stage, actor.skin, actor.skinAboveGround);
-        findBearings(vertices, mesh.edges, problem_.weights.bearing, actor.contacts);
+        findBearings(vertices, mesh.edges, bearingDepth_, actor.contacts);
     }
     actor.margin = actor.contacts.support.margin(actor.body.massCentre());
     actor.own = {};
@@ -49,13 +52,12 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> freedoms) {
     placeHeld(stage, index, body, actor.body, actor.held);
     for (BeamEnergy& beam : beams_) beam.pose(index, actor.body, actor.skin, actor.held);
     findIntrusions(stage, standing_, body, actor.body, actor.held, actor.intrusions);
-    actor.own.surroundings =
-        depthInStage(stage, actor.body) + squaredDepths(actor.intrusions) + 1e6 * actor.outside * actor.outside;
-    matchHints(problem_.hints, problem_.target.frame, index, body, actor.body, actor.matches);
+    actor.own.stageSet = depthInStage(stage, actor.body) + squaredDepths(actor.intrusions) + 1e6 * actor.outside * actor.outside;
+    matchHints(problem_.hints, problem_.targets[0].frame, index, body, actor.body, actor.matches);
     if (problem_.continuity.empty()) return;
     const Continuity& others = problem_.continuity[index];
-    for (const ActorPose& beside : others.neighbours) actor.own.smooth += poseDifference(body, freedoms, beside);
-    if (others.principal) actor.own.regular = poseDifference(body, freedoms, *others.principal);
+    for (const ActorPose& beside : others.neighbours) actor.own.smooth += poseDifference(body, dofs, beside);
+    if (others.principal) actor.own.regular = poseDifference(body, dofs, *others.principal);
     const ContactDrift drift = contactDrift(others.contacts, actor.body);
     actor.own.contactPlace = drift.place;
     actor.own.contactTurn = drift.turn;
@@ -66,7 +68,7 @@ double SceneEnergy::unseenScreen(const Body& body, const PosedBody& posed) const
     const glm::dvec3 eyes = posed.point(body.head, body.eyes), gaze = posed.turn(body.head) * body.gaze;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < beams_.size(); ++i) {
-        const ScreenFrame& frame = problem_.targetOf(i).frame;
+        const ScreenFrame& frame = problem_.targets[i].frame;
         const Screen& screen = problem_.stage.screenOf(i);
         const glm::dvec2 middle = frame.metresAt(0.5 * glm::dvec2(frame.width(), frame.height()));
         least = std::min(least, unseen(screen.screenFromStage(eyes), screen.turnedFromStage(gaze), {middle, 0}));
@@ -84,7 +86,7 @@ const EnergyTerms& SceneEnergy::terms() {
         terms_.supportArea += actor.own.supportArea;
         terms_.margin += actor.own.margin;
         terms_.people += actor.own.people;
-        terms_.surroundings += actor.own.surroundings;
+        terms_.stageSet += actor.own.stageSet;
         terms_.smooth += actor.own.smooth;
         terms_.regular += actor.own.regular;
         terms_.contactPlace += actor.own.contactPlace;
@@ -94,11 +96,11 @@ const EnergyTerms& SceneEnergy::terms() {
         for (std::size_t j = 0; j < actors_.size(); ++j) {
             if (j == i) continue;
             findIntrusions(problem_.actors[j], actors_[j].body, actor.held, inOthersProps_);
-            terms_.surroundings += squaredDepths(inOthersProps_);
+            terms_.stageSet += squaredDepths(inOthersProps_);
         }
     }
     for (BeamEnergy& beam : beams_) beam.addTo(terms_);
-    const double square256 = problem_.target.pixelsOf256 * problem_.target.pixelsOf256;
+    const double square256 = problem_.targets[0].refPixelsPerPixel * problem_.targets[0].refPixelsPerPixel;
     for (std::size_t i = 0; i < problem_.hints.size(); ++i) terms_.hint += square256 * hintOwner(i).match.square;
     return terms_;
 }

@@ -3,7 +3,7 @@
 #include "theatre/body/balance.h"
 #include "theatre/energy/beam_energy.h"
 #include "theatre/energy/pose_problem.h"
-#include "theatre/stage/surroundings.h"
+#include "theatre/stage/stage_set.h"
 
 #include <span>
 #include <string>
@@ -20,13 +20,19 @@ public:
     // `problem` must live on.
     explicit SceneEnergy(const PoseProblem& problem);
 
-    // Poses one actor, or all: freedoms of all actors, one after the other.
-    void pose(std::size_t actor, std::span<const double> freedoms);
-    void pose(std::span<const double> freedoms);
+    // Poses all actors: their degrees of freedom, one actor after the other. `stiffness` of physics
+    // (EnergyTerms::physics()) holds until all are posed again.
+    void pose(std::span<const double> dofs, double stiffness = 1);
+    // Poses one actor.
+    void pose(std::size_t actor, std::span<const double> dofs);
     // Of the poses last given.
     const EnergyTerms& terms();
-    double energy() { return terms().total(problem_.weights); }
-    double lastEnergy() const { return terms_.total(problem_.weights); }  // of the terms last asked for
+    double energy() { return terms().total(problem_.weights, stiffness_); }
+    double lastEnergy() const { return terms_.total(problem_.weights, stiffness_); }  // of the terms last asked for
+    double stiffness() const { return stiffness_; }
+    // How gradually what is higher bears less, for findBearings(), metres. Weak physics is not
+    // sharp either: a foot far above the ground bears a little.
+    double bearingDepth() const { return bearingDepth_; }
 
     std::size_t beams() const { return beams_.size(); }
     const BeamEnergy& beam(std::size_t index) const { return beams_[index]; }  // its sums after terms()
@@ -84,6 +90,8 @@ private:
     double unseenScreen(const Body& body, const PosedBody& posed) const;
     void findDepthsInOthers();
 
+    static constexpr double kBearingDepth = 0.005;  // at stiffness 1
+
     const PoseProblem& problem_;
     std::vector<Actor> actors_;
     std::vector<PlacedProp> standing_;
@@ -91,6 +99,7 @@ private:
     std::vector<Intrusion> inOthersProps_;
     std::vector<double> depthsInOthers_;  // of each actor in each that comes after him
     EnergyTerms terms_;
+    double stiffness_ = 1, bearingDepth_ = kBearingDepth;
 };
 
 }  // namespace fantascope::theatre

@@ -28,20 +28,20 @@ constexpr int kMostStrides = 20;
 constexpr double kClearlyLess = 0.02;  // of intersection over union
 // Physics' stiffness on the way back from kMending; and the search of one whom that does not help.
 constexpr std::array kRelaxing = {8.0, 4.0, 2.0, 1.0};
-constexpr FreedomSearch::Settings kAlone{0.05, 16, 15};
+constexpr DofSearch::Settings kAlone{.sigma = 0.05, .population = 16, .generations = 15, .stiffness = kMending.back()};
 
 class Adaptation {
 public:
-    Adaptation(const MotionProblem& motion, std::span<const double> freedoms, std::uint64_t seed,
+    Adaptation(const MotionProblem& motion, std::span<const double> dofs, std::uint64_t seed,
                const MotionAdaptation::Options& options, const AdaptationWatch& watch, MotionAdaptation::Frames known)
         : motion_(motion), seed_(seed), options_(options), watch_(watch), frames_(std::move(known)) {
         frames_.resize(motion.targets.size());
         const PoseProblem& principal = motion.principal;
-        const GeneralisedCone cone(principal.stage.light, motion.triangles, motion.corners[motion.representative]);
+        const GeneralisedCone cone(principal.stage.beams[0].light, motion.triangles, motion.corners[motion.representative]);
         PosedBody posed;
         for (std::size_t a = 0; a < principal.actors.size(); ++a) {
             const Body& body = principal.actors[a];
-            const auto own = freedoms.subspan(principal.firstFreedom(a), body.freedoms);
+            const auto own = dofs.subspan(principal.firstDof(a), body.dofs);
             posed.pose(body, own);
             std::vector<GeneralisedCone::Coordinates>& coordinates = coordinates_.emplace_back();
             for (std::size_t i = 0; i < body.joints.size(); ++i) coordinates.push_back(cone.coordinates(posed.place(i)));
@@ -49,13 +49,13 @@ public:
         }
         auto& representative = frames_[motion.representative];
         if (!representative) {
-            representative.emplace().freedoms.assign(freedoms.begin(), freedoms.end());
-            representative->poses = posesOf(freedoms);
+            representative.emplace().dofs.assign(dofs.begin(), dofs.end());
+            representative->poses = posesOf(dofs);
         }
         for (std::size_t i = 0; i < frames_.size(); ++i)
             if (frames_[i]) {
-                if (i != motion.representative) frames_[i]->freedoms = freedomsOf(frames_[i]->poses);
-                frames_[i]->quality = PoseSearch::measure(problemAt(i), frames_[i]->freedoms);
+                if (i != motion.representative) frames_[i]->dofs = dofsOf(frames_[i]->poses);
+                frames_[i]->quality = PoseSearch::measure(problemAt(i), frames_[i]->dofs);
             }
     }
 
@@ -82,43 +82,42 @@ public:
 private:
     PoseProblem problemAt(std::size_t frame) const {
         PoseProblem problem = motion_.principal;
-        problem.target = motion_.targets[frame];
+        problem.targets[0] = motion_.targets[frame];
         problem.continuity = continuity_;
         return problem;
     }
-    std::vector<ActorPose> posesOf(std::span<const double> freedoms) const {
+    std::vector<ActorPose> posesOf(std::span<const double> dofs) const {
         std::vector<ActorPose> poses;
         const PoseProblem& principal = motion_.principal;
         for (std::size_t a = 0; a < principal.actors.size(); ++a)
-            poses.push_back(
-                poseOf(principal.actors[a], freedoms.subspan(principal.firstFreedom(a), principal.actors[a].freedoms)));
+            poses.push_back(poseOf(principal.actors[a], dofs.subspan(principal.firstDof(a), principal.actors[a].dofs)));
         return poses;
     }
-    std::vector<double> freedomsOf(const std::vector<ActorPose>& poses) const {
-        std::vector<double> freedoms;
+    std::vector<double> dofsOf(const std::vector<ActorPose>& poses) const {
+        std::vector<double> dofs;
         for (std::size_t a = 0; a < poses.size(); ++a) {
-            const std::vector<double> own = theatre::freedomsOf(motion_.principal.actors[a], poses[a]);
-            freedoms.insert(freedoms.end(), own.begin(), own.end());
+            const std::vector<double> own = theatre::dofsOf(motion_.principal.actors[a], poses[a]);
+            dofs.insert(dofs.end(), own.begin(), own.end());
         }
-        return freedoms;
+        return dofs;
     }
     void addNeighbour(PoseProblem& problem, const AdaptedFrame& frame) const {
         for (std::size_t a = 0; a < problem.actors.size(); ++a) problem.continuity[a].neighbours.push_back(frame.poses[a]);
     }
 
     // Lines 7 and 8 of Algorithm 1.
-    std::vector<double> throughCone(std::size_t frame, std::vector<double> freedoms) const {
+    std::vector<double> throughCone(std::size_t frame, std::vector<double> dofs) const {
         const PoseProblem& principal = motion_.principal;
-        const GeneralisedCone cone(principal.stage.light, motion_.triangles, motion_.corners[frame]);
+        const GeneralisedCone cone(principal.stage.beams[0].light, motion_.triangles, motion_.corners[frame]);
         std::vector<glm::dvec3> places;
         for (std::size_t a = 0; a < principal.actors.size(); ++a) {
             const Body& body = principal.actors[a];
             places.clear();
             for (const GeneralisedCone::Coordinates& joint : coordinates_[a]) places.push_back(cone.point(joint));
-            const auto own = std::span(freedoms).subspan(principal.firstFreedom(a), body.freedoms);
+            const auto own = std::span(dofs).subspan(principal.firstDof(a), body.dofs);
             InverseKinematics(body).reach(own, places, continuity_[a].contacts, kReachSteps);
         }
-        return freedoms;
+        return dofs;
     }
 
     bool mustStop() {
@@ -130,8 +129,8 @@ private:
         const std::lock_guard lock(mutex_);
         // All that follows is reckoned from what can be written: a run that goes on from a file
         // comes to the same.
-        frame.poses = posesOf(frame.freedoms);
-        frame.freedoms = freedomsOf(frame.poses);
+        frame.poses = posesOf(frame.dofs);
+        frame.dofs = dofsOf(frame.poses);
         frames_[i] = std::move(frame);
         if (watch_.tell) watch_.tell(i, *frames_[i]);
     }
@@ -154,13 +153,13 @@ private:
         for (std::size_t i = 0; i < motion_.corners[to].size(); ++i)
             farthest = std::max(farthest, glm::distance(motion_.corners[from][i], motion_.corners[to][i]));
         const PoseTarget& target = motion_.targets[to];
-        const double height = 256 / target.pixelsOf256 * target.frame.pixel();
+        const double height = 256 / target.refPixelsPerPixel * target.frame.pixel();
         const int steps = static_cast<int>(std::min(double{kMostStrides}, std::ceil(farthest / (kStride * height))));
         for (int step = 1; step < steps; ++step) {
             PoseProblem problem = problemAt(to);
-            problem.target = between(from, to, double(step) / steps);
+            problem.targets[0] = between(from, to, double(step) / steps);
             Workshop shop(simpler(in256Rows(std::move(problem))));
-            shop.fit.run(shop.energy, frame.freedoms, kWalkSteps);
+            shop.fit.run(shop.energy, frame.dofs, kWalkSteps);
             frame.evaluations += shop.evaluations();
         }
     }
@@ -171,17 +170,17 @@ private:
         PoseProblem problem = problemAt(frame);
         addNeighbour(problem, *frames_[beside]);
         Workshop shop(simpler(in256Rows(problem)));
-        AdaptedFrame found{{}, frames_[beside]->freedoms, {}, 0};
+        AdaptedFrame found{{}, frames_[beside]->dofs, {}, 0};
         walk(beside, frame, found);
-        double energy = shop.fit.run(shop.energy, found.freedoms, kFitSteps), iou = shop.iou();
+        double energy = shop.fit.run(shop.energy, found.dofs, kFitSteps), iou = shop.iou();
         const auto offer = [&](std::vector<double> other) {
             const double now = shop.fit.run(shop.energy, other, kFitSteps);
-            if (now < energy) found.freedoms = std::move(other), energy = now, iou = shop.iou();
+            if (now < energy) found.dofs = std::move(other), energy = now, iou = shop.iou();
         };
-        offer(throughCone(frame, frames_[beside]->freedoms));
+        offer(throughCone(frame, frames_[beside]->dofs));
         if (iou < options_.wanted) {
             Workshop coarse(forFirstLook(shop.problem));
-            offer(searched(coarse, frame, found.freedoms));
+            offer(searched(coarse, frame, found.dofs));
             found.evaluations += coarse.evaluations();
         }
         if (mustStop()) return std::nullopt;
@@ -191,54 +190,52 @@ private:
     }
 
     // Local search that only goes down: poses that match more and more, near to where they were.
-    std::vector<double> searched(Workshop& shop, std::size_t frame, std::vector<double> freedoms) {
+    std::vector<double> searched(Workshop& shop, std::size_t frame, std::vector<double> dofs) {
         Rng rng(streamSeed(seed_, {Stream::Moves, frame}));
-        shop.energy.pose(freedoms);
+        shop.energy.pose(dofs);
         double energy = shop.energy.energy();
         for (int i = 0; i < options_.searches && !mustStop(); ++i) {
-            std::vector<double> other = freedoms;
+            std::vector<double> other = dofs;
             shop.search.disturb(shop.energy, other, rng);
             const double now = shop.fit.run(shop.energy, other, kRefitSteps);
-            if (now < energy) freedoms = std::move(other), energy = now;
+            if (now < energy) dofs = std::move(other), energy = now;
         }
-        return freedoms;
+        return dofs;
     }
 
     // The last steps, on the true skins, until everyone stands.
     void finish(std::size_t i, const PoseProblem& problem, AdaptedFrame& frame, int steps) const {
         Workshop shop(in256Rows(problem));
         PoseSearch::Quality quality;
-        const auto fit = [&](std::vector<double>& freedoms) {
-            shop.fit.run(shop.energy, freedoms, steps);
-            quality = PoseSearch::measure(shop.problem, freedoms);
+        const auto fit = [&](std::vector<double>& dofs, double stiffness) {
+            shop.fit.run(shop.energy, dofs, steps, stiffness);
+            quality = PoseSearch::measure(shop.problem, dofs);
         };
-        fit(frame.freedoms);
+        fit(frame.dofs, 1);
         for (const double stiffness : kMending) {
             if (quality.isValid()) break;
-            shop.problem.weights.stiffen(stiffness);
-            fit(frame.freedoms);
+            fit(frame.dofs, stiffness);
         }
         if (!quality.isValid()) {
             // Whom no small step brings back to his balance is searched, by himself.
             Rng rng(streamSeed(seed_, {Stream::Mending, i}));
             for (std::size_t a = 0; a < quality.actors.size(); ++a) {
                 if (quality.actors[a].isValid()) continue;
-                std::vector<std::size_t> his(problem.actors[a].freedoms);
-                std::iota(his.begin(), his.end(), problem.firstFreedom(a));
-                shop.search.run(shop.energy, frame.freedoms, his, kAlone, rng);
-                fit(frame.freedoms);
+                std::vector<std::size_t> his(problem.actors[a].dofs);
+                std::iota(his.begin(), his.end(), problem.firstDof(a));
+                shop.search.run(shop.energy, frame.dofs, his, kAlone, rng);
+                fit(frame.dofs, kMending.back());
             }
             // That cost some of the shadow, which comes back where everyone still stands.
-            std::vector<double> relaxed = frame.freedoms;
+            std::vector<double> relaxed = frame.dofs;
             for (const double stiffness : kRelaxing) {
                 if (!quality.isValid()) break;
-                frame.freedoms = relaxed;
-                shop.problem.weights.stiffen(stiffness);
-                fit(relaxed);
+                frame.dofs = relaxed;
+                fit(relaxed, stiffness);
             }
-            if (quality.isValid()) frame.freedoms = relaxed;
+            if (quality.isValid()) frame.dofs = relaxed;
         }
-        frame.quality = PoseSearch::measure(problem, frame.freedoms);
+        frame.quality = PoseSearch::measure(problem, frame.dofs);
         frame.evaluations += shop.evaluations();
     }
 
@@ -274,18 +271,18 @@ private:
         PoseProblem problem = problemAt(i);
         for (const std::size_t neighbour : neighbours) addNeighbour(problem, *frames_[neighbour]);
         AdaptedFrame best = *frames_[i];
-        best.quality = PoseSearch::measure(problem, best.freedoms);
+        best.quality = PoseSearch::measure(problem, best.dofs);
         std::int64_t evaluations = best.evaluations;
         const auto offer = [&](AdaptedFrame other) {
             finish(i, problem, other, kPassSteps);
             evaluations += other.evaluations;
             if (isBetter(other.quality, best.quality)) best = std::move(other);
         };
-        offer({{}, best.freedoms, {}, 0});
+        offer({{}, best.dofs, {}, 0});
         for (const std::size_t neighbour : neighbours) {
             const PoseSearch::Quality& there = frames_[neighbour]->quality;
             if (there.iou < best.quality.iou + kClearlyLess && !(there.isValid() && !best.quality.isValid())) continue;
-            AdaptedFrame other{{}, frames_[neighbour]->freedoms, {}, 0};
+            AdaptedFrame other{{}, frames_[neighbour]->dofs, {}, 0};
             walk(neighbour, i, other);
             offer(std::move(other));
         }
@@ -309,11 +306,11 @@ private:
 
 }  // namespace
 
-MotionAdaptation::Frames MotionAdaptation::run(const MotionProblem& problem, std::span<const double> freedoms, std::uint64_t seed,
+MotionAdaptation::Frames MotionAdaptation::run(const MotionProblem& problem, std::span<const double> dofs, std::uint64_t seed,
                                                const Options& options, const AdaptationWatch& watch, Frames known) {
     FANTASCOPE_CHECK(problem.representative < problem.targets.size() && problem.corners.size() == problem.targets.size(),
                      "each frame has a target and an interior");
-    return Adaptation(problem, freedoms, seed, options, watch, std::move(known)).run();
+    return Adaptation(problem, dofs, seed, options, watch, std::move(known)).run();
 }
 
 MotionQuality measureMotion(const MotionProblem& problem, const MotionAdaptation::Frames& frames, double framesPerSecond) {
@@ -323,7 +320,7 @@ MotionQuality measureMotion(const MotionProblem& problem, const MotionAdaptation
     for (std::size_t a = 0; a < principal.actors.size(); ++a) {
         const Body& body = principal.actors[a];
         const auto ownOf = [&](std::size_t frame) {
-            return std::span(frames[frame]->freedoms).subspan(principal.firstFreedom(a), body.freedoms);
+            return std::span(frames[frame]->dofs).subspan(principal.firstDof(a), body.dofs);
         };
         posed.pose(body, ownOf(problem.representative));
         const auto contacts = bearingParts(body, principal.stage, posed);

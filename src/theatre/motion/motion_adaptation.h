@@ -27,7 +27,7 @@ struct MotionProblem {
 // The poses of a frame.
 struct AdaptedFrame {
     std::vector<ActorPose> poses;  // of each actor
-    std::vector<double> freedoms;  // the same, of all actors, one after the other
+    std::vector<double> dofs;      // the same, of all actors, one after the other
     PoseSearch::Quality quality;
     std::int64_t evaluations = 0;
 };
@@ -59,9 +59,9 @@ public:
     };
     using Frames = std::vector<std::optional<AdaptedFrame>>;  // of each frame, as far as there are any
 
-    // `freedoms`: the principal poses. `known`: what an earlier run has come to, its `poses`, or
+    // `dofs`: the principal poses. `known`: what an earlier run has come to, its `poses`, or
     // nothing; frames that it has are not adapted again.
-    static Frames run(const MotionProblem& problem, std::span<const double> freedoms, std::uint64_t seed, const Options& options,
+    static Frames run(const MotionProblem& problem, std::span<const double> dofs, std::uint64_t seed, const Options& options,
                       const AdaptationWatch& watch = {}, Frames known = {});
 };
 

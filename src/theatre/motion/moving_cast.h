@@ -2,7 +2,7 @@
 
 #include "theatre/motion/pose_spline.h"
 #include "theatre/stage/cast.h"
-#include "theatre/stage/surroundings.h"
+#include "theatre/stage/stage_set.h"
 
 #include <span>
 #include <vector>

@@ -48,7 +48,7 @@ PoseSpline::PoseSpline(const Body& body, const Stage& stage, std::vector<ActorPo
             const glm::dvec3 from = halfVector(back * near(frames_[before(i)].turns[k], turn));
             tangents.push_back(turn * rotationOf(-0.5 * (on + from)));
         }
-        posed.pose(body, freedomsOf(body, here));
+        posed.pose(body, dofsOf(body, here));
         bearing_.push_back(bearingParts(body, stage, posed));
     }
 }
@@ -73,14 +73,14 @@ const std::vector<double>& PoseSpline::at(double frame) {
         const glm::dquat inner = turn == there.turns[k] ? tangents_[j][k] : -tangents_[j][k];
         pose_.turns.push_back(arc(arc(here.turns[k], turn, t), arc(tangents_[i][k], inner, t), 2 * t * u));
     }
-    freedomsOf(body_, pose_, freedoms_);
+    dofsOf(body_, pose_, dofs_);
     held_.clear();
     for (const HeldContact& from : bearing_[i])
         for (const HeldContact& to : bearing_[j])
             if (from.joint == to.joint && glm::distance(from.place, to.place) <= kOnePlace)
                 held_.push_back({from.joint, glm::mix(from.place, to.place, t), arc(from.turn, near(to.turn, from.turn), t)});
-    if (t > 0) kinematics_.hold(freedoms_, held_);
-    return freedoms_;
+    if (t > 0) kinematics_.hold(dofs_, held_);
+    return dofs_;
 }
 
 }  // namespace fantascope::theatre

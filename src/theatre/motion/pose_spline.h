@@ -19,9 +19,9 @@ public:
     // on.
     PoseSpline(const Body& body, const Stage& stage, std::vector<ActorPose> frames, bool loops);
 
-    // The freedoms at a moment, in frames from the first, which may lie between two; of a loop any
-    // moment, else the ends are held. They are there until it is asked again. No allocation after
-    // the first.
+    // The degrees of freedom at a moment, in frames from the first, which may lie between two; of a
+    // loop any moment, else the ends are held. They are there until it is asked again. No
+    // allocation after the first.
     const std::vector<double>& at(double frame);
 
 private:
@@ -35,7 +35,7 @@ private:
     bool loops_;
     InverseKinematics kinematics_;
     ActorPose pose_;
-    std::vector<double> freedoms_;
+    std::vector<double> dofs_;
     std::vector<HeldContact> held_;
 };
 

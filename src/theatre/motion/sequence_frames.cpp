@@ -32,4 +32,23 @@ std::vector<Jump> jumpsOf(std::span<const BitMask> frames, bool loops) {
     return jumps;
 }
 
+double overlap(const PoseTarget& a, const PoseTarget& b) {
+    const int shift = (a.mask.width() - b.mask.width()) / 2, up = a.mask.height() - b.mask.height();
+    std::int64_t both = 0;
+    for (int y = 0; y < a.mask.height(); ++y)
+        for (int x = 0; x < a.mask.width(); ++x) {
+            const glm::ivec2 other(x - shift, y - up);
+            const bool isInside = other.x >= 0 && other.y >= 0 && other.x < b.mask.width() && other.y < b.mask.height();
+            both += a.mask.at(x, y) && isInside && b.mask.at(other.x, other.y);
+        }
+    return static_cast<double>(both) / (a.area + b.area - static_cast<double>(both));
+}
+
+Likeness mostAlike(std::span<const PoseTarget> frames, const PoseTarget& wanted) {
+    Likeness best{0, -1};
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        if (const double alike = overlap(frames[i], wanted); alike > best.overlap) best = {i, alike};
+    return best;
+}
+
 }  // namespace fantascope::theatre

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "theatre/energy/pose_problem.h"
 #include "theatre/mask/bit_mask.h"
 
 #include <cstddef>
@@ -22,6 +23,19 @@ constexpr std::size_t kLooks = 64;
 std::size_t middleFrame(std::span<const double> leastOverlaps);
 bool isOffTheMiddle(std::size_t frame, std::span<const double> leastOverlaps);
 constexpr double kNearer = 0.05;
+
+// The intersection over union of two targets on one stage, each in a frame of its own whose middle
+// is before the light.
+double overlap(const PoseTarget& a, const PoseTarget& b);
+
+// The frame that poses for a target are of: the one most like it.
+struct Likeness {
+    std::size_t frame = 0;
+    double overlap = 0;
+    bool isEnough() const { return overlap >= kAlike; }
+    static constexpr double kAlike = 0.9;
+};
+Likeness mostAlike(std::span<const PoseTarget> frames, const PoseTarget& wanted);
 
 // From one frame to the next so little stays where it is that poses of the one say little of the
 // other.

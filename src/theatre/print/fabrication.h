@@ -34,22 +34,22 @@ struct Fabrication {
     };
     static double cellFor(double height, double wall);
 
-    // Where something stands on the plate or on a platform.
+    // Where a part stands on the plate or on a platform.
     struct Contact {
         std::string who;  // "actor 2, left ankle"
         glm::dvec2 place{0};
         double area = 0;                    // of what bears
-        double gap = 0;                     // that was closed; below 0: it was so deep in the ground
-        double reinforcedBy = 0;            // how far a foot of the print's own reaches around it; 0: it is large enough
+        double gap = 0;                     // height above the ground, which was closed; negative: depth in the ground
+        double reinforcedBy = 0;            // how far a foot was added around it; 0: it is large enough
         std::vector<glm::dvec2> outline{};  // of what bears: convex
     };
-    // Of a body's part: what was thinner than the wall.
+    // A body part that was thinner than the wall.
     struct ThinPart {
         std::string who;
-        double thickness = 0;  // half of it is thinner
-        double height = 0;     // of a print in which it is as thick as the wall
+        double thickness = 0;  // the median of its thin places
+        double height = 0;     // of a print in which that is as thick as the wall
     };
-    // Somebody, or something, that nothing bears: it is held by a rod.
+    // Holds an actor or a thing that nothing bears.
     struct Rod {
         std::string who;
         double length = 0;
@@ -69,15 +69,17 @@ struct Fabrication {
     std::vector<Rod> rods;
     std::vector<std::string> warnings;
     SolidCheck check;
-    // The least between two surfaces, through the middle of what they bound, and whose it is;
-    // nobody's, and as thick as the wall was to be: all is as thick at least.
-    double leastWall = 0;
-    std::string leastWallAt{};
-    double shareBelowWall = 0;  // of the surface: straight behind it is another nearer than the wall, as at sharp edges
-    double shadowIou = 0;       // of its shadow and the poses', above the floor
-    double targetIou = 0;       // of its shadow and the target's
-    double posesIou = 0;        // of the poses' shadow and the target's
-    BitMask shadow;             // of the print
+    // Thinnest wall found; equals `wall` and an empty name if none is thinner. A wall is measured
+    // between two surfaces, through the middle of the solid that they bound.
+    double thinnestWall = 0;
+    std::string thinnestWallAt{};
+    // The share of the surface that has another surface straight behind it, nearer than `wall`;
+    // sharp edges count.
+    double shareBelowWall = 0;
+    double shadowIou = 0;  // of its shadow and the poses', above the floor
+    double targetIou = 0;  // of its shadow and the target's
+    double posesIou = 0;   // of the poses' shadow and the target's
+    BitMask shadow;        // of the print
 
     glm::dvec3 fromStage(const glm::dvec3& point) const {
         const glm::dvec3 d = scale * (point - stageOrigin);
@@ -90,10 +92,10 @@ struct FabricationWatch {
     std::function<bool()> askStop;
 };
 
-// `problem` has skins; `freedoms` of all actors, one after the other. Error: options that cannot
-// be, nothing higher than a hand above the floor, a grid beyond what a machine holds, or it was
+// `problem` has skins; `dofs` of all actors, one after the other. Error: options that cannot be,
+// nothing higher than a hand above the floor, a grid beyond what a machine holds, or it was
 // stopped.
-Result<Fabrication> fabricate(const PoseProblem& problem, std::span<const double> freedoms, const Fabrication::Options& options,
+Result<Fabrication> fabricate(const PoseProblem& problem, std::span<const double> dofs, const Fabrication::Options& options,
                               const FabricationWatch& watch);
 
 }  // namespace fantascope::theatre

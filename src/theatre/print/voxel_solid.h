@@ -66,6 +66,7 @@ public:
     TriangleMesh surface() const;
 
 private:
+    class Depths;  // voxel_walls.cpp
     using Node = std::array<int, 3>;
     static constexpr int kBlock = 8;
     // A run of nodes along x that are all inside, or all outside.
@@ -99,6 +100,17 @@ private:
     void vote(const TriangleMesh& mesh, int axis, bool winds, const std::array<Node, 2>& box,
               std::vector<std::uint8_t>& votes) const;
     Runs runsOf(bool inside) const;
+    // How far it is from a place on the surface straight on to the other side, `most` at most; the
+    // first `from` of it are known to be inside.
+    double through(const glm::dvec3& surface, const glm::dvec3& way, double from, double most) const;
+    // All but those of the grid's outermost layer.
+    template <class Visit>
+    void forNodesInside(Visit visit) const {
+        for (int z = 1; z + 1 < count_[2]; ++z)
+            for (int y = 1; y + 1 < count_[1]; ++y)
+                for (int x = 1; x + 1 < count_[0]; ++x)
+                    if (const Node node{x, y, z}; inside_[index(node)] != 0) visit(node);
+    }
 
     glm::dvec3 least_{0};
     double cell_ = 1, band_ = 3;

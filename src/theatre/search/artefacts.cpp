@@ -14,7 +14,7 @@ constexpr double kBeside = 3;  // from an artefact, pixels of a target 256 high
 // The shadow of each joint's capsules on a beam's screen.
 std::vector<BitMask> partShadows(const PoseProblem& problem, const SceneEnergy& energy, std::size_t actor, std::size_t beam) {
     const Body& body = problem.actors[actor];
-    const PoseTarget& target = problem.targetOf(beam);
+    const PoseTarget& target = problem.targets[beam];
     const BitMask& mask = target.mask;
     std::vector<BitMask> shadows(body.joints.size(), BitMask(mask.width(), mask.height()));
     CapsuleShadow shadow;
@@ -27,7 +27,7 @@ std::vector<BitMask> partShadows(const PoseProblem& problem, const SceneEnergy& 
 }  // namespace
 
 BitMask visibleArtefacts(const PoseTarget& target, const BitMask& shadow) {
-    const double radius = 0.5 * kVisibleArtefact / target.pixelsOf256;
+    const double radius = 0.5 * kVisibleArtefact / target.refPixelsPerPixel;
     const BitMask middles = deeperThan(signedDistance(difference(target.mask, shadow)), radius - 0.5);
     return middles.count() == 0 ? middles : deeperThan(signedDistance(middles), -radius);
 }
@@ -39,7 +39,7 @@ std::vector<BitMask> visibleArtefacts(const SceneEnergy& energy) {
     return artefacts;
 }
 
-std::vector<Freedoms> occludedChains(const PoseProblem& problem, const SceneEnergy& energy) {
+std::vector<Dofs> occludedChains(const PoseProblem& problem, const SceneEnergy& energy) {
     // What each part, and what props throw on each beam's screen.
     struct OnScreen {
         std::vector<std::vector<BitMask>> parts;  // of each actor
@@ -66,15 +66,15 @@ std::vector<Freedoms> occludedChains(const PoseProblem& problem, const SceneEner
             return isWithin(free, rest);
         });
     };
-    std::vector<Freedoms> chains;
+    std::vector<Dofs> chains;
     for (std::size_t a = 0; a < problem.actors.size(); ++a) {
         const Body& body = problem.actors[a];
         std::vector<char> isEnd(body.joints.size(), 1);
         for (std::size_t i = 1; i < body.joints.size(); ++i) isEnd[body.joints[i].parent] = 0;
-        const std::size_t first = problem.firstFreedom(a);
+        const std::size_t first = problem.firstDof(a);
         for (std::size_t end = 1; end < body.joints.size(); ++end) {
             if (isEnd[end] == 0) continue;
-            Freedoms chain;
+            Dofs chain;
             for (std::size_t joint = end; joint != 0; joint = body.joints[joint].parent) {
                 // What carries more than this chain is not free with it.
                 const bool carriesOther = std::any_of(body.joints.begin() + 1, body.joints.end(), [&](const Body::Joint& other) {
@@ -96,16 +96,16 @@ std::vector<Freedoms> occludedChains(const PoseProblem& problem, const SceneEner
     return chains;
 }
 
-Freedoms freedomsBeside(const PoseProblem& problem, const SceneEnergy& energy, std::span<const BitMask> artefacts) {
+Dofs dofsBeside(const PoseProblem& problem, const SceneEnergy& energy, std::span<const BitMask> artefacts) {
     std::set<std::size_t> chosen;
     for (std::size_t beam = 0; beam < artefacts.size(); ++beam) {
         if (artefacts[beam].count() == 0) continue;
-        const BitMask around = deeperThan(signedDistance(artefacts[beam]), -kBeside / problem.targetOf(beam).pixelsOf256);
+        const BitMask around = deeperThan(signedDistance(artefacts[beam]), -kBeside / problem.targets[beam].refPixelsPerPixel);
         for (std::size_t a = 0; a < problem.actors.size(); ++a) {
             const Body& body = problem.actors[a];
-            const std::size_t first = problem.firstFreedom(a);
+            const std::size_t first = problem.firstDof(a);
             const auto choose = [&](std::size_t joint) {
-                const std::size_t count = joint == 0 ? Body::kRootFreedoms : body.joints[joint].motion.size();
+                const std::size_t count = joint == 0 ? Body::kRootDofs : body.joints[joint].motion.size();
                 for (std::size_t k = 0; k < count; ++k) chosen.insert(first + body.joints[joint].first + k);
             };
             const std::vector<BitMask> parts = partShadows(problem, energy, a, beam);

@@ -21,12 +21,12 @@ constexpr double kLever = 0.1;  // metres
 
 InverseKinematics::InverseKinematics(const Body& body) : body_(body), equations_(body) {}
 
-double InverseKinematics::reach(std::span<double> freedoms, std::span<const glm::dvec3> places,
-                                std::span<const HeldContact> contacts, int steps) {
-    posed_.pose(body_, freedoms);
+double InverseKinematics::reach(std::span<double> dofs, std::span<const glm::dvec3> places, std::span<const HeldContact> contacts,
+                                int steps) {
+    posed_.pose(body_, dofs);
     double damping = kReachDamping;
     for (int i = 0; i < steps && damping <= kMostDamping; ++i)
-        damping = descend(freedoms, places, contacts, damping) ? std::max(kHoldDamping, damping / 2) : 10 * damping;
+        damping = descend(dofs, places, contacts, damping) ? std::max(kHoldDamping, damping / 2) : 10 * damping;
     double sum = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const glm::dvec3 off = posed_.place(i) - places[i];
@@ -35,15 +35,15 @@ double InverseKinematics::reach(std::span<double> freedoms, std::span<const glm:
     return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, places.size())));
 }
 
-bool InverseKinematics::hold(std::span<double> freedoms, std::span<const HeldContact> contacts) {
-    posed_.pose(body_, freedoms);
+bool InverseKinematics::hold(std::span<double> dofs, std::span<const HeldContact> contacts) {
+    posed_.pose(body_, dofs);
     const auto isHeld = [&] {
         return std::all_of(contacts.begin(), contacts.end(), [&](const HeldContact& contact) {
             return glm::distance(posed_.place(contact.joint), contact.place) <= kHeld &&
                    glm::length(turnBetween(contact.turn, posed_.turn(contact.joint))) <= kHeld / kLever;
         });
     };
-    for (int i = 0; i < kHoldSteps && !isHeld() && descend(freedoms, {}, contacts, kHoldDamping); ++i) {
+    for (int i = 0; i < kHoldSteps && !isHeld() && descend(dofs, {}, contacts, kHoldDamping); ++i) {
     }
     return isHeld();
 }
@@ -62,9 +62,9 @@ double InverseKinematics::objective(std::span<const glm::dvec3> places, std::spa
     return sum;
 }
 
-void InverseKinematics::linearise(std::span<const double> freedoms, std::span<const glm::dvec3> places,
+void InverseKinematics::linearise(std::span<const double> dofs, std::span<const glm::dvec3> places,
                                   std::span<const HeldContact> contacts) {
-    equations_.begin(posed_, freedoms);
+    equations_.begin(posed_, dofs);
     for (std::size_t i = 0; i < places.size(); ++i) equations_.addPlace(i, posed_.place(i), posed_.place(i) - places[i], 1);
     for (const HeldContact& contact : contacts) {
         const glm::dvec3& place = posed_.place(contact.joint);
@@ -74,17 +74,17 @@ void InverseKinematics::linearise(std::span<const double> freedoms, std::span<co
     equations_.finish();
 }
 
-bool InverseKinematics::descend(std::span<double> freedoms, std::span<const glm::dvec3> places,
-                                std::span<const HeldContact> contacts, double damping) {
+bool InverseKinematics::descend(std::span<double> dofs, std::span<const glm::dvec3> places, std::span<const HeldContact> contacts,
+                                double damping) {
     const double before = objective(places, contacts);
-    linearise(freedoms, places, contacts);
+    linearise(dofs, places, contacts);
     const Eigen::VectorXd& step = equations_.step(damping, {});
-    best_.assign(freedoms.begin(), freedoms.end());
+    best_.assign(dofs.begin(), dofs.end());
     double least = before;
     // The joints' limits make corners in the line, so it is looked at in a few places rather than
     // fitted.
     for (const double length : {1.5, 1.0, 0.6, 0.3, 0.1, 0.02}) {
-        trial_.assign(freedoms.begin(), freedoms.end());
+        trial_.assign(dofs.begin(), dofs.end());
         for (std::size_t k = 0; k < trial_.size(); ++k) trial_[k] += length * step[static_cast<Eigen::Index>(k)];
         body_.limit(trial_);
         posed_.pose(body_, trial_);
@@ -93,8 +93,8 @@ bool InverseKinematics::descend(std::span<double> freedoms, std::span<const glm:
         else if (least < before)
             break;  // past the least
     }
-    std::copy(best_.begin(), best_.end(), freedoms.begin());
-    posed_.pose(body_, freedoms);
+    std::copy(best_.begin(), best_.end(), dofs.begin());
+    posed_.pose(body_, dofs);
     return least < (1 - kSettled) * before;
 }
 

@@ -2,7 +2,7 @@
 
 #include "theatre/energy/scene_energy.h"
 #include "theatre/search/artefacts.h"
-#include "theatre/search/freedom_search.h"
+#include "theatre/search/dof_search.h"
 #include "theatre/search/streams.h"
 
 #include "core/random.h"
@@ -14,7 +14,7 @@
 namespace fantascope::theatre {
 namespace {
 
-constexpr double kGlobalShare = 0.85;  // of the evaluations, for all freedoms at once
+constexpr double kGlobalShare = 0.85;  // of the evaluations, for all degrees of freedom at once
 constexpr double kSigma = 0.5, kRefinedSigma = 0.3;
 constexpr int kRefinedGenerations = 25;
 constexpr double kPapersStiffness = 0.1;  // of physics, as in Table 1; then what holds people up
@@ -26,14 +26,12 @@ public:
              const PoseSearch::AskStop& askStop)
         : options_(options), askStop_(askStop), fine_(simpler(in256Rows(problem))), rng_(streamSeed(seed, {Stream::Moves})) {
         trial_.seed = seed;
-        trial_.freedoms = PoseSearch::start(problem);
+        trial_.dofs = PoseSearch::start(problem);
     }
 
     PoseSearch::Trial run() {
         trial_.reason = PoseSearch::StopReason::Evaluations;
-        PoseProblem coarse = forFirstLook(fine_);
-        coarse.weights.stiffen(kPapersStiffness);
-        searchAll(coarse);
+        searchAll(forFirstLook(fine_));
         refine(fine_);
         return std::move(trial_);
     }
@@ -44,41 +42,41 @@ private:
         return trial_.reason != PoseSearch::StopReason::Interrupted;
     }
 
-    // CMA-ES over these freedoms, from where the poses are.
-    double search(const PoseProblem& problem, SceneEnergy& energy, std::vector<double>& freedoms, const Freedoms& which,
-                  double sigma, std::int64_t evaluations) {
-        FreedomSearch search(problem);
+    // CMA-ES over these degrees of freedom, from where the poses are.
+    double search(const PoseProblem& problem, SceneEnergy& energy, std::vector<double>& dofs, const Dofs& which, double sigma,
+                  double stiffness, std::int64_t evaluations) {
+        DofSearch search(problem);
         const auto generations = static_cast<int>(std::max<std::int64_t>(1, evaluations / options_.population));
-        const double found =
-            search.run(energy, freedoms, which, {sigma, options_.population, generations, kConverged, options_.fullCovariance},
-                       rng_, [&](int) { return goesOn(energy.lastEnergy()); });
+        const double found = search.run(energy, dofs, which,
+                                        {sigma, options_.population, generations, kConverged, options_.fullCovariance, stiffness},
+                                        rng_, [&] { return goesOn(energy.lastEnergy()); });
         trial_.evaluations += search.evaluations();
         return found;
     }
 
     void searchAll(const PoseProblem& problem) {
         SceneEnergy energy(problem);
-        Freedoms all(trial_.freedoms.size());
+        Dofs all(trial_.dofs.size());
         std::iota(all.begin(), all.end(), std::size_t{0});
-        search(problem, energy, trial_.freedoms, all, kSigma,
+        search(problem, energy, trial_.dofs, all, kSigma, kPapersStiffness,
                static_cast<std::int64_t>(kGlobalShare * static_cast<double>(options_.evaluations)));
     }
 
     void refine(const PoseProblem& problem) {
         SceneEnergy energy(problem);
-        energy.pose(trial_.freedoms);
+        energy.pose(trial_.dofs);
         double best = energy.energy();
-        // Whether these freedoms could make it better.
-        const auto improves = [&](const Freedoms& which) {
+        // Whether these degrees of freedom could make it better.
+        const auto improves = [&](const Dofs& which) {
             const std::int64_t left = options_.evaluations - trial_.evaluations;
             if (which.empty() || left <= 0 || trial_.reason != PoseSearch::StopReason::Evaluations) return false;
-            std::vector<double> next = trial_.freedoms;
-            const double found = search(problem, energy, next, which, kRefinedSigma,
+            std::vector<double> next = trial_.dofs;
+            const double found = search(problem, energy, next, which, kRefinedSigma, 1,
                                         std::min<std::int64_t>(left, kRefinedGenerations * options_.population));
             const bool isBetter = trial_.reason == PoseSearch::StopReason::Evaluations && found < best;
-            if (isBetter) best = found, trial_.freedoms = std::move(next);
+            if (isBetter) best = found, trial_.dofs = std::move(next);
             trial_.history.push_back(best);
-            energy.pose(trial_.freedoms);
+            energy.pose(trial_.dofs);
             energy.terms();
             return isBetter;
         };
@@ -91,12 +89,12 @@ private:
                 break;
             }
             bool isBetter = false;
-            for (const Freedoms& chain : occludedChains(problem, energy)) isBetter |= improves(chain);
+            for (const Dofs& chain : occludedChains(problem, energy)) isBetter |= improves(chain);
             if (isBetter) continue;
             // Without artefacts what remains is to be had from anybody.
-            Freedoms beside = freedomsBeside(problem, energy, artefacts);
+            Dofs beside = dofsBeside(problem, energy, artefacts);
             if (beside.empty()) {
-                beside.resize(trial_.freedoms.size());
+                beside.resize(trial_.dofs.size());
                 std::iota(beside.begin(), beside.end(), std::size_t{0});
             }
             improves(beside);

@@ -19,11 +19,11 @@
 namespace fantascope::theatre {
 namespace {
 
-bool isWithinLimits(const Body& body, std::span<const double> freedoms) {
+bool isWithinLimits(const Body& body, std::span<const double> dofs) {
     constexpr double kRounding = 1e-6;
     for (std::size_t i = 1; i < body.joints.size(); ++i) {
         const JointMotion& motion = body.joints[i].motion;
-        const glm::dquat orientation = motion.orientation(freedoms.subspan(body.joints[i].first, motion.size()));
+        const glm::dquat orientation = motion.orientation(dofs.subspan(body.joints[i].first, motion.size()));
         for (const JointLimit& limit : motion.limits()) {
             const double measure = limit.measure(orientation);
             if (measure < limit.low - kRounding || measure > limit.high + kRounding) return false;
@@ -59,7 +59,7 @@ PoseSearch::Quality::Match matchOf(const BeamEnergy& beam, std::size_t actors) {
         static_cast<double>(shared(target.asSeen(beam.propShadow()), wanted)) / static_cast<double>(wanted.count());
     for (std::size_t i = 0; i < target.contour.size(); ++i) {
         const double off =
-            target.pixelsOf256 * glm::distance(glm::dvec2(target.contour[i].pixel), glm::dvec2(beam.nearest()[i].pixel));
+            target.refPixelsPerPixel * glm::distance(glm::dvec2(target.contour[i].pixel), glm::dvec2(beam.nearest()[i].pixel));
         match.contourMean += off / static_cast<double>(target.contour.size());
         match.contourMost = std::max(match.contourMost, off);
     }
@@ -99,9 +99,9 @@ bool PoseSearch::Actor::isValid() const {
 bool PoseSearch::Quality::isValid() const { return std::all_of(actors.begin(), actors.end(), std::mem_fn(&Actor::isValid)); }
 
 std::vector<double> PoseSearch::start(const PoseProblem& problem) {
-    const ScreenFrame& frame = problem.target.frame;
+    const ScreenFrame& frame = problem.targets[0].frame;
     const double middle = frame.metresAt({0.5 * frame.width(), 0}).x;
-    std::vector<double> freedoms;
+    std::vector<double> dofs;
     const auto count = static_cast<double>(problem.actors.size());
     // However many: near enough to the middle to have the screen's in sight.
     const double apart = std::min(0.6, 3 / count);
@@ -116,16 +116,16 @@ std::vector<double> PoseSearch::start(const PoseProblem& problem) {
         const double ground = problem.stage.groundUnder({floor.x, std::numeric_limits<double>::infinity(), floor.y});
         const glm::dvec3 place(floor.x, ground + body.joints[0].offset.y, floor.y);
         const std::vector<double> pose = body.restPose(place, glm::dquat(0, 0, 1, 0));
-        freedoms.insert(freedoms.end(), pose.begin(), pose.end());
+        dofs.insert(dofs.end(), pose.begin(), pose.end());
     }
-    return freedoms;
+    return dofs;
 }
 
 PoseSearch::Trial PoseSearch::run(const PoseProblem& problem, std::uint64_t seed, const Options& options,
                                   const AskStop& askStop) {
     Trial trial = options.method == Method::Paper ? paperMethod(problem, seed, options, askStop)
                                                   : refinedMethod(problem, seed, options, askStop);
-    trial.quality = measure(problem, trial.freedoms);
+    trial.quality = measure(problem, trial.dofs);
     return trial;
 }
 
@@ -133,19 +133,19 @@ std::uint64_t PoseSearch::trialSeed(std::uint64_t seed, std::uint64_t number) {
     return streamSeed(seed, {Stream::Trial, number}) >> 1;
 }
 
-PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<const double> freedoms) {
+PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<const double> dofs) {
     SceneEnergy energy(problem);
-    energy.pose(freedoms);
+    energy.pose(dofs);
     Quality quality;
     quality.terms = energy.terms();
     quality.energy = quality.terms.total(problem.weights);
     quality.iou = quality.iouWithoutProps = 1;
-    for (std::size_t i = 0; i < problem.beams(); ++i) {
+    for (std::size_t i = 0; i < problem.targets.size(); ++i) {
         const PoseSearch::Quality::Match match = matchOf(energy.beam(i), problem.actors.size());
         quality.iou = std::min(quality.iou, match.iou);
         quality.iouWithoutProps = std::min(quality.iouWithoutProps, match.iouWithoutProps);
         quality.propsCover = std::max(quality.propsCover, match.propsCover);
-        quality.contourMean += match.contourMean / static_cast<double>(problem.beams());
+        quality.contourMean += match.contourMean / static_cast<double>(problem.targets.size());
         quality.contourMost = std::max(quality.contourMost, match.contourMost);
         quality.matches.push_back(match);
     }
@@ -162,7 +162,7 @@ PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<co
         Actor actor{contacts.support.margin(posed.massCentre()), contacts.touches, contacts.lowest,
                     std::max({deepestInItself(body, posed), deepestInStage(problem.stage, posed), deepest(energy.intrusions(i)),
                               -contacts.lowest}),
-                    isWithinLimits(body, freedoms.first(body.freedoms))};
+                    isWithinLimits(body, dofs.first(body.dofs))};
         for (std::size_t j = 0; j < problem.actors.size(); ++j)
             if (j != i) {
                 findIntrusions(body, posed, energy.held(j), intrusions);
@@ -172,7 +172,7 @@ PoseSearch::Quality PoseSearch::measure(const PoseProblem& problem, std::span<co
         if (contacts.touches)
             for (const Contact& contact : contacts.discs) actor.contacts.push_back(contact.place);
         quality.actors.push_back(actor);
-        freedoms = freedoms.subspan(body.freedoms);
+        dofs = dofs.subspan(body.dofs);
     }
     return quality;
 }

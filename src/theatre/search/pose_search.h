@@ -78,7 +78,7 @@ public:
     static constexpr double kStandMargin = 0.01, kMostDepth = 0.02;  // metres
 
     struct Trial {
-        std::vector<double> freedoms;  // of all actors, one after the other
+        std::vector<double> dofs;  // of all actors, one after the other
         Quality quality;
         std::uint64_t seed = 0;
         std::int64_t evaluations = 0;
@@ -103,7 +103,7 @@ public:
     // The seed (63 bits) of a trial, from 0, of a search's.
     static std::uint64_t trialSeed(std::uint64_t seed, std::uint64_t number);
 
-    static Quality measure(const PoseProblem& problem, std::span<const double> freedoms);
+    static Quality measure(const PoseProblem& problem, std::span<const double> dofs);
 };
 
 std::string_view name(PoseSearch::Method method);

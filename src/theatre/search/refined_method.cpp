@@ -38,7 +38,7 @@ public:
           rng_(streamSeed(seed, {Stream::Moves})) {
         trial_.seed = seed;
         trial_.reason = PoseSearch::StopReason::Evaluations;
-        trial_.freedoms = PoseSearch::start(problem);
+        trial_.dofs = PoseSearch::start(problem);
     }
 
     PoseSearch::Trial run() {
@@ -46,7 +46,7 @@ public:
         stiffen(coarse_);
         searchLocally(coarse_, kCoarseShare, kHeld);
         searchLocally(fine_, 1, 1);
-        true_.fit.run(true_.energy, trial_.freedoms, kLastFitSteps);
+        true_.fit.run(true_.energy, trial_.dofs, kLastFitSteps);
         mend(true_);
         trial_.evaluations = evaluations();
         return std::move(trial_);
@@ -62,60 +62,56 @@ private:
     }
 
     void searchGlobally(Workshop& shop) {
-        std::vector<std::size_t> all(trial_.freedoms.size());
+        std::vector<std::size_t> all(trial_.dofs.size());
         std::iota(all.begin(), all.end(), std::size_t{0});
         const int generations =
             std::max(1, static_cast<int>(kGlobalShare * static_cast<double>(options_.evaluations) / options_.population));
-        shop.search.run(shop.energy, trial_.freedoms, all, {kGlobalSigma, options_.population, generations}, rng_,
-                        [&](int generation) {
-                            shop.problem.weights.stiffen(kWeak * std::pow(kLessWeak / kWeak, double(generation) / generations));
-                            return goesOn(shop.energy.lastEnergy());
-                        });
+        shop.search.run(shop.energy, trial_.dofs, all,
+                        {.sigma = kGlobalSigma,
+                         .population = options_.population,
+                         .generations = generations,
+                         .stiffness = kWeak,
+                         .lastStiffness = kLessWeak},
+                        rng_, [&] { return goesOn(shop.energy.lastEnergy()); });
     }
 
     // While somebody cannot stand physics grows ever stiffer.
     void mend(Workshop& shop) {
         for (const double stiffness : kMending) {
-            if (trial_.reason == PoseSearch::StopReason::Interrupted ||
-                PoseSearch::measure(shop.problem, trial_.freedoms).isValid())
+            if (trial_.reason == PoseSearch::StopReason::Interrupted || PoseSearch::measure(shop.problem, trial_.dofs).isValid())
                 break;
-            shop.problem.weights.stiffen(stiffness);
-            shop.fit.run(shop.energy, trial_.freedoms, kFitSteps);
+            shop.fit.run(shop.energy, trial_.dofs, kFitSteps, stiffness);
         }
     }
 
     // The outline first, then a little more of standing.
     void stiffen(Workshop& shop) {
-        for (const double stiffness : kStiffer) {
-            shop.problem.weights.stiffen(stiffness);
-            shop.fit.run(shop.energy, trial_.freedoms, kFitSteps);
-        }
+        for (const double stiffness : kStiffer) shop.fit.run(shop.energy, trial_.dofs, kFitSteps, stiffness);
     }
 
     // Iterated local search until a share of the evaluations is spent, while physics becomes what
     // holds people up.
-    void searchLocally(Workshop& shop, double share, double stiffness) {
+    void searchLocally(Workshop& shop, double share, double firstStiffness) {
         const auto first = evaluations(), last = static_cast<std::int64_t>(share * static_cast<double>(options_.evaluations));
-        std::vector<double> here = trial_.freedoms, next;
+        std::vector<double> here = trial_.dofs, next;
         double best = std::numeric_limits<double>::infinity();
         while (evaluations() < last) {
             const double done = double(evaluations() - first) / double(last - first);
-            shop.problem.weights.stiffen(std::pow(stiffness, std::max(0.0, 1 - done / kHeldBy)));
-            shop.energy.pose(here);
+            const double stiffness = std::pow(firstStiffness, std::max(0.0, 1 - done / kHeldBy));
+            shop.energy.pose(here, stiffness);
             double current = shop.energy.energy();
             if (!goesOn(current)) break;
 
             next = here;
-            shop.search.disturb(shop.energy, next, rng_);
-            const double found = shop.fit.run(shop.energy, next, kRefitSteps);
+            shop.search.disturb(shop.energy, next, rng_, stiffness);
+            const double found = shop.fit.run(shop.energy, next, kRefitSteps, stiffness);
             const double progress = double(evaluations()) / double(options_.evaluations);
             const double tolerance = -kHot * std::pow(kCool, progress) * std::log(1 - rng_.uniform());
             if (found < current + tolerance) here = next, current = found;
             // While physics stiffens energies cannot be compared: the newest is the best.
-            if (stiffness < 1 || current < best) best = current, trial_.freedoms = here;
+            if (firstStiffness < 1 || current < best) best = current, trial_.dofs = here;
             trial_.history.push_back(best);
         }
-        shop.problem.weights.stiffen(1);
     }
 
     const PoseSearch::Options& options_;

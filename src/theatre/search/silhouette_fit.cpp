@@ -100,38 +100,38 @@ private:
 }  // namespace
 
 SilhouetteFit::SilhouetteFit(const PoseProblem& problem) : problem_(problem) {
-    for (std::size_t i = 0; i < problem.beams(); ++i) distances_.push_back(signedDistance(problem.targetOf(i).mask));
+    for (std::size_t i = 0; i < problem.targets.size(); ++i) distances_.push_back(signedDistance(problem.targets[i].mask));
     std::size_t first = 0;
     for (const Body& body : problem.actors) {
         equations_.emplace_back(body);
         kinematics_.emplace_back(body);
         first_.push_back(first);
-        first += body.freedoms;
+        first += body.dofs;
     }
 }
 
-double SilhouetteFit::run(SceneEnergy& energy, std::span<double> freedoms, int steps, std::span<const char> moves) {
-    energy.pose(freedoms);
+double SilhouetteFit::run(SceneEnergy& energy, std::span<double> dofs, int steps, double stiffness, std::span<const char> moves) {
+    energy.pose(dofs, stiffness);
     double best = energy.energy();
     ++evaluations_;
     double damping = kFirstDamping;
-    bool isLinear = false, isPosed = true;  // `energy` is posed by `freedoms`
+    bool isLinear = false, isPosed = true;  // `energy` is posed by `dofs`
     for (int i = 0; i < steps && damping < kMostDamping; ++i) {
-        if (!isLinear) linearise(energy, freedoms), isLinear = true;
-        trial_.assign(freedoms.begin(), freedoms.end());
+        if (!isLinear) linearise(energy, dofs), isLinear = true;
+        trial_.assign(dofs.begin(), dofs.end());
         for (std::size_t a = 0; a < equations_.size(); ++a) {
-            const std::size_t first = first_[a], count = problem_.actors[a].freedoms;
+            const std::size_t first = first_[a], count = problem_.actors[a].dofs;
             const Eigen::VectorXd& step = equations_[a].step(damping, moves.empty() ? moves : moves.subspan(first, count));
             for (std::size_t k = 0; k < count; ++k) trial_[first + k] += step[static_cast<Eigen::Index>(k)];
             const auto pose = std::span(trial_).subspan(first, count);
             problem_.actors[a].limit(pose);
             if (!problem_.continuity.empty()) kinematics_[a].hold(pose, problem_.continuity[a].contacts);
         }
-        energy.pose(trial_);
+        energy.pose(trial_, stiffness);
         ++evaluations_;
         if (const double now = energy.energy(); now < best) {
             best = now;
-            std::copy(trial_.begin(), trial_.end(), freedoms.begin());
+            std::copy(trial_.begin(), trial_.end(), dofs.begin());
             damping = std::max(1e-4, damping / 3);
             isLinear = false;
             isPosed = true;
@@ -141,19 +141,19 @@ double SilhouetteFit::run(SceneEnergy& energy, std::span<double> freedoms, int s
         }
     }
     if (!isPosed) {
-        energy.pose(freedoms);
+        energy.pose(dofs, stiffness);
         energy.terms();
     }
     return best;
 }
 
-void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> freedoms) {
+void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> dofs) {
     for (std::size_t a = 0; a < equations_.size(); ++a)
-        equations_[a].begin(energy.posed(a), freedoms.subspan(first_[a], problem_.actors[a].freedoms));
+        equations_[a].begin(energy.posed(a), dofs.subspan(first_[a], problem_.actors[a].dofs));
     for (std::size_t i = 0; i < distances_.size(); ++i) addContour(energy.beam(i), energy, distances_[i]);
     addHints(energy);
     addPhysics(energy);
-    if (!problem_.continuity.empty()) addContinuity(energy, freedoms);
+    if (!problem_.continuity.empty()) addContinuity(energy, dofs);
     for (PoseEquations& equations : equations_) equations.finish();
 }
 
@@ -162,11 +162,11 @@ void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> freed
 void SilhouetteFit::addContour(const BeamEnergy& beam, const SceneEnergy& energy, const GreyImage& distance) {
     const PoseTarget& target = beam.target();
     const ScreenFrame& frame = target.frame;
-    const ContourDisc disc(std::max(1.0, kDiscRadius / target.pixelsOf256));
+    const ContourDisc disc(std::max(1.0, kDiscRadius / target.refPixelsPerPixel));
     std::vector<Outlines> outlines;
     for (std::size_t a = 0; a < equations_.size(); ++a) outlines.emplace_back(frame, energy.posed(a));
     const PoseWeights& weights = problem_.weights;
-    const double squarePixel = target.pixelsOf256 * target.pixelsOf256 * target.perPoint();
+    const double squarePixel = target.refPixelsPerPixel * target.refPixelsPerPixel * target.perPoint();
     // `residual`: how far beyond its place the outline is along the outward normal, pixels.
     const auto add = [&](glm::dvec2 pixel, glm::dvec2 normal, double residual, double weight) {
         std::size_t owner = 0;
@@ -215,8 +215,8 @@ void SilhouetteFit::addContour(const BeamEnergy& beam, const SceneEnergy& energy
 
 // Equation 7: the nearest part goes to its hint, to the right and down alike.
 void SilhouetteFit::addHints(const SceneEnergy& energy) {
-    const ScreenFrame& frame = problem_.target.frame;
-    const double weight = problem_.weights.w12 * problem_.target.pixelsOf256 * problem_.target.pixelsOf256;
+    const ScreenFrame& frame = problem_.targets[0].frame;
+    const double weight = problem_.weights.w12 * problem_.targets[0].refPixelsPerPixel * problem_.targets[0].refPixelsPerPixel;
     for (std::size_t i = 0; i < problem_.hints.size(); ++i) {
         const auto [actor, match] = energy.hintOwner(i);
         if (!match.point) continue;
@@ -254,12 +254,12 @@ void SilhouetteFit::addIntrusions(const SceneEnergy& energy, std::size_t actor, 
 }
 
 // Equations 8 and 10, by equation 9, and equation 11.
-void SilhouetteFit::addContinuity(const SceneEnergy& energy, std::span<const double> freedoms) {
+void SilhouetteFit::addContinuity(const SceneEnergy& energy, std::span<const double> dofs) {
     const PoseWeights& weights = problem_.weights;
     for (std::size_t a = 0; a < equations_.size(); ++a) {
         const Body& body = problem_.actors[a];
         const PosedBody& posed = energy.posed(a);
-        const auto own = freedoms.subspan(first_[a], body.freedoms);
+        const auto own = dofs.subspan(first_[a], body.dofs);
         const Continuity& others = problem_.continuity[a];
         const auto pull = [&](const ActorPose& to, double weight) {
             equations_[a].addPlace(0, posed.place(0), posed.place(0) - to.root, weight * kRootWeight);
@@ -283,7 +283,7 @@ void SilhouetteFit::addContinuity(const SceneEnergy& energy, std::span<const dou
 // Equation 6: what is too deep.
 void SilhouetteFit::addPhysics(SceneEnergy& energy) {
     PoseWeights weights = problem_.weights;
-    for (double* weight : {&weights.w7, &weights.w9, &weights.w10, &weights.w11}) *weight *= weights.stiffness;
+    for (double* weight : {&weights.w7, &weights.w9, &weights.w10, &weights.w11}) *weight *= energy.stiffness();
     for (std::size_t a = 0; a < equations_.size(); ++a) {
         PoseEquations& equations = equations_[a];
         const Body& body = problem_.actors[a];
@@ -369,14 +369,14 @@ void SilhouetteFit::addBalance(const SceneEnergy& energy, std::size_t index, con
         if (lacking <= 0) continue;
         const double centimetre = tangent.margin < kSureMargin ? 100 * kUnsure : 100;  // what a metre counts
         const glm::dvec3 outward(tangent.outward.x, 0, tangent.outward.y), up(0, 1, 0);
-        Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(body.freedoms));
+        Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(body.dofs));
         for (const SupportTangent::Touch& touch : tangent.touches) {
             const Contact& contact = contacts.discs[touch.contact];
             // Raised against the lowest point a contact moves inwards: a fading one to the lowest
             // point, the cut of an edge along it.
             double inwards = 0;
             if (contact.share < 1)
-                inwards = (glm::dot(outward, contact.point - lowest) + contact.radius / contact.share) / problem_.weights.bearing;
+                inwards = (glm::dot(outward, contact.point - lowest) + contact.radius / contact.share) / energy.bearingDepth();
             else if (contact.along.y != 0)
                 inwards = glm::dot(outward, contact.along) / contact.along.y;
             const double metre = touch.share * centimetre;

@@ -23,28 +23,29 @@ public:
     // `problem` must live on.
     explicit SilhouetteFit(const PoseProblem& problem);
 
-    // Lowers the energy of `freedoms` (of all actors, within their limits) by no more than `steps`
-    // steps that were kept or not; gives the energy. `energy` is left posed so. `moves`: for each
-    // freedom whether it may change; empty: all may.
-    double run(SceneEnergy& energy, std::span<double> freedoms, int steps, std::span<const char> moves = {});
+    // Lowers the energy of `dofs` (of all actors, within their limits) by no more than `steps`
+    // steps that were kept or not; gives the energy. `energy` is left posed so. `stiffness`: of
+    // physics (SceneEnergy::pose()). `moves`: for each degree of freedom whether it may change;
+    // empty: all may.
+    double run(SceneEnergy& energy, std::span<double> dofs, int steps, double stiffness = 1, std::span<const char> moves = {});
 
     std::int64_t evaluations() const { return evaluations_; }  // of the energy, so far
 
 private:
-    // Of `energy` posed by `freedoms`, its terms asked for.
-    void linearise(SceneEnergy& energy, std::span<const double> freedoms);
+    // Of `energy` posed by `dofs`, its terms asked for.
+    void linearise(SceneEnergy& energy, std::span<const double> dofs);
     void addContour(const BeamEnergy& beam, const SceneEnergy& energy, const GreyImage& distance);
     void addHints(const SceneEnergy& energy);
     void addIntrusions(const SceneEnergy& energy, std::size_t actor, double weight);
     void addPhysics(SceneEnergy& energy);
-    void addContinuity(const SceneEnergy& energy, std::span<const double> freedoms);
+    void addContinuity(const SceneEnergy& energy, std::span<const double> dofs);
     void addBalance(const SceneEnergy& energy, std::size_t actor, const PoseWeights& weights);
 
     const PoseProblem& problem_;
     std::vector<GreyImage> distances_;      // of each beam's target, signedDistance()
     std::vector<PoseEquations> equations_;  // of each actor: a residual moves with his joints alone
     std::vector<InverseKinematics> kinematics_;
-    std::vector<std::size_t> first_;  // freedom of each actor
+    std::vector<std::size_t> first_;  // degree of freedom of each actor
     std::vector<double> trial_;
     std::vector<Intrusion> intrusions_;
     std::vector<SupportTangent> tangents_;

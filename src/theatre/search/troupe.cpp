@@ -79,4 +79,23 @@ Result<Troupe> Troupe::of(double area, std::optional<int> actors, std::optional<
     return troupe;
 }
 
+double areaToFill(std::span<const PoseTarget> silhouettes, const Stage& stage) {
+    double area = 0;
+    for (std::size_t i = 0; i < silhouettes.size(); ++i) {
+        const PoseTarget& target = silhouettes[i];
+        const double scale = TargetPlace::on(stage, i).scale, rows = 256 / target.refPixelsPerPixel;
+        area += scale * scale * target.area / (rows * rows) / static_cast<double>(silhouettes.size());
+    }
+    return area;
+}
+
+Cast::Target targetOn(const Stage& stage, std::size_t beam, double height) {
+    if (beam == 0) return {{}, height};
+    const auto inCentimetres = [](double metres) { return std::round(100 * metres) / 100; };
+    const TargetPlace place = TargetPlace::on(stage, beam);
+    return {{},
+            std::clamp(inCentimetres(height * place.scale), Troupe::kLeastHeight, Troupe::kMostHeight),
+            inCentimetres(place.middle.value_or(stage.lightOnScreen(beam).x))};
+}
+
 }  // namespace fantascope::theatre

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "theatre/energy/pose_problem.h"
+#include "theatre/stage/cast.h"
+
 #include "core/result.h"
 
 #include <optional>
@@ -30,5 +33,15 @@ struct Troupe {
     // light.
     static constexpr double kStature = 1.75, kShare = 0.6, kLeastShare = 0.12, kMostShare = 6;
 };
+
+// The area that people have to fill, for Troupe::of(): on average over the beams of a stage, in
+// squares of the first silhouette's height, wherever the lights are. `silhouettes`: one a beam,
+// each laid on a stage with one lamp.
+double areaToFill(std::span<const PoseTarget> silhouettes, const Stage& stage);
+
+// How high a silhouette is on the screen of a beam, and where its middle is, in whole centimetres,
+// for people to be as high there as on the first screen, where they are `height` metres high. It
+// has no file yet.
+Cast::Target targetOn(const Stage& stage, std::size_t beam, double height);
 
 }  // namespace fantascope::theatre

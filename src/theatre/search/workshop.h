@@ -1,7 +1,7 @@
 #pragma once
 
 #include "theatre/energy/scene_energy.h"
-#include "theatre/search/freedom_search.h"
+#include "theatre/search/dof_search.h"
 #include "theatre/search/silhouette_fit.h"
 
 #include <array>
@@ -13,19 +13,18 @@ namespace fantascope::theatre {
 // Physics' stiffness, step by step, while somebody cannot stand.
 constexpr std::array kMending = {2.0, 4.0, 8.0, 16.0};
 
-// A problem of its own, since its stiffness changes, and what works on it. Thread: bound to one
-// thread at a time.
+// A problem and what works on it. Thread: bound to one thread at a time.
 struct Workshop {
     explicit Workshop(PoseProblem given) : problem(std::move(given)), energy(problem), search(problem), fit(problem) {}
     Workshop(const Workshop&) = delete;
     Workshop& operator=(const Workshop&) = delete;
 
     std::int64_t evaluations() const { return search.evaluations() + fit.evaluations(); }
-    double iou() const { return intersectionOverUnion(energy.shadow(), problem.target.mask); }
+    double iou() const { return intersectionOverUnion(energy.shadow(), problem.targets[0].mask); }
 
-    PoseProblem problem;
+    const PoseProblem problem;
     SceneEnergy energy;
-    FreedomSearch search;
+    DofSearch search;
     SilhouetteFit fit;
 };
 

@@ -73,11 +73,13 @@ Result<Cast::Actor> readActor(const ConfigNode& node) {
 
 Result<Cast::Target> readTarget(const ConfigNode& node) {
     Cast::Target target;
+    double middle = 0;
     ConfigFields fields(node);
     fields.path("target", target.file);
     fields.number("height", target.height, kLeastHeight, kMostHeight, "m");
-    fields.number("middle", target.middle, -kFarthest, kFarthest, "m");
+    fields.number("middle", middle, -kFarthest, kFarthest, "m");
     TRY(fields.finish());
+    target.middle = middle;
     return target;
 }
 
@@ -85,10 +87,10 @@ Result<Cast> castOf(const ConfigNode& root) {
     Cast cast;
     ConfigFields fields(root);
     fields.header("cast", kVersion);
-    fields.path("target", cast.target);
-    fields.number("height", cast.height, kLeastHeight, kMostHeight, "m");
+    fields.path("target", cast.targets[0].file);
+    fields.number("height", cast.targets[0].height, kLeastHeight, kMostHeight, "m");
     bool hasLight = false;
-    fields.optional().read("light", cast.stage.light, [&](const ConfigNode& node) {
+    fields.optional().read("light", cast.stage.beams[0].light, [&](const ConfigNode& node) {
         hasLight = true;
         return node.vector3(-kFarthest, kFarthest, "m");
     });
@@ -113,16 +115,18 @@ Result<Cast> castOf(const ConfigNode& root) {
         sequence.first = static_cast<std::size_t>(first - 1);
         return std::optional(sequence);
     });
-    fields.optional().list("further_targets", cast.further, readTarget);
+    std::vector<Cast::Target> further;
+    fields.optional().list("further_targets", further, readTarget);
     fields.integer("seed", cast.seed, 0, std::numeric_limits<std::int64_t>::max());
     ConfigNode actors;
     fields.read("actors", actors, [](const ConfigNode& at) -> Result<ConfigNode> { return at; });
     TRY(fields.finish());
     if (!hasLight && !cast.stageFile)
         return root.error("no light; say 'light: [x, y, z]' for a lamp, or 'stage:' with the name of a stage file");
-    if (cast.further.size() != cast.stage.further.size())
+    cast.targets.insert(cast.targets.end(), further.begin(), further.end());
+    if (cast.targets.size() != cast.stage.beams.size())
         return root.error(fmt::format("{} further_targets, and the stage has {} further_beams; each beam has a target",
-                                      cast.further.size(), cast.stage.further.size()));
+                                      further.size(), cast.stage.beams.size() - 1));
     for (const ConfigNode& node : TRY(actors.items(1, kMostActors))) {
         cast.actors.push_back(TRY(readActor(node)));
         if (cast.actors.back().poses.size() != cast.actors.front().poses.size())
@@ -142,23 +146,23 @@ Result<Cast> readCast(const fs::path& file) { return castOf(TRY(ConfigNode::load
 
 Result<void> writeCast(const fs::path& file, const Cast& cast) {
     std::string text = fmt::format("fantascope: cast\nversion: {}\ntarget: {}\nheight: {}\n", kVersion,
-                                   fantascope::quoted(TRY(relativeTo(file, cast.target))), cast.height);
+                                   fantascope::quoted(TRY(relativeTo(file, cast.targets[0].file))), cast.targets[0].height);
     const auto add = [&]<class... Values>(fmt::format_string<Values...> format, Values&&... values) {
         fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
     };
     if (cast.stageFile)
         add("stage: {}\n", fantascope::quoted(TRY(relativeTo(file, *cast.stageFile))));
     else
-        add("light: [{}, {}, {}]\n", cast.stage.light.x, cast.stage.light.y, cast.stage.light.z);
+        add("light: [{}, {}, {}]\n", cast.stage.beams[0].light.x, cast.stage.beams[0].light.y, cast.stage.beams[0].light.z);
     if (cast.framesPerSecond > 0) add("frames_per_second: {}\n", cast.framesPerSecond);
     if (cast.sequence)
         add("sequence: {{file: {}, representative: {}, first: {}}}\n",
             fantascope::quoted(TRY(relativeTo(file, cast.sequence->file))), cast.sequence->representative + 1,
             cast.sequence->first + 1);
-    if (!cast.further.empty()) add("further_targets:\n");
-    for (const Cast::Target& target : cast.further)
+    if (cast.targets.size() > 1) add("further_targets:\n");
+    for (const Cast::Target& target : std::span(cast.targets).subspan(1))
         add("  - {{target: {}, height: {}, middle: {}}}\n", fantascope::quoted(TRY(relativeTo(file, target.file))), target.height,
-            target.middle);
+            target.middle.value_or(0));
     add("seed: {}\nactors:\n", cast.seed);
     for (const Cast::Actor& actor : cast.actors) {
         const Body body = humanBody(actor.stature);

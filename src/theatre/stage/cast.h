@@ -18,8 +18,13 @@ struct Cast {
         double stature = 0;            // metres, of humanBody()
         std::vector<ActorPose> poses;  // one a frame, as many as the others have
     };
-    std::filesystem::path target;  // the silhouette's picture; as the program that reads the file can open it
-    double height = 0;             // of the silhouette on the screen, metres
+    // A silhouette on the screen of a beam.
+    struct Target {
+        std::filesystem::path file;      // its picture; as the program that reads the file can open it
+        double height = 0;               // on the screen, metres
+        std::optional<double> middle{};  // TargetPlace::middle, metres; none for the first beam's alone
+    };
+    std::vector<Target> targets{Target{}};  // of each beam of the stage
     Stage stage;
     std::optional<std::filesystem::path>
         stageFile;               // of the stage, in the file's folder or below it; none: there is a lamp and nothing else
@@ -33,12 +38,6 @@ struct Cast {
         std::size_t representative = 0, first = 0;
     };
     std::optional<Sequence> sequence{};
-    // The silhouettes on the screens of the stage's further beams, in their order.
-    struct Target {
-        std::filesystem::path file;
-        double height = 0, middle = 0;  // metres; TargetPlace::middle
-    };
-    std::vector<Target> further{};
 };
 
 // *.cast.yaml, docs/cast-format.md; a stage's file is read with it, and must be there when a cast

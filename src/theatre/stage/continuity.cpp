@@ -26,14 +26,14 @@ std::vector<HeldContact> bearingParts(const Body& body, const Stage& stage, cons
     return parts;
 }
 
-double poseDifference(const Body& body, std::span<const double> freedoms, const ActorPose& other) {
-    double turns = squareOf(turnBetween(other.turns[0], rotationOf({freedoms[3], freedoms[4], freedoms[5]})));
+double poseDifference(const Body& body, std::span<const double> dofs, const ActorPose& other) {
+    double turns = squareOf(turnBetween(other.turns[0], rotationOf({dofs[3], dofs[4], dofs[5]})));
     for (std::size_t i = 1; i < body.joints.size(); ++i) {
         const Body::Joint& joint = body.joints[i];
-        const glm::dquat turn = joint.motion.orientation(freedoms.subspan(joint.first, joint.motion.size()));
+        const glm::dquat turn = joint.motion.orientation(dofs.subspan(joint.first, joint.motion.size()));
         turns += squareOf(turnBetween(other.turns[i], turn));
     }
-    return kRootWeight * squareOf(glm::dvec3(freedoms[0], freedoms[1], freedoms[2]) - other.root) + kTurnWeight * turns;
+    return kRootWeight * squareOf(glm::dvec3(dofs[0], dofs[1], dofs[2]) - other.root) + kTurnWeight * turns;
 }
 
 ContactDrift contactDrift(std::span<const HeldContact> contacts, const PosedBody& posed) {

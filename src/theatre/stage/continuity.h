@@ -33,7 +33,7 @@ struct Continuity {
 // distance, radians; q and -q are the same turn. The paper leaves the weights open: a metre of the
 // root counts as much as seven joints that turn by a radian.
 constexpr double kRootWeight = 1, kTurnWeight = 0.15;
-double poseDifference(const Body& body, std::span<const double> freedoms, const ActorPose& other);
+double poseDifference(const Body& body, std::span<const double> dofs, const ActorPose& other);
 
 // The shortest rotation vector that takes one turn to another, applied after it.
 inline glm::dvec3 turnBetween(const glm::dquat& from, const glm::dquat& to) { return vectorOf(to * glm::conjugate(from)); }

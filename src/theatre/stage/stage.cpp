@@ -85,7 +85,7 @@ glm::dmat4 Stage::screenFromStage(std::size_t beam) const {
 }
 
 ScreenFrame::ScreenFrame(const Stage& stage, double left, double top, double pixel, int width, int height, std::size_t beam)
-    : light_(stage.beam(beam).light),
+    : light_(stage.beams[beam].light),
       cosine_(std::cos(stage.screenOf(beam).turn)),
       sine_(std::sin(stage.screenOf(beam).turn)),
       left_(left),

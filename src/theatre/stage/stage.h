@@ -19,9 +19,9 @@
 namespace fantascope::theatre {
 
 // Where the theatre plays: metres, +y up, the floor at y = 0, the screen upright at z = 0, the
-// light before it at +z; +x is to the right as seen from the light, and so in the picture. It may
-// have further beams, each a light and the screen that its shadows fall on: the same, or one that
-// stands elsewhere.
+// light before it at +z; +x is to the right as seen from the light, and so in the picture. That is
+// the first of its beams. Each beam is a light and the screen that its shadows fall on: the first
+// screen, or one that stands elsewhere.
 struct Stage {
     // A box that people may stand on, turned about its upright axis (radians, right-handed).
     struct Platform {
@@ -46,26 +46,22 @@ struct Stage {
     };
 
     struct Beam {
-        glm::dvec3 light{0};
-        std::size_t screen = 0;     // of Stage::screens
-        std::optional<Area> lit{};  // as Stage::lit, on its (flat) screen
+        glm::dvec3 light{0, 0, 7};
+        std::size_t screen = 0;     // of Stage::screens; 0 for the first beam
+        std::optional<Area> lit{};  // (x, y) of its flat screen that a projector lights from its lens; none: a lamp lights all
     };
 
-    glm::dvec3 light{0, 0, 7};  // of the first beam
-    std::optional<Area> lit{};  // (x, y) of the screen that a projector lights, the light being its lens; none: a lamp lights all
-    std::optional<Area> standing{};  // (x, z) of the floor where people may stand; none: anywhere
+    std::vector<Beam> beams{Beam{}};  // one or more
+    std::optional<Area> standing{};   // (x, z) of the floor where people may stand; none: anywhere
     std::vector<Platform> platforms{};
     std::vector<Prop> props{};
     std::vector<Screen> screens{Screen{}};  // the first beam's first, whose frame is the stage's
-    std::vector<Beam> further{};            // beams after the first
 
-    std::size_t beams() const { return 1 + further.size(); }
-    Beam beam(std::size_t index) const { return index == 0 ? Beam{light, 0, lit} : further[index - 1]; }
-    const Screen& screenOf(std::size_t beam) const { return screens[beam == 0 ? 0 : further[beam - 1].screen]; }
+    const Screen& screenOf(std::size_t beam) const { return screens[beams[beam].screen]; }
     // Into the frame of a beam's screen, which for the first is the stage's; there the beam's light
     // is.
     glm::dmat4 screenFromStage(std::size_t beam) const;
-    glm::dvec3 lightOnScreen(std::size_t beam) const { return screenOf(beam).screenFromStage(this->beam(beam).light); }
+    glm::dvec3 lightOnScreen(std::size_t beam) const { return screenOf(beam).screenFromStage(beams[beam].light); }
 
     // The height of the floor, or of the highest platform whose top is not above a point, under it.
     double groundUnder(const glm::dvec3& point) const;

@@ -136,9 +136,9 @@ Result<void> checkBeam(const ConfigNode& node, const Stage& stage, const Stage::
         return node.error(
             fmt::format("its light is {:.3g} m before its screen, and nobody fits between; move it to {} m or farther", away,
                         shortest(kNearestLight)));
-    for (std::size_t i = 0; i < stage.beams(); ++i)
+    for (std::size_t i = 0; i < stage.beams.size(); ++i)
         for (std::size_t k = 0; k < stage.screens.size(); ++k)
-            if (stage.screens[k].distance(stage.beam(i).light, outward) < 0)
+            if (stage.screens[k].distance(stage.beams[i].light, outward) < 0)
                 return node.error(
                     fmt::format("the light of beam {} is behind {}; that would keep it from its own screen: move one of them",
                                 i + 1, nameOf(k, stage)));
@@ -164,12 +164,12 @@ Result<void> readFurther(const ConfigNode& node, Stage& stage) {
     });
     TRY(fields.finish());
     if (lights == 0) return node.error(kNoLight);
-    for (std::size_t i = 0; i < stage.beams(); ++i)
-        if (stage.beam(i).screen == beam.screen && stage.beam(i).light == beam.light)
+    for (std::size_t i = 0; i < stage.beams.size(); ++i)
+        if (stage.beams[i].screen == beam.screen && stage.beams[i].light == beam.light)
             return node.error(fmt::format(
                 "it is beam {} over again, and its shadow would be the same; move its light, or give it a screen of its own",
                 i + 1));
-    stage.further.push_back(beam);
+    stage.beams.push_back(beam);
     return checkBeam(node, stage, beam);
 }
 
@@ -222,8 +222,8 @@ Result<Stage::Platform> readPlatform(const ConfigNode& node, const Stage& stage,
     if (behind.screen)
         return node.error(fmt::format("platform '{}' reaches {:.3f} m through {}; move its centre by as much", platform.name,
                                       behind.depth, nameOf(*behind.screen, stage)));
-    for (std::size_t i = 0; i < stage.beams(); ++i)
-        if (glm::dvec3 outward; platform.distance(stage.beam(i).light, outward) < 0)
+    for (std::size_t i = 0; i < stage.beams.size(); ++i)
+        if (glm::dvec3 outward; platform.distance(stage.beams[i].light, outward) < 0)
             return node.error(fmt::format("the light{} is inside platform '{}'; move one of them",
                                           i > 0 ? fmt::format(" of beam {}", i + 1) : std::string(), platform.name));
     return platform;
@@ -296,11 +296,11 @@ Result<Prop> readProp(const ConfigNode& node, const Stage& stage, std::vector<st
     if (behind.screen)
         return node.error(fmt::format("prop '{}' reaches {:.3f} m through {}; move its 'at' by as much", prop.name, behind.depth,
                                       nameOf(*behind.screen, stage)));
-    if (most.z >= stage.light.z)
+    if (most.z >= stage.beams[0].light.z)
         return node.error(fmt::format(
             "prop '{}' reaches to z = {:.3f} m, and the light is at {} m: what is not before it throws no shadow; move "
             "it towards the screen",
-            prop.name, most.z, shortest(stage.light.z)));
+            prop.name, most.z, shortest(stage.beams[0].light.z)));
     return prop;
 }
 
@@ -309,20 +309,18 @@ Result<Prop> readProp(const ConfigNode& node, const Stage& stage, std::vector<st
 Result<Stage> readStage(const fs::path& file) {
     const ConfigNode root = TRY(ConfigNode::load(file));
     Stage stage;
-    Stage::Beam first{stage.light};
     int lights = 0;
     std::vector<std::string> names;
     ConfigFields fields(root);
     fields.header("stage", kVersion);
-    readLights(fields, first, lights, readLight);
+    readLights(fields, stage.beams[0], lights, readLight);
     fields.optional().read("screen", stage.screens[0], [](const ConfigNode& node) { return readScreen(node, true); });
-    stage.light = first.light, stage.lit = first.lit;
-    fields.optional().read("further_beams", stage.further, [&](const ConfigNode& node) -> Result<std::vector<Stage::Beam>> {
+    fields.optional().read("further_beams", stage.beams, [&](const ConfigNode& node) -> Result<std::vector<Stage::Beam>> {
         for (const ConfigNode& item : TRY(node.items(1, kMostFurther))) TRY(readFurther(item, stage));
-        return stage.further;
+        return stage.beams;
     });
     fields.optional().read("standing", stage.standing, [&](const ConfigNode& node) -> Result<std::optional<Stage::Area>> {
-        return std::optional(TRY(readStanding(node, stage.light.z)));
+        return std::optional(TRY(readStanding(node, stage.beams[0].light.z)));
     });
     fields.optional().list(
         "platforms", stage.platforms, [&](const ConfigNode& node) { return readPlatform(node, stage, names); }, 0, kMostThings);
@@ -330,7 +328,7 @@ Result<Stage> readStage(const fs::path& file) {
         "props", stage.props, [&](const ConfigNode& node) { return readProp(node, stage, names); }, 0, kMostThings);
     TRY(fields.finish());
     if (lights == 0) return root.error(kNoLight);
-    if (stage.screens[0].isCurved()) TRY(checkBeam(root, stage, stage.beam(0)));
+    if (stage.screens[0].isCurved()) TRY(checkBeam(root, stage, stage.beams[0]));
     return stage;
 }
 

@@ -84,8 +84,7 @@ TEST_F(AdaptCommand, poses_follow_the_silhouette_and_the_feet_stay) {
     const auto& poses = motion.actors[0].poses;
     EXPECT_LT(glm::distance(poses[0].root, principal.root), 1e-9);
     const theatre::Body body = theatre::humanBody(motion.actors[0].stature);
-    EXPECT_GT(theatre::poseDifference(body, theatre::freedomsOf(body, poses[5]), poses[0]), 0.01)
-        << "some ten degrees in two joints";
+    EXPECT_GT(theatre::poseDifference(body, theatre::dofsOf(body, poses[5]), poses[0]), 0.01) << "some ten degrees in two joints";
 
     const auto report = nlohmann::json::parse(text("r.json"));
     EXPECT_LE(report["farthest_contact"].get<double>(), 0.01);

@@ -300,14 +300,9 @@ TEST(Check, a_cast_is_checked_with_what_it_is_of) {
     folder.file("a.stage.yaml", "fantascope: stage\nversion: 1\nlight: [0, 0, 7]\n");
     const theatre::Body body = theatre::humanBody(1.7);
     const theatre::ActorPose pose = theatre::poseOf(body, body.restPose({0, 1, 2}, {1, 0, 0, 0}));
-    theatre::Cast cast{folder / "t.png",
-                       1.7,
-                       theatre::readStage(folder / "a.stage.yaml").value(),
-                       folder / "a.stage.yaml",
-                       10,
-                       1,
-                       {{1.7, {pose, pose}}},
-                       theatre::Cast::Sequence{folder / "s.yaml", 0, 0}};
+    theatre::Cast cast{
+        {{folder / "t.png", 1.7}}, theatre::readStage(folder / "a.stage.yaml").value(), folder / "a.stage.yaml", 10, 1,
+        {{1.7, {pose, pose}}},     theatre::Cast::Sequence{folder / "s.yaml", 0, 0}};
     ASSERT_TRUE(theatre::writeCast(folder / "c.cast.yaml", cast));
     EXPECT_EQ(check(folder, {{folder / "c.cast.yaml"}, std::nullopt}).lines,
               "ok c.cast.yaml: cast, 1 actor, 2 frames, 10 a second, 1.7 m high\n"

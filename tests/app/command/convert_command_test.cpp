@@ -96,7 +96,7 @@ protected:
         const theatre::Body body = theatre::humanBody(cast.actors[actor].stature);
         theatre::PosedBody posed;
         for (std::size_t frame = 0; frame < cast.actors[actor].poses.size(); ++frame) {
-            posed.pose(body, theatre::freedomsOf(body, cast.actors[actor].poses[frame]));
+            posed.pose(body, theatre::dofsOf(body, cast.actors[actor].poses[frame]));
             const double at = cast.framesPerSecond > 0 ? double(frame) / cast.framesPerSecond : 0;
             for (std::size_t j = 0; j < body.joints.size(); ++j) {
                 std::string name = prefix + body.joints[j].name;
@@ -175,7 +175,7 @@ TEST_F(ConvertCommand, props_platforms_lamp_and_screen_come_along) {
     const theatre::Body::Point& hand = body.parts[static_cast<std::size_t>(theatre::BodyPart::LeftHand)];
     theatre::PosedBody posed;
     for (std::size_t frame = 0; frame < 3; ++frame) {
-        posed.pose(body, theatre::freedomsOf(body, cast.actors[1].poses[frame]));
+        posed.pose(body, theatre::dofsOf(body, cast.actors[1].poses[frame]));
         const glm::dvec3 expected = posed.point(hand.joint, hand.local + glm::dvec3(0.05, 0, 0));
         EXPECT_LT(glm::distance(imported.placeOf("prop parcel", double(frame) / 12.5), expected), 1e-4) << frame;
     }
@@ -188,7 +188,7 @@ TEST_F(ConvertCommand, further_lights_and_screens_come_along) {
                  "  - {light: [-6, 0.2, 5], screen: {at: [4, 0, 5], turned: -90}}\n  - {light: [1, 0.3, 6]}\n");
     theatre::Cast cast = writeACast(folder_, "a.cast.yaml", 1);
     cast.stageFile = folder_ / "corner.stage.yaml";
-    cast.further = {{cast.target, 1.6, 0}, {cast.target, 1.6, 0}};
+    for (int i = 0; i < 2; ++i) cast.targets.push_back({cast.targets[0].file, 1.6, 0});
     ASSERT_TRUE(theatre::writeCast(folder_ / "a.cast.yaml", cast));
     ASSERT_THAT(run({"convert", "a.cast.yaml", "-o", "a.glb"}), exits(0));
     const Imported imported(folder_ / "a.glb");
@@ -228,7 +228,7 @@ TEST_F(ConvertCommand, poses_in_between_go_through_the_frames) {
     const theatre::Body body = theatre::humanBody(cast.actors[0].stature);
     theatre::PosedBody posed;
     for (std::size_t frame = 0; frame < 3; ++frame) {
-        posed.pose(body, theatre::freedomsOf(body, cast.actors[0].poses[frame]));
+        posed.pose(body, theatre::dofsOf(body, cast.actors[0].poses[frame]));
         EXPECT_LT(
             glm::distance(imported.placeOf("actor 1 left wrist", double(frame) / 12.5), posed.place(body.joint("left wrist"))),
             2e-2)

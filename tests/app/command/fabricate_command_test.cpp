@@ -68,9 +68,9 @@ TEST_F(FabricateCommand, lamp_and_screen_are_where_the_shadow_is_the_poses) {
     const double screen = report["screen_mm"], mm = 1000 * report["scale"].get<double>();  // of the print, in a metre
     // The picture's rectangle on the screen: 11/9 as wide as high, before the lamp, on the floor.
     constexpr int kAcross = 500, kUp = 250;
-    const double pixel = cast.height * mm / 160;
+    const double pixel = cast.targets[0].height * mm / 160;
     const auto isTarget = [&](int x, int y) {
-        return std::abs(x + 0.5 - kAcross / 2) * pixel < cast.height * mm * 11 / 18 && y < 160;
+        return std::abs(x + 0.5 - kAcross / 2) * pixel < cast.targets[0].height * mm * 11 / 18 && y < 160;
     };
     std::vector<char> shadow(kAcross * kUp, 0);
     for (const glm::uvec3& triangle : print.triangles) {

@@ -45,7 +45,7 @@ TEST_F(PlotCommand, draws_a_pattern_or_a_report_by_what_it_is) {
 
 // Two people in T-poses, the first as in the first frame, the second raised in the second one.
 theatre::Cast aCast(const std::filesystem::path& target) {
-    theatre::Cast cast{target, 1.8, {}, {}, 10, 1, {}};
+    theatre::Cast cast{{{target, 1.8}}, {}, {}, 10, 1, {}};
     for (const double x : {-0.6, 0.6}) {
         const theatre::Body body = theatre::humanBody(1.7);
         const glm::dvec3 root(x, body.joints[0].offset.y, 1.5);

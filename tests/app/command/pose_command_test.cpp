@@ -75,8 +75,8 @@ TEST_F(PoseCommand, writes_a_cast_with_its_target_beside_it) {
     fs::rename(folder_ / "out", folder_ / "moved");  // as a folder it can go anywhere
     const auto cast = theatre::readCast(folder_ / "moved/c.cast.yaml");
     ASSERT_TRUE(cast) << cast.error().message();
-    EXPECT_EQ(readFile(cast->target).value(), text("hill.png"));
-    EXPECT_EQ(cast->height, 1.5);
+    EXPECT_EQ(readFile(cast->targets[0].file).value(), text("hill.png"));
+    EXPECT_EQ(cast->targets[0].height, 1.5);
     EXPECT_EQ(cast->seed, 7u);
     EXPECT_EQ(cast->framesPerSecond, 0);
     ASSERT_EQ(cast->actors.size(), 2u);
@@ -109,7 +109,7 @@ TEST_F(PoseCommand, ink_on_paper_is_noticed_and_turned_over_beside_the_cast) {
     EXPECT_THAT(done.errors, Not(HasSubstr("ink on white paper")));
     EXPECT_THAT(written(), ElementsAre("c.cast.yaml", "c.inverted.png"));
     EXPECT_EQ(readGrey(folder_ / "out/c.inverted.png").value(), hill);
-    EXPECT_EQ(theatre::readCast(folder_ / "out/c.cast.yaml").value().target, folder_ / "out/c.inverted.png");
+    EXPECT_EQ(theatre::readCast(folder_ / "out/c.cast.yaml").value().targets[0].file, folder_ / "out/c.inverted.png");
     ASSERT_TRUE(
         writeFile(folder_ / "two.stage.yaml",
                   "fantascope: stage\nversion: 1\nlight: [0, 0, 7]\nfurther_beams:\n  - {light: [-4, 0, 1.5], screen: {at: "
@@ -254,14 +254,14 @@ TEST_F(PoseCommand, leaves_meshes_that_throw_the_shadow_that_it_reports) {
 
     // Against the skins of the cast.
     const theatre::Cast cast = theatre::readCast(folder_ / "out/c.cast.yaml").value();
-    const theatre::PoseTarget laid = theatre::PoseTarget::from(target, cast.stage, cast.height, 256).value();
+    const theatre::PoseTarget laid = theatre::PoseTarget::from(target, cast.stage, cast.targets[0].height, 256).value();
     theatre::BitMask mask(240, 140);
     theatre::MeshShadow skinShadow;
     for (const theatre::Cast::Actor& actor : cast.actors) {
         const theatre::Body body = theatre::humanBody(actor.stature);
         const theatre::BodyMesh mesh = theatre::humanMesh(body);
         theatre::PosedBody posed;
-        posed.pose(body, theatre::freedomsOf(body, actor.poses[0]));
+        posed.pose(body, theatre::dofsOf(body, actor.poses[0]));
         std::vector<glm::vec3> vertices;
         mesh.skin(body, posed, vertices);
         ASSERT_TRUE(skinShadow.add(laid.given, mesh, vertices, mask));
@@ -431,8 +431,8 @@ TEST_F(PoseCommand, one_set_of_poses_serves_several_screens) {
     fs::rename(folder_ / "out", folder_ / "moved");
     const auto cast = theatre::readCast(folder_ / "moved/c.cast.yaml");
     ASSERT_TRUE(cast) << cast.error().message();
-    ASSERT_EQ(cast->further.size(), 1u);
-    EXPECT_EQ(readFile(cast->further[0].file).value(), text("wall.png"));
+    ASSERT_EQ(cast->targets.size(), 2u);
+    EXPECT_EQ(readFile(cast->targets[1].file).value(), text("wall.png"));
     for (const char* figure : {"cast", "stage", "shadow", "side"})
         EXPECT_THAT(run({"plot", "moved/c.cast.yaml", "--figure", figure, "-o", "moved/f.png"}), exits(0)) << figure;
     // What follows a silhouette that moves knows one flat screen.

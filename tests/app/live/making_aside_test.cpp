@@ -90,7 +90,7 @@ protected:
         auto reluctant = std::make_unique<ReluctantDisplay>(std::move(run_.devices.displays[kReluctant]), run_.clock);
         display_ = reluctant.get();
         run_.devices.displays[kReluctant] = std::move(reluctant);
-        const std::vector<render::PictureSource> sources(run_.show.sources.size(), render::SolidSource{});
+        const auto sources = render::PictureSources::numbered({run_.show.sources.size(), render::SolidSource{}});
         loop_.emplace(run_.site, run_.inputs, sources, sourceFolder() + "/assets", run_.devices, run_.clock);
         EXPECT_TRUE(loop_->prepare());
         EXPECT_EQ(display_->attempts, 1) << "nobody watches yet";

@@ -128,7 +128,7 @@ protected:
         wrap<BreakableBank>(devices_.relayBanks[0], "relays");
         wrap<BreakableController>(devices_.cueController, "input");
         wrap<BreakableCamera>(devices_.camera, "watch");
-        const std::vector<render::PictureSource> sources(show_.sources.size(), render::SolidSource{});
+        const auto sources = render::PictureSources::numbered({show_.sources.size(), render::SolidSource{}});
         frames_.emplace(site_, inputs_, sources, sourceFolder() + "/assets", devices_, clock_);
         std::vector<Recording::Output> outputs;
         std::vector<std::string> names;
@@ -145,7 +145,7 @@ protected:
         const show::ShowClock showClock(start_);
         lighting_.emplace(site_, inputs_, devices_, clock_, showClock, recording_.get(), faults_, events_);
         hand_.emplace(show_, inputs_, site_, devices_, showClock, events_);
-        const std::vector<Watch::Comparisons> nothing(names.size(), Watch::Comparisons(show_.sources.size()));
+        const std::vector<Watch::Comparisons> nothing(names.size(), Watch::Comparisons());
         watch_.emplace(show_, names, nothing, devices_.camera.get(), nullptr, showClock, recording_.get());
         screenshots_.emplace(folder_ / "pictures", show_, inputs_, names, pictured, showClock, events_);
         deviceWatch_.emplace(faults_, std::vector<std::string>{site_.relayBanks[0].name}, start_);

@@ -27,7 +27,7 @@ Contacts on(std::vector<Contact> discs) {
 double supportMargin(const Contacts& contacts, const dvec3& massCentre) { return contacts.support.margin(massCentre); }
 double supportArea(const Contacts& contacts) { return contacts.support.area(); }
 
-TEST(SupportMargin, OfASquareIsTheDistanceToItsNearestSide) {
+TEST(SupportMargin, of_a_square_is_the_distance_to_its_nearest_side) {
     const Contacts square = on({{{0, 0}, 0}, {{1, 0}, 0}, {{1, 1}, 0}, {{0, 1}, 0}, {{0.5, 0.4}, 0}});
     EXPECT_NEAR(supportMargin(square, {0.5, 9, 0.5}), 0.5, 1e-9);
     EXPECT_NEAR(supportMargin(square, {0.3, 1, 0.6}), 0.3, 1e-9);
@@ -40,13 +40,13 @@ TEST(SupportMargin, OfASquareIsTheDistanceToItsNearestSide) {
     EXPECT_NEAR(supportArea(square), 1, 1e-9);
 }
 
-TEST(SupportMargin, OfFeetReachesAroundTheirDiscs) {
+TEST(SupportMargin, of_feet_reaches_around_their_discs) {
     const Contacts square = on({{{0, 0}, 0.1}, {{1, 0}, 0.1}, {{1, 1}, 0.1}, {{0, 1}, 0.1}});
     EXPECT_NEAR(supportMargin(square, {0.5, 1, 0.9}), 0.2, 1e-9);
     EXPECT_NEAR(supportArea(square), 1 + 0.4 + std::numbers::pi * 0.01, 1e-9);
 }
 
-TEST(SupportMargin, OfOneContactIsOfItsDisc) {
+TEST(SupportMargin, of_one_contact_is_of_its_disc) {
     const Contacts disc = on({{{2, 3}, 0.2}});
     EXPECT_NEAR(supportMargin(disc, {2, 1, 3}), 0.2, 1e-9);
     EXPECT_NEAR(supportMargin(disc, {2.09, 1, 3.12}), 0.05, 1e-9);
@@ -54,7 +54,7 @@ TEST(SupportMargin, OfOneContactIsOfItsDisc) {
     EXPECT_NEAR(supportArea(disc), std::numbers::pi * 0.04, 1e-9);
 }
 
-TEST(SupportMargin, OfTwoContactsIsOfTheBandAround) {
+TEST(SupportMargin, of_two_contacts_is_of_the_band_around) {
     const Contacts band = on({{{0, 0}, 0.05}, {{2, 0}, 0.05}});
     EXPECT_NEAR(supportMargin(band, {1, 1, 0}), 0.05, 1e-9);
     EXPECT_NEAR(supportMargin(band, {1, 1, 0.03}), 0.02, 1e-9);
@@ -70,7 +70,7 @@ PlacedSphere ball(dvec3 place, double radius) { return {place, radius}; }
 
 // On a narrow band the mass centre is as near to one side as to the other: to move from the nearest
 // alone helps nothing.
-TEST(SupportPolygon, FindsTangentsOfAllSidesThatAreNearlyAsNear) {
+TEST(SupportPolygon, finds_tangents_of_all_sides_that_are_nearly_as_near) {
     const SupportPolygon band = on({{{-0.1, 0}, 0.01}, {{0.1, 0}, 0.01}}).support;
     std::vector<SupportTangent> tangents;
     band.findTangents({0.02, 1, 0}, 0.005, tangents);
@@ -92,7 +92,7 @@ TEST(SupportPolygon, FindsTangentsOfAllSidesThatAreNearlyAsNear) {
 }
 
 // Example failure: of 48 fixed directions none is across the long side, and the nearest says 21 mm.
-TEST(SupportPolygon, KnowsHowNearALongSideIsThatIsTurned) {
+TEST(SupportPolygon, knows_how_near_a_long_side_is_that_is_turned) {
     const double turn = radians(3.75);
     const auto turned = [&](double x, double y) {
         return glm::dvec2(std::cos(turn) * x - std::sin(turn) * y, std::sin(turn) * x + std::cos(turn) * y);
@@ -175,7 +175,7 @@ std::vector<Contact> someStance(Rng& rng) {
     return discs;
 }
 
-TEST(SupportPolygon, IsThatOfAllPairsForRandomStances) {
+TEST(SupportPolygon, is_that_of_all_pairs_for_random_stances) {
     const char* const asked = std::getenv("FANTASCOPE_STANCES");  // 100000 for a thorough run
     const int stances = asked != nullptr ? std::atoi(asked) : 3000;
     Rng rng(1);
@@ -196,7 +196,7 @@ TEST(SupportPolygon, IsThatOfAllPairsForRandomStances) {
 // How the margin changes with the place and the radius of each contact and with the mass centre. At
 // a kink, such as with a third contact on an edge, there is no derivative: the differences to both
 // sides are not alike.
-TEST(SupportPolygon, TangentsHoldTheDerivativesOfTheMargin) {
+TEST(SupportPolygon, tangents_hold_the_derivatives_of_the_margin) {
     Rng rng(2);
     constexpr double kStep = 1e-6;
     int compared = 0, kinks = 0;
@@ -235,7 +235,7 @@ TEST(SupportPolygon, TangentsHoldTheDerivativesOfTheMargin) {
     EXPECT_LT(kinks, 0.25 * compared);
 }
 
-TEST(FindContacts, CutsBallsAtTheTouchingHeight) {
+TEST(FindContacts, cuts_balls_at_the_touching_height) {
     Contacts contacts;
     // Resting, sunk by 1 cm, lifted by 5 mm, and far above.
     findContacts(std::vector{ball({1, 0.1, 2}, 0.1), ball({3, 0.09, 2}, 0.1), ball({5, 0.105, 2}, 0.1), ball({7, 0.5, 2}, 0.1)},
@@ -249,13 +249,13 @@ TEST(FindContacts, CutsBallsAtTheTouchingHeight) {
     EXPECT_NEAR(contacts.discs[2].radius, chord(0.095), 1e-12);
 }
 
-TEST(FindContacts, NothingSunkIsWiderThanTheBall) {
+TEST(FindContacts, nothing_sunk_is_wider_than_the_ball) {
     Contacts contacts;
     findContacts(std::vector{ball({0, -3, 0}, 0.1)}, contacts);
     EXPECT_NEAR(contacts.discs[0].radius, 0.1, 1e-12);
 }
 
-TEST(FindContacts, WhatTouchesNothingStandsOnItsLowestPoint) {
+TEST(FindContacts, what_touches_nothing_stands_on_its_lowest_point) {
     Contacts contacts;
     findContacts(std::vector{ball({0, 0.1, 0}, 0.1)}, contacts);
     findContacts(std::vector{ball({4, 2, 5}, 0.3), ball({1, 1.9, 2}, 0.1)}, contacts);
@@ -268,7 +268,7 @@ TEST(FindContacts, WhatTouchesNothingStandsOnItsLowestPoint) {
 }
 
 // By hand: as of balls without size.
-TEST(FindBearings, OfASkinFadeAsThoseOfBalls) {
+TEST(FindBearings, of_a_skin_fade_as_those_of_balls) {
     Contacts contacts, ofBalls;
     const std::vector<glm::vec3> vertices{{0, 0.2f, 0}, {1, 0.205f, 0}, {0, 0.215f, 2}, {4, 0.2251f, 4}, {0, 1, 9}};
     findBearings(vertices, {}, 0.02, contacts);
@@ -283,7 +283,7 @@ TEST(FindBearings, OfASkinFadeAsThoseOfBalls) {
 }
 
 // By hand: a ball of 10 cm on the floor, one 5 mm above it, one a half and one wholly faded.
-TEST(FindBearings, WhatIsHigherBearsLess) {
+TEST(FindBearings, what_is_higher_bears_less) {
     Contacts contacts;
     const double bearing = 0.02;
     const std::vector balls{ball({0, 0.1, 0}, 0.1), ball({1, 0.105, 0}, 0.1), ball({0, 0.115, 2}, 0.1),
@@ -299,7 +299,7 @@ TEST(FindBearings, WhatIsHigherBearsLess) {
     EXPECT_TRUE(contacts.touches);
 }
 
-TEST(FindBearings, IsAsIfOnTheFloorAndWithoutJumps) {
+TEST(FindBearings, is_as_if_on_the_floor_and_without_jumps) {
     const glm::dvec3 centre(0.4, 1, 0.2);
     double last = 0;
     for (int i = 0; i <= 300; ++i) {
@@ -318,7 +318,7 @@ TEST(FindBearings, IsAsIfOnTheFloorAndWithoutJumps) {
     EXPECT_LT(last, -0.3);
 }
 
-TEST(FindContacts, KnowsHowLowTheLowestPointIs) {
+TEST(FindContacts, knows_how_low_the_lowest_point_is) {
     Contacts contacts;
     findContacts(std::vector{ball({1, 0.1, 2}, 0.1), ball({3, 0.07, 2}, 0.1)}, contacts);
     EXPECT_NEAR(contacts.lowest, -0.03, 1e-12);
@@ -330,7 +330,7 @@ TEST(FindContacts, KnowsHowLowTheLowestPointIs) {
 }
 
 // Few points stand for all: margins and areas are those of all vertices that touch.
-TEST(FindContacts, OfASkinAreTheCornersOfWhatTouches) {
+TEST(FindContacts, of_a_skin_are_the_corners_of_what_touches) {
     Rng rng(1);
     for (const int count : {1, 2, 5, 300}) {
         std::vector<glm::vec3> vertices;
@@ -356,7 +356,7 @@ TEST(FindContacts, OfASkinAreTheCornersOfWhatTouches) {
 }
 
 // An edge from the floor up to 4 cm touches with its lowest quarter.
-TEST(FindContacts, CutsTheEdgesOfASkin) {
+TEST(FindContacts, cuts_the_edges_of_a_skin) {
     Contacts contacts;
     const std::vector<glm::vec3> vertices{{0, 0, 0}, {0, 0, 1}, {4, 0.04f, 0}};
     const std::vector<MeshEdge> edges{{0, 2, 0, 1}};
@@ -365,7 +365,7 @@ TEST(FindContacts, CutsTheEdgesOfASkin) {
     EXPECT_NEAR(supportMargin(contacts, {1.5, 1, 0}), -0.5, 2e-3);
 }
 
-TEST(FindContacts, APersonStandsOnItsSoles) {
+TEST(FindContacts, a_person_stands_on_its_soles) {
     const Body body = humanBody(1.75);
     const BodyMesh mesh = humanMesh(body);
     PosedBody posed;

@@ -1,5 +1,6 @@
 #include "theatre/body/body_mesh.h"
 
+#include "theatre/a_stage.h"
 #include "theatre/stage/capsule_shadow.h"
 #include "theatre/stage/mesh_shadow.h"
 
@@ -56,7 +57,7 @@ double outsideOf(const PosedBody& posed, const dvec3& point) {
     return outside;
 }
 
-TEST(HumanMesh, IsClosedAndInOnePieceWithoutHoles) {
+TEST(HumanMesh, is_closed_and_in_one_piece_without_holes) {
     const BodyMesh& mesh = theMesh();
     const std::vector<glm::uvec3>& triangles = mesh.atRest.triangles;
     EXPECT_GE(triangles.size(), 4500u);
@@ -105,7 +106,7 @@ TEST(HumanMesh, IsClosedAndInOnePieceWithoutHoles) {
 }
 
 // Flesh weighs about as much as water.
-TEST(HumanMesh, HoldsWhatTheBodyWeighsAndLooksOutward) {
+TEST(HumanMesh, holds_what_the_body_weighs_and_looks_outward) {
     for (const double stature : {1.2, 1.75, 2.0}) {
         const Body body = humanBody(stature);
         const BodyMesh mesh = humanMesh(body);
@@ -116,7 +117,7 @@ TEST(HumanMesh, HoldsWhatTheBodyWeighsAndLooksOutward) {
     }
 }
 
-TEST(HumanMesh, ScalesWithTheStature) {
+TEST(HumanMesh, scales_with_the_stature) {
     const BodyMesh large = humanMesh(humanBody(2)), small = humanMesh(humanBody(1));
     ASSERT_EQ(large.atRest.vertices.size(), small.atRest.vertices.size());
     EXPECT_EQ(large.joints, small.joints);
@@ -124,7 +125,7 @@ TEST(HumanMesh, ScalesWithTheStature) {
         EXPECT_EQ(large.atRest.vertices[v], 2.0f * small.atRest.vertices[v]);
 }
 
-TEST(HumanMesh, StandsOnFlatSolesAsHighAsTheBody) {
+TEST(HumanMesh, stands_on_flat_soles_as_high_as_the_body) {
     const auto [least, most] = std::minmax_element(theMesh().atRest.vertices.begin(), theMesh().atRest.vertices.end(),
                                                    [](const vec3& a, const vec3& b) { return a.y < b.y; });
     PosedBody posed;
@@ -138,7 +139,7 @@ TEST(HumanMesh, StandsOnFlatSolesAsHighAsTheBody) {
     EXPECT_GE(touching, 20);
 }
 
-TEST(HumanMesh, EveryVertexFollowsJointsThatAreNeighbours) {
+TEST(HumanMesh, has_vertices_that_follow_joints_that_are_neighbours) {
     const BodyMesh& mesh = theMesh();
     for (std::size_t v = 0; v < mesh.shares.size(); ++v) {
         float sum = 0;
@@ -154,12 +155,12 @@ TEST(HumanMesh, EveryVertexFollowsJointsThatAreNeighbours) {
     }
 }
 
-TEST(BodyMesh, SkinOfTheRestPoseIsTheMeshAtRest) {
+TEST(BodyMesh, is_as_at_rest_in_the_rest_pose) {
     const auto skin = skinOf(theBody(), theMesh(), theBody().restPose(theBody().joints[0].offset, kNoTurn));
     for (std::size_t v = 0; v < skin.size(); ++v) EXPECT_LT(glm::distance(skin[v], theMesh().atRest.vertices[v]), 1e-6f);
 }
 
-TEST(BodyMesh, MovesRigidlyWithTheRoot) {
+TEST(BodyMesh, moves_rigidly_with_the_root) {
     Rng rng(3);
     for (int trial = 0; trial < 10; ++trial) {
         const dquat turn = randomTurn(rng);
@@ -174,14 +175,14 @@ TEST(BodyMesh, MovesRigidlyWithTheRoot) {
 
 // Of two rods the second follows its own joint; what lies between on the hinge's circle keeps its
 // distance from the hinge.
-TEST(BodyMesh, BentHalfWayItKeepsTheGirth) {
+TEST(BodyMesh, bent_half_way_it_keeps_the_girth) {
     Body body;
     body.joints.resize(2);
     body.joints[0].offset = {0, 1, 0};
     body.joints[1].offset = {1, 0, 0};
     body.joints[1].motion = JointMotion::axial({0, 0, 1}, -3, 3);
-    body.joints[1].first = Body::kRootFreedoms;
-    body.freedoms = Body::kRootFreedoms + 1;
+    body.joints[1].first = Body::kRootDofs;
+    body.dofs = Body::kRootDofs + 1;
     BodyMesh mesh;
     mesh.atRest.vertices = {{1, 1.5f, 0}, {2, 1, 0}, {0.5f, 1, 0}};
     mesh.joints = {{0, 1}, {1}, {0}};
@@ -195,7 +196,7 @@ TEST(BodyMesh, BentHalfWayItKeepsTheGirth) {
 
 // A knee or an elbow that is bent as far as it goes neither loses nor gains a tenth of the whole
 // body's volume, and its skin keeps some distance from the joint.
-TEST(BodyMesh, LimbsDoNotCollapseWhereTheyBend) {
+TEST(BodyMesh, has_limbs_that_do_not_collapse_where_they_bend) {
     for (const auto& [name, radius] : {std::pair("left knee", 0.035), std::pair("right elbow", 0.025)}) {
         std::vector<double> pose = theBody().restPose(theBody().joints[0].offset, kNoTurn);
         const std::uint32_t joint = theBody().joint(name);
@@ -215,7 +216,7 @@ TEST(BodyMesh, LimbsDoNotCollapseWhereTheyBend) {
 
 // What docs/benchmarks.md says of the gap between the skin and the capsules that stand for it. The
 // search sees only these.
-TEST(HumanBody, CapsulesStandForTheSkin) {
+TEST(HumanBody, has_capsules_that_stand_for_the_skin) {
     Rng rng(5);
     PosedBody posed;
     posed.pose(theBody(), theBody().restPose(theBody().joints[0].offset, kNoTurn));
@@ -227,7 +228,7 @@ TEST(HumanBody, CapsulesStandForTheSkin) {
     }
     EXPECT_LT(beyond, theMesh().atRest.vertices.size() / 20) << "nearly all of the skin is no farther out than 5 mm";
 
-    const ScreenFrame frame(Stage{{0, 0, 7}}, -2, 3, 0.0025, 1600, 1600);
+    const ScreenFrame frame(aStage({0, 0, 7}), -2, 3, 0.0025, 1600, 1600);
     MeshShadow meshShadow;
     CapsuleShadow capsuleShadow;
     std::vector<vec3> skin;
@@ -251,7 +252,7 @@ TEST(HumanBody, CapsulesStandForTheSkin) {
 }
 
 // Whoever searches with the simpler skin finds poses for the whole one.
-TEST(HumanMesh, TheSimplerOneThrowsTheSameShadow) {
+TEST(HumanMesh, throws_the_same_shadow_if_it_is_the_simpler_one) {
     ASSERT_TRUE(theMesh().simpler);
     const BodyMesh& simpler = *theMesh().simpler;
     EXPECT_LE(simpler.atRest.triangles.size(), 1500u);
@@ -265,7 +266,7 @@ TEST(HumanMesh, TheSimplerOneThrowsTheSameShadow) {
     constexpr int kPoses = 40;
     for (int i = 0; i < kPoses; ++i) {
         std::vector<double> pose = theBody().restPose({0, 1, 2}, randomTurn(rng));
-        for (std::size_t k = Body::kRootFreedoms; k < pose.size(); ++k) pose[k] = rng.uniform(-1, 1);
+        for (std::size_t k = Body::kRootDofs; k < pose.size(); ++k) pose[k] = rng.uniform(-1, 1);
         theBody().limit(pose);
         PosedBody posed;
         posed.pose(theBody(), pose);
@@ -287,7 +288,7 @@ TEST(HumanMesh, TheSimplerOneThrowsTheSameShadow) {
     EXPECT_GT(worst, 0.97);
 }
 
-TEST(EdgesOf, AreTheTwoSidesOfEachEdgeOfAClosedMesh) {
+TEST(EdgesOf, are_the_two_sides_of_each_edge_of_a_closed_mesh) {
     TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
     const std::vector<MeshEdge> edges = edgesOf(tetrahedron);
     EXPECT_EQ(edges.size(), 6u);

@@ -47,7 +47,7 @@ protected:
 };
 INSTANTIATE_TEST_SUITE_P(FromChildToTall, BodyOfStature, testing::Values(1.1, 1.7, 2.0));
 
-TEST_P(BodyOfStature, StandsOnTheFloorAndIsAsHighAsAsked) {
+TEST_P(BodyOfStature, stands_on_the_floor_and_is_as_high_as_asked) {
     const PosedBody posed = atRest(body);
     EXPECT_NEAR(posed.lowest(), 0, 1e-3);
     EXPECT_NEAR(top(posed), stature, 0.01 * stature);
@@ -55,7 +55,7 @@ TEST_P(BodyOfStature, StandsOnTheFloorAndIsAsHighAsAsked) {
 
 // Segments as Winter 2009, figure 4.1, gives them; reach from finger to finger is a little more
 // than the stature.
-TEST_P(BodyOfStature, HasSegmentsOfAnthropometricLengths) {
+TEST_P(BodyOfStature, has_segments_of_anthropometric_lengths) {
     const PosedBody posed = atRest(body);
     const auto apart = [&](const char* a, const char* b) {
         return glm::distance(posed.place(body.joint(a)), posed.place(body.joint(b))) / stature;
@@ -72,21 +72,21 @@ TEST_P(BodyOfStature, HasSegmentsOfAnthropometricLengths) {
     EXPECT_LT(span, 1.10 * stature);
 }
 
-TEST_P(BodyOfStature, WeighsTwentyTwoTimesItsSquaredStature) {
+TEST_P(BodyOfStature, weighs_twenty_two_times_its_squared_stature) {
     EXPECT_NEAR(body.mass(), 22 * stature * stature, 1e-3 * body.mass());
     double sum = 0;
     for (const Body::Joint& joint : body.joints) sum += joint.mass;
     EXPECT_DOUBLE_EQ(body.mass(), sum);
 }
 
-TEST(Body, AJointThatItHasNotEndsTheProgram) {
+TEST(Body, ends_the_program_for_a_joint_that_it_has_not) {
     const Body body = humanBody(1.7);
     EXPECT_EQ(body.joints[body.joint("neck")].name, "neck");
     EXPECT_DEATH(static_cast<void>(body.joint("tail")), "a joint is named that the body has");
 }
 
 // In places, masses, girths, and in how its joints may turn.
-TEST_P(BodyOfStature, RightMirrorsLeft) {
+TEST_P(BodyOfStature, mirrors_left_at_the_right) {
     const PosedBody posed = atRest(body);
     int pairs = 0;
     Rng rng(1);
@@ -123,7 +123,7 @@ TEST_P(BodyOfStature, RightMirrorsLeft) {
         }));
 }
 
-TEST_P(BodyOfStature, RestPoseIsATPoseWithinTheLimits) {
+TEST_P(BodyOfStature, rests_in_a_t_pose_within_the_limits) {
     std::vector<double> pose = body.restPose({1, 2, 3}, rotationOf({0, 1, 0}));
     PosedBody posed;
     posed.pose(body, pose);
@@ -135,17 +135,17 @@ TEST_P(BodyOfStature, RestPoseIsATPoseWithinTheLimits) {
     EXPECT_THAT(pose, testing::Pointwise(testing::DoubleNear(1e-12), before));
 }
 
-TEST_P(BodyOfStature, FreedomsAreNumberedWithoutGaps) {
-    std::size_t next = Body::kRootFreedoms;
+TEST_P(BodyOfStature, has_degrees_of_freedom_numbered_without_gaps) {
+    std::size_t next = Body::kRootDofs;
     for (std::size_t i = 1; i < body.joints.size(); ++i) {
         EXPECT_LT(body.joints[i].parent, i);
         EXPECT_EQ(body.joints[i].first, next);
         next += body.joints[i].motion.size();
     }
-    EXPECT_EQ(body.freedoms, next);
+    EXPECT_EQ(body.dofs, next);
 }
 
-TEST_P(BodyOfStature, PairsToKeepApartAreNeitherNeighboursNorTogetherAtRest) {
+TEST_P(BodyOfStature, keeps_apart_pairs_that_are_neither_neighbours_nor_together_at_rest) {
     const PosedBody posed = atRest(body);
     std::set<std::pair<std::string, std::string>> joints;
     for (const auto& [i, j] : body.apart) {
@@ -164,7 +164,7 @@ TEST_P(BodyOfStature, PairsToKeepApartAreNeitherNeighboursNorTogetherAtRest) {
         EXPECT_TRUE(joints.contains(pair)) << pair.first << ", " << pair.second;
 }
 
-TEST(HumanBody, BendsAsPeopleDo) {
+TEST(HumanBody, bends_as_people_do) {
     const Body body = humanBody(1.7);
     const PosedBody rest = atRest(body);
     for (const std::string side : {"left ", "right "}) {
@@ -198,7 +198,7 @@ TEST(HumanBody, BendsAsPeopleDo) {
 double angleOf(const dvec3& a, const dvec3& b) { return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)); }
 
 // A thigh lifts to the front beyond the horizontal, hardly to the back; an arm hangs and points up.
-TEST(HumanBody, ReachesWherePeopleDo) {
+TEST(HumanBody, reaches_where_people_do) {
     const Body body = humanBody(1.7);
     const auto far = [&](const char* joint, dvec3 axis, const dquat& turn) {
         const JointMotion& motion = body.joints[body.joint(joint)].motion;
@@ -216,7 +216,7 @@ TEST(HumanBody, ReachesWherePeopleDo) {
     EXPECT_GT(far("left shoulder", {1, 0, 0}, rotationOf({0, 1.7, 0})), 20);
 }
 
-TEST(Body, LimitKeepsTheRootsOrientation) {
+TEST(Body, keeps_the_orientation_of_its_root_when_limited) {
     const Body body = humanBody(1.7);
     std::vector<double> pose = body.restPose({0, 1, 2}, kNoTurn);
     const dvec3 turn = 4.0 * glm::normalize(dvec3(1, 2, -2));

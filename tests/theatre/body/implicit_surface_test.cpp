@@ -31,7 +31,7 @@ int eulerOf(const TriangleMesh& mesh) {
     return static_cast<int>(mesh.vertices.size()) - static_cast<int>(edges.size()) + static_cast<int>(mesh.triangles.size());
 }
 
-TEST(ImplicitSurface, OfABallLiesOnItAndLooksOutward) {
+TEST(ImplicitSurface, of_a_ball_lies_on_it_and_looks_outward) {
     const auto ball = [](const dvec3& p) { return glm::length(p) - 0.8; };
     GridPlanes planes = cube(1, 30);
     // Planes may stand unevenly.
@@ -43,14 +43,14 @@ TEST(ImplicitSurface, OfABallLiesOnItAndLooksOutward) {
     EXPECT_NEAR(volumeOf(mesh), whole, 0.01 * whole);
 }
 
-TEST(ImplicitSurface, OfARingHasItsHole) {
+TEST(ImplicitSurface, of_a_ring_has_its_hole) {
     const auto ring = [](const dvec3& p) { return std::hypot(std::hypot(p.x, p.y) - 0.6, p.z) - 0.2; };
     EXPECT_EQ(eulerOf(implicitSurface(ring, cube(1, 33), 1.1)), 0);
 }
 
 // Corners that lie on the surface itself, thin walls, two pieces that touch in an edge of the grid:
 // still closed.
-TEST(ImplicitSurface, IsClosedWhateverTheField) {
+TEST(ImplicitSurface, is_closed_whatever_the_field) {
     const auto onTheGrid = [](const dvec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) - 0.5; };
     EXPECT_EQ(eulerOf(implicitSurface(onTheGrid, cube(1, 8), 2)), 2);
     const auto rough = [](const dvec3& p) {
@@ -60,7 +60,7 @@ TEST(ImplicitSurface, IsClosedWhateverTheField) {
 }
 
 // Far from the surface the field is not asked for.
-TEST(ImplicitSurface, LooksCloselyOnlyNearTheSurface) {
+TEST(ImplicitSurface, looks_closely_only_near_the_surface) {
     int asked = 0;
     const auto ball = [&](const dvec3& p) { return ++asked, glm::length(p) - 0.8; };
     const auto mesh = implicitSurface(ball, cube(1, 80), 1.1);

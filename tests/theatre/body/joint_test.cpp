@@ -31,12 +31,12 @@ std::vector<double> anyNumbers(const JointMotion& motion, Rng& rng) {
     return numbers;
 }
 
-TEST(RotationVector, TurnsByItsLengthAboutItsDirection) {
+TEST(RotationVector, turns_by_its_length_about_its_direction) {
     EXPECT_LT(glm::distance(rotationOf(pi / 2 * kZ) * kX, kY), 1e-15);
     EXPECT_LT(glm::distance(rotationOf(2 * pi / 3 * glm::normalize(dvec3(1))) * kX, kY), 1e-15);
 }
 
-TEST(RotationVector, ComesBackFromItsRotationNearNoneAndNearAHalfTurn) {
+TEST(RotationVector, comes_back_from_its_rotation_near_none_and_near_a_half_turn) {
     const dvec3 direction = glm::normalize(dvec3(2, -1, 3));
     for (const double angle : {0.0, 1e-13, 1e-9, 0.99e-4, 1.01e-4, 0.5, pi - 1e-3, pi - 1e-9}) {
         EXPECT_LT(glm::distance(vectorOf(rotationOf(angle * direction)), angle * direction), 1e-12 + 1e-9 * angle) << angle;
@@ -44,13 +44,13 @@ TEST(RotationVector, ComesBackFromItsRotationNearNoneAndNearAHalfTurn) {
     }
 }
 
-TEST(RotationVector, IsNoLongerThanAHalfTurn) {
+TEST(RotationVector, is_no_longer_than_a_half_turn) {
     const dvec3 direction = glm::normalize(dvec3(2, -1, 3));
     EXPECT_LT(glm::distance(vectorOf(rotationOf((pi + 0.5) * direction)), -(pi - 0.5) * direction), 1e-12);
     EXPECT_LT(glm::distance(vectorOf(rotationOf(2 * pi * direction)), dvec3(0)), 1e-12);
 }
 
-TEST(RotationVector, LeftJacobianIsWhatAChangeAddsInFront) {
+TEST(RotationVector, has_the_left_jacobian_that_a_change_adds_in_front) {
     Rng rng(1);
     const double step = 1e-6;
     for (const double size : {0.0, 1e-6, 0.9e-4, 1.2e-4, 0.1, 1.0, 2.5}) {
@@ -61,7 +61,7 @@ TEST(RotationVector, LeftJacobianIsWhatAChangeAddsInFront) {
     }
 }
 
-TEST(JointLimit, MeasuresByHand) {
+TEST(JointLimit, measures_what_is_found_by_hand) {
     using Kind = JointLimit::Kind;
     // A third of a turn about y and then, in its frame, half a radian about the axis x.
     const dquat q = rotationOf(1.2 * kY) * rotationOf(0.5 * kX);
@@ -74,7 +74,7 @@ TEST(JointLimit, MeasuresByHand) {
     EXPECT_NEAR((JointLimit{Kind::Spherical, kX, rotationOf(3.0 * kY)}.measure(rotationOf(-3.0 * kY))), 2 * pi - 6, 1e-12);
 }
 
-TEST(JointLimit, ConeIsTheAngleByWhichTheAxisTips) {
+TEST(JointLimit, measures_a_cone_by_the_angle_by_which_the_axis_tips) {
     Rng rng(2);
     for (int i = 0; i < 200; ++i) {
         const dquat q = randomTurn(rng), centre = randomTurn(rng);
@@ -83,7 +83,7 @@ TEST(JointLimit, ConeIsTheAngleByWhichTheAxisTips) {
     }
 }
 
-TEST(JointLimit, BothQuaternionsOfAnOrientationMeasureTheSame) {
+TEST(JointLimit, measures_the_same_of_both_quaternions_of_an_orientation) {
     Rng rng(3);
     for (int i = 0; i < 200; ++i) {
         const dquat q = randomTurn(rng), centre = randomTurn(rng);
@@ -95,7 +95,7 @@ TEST(JointLimit, BothQuaternionsOfAnOrientationMeasureTheSame) {
     }
 }
 
-TEST(JointMotion, WhatIsWithinInNumbersIsWithinInMeasures) {
+TEST(JointMotion, is_within_the_measures_if_it_is_within_the_numbers) {
     Rng rng(4);
     for (const JointMotion& motion : motions())
         for (int i = 0; i < 200; ++i) {
@@ -109,7 +109,7 @@ TEST(JointMotion, WhatIsWithinInNumbersIsWithinInMeasures) {
         }
 }
 
-TEST(JointMotion, LimitsReachTheirBoundsAndLeaveWhatIsWithin) {
+TEST(JointMotion, limits_reach_their_bounds_and_leave_what_is_within) {
     for (const JointMotion& motion : motions()) {
         std::vector<double> far(motion.size(), 30.0), near(motion.size(), 0.01);
         motion.limit(far);
@@ -123,7 +123,7 @@ TEST(JointMotion, LimitsReachTheirBoundsAndLeaveWhatIsWithin) {
     }
 }
 
-TEST(JointMotion, NumbersComeBackFromTheirOrientation) {
+TEST(JointMotion, numbers_come_back_from_their_orientation) {
     Rng rng(5);
     for (const JointMotion& motion : motions())
         for (int i = 0; i < 200; ++i) {
@@ -136,7 +136,7 @@ TEST(JointMotion, NumbersComeBackFromTheirOrientation) {
         }
 }
 
-TEST(JointMotion, NumbersOfAnyOrientationAreWithinTheLimits) {
+TEST(JointMotion, numbers_of_any_orientation_are_within_the_limits) {
     Rng rng(6);
     for (const JointMotion& motion : motions())
         for (int i = 0; i < 200; ++i) {
@@ -148,7 +148,7 @@ TEST(JointMotion, NumbersOfAnyOrientationAreWithinTheLimits) {
         }
 }
 
-TEST(JointMotion, AxesAreWhatANumberTurnsAbout) {
+TEST(JointMotion, axes_are_what_a_number_turns_about) {
     Rng rng(7);
     const double step = 1e-6;
     for (const JointMotion& motion : motions())

@@ -20,14 +20,14 @@ Body twoRods() {
     body.joints[1].mass = 1, body.joints[1].massCentre = {0.5, 0, 0};
     body.joints[1].offset = {1, 0, 0};
     body.joints[1].motion = JointMotion::axial(kZ, -pi, pi);
-    body.joints[1].first = Body::kRootFreedoms;
-    body.freedoms = Body::kRootFreedoms + 1;
+    body.joints[1].first = Body::kRootDofs;
+    body.dofs = Body::kRootDofs + 1;
     body.spheres = {{0, {0, 0, 0}, 0.1}, {0, {1, 0, 0}, 0.2}, {1, {1, 0, 0}, 0.3}};
     body.capsules = {{0, 0, 1}, {1, 1, 2}};
     return body;
 }
 
-TEST(PosedBody, BentRodByHand) {
+TEST(PosedBody, places_a_bent_rod_as_by_hand) {
     PosedBody posed;
     // The root at (5, 2, 0), turned from x to y; the hinge from there to -x.
     posed.pose(twoRods(), std::vector<double>{5, 2, 0, 0, 0, pi / 2, pi / 2});
@@ -41,27 +41,27 @@ TEST(PosedBody, BentRodByHand) {
     EXPECT_EQ(posed.capsule(1).toRadius, 0.3);
 }
 
-TEST(PosedBody, LowestIsOfEitherEnd) {
+TEST(PosedBody, is_lowest_at_either_end_of_a_capsule) {
     PosedBody posed;
     // Hanging: the second rod's far end is lowest.
     posed.pose(twoRods(), std::vector<double>{0, 5, 0, 0, 0, -pi / 2, 0});
     EXPECT_NEAR(posed.lowest(), 5 - 2 - 0.3, 1e-12);
 }
 
-TEST(PosedBody, AxesAreTheDerivativeOfEveryPoint) {
+TEST(PosedBody, has_axes_that_are_the_derivative_of_every_point) {
     const Body body = humanBody(1.7);
     Rng rng(1);
     for (int trial = 0; trial < 5; ++trial) {
-        std::vector<double> pose(body.freedoms);
+        std::vector<double> pose(body.dofs);
         for (double& number : pose) number = rng.uniform(-2, 2);
         body.limit(pose);
         PosedBody posed, before, after;
         posed.pose(body, pose);
-        std::vector<dvec3> axes(body.freedoms);
+        std::vector<dvec3> axes(body.dofs);
         posed.axes(body, pose, axes);
         const double step = 1e-6;
         std::size_t joint = 0;
-        for (std::size_t k = 0; k < body.freedoms; ++k) {
+        for (std::size_t k = 0; k < body.dofs; ++k) {
             if (joint + 1 < body.joints.size() && k == body.joints[joint + 1].first) ++joint;
             std::vector<double> moved = pose;
             moved[k] -= step, before.pose(body, moved);
@@ -82,7 +82,7 @@ TEST(PosedBody, AxesAreTheDerivativeOfEveryPoint) {
 
 // Standing upright with the arms out people have it at some 56 to 58 % of their stature, over the
 // feet.
-TEST(PosedBody, MassCentreOfATPoseIsWherePeopleHaveIt) {
+TEST(PosedBody, has_the_mass_centre_of_a_t_pose_where_people_have_it) {
     const Body body = humanBody(1.8);
     PosedBody posed;
     posed.pose(body, body.restPose(body.joints[0].offset, {1, 0, 0, 0}));
@@ -106,13 +106,13 @@ void expectTouch(const PlacedCapsule& a, const PlacedCapsule& b, double depth, d
     }
 }
 
-TEST(Touching, Crossing) {
+TEST(Touching, finds_how_deep_crossing_capsules_are) {
     // At a quarter of the first, in the middle of the second, .5 apart; radii .1 + .25 * .4 and .3.
     expectTouch(capsule({-1, 0, 0}, {3, 0, 0}, 0.1, 0.5), capsule({0, 0.5, -1}, {0, 0.5, 1}, 0.3, 0.3), 0.0, {0, 0, 0},
                 {0, 0.5, 0});
 }
 
-TEST(Touching, BesideEachOtherEndToEndAndSkew) {
+TEST(Touching, finds_the_gap_beside_each_other_end_to_end_and_skew) {
     // An end of the one before the side of the other.
     expectTouch(capsule({0, 1, 0}, {0, 2, 0}, 0.1, 0.1), capsule({-2, 0, 0}, {2, 0, 0}, 0.2, 0.2), 0.3 - 1, {0, 1, 0}, {0, 0, 0});
     // In a line, with a gap.
@@ -121,20 +121,20 @@ TEST(Touching, BesideEachOtherEndToEndAndSkew) {
     expectTouch(capsule({0, 0, 0}, {1, 0, 0}, 0.5, 0.2), capsule({1, 1, 0}, {1, 3, 0}, 0.1, 0.9), 0.3 - 1, {1, 0, 0}, {1, 1, 0});
 }
 
-TEST(Touching, Parallel) {
+TEST(Touching, is_between_parallel_capsules_too) {
     const CapsuleTouch touch = touching(capsule({0, 0, 0}, {4, 0, 0}, 0.3, 0.3), capsule({1, 0.5, 0}, {3, 0.5, 0}, 0.3, 0.3));
     EXPECT_NEAR(touch.depth, 0.1, 1e-12);
     EXPECT_LT(glm::distance(touch.normal, -kY), 1e-12);
     EXPECT_NEAR(touch.onFirst.x, touch.onSecond.x, 1e-12);
 }
 
-TEST(Touching, OneInTheOther) {
+TEST(Touching, goes_the_short_way_out_of_one_in_the_other) {
     const CapsuleTouch touch = touching(capsule({-2, 0, 0}, {2, 0, 0}, 1, 1), capsule({-1, 0, 0}, {1, 0, 0}, 0.2, 0.2));
     EXPECT_NEAR(touch.depth, 1.2, 1e-12);
     EXPECT_NEAR(glm::length(touch.normal), 1, 1e-12);
 }
 
-TEST(Touching, Balls) {
+TEST(Touching, takes_capsules_without_a_length_for_balls) {
     const PlacedCapsule ball = capsule({3, 1, 0}, {3, 1, 0}, 0.4, 0.4);
     // Before the middle of a rod, beyond its end, and before another ball.
     expectTouch(ball, capsule({0, 0, 0}, {4, 0, 0}, 0.1, 0.5), 0.8 - 1, {3, 1, 0}, {3, 0, 0});
@@ -142,7 +142,7 @@ TEST(Touching, Balls) {
     expectTouch(ball, capsule({3, 3, 0}, {3, 3, 0}, 0.5, 0.5), 0.9 - 2, {3, 1, 0}, {3, 3, 0});
 }
 
-TEST(Touching, IsTheLeastOfAllPairsOfPoints) {
+TEST(Touching, is_the_least_of_all_pairs_of_points) {
     Rng rng(2);
     for (int trial = 0; trial < 100; ++trial) {
         const PlacedCapsule a = capsule(randomVector(rng, 1), randomVector(rng, 1), 0.1, 0.1),

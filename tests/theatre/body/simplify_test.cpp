@@ -27,7 +27,7 @@ int eulerOf(const TriangleMesh& mesh) {
     return static_cast<int>(mesh.vertices.size()) - static_cast<int>(edges.size()) + static_cast<int>(mesh.triangles.size());
 }
 
-TEST(Simplified, BallStaysABall) {
+TEST(Simplified, keeps_a_ball_a_ball) {
     const TriangleMesh fine = surfaceOf([](const dvec3& p) { return glm::length(p) - 0.8; }, 40);
     ASSERT_GT(fine.triangles.size(), 10000u);
     const TriangleMesh coarse = simplified(fine, 500, evenly);
@@ -41,13 +41,13 @@ TEST(Simplified, BallStaysABall) {
     }
 }
 
-TEST(Simplified, RingKeepsItsHoleHoweverFewAreAskedFor) {
+TEST(Simplified, keeps_the_hole_of_a_ring_however_few_are_asked_for) {
     const TriangleMesh fine = surfaceOf([](const dvec3& p) { return std::hypot(std::hypot(p.x, p.y) - 0.6, p.z) - 0.2; }, 30);
     for (const std::size_t count : {1000u, 100u, 0u}) EXPECT_EQ(eulerOf(simplified(fine, count, evenly)), 0) << count;
 }
 
 // A box needs few triangles for its sides: its corners stay where they are.
-TEST(Simplified, BoxKeepsItsCorners) {
+TEST(Simplified, keeps_the_corners_of_a_box) {
     const TriangleMesh fine = surfaceOf(
         [](const dvec3& p) {
             return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) - 0.61;
@@ -64,14 +64,14 @@ TEST(Simplified, BoxKeepsItsCorners) {
             for (const double z : {-0.61, 0.61}) EXPECT_LT(nearest(coarse, {x, y, z}), nearest(fine, {x, y, z}) + 0.01);
 }
 
-TEST(Simplified, IsTheSameBytesEachTime) {
+TEST(Simplified, is_the_same_bytes_each_time) {
     const auto make = [] { return simplified(surfaceOf([](const dvec3& p) { return glm::length(p) - 0.8; }, 24), 300, evenly); };
     const TriangleMesh first = make(), second = make();
     EXPECT_EQ(first.vertices, second.vertices);
     EXPECT_EQ(first.triangles, second.triangles);
 }
 
-TEST(Simplified, WhatMattersMoreKeepsMore) {
+TEST(Simplified, keeps_more_of_what_matters_more) {
     const TriangleMesh fine = surfaceOf([](const dvec3& p) { return glm::length(p) - 0.8; }, 30);
     const TriangleMesh coarse = simplified(fine, 600, [](const glm::vec3& p) { return p.x > 0 ? 20.0 : 1.0; });
     const auto right = std::count_if(coarse.vertices.begin(), coarse.vertices.end(), [](const glm::vec3& v) { return v.x > 0; });

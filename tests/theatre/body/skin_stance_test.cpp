@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // A box of 40 x 100 x 20 cm whose middle is 2 cm from the long side of what it stands on.
-TEST(SkinStance, OfABoxIsByHand) {
+TEST(SkinStance, of_a_box_is_by_hand) {
     std::vector<glm::vec3> vertices;
     for (const float y : {0.0f, 1.0f})
         for (const auto& [x, z] : {std::pair(0.0f, 0.0f), {0.4f, 0.0f}, {0.4f, 0.2f}, {0.0f, 0.2f}})
@@ -39,7 +39,7 @@ TEST(SkinStance, OfABoxIsByHand) {
 
 // Example failure: a thigh that weighs with its buttock, which the skin leaves with the pelvis: 2
 // cm in somebody who sits.
-TEST(SkinStance, ABodyWeighsWhereItsSkinDoes) {
+TEST(SkinStance, a_body_weighs_where_its_skin_does) {
     const Body body = humanBody(1.75);
     const BodyMesh mesh = humanMesh(body);
     PosedBody posed;
@@ -49,7 +49,7 @@ TEST(SkinStance, ABodyWeighsWhereItsSkinDoes) {
     constexpr int kPoses = 200;
     for (int i = 0; i < kPoses; ++i) {
         std::vector<double> pose = body.restPose({0, 1, 2}, rotationOf({0, 1, 0}));
-        for (std::size_t k = Body::kRootFreedoms; k < pose.size(); ++k) pose[k] += rng.uniform(-1.5, 1.5);
+        for (std::size_t k = Body::kRootDofs; k < pose.size(); ++k) pose[k] += rng.uniform(-1.5, 1.5);
         body.limit(pose);
         posed.pose(body, pose);
         mesh.skin(body, posed, skin);
@@ -81,7 +81,7 @@ void expectEverybodyStands(const fs::path& folder, Standing& standing) {
             PosedBody posed;
             std::vector<glm::vec3> skin;
             for (std::size_t frame = 0; frame < actor.poses.size(); ++frame, ++standing.people) {
-                posed.pose(body, freedomsOf(body, actor.poses[frame]));
+                posed.pose(body, dofsOf(body, actor.poses[frame]));
                 mesh.skin(body, posed, skin);
                 const double margin = marginOfMesh(skin, mesh.atRest.triangles);
                 EXPECT_GT(margin, 0) << fmt::format("{}: actor {}, frame {}", entry.path().string(), a + 1, frame + 1);
@@ -91,7 +91,7 @@ void expectEverybodyStands(const fs::path& folder, Standing& standing) {
     }
 }
 
-TEST(SkinStance, EverybodyOfTheRepositorysCastsStands) {
+TEST(SkinStance, everybody_of_the_repositorys_casts_stands) {
     Standing standing;
     for (const char* folder : {"shows", "assets"}) expectEverybodyStands(fs::path(sourceFolder()) / folder, standing);
     EXPECT_GT(standing.people, 300);

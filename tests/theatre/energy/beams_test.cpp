@@ -23,9 +23,9 @@ constexpr double kPixel = 2.5 / 128;
 
 // The screen of the second beam stands at the right, and looks to the left.
 Stage aCorner() {
-    Stage stage{{0, 0.1, 7}};
+    Stage stage = aStage({0, 0.1, 7});
     stage.screens.push_back({{3.2, 2}, -std::numbers::pi / 2});
-    stage.further.push_back({{-5, 0.1, 2}, 1});
+    stage.beams.push_back({{-5, 0.1, 2}, 1});
     return stage;
 }
 
@@ -35,16 +35,10 @@ PoseTarget emptyTarget(const Stage& stage, std::size_t beam) {
     return target;
 }
 
-void setTarget(PoseTarget& target, const BitMask& mask) {
-    PoseProblem holder{{}, target, {}, {}};
-    setTarget(holder, mask);
-    target = holder.target;
-}
-
 // aScene() on a stage of any number of beams.
 PoseProblem aScene(const Stage& stage, const std::vector<double>& statures) {
-    PoseProblem problem{stage, emptyTarget(stage, 0), {}, {}};
-    for (std::size_t i = 1; i < stage.beams(); ++i) problem.further.push_back(emptyTarget(stage, i));
+    PoseProblem problem{stage, {}, {}, {}};
+    for (std::size_t i = 0; i < stage.beams.size(); ++i) problem.targets.push_back(emptyTarget(stage, i));
     for (const double stature : statures) problem.actors.push_back(humanBody(stature));
     return problem;
 }
@@ -54,8 +48,7 @@ void makeTargets(PoseProblem& problem, const std::vector<double>& poses) {
     SceneEnergy energy(problem);
     energy.pose(poses);
     energy.terms();
-    setTarget(problem.target, energy.beam(0).shadow());
-    for (std::size_t i = 1; i < problem.beams(); ++i) setTarget(problem.further[i - 1], energy.beam(i).shadow());
+    for (std::size_t i = 0; i < problem.targets.size(); ++i) setTarget(problem.targets[i], energy.beam(i).shadow());
 }
 
 // Poses as they are in another frame.
@@ -63,11 +56,11 @@ std::vector<double> inFrameOf(const Screen& screen, const PoseProblem& problem, 
     std::vector<double> moved;
     const glm::dquat turn = glm::angleAxis(-screen.turn, glm::dvec3(0, 1, 0));
     for (const Body& body : problem.actors) {
-        ActorPose pose = poseOf(body, poses.first(body.freedoms));
-        poses = poses.subspan(body.freedoms);
+        ActorPose pose = poseOf(body, poses.first(body.dofs));
+        poses = poses.subspan(body.dofs);
         pose.root = screen.screenFromStage(pose.root);
         pose.turns[0] = turn * pose.turns[0];
-        const std::vector<double> own = freedomsOf(body, pose);
+        const std::vector<double> own = dofsOf(body, pose);
         moved.insert(moved.end(), own.begin(), own.end());
     }
     return moved;
@@ -96,13 +89,12 @@ TEST(Beams, their_energy_is_that_of_each_and_of_physics_once) {
     const EnergyTerms both = termsOf(corner.problem, corner.poses);
     // Each alone on a stage of its own, whose frame is its screen's.
     PoseProblem first = corner.problem, second = corner.problem;
-    first.stage = Stage{{0, 0.1, 7}};
-    first.further.clear();
+    first.stage = aStage({0, 0.1, 7});
+    first.targets = {first.targets[0]};
     const Screen& screen = corner.problem.stage.screens[1];
-    second.stage = Stage{screen.screenFromStage(corner.problem.stage.further[0].light)};
-    second.target = emptyTarget(second.stage, 0);
-    setTarget(second.target, corner.problem.further[0].mask);
-    second.further.clear();
+    second.stage = aStage(screen.screenFromStage(corner.problem.stage.beams[1].light));
+    second.targets = {emptyTarget(second.stage, 0)};
+    setTarget(second.targets[0], corner.problem.targets[1].mask);
     const EnergyTerms one = termsOf(first, corner.poses), other = termsOf(second, inFrameOf(screen, second, corner.poses));
     ASSERT_GT(one.coverage, 0.05);
     ASSERT_GT(other.coverage, 0.05);
@@ -117,7 +109,7 @@ TEST(Beams, their_energy_is_that_of_each_and_of_physics_once) {
     EXPECT_EQ(both.supportArea, one.supportArea);
     EXPECT_EQ(both.margin, one.margin);
     EXPECT_EQ(both.people, one.people);
-    EXPECT_EQ(both.surroundings, one.surroundings);
+    EXPECT_EQ(both.stageSet, one.stageSet);
 }
 
 // The same stage told from its second screen.
@@ -125,18 +117,18 @@ TEST(Beams, it_does_not_matter_which_screen_is_the_first) {
     const Corner corner;
     const Stage& stage = corner.problem.stage;
     const Screen& screen = stage.screens[1];
-    Stage turned{stage.lightOnScreen(1)};
+    Stage turned = aStage(stage.lightOnScreen(1));
     const glm::dvec3 origin = screen.screenFromStage({0, 0, 0});
     turned.screens.push_back({{origin.x, origin.z}, -screen.turn});
-    turned.further.push_back({screen.screenFromStage(stage.light), 1});
+    turned.beams.push_back({screen.screenFromStage(stage.beams[0].light), 1});
     PoseProblem problem = aScene(turned, {1.7, 1.5});
-    setTarget(problem.target, corner.problem.further[0].mask);
-    setTarget(problem.further[0], corner.problem.target.mask);
+    setTarget(problem.targets[0], corner.problem.targets[1].mask);
+    setTarget(problem.targets[1], corner.problem.targets[0].mask);
     const EnergyTerms one = termsOf(corner.problem, corner.poses),
                       other = termsOf(problem, inFrameOf(screen, problem, corner.poses));
     EXPECT_NEAR(one.total(problem.weights), other.total(problem.weights), 0.01 * one.total(problem.weights));
     EXPECT_NEAR(one.visible, other.visible, 1e-9);
-    EXPECT_NEAR(one.surroundings, other.surroundings, 1e-6);
+    EXPECT_NEAR(one.stageSet, other.stageSet, 1e-6);
 }
 
 TEST(Beams, who_looks_at_any_screen_sees_it) {
@@ -147,8 +139,8 @@ TEST(Beams, who_looks_at_any_screen_sees_it) {
         PoseProblem problem = corner.problem;
         problem.actors.resize(1);
         const double both = termsOf(problem, poses).visible;
-        problem.stage = Stage{{0, 0.1, 7}};
-        problem.further.clear();
+        problem.stage = aStage({0, 0.1, 7});
+        problem.targets = {problem.targets[0]};
         return std::pair(both, termsOf(problem, poses).visible);
     };
     EXPECT_EQ(facing(std::numbers::pi).first, 0);      // the first
@@ -161,14 +153,14 @@ TEST(Beams, who_looks_at_any_screen_sees_it) {
 TEST(Beams, the_outline_is_fitted_on_every_screen) {
     const Corner corner;
     std::vector<double> poses = corner.wanted;
-    const std::size_t second = corner.problem.actors[0].freedoms;
+    const std::size_t second = corner.problem.actors[0].dofs;
     for (const std::size_t first : {std::size_t{0}, second}) poses[first + 2] += 0.06;
     SceneEnergy energy(corner.problem);
     SilhouetteFit(corner.problem).run(energy, poses, 40);
     for (const std::size_t first : {std::size_t{0}, second}) EXPECT_NEAR(poses[first + 2], 2, 0.012);
     PoseProblem knowing = corner.problem;
-    knowing.stage = Stage{{0, 0.1, 7}};
-    knowing.further.clear();
+    knowing.stage = aStage({0, 0.1, 7});
+    knowing.targets = {knowing.targets[0]};
     poses = corner.wanted;
     poses[2] += 0.06;
     SceneEnergy one(knowing);
@@ -214,7 +206,7 @@ TEST(Beams, every_screen_is_in_the_way) {
         return SilhouetteFit(problem).run(energy, poses, 40) / before;
     };
     EXPECT_LT(share(aCorner(), 3.2 - 0.8, 2), 0.02) << "fingers in the second";
-    Stage curved{{0, 0.1, 7}};
+    Stage curved = aStage({0, 0.1, 7});
     curved.screens[0].radius = 3;
     EXPECT_LT(share(curved, 0, 0.09), 0.02) << "hands in one that is hollow";
     curved.screens[0].radius = -3;
@@ -248,8 +240,8 @@ TEST(Beams, who_is_hidden_from_one_light_alone_is_not_occluded) {
         return occludedChains(of, energy);
     };
     EXPECT_EQ(chains(problem).size(), 1u) << "to the second light one leg is behind the other";
-    problem.stage.further.clear();
-    problem.further.clear();
+    problem.stage.beams.resize(1);
+    problem.targets = {problem.targets[0]};
     EXPECT_EQ(chains(problem).size(), 5u) << "head, hands and feet";
 }
 
@@ -267,8 +259,8 @@ TEST(Beams, artefacts_of_any_screen_name_who_could_mend_them) {
     ASSERT_EQ(artefacts.size(), 2u);
     ASSERT_GT(artefacts[1].count(), 0);
     const std::vector<BitMask> ofSecond{BitMask(360, 170), artefacts[1]};
-    EXPECT_THAT(freedomsBeside(problem, energy, ofSecond), Not(IsEmpty()));
-    EXPECT_THAT(freedomsBeside(problem, energy, std::vector(2, BitMask(360, 170))), IsEmpty());
+    EXPECT_THAT(dofsBeside(problem, energy, ofSecond), Not(IsEmpty()));
+    EXPECT_THAT(dofsBeside(problem, energy, std::vector(2, BitMask(360, 170))), IsEmpty());
 }
 
 GreyImage picture(int width, int height, const std::function<bool(int, int)>& isWhite) {
@@ -284,7 +276,7 @@ const GreyImage kTall = picture(160, 300, [](int x, int y) { return x >= 40 && x
 // ball.
 TEST(Beams, a_shadow_on_a_curved_screen_is_what_rays_say) {
     for (const double radius : {3.0, -3.0}) {
-        Stage stage{{0.2, 1.2, 6}};
+        Stage stage = aStage({0.2, 1.2, 6});
         stage.screens[0].radius = radius;
         const auto target = PoseTarget::from(kWide, stage, 1.6, 512);
         ASSERT_TRUE(target) << target.error().message();
@@ -300,7 +292,7 @@ TEST(Beams, a_shadow_on_a_curved_screen_is_what_rays_say) {
                 const glm::dvec2 place = frame.metresAt({x + 0.5, y + 0.5});
                 const double angle = place.x / radius;
                 const glm::dvec3 point(radius * std::sin(angle), place.y, radius - radius * std::cos(angle));
-                const glm::dvec3 way = glm::normalize(stage.light - point), to = ball.centre - point;
+                const glm::dvec3 way = glm::normalize(stage.beams[0].light - point), to = ball.centre - point;
                 const bool isHit = glm::length(to - glm::dot(to, way) * way) < ball.radius;
                 white += isHit;
                 wrong += isHit != seen.at(x, y);
@@ -313,7 +305,7 @@ TEST(Beams, a_shadow_on_a_curved_screen_is_what_rays_say) {
 TEST(Beams, a_target_on_a_curved_screen_looks_as_it_was_drawn) {
     for (const double radius : {4.0, -4.0, 1.5})
         for (const double height : {0.0, 1.4}) {
-            Stage stage{{0.3, height, 6}};
+            Stage stage = aStage({0.3, height, 6});
             const auto flat = PoseTarget::from(kWide, stage, 1.5, 256);
             stage.screens[0].radius = radius;
             const auto target = PoseTarget::from(kWide, stage, 1.5, 256);
@@ -345,17 +337,17 @@ TEST(Beams, a_target_is_refused_where_the_light_does_not_come) {
     EXPECT_THAT(refusal(kTall, stage, {0, 3.0}), HasSubstr("screen 2 keeps the light from"));
     EXPECT_THAT(refusal(kTall, stage, {1, -1.9}), HasSubstr("screen 1 keeps the light from"));
     // 2 m to either side of a hollow screen are 2.09 m on the flat one.
-    Stage hall{{0, 0, 6}, Stage::Area{{-2.05, 0}, {2.05, 3}}};
+    Stage hall = aStage({0, 0, 6}, Stage::Area{{-2.05, 0}, {2.05, 3}});
     EXPECT_EQ(refusal(kWide, hall, {}), "laid");
     hall.screens[0].radius = 4;
     EXPECT_THAT(refusal(kWide, hall, {}), HasSubstr("the projector lights x -2.05 .. 2.05 m"));
     stage.screens[0].radius = 1;
     EXPECT_THAT(refusal(kWide, stage, {}), HasSubstr("1.50 m to either side can be seen"));
     stage.screens[0].radius = -1.5;
-    stage.light.z = 3;
+    stage.beams[0].light.z = 3;
     EXPECT_THAT(refusal(kWide, stage, {}), HasSubstr("the light does not come to"));
     stage.screens[0].radius = -2;
-    stage.light.x = 5;
+    stage.beams[0].light.x = 5;
     EXPECT_THAT(refusal(kTall, stage, {}), HasSubstr("stands beside it"));
 }
 
@@ -373,18 +365,18 @@ TEST(Beams, further_targets_are_where_the_same_people_throw_their_shadow) {
 // 2 actors, before a corner; the second shadow is to be where they would not stand for the first.
 TEST(Beams, a_search_serves_all_of_them_and_is_the_same_each_time) {
     const Stage stage = aCorner();
-    PoseProblem problem{stage, PoseTarget::from(kWide, stage, 0.9, 256).value(), {humanBody(1.7), humanBody(1.7)}, {}};
-    problem.further.push_back(PoseTarget::from(kTall, stage, 1.6, 256, {1, *TargetPlace::on(stage, 1).middle + 1}).value());
-    problem.dress();
-    PoseProblem one{Stage{stage.light}, problem.target, problem.actors, {}, problem.skins};
+    PoseProblem problem{stage, {PoseTarget::from(kWide, stage, 0.9, 256).value()}, {humanBody(1.7), humanBody(1.7)}, {}};
+    problem.targets.push_back(PoseTarget::from(kTall, stage, 1.6, 256, {1, *TargetPlace::on(stage, 1).middle + 1}).value());
+    problem.buildSkins();
+    PoseProblem one{aStage(stage.beams[0].light), {problem.targets[0]}, problem.actors, {}, problem.skins};
     for (const PoseSearch::Method method : {PoseSearch::Method::Refined, PoseSearch::Method::Paper}) {
         const PoseSearch::Options options{method, 4000};
         const PoseSearch::Trial both = PoseSearch::run(problem, 5, options), alone = PoseSearch::run(one, 5, options);
-        const PoseSearch::Quality wide = PoseSearch::measure(problem, alone.freedoms);
+        const PoseSearch::Quality wide = PoseSearch::measure(problem, alone.dofs);
         ASSERT_EQ(wide.matches.size(), 2u);
         EXPECT_EQ(wide.iou, std::min(wide.matches[0].iou, wide.matches[1].iou));
         EXPECT_GT(both.quality.iou, wide.iou + 0.1);
-        EXPECT_EQ(PoseSearch::run(problem, 5, options).freedoms, both.freedoms);
+        EXPECT_EQ(PoseSearch::run(problem, 5, options).dofs, both.dofs);
     }
 }
 
@@ -398,7 +390,7 @@ TEST(Beams, people_start_before_every_screen) {
     for (const PoseSearch::Actor& actor : PoseSearch::measure(problem, start).actors) EXPECT_LT(actor.deepest, 0.7);
     glm::dvec3 outward;
     for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t first = problem.firstFreedom(i);
+        const std::size_t first = problem.firstDof(i);
         EXPECT_GT(stage.screens[1].distance({start[first], start[first + 1], start[first + 2]}, outward), 0.7);
     }
 }

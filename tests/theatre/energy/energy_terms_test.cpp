@@ -16,14 +16,14 @@ using std::numbers::pi;
 // Eyes 4 m before the middle of the screen, turned by an angle to the side.
 double turned(double angle) { return unseen({1, 2, 4}, {std::sin(angle), 0, -std::cos(angle)}, {1, 2, 0}); }
 
-TEST(Unseen, IsNothingInSight) {
+TEST(Unseen, is_nothing_in_sight) {
     EXPECT_NEAR(turned(0), 0, 1e-9);
     EXPECT_NEAR(turned(0.99 * kSight), 0, 1e-9);
     EXPECT_EQ(unseen({1, 2, 0}, {0, 0, -1}, {1, 2, 0}), 0) << "eyes at the screen's middle";
     EXPECT_NEAR(turned(-0.99 * kSight), 0, 1e-9);
 }
 
-TEST(Unseen, IsTheSquaredDistanceToTheConesSide) {
+TEST(Unseen, is_the_squared_distance_to_the_cones_side) {
     EXPECT_NEAR(turned(kSight + 0.3), std::pow(4 * std::sin(0.3), 2), 1e-9);
     EXPECT_NEAR(turned(-kSight - 0.3), std::pow(4 * std::sin(0.3), 2), 1e-9);
     // At and beyond a right angle the nearest point is in the eyes.
@@ -32,7 +32,7 @@ TEST(Unseen, IsTheSquaredDistanceToTheConesSide) {
     EXPECT_NEAR(unseen({0, 1, 3}, {0, -1, 0}, {0, 1, 0}), std::pow(3 * std::sin(pi / 2 - kSight), 2), 1e-6);
 }
 
-TEST(Unseen, IsGradedWhereTheConeMissesTheScreen) {
+TEST(Unseen, is_graded_where_the_cone_misses_the_screen) {
     EXPECT_NEAR(turned(kSight + pi / 2 + 0.2), 16 + kUnseen * 1.2, 1e-6);
     EXPECT_NEAR(turned(pi), 16 + kUnseen * (1 + pi / 2 - kSight), 1e-6);
     double last = 0;
@@ -56,16 +56,16 @@ struct Balls {
             body.spheres.push_back({index, {}, radius});
             body.capsules.push_back({index, index, index});
         }
-        body.freedoms = 5 + places.size();
+        body.dofs = 5 + places.size();
         if (places.size() > 2) body.apart = {{0, 2}};
-        std::vector<double> pose(body.freedoms, 0);
+        std::vector<double> pose(body.dofs, 0);
         for (int i = 0; i < 3; ++i) pose[static_cast<std::size_t>(i)] = places[0][i];
         posed.pose(body, pose);
     }
 };
 
 // Centimetres to 3; those to 1.1 count twice.
-TEST(LackOfMargin, IsSteeperWhereNobodyStandsSurely) {
+TEST(LackOfMargin, is_steeper_where_nobody_stands_surely) {
     EXPECT_EQ(lackOfMargin(0.05), 0);
     EXPECT_NEAR(lackOfMargin(0.02), 1, 1e-12);
     EXPECT_NEAR(lackOfMargin(0.011), 1.9, 1e-12);
@@ -73,7 +73,7 @@ TEST(LackOfMargin, IsSteeperWhereNobodyStandsSurely) {
     EXPECT_NEAR(lackOfMargin(-0.1), 13 + 11.1, 1e-12);
 }
 
-TEST(Depth, InItselfCountsThePairsToKeepApart) {
+TEST(Depth, in_itself_counts_the_pairs_to_keep_apart) {
     // 1: inside both. The first and the third are 17 cm apart with radii of 10: 30 mm deep.
     const Balls deep({{0, 1, 1}, {0.08, 1, 1}, {0.17, 1, 1}});
     EXPECT_NEAR(depthInItself(deep.body, deep.posed), 900, 1e-6);
@@ -83,7 +83,7 @@ TEST(Depth, InItselfCountsThePairsToKeepApart) {
     EXPECT_EQ(deepestInItself(clear.body, clear.posed), 0);
 }
 
-TEST(Depth, InOthersSumsSquares) {
+TEST(Depth, in_others_sums_squares) {
     const Balls one({{0, 1, 1}, {1, 1, 1}}), other({{0, 1.19, 1}, {1, 1, 1.18}});
     EXPECT_NEAR(depthInOther(one.posed, other.posed), 100 + 400, 1e-6);
     EXPECT_NEAR(depthInOther(other.posed, one.posed), 100 + 400, 1e-6);
@@ -91,7 +91,7 @@ TEST(Depth, InOthersSumsSquares) {
     EXPECT_EQ(depthInOther(one.posed, Balls({{5, 1, 1}}).posed), 0);
 }
 
-TEST(Depth, InTheStageIsOfFloorAndScreen) {
+TEST(Depth, in_the_stage_is_of_floor_and_screen) {
     EXPECT_NEAR(depthInStage({}, Balls({{0, 0.09, 1}}).posed), 100, 1e-6);
     EXPECT_NEAR(depthInStage({}, Balls({{0, 1, 0.08}}).posed), 400, 1e-6);
     EXPECT_NEAR(depthInStage({}, Balls({{0, -0.1, 1}}).posed), 40000, 1e-6);
@@ -108,7 +108,7 @@ TEST(Depth, InTheStageIsOfFloorAndScreen) {
     EXPECT_NEAR(depthInStage(stage, Balls({{-3 + 0.6 * 0.08, 1, 1 + 0.8 * 0.08}}).posed), 400, 1e-6);
 }
 
-TEST(OwnerChanges, CountAround) {
+TEST(OwnerChanges, are_counted_around_the_contour) {
     EXPECT_EQ(ownerChanges(std::vector<int>{}), 0);
     EXPECT_EQ(ownerChanges(std::vector{2}), 0);
     EXPECT_EQ(ownerChanges(std::vector{1, 1, 1}), 0);
@@ -122,13 +122,12 @@ TEST(OwnerChanges, CountAround) {
     EXPECT_EQ(ownerChanges(std::vector{kNobody, 0, kNobody, 1}), 2);
 }
 
-TEST(EnergyTerms, TotalIsWeightedByTheTables) {
+TEST(EnergyTerms, add_up_by_the_weights_of_the_table) {
     EnergyTerms terms;
     double* const all[] = {
-        &terms.contourPoint, &terms.contourNormal, &terms.contourCurvature, &terms.coverage, &terms.coherence,
-        &terms.visible,      &terms.floor,         &terms.supportArea,      &terms.margin,   &terms.people,
-        &terms.surroundings, &terms.hint,          &terms.smooth,           &terms.regular,  &terms.contactPlace,
-        &terms.contactTurn};
+        &terms.contourPoint, &terms.contourNormal, &terms.contourCurvature, &terms.coverage,   &terms.coherence, &terms.visible,
+        &terms.floor,        &terms.supportArea,   &terms.margin,           &terms.people,     &terms.stageSet,  &terms.hint,
+        &terms.smooth,       &terms.regular,       &terms.contactPlace,     &terms.contactTurn};
     PoseWeights weights{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 2};
     const double wanted[] = {2, 3, 5, 7, 11, 13, 34, 38, 46, 58, 62, 37, 41, 43, 47, 53};
     for (std::size_t i = 0; i < std::size(all); ++i) {

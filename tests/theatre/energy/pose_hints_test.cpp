@@ -21,7 +21,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const Stage kStage{{0, 0.1, 7}};
+const Stage kStage = aStage({0, 0.1, 7});
 
 // A picture of 400 x 300 pixels with a white box of 100 x 200 in it, 2 m high on the screen: a
 // pixel of it is 1 cm. The mask has 128 rows.
@@ -178,7 +178,7 @@ TEST(MatchHints, measures_the_nearest_shadow_in_pixels_of_256) {
     PoseProblem problem = aScene({2.0, 2.0});
     const std::vector<double> poses = aRow(problem, {-1, 1}, 2);
     makeTarget(problem, poses);
-    const ScreenFrame& frame = problem.target.frame;
+    const ScreenFrame& frame = problem.targets[0].frame;
     const double larger = 7 / 4.994, handX = larger * (1 + 1.076), handY = 0.1 + larger * (1.6224 - 0.1);
     // Three mask pixels right of and four above the second one's right hand.
     problem.hints = {{"a", {handX + 3 * frame.pixel(), handY + 4 * frame.pixel()}, {BodyPart::LeftHand, BodyPart::RightHand}}};
@@ -240,9 +240,9 @@ TEST(Hints, lead_the_fit_to_bring_what_is_held_to_the_point) {
     EXPECT_EQ(owner.actor, 1u);
     // Its shadow is where the prop's own point says.
     const glm::dvec3 tip = energy.held(1)[0].point({0, 0.5, 0});
-    const glm::dvec2 wanted = problem.target.frame.pixelAt(0.3, 2.6);
-    EXPECT_LT(glm::distance(problem.target.frame.shadow(tip) - wanted, owner.match.away), 1e-6);
-    const std::vector<double> others(poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(problem.actors[0].freedoms));
+    const glm::dvec2 wanted = problem.targets[0].frame.pixelAt(0.3, 2.6);
+    EXPECT_LT(glm::distance(problem.targets[0].frame.shadow(tip) - wanted, owner.match.away), 1e-6);
+    const std::vector<double> others(poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(problem.actors[0].dofs));
     SilhouetteFit(problem).run(energy, poses, 30);
     EXPECT_LT(energy.terms().hint, 4);
     EXPECT_TRUE(std::equal(others.begin(), others.end(), poses.begin())) << "it is nobody else's";
@@ -266,14 +266,14 @@ TEST(Hints, lead_the_search_to_bring_an_elbow_to_the_point) {
     for (int y = 20; y < 120; ++y)
         for (int x = 0; x < 240; ++x)
             if (std::hypot((x + 0.5 - 120) / 80, (y + 0.5 - 120) / 100) < 1) picture.at(x, y) = 1;
-    PoseProblem problem{kStage, PoseTarget::from(picture, kStage, 1.5, 128).value(), {humanBody(1.6)}, {}, {}};
+    PoseProblem problem{kStage, {PoseTarget::from(picture, kStage, 1.5, 128).value()}, {humanBody(1.6)}, {}, {}};
     PoseSearch::Options options;
     options.evaluations = 3000;
     const auto away = [&](double weight) {
         // The hill's top, where without a wish a head goes.
         problem.hints = {{"top", {0, 1.48}, {BodyPart::LeftElbow, BodyPart::RightElbow}}};
         problem.weights.w12 = weight;
-        return elbowAway(problem, PoseSearch::run(problem, 1, options).freedoms);
+        return elbowAway(problem, PoseSearch::run(problem, 1, options).dofs);
     };
     const double without = away(0), with = away(0.25);
     EXPECT_LT(with, 10);

@@ -1,5 +1,7 @@
 #include "theatre/energy/pose_problem.h"
 
+#include "theatre/a_stage.h"
+
 #include "pictures.h"
 #include "source_folder.h"
 
@@ -14,7 +16,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-const Stage kStage{{0.5, 0.1, 7}};
+const Stage kStage = aStage({0.5, 0.1, 7});
 
 std::string messageOf(const GreyImage& picture) {
     const auto target = PoseTarget::from(picture, kStage, 2, 128);
@@ -22,7 +24,7 @@ std::string messageOf(const GreyImage& picture) {
 }
 
 // An L, far from the picture's middle, of 100 x 200 pixels: 2 m high it is 1 m wide.
-TEST(PoseTarget, StandsOnTheFloorBeforeTheLightAsHighAsAsked) {
+TEST(PoseTarget, stands_on_the_floor_before_the_light_as_high_as_asked) {
     const GreyImage picture =
         pictureOf(400, 300, [](int x, int y) { return isIn(x, y, 270, 60, 40, 200) || isIn(x, y, 270, 220, 100, 40); });
     const auto target = PoseTarget::from(picture, kStage, 2, 128);
@@ -59,17 +61,17 @@ TEST(PoseTarget, StandsOnTheFloorBeforeTheLightAsHighAsAsked) {
     EXPECT_EQ(target->mask.rowsTo() - target->mask.rowsFrom(), 128);
     EXPECT_EQ(target->area, static_cast<double>(target->mask.count()));
     EXPECT_NEAR(target->area, (40 * 200 + 60 * 40) * 0.64 * 0.64, 128);
-    EXPECT_EQ(target->pixelsOf256, 2);
+    EXPECT_EQ(target->refPixelsPerPixel, 2);
     ASSERT_EQ(target->contour.size(), kContourPoints / 2);
     for (const ContourPoint& point : target->contour) EXPECT_TRUE(target->mask.at(point.pixel.x, point.pixel.y));
 }
 
 // A box 1 m wide and 2 m high: x 0 .. 1, since the light is at .5.
-TEST(PoseTarget, LiesInWhatAProjectorLights) {
+TEST(PoseTarget, lies_in_what_a_projector_lights) {
     const GreyImage picture = pictureOf(300, 300, [](int x, int y) { return isIn(x, y, 100, 50, 100, 200); });
     Stage stage = kStage;
     const auto message = [&](Stage::Area lit) {
-        stage.lit = lit;
+        stage.beams[0].lit = lit;
         const auto target = PoseTarget::from(picture, stage, 2, 128);
         return target ? "none" : target.error().message();
     };
@@ -81,7 +83,7 @@ TEST(PoseTarget, LiesInWhatAProjectorLights) {
     EXPECT_THAT(message({{-1, 0}, {2, 1.9}}), HasSubstr("make it less high"));
 }
 
-TEST(PoseTarget, HasTheSameContourFromALargerPicture) {
+TEST(PoseTarget, has_the_same_contour_from_a_larger_picture) {
     const auto disc = [](int size) {
         return pictureOf(size, size, [&](int x, int y) { return std::hypot(x - size / 2, y - size / 2) < 0.4 * size; });
     };
@@ -94,7 +96,7 @@ TEST(PoseTarget, HasTheSameContourFromALargerPicture) {
     EXPECT_NEAR(mean, kDiscRadius / 128, 0.1);
 }
 
-TEST(PoseTarget, RefusesWhatIsNoSilhouette) {
+TEST(PoseTarget, refuses_what_is_no_silhouette) {
     EXPECT_THAT(messageOf(GreyImage(50, 50)), HasSubstr("nothing in it is white"));
     EXPECT_THAT(messageOf(GreyImage(50, 50, 1.0f)), HasSubstr("all of it is white"));
     EXPECT_THAT(messageOf(pictureOf(50, 50, [](int x, int y) { return isIn(x, y, 20, 30, 3, 1); })),
@@ -109,7 +111,7 @@ TEST(PoseTarget, RefusesWhatIsNoSilhouette) {
                 HasSubstr("times as wide"));
 }
 
-TEST(PoseTarget, TakesPartsThatAreNearAndRefusesThoseThatAreFar) {
+TEST(PoseTarget, takes_parts_that_are_near_and_refuses_those_that_are_far) {
     const auto parts = [](int gap) {
         return pictureOf(400, 200,
                          [&](int x, int y) { return isIn(x, y, 10, 50, 50, 100) || isIn(x, y, 60 + gap, 50, 80, 100); });
@@ -121,7 +123,7 @@ TEST(PoseTarget, TakesPartsThatAreNearAndRefusesThoseThatAreFar) {
     int left = near->mask.width(), right = 0;
     for (int x = 0; x < near->mask.width(); ++x)
         if (near->mask.at(x, near->mask.height() - 10)) left = std::min(left, x), right = std::max(right, x + 1);
-    EXPECT_NEAR(near->frame.metresAt({0.5 * (left + right), 0}).x, kStage.light.x, near->frame.pixel());
+    EXPECT_NEAR(near->frame.metresAt({0.5 * (left + right), 0}).x, kStage.beams[0].light.x, near->frame.pixel());
     EXPECT_THAT(messageOf(parts(40)), AllOf(HasSubstr("2 parts"), HasSubstr("join")));
     // Three in a row, each near to the next.
     EXPECT_EQ(messageOf(pictureOf(400, 200,
@@ -132,7 +134,7 @@ TEST(PoseTarget, TakesPartsThatAreNearAndRefusesThoseThatAreFar) {
               "none");
 }
 
-TEST(PoseTarget, PartsOfAnyShapeAreOneIsland) {
+TEST(PoseTarget, is_one_island_whatever_the_shape_of_its_parts) {
     // A U whose arms meet below, a spiral of runs that join late, and a staircase over corners.
     EXPECT_EQ(messageOf(pictureOf(100, 100,
                                   [](int x, int y) {
@@ -143,7 +145,7 @@ TEST(PoseTarget, PartsOfAnyShapeAreOneIsland) {
     EXPECT_EQ(messageOf(pictureOf(100, 100, [](int x, int y) { return x + y == 99; })), "none");
 }
 
-TEST(PoseTarget, TakesTheProjectsSilhouettes) {
+TEST(PoseTarget, takes_the_projects_silhouettes) {
     int count = 0;
     for (const auto& file : std::filesystem::recursive_directory_iterator(sourceFolder() + "/assets/silhouettes")) {
         if (file.path().extension() != ".png") continue;

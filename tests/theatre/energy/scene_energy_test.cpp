@@ -24,7 +24,7 @@ void expectSame(const EnergyTerms& a, const EnergyTerms& b) {
     EXPECT_EQ(a.supportArea, b.supportArea);
     EXPECT_EQ(a.margin, b.margin);
     EXPECT_EQ(a.people, b.people);
-    EXPECT_EQ(a.surroundings, b.surroundings);
+    EXPECT_EQ(a.stageSet, b.stageSet);
 }
 void expectSameContour(const SceneEnergy& a, const SceneEnergy& b) {
     for (std::size_t i = 0; i < a.nearest().size(); ++i) {
@@ -35,7 +35,7 @@ void expectSameContour(const SceneEnergy& a, const SceneEnergy& b) {
     }
 }
 
-TEST(SceneEnergy, OfTheTargetsOwnPosesIsNothingInContourAndCoverage) {
+TEST(SceneEnergy, is_nothing_in_contour_and_coverage_for_the_poses_of_the_target) {
     PoseProblem problem = aScene({1.7, 1.4});
     const std::vector<double> poses = aRow(problem, {-0.6, 0.6}, 2);
     makeTarget(problem, poses);
@@ -46,15 +46,15 @@ TEST(SceneEnergy, OfTheTargetsOwnPosesIsNothingInContourAndCoverage) {
     EXPECT_EQ(terms.contourNormal, 0);
     EXPECT_EQ(terms.contourCurvature, 0);
     EXPECT_EQ(terms.coverage, 0);
-    EXPECT_EQ(energy.shadow(), problem.target.mask);
+    EXPECT_EQ(energy.shadow(), problem.targets[0].mask);
     // Two people upright on the floor, apart, their arms out.
     EXPECT_NEAR(terms.floor, 0, 1e-6);
-    EXPECT_NEAR(terms.people + terms.surroundings, 0, 1e-6);
+    EXPECT_NEAR(terms.people + terms.stageSet, 0, 1e-6);
     EXPECT_GT(energy.margin(0), 0.03);
     EXPECT_EQ(terms.margin, 0);
 }
 
-TEST(SceneEnergy, OneWhoMovesAloneGivesWhatPosingAllGives) {
+TEST(SceneEnergy, is_the_same_whether_one_is_posed_or_all) {
     PoseProblem problem = aScene({1.7, 1.4, 1.8});
     const std::vector<double> start = aRow(problem, {-0.8, 0.1, 0.9}, 2);
     makeTarget(problem, start);
@@ -63,10 +63,11 @@ TEST(SceneEnergy, OneWhoMovesAloneGivesWhatPosingAllGives) {
     Rng rng(1);
     std::vector<double> poses = start;
     for (int i = 0; i < 60; ++i) {
-        const std::size_t actor = rng.below(3), first = problem.firstFreedom(actor), count = problem.actors[actor].freedoms;
-        // All of somebody, or one joint's freedom, which leaves most of the contour as it was.
+        const std::size_t actor = rng.below(3), first = problem.firstDof(actor), count = problem.actors[actor].dofs;
+        // All of somebody, or one joint's degree of freedom, which leaves most of the contour as it
+        // was.
         const std::vector<double> moved = nudged(problem, poses, rng, 0.4);
-        const std::size_t one = first + Body::kRootFreedoms + rng.below(static_cast<std::uint32_t>(count - Body::kRootFreedoms));
+        const std::size_t one = first + Body::kRootDofs + rng.below(static_cast<std::uint32_t>(count - Body::kRootDofs));
         const std::size_t from = i % 3 == 0 ? first : one, to = i % 3 == 0 ? first + count : one + 1;
         for (std::size_t k = from; k < to; ++k) poses[k] = moved[k];
         const auto own = std::span(poses).subspan(first, count);
@@ -81,7 +82,7 @@ TEST(SceneEnergy, OneWhoMovesAloneGivesWhatPosingAllGives) {
     }
 }
 
-TEST(SceneEnergy, TermsOfTheLiftedAndOfTheSunken) {
+TEST(SceneEnergy, charges_who_is_lifted_and_who_has_sunk) {
     PoseProblem problem = aScene({1.7});
     std::vector<double> pose = aRow(problem, {0}, 2);
     makeTarget(problem, pose);
@@ -93,16 +94,16 @@ TEST(SceneEnergy, TermsOfTheLiftedAndOfTheSunken) {
     energy.pose(pose);
     EXPECT_NEAR(energy.terms().floor, 300, 1e-6);
     EXPECT_NEAR(energy.margin(0), margin, 1e-9);
-    EXPECT_EQ(energy.terms().surroundings, 0);
+    EXPECT_EQ(energy.terms().stageSet, 0);
     pose[1] -= 0.31;
     energy.pose(pose);
     EXPECT_EQ(energy.terms().floor, 0);
-    EXPECT_NEAR(energy.terms().surroundings, 600, 1e-6) << "a heel and two toes of each foot, 10 mm deep";
+    EXPECT_NEAR(energy.terms().stageSet, 600, 1e-6) << "a heel and two toes of each foot, 10 mm deep";
 }
 
 // By hand: fingers end at .538 of the stature, 1.7 m. Those of two in T-poses are 1 cm in each
 // other, and nothing else is.
-TEST(SceneEnergy, TwoWhoMeetRunIntoEachOtherOnce) {
+TEST(SceneEnergy, charges_two_who_meet_once) {
     PoseProblem problem = aScene({1.7, 1.7});
     const double reach = 2 * 0.538 * 1.7;
     const std::vector<double> apart = aRow(problem, {0, reach + 1e-6}, 2), meeting = aRow(problem, {0, reach - 0.01}, 2),
@@ -119,7 +120,7 @@ TEST(SceneEnergy, TwoWhoMeetRunIntoEachOtherOnce) {
 
 // Side by side each has a piece of the contour; where the second stands in the first's shadow, all
 // is one's.
-TEST(SceneEnergy, CoherenceCountsWhoseTheContourIs) {
+TEST(SceneEnergy, counts_for_coherence_whose_the_contour_is) {
     PoseProblem problem = aScene({1.7, 1.7});
     const std::vector<double> side = aRow(problem, {-0.9, 0.9}, 2), one = aRow(problem, {0, 0}, 2);
     makeTarget(problem, side);
@@ -141,16 +142,16 @@ TEST(SceneEnergy, CoherenceCountsWhoseTheContourIs) {
 // The masks end somewhere, and the wall does not: whoever steps out of the picture is as much too
 // much as he was in it. Example failure: an actor whom the silhouette does not need, and whose
 // elbow is seen beside it.
-TEST(SceneEnergy, ShadowsBesideThePictureAreTooMuch) {
+TEST(SceneEnergy, charges_shadows_beside_the_picture) {
     PoseProblem narrow = aScene({1.7, 1.7});
     const std::vector<double> both = aRow(narrow, {-0.8, 0.8}, 2);
     makeTarget(narrow, both);
     PoseProblem wide = narrow;
-    const ScreenFrame& frame = narrow.target.frame;
+    const ScreenFrame& frame = narrow.targets[0].frame;
     const int more = 400;
     const glm::dvec2 corner = frame.metresAt({-more, 0});
-    wide.target.frame = {narrow.stage, corner.x, corner.y, frame.pixel(), frame.width() + 2 * more, frame.height()};
-    wide.target.mask = BitMask(frame.width() + 2 * more, frame.height());
+    wide.targets[0].frame = {narrow.stage, corner.x, corner.y, frame.pixel(), frame.width() + 2 * more, frame.height()};
+    wide.targets[0].mask = BitMask(frame.width() + 2 * more, frame.height());
     SceneEnergy seen(wide);
     seen.pose(both);
     seen.terms();
@@ -164,14 +165,14 @@ TEST(SceneEnergy, ShadowsBesideThePictureAreTooMuch) {
         EXPECT_GE(in.terms().coverage, 0.9 * all.terms().coverage) << x;
         EXPECT_EQ(in.beam(0).beyond() > 0, x > 1) << x;
     }
-    narrow.stage.lit = Stage::Area{{-3, 0}, {3, 3}};
+    narrow.stage.beams[0].lit = Stage::Area{{-3, 0}, {3, 3}};
     SceneEnergy dark(narrow);
     dark.pose(aRow(narrow, {-0.8, 4.5}, 2));
     dark.terms();
     EXPECT_EQ(dark.beam(0).beyond(), 0) << "a projector's picture ends before";
 }
 
-TEST(SceneEnergy, WithoutAShadowAllIsMissed) {
+TEST(SceneEnergy, misses_all_of_the_target_without_a_shadow) {
     PoseProblem problem = aScene({1.7});
     std::vector<double> pose = aRow(problem, {0}, 2);
     makeTarget(problem, pose);
@@ -179,8 +180,8 @@ TEST(SceneEnergy, WithoutAShadowAllIsMissed) {
     pose[0] = 500;
     energy.pose(pose);
     const EnergyTerms& terms = energy.terms();
-    EXPECT_DOUBLE_EQ(terms.coverage, 1 + energy.beam(0).beyond() / problem.target.area) << "and he is too much where he is";
-    const double width = problem.target.mask.width() * problem.target.pixelsOf256;
+    EXPECT_DOUBLE_EQ(terms.coverage, 1 + energy.beam(0).beyond() / problem.targets[0].area) << "and he is too much where he is";
+    const double width = problem.targets[0].mask.width() * problem.targets[0].refPixelsPerPixel;
     EXPECT_NEAR(terms.contourPoint, kContourPoints * width * width, 1e-3);
     EXPECT_TRUE(std::isfinite(energy.energy()));
     EXPECT_EQ(energy.shadow().count(), 0);
@@ -196,19 +197,19 @@ TEST(SceneEnergy, WithoutAShadowAllIsMissed) {
 
 // A shadow a pixel to the side: every point of a contour is no farther than a pixel, those on
 // upright edges a whole one.
-TEST(SceneEnergy, ContourIsInPixelsOfATargetOf256) {
+TEST(SceneEnergy, measures_the_contour_in_pixels_of_a_target_of_256) {
     PoseProblem problem = aScene({1.7});
     const std::vector<double> pose = aRow(problem, {0}, 2);
     makeTarget(problem, pose);
-    BitMask shifted(problem.target.mask.width(), problem.target.mask.height());
-    const BitMask shadow = problem.target.mask;
+    BitMask shifted(problem.targets[0].mask.width(), problem.targets[0].mask.height());
+    const BitMask shadow = problem.targets[0].mask;
     for (int y = 0; y < shadow.height(); ++y)
         for (int x = 0; x < shadow.width(); ++x)
             if (shadow.at(x, y)) shifted.fill(y, x + 3, x + 4);
     setTarget(problem, shifted);
     SceneEnergy energy(problem);
     energy.pose(pose);
-    const double scale = problem.target.pixelsOf256 * problem.target.pixelsOf256;
+    const double scale = problem.targets[0].refPixelsPerPixel * problem.targets[0].refPixelsPerPixel;
     EXPECT_EQ(scale, 4);
     EXPECT_LE(energy.terms().contourPoint, kContourPoints * 9 * scale);
     EXPECT_GE(energy.terms().contourPoint, 0.1 * kContourPoints * 9 * scale);
@@ -216,7 +217,7 @@ TEST(SceneEnergy, ContourIsInPixelsOfATargetOf256) {
                 1e-12);
 }
 
-TEST(SceneEnergy, OnAPlatformPeopleStandAsOnTheFloor) {
+TEST(SceneEnergy, lets_people_stand_on_a_platform_as_on_the_floor) {
     PoseProblem problem = aScene({1.7});
     std::vector<double> pose = aRow(problem, {0}, 2);
     makeTarget(problem, pose);
@@ -230,7 +231,7 @@ TEST(SceneEnergy, OnAPlatformPeopleStandAsOnTheFloor) {
     pose[1] += 0.4;
     energy.pose(pose);
     EXPECT_NEAR(energy.terms().floor, 0, 1e-6);
-    EXPECT_NEAR(energy.terms().surroundings, 0, 1e-6);
+    EXPECT_NEAR(energy.terms().stageSet, 0, 1e-6);
     EXPECT_NEAR(energy.margin(0), margin, 1e-9);
     // 5 cm above the top; then 40 cm above the floor, beside it.
     pose[1] += 0.05;
@@ -242,14 +243,14 @@ TEST(SceneEnergy, OnAPlatformPeopleStandAsOnTheFloor) {
     // On the floor, in the block.
     pose[0] -= 2, pose[1] -= 0.4;
     energy.pose(pose);
-    EXPECT_GT(energy.terms().surroundings, 1e4);
+    EXPECT_GT(energy.terms().stageSet, 1e4);
 }
 
 // By hand: the light at z = 7, a wall 40 x 180 x 20 cm that stands with its middle at x = 1, z = 2.
 // Its left edge is thrown by the back, 1.9 m from the screen, its right one and its top by the
 // front: .8 * 7 / 5.1, 1.2 * 7 / 4.9 and .1 + 1.7 * 7 / 4.9. The hand of one behind it is in its
 // shadow.
-TEST(SceneEnergy, PropsThrowAShadowThatIsNobodys) {
+TEST(SceneEnergy, has_shadows_of_props_that_are_nobodys) {
     PoseProblem problem = aScene({1.7});
     const std::vector<double> pose = aRow(problem, {-0.15}, 2.6);
     problem.stage.props = {aBox({0.4, 1.8, 0.2}, {1, 0.9, 2})};
@@ -257,7 +258,7 @@ TEST(SceneEnergy, PropsThrowAShadowThatIsNobodys) {
     SceneEnergy energy(problem);
     energy.pose(pose);
     EXPECT_EQ(energy.terms().coverage, 0) << "the prop's shadow is there before the actor's";
-    const ScreenFrame& frame = problem.target.frame;
+    const ScreenFrame& frame = problem.targets[0].frame;
     const auto isDark = [&](double x, double y) {
         const glm::dvec2 pixel = frame.pixelAt(x, y);
         return energy.shadow().at(static_cast<int>(std::floor(pixel.x)), static_cast<int>(std::floor(pixel.y)));
@@ -272,11 +273,11 @@ TEST(SceneEnergy, PropsThrowAShadowThatIsNobodys) {
     EXPECT_GT(std::count(energy.owners().begin(), energy.owners().end(), kNobody), 20);
     EXPECT_GT(std::count(energy.owners().begin(), energy.owners().end(), 0), 20);
     EXPECT_EQ(energy.terms().coherence, 0) << "all that is somebody's is one's";
-    EXPECT_NEAR(energy.terms().surroundings, 0, 1e-6);
+    EXPECT_NEAR(energy.terms().stageSet, 0, 1e-6);
 }
 
 // A turned platform's is that of the same box as a prop.
-TEST(SceneEnergy, PlatformsThrowAShadowToo) {
+TEST(SceneEnergy, has_shadows_of_platforms_too) {
     PoseProblem problem = aScene({1.7});
     const std::vector<double> pose = aRow(problem, {-0.9}, 3);
     makeTarget(problem, pose);
@@ -297,7 +298,7 @@ TEST(SceneEnergy, PlatformsThrowAShadowToo) {
 }
 
 // A box in the left hand of one who looks at the screen goes with it.
-TEST(SceneEnergy, WhatIsHeldMovesWithTheHand) {
+TEST(SceneEnergy, moves_what_is_held_with_the_hand) {
     PoseProblem problem = aScene({2.0, 2.0});
     std::vector<double> poses = aRow(problem, {-0.9, 1.9}, 2);
     makeTarget(problem, poses);
@@ -314,38 +315,38 @@ TEST(SceneEnergy, WhatIsHeldMovesWithTheHand) {
     EXPECT_GT(energy.terms().coverage, 0) << "the target is without the box";
     // Turned about: on the other side. The mask does not show what was.
     poses[4] = 0;
-    energy.pose(0, std::span(poses).first(problem.actors[0].freedoms));
+    energy.pose(0, std::span(poses).first(problem.actors[0].dofs));
     energy.terms();
     EXPECT_LT(glm::distance(energy.held(0)[0].place, {-0.9 + 1.376, 1.7224, 1.994}), 1e-6);
     SceneEnergy fresh(problem);
     fresh.pose(poses);
     fresh.terms();
     EXPECT_EQ(energy.shadow(), fresh.shadow());
-    EXPECT_EQ(energy.terms().surroundings, fresh.terms().surroundings);
+    EXPECT_EQ(energy.terms().stageSet, fresh.terms().stageSet);
     EXPECT_FALSE(energy.shadow() == before);
     // Where the other's arm is it is in the way.
-    EXPECT_NEAR(energy.terms().surroundings, 0, 1e-6);
+    EXPECT_NEAR(energy.terms().stageSet, 0, 1e-6);
     poses[0] += 0.7, poses[1] -= 0.1;
     energy.pose(poses);
     std::vector<Intrusion> intrusions;
     findIntrusions(problem.actors[1], energy.posed(1), energy.held(0), intrusions);
     ASSERT_FALSE(intrusions.empty());
-    EXPECT_GE(energy.terms().surroundings, squaredDepths(intrusions));
+    EXPECT_GE(energy.terms().stageSet, squaredDepths(intrusions));
 }
 
-TEST(SceneEnergy, ThereIsNoShadowWhereAProjectorDoesNotLight) {
+TEST(SceneEnergy, has_no_shadow_where_a_projector_does_not_light) {
     PoseProblem problem = aScene({1.7});
     const std::vector<double> pose = aRow(problem, {0}, 2);
     makeTarget(problem, pose);
-    const BitMask whole = problem.target.mask;
-    problem.stage.lit = Stage::Area{{-0.4, 0.2}, {3, 1.5}};
+    const BitMask whole = problem.targets[0].mask;
+    problem.stage.beams[0].lit = Stage::Area{{-0.4, 0.2}, {3, 1.5}};
     SceneEnergy energy(problem);
     energy.pose(pose);
     energy.terms();
     int kept = 0;
     for (int y = 0; y < whole.height(); ++y)
         for (int x = 0; x < whole.width(); ++x) {
-            const glm::dvec2 at = problem.target.frame.metresAt({x + 0.5, y + 0.5});
+            const glm::dvec2 at = problem.targets[0].frame.metresAt({x + 0.5, y + 0.5});
             const bool isLit = at.x > -0.4 && at.y > 0.2 && at.y < 1.5;
             ASSERT_EQ(energy.shadow().at(x, y), whole.at(x, y) && isLit) << x << ", " << y;
             kept += energy.shadow().at(x, y);
@@ -355,7 +356,7 @@ TEST(SceneEnergy, ThereIsNoShadowWhereAProjectorDoesNotLight) {
 
 // One with his feet at z = 2, his toes at 2 - .0998 * 1.7: that far outside, in millimetres
 // squared.
-TEST(SceneEnergy, WhoStandsWhereNobodyMayIsCharged) {
+TEST(SceneEnergy, charges_who_stands_where_nobody_may) {
     PoseProblem problem = aScene({1.7});
     const std::vector<double> pose = aRow(problem, {0}, 2);
     makeTarget(problem, pose);
@@ -364,10 +365,10 @@ TEST(SceneEnergy, WhoStandsWhereNobodyMayIsCharged) {
     energy.pose(pose);
     const double outside = 2.2 - (2 - 0.0998 * 1.7);
     EXPECT_NEAR(energy.outside(0), outside, 0.002);
-    EXPECT_NEAR(energy.terms().surroundings, 1e6 * energy.outside(0) * energy.outside(0), 1e-6);
+    EXPECT_NEAR(energy.terms().stageSet, 1e6 * energy.outside(0) * energy.outside(0), 1e-6);
     problem.stage.standing = Stage::Area{{-1, 1}, {1, 4}};
     energy.pose(pose);
-    EXPECT_NEAR(energy.terms().surroundings, 0, 1e-6);
+    EXPECT_NEAR(energy.terms().stageSet, 0, 1e-6);
 }
 
 }  // namespace

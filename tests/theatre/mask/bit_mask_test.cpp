@@ -18,7 +18,7 @@ int countByPixel(const BitMask& mask) {
     return count;
 }
 
-TEST(BitMask, FillsFromToAcrossWordEdges) {
+TEST(BitMask, fills_from_to_across_word_edges) {
     for (const int width : {1, 63, 64, 65, 127, 128, 129, 200})
         for (const int from : {-5, 0, 1, 62, 63, 64, 65, 126, 127, 128, 190})
             for (const int to : {-1, 0, 1, 63, 64, 65, 127, 128, 129, 200, 300}) {
@@ -32,7 +32,7 @@ TEST(BitMask, FillsFromToAcrossWordEdges) {
             }
 }
 
-TEST(BitMask, FillsPixelsWhoseCentresLieBetween) {
+TEST(BitMask, fills_pixels_whose_centres_lie_between) {
     Rng rng(1);
     BitMask mask(130, 300);
     std::vector<float> from, to;
@@ -48,7 +48,7 @@ TEST(BitMask, FillsPixelsWhoseCentresLieBetween) {
         }
 }
 
-TEST(BitMask, ClearAddCompareAndRows) {
+TEST(BitMask, clears_adds_compares_and_knows_its_rows) {
     BitMask a(100, 50), b(100, 50);
     EXPECT_GE(a.rowsFrom(), a.rowsTo());
     a.fill(10, 5, 90);
@@ -101,7 +101,7 @@ void expectFilled(const std::vector<glm::vec2>& polygon, int width, int height) 
     }
 }
 
-TEST(ConvexFiller, FillsRandomPolygonsLikeATestOfEveryPixel) {
+TEST(ConvexFiller, fills_random_polygons_like_a_test_of_every_pixel) {
     Rng rng(2);
     for (int trial = 0; trial < 60; ++trial) {
         const double x = rng.uniform(-20, 150), y = rng.uniform(-20, 100), a = rng.uniform(0.5, 80), b = rng.uniform(0.5, 50);
@@ -116,7 +116,7 @@ TEST(ConvexFiller, FillsRandomPolygonsLikeATestOfEveryPixel) {
 }
 
 // Level edges exactly in a row of centres divide by no height.
-TEST(ConvexFiller, FillsRectanglesWithEdgesThroughCentres) {
+TEST(ConvexFiller, fills_rectangles_with_edges_through_centres) {
     for (const float edge : {10.0f, 10.25f, 10.5f}) {
         const std::vector<glm::vec2> rectangle = {{edge, edge}, {edge + 55, edge}, {edge + 55, edge + 20}, {edge, edge + 20}};
         expectFilled(rectangle, 130, 80);
@@ -127,7 +127,7 @@ TEST(ConvexFiller, FillsRectanglesWithEdgesThroughCentres) {
     }
 }
 
-TEST(ConvexFiller, DrawsNothingForWhatIsOutsideOrHasNoArea) {
+TEST(ConvexFiller, draws_nothing_for_what_is_outside_or_has_no_area) {
     for (const glm::vec2 shift : {glm::vec2(0, -50), {0, 90}, {-70, 0}, {140, 0}}) {
         std::vector<glm::vec2> polygon = {{5, 5}, {60, 5}, {30, 40}};
         for (glm::vec2& point : polygon) point += shift;
@@ -140,7 +140,7 @@ TEST(ConvexFiller, DrawsNothingForWhatIsOutsideOrHasNoArea) {
     EXPECT_EQ(mask.count(), 0);
 }
 
-TEST(BitMask, KeepsARectangle) {
+TEST(BitMask, keeps_a_rectangle) {
     Rng rng(8);
     for (int trial = 0; trial < 40; ++trial) {
         BitMask mask = randomMask(rng, 150, 20, 0.5);
@@ -153,7 +153,7 @@ TEST(BitMask, KeepsARectangle) {
     }
 }
 
-TEST(BitMask, IsComparedPixelByPixel) {
+TEST(BitMask, is_compared_pixel_by_pixel) {
     Rng rng(8);
     for (int trial = 0; trial < 20; ++trial) {
         const BitMask a = randomMask(rng, 70 + trial, 9, 0.3), b = randomMask(rng, 70 + trial, 9, 0.3);
@@ -174,7 +174,7 @@ TEST(BitMask, IsComparedPixelByPixel) {
 }
 
 // Example failure: a change beyond a word's or a band's edge goes unseen.
-TEST(Changes, AreSeenWhereverTheyAre) {
+TEST(Changes, are_seen_wherever_they_are) {
     Rng rng(9);
     Changes changes;
     const BitMask before = randomMask(rng, 150, 37, 0.5);

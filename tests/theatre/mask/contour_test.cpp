@@ -17,7 +17,7 @@ bool isOnContour(const BitMask& mask, int x, int y) {
 }
 int squareBetween(ivec2 a, ivec2 b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
 
-TEST(Contour, IsTheWhiteWithABlackNeighbour) {
+TEST(Contour, is_the_white_with_a_black_neighbour) {
     Rng rng(1);
     for (const int width : {63, 64, 65, 130}) {
         const BitMask mask = randomMask(rng, width, 30, 0.8);
@@ -29,7 +29,7 @@ TEST(Contour, IsTheWhiteWithABlackNeighbour) {
     }
 }
 
-TEST(Contour, NearestIsTheNearestOfAll) {
+TEST(Contour, nearest_is_the_nearest_of_all) {
     Rng rng(2);
     for (const double white : {0.001, 0.01, 0.3})
         for (int trial = 0; trial < 10; ++trial) {
@@ -56,7 +56,7 @@ TEST(Contour, NearestIsTheNearestOfAll) {
         }
 }
 
-TEST(Contour, OfSeveralNearestTheOneInTheRowThenAboveThenLeft) {
+TEST(Contour, of_several_nearest_the_one_in_the_row_then_above_then_left) {
     Contour contour;
     contour.find(maskOf({"..#..", ".....", "#...#", ".....", "..#.."}));
     EXPECT_EQ(contour.nearest({2, 2}), ivec2(0, 2));
@@ -66,19 +66,19 @@ TEST(Contour, OfSeveralNearestTheOneInTheRowThenAboveThenLeft) {
     EXPECT_EQ(contour.nearest({2, 2}), ivec2(2, 0));
 }
 
-TEST(Contour, OfNothingThereIsNoNearest) {
+TEST(Contour, of_nothing_there_is_no_nearest) {
     Contour contour;
     contour.find(BitMask(100, 50));
     EXPECT_EQ(contour.nearest({20, 20}), std::nullopt);
 }
 
-TEST(OuterContour, OfASquareIsItsRimClockwise) {
+TEST(OuterContour, of_a_square_is_its_rim_clockwise) {
     const std::vector<ivec2> rim = outerContour(maskOf({".....", ".###.", ".###.", ".###.", "....."}));
     EXPECT_THAT(rim, testing::ElementsAre(ivec2(1, 1), ivec2(2, 1), ivec2(3, 1), ivec2(3, 2), ivec2(3, 3), ivec2(2, 3),
                                           ivec2(1, 3), ivec2(1, 2)));
 }
 
-TEST(OuterContour, OfARingHasNothingOfTheHole) {
+TEST(OuterContour, of_a_ring_has_nothing_of_the_hole) {
     const BitMask ring = drawn(60, 60, [](int x, int y) {
         const double r = std::hypot(x - 30, y - 30);
         return r < 25 && r > 10;
@@ -90,7 +90,7 @@ TEST(OuterContour, OfARingHasNothingOfTheHole) {
     EXPECT_EQ(outerContour(maskOf({"####", "#..#", "#..#", "####"})).size(), 12u);
 }
 
-TEST(OuterContour, OfTwoIslandsIsTheLarger) {
+TEST(OuterContour, of_two_islands_is_the_larger) {
     for (const int large : {0, 1}) {
         const BitMask mask = drawn(100, 40, [&](int x, int y) {
             return std::hypot(x - 20, y - 20) < (large == 0 ? 15 : 10) || std::hypot(x - 70, y - 20) < (large == 1 ? 15 : 10);
@@ -105,7 +105,7 @@ TEST(OuterContour, OfTwoIslandsIsTheLarger) {
     for (const ivec2 p : outerContour(target)) EXPECT_GT(std::hypot(p.x - 50, p.y - 50), 38);
 }
 
-TEST(OuterContour, OfLittle) {
+TEST(OuterContour, of_a_few_pixels_goes_around_them) {
     EXPECT_TRUE(outerContour(BitMask(20, 20)).empty());
     EXPECT_THAT(outerContour(maskOf({"...", ".#.", "..."})), testing::ElementsAre(ivec2(1, 1)));
     // Lines are walked there and back, at the picture's edge too.
@@ -116,7 +116,7 @@ TEST(OuterContour, OfLittle) {
 
 // A chain of neighbours all around, through every pixel of a shape without holes that the outside
 // touches.
-TEST(OuterContour, IsAClosedChainThroughTheWholeRim) {
+TEST(OuterContour, is_a_closed_chain_through_the_whole_rim) {
     Rng rng(3);
     for (int trial = 0; trial < 20; ++trial) {
         const double a = rng.uniform(0.2, 0.5), b = rng.uniform(0, 6);
@@ -137,7 +137,7 @@ TEST(OuterContour, IsAClosedChainThroughTheWholeRim) {
     }
 }
 
-TEST(Sampled, IsEvenlySpacedInLengthNotInPixels) {
+TEST(Sampled, is_evenly_spaced_in_length_not_in_pixels) {
     // Along the sides of a square on its tip a step is sqrt 2 long, along its cut top 1.
     const BitMask mask = drawn(200, 200, [](int x, int y) { return std::abs(x - 100) + std::abs(y - 100) < 80 && y > 60; });
     const std::vector<ivec2> contour = outerContour(mask);
@@ -160,7 +160,7 @@ TEST(Sampled, IsEvenlySpacedInLengthNotInPixels) {
     EXPECT_THAT(sampled({{3, 4}}, 3), testing::Each(ivec2(3, 4)));
 }
 
-TEST(ContourDisc, OfAStraightEdgeIsNotCurved) {
+TEST(ContourDisc, of_a_straight_edge_is_not_curved) {
     for (const double radius : {3.0, 6.0, 12.0}) {
         const ContourDisc disc(radius);
         const BitMask below = drawn(130, 130, [](int, int y) { return y >= 64; }),
@@ -198,7 +198,7 @@ Round around(double radius, bool isHole, double discRadius) {
     return round;
 }
 
-TEST(ContourDisc, OfACircleHasItsCurvatureAndNormals) {
+TEST(ContourDisc, of_a_circle_has_its_curvature_and_normals) {
     for (const double radius : {20.0, 30.0, 60.0}) {
         const Round circle = around(radius, false, 6), hole = around(radius, true, 6);
         EXPECT_NEAR(circle.curvature, 6 / radius, 0.12);
@@ -210,7 +210,7 @@ TEST(ContourDisc, OfACircleHasItsCurvatureAndNormals) {
     }
 }
 
-TEST(ContourDisc, BeyondThePictureIsBlack) {
+TEST(ContourDisc, beyond_the_picture_is_black) {
     const ContourDisc disc(6);
     const BitMask white = drawn(130, 70, [](int, int) { return true; });
     BitMask framed = drawn(190, 130, [](int x, int y) { return x >= 30 && x < 160 && y >= 30 && y < 100; });
@@ -223,7 +223,7 @@ TEST(ContourDisc, BeyondThePictureIsBlack) {
     EXPECT_NEAR(disc.at(white, {0, 0}).curvature, 3 * 3.14159 / 4, 0.5);
 }
 
-TEST(ContourDisc, OfASinglePixelHasNoNormal) {
+TEST(ContourDisc, of_a_single_pixel_has_no_normal) {
     EXPECT_EQ(ContourDisc(6).at(maskOf({"...", ".#.", "..."}), {1, 1}).normal, glm::dvec2(0));
 }
 

@@ -9,7 +9,7 @@
 namespace fantascope::theatre {
 namespace {
 
-TEST(SignedDistance, IsToTheNearestPixelOfTheOtherColour) {
+TEST(SignedDistance, is_to_the_nearest_pixel_of_the_other_colour) {
     Rng rng(1);
     for (const double white : {0.003, 0.5, 0.997}) {
         const BitMask mask = randomMask(rng, 70, 40, white);
@@ -25,12 +25,12 @@ TEST(SignedDistance, IsToTheNearestPixelOfTheOtherColour) {
     }
 }
 
-TEST(SignedDistance, IsNoughtBetweenBlackAndWhite) {
+TEST(SignedDistance, is_nought_between_black_and_white) {
     const GreyImage distance = signedDistance(maskOf({"...###"}));
     EXPECT_THAT(distance.pixels(), testing::ElementsAre(-2.5f, -1.5f, -0.5f, 0.5f, 1.5f, 2.5f));
 }
 
-TEST(DeeperThan, ShrinksAndGrows) {
+TEST(DeeperThan, shrinks_and_grows) {
     const BitMask block = drawn(60, 50, [](int x, int y) { return x >= 20 && x < 40 && y >= 15 && y < 35; });
     const GreyImage distance = signedDistance(block);
     EXPECT_EQ(deeperThan(distance, 0), block);

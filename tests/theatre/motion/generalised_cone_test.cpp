@@ -24,7 +24,7 @@ glm::dvec2 shadowOf(const glm::dvec3& point) {
 // The point whose shadow falls at a place, a share of the way from the light to the screen.
 glm::dvec3 before(glm::dvec2 shadow, double share) { return kLight + share * (glm::dvec3(shadow, 0) - kLight); }
 
-TEST(GeneralisedCone, HasEveryPointAtItsCoordinates) {
+TEST(GeneralisedCone, has_every_point_at_its_coordinates) {
     const GeneralisedCone cone(kLight, kTriangles, kCorners);
     Rng rng(1);
     for (int i = 0; i < 200; ++i) {
@@ -37,7 +37,7 @@ TEST(GeneralisedCone, HasEveryPointAtItsCoordinates) {
     }
 }
 
-TEST(GeneralisedCone, CarriesWhatStandsInATetrahedronAsItsCornersGo) {
+TEST(GeneralisedCone, carries_what_stands_in_a_tetrahedron_as_its_corners_go) {
     const GeneralisedCone cone(kLight, kTriangles, kCorners);
     std::vector<glm::dvec2> moved = kCorners;
     moved[1] += glm::dvec2(0.2, -0.1);
@@ -52,7 +52,7 @@ TEST(GeneralisedCone, CarriesWhatStandsInATetrahedronAsItsCornersGo) {
 }
 
 // Beside the triangle it goes along, and turns with it, however the triangle is stretched.
-TEST(GeneralisedCone, TakesAlongWhatStandsBeside) {
+TEST(GeneralisedCone, takes_along_what_stands_beside) {
     const GeneralisedCone cone(kLight, kTriangles, kCorners);
     const glm::dvec2 below(-0.25, -0.4);  // of the first edge, which is level
     const auto coordinates = cone.coordinates(before(below, 0.5));
@@ -66,7 +66,7 @@ TEST(GeneralisedCone, TakesAlongWhatStandsBeside) {
     EXPECT_LT(glm::distance(shadowOf(there), foot + glm::dvec2(0.4, 0)), 1e-12);
 }
 
-TEST(GeneralisedCone, StandsATriangleWithoutArea) {
+TEST(GeneralisedCone, stands_a_triangle_without_area) {
     const std::vector<glm::dvec2> flat{{0, 0}, {1, 0}, {2, 0}, {0, 0}, {0, 0}};
     const GeneralisedCone cone(kLight, kTriangles, flat);
     const glm::dvec3 point = before({1.5, 0.5}, 0.7);

@@ -20,13 +20,13 @@ struct Dance {
     std::vector<std::vector<double>> wanted;
 
     Dance() {
-        motion.principal.dress();
+        motion.principal.buildSkins();
         for (std::size_t i = 0; i < kFrames; ++i) {
             PoseProblem problem = motion.principal;
             makeTarget(problem, wanted.emplace_back(poseAt(static_cast<double>(i))));
-            motion.targets.push_back(problem.target);
+            motion.targets.push_back(problem.targets[0]);
         }
-        motion.principal.target = motion.targets[kRepresentative];
+        motion.principal.targets[0] = motion.targets[kRepresentative];
         // A triangulation that stays: the fit has to do it all.
         motion.triangles = {{0, 1, 2}, {0, 2, 3}};
         motion.corners.assign(kFrames, {{-3, 0}, {3, 0}, {3, 3}, {-3, 3}});
@@ -42,7 +42,7 @@ struct Dance {
     }
 };
 
-TEST(MotionAdaptation, FollowsAShadowThatMoves) {
+TEST(MotionAdaptation, follows_a_shadow_that_moves) {
     const Dance dance;
     std::vector<std::size_t> told;
     const auto frames = MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 1, {.passes = 0},
@@ -52,7 +52,7 @@ TEST(MotionAdaptation, FollowsAShadowThatMoves) {
     const double still = PoseSearch::measure(
                              [&] {
                                  PoseProblem problem = dance.motion.principal;
-                                 problem.target = dance.motion.targets.back();
+                                 problem.targets[0] = dance.motion.targets.back();
                                  return problem;
                              }(),
                              dance.wanted[kRepresentative])
@@ -66,7 +66,7 @@ TEST(MotionAdaptation, FollowsAShadowThatMoves) {
 
 // Arms that go up by so much from frame to frame that their shadows do not even touch: who knows
 // the way follows, who does not stays behind.
-TEST(MotionAdaptation, FollowsTheTrianglesOnTheirWay) {
+TEST(MotionAdaptation, follows_the_triangles_on_their_way) {
     Dance dance;
     MotionProblem& motion = dance.motion;
     std::vector<glm::uvec3> triangles;
@@ -79,11 +79,11 @@ TEST(MotionAdaptation, FollowsTheTrianglesOnTheirWay) {
             pose[body.joints[body.joint(arm)].first] += 0.35 * (static_cast<double>(i) - kRepresentative);
         PoseProblem problem = motion.principal;
         makeTarget(problem, pose);
-        motion.targets[i] = problem.target;
+        motion.targets[i] = problem.targets[0];
         // Two triangles for each capsule's shadow.
         for (std::size_t a = 0; a < 2; ++a) {
             const Body& own = motion.principal.actors[a];
-            posed.pose(own, std::span(pose).subspan(motion.principal.firstFreedom(a), own.freedoms));
+            posed.pose(own, std::span(pose).subspan(motion.principal.firstDof(a), own.dofs));
             for (const PlacedCapsule& capsule : posed.capsules()) {
                 const ScreenFrame& frame = motion.targets[i].frame;
                 const auto shadow = [&](const glm::dvec3& point) {
@@ -100,7 +100,7 @@ TEST(MotionAdaptation, FollowsTheTrianglesOnTheirWay) {
             }
         }
     }
-    motion.principal.target = motion.targets[kRepresentative];
+    motion.principal.targets[0] = motion.targets[kRepresentative];
     const auto worst = [&] {
         double least = 1;
         for (const auto& frame : MotionAdaptation::run(motion, dance.wanted[kRepresentative], 1, {.searches = 0, .passes = 0}))
@@ -114,13 +114,13 @@ TEST(MotionAdaptation, FollowsTheTrianglesOnTheirWay) {
     EXPECT_LT(still, carried - 0.03);
 }
 
-TEST(MotionAdaptation, IsTheSameOnAnyNumberOfThreads) {
+TEST(MotionAdaptation, is_the_same_on_any_number_of_threads) {
     const Dance dance;
     const auto bytes = [&](int threads) {
         std::vector<double> all;
         for (const auto& frame :
              MotionAdaptation::run(dance.motion, dance.wanted[kRepresentative], 4, {.passes = 1, .threads = threads}))
-            all.insert(all.end(), frame->freedoms.begin(), frame->freedoms.end());
+            all.insert(all.end(), frame->dofs.begin(), frame->dofs.end());
         return all;
     };
     EXPECT_EQ(bytes(1), bytes(2));
@@ -128,17 +128,16 @@ TEST(MotionAdaptation, IsTheSameOnAnyNumberOfThreads) {
 
 // Frames that were found each for itself tremble; fitted between both their neighbours they do so
 // less, and match no worse.
-TEST(MotionAdaptation, IsSteadierForItsPasses) {
+TEST(MotionAdaptation, is_steadier_for_its_passes) {
     const Dance dance;
     Rng rng(7);
     MotionAdaptation::Frames trembling(kFrames);
     for (std::size_t i = 0; i < kFrames; ++i) {
         auto& frame = trembling[i].emplace();
-        frame.freedoms = i == kRepresentative ? dance.wanted[i] : nudged(dance.motion.principal, dance.wanted[i], rng, 0.04);
+        frame.dofs = i == kRepresentative ? dance.wanted[i] : nudged(dance.motion.principal, dance.wanted[i], rng, 0.04);
         for (std::size_t a = 0; a < 2; ++a) {
             const Body& body = dance.motion.principal.actors[a];
-            frame.poses.push_back(
-                poseOf(body, std::span(frame.freedoms).subspan(dance.motion.principal.firstFreedom(a), body.freedoms)));
+            frame.poses.push_back(poseOf(body, std::span(frame.dofs).subspan(dance.motion.principal.firstDof(a), body.dofs)));
         }
     }
     const auto tremor = [&](const MotionAdaptation::Frames& frames) {
@@ -146,10 +145,8 @@ TEST(MotionAdaptation, IsSteadierForItsPasses) {
         for (std::size_t i = 1; i < kFrames; ++i)
             for (std::size_t a = 0; a < 2; ++a) {
                 const Body& body = dance.motion.principal.actors[a];
-                const std::size_t first = dance.motion.principal.firstFreedom(a);
-                const auto ownOf = [&](std::size_t frame) {
-                    return std::span(frames[frame]->freedoms).subspan(first, body.freedoms);
-                };
+                const std::size_t first = dance.motion.principal.firstDof(a);
+                const auto ownOf = [&](std::size_t frame) { return std::span(frames[frame]->dofs).subspan(first, body.dofs); };
                 sum += poseDifference(body, ownOf(i), poseOf(body, ownOf(i - 1)));
             }
         return sum;
@@ -164,7 +161,7 @@ TEST(MotionAdaptation, IsSteadierForItsPasses) {
 }
 
 // Who is told to stop keeps what there is, and goes on from it.
-TEST(MotionAdaptation, GoesOnFromWhatIsThere) {
+TEST(MotionAdaptation, resumes_from_what_is_there) {
     const Dance dance;
     const MotionAdaptation::Options options{.passes = 0};
     const auto run = [&](const AdaptationWatch& watch, MotionAdaptation::Frames known) {
@@ -179,7 +176,7 @@ TEST(MotionAdaptation, GoesOnFromWhatIsThere) {
     told = 0;
     const auto rest = run({count, {}}, std::move(part));
     EXPECT_EQ(told, kFrames - 3);
-    for (std::size_t i = 0; i < kFrames; ++i) EXPECT_EQ(rest[i]->freedoms, whole[i]->freedoms) << i;
+    for (std::size_t i = 0; i < kFrames; ++i) EXPECT_EQ(rest[i]->dofs, whole[i]->dofs) << i;
 }
 
 }  // namespace

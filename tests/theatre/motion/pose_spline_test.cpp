@@ -39,16 +39,16 @@ struct Swaying {
             frames.push_back(poseOf(body, pose));
         }
     }
-    double footDrift(std::span<const double> freedoms) const {
+    double footDrift(std::span<const double> dofs) const {
         PosedBody posed;
-        posed.pose(body, freedoms);
+        posed.pose(body, dofs);
         double most = 0;
         for (const HeldContact& foot : feet) most = std::max(most, glm::distance(posed.place(foot.joint), foot.place));
         return most;
     }
 };
 
-TEST(PoseSpline, GoesThroughItsFrames) {
+TEST(PoseSpline, goes_through_its_frames) {
     Swaying swaying;
     for (const bool loops : {false, true}) {
         PoseSpline spline(swaying.body, swaying.problem.stage, swaying.frames, loops);
@@ -57,7 +57,7 @@ TEST(PoseSpline, GoesThroughItsFrames) {
     }
 }
 
-TEST(PoseSpline, LoopsOrHoldsItsEnds) {
+TEST(PoseSpline, loops_or_holds_its_ends) {
     Swaying swaying;
     PoseSpline loop(swaying.body, swaying.problem.stage, swaying.frames, true);
     EXPECT_LT(poseDifference(swaying.body, loop.at(5.0), swaying.frames[0]), 1e-12);
@@ -70,7 +70,7 @@ TEST(PoseSpline, LoopsOrHoldsItsEnds) {
 }
 
 // As fast into a frame as out of it; straight lines between frames would not be.
-TEST(PoseSpline, HasNoCornersInItsSpeed) {
+TEST(PoseSpline, has_no_corners_in_its_speed) {
     Swaying swaying;
     // The upper body alone, which nothing holds.
     for (ActorPose& frame : swaying.frames) frame.root.y += 1;
@@ -78,15 +78,15 @@ TEST(PoseSpline, HasNoCornersInItsSpeed) {
     const std::size_t shoulder = swaying.body.joints[swaying.body.joint("left shoulder")].first;
     constexpr double kStep = 1e-4;
     for (int frame = 0; frame < 5; ++frame)
-        for (const std::size_t freedom : {std::size_t{0}, shoulder}) {
-            const double here = spline.at(frame)[freedom];
-            const double in = (here - spline.at(frame - kStep)[freedom]) / kStep;
-            const double out = (spline.at(frame + kStep)[freedom] - here) / kStep;
-            EXPECT_NEAR(in, out, 2e-3) << frame << ", " << freedom;
+        for (const std::size_t dof : {std::size_t{0}, shoulder}) {
+            const double here = spline.at(frame)[dof];
+            const double in = (here - spline.at(frame - kStep)[dof]) / kStep;
+            const double out = (spline.at(frame + kStep)[dof] - here) / kStep;
+            EXPECT_NEAR(in, out, 2e-3) << frame << ", " << dof;
         }
 }
 
-TEST(PoseSpline, KeepsFeetWhereTheyStand) {
+TEST(PoseSpline, keeps_feet_where_they_stand) {
     Swaying swaying;
     PoseSpline spline(swaying.body, swaying.problem.stage, swaying.frames, true);
     std::vector<ActorPose> lifted = swaying.frames;
@@ -103,7 +103,7 @@ TEST(PoseSpline, KeepsFeetWhereTheyStand) {
     EXPECT_GT(drifted, 0.004) << "by themselves they slide";
 }
 
-TEST(PoseSpline, TakesTheShortWayAround) {
+TEST(PoseSpline, takes_the_short_way_around) {
     Swaying swaying;
     std::vector<ActorPose> flipped = swaying.frames;
     for (glm::dquat& turn : flipped[1].turns) turn = -turn;

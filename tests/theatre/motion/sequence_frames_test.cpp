@@ -40,5 +40,24 @@ TEST(SequenceFrames, a_jump_is_found_where_it_is) {
     EXPECT_THAT(jumpsOf(squares({20}), true), ElementsAre());
 }
 
+// Each in a frame of its own: what is wider has a wider mask.
+TEST(SequenceFrames, know_the_frame_that_poses_for_a_picture_are_of) {
+    const auto bar = [](int width) {
+        GreyImage picture(200, 120);
+        for (int y = 10; y < 110; ++y)
+            for (int x = 100 - width / 2; x < 100 + width / 2; ++x) picture.at(x, y) = 1;
+        return PoseTarget::from(picture, {}, 1, 96).value();
+    };
+    const std::vector<PoseTarget> frames{bar(40), bar(80), bar(160)};
+    EXPECT_NEAR(overlap(frames[0], frames[1]), 0.5, 0.02);
+    const Likeness same = mostAlike(frames, bar(82));
+    EXPECT_EQ(same.frame, 1u);
+    EXPECT_TRUE(same.isEnough());
+    const Likeness other = mostAlike(frames, bar(120));
+    EXPECT_EQ(other.frame, 2u);
+    EXPECT_FALSE(other.isEnough());
+    EXPECT_EQ(mostAlike(std::vector{bar(60), bar(60)}, bar(60)).frame, 0u) << "of several the first";
+}
+
 }  // namespace
 }  // namespace fantascope::theatre

@@ -36,9 +36,9 @@ struct Scene {
 // Of 1.7 m each, at these x, their feet this high above the floor.
 Scene aScene(const std::vector<double>& x, const std::vector<double>& heights) {
     Scene scene{theatre::aScene(std::vector<double>(x.size(), 1.7)), {}};
-    scene.problem.dress();
+    scene.problem.buildSkins();
     scene.poses = aRow(scene.problem, x, 2);
-    for (std::size_t i = 0; i < heights.size(); ++i) scene.poses[scene.problem.firstFreedom(i) + 1] += heights[i];
+    for (std::size_t i = 0; i < heights.size(); ++i) scene.poses[scene.problem.firstDof(i) + 1] += heights[i];
     makeTarget(scene.problem, scene.poses);
     return scene;
 }
@@ -167,18 +167,18 @@ Scene onTiptoe() {
 
 // A lamp on the floor sees all of the feet; in pixels of 4 mm.
 void seenFromTheFloor(Scene& scene) {
-    scene.problem.stage.light.y = 0;
-    scene.problem.target = {ScreenFrame(scene.problem.stage, -1.8, 2.8, 0.004, 1000, 720), BitMask(1000, 720), 0, {}, 2};
+    scene.problem.stage.beams[0].light.y = 0;
+    scene.problem.targets[0] = {ScreenFrame(scene.problem.stage, -1.8, 2.8, 0.004, 1000, 720), BitMask(1000, 720), 0, {}, 2};
     makeTarget(scene.problem, scene.poses);
 }
 
 // Of the print's shadow, in pixels: what is outside the poses' between two heights above the floor,
 // metres on the screen.
 int beside(const Scene& scene, const Fabrication& made, double from, double to) {
-    const ScreenFrame& frame = scene.problem.target.frame;
+    const ScreenFrame& frame = scene.problem.targets[0].frame;
     int count = 0;
     for (int y = static_cast<int>(frame.pixelAt(0, to).y); y < static_cast<int>(frame.pixelAt(0, from).y); ++y)
-        for (int x = 0; x < frame.width(); ++x) count += made.shadow.at(x, y) && !scene.problem.target.mask.at(x, y);
+        for (int x = 0; x < frame.width(); ++x) count += made.shadow.at(x, y) && !scene.problem.targets[0].mask.at(x, y);
     return count;
 }
 
@@ -224,12 +224,12 @@ TEST(Fabrication, what_is_thinner_than_a_wall_becomes_as_thick) {
         EXPECT_LT(part.thickness, kOptions.wall) << part.who;
         EXPECT_GT(part.height, kOptions.height) << part.who;
     }
-    EXPECT_GT(made.leastWall, 0.9 * kOptions.wall);
+    EXPECT_GT(made.thinnestWall, 0.9 * kOptions.wall);
     Fabrication::Options fine = kOptions;
     fine.wall = 0.25;
     const Fabrication thinWalled = print(scene, fine);
     EXPECT_THAT(thinWalled.thin, IsEmpty()) << "fingers are twice as thick";
-    EXPECT_EQ(thinWalled.leastWall, 0.25);
+    EXPECT_EQ(thinWalled.thinnestWall, 0.25);
 }
 
 TEST(Fabrication, platforms_and_props_are_printed_too) {

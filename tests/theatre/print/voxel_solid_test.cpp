@@ -2,7 +2,7 @@
 
 #include "theatre/print/voxel_solid.h"
 
-#include "theatre/stage/surroundings.h"
+#include "theatre/stage/stage_set.h"
 
 #include "media/solid.h"
 #include "meshes.h"

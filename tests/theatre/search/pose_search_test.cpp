@@ -3,7 +3,7 @@
 #include "theatre/energy/energy_terms.h"
 #include "theatre/energy/scene_energy.h"
 #include "theatre/search/artefacts.h"
-#include "theatre/search/freedom_search.h"
+#include "theatre/search/dof_search.h"
 
 #include "a_scene.h"
 #include "core/parallel.h"
@@ -24,7 +24,7 @@ PoseProblem hill(int actors, double height = 1.5, int rows = 128) {
         for (int x = 0; x < 240; ++x)
             if (std::hypot((x + 0.5 - 120) / 80, (y + 0.5 - 120) / 100) < 1) picture.at(x, y) = 1;
     const Stage stage;
-    PoseProblem problem{stage, PoseTarget::from(picture, stage, height, rows).value(), {}, {}};
+    PoseProblem problem{stage, {PoseTarget::from(picture, stage, height, rows).value()}, {}, {}};
     for (int i = 0; i < actors; ++i) problem.actors.push_back(humanBody(1.6 + 0.1 * i));
     return problem;
 }
@@ -53,11 +53,11 @@ TEST(PoseSearch, tells_what_props_bring) {
     PoseProblem problem = aScene({1.7});
     const std::vector<double> pose = aRow(problem, {-1}, 2);
     makeTarget(problem, pose);
-    const double people = problem.target.area;
+    const double people = problem.targets[0].area;
     problem.stage.props = {aBox({0.6, 0.6, 0.2}, {1, 0.3, 2}), aBox({0.2, 0.2, 0.2}, {0.4, 0, 0})};
     problem.stage.props[1].holder = Prop::Holder{0, BodyPart::LeftHand};
     makeTarget(problem, pose);
-    const double all = problem.target.area;
+    const double all = problem.targets[0].area;
     ASSERT_GT(all, 1.2 * people);
     auto quality = PoseSearch::measure(problem, pose);
     EXPECT_EQ(quality.iou, 1);
@@ -86,23 +86,23 @@ TEST(PoseSearch, finds_a_shape_that_people_can_hold) {
 // The easy wrong version finds a shape for the capsules and hands out people of flesh.
 TEST(PoseSearch, what_it_ends_with_is_measured_and_found_on_the_skins) {
     PoseProblem problem = hill(2, 1.5, 256), dressed = problem;
-    dressed.dress();
+    dressed.buildSkins();
     // The best of a few, as anybody takes it.
     PoseSearch::Trial trial;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         const auto ofCapsules = PoseSearch::run(problem, seed, evaluations(12000));
         auto found = PoseSearch::run(dressed, seed, evaluations(12000));
         EXPECT_TRUE(found.quality.isValid());
-        EXPECT_LT(found.quality.energy, PoseSearch::measure(dressed, ofCapsules.freedoms).energy) << seed;
+        EXPECT_LT(found.quality.energy, PoseSearch::measure(dressed, ofCapsules.dofs).energy) << seed;
         if (found.quality.iou > trial.quality.iou) trial = std::move(found);
     }
     EXPECT_GT(trial.quality.iou, 0.95);
     std::vector<glm::vec3> skin;
     PosedBody posed;
-    std::span<const double> freedoms(trial.freedoms);
+    std::span<const double> dofs(trial.dofs);
     for (std::size_t i = 0; i < problem.actors.size(); ++i) {
-        posed.pose(problem.actors[i], freedoms.first(problem.actors[i].freedoms));
-        freedoms = freedoms.subspan(problem.actors[i].freedoms);
+        posed.pose(problem.actors[i], dofs.first(problem.actors[i].dofs));
+        dofs = dofs.subspan(problem.actors[i].dofs);
         dressed.skins[i]->skin(problem.actors[i], posed, skin);
         float lowest = skin.front().y;
         for (const glm::vec3& vertex : skin) lowest = std::min(lowest, vertex.y);
@@ -121,11 +121,10 @@ TEST(PoseSearch, the_same_seed_gives_the_same_poses_on_any_number_of_threads) {
         return found;
     };
     const auto one = trials(5, 1), two = trials(5, 3);
-    for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].freedoms, two[i].freedoms) << i;
-    EXPECT_NE(one[0].freedoms, one[1].freedoms) << "trials have seeds of their own";
-    EXPECT_EQ(one[1].freedoms, PoseSearch::run(problem, one[1].seed, evaluations(1000)).freedoms)
-        << "a trial is repeated by its seed";
-    EXPECT_NE(one[0].freedoms, trials(6, 1)[0].freedoms);
+    for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].dofs, two[i].dofs) << i;
+    EXPECT_NE(one[0].dofs, one[1].dofs) << "trials have seeds of their own";
+    EXPECT_EQ(one[1].dofs, PoseSearch::run(problem, one[1].seed, evaluations(1000)).dofs) << "a trial is repeated by its seed";
+    EXPECT_NE(one[0].dofs, trials(6, 1)[0].dofs);
 }
 
 TEST(PoseSearch, stops_when_it_is_asked_to_with_what_it_has) {
@@ -133,7 +132,7 @@ TEST(PoseSearch, stops_when_it_is_asked_to_with_what_it_has) {
     const auto trial = PoseSearch::run(problem, 1, evaluations(1'000'000), [](const PoseSearch::Progress&) { return true; });
     EXPECT_EQ(trial.reason, PoseSearch::StopReason::Interrupted);
     EXPECT_LT(trial.evaluations, 1'000'000);
-    EXPECT_EQ(trial.freedoms.size(), problem.freedoms());
+    EXPECT_EQ(trial.dofs.size(), problem.dofs());
 }
 
 TEST(PoseSearch, the_papers_method_refines_what_it_found_and_keeps_what_is_better) {
@@ -168,9 +167,9 @@ TEST(PoseSearch, the_papers_method_ends_when_nothing_is_to_be_seen) {
     EXPECT_EQ(clean.reason, PoseSearch::StopReason::Satisfied);
     EXPECT_LT(clean.evaluations, 6000);
     SceneEnergy energy(problem);
-    energy.pose(clean.freedoms);
+    energy.pose(clean.dofs);
     energy.terms();
-    EXPECT_EQ(visibleArtefacts(problem.target, energy.shadow()).count(), 0);
+    EXPECT_EQ(visibleArtefacts(problem.targets[0], energy.shadow()).count(), 0);
     options.residual = 0;
     EXPECT_EQ(PoseSearch::run(problem, 1, options).reason, PoseSearch::StopReason::Evaluations) << "an energy is never less";
 }
@@ -179,13 +178,13 @@ TEST(PoseSearch, of_the_papers_method_repeats_and_knows_two_covariances) {
     const PoseProblem problem = hill(2);
     PoseSearch::Options options = evaluations(2000);
     options.method = PoseSearch::Method::Paper;
-    const auto blocks = PoseSearch::run(problem, 3, options).freedoms;
-    EXPECT_EQ(PoseSearch::run(problem, 3, options).freedoms, blocks);
+    const auto blocks = PoseSearch::run(problem, 3, options).dofs;
+    EXPECT_EQ(PoseSearch::run(problem, 3, options).dofs, blocks);
     options.fullCovariance = true;
-    const auto full = PoseSearch::run(problem, 3, options).freedoms;
-    EXPECT_EQ(PoseSearch::run(problem, 3, options).freedoms, full);
+    const auto full = PoseSearch::run(problem, 3, options).dofs;
+    EXPECT_EQ(PoseSearch::run(problem, 3, options).dofs, full);
     EXPECT_NE(full, blocks);
-    EXPECT_NE(PoseSearch::run(problem, 3, evaluations(2000)).freedoms, blocks) << "the other method";
+    EXPECT_NE(PoseSearch::run(problem, 3, evaluations(2000)).dofs, blocks) << "the other method";
 }
 
 TEST(PoseSearch, options_out_of_range_are_refused) {
@@ -206,11 +205,11 @@ TEST(PoseSearch, poses_that_nobody_can_hold_are_not_valid) {
     const PoseProblem problem = hill(2);
     const auto start = PoseSearch::start(problem);
     const auto valid = [&](auto change) {
-        auto freedoms = start;
-        change(freedoms);
-        return PoseSearch::measure(problem, freedoms).isValid();
+        auto dofs = start;
+        change(dofs);
+        return PoseSearch::measure(problem, dofs).isValid();
     };
-    const std::size_t second = problem.actors[0].freedoms;
+    const std::size_t second = problem.actors[0].dofs;
     EXPECT_TRUE(valid([](auto&) {}));
     EXPECT_FALSE(valid([](auto& f) { f[1] += 0.05; })) << "floats";
     EXPECT_FALSE(valid([](auto& f) { f[1] -= 0.05; })) << "in the floor";
@@ -223,27 +222,27 @@ TEST(PoseSearch, poses_that_nobody_can_hold_are_not_valid) {
     EXPECT_FALSE(valid([](auto& f) { f[2] = 0.02; })) << "in the screen";
 }
 
-TEST(FreedomSearch, changes_nothing_but_what_it_was_given) {
+TEST(DofSearch, changes_nothing_but_what_it_was_given) {
     const PoseProblem problem = hill(2);
     SceneEnergy energy(problem);
-    FreedomSearch search(problem);
+    DofSearch search(problem);
     const auto start = PoseSearch::start(problem);
-    auto freedoms = start;
-    energy.pose(freedoms);
+    auto dofs = start;
+    energy.pose(dofs);
     const double before = energy.energy();
-    const std::size_t second = problem.actors[0].freedoms;
+    const std::size_t second = problem.actors[0].dofs;
     std::vector<std::size_t> which = {0, 2, second, second + 2};
     const Body::Joint& joint = problem.actors[1].joints[3];
     for (std::size_t k = 0; k < joint.motion.size(); ++k) which.push_back(second + joint.first + k);
     Rng rng(1);
-    const double after = search.run(energy, freedoms, which, {0.5, 12, 25}, rng);
+    const double after = search.run(energy, dofs, which, {0.5, 12, 25}, rng);
     EXPECT_LT(after, before);
     EXPECT_EQ(search.evaluations(), 12 * 25);
-    for (std::size_t i = 0; i < freedoms.size(); ++i) {
+    for (std::size_t i = 0; i < dofs.size(); ++i) {
         const bool given = std::find(which.begin(), which.end(), i) != which.end();
-        EXPECT_EQ(freedoms[i] != start[i], given) << i;
+        EXPECT_EQ(dofs[i] != start[i], given) << i;
     }
-    energy.pose(freedoms);
+    energy.pose(dofs);
     EXPECT_DOUBLE_EQ(energy.energy(), after) << "what it tells is what it left";
 }
 

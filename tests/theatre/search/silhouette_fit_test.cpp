@@ -21,7 +21,7 @@ struct Scene {
         for (const Body& body : problem.actors) {
             for (const char* joint : {"left elbow", "right elbow"}) wanted[first + body.joints[body.joint(joint)].first] += 0.4;
             wanted[first + body.joints[body.joint("right shoulder")].first] += 0.3;
-            first += body.freedoms;
+            first += body.dofs;
         }
         makeTarget(problem, wanted);
     }
@@ -32,7 +32,7 @@ struct Scene {
     }
 };
 
-TEST(SilhouetteFit, ReturnsMostOfTheWayFromANudge) {
+TEST(SilhouetteFit, returns_most_of_the_way_from_a_nudge) {
     const Scene scene;
     const double least = scene.energyOf(scene.wanted);
     Rng rng(1);
@@ -49,7 +49,7 @@ TEST(SilhouetteFit, ReturnsMostOfTheWayFromANudge) {
 
 // What it promises: the first step that is tried from a nudge goes downhill, since it is short
 // enough.
-TEST(SilhouetteFit, ItsDirectionIsDownhill) {
+TEST(SilhouetteFit, goes_downhill) {
     const Scene scene;
     Rng rng(2);
     int lower = 0;
@@ -64,7 +64,7 @@ TEST(SilhouetteFit, ItsDirectionIsDownhill) {
 
 // A limb that reaches beyond the light has no outline, and a negative radius if it is divided by
 // its depth all the same.
-TEST(SilhouetteFit, BearsWhoReachesBeyondTheLight) {
+TEST(SilhouetteFit, bears_who_reaches_beyond_the_light) {
     PoseProblem problem = aScene({1.7, 1.7});
     std::vector<double> poses = aRow(problem, {-1, 1}, 2);
     makeTarget(problem, poses);
@@ -77,13 +77,13 @@ TEST(SilhouetteFit, BearsWhoReachesBeyondTheLight) {
         energy.pose(poses);
         const double before = energy.energy();
         const auto depthOf = [&](const char* joint) { return energy.posed(0).place(body.joint(joint)).z; };
-        ASSERT_GT(std::max(depthOf("left wrist"), depthOf("right wrist")), problem.stage.light.z);
+        ASSERT_GT(std::max(depthOf("left wrist"), depthOf("right wrist")), problem.stage.beams[0].light.z);
         EXPECT_LE(SilhouetteFit(problem).run(energy, poses, 10), before);
-        for (const double freedom : poses) EXPECT_TRUE(std::isfinite(freedom));
+        for (const double dof : poses) EXPECT_TRUE(std::isfinite(dof));
     }
 }
 
-TEST(SilhouetteFit, NeverRaisesTheEnergyAndStaysWithinTheLimits) {
+TEST(SilhouetteFit, never_raises_the_energy_and_stays_within_the_limits) {
     const Scene scene;
     Rng rng(3);
     for (int trial = 0; trial < 6; ++trial) {
@@ -97,22 +97,22 @@ TEST(SilhouetteFit, NeverRaisesTheEnergyAndStaysWithinTheLimits) {
         EXPECT_EQ(energy.terms().total(scene.problem.weights), after);  // left posed so
         std::vector<double> limited = poses;
         std::span<double> rest(limited);
-        for (const Body& body : scene.problem.actors) body.limit(rest.first(body.freedoms)), rest = rest.subspan(body.freedoms);
+        for (const Body& body : scene.problem.actors) body.limit(rest.first(body.dofs)), rest = rest.subspan(body.dofs);
         EXPECT_THAT(limited, testing::Pointwise(testing::DoubleNear(1e-12), poses));
     }
 }
 
-TEST(SilhouetteFit, MovesWhatMayMove) {
+TEST(SilhouetteFit, moves_what_may_move) {
     const Scene scene;
     Rng rng(4);
     const std::vector<double> start = nudged(scene.problem, scene.wanted, rng, 0.05);
     std::vector<double> poses = start;
     std::vector<char> moves(start.size(), 0);
-    const std::size_t first = scene.problem.actors[0].freedoms;
+    const std::size_t first = scene.problem.actors[0].dofs;
     for (std::size_t i = first; i < moves.size(); ++i) moves[i] = i % 2;
     SceneEnergy energy(scene.problem);
     const double before = scene.energyOf(start);
-    EXPECT_LT(SilhouetteFit(scene.problem).run(energy, poses, 20, moves), before);
+    EXPECT_LT(SilhouetteFit(scene.problem).run(energy, poses, 20, 1, moves), before);
     int moved = 0;
     for (std::size_t i = 0; i < moves.size(); ++i) {
         // A ball or cone that is full gives way as a whole; nothing of the first actor moves.
@@ -122,11 +122,11 @@ TEST(SilhouetteFit, MovesWhatMayMove) {
     EXPECT_GT(moved, 5);
     const std::vector<char> none(start.size(), 0);
     poses = start;
-    EXPECT_EQ(SilhouetteFit(scene.problem).run(energy, poses, 5, none), before);
+    EXPECT_EQ(SilhouetteFit(scene.problem).run(energy, poses, 5, 1, none), before);
     EXPECT_EQ(poses, start);
 }
 
-TEST(SilhouetteFit, GivesTheSameTwiceAndCountsItsEvaluations) {
+TEST(SilhouetteFit, gives_the_same_twice_and_counts_its_evaluations) {
     const Scene scene;
     Rng rng(5);
     const std::vector<double> start = nudged(scene.problem, scene.wanted, rng, 0.1),
@@ -143,7 +143,7 @@ TEST(SilhouetteFit, GivesTheSameTwiceAndCountsItsEvaluations) {
 }
 
 // Each term of physics alone is a way downhill: nothing but it is weighed.
-TEST(SilhouetteFit, MendsWhatPhysicsForbids) {
+TEST(SilhouetteFit, mends_what_physics_forbids) {
     const auto share = [](double PoseWeights::*weight, std::vector<double> poses, PoseProblem& problem) {
         problem.weights = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
         problem.weights.*weight = 1;
@@ -157,8 +157,8 @@ TEST(SilhouetteFit, MendsWhatPhysicsForbids) {
     std::vector<double> close = aRow(scene.problem, {-0.65, 0.65}, 2);
     // The shorter lifted to the other's height and a little behind: hands in each other, their
     // middles 4 cm apart.
-    close[scene.problem.actors[0].freedoms + 1] += 0.2 * 0.812;
-    close[scene.problem.actors[0].freedoms + 2] -= 0.04;
+    close[scene.problem.actors[0].dofs + 1] += 0.2 * 0.812;
+    close[scene.problem.actors[0].dofs + 2] -= 0.04;
     EXPECT_LT(share(&PoseWeights::w10, close, scene.problem), 0.01) << "people";
     std::vector<double> moved = scene.wanted;
     moved[1] -= 0.05;
@@ -175,7 +175,7 @@ TEST(SilhouetteFit, MendsWhatPhysicsForbids) {
 }
 
 // The same of what stands on a stage, and of what others hold.
-TEST(SilhouetteFit, LeavesWhatStandsOnTheStage) {
+TEST(SilhouetteFit, leaves_what_stands_on_the_stage) {
     const auto share = [](std::vector<double> poses, const PoseProblem& given, double PoseWeights::*weight = &PoseWeights::w11) {
         PoseProblem problem = given;
         problem.weights = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
@@ -227,7 +227,7 @@ TEST(SilhouetteFit, LeavesWhatStandsOnTheStage) {
         << "held into the floor";
     // 10 cm above a platform.
     std::vector<double> high = aRow(scene.problem, {-0.75, 0.75}, 2);
-    for (const std::size_t first : {std::size_t{0}, scene.problem.actors[0].freedoms}) high[first + 1] += 0.5;
+    for (const std::size_t first : {std::size_t{0}, scene.problem.actors[0].dofs}) high[first + 1] += 0.5;
     EXPECT_LT(share(high, with([](Stage& stage) {
                         stage.platforms = {{"block", {0, 0.2, 2}, {4, 0.4, 2}, 0}};
                     }),

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 namespace fantascope::theatre {
 namespace {
@@ -70,6 +72,36 @@ TEST(Troupe, takes_its_own_advice) {
     EXPECT_FALSE(of(4, 5.0));
     EXPECT_TRUE(of(8, 1.0));
     EXPECT_FALSE(of(9, 1.0));
+}
+
+// A silhouette on a screen on which shadows are twice as large wants four times the area. The easy
+// wrong version adds up the pixels.
+TEST(Troupe, fills_what_the_beams_want_on_average) {
+    GreyImage picture(120, 120);
+    for (int y = 10; y < 110; ++y)
+        for (int x = 20; x < 70; ++x) picture.at(x, y) = 1;
+    const PoseTarget target = PoseTarget::from(picture, {}, 1, 512).value();
+    Stage stage;
+    EXPECT_NEAR(areaToFill(std::vector{target}, stage), 0.5, 1e-3);
+    stage.screens.push_back({{2.5, 1.5}, -std::numbers::pi / 2});
+    stage.beams.push_back({{-4, 0, 1.5}, 1});
+    const double scale = TargetPlace::on(stage, 1).scale;
+    ASSERT_GT(scale, 1.1);
+    EXPECT_NEAR(areaToFill(std::vector{target, target}, stage), 0.5 * (1 + scale * scale) / 2, 1e-3);
+}
+
+TEST(Troupe, is_as_high_on_every_screen) {
+    Stage stage;
+    EXPECT_EQ(targetOn(stage, 0, 1.234).height, 1.234);
+    EXPECT_FALSE(targetOn(stage, 0, 1.234).middle);
+    stage.screens.push_back({{2.5, 1.5}, -std::numbers::pi / 2});
+    stage.beams.push_back({{-4, 0, 1.5}, 1});
+    const TargetPlace place = TargetPlace::on(stage, 1);
+    const Cast::Target target = targetOn(stage, 1, 1.2);
+    EXPECT_NEAR(target.height, 1.2 * place.scale, 0.005);
+    EXPECT_EQ(target.height, std::round(100 * target.height) / 100) << "whole centimetres";
+    EXPECT_NEAR(target.middle.value(), place.middle.value(), 0.005);
+    EXPECT_EQ(targetOn(stage, 1, 8).height, Troupe::kMostHeight);
 }
 
 }  // namespace

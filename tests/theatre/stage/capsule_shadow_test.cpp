@@ -1,5 +1,6 @@
 #include "theatre/stage/capsule_shadow.h"
 
+#include "theatre/a_stage.h"
 #include "theatre/mask/contour.h"
 
 #include "random_turns.h"
@@ -14,7 +15,7 @@ namespace {
 using glm::dvec3;
 
 // The light 7 m before a screen of 6 m x 4 m, of which a pixel is 1 cm.
-const Stage kStage{{0, 0, 7}};
+const Stage kStage = aStage({0, 0, 7});
 ScreenFrame frameOf() { return ScreenFrame(kStage, -3, 4, 0.01, 600, 400); }
 
 PlacedCapsule capsule(dvec3 from, double fromRadius, dvec3 to, double toRadius) { return {{from, fromRadius}, {to, toRadius}}; }
@@ -31,9 +32,9 @@ BitMask rayTraced(const PlacedCapsule& c) {
     BitMask mask(600, 400);
     for (int y = 0; y < 400; ++y)
         for (int x = 0; x < 600; ++x) {
-            const dvec3 ray = glm::normalize(dvec3(frame.metresAt({x + 0.5, y + 0.5}), 0) - kStage.light);
+            const dvec3 ray = glm::normalize(dvec3(frame.metresAt({x + 0.5, y + 0.5}), 0) - kStage.beams[0].light);
             const auto passesBy = [&](double t) {
-                const dvec3 fromLight = glm::mix(c.from, c.to, t) - kStage.light;
+                const dvec3 fromLight = glm::mix(c.from, c.to, t) - kStage.beams[0].light;
                 return glm::length(glm::cross(fromLight, ray)) - std::lerp(c.fromRadius, c.toRadius, t);
             };
             double low = 0, high = 1;
@@ -70,8 +71,8 @@ Extent extentOf(const BitMask& mask) {
 }
 
 // A ball in the light's axis throws a circle of radius L r / sqrt(d^2 - r^2), more than L r / d.
-TEST(CapsuleShadow, BallBeforeTheFootIsACircle) {
-    const Stage stage{{0, 2, 7}};
+TEST(CapsuleShadow, of_a_ball_before_the_foot_is_a_circle) {
+    const Stage stage = aStage({0, 2, 7});
     const ScreenFrame frame(stage, -3, 4, 0.01, 600, 400);
     BitMask mask(600, 400);
     const double r = 0.5, d = 2;
@@ -87,7 +88,7 @@ TEST(CapsuleShadow, BallBeforeTheFootIsACircle) {
 
 // Off the axis it is an ellipse, stretched away from the foot: its ends along y are at L tan(a +-
 // b), with sin b = r / distance.
-TEST(CapsuleShadow, BallAboveTheFootIsAnEllipse) {
+TEST(CapsuleShadow, of_a_ball_above_the_foot_is_an_ellipse) {
     const double y = 1.5, d = 4, r = 0.4, a = std::atan2(y, d), b = std::asin(r / std::hypot(y, d));
     const BitMask mask = shadowOf(capsule({0, y, 7 - d}, r, {0, y, 7 - d}, r));
     const Extent e = extentOf(mask);
@@ -98,7 +99,7 @@ TEST(CapsuleShadow, BallAboveTheFootIsAnEllipse) {
     EXPECT_NEAR(0.5 * (e.right - e.left), 700 * r / std::sqrt(d * d - r * r), 1.5);
 }
 
-TEST(CapsuleShadow, IsWhatRaysMeet) {
+TEST(CapsuleShadow, is_what_rays_meet) {
     expectLikeRays(capsule({0.3, 1.2, 2}, 0.3, {0.3, 1.2, 2}, 0.3));
     expectLikeRays(capsule({-0.5, 0.5, 1}, 0.05, {0.7, 1.5, 3.5}, 0.25));
     // Towards the light, one end hiding the other.
@@ -112,12 +113,12 @@ TEST(CapsuleShadow, IsWhatRaysMeet) {
                                dvec3(0, 1.2, 2) + randomVector(rng, 1), rng.uniform(0.03, 0.3)));
 }
 
-TEST(CapsuleShadow, IsTheSameFromEitherEnd) {
+TEST(CapsuleShadow, is_the_same_from_either_end) {
     const dvec3 from(-0.5, 0.5, 1), to(0.7, 1.5, 3.5);
     EXPECT_EQ(shadowOf(capsule(from, 0.05, to, 0.25)), shadowOf(capsule(to, 0.25, from, 0.05)));
 }
 
-TEST(CapsuleShadow, ReachingTheLightItThrowsNone) {
+TEST(CapsuleShadow, reaching_the_light_it_throws_none) {
     BitMask mask(600, 400);
     for (const double z : {6.8, 7.0, 9.0})
         for (const bool isSwapped : {false, true}) {
@@ -128,12 +129,12 @@ TEST(CapsuleShadow, ReachingTheLightItThrowsNone) {
     EXPECT_EQ(mask.count(), 0);
 }
 
-TEST(CapsuleShadow, OutsideThePictureNothingIsAdded) {
+TEST(CapsuleShadow, outside_the_picture_nothing_is_added) {
     for (const dvec3 place : {dvec3(8, 1, 2), {-8, 1, 2}, {0, 9, 2}, {0, -9, 2}})
         EXPECT_EQ(shadowOf(capsule(place, 0.2, place, 0.2)).count(), 0);
 }
 
-TEST(CapsuleShadow, AddsToWhatIsThere) {
+TEST(CapsuleShadow, adds_to_what_is_there) {
     BitMask mask(600, 400);
     mask.fill(5, 0, 600);
     ASSERT_TRUE(CapsuleShadow().add(frameOf(), capsule({0, 1, 2}, 0.2, {0, 1, 2}, 0.2), mask));

@@ -17,9 +17,9 @@ protected:
     // Two people, two frames, every joint somewhere within its limits.
     Cast cast() const {
         Cast cast;
-        cast.target = folder_ / "target \"x\".png";
-        cast.height = 1.85;
-        cast.stage.light = {0.25, 0.1, 6.5};
+        cast.targets[0].file = folder_ / "target \"x\".png";
+        cast.targets[0].height = 1.85;
+        cast.stage.beams[0].light = {0.25, 0.1, 6.5};
         cast.framesPerSecond = 12.5;
         cast.seed = 77;
         Rng rng(3);
@@ -27,10 +27,10 @@ protected:
             const Body body = humanBody(stature);
             cast.actors.push_back({stature, {}});
             for (int frame = 0; frame < 2; ++frame) {
-                std::vector<double> freedoms(body.freedoms);
-                for (double& freedom : freedoms) freedom = rng.uniform(-1.5, 1.5);
-                body.limit(freedoms);
-                cast.actors.back().poses.push_back(poseOf(body, freedoms));
+                std::vector<double> dofs(body.dofs);
+                for (double& dof : dofs) dof = rng.uniform(-1.5, 1.5);
+                body.limit(dofs);
+                cast.actors.back().poses.push_back(poseOf(body, dofs));
             }
         }
         return cast;
@@ -54,9 +54,9 @@ TEST_F(CastFile, comes_back_as_it_was) {
     ASSERT_TRUE(writeCast(folder_ / "a.cast.yaml", written));
     const auto read = readCast(folder_ / "a.cast.yaml");
     ASSERT_TRUE(read) << read.error().message();
-    EXPECT_EQ(read->target, written.target);
-    EXPECT_EQ(read->height, written.height);
-    EXPECT_EQ(read->stage.light, written.stage.light);
+    EXPECT_EQ(read->targets[0].file, written.targets[0].file);
+    EXPECT_EQ(read->targets[0].height, written.targets[0].height);
+    EXPECT_EQ(read->stage.beams[0].light, written.stage.beams[0].light);
     EXPECT_EQ(read->framesPerSecond, written.framesPerSecond);
     EXPECT_EQ(read->seed, written.seed);
     ASSERT_EQ(read->actors.size(), 2u);
@@ -81,7 +81,7 @@ TEST_F(CastFile, brings_its_stage) {
     ASSERT_TRUE(writeCast(folder_ / "a.cast.yaml", written));
     const auto read = readCast(folder_ / "a.cast.yaml");
     ASSERT_TRUE(read) << read.error().message();
-    EXPECT_EQ(read->stage.light, glm::dvec3(0.5, 0.2, 6));
+    EXPECT_EQ(read->stage.beams[0].light, glm::dvec3(0.5, 0.2, 6));
     ASSERT_EQ(read->stage.platforms.size(), 1u);
     EXPECT_EQ(read->stage.platforms[0].name, "step");
     EXPECT_EQ(read->stageFile, written.stageFile);
@@ -97,15 +97,15 @@ TEST_F(CastFile, brings_its_stage) {
 }
 
 // What a search works with comes back from what the file keeps.
-TEST_F(CastFile, poses_and_freedoms_are_two_ways_to_say_the_same) {
+TEST_F(CastFile, poses_and_degrees_of_freedom_are_two_ways_to_say_the_same) {
     const Body body = humanBody(1.7);
     Rng rng(9);
     for (int i = 0; i < 200; ++i) {
-        std::vector<double> freedoms(body.freedoms);
-        for (double& freedom : freedoms) freedom = rng.uniform(-1.5, 1.5);
-        body.limit(freedoms);
-        const auto back = freedomsOf(body, poseOf(body, freedoms));
-        for (std::size_t k = 0; k < freedoms.size(); ++k) EXPECT_NEAR(back[k], freedoms[k], 1e-9) << k;
+        std::vector<double> dofs(body.dofs);
+        for (double& dof : dofs) dof = rng.uniform(-1.5, 1.5);
+        body.limit(dofs);
+        const auto back = dofsOf(body, poseOf(body, dofs));
+        for (std::size_t k = 0; k < dofs.size(); ++k) EXPECT_NEAR(back[k], dofs[k], 1e-9) << k;
     }
 }
 
@@ -139,7 +139,7 @@ TEST_F(CastFile, frames_must_be_as_many_for_everyone) {
 
 TEST_F(CastFile, its_target_lies_beside_it) {
     Cast away = cast();
-    away.target = "/somewhere/else.png";
+    away.targets[0].file = "/somewhere/else.png";
     const auto written = writeCast(folder_ / "a.cast.yaml", away);
     ASSERT_FALSE(written);
     EXPECT_THAT(written.error().message(), HasSubstr("copy it there first"));
@@ -152,17 +152,18 @@ TEST_F(CastFile, has_a_target_for_each_beam) {
     ASSERT_TRUE(writeFile(folder_ / "a.stage.yaml", stage + further));
     Cast written = cast();
     written.stageFile = folder_ / "a.stage.yaml";
-    written.further = {{folder_ / "other: one.png", 1.25, -0.375}};
+    written.targets.push_back({folder_ / "other: one.png", 1.25, -0.375});
     ASSERT_TRUE(writeCast(folder_ / "a.cast.yaml", written));
     const auto read = readCast(folder_ / "a.cast.yaml");
     ASSERT_TRUE(read) << read.error().message();
-    ASSERT_EQ(read->further.size(), 1u);
-    EXPECT_EQ(read->further[0].file, written.further[0].file);
-    EXPECT_EQ(read->further[0].height, 1.25);
-    EXPECT_EQ(read->further[0].middle, -0.375);
-    EXPECT_EQ(read->stage.beams(), 2u);
+    ASSERT_EQ(read->targets.size(), 2u);
+    EXPECT_EQ(read->targets[1].file, written.targets[1].file);
+    EXPECT_EQ(read->targets[1].height, 1.25);
+    EXPECT_EQ(read->targets[1].middle, -0.375);
+    EXPECT_FALSE(read->targets[0].middle) << "it is before the light";
+    EXPECT_EQ(read->stage.beams.size(), 2u);
 
-    written.further.clear();
+    written.targets.pop_back();
     const auto without = writeCast(folder_ / "b.cast.yaml", written);
     ASSERT_FALSE(without);
     EXPECT_THAT(without.error().message(), HasSubstr("0 further_targets, and the stage has 1 further_beams"));

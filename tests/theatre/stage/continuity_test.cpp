@@ -12,7 +12,7 @@
 namespace fantascope::theatre {
 namespace {
 
-TEST(PoseDifference, IsEquation9) {
+TEST(PoseDifference, is_equation_9) {
     const PoseProblem problem = aScene({1.7});
     const Body& body = problem.actors[0];
     const std::vector<double> here = aRow(problem, {0}, 2);
@@ -27,7 +27,7 @@ TEST(PoseDifference, IsEquation9) {
 }
 
 // q and -q are one turn, so there are two ways around, and the short one counts.
-TEST(PoseDifference, TakesTheShortWayAround) {
+TEST(PoseDifference, takes_the_short_way_around) {
     const PoseProblem problem = aScene({1.7});
     const Body& body = problem.actors[0];
     const std::vector<double> here = aRow(problem, {0}, 2);
@@ -39,24 +39,24 @@ TEST(PoseDifference, TakesTheShortWayAround) {
     EXPECT_NEAR(poseDifference(body, here, other), near, 1e-12);
 }
 
-TEST(BearingParts, AreThoseThatTouchTheGround) {
+TEST(BearingParts, are_those_that_touch_the_ground) {
     const PoseProblem problem = aScene({1.7});
     const Body& body = problem.actors[0];
-    std::vector<double> freedoms = aRow(problem, {0}, 2);
+    std::vector<double> dofs = aRow(problem, {0}, 2);
     PosedBody posed;
-    posed.pose(body, freedoms);
+    posed.pose(body, dofs);
     std::vector<std::string> names;
     for (const HeldContact& contact : bearingParts(body, problem.stage, posed)) names.push_back(body.joints[contact.joint].name);
     EXPECT_THAT(names, testing::UnorderedElementsAre("left ankle", "right ankle"));
-    freedoms[1] += 0.1;
-    posed.pose(body, freedoms);
+    dofs[1] += 0.1;
+    posed.pose(body, dofs);
     EXPECT_THAT(bearingParts(body, problem.stage, posed), testing::IsEmpty());
     Stage raised = problem.stage;
     raised.platforms = {{"box", {0, 0.05, 2}, {1, 0.1, 1}}};
     EXPECT_THAT(bearingParts(body, raised, posed), testing::SizeIs(2));
 }
 
-TEST(ContactDrift, IsInSquareMillimetresAndRadians) {
+TEST(ContactDrift, is_in_square_millimetres_and_radians) {
     const PoseProblem problem = aScene({1.7});
     const Body& body = problem.actors[0];
     PosedBody posed;
@@ -69,7 +69,7 @@ TEST(ContactDrift, IsInSquareMillimetresAndRadians) {
 }
 
 // The terms of a motion, as the energy charges them.
-TEST(SceneEnergy, ChargesWhatMovesOnlyInAMotion) {
+TEST(SceneEnergy, charges_what_moves_only_in_a_motion) {
     PoseProblem problem = aScene({1.7, 1.5});
     const std::vector<double> here = aRow(problem, {-0.6, 0.6}, 2);
     makeTarget(problem, here);
@@ -79,7 +79,7 @@ TEST(SceneEnergy, ChargesWhatMovesOnlyInAMotion) {
     std::vector<double> beside = here;
     beside[0] += 0.1;
     const Body& body = problem.actors[0];
-    const ActorPose pose = poseOf(body, std::span(beside).first(body.freedoms));
+    const ActorPose pose = poseOf(body, std::span(beside).first(body.dofs));
     problem.continuity.resize(2);
     problem.continuity[0].neighbours = {pose, pose};
     problem.continuity[0].principal = pose;
@@ -92,7 +92,7 @@ TEST(SceneEnergy, ChargesWhatMovesOnlyInAMotion) {
 
 // With a target that asks for nothing and a neighbour that weighs heavily, the fit finds the
 // neighbour: its derivatives are those of the energy.
-TEST(SilhouetteFit, IsDrawnToTheFrameBeside) {
+TEST(SilhouetteFit, is_drawn_to_the_frame_beside) {
     PoseProblem problem = aScene({1.7});
     const std::vector<double> here = aRow(problem, {0}, 2);
     makeTarget(problem, here);
@@ -109,7 +109,7 @@ TEST(SilhouetteFit, IsDrawnToTheFrameBeside) {
     EXPECT_LT(fit.run(energy, found, 20), 1e-4 * before);
 }
 
-TEST(SilhouetteFit, KeepsWhatBearsWhereItIs) {
+TEST(SilhouetteFit, keeps_what_bears_where_it_is) {
     PoseProblem problem = aScene({1.7});
     std::vector<double> here = aRow(problem, {0}, 2);
     const Body& body = problem.actors[0];

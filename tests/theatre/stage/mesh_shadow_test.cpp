@@ -1,5 +1,7 @@
 #include "theatre/stage/mesh_shadow.h"
 
+#include "theatre/a_stage.h"
+
 #include "a_person.h"
 #include "random_turns.h"
 
@@ -15,11 +17,11 @@ using glm::dvec2;
 using glm::dvec3;
 using glm::vec3;
 
-const Stage kStage{{0.2, 0.1, 7}};
+const Stage kStage = aStage({0.2, 0.1, 7});
 
 std::vector<vec3> randomSkin(Rng& rng, dvec3 place) {
     std::vector<double> pose = theBody().restPose(place, randomTurn(rng));
-    for (std::size_t k = Body::kRootFreedoms; k < pose.size(); ++k) pose[k] = rng.uniform(-2, 2);
+    for (std::size_t k = Body::kRootDofs; k < pose.size(); ++k) pose[k] = rng.uniform(-2, 2);
     theBody().limit(pose);
     PosedBody posed;
     posed.pose(theBody(), pose);
@@ -67,7 +69,7 @@ void expectSame(const BitMask& got, const Raster& wanted) {
     EXPECT_EQ(different, 0);
 }
 
-TEST(MeshShadow, IsTheUnionOfAllTriangles) {
+TEST(MeshShadow, is_the_union_of_all_triangles) {
     Rng rng(1);
     MeshShadow shadow;
     const ScreenFrame frame(kStage, -1.7, 2.8, 0.0125, 256, 256);
@@ -81,7 +83,7 @@ TEST(MeshShadow, IsTheUnionOfAllTriangles) {
 }
 
 // Beyond the left edge the outline still winds.
-TEST(MeshShadow, IsCutAtEachEdgeOfTheFrame) {
+TEST(MeshShadow, is_cut_at_each_edge_of_the_frame) {
     Rng rng(2);
     MeshShadow shadow;
     const ScreenFrame frame(kStage, -0.6, 1.6, 0.01, 123, 97);
@@ -104,7 +106,7 @@ TEST(MeshShadow, IsCutAtEachEdgeOfTheFrame) {
 
 // Where a closed mesh turns its inside out, as skin does in a deep fold, its outline winds the
 // other way.
-TEST(MeshShadow, OfAMeshTurnedInsideOutIsTheSame) {
+TEST(MeshShadow, of_a_mesh_turned_inside_out_is_the_same) {
     Rng rng(3);
     const auto skin = randomSkin(rng, {0, 1, 2});
     BodyMesh turned = theMesh();
@@ -118,7 +120,7 @@ TEST(MeshShadow, OfAMeshTurnedInsideOutIsTheSame) {
 
 // Example failure: rounding turns a needle's face over, and its winding is missing from a pixel far
 // to the right.
-TEST(MeshShadow, OfNeedlesStaysWhereTheyAre) {
+TEST(MeshShadow, of_needles_stays_where_they_are) {
     Rng rng(6);
     const ScreenFrame frame(kStage, -1.7, 2.8, 0.0125, 256, 256);
     BodyMesh needle;
@@ -149,7 +151,7 @@ TEST(MeshShadow, OfNeedlesStaysWhereTheyAre) {
     }
 }
 
-TEST(MeshShadow, AddsToWhatIsThere) {
+TEST(MeshShadow, adds_to_what_is_there) {
     Rng rng(4);
     const auto skin = randomSkin(rng, {0, 1, 2});
     const ScreenFrame frame(kStage, -1.7, 2.8, 0.0125, 256, 256);
@@ -162,7 +164,7 @@ TEST(MeshShadow, AddsToWhatIsThere) {
     EXPECT_EQ(onto, alone);
 }
 
-TEST(MeshShadow, ReachingTheLightItThrowsNone) {
+TEST(MeshShadow, reaching_the_light_it_throws_none) {
     Rng rng(5);
     const ScreenFrame frame(kStage, -1.7, 2.8, 0.0125, 256, 256);
     BitMask mask(256, 256);

@@ -23,7 +23,7 @@ TEST(Screen, stands_where_it_is_said_to_and_looks_where_it_is_turned) {
     EXPECT_LT(glm::distance(outward, {-1, 0, 0}), 1e-12);
     Stage stage;
     stage.screens.push_back(screen);
-    stage.further.push_back({{-6, 0.2, 1.5}, 1});
+    stage.beams.push_back({{-6, 0.2, 1.5}, 1});
     EXPECT_LT(glm::distance(glm::dvec3(stage.screenFromStage(1) * glm::dvec4(point, 1)), screen.screenFromStage(point)), 1e-12);
     EXPECT_LT(glm::distance(stage.lightOnScreen(1), {0, 0.2, 8.5}), 1e-12);
 }

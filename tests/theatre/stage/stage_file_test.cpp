@@ -2,7 +2,7 @@
 
 #include "theatre/energy/pose_hints.h"
 #include "theatre/energy/pose_problem.h"
-#include "theatre/stage/surroundings.h"
+#include "theatre/stage/stage_set.h"
 
 #include "core/file.h"
 #include "scratch_folder.h"
@@ -58,8 +58,8 @@ protected:
 TEST_F(StageFile, of_a_lamp_is_no_more_than_that) {
     const auto stage = read("light: [0.5, 0.1, 6]\n");
     ASSERT_TRUE(stage) << stage.error().message();
-    EXPECT_EQ(stage->light, glm::dvec3(0.5, 0.1, 6));
-    EXPECT_FALSE(stage->lit || stage->standing);
+    EXPECT_EQ(stage->beams[0].light, glm::dvec3(0.5, 0.1, 6));
+    EXPECT_FALSE(stage->beams[0].lit || stage->standing);
     EXPECT_TRUE(stage->platforms.empty() && stage->props.empty());
 }
 
@@ -75,10 +75,10 @@ props:
   - {name: hat, mesh: cube.obj, scale: 0.1, at: [0, 0.05, 0], held_by: {actor: 2, part: head}}
 )");
     ASSERT_TRUE(stage) << stage.error().message();
-    EXPECT_EQ(stage->light, glm::dvec3(0, 0.3, 7));
-    ASSERT_TRUE(stage->lit && stage->standing);
-    EXPECT_EQ(stage->lit->from, glm::dvec2(-2, 0));
-    EXPECT_EQ(stage->lit->to, glm::dvec2(2.5, 3));
+    EXPECT_EQ(stage->beams[0].light, glm::dvec3(0, 0.3, 7));
+    ASSERT_TRUE(stage->beams[0].lit && stage->standing);
+    EXPECT_EQ(stage->beams[0].lit->from, glm::dvec2(-2, 0));
+    EXPECT_EQ(stage->beams[0].lit->to, glm::dvec2(2.5, 3));
     EXPECT_EQ(stage->standing->outside({1000, 1}), 0) << "as far to the sides as one likes";
     EXPECT_NEAR(stage->standing->outside({0, 4.25}), 0.25, 1e-12);
     ASSERT_EQ(stage->platforms.size(), 1u);
@@ -156,17 +156,17 @@ further_beams:
     screen: {at: [2.5, 0, 5], turned: -90, radius: -5}
 )");
     ASSERT_TRUE(stage) << stage.error().message();
-    EXPECT_EQ(stage->light, glm::dvec3(0, 0, 7));
-    ASSERT_EQ(stage->beams(), 4u);
+    EXPECT_EQ(stage->beams[0].light, glm::dvec3(0, 0, 7));
+    ASSERT_EQ(stage->beams.size(), 4u);
     ASSERT_EQ(stage->screens.size(), 2u) << "the same screen once";
     EXPECT_EQ(stage->screens[0], (Screen{{0, 0}, 0, 4}));
     EXPECT_EQ(stage->screens[1], (Screen{{2.5, 5}, radians(-90), -5}));
     EXPECT_EQ(&stage->screenOf(2), &stage->screens[0]);
     EXPECT_EQ(&stage->screenOf(3), &stage->screens[1]);
-    EXPECT_EQ(stage->beam(2).light, glm::dvec3(1, 0, 6.3));
-    ASSERT_TRUE(stage->beam(3).lit);
-    EXPECT_EQ(stage->beam(3).lit->to, glm::dvec2(2, 3));
-    EXPECT_FALSE(stage->beam(1).lit || stage->lit);
+    EXPECT_EQ(stage->beams[2].light, glm::dvec3(1, 0, 6.3));
+    ASSERT_TRUE(stage->beams[3].lit);
+    EXPECT_EQ(stage->beams[3].lit->to, glm::dvec2(2, 3));
+    EXPECT_FALSE(stage->beams[1].lit || stage->beams[0].lit);
 }
 
 TEST_F(StageFile, is_refused_where_a_beam_cannot_be) {

@@ -1,32 +1,21 @@
-#include "app/command/pose_trials.h"
-
-#include "app/base/attendance.h"
-#include "app/base/progress.h"
+#include "theatre/search/pose_trials.h"
 
 #include "core/parallel.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <mutex>
 #include <numeric>
 #include <utility>
 
-namespace fantascope::app {
+namespace fantascope::theatre {
 namespace {
-
-using theatre::PoseProblem, theatre::PoseSearch;
 
 // What all threads share. Each asks whether its trial goes on, one at a time: so a pause holds up
 // all of them.
 class Course {
 public:
-    Course(const PoseTrials::Options& options, Clock& clock, std::ostream& progress, bool terminal)
-        : options_(options),
-          clock_(clock),
-          attendance_(clock),
-          progress_("pose", clock, progress, terminal),
-          start_(clock.now()) {}
+    Course(const PoseTrials::Options& options, const Clock& clock, const TrialsWatch& watch)
+        : options_(options), clock_(clock), watch_(watch), start_(clock.now()) {}
 
     // The number of the next trial, if there is one.
     std::optional<std::size_t> begin() {
@@ -42,9 +31,11 @@ public:
     bool mustEnd(std::size_t number, const PoseSearch::Progress& now) {
         const std::lock_guard lock(mutex_);
         evaluations_[number] = now.evaluations;
-        const auto tell = [&](const char* how) { progress_.update(share(), told(number, now.energy) + how); };
-        if (now.evaluations > 0) tell("");  // there is an energy
-        if (!isInterrupted_) isInterrupted_ = !attendance_.goesOn([&] { tell("  paused, space goes on"); });
+        const auto tell = [&](bool isPaused) {
+            if (watch_.tell) watch_.tell({share(), number, now.energy, best_, isPaused});
+        };
+        if (now.evaluations > 0) tell(false);  // there is an energy
+        if (!isInterrupted_ && watch_.goesOn) isInterrupted_ = !watch_.goesOn([&] { tell(true); });
         // The time cuts none short that came before one that is finished.
         return isInterrupted_ || (isTimeUp() && number >= afterFinished_);
     }
@@ -83,7 +74,7 @@ public:
     }
 
 private:
-    Time worked() const { return clock_.now() - start_ - attendance_.paused(); }
+    Time worked() const { return clock_.now() - start_; }
     bool isTimeUp() const {
         const double now = fantascope::seconds(worked());
         return (options_.seconds && now >= *options_.seconds) ||
@@ -101,17 +92,11 @@ private:
         }
         return done;
     }
-    std::string told(std::size_t number, double energy) const {
-        const std::string best = best_ ? fmt::format("best IoU {:.3f}{}", best_->iou, best_->isValid() ? "" : " (cannot be held)")
-                                       : std::string("none finished");
-        return fmt::format("trial {}  {}  energy {:.0f}", number + 1, best, energy);
-    }
 
     const PoseTrials::Options& options_;
-    Clock& clock_;
+    const Clock& clock_;
+    const TrialsWatch& watch_;
     std::mutex mutex_;  // of all that follows
-    Attendance attendance_;
-    Progress progress_;
     const Time start_;
     bool isInterrupted_ = false;
     std::vector<Time> began_;                // of each trial
@@ -148,9 +133,19 @@ std::vector<std::size_t> PoseTrials::bestFirst() const {
     return order;
 }
 
-PoseTrials PoseTrials::run(const PoseProblem& problem, const Options& options, Clock& clock, std::ostream& progress,
-                           bool terminal) {
-    Course course(options, clock, progress, terminal);
+std::vector<const PoseTrials::Trial*> PoseTrials::accepted() const {
+    std::vector<const Trial*> accepted;
+    for (const std::size_t i : bestFirst()) {
+        const Trial& trial = trials[i];
+        const bool isGood = trial.isSatisfactory() || (trial.quality.isValid() && !accepted.empty() &&
+                                                       trial.quality.iou >= accepted[0]->quality.iou - kNearlyAsGood);
+        if (accepted.empty() || isGood) accepted.push_back(&trial);
+    }
+    return accepted;
+}
+
+PoseTrials PoseTrials::run(const PoseProblem& problem, const Options& options, const Clock& clock, const TrialsWatch& watch) {
+    Course course(options, clock, watch);
     parallelFor(options.threads, options.threads, [&](int) {
         while (const std::optional<std::size_t> number = course.begin()) {
             Trial trial;
@@ -164,4 +159,4 @@ PoseTrials PoseTrials::run(const PoseProblem& problem, const Options& options, C
     return std::move(course).found();
 }
 
-}  // namespace fantascope::app
+}  // namespace fantascope::theatre

@@ -1,4 +1,4 @@
-#include "theatre/stage/surroundings.h"
+#include "theatre/stage/stage_set.h"
 
 #include "a_scene.h"
 

@@ -1,4 +1,4 @@
-#include "theatre/stage/surroundings.h"
+#include "theatre/stage/stage_set.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -196,7 +196,7 @@ void addShadow(const ScreenFrame& frame, const TriangleMesh& mesh, BitMask& mask
 }
 
 void cutToLit(const Stage& stage, const ScreenFrame& frame, BitMask& mask, std::size_t beam) {
-    const auto lit = stage.beam(beam).lit;
+    const auto lit = stage.beams[beam].lit;
     if (!lit) return;
     const auto first = [](double edge, int most) {
         return static_cast<int>(std::ceil(std::clamp(edge, 0.0, double(most)) - 0.5));
