@@ -1,7 +1,7 @@
 #include "drivers/registry.h"
 
 #include "core/check.h"
-#include "core/config.h"
+#include "core/config/config.h"
 #include "outputs.h"
 #include "source_folder.h"
 

@@ -11,7 +11,7 @@
 #include "device/input_bank.h"
 #include "device/relay_bank.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <map>
 #include <memory>

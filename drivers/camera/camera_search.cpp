@@ -3,7 +3,7 @@
 #include "drivers/common/claim.h"
 #include "drivers/common/usb_identity.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <fmt/format.h>
 

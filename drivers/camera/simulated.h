@@ -4,7 +4,7 @@
 
 #include "device/camera_source.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 namespace fantascope::drivers {
 

@@ -7,7 +7,7 @@
 
 #include "device/camera_source.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <cstdint>
 #include <map>

@@ -4,7 +4,7 @@
 
 #include "device/cue_controller.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <set>
 

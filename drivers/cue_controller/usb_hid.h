@@ -9,7 +9,7 @@
 
 #include "device/cue_controller.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <atomic>
 #include <memory>

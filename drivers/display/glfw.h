@@ -9,7 +9,7 @@
 
 #include "device/display_sink.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <memory>
 #include <mutex>

@@ -2,7 +2,7 @@
 
 #include "drivers/display/edid.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "core/result.h"
 
 #include <glm/vec2.hpp>

@@ -8,7 +8,7 @@
 #include "device/dmx_port.h"
 #include "device/dmx_source.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <deque>
 #include <functional>

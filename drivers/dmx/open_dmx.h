@@ -8,7 +8,7 @@
 
 #include "device/dmx_port.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <memory>
 #include <mutex>

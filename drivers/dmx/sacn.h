@@ -5,7 +5,7 @@
 #include "device/dmx_port.h"
 #include "device/dmx_source.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 namespace fantascope::drivers {
 

@@ -2,7 +2,7 @@
 
 #include "drivers/common/file_handle.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "core/result.h"
 
 #include <array>

@@ -4,7 +4,7 @@
 #include "drivers/common/found_device.h"
 #include "drivers/common/opening.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <string>
 #include <vector>

@@ -8,7 +8,7 @@
 #include "device/status.h"
 
 #include "core/clock.h"
-#include "core/config.h"
+#include "core/config/config.h"
 #include "core/result.h"
 
 #include <condition_variable>

@@ -5,7 +5,7 @@
 #include "drivers/common/usb_identity.h"
 
 #include "core/clock.h"
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <cstdint>
 #include <functional>

@@ -5,7 +5,7 @@
 
 #include "device/relay_bank.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <cstdint>
 #include <memory>

@@ -5,7 +5,7 @@
 
 #include "device/status.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "core/result.h"
 
 #include <memory>

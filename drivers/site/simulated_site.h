@@ -5,7 +5,7 @@
 #include "vision/camera_model.h"
 
 #include "core/clock.h"
-#include "core/config.h"
+#include "core/config/config.h"
 #include "core/result.h"
 
 #include <memory>

@@ -7,7 +7,7 @@
 #include "drivers/site/simulated_site.h"
 
 #include "core/clock.h"
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <glm/vec3.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "show/playback.h"
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "core/clock.h"
 

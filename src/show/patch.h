@@ -2,7 +2,7 @@
 // From the levels and relays of a look to what the lines of the site carry.
 
 #include "show/show_state.h"
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,7 +2,7 @@
 
 #include "show/cue_list.h"
 #include "show/show.h"
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "core/result.h"
 

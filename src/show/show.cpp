@@ -1,6 +1,6 @@
 #include "show/show.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "core/geometry.h"
 
 #include <fmt/format.h>

@@ -2,11 +2,11 @@
 
 #include "show/cue_list.h"
 #include "show/show_state.h"
-#include "show/site.h"
+#include "show/site/site.h"
 #include "show/source.h"
 #include "show/wind.h"
 
-#include "core/file_place.h"
+#include "core/config/file_place.h"
 #include "core/result.h"
 
 #include <cstdint>

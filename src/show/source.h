@@ -3,8 +3,8 @@
 #include "show/source_id.h"
 #include "show/source_kinds.h"
 
-#include "core/config.h"
-#include "core/file_place.h"
+#include "core/config/config.h"
+#include "core/config/file_place.h"
 #include "core/fit.h"
 #include "core/result.h"
 

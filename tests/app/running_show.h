@@ -9,7 +9,7 @@
 #include "show/event.h"
 #include "show/input_log.h"
 #include "show/show.h"
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "core/check.h"
 #include "core/clock.h"

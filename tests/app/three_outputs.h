@@ -4,7 +4,7 @@
 
 #include "render/source/picture_source.h"
 #include "show/cue_list.h"
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "media/image.h"
 #include "scratch_folder.h"

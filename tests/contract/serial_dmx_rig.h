@@ -6,7 +6,7 @@
 #include "contract/dmx_port_suite.h"
 #include "contract/eventually.h"
 #include "contract/widget_socket.h"
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <fmt/format.h>
 

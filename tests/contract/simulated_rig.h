@@ -5,7 +5,7 @@
 #include "drivers/site/world.h"
 
 #include "contract/rig.h"
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <memory>
 #include <string>

@@ -1,6 +1,6 @@
 #include "core/text.h"
 
-#include "core/naming.h"
+#include "core/config/naming.h"
 #include "scratch_folder.h"
 
 #include <gmock/gmock.h>

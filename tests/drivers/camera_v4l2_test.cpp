@@ -3,7 +3,7 @@
 
 #include "drivers/camera/v4l2.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "mock_camera.h"
 
 #include <fmt/format.h>

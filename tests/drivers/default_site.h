@@ -3,7 +3,7 @@
 
 #include "drivers/site/simulated_site.h"
 
-#include "show/site.h"
+#include "show/site/site.h"
 #include "vision/camera_model.h"
 
 #include "source_folder.h"

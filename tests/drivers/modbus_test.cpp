@@ -6,7 +6,7 @@
 #include "drivers/modbus/values.h"
 
 #include "core/clock.h"
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <gmock/gmock.h>
 

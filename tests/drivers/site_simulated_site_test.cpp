@@ -1,6 +1,6 @@
 #include "drivers/site/simulated_site.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -5,7 +5,7 @@
 
 #include "contract/dmx_port_suite.h"
 #include "core/clock.h"
-#include "core/config.h"
+#include "core/config/config.h"
 #include "peers/own_network.h"
 #include "peers/plain_dmx.h"
 

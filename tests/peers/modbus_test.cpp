@@ -8,7 +8,7 @@
 #include "contract/input_bank_suite.h"
 #include "contract/relay_bank_suite.h"
 #include "core/clock.h"
-#include "core/config.h"
+#include "core/config/config.h"
 #include "peers/modbus_campaign.h"
 #include "peers/modbus_peer.h"
 

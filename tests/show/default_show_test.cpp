@@ -1,6 +1,6 @@
 #include "show/playback.h"
 #include "show/show.h"
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "scratch_folder.h"
 #include "source_folder.h"

@@ -2,7 +2,7 @@
 // the tables must list the keys that the program knows, no more and no fewer.
 
 #include "show/show.h"
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "scratch_folder.h"
 #include "source_folder.h"

@@ -9,7 +9,7 @@
 #include "contract/camera_source_suite.h"
 #include "contract/eventually.h"
 #include "core/check.h"
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -6,7 +6,7 @@
 #include "theatre/deform/triangulated_silhouette.h"
 #include "theatre/motion/sequence_frames.h"
 
-#include "core/naming.h"
+#include "core/config/naming.h"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,7 @@
 #include "pattern/shape/shape_pattern.h"
 #include "render/source/video_stream.h"
 #include "show/show.h"
-#include "show/site.h"
+#include "show/site/site.h"
 #include "theatre/deform/handle_motion.h"
 #include "theatre/deform/silhouette_sequence.h"
 #include "theatre/energy/pose_hints.h"
@@ -19,9 +19,9 @@
 #include "theatre/stage/cast.h"
 #include "theatre/stage/stage_file.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
+#include "core/config/naming.h"
 #include "core/file.h"
-#include "core/naming.h"
 #include "core/text.h"
 #include "media/image.h"
 

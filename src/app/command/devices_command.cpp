@@ -9,7 +9,7 @@
 #include "drivers/registry.h"
 
 #include "show/patch.h"
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "core/text.h"
 

@@ -4,7 +4,7 @@
 #include "drivers/registry.h"
 
 #include "show/patch.h"
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "core/clock.h"
 #include "core/file.h"

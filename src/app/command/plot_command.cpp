@@ -5,8 +5,8 @@
 
 #include "pattern/shape/shape_pattern.h"
 
+#include "core/config/naming.h"
 #include "core/file.h"
-#include "core/naming.h"
 #include "plot/cast_figures.h"
 #include "plot/cast_picture.h"
 #include "plot/figures.h"

@@ -2,7 +2,7 @@
 
 #include "theatre/deform/silhouette_sequence.h"
 
-#include "core/naming.h"
+#include "core/config/naming.h"
 #include "media/image.h"
 
 #include <fmt/format.h>

@@ -7,7 +7,7 @@
 #include "app/live/programme.h"
 #include "app/site/site_models.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "core/file.h"
 #include "core/fit.h"
 #include "core/log.h"

@@ -4,7 +4,7 @@
 #include "drivers/registry.h"
 
 #include "core/check.h"
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <limits>
 

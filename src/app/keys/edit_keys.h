@@ -1,6 +1,6 @@
 #pragma once
 
-#include "show/site_editor.h"
+#include "show/site/site_editor.h"
 
 #include "device/screen_event.h"
 

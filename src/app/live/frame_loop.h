@@ -7,7 +7,7 @@
 #include "render/frame_tap.h"
 #include "render/output_renderer.h"
 #include "show/show_clock.h"
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "core/latest_value.h"
 

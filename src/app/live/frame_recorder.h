@@ -7,7 +7,7 @@
 #include "app/live/run_report.h"
 
 #include "render/frame_tap.h"
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "core/clock.h"
 

@@ -2,7 +2,7 @@
 
 #include "show/patch.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <fmt/format.h>
 

@@ -8,10 +8,10 @@
 #include "app/site/devices.h"
 #include "drivers/common/back_off.h"
 
-#include "show/dmx_merge.h"
 #include "show/event.h"
 #include "show/show_clock.h"
-#include "show/site.h"
+#include "show/site/dmx_merge.h"
+#include "show/site/site.h"
 
 #include "core/latest_value.h"
 

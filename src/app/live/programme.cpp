@@ -9,7 +9,7 @@
 #include "theatre/motion/moving_cast.h"
 #include "theatre/stage/cast.h"
 
-#include "core/naming.h"
+#include "core/config/naming.h"
 #include "media/image.h"
 
 #include <fmt/format.h>

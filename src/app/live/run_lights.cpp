@@ -2,7 +2,7 @@
 
 #include "app/live/supervisor.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <fmt/format.h>
 

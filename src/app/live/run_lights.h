@@ -7,7 +7,7 @@
 #include "app/site/devices.h"
 #include "app/site/relay_guard.h"
 
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "core/clock.h"
 

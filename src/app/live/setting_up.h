@@ -5,13 +5,13 @@
 
 #include "show/event.h"
 #include "show/show_clock.h"
-#include "show/site_editor.h"
+#include "show/site/site_editor.h"
 
 #include "device/screen_event.h"
 
 #include "core/append_log.h"
 #include "core/clock.h"
-#include "core/config_edit.h"
+#include "core/config/config_edit.h"
 
 #include <atomic>
 #include <functional>

@@ -2,7 +2,7 @@
 
 #include "drivers/common/opening.h"
 
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "device/camera_source.h"
 #include "device/cue_controller.h"

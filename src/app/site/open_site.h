@@ -4,7 +4,7 @@
 #include "drivers/site/simulated_site.h"
 #include "drivers/site/world.h"
 
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "core/clock.h"
 #include "core/result.h"

@@ -2,7 +2,7 @@
 
 #include "drivers/common/file_handle.h"
 
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "core/clock.h"
 #include "core/result.h"

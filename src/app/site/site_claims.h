@@ -3,7 +3,7 @@
 #include "app/base/interrupt.h"
 #include "drivers/common/claim.h"
 
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "core/result.h"
 

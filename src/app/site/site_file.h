@@ -1,6 +1,6 @@
 #pragma once
 
-#include "show/site.h"
+#include "show/site/site.h"
 
 #include "core/result.h"
 

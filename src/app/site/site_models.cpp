@@ -2,7 +2,7 @@
 
 #include "app/site/canvas_view.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "core/parallel.h"
 
 #include <fmt/format.h>

@@ -5,7 +5,7 @@
 #include "drivers/site/simulated_site.h"
 
 #include "render/canvas/blend_map.h"
-#include "show/site.h"
+#include "show/site/site.h"
 #include "vision/guide_comparison.h"
 
 #include "core/fit.h"

@@ -4,7 +4,7 @@
 #include "pattern/shape/motion_file.h"
 #include "pattern/shape/shape_fields.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "media/image.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "pattern/shape/built_in_shapes.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "media/glyph.h"
 #include "media/outline.h"
 

@@ -2,7 +2,7 @@
 #include "pattern/shape/shape_fields.h"
 #include "pattern/shape/shape_pattern.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "core/file.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 
 #include "pattern/shape/shape_pattern.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "core/result.h"
 
 #include <optional>

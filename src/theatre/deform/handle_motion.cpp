@@ -1,6 +1,6 @@
 #include "theatre/deform/handle_motion.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

@@ -1,8 +1,8 @@
 #include "theatre/deform/silhouette_sequence.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
+#include "core/config/naming.h"
 #include "core/file.h"
-#include "core/naming.h"
 #include "media/image.h"
 
 #include <fmt/format.h>

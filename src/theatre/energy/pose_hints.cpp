@@ -3,7 +3,7 @@
 #include "theatre/energy/pose_problem.h"
 #include "theatre/mask/distance_field.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -1,6 +1,6 @@
 #include "theatre/energy/weights_file.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 
 #include <fmt/format.h>
 

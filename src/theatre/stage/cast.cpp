@@ -2,7 +2,7 @@
 
 #include "theatre/stage/stage_file.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "core/file.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "theatre/stage/stage_file.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "media/mesh.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "pattern/shape/shape_pattern.h"
 #include "show/replaced.h"
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "core/file.h"
 #include "core/random.h"
 #include "media/image.h"

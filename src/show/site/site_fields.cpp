@@ -1,0 +1,40 @@
+#include "show/site/site_fields.h"
+
+namespace fantascope::show {
+namespace {
+
+constexpr int kMostPixels = 16384;  // along one side of a picture: what graphics cards take
+
+}  // namespace
+
+Result<std::string> readName(const ConfigNode& node) {
+    const std::string name = TRY(node.text());
+    if (name.starts_with('.') || name.find('/') != std::string::npos)
+        return node.error(fmt::format("'{}' is no name: it may not hold a '/' or begin with a '.'", name));
+    return name;
+}
+
+Result<DeviceConfig> readDevice(const ConfigNode& node) {
+    for (const auto& [key, value] : TRY(node.entries()))
+        if (key == "driver") return DeviceConfig{TRY(value.text()), node};
+    return node.error("'driver' is missing: the name of the device's driver");
+}
+
+Result<glm::ivec2> readSize(const ConfigNode& node) {
+    const auto sides = TRY(node.items(2, 2));
+    return glm::ivec2(TRY(sides[0].integer(1, kMostPixels)), TRY(sides[1].integer(1, kMostPixels)));
+}
+
+void Aim::declare(ConfigFields& fields) {
+    fields.vector3("position", position, -kFarthest, kFarthest, "m");
+    fields.vector3("look_at", target, -kFarthest, kFarthest, "m");
+    fields.optional().vector3("up", up, -1, 1);
+}
+
+Result<Pose> Aim::pose(const ConfigNode& node) const {
+    const auto pose = Pose::lookingAt(position, target, up);
+    if (!pose) return node.error(pose.error().message());
+    return *pose;
+}
+
+}  // namespace fantascope::show

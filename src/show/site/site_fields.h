@@ -1,0 +1,80 @@
+#pragma once
+// What the readers of a site file's sections share.
+
+#include "show/site/site.h"
+
+#include "core/config/config.h"
+#include "core/geometry.h"
+#include "core/result.h"
+
+#include <fmt/format.h>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace fantascope::show {
+
+constexpr double kFarthest = 1000;  // metres; it only catches a slipped digit or unit
+
+// A reader of values that may stand only once among all that share `taken`.
+template <class Value, class Read>
+auto once(std::set<Value>& taken, std::string_view owner, Read read) {
+    return [&taken, owner, read](const ConfigNode& node) -> Result<Value> {
+        const Value value = static_cast<Value>(TRY(read(node)));
+        if (!taken.insert(value).second)
+            return node.error(fmt::format("{} is taken by another {}; each needs its own", value, owner));
+        return value;
+    };
+}
+
+// Names end up in the names of recorded files.
+Result<std::string> readName(const ConfigNode& node);
+
+inline auto onceNamed(std::set<std::string>& taken, std::string_view owner) { return once(taken, owner, readName); }
+
+inline auto onceNumbered(std::set<int>& taken, std::string_view owner, int low, int high) {
+    return once(taken, owner, [low, high](const ConfigNode& node) { return node.integer(low, high); });
+}
+
+// The driver's own keys are left to the driver.
+Result<DeviceConfig> readDevice(const ConfigNode& node);
+
+// What the drivers say of the devices. It is told beside what else is wrong, so that one mistake in
+// a device does not hide others.
+class DriversWord {
+public:
+    explicit DriversWord(DeviceReader* reader) : reader_(reader) {}
+
+    // Asks the drivers, if there are any, of the device at `at`: ask(reader).
+    template <class Ask>
+    void ask(const ConfigNode& at, Ask ask) {
+        if (reader_ != nullptr) said_.emplace_back(at, ask(*reader_));
+    }
+    void tell(ConfigFields& fields) const {
+        for (const auto& [at, word] : said_) fields.check(at, word);
+    }
+
+private:
+    DeviceReader* reader_;
+    std::vector<std::pair<ConfigNode, Result<void>>> said_;
+};
+
+// Pixels across and down.
+Result<glm::ivec2> readSize(const ConfigNode& node);
+
+// The keys that say where a projector or a camera stands and looks. Ask for pose() after the fields
+// are finished.
+struct Aim {
+    glm::dvec3 position{0.0}, target{0.0}, up{0, 1, 0};
+
+    void declare(ConfigFields& fields);
+    // Error: it looks nowhere, at the place of `node`.
+    Result<Pose> pose(const ConfigNode& node) const;
+};
+
+}  // namespace fantascope::show
