@@ -13,26 +13,7 @@ namespace edit = show::edit;
 // With Shift ten steps at once, with Control a tenth of one.
 glm::dvec2 move(const Key& key, glm::dvec2 direction) { return direction * (key.shift ? 10 : key.control ? 0.1 : 1); }
 
-}  // namespace
-
-std::optional<show::EditCommand> editCommandFor(const Key& key, edit::Tool tool, glm::ivec2 mesh) {
-    switch (key.name) {
-        case Name::Left:
-            return edit::Move{move(key, {-1, 0})};
-        case Name::Right:
-            return edit::Move{move(key, {1, 0})};
-        case Name::Up:
-            return edit::Move{move(key, {0, -1})};
-        case Name::Down:
-            return edit::Move{move(key, {0, 1})};
-        case Name::Tab:
-            return edit::Handle{key.shift ? -1 : 1};
-        case Name::Enter:
-        case Name::Escape:
-            return std::nullopt;
-        case Name::Letter:
-            break;
-    }
+std::optional<show::EditCommand> letterCommand(const Key& key, edit::Tool tool, glm::ivec2 mesh) {
     if (key.letter >= '1' && key.letter <= '9') return edit::OutputNumber{static_cast<std::size_t>(key.letter - '1')};
     switch (key.letter) {
         case 'o':
@@ -79,6 +60,29 @@ std::optional<show::EditCommand> editCommandFor(const Key& key, edit::Tool tool,
         default:
             return std::nullopt;
     }
+}
+
+}  // namespace
+
+std::optional<show::EditCommand> editCommandFor(const Key& key, edit::Tool tool, glm::ivec2 mesh) {
+    switch (key.name) {
+        case Name::Left:
+            return edit::Move{move(key, {-1, 0})};
+        case Name::Right:
+            return edit::Move{move(key, {1, 0})};
+        case Name::Up:
+            return edit::Move{move(key, {0, -1})};
+        case Name::Down:
+            return edit::Move{move(key, {0, 1})};
+        case Name::Tab:
+            return edit::Handle{key.shift ? -1 : 1};
+        case Name::Enter:
+        case Name::Escape:
+            return std::nullopt;
+        case Name::Letter:
+            return letterCommand(key, tool, mesh);
+    }
+    return std::nullopt;
 }
 
 std::vector<std::string> editKeyLegend() {

@@ -201,6 +201,26 @@ void SettingUp::save() {
     }
 }
 
+RgbaImage SettingUp::overlayOf(std::size_t output, const Projection& projection, const Drawn& drawn) const {
+    const show::Site& site = editor_.site();
+    std::vector<plot::EditView::Handle> handles;
+    if (drawn.chosen) {
+        const auto all = editor_.handles();
+        for (std::size_t handle = 0; handle < all.size(); ++handle)
+            if (all[handle].at) handles.push_back({*all[handle].at, all[handle].label, handle == drawn.handle});
+    }
+    return plot::drawEditView({.projection = projection,
+                               .aspect = canvasAspectInPixels(site, site.outputs[output].canvas),
+                               .name = site.outputs[output].name,
+                               .number = static_cast<int>(output) + 1,
+                               .picture = drawn.picture,
+                               .handles = std::move(handles),
+                               .pointer = drawn.pointer,
+                               .lines = drawn.lines,
+                               .masks = drawn.chosen && drawn.tool == edit::Tool::Masks,
+                               .chosen = drawn.chosen});
+}
+
 void SettingUp::show() {
     const show::Site& site = editor_.site();
     bool warpsMoved = false;
@@ -240,23 +260,7 @@ void SettingUp::show() {
         settings->projection = projection;
         if (blendsShow(editor_.picture())) settings->blend = blends_[i];
         if (on_) {
-            std::vector<plot::EditView::Handle> handles;
-            if (now.chosen) {
-                const auto all = editor_.handles();
-                for (std::size_t handle = 0; handle < all.size(); ++handle)
-                    if (all[handle].at) handles.push_back({*all[handle].at, all[handle].label, handle == now.handle});
-            }
-            const plot::EditView view{.projection = projection,
-                                      .aspect = canvasAspectInPixels(site, site.outputs[i].canvas),
-                                      .name = site.outputs[i].name,
-                                      .number = static_cast<int>(i) + 1,
-                                      .picture = now.picture,
-                                      .handles = std::move(handles),
-                                      .pointer = now.pointer,
-                                      .lines = now.lines,
-                                      .masks = now.chosen && now.tool == edit::Tool::Masks,
-                                      .chosen = now.chosen};
-            settings->overlay = std::make_shared<const RgbaImage>(plot::drawEditView(view));
+            settings->overlay = std::make_shared<const RgbaImage>(overlayOf(i, projection, now));
             if (isCard(now.picture))
                 settings->card = std::make_shared<const RgbaImage>(plot::drawColourCard(now.picture, projection.size));
         }

@@ -12,6 +12,7 @@
 #include "core/append_log.h"
 #include "core/clock.h"
 #include "core/config/config_edit.h"
+#include "media/image.h"
 
 #include <atomic>
 #include <functional>
@@ -80,6 +81,7 @@ private:
     // is gone.
     Result<ConfigPath> inFile(const ConfigPath& path) const;
     void repeatHeld(Time moment);
+    RgbaImage overlayOf(std::size_t output, const Projection& projection, const Drawn& drawn) const;
     void show();
 
     FrameLoop& frames_;

@@ -26,69 +26,79 @@ Result<ConfigNode> displayOptions(const show::DeviceConfig& declared, Backends b
     return plain(backends == Backends::SimulatedWindows ? "glfw" : "headless", declared);
 }
 
+// What the drivers have read of a site's devices.
+struct Openings {
+    std::vector<drivers::Opening<DisplaySink>> displays;
+    std::vector<drivers::Opening<DmxPort>> ports;
+    std::vector<drivers::Opening<DmxSource>> desks;  // of the universes that have one, in their order
+    std::vector<drivers::Opening<RelayBank>> relayBanks;
+    std::vector<drivers::Opening<CueController>> controllers;
+    std::vector<drivers::Opening<InputBank>> contactBanks;
+    std::vector<drivers::Opening<CameraSource>> cameras;
+};
+
+// Error: every fault of every device.
+Result<Openings> readDevices(const show::Site& site, Backends backends, const drivers::DriverContext& context) {
+    Openings all;
+    ConfigFaults faults;
+    const auto read = [&](auto opening, const ConfigNode& options, auto& ofPort) {
+        faults.take(std::move(opening), [&](auto good) {
+            if (good.simulated && context.world == nullptr)
+                faults.add(options.error(
+                    "driver 'simulated' needs a simulated site, and there is none; rehearse, or name a real driver"));
+            ofPort.push_back(std::move(good));
+        });
+    };
+    for (const show::Output& output : site.outputs) {
+        const ConfigNode options = TRY(displayOptions(output.display, backends));
+        read(drivers::readDisplay(options, {output.name, output.size(), output.refreshRate}), options, all.displays);
+    }
+    for (const show::Universe& universe : site.universes) {
+        const ConfigNode options = TRY(optionsOf(universe.port, backends));
+        read(drivers::readDmxPort(options, universe.number), options, all.ports);
+        if (!universe.desk) continue;
+        const ConfigNode desk = TRY(optionsOf(universe.desk->device, backends));
+        read(drivers::readDmxSource(desk, universe.number), desk, all.desks);
+    }
+    for (std::size_t bank = 0; bank < site.relayBanks.size(); ++bank) {
+        const ConfigNode options = TRY(optionsOf(site.relayBanks[bank].device, backends));
+        read(drivers::readRelayBank(options, site.relayBanks[bank].name, show::safeCoils(site, bank)), options, all.relayBanks);
+    }
+    if (site.cueController) {
+        const ConfigNode options = TRY(optionsOf(*site.cueController, backends));
+        read(drivers::readCueController(options), options, all.controllers);
+    }
+    for (std::size_t bank = 0; bank < site.contactBanks.size(); ++bank) {
+        const ConfigNode options = TRY(optionsOf(site.contactBanks[bank].device, backends));
+        read(drivers::readInputBank(options, site.contactBanks[bank].name, site.inputCount(bank)), options, all.contactBanks);
+    }
+    if (site.camera) {
+        const ConfigNode options = TRY(optionsOf(*site.camera, backends));
+        read(drivers::readCamera(options), options, all.cameras);
+    }
+    TRY(faults.result());
+    return all;
+}
+
 }  // namespace
 
 Result<Devices> openDevices(const show::Site& site, Backends backends, const drivers::DriverContext& context) {
     // All are read before the first is opened, so that a fault in any is reported before anything
     // lights up.
-    ConfigFaults faults;
-    const auto read = [&](auto opening, const ConfigNode& options, auto& all) {
-        faults.take(std::move(opening), [&](auto good) {
-            if (good.simulated && context.world == nullptr)
-                faults.add(options.error(
-                    "driver 'simulated' needs a simulated site, and there is none; rehearse, or name a real driver"));
-            all.push_back(std::move(good));
-        });
-    };
-    std::vector<drivers::Opening<DisplaySink>> displays;
-    for (const show::Output& output : site.outputs) {
-        const ConfigNode options = TRY(displayOptions(output.display, backends));
-        read(drivers::readDisplay(options, {output.name, output.size(), output.refreshRate}), options, displays);
-    }
-    std::vector<drivers::Opening<DmxPort>> ports;
-    std::vector<drivers::Opening<DmxSource>> desks;
-    for (const show::Universe& universe : site.universes) {
-        const ConfigNode options = TRY(optionsOf(universe.port, backends));
-        read(drivers::readDmxPort(options, universe.number), options, ports);
-        if (!universe.desk) continue;
-        const ConfigNode desk = TRY(optionsOf(universe.desk->device, backends));
-        read(drivers::readDmxSource(desk, universe.number), desk, desks);
-    }
-    std::vector<drivers::Opening<RelayBank>> relayBanks;
-    for (std::size_t bank = 0; bank < site.relayBanks.size(); ++bank) {
-        const ConfigNode options = TRY(optionsOf(site.relayBanks[bank].device, backends));
-        read(drivers::readRelayBank(options, site.relayBanks[bank].name, show::safeCoils(site, bank)), options, relayBanks);
-    }
-    std::vector<drivers::Opening<CueController>> controllers;
-    if (site.cueController) {
-        const ConfigNode options = TRY(optionsOf(*site.cueController, backends));
-        read(drivers::readCueController(options), options, controllers);
-    }
-    std::vector<drivers::Opening<InputBank>> contactBanks;
-    for (std::size_t bank = 0; bank < site.contactBanks.size(); ++bank) {
-        const ConfigNode options = TRY(optionsOf(site.contactBanks[bank].device, backends));
-        read(drivers::readInputBank(options, site.contactBanks[bank].name, site.inputCount(bank)), options, contactBanks);
-    }
-    std::vector<drivers::Opening<CameraSource>> cameras;
-    if (site.camera) {
-        const ConfigNode options = TRY(optionsOf(*site.camera, backends));
-        read(drivers::readCamera(options), options, cameras);
-    }
-    TRY(faults.result());
-
+    const Openings all = TRY(readDevices(site, backends, context));
     Devices devices;
-    for (const auto& display : displays) devices.displays.push_back(TRY(display.open(context)));
-    auto desk = desks.begin();
+    for (const auto& display : all.displays) devices.displays.push_back(TRY(display.open(context)));
+    auto desk = all.desks.begin();
     for (std::size_t i = 0; i < site.universes.size(); ++i) {
-        auto port = TRY(ports[i].open(context));
+        auto port = TRY(all.ports[i].open(context));
         Devices::Line line{site.universes[i].number, std::move(port), nullptr};
         if (site.universes[i].desk) line.desk = TRY((desk++)->open(context));
         devices.lines.push_back(std::move(line));
     }
-    for (const auto& bank : relayBanks) devices.relayBanks.push_back(TRY(bank.open(context)));
-    for (const auto& controller : controllers) devices.cueController = TRY(controller.open(context));
-    for (const auto& bank : contactBanks) devices.contactBanks.push_back(TRY(bank.open(context)));
-    for (const auto& camera : cameras) devices.camera = TRY(camera.open(context));
+    for (const auto& bank : all.relayBanks) devices.relayBanks.push_back(TRY(bank.open(context)));
+    for (const auto& controller : all.controllers) devices.cueController = TRY(controller.open(context));
+    for (const auto& bank : all.contactBanks) devices.contactBanks.push_back(TRY(bank.open(context)));
+    for (const auto& camera : all.cameras) devices.camera = TRY(camera.open(context));
     return devices;
 }
 

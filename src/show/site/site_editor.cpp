@@ -18,7 +18,7 @@ namespace {
 
 using edit::Tool;
 
-// Nobody takes back more than an evening's work; each step keeps a mesh and masks at most.
+// More than an evening's work; each step keeps a mesh and masks at most.
 constexpr std::size_t kMostUndone = 1000;
 
 // Coarse, usual and fine. A tenth of a pixel moves an antialiased edge just so that it is seen.
@@ -199,8 +199,7 @@ std::vector<std::string> SiteEditor::lines() const {
             fmt::format("{}{}step {}", value, value.empty() ? "" : "   ", step), unsaved().empty() ? "saved" : "not saved"};
 }
 
-// Takes the projection over if it can be projected; a move that goes on is undone together with its
-// beginning.
+// Takes the projection over if it can be projected; a move that goes on is undone as one.
 Result<void> SiteEditor::change(Projection wanted, bool moves) {
     if (!wanted.warp.reaches(wanted.size)) return Error("nothing of the picture would be seen");
     if (!(moves && moving_)) done_.push_back({output_, projection()});

@@ -1,11 +1,10 @@
 #include "theatre/body/body_mesh.h"
 
+#include "theatre/a_person.h"
 #include "theatre/a_stage.h"
+#include "theatre/random_turns.h"
 #include "theatre/stage/capsule_shadow.h"
 #include "theatre/stage/mesh_shadow.h"
-
-#include "a_person.h"
-#include "random_turns.h"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,7 @@
 #include "theatre/body/body.h"
 
 #include "theatre/body/posed_body.h"
-
-#include "random_turns.h"
+#include "theatre/random_turns.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 #include "theatre/body/joint.h"
 
-#include "random_turns.h"
+#include "theatre/random_turns.h"
 
 #include <gmock/gmock.h>
 

@@ -1,10 +1,9 @@
 // Several lights, several screens and curved ones, with one set of poses.
+#include "theatre/a_scene.h"
 #include "theatre/body/actor_pose.h"
 #include "theatre/search/artefacts.h"
 #include "theatre/search/pose_search.h"
 #include "theatre/search/silhouette_fit.h"
-
-#include "a_scene.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>

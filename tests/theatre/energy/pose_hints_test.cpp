@@ -1,9 +1,9 @@
 #include "theatre/energy/pose_hints.h"
 
+#include "theatre/a_scene.h"
 #include "theatre/search/pose_search.h"
 #include "theatre/search/silhouette_fit.h"
 
-#include "a_scene.h"
 #include "core/file.h"
 #include "scratch_folder.h"
 #include "source_folder.h"

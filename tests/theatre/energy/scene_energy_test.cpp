@@ -1,8 +1,7 @@
 #include "theatre/energy/scene_energy.h"
 
+#include "theatre/a_scene.h"
 #include "theatre/energy/energy_terms.h"
-
-#include "a_scene.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>

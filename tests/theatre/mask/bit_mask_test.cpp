@@ -1,7 +1,8 @@
 #include "theatre/mask/bit_mask.h"
 
+#include "theatre/masks.h"
+
 #include "core/random.h"
-#include "masks.h"
 
 #include <gmock/gmock.h>
 

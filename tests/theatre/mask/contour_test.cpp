@@ -1,6 +1,6 @@
 #include "theatre/mask/contour.h"
 
-#include "masks.h"
+#include "theatre/masks.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>

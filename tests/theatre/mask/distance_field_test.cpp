@@ -1,6 +1,6 @@
 #include "theatre/mask/distance_field.h"
 
-#include "masks.h"
+#include "theatre/masks.h"
 
 #include <gmock/gmock.h>
 

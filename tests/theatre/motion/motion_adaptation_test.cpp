@@ -1,6 +1,6 @@
 #include "theatre/motion/motion_adaptation.h"
 
-#include "a_scene.h"
+#include "theatre/a_scene.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>

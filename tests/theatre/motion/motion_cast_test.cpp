@@ -1,6 +1,6 @@
 #include "theatre/motion/motion_cast.h"
 
-#include "a_scene.h"
+#include "theatre/a_scene.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 #include "theatre/motion/pose_spline.h"
 
-#include "a_scene.h"
+#include "theatre/a_scene.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "theatre/search/artefacts.h"
 
-#include "a_scene.h"
-#include "masks.h"
+#include "theatre/a_scene.h"
+#include "theatre/masks.h"
 
 #include <gmock/gmock.h>
 

@@ -1,13 +1,13 @@
 #include "theatre/search/pose_search.h"
 
+#include "theatre/a_scene.h"
 #include "theatre/energy/energy_terms.h"
 #include "theatre/energy/scene_energy.h"
+#include "theatre/masks.h"
 #include "theatre/search/artefacts.h"
 #include "theatre/search/dof_search.h"
 
-#include "a_scene.h"
 #include "core/parallel.h"
-#include "masks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "theatre/search/silhouette_fit.h"
 
-#include "a_scene.h"
+#include "theatre/a_scene.h"
 
 #include <gmock/gmock.h>
 

@@ -2,8 +2,7 @@
 
 #include "theatre/a_stage.h"
 #include "theatre/mask/contour.h"
-
-#include "random_turns.h"
+#include "theatre/random_turns.h"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,7 @@
 #include "theatre/stage/continuity.h"
 
+#include "theatre/a_scene.h"
 #include "theatre/search/silhouette_fit.h"
-
-#include "a_scene.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>

@@ -1,9 +1,8 @@
 #include "theatre/stage/mesh_shadow.h"
 
+#include "theatre/a_person.h"
 #include "theatre/a_stage.h"
-
-#include "a_person.h"
-#include "random_turns.h"
+#include "theatre/random_turns.h"
 
 #include <gmock/gmock.h>
 

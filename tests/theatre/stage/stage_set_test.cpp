@@ -1,6 +1,6 @@
 #include "theatre/stage/stage_set.h"
 
-#include "a_scene.h"
+#include "theatre/a_scene.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
