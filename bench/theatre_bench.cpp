@@ -70,7 +70,7 @@ void skinAndShadow(benchmark::State& state) {
     const Body body = humanBody(1.75);
     const BodyMesh mesh = humanMesh(body);
     const bool withShadow = state.range(0) != 0;
-    const ScreenFrame frame({{0, 0, 7}}, -1.5, 2.5, 2.5 / 256, 307, 256);
+    const ScreenFrame frame(Stage{}, -1.5, 2.5, 2.5 / 256, 307, 256);
     PosedBody posed;
     posed.pose(body, body.restPose({0, 1, 2}, {1, 0, 0, 0}));
     std::vector<glm::vec3> skin;
