@@ -16,7 +16,7 @@ PoseRounds::Task hill() {
     GreyImage picture(240, 140);
     for (int y = 20; y < 120; ++y)
         for (int x = 0; x < 240; ++x)
-            if (std::hypot((x + 0.5 - 120) / 80, (y + 0.5 - 120) / 100) < 1) picture.at(x, y) = 1;
+            if (std::hypot((x + 0.5 - 120) / 115, (y + 0.5 - 120) / 60) < 1) picture.at(x, y) = 1;
     PoseRounds::Task task;
     task.targets = {PoseTarget::from(picture, task.stage, 1, 64).value()};
     task.area = areaToFill(task.targets, task.stage);
