@@ -19,7 +19,7 @@ namespace fantascope::render {
 
 struct Settings {
     std::string driver = "headless";
-    int outputs = 3, width = 640, height = 360, crystals = 333, people = 0, samples = 4, frames = 150;
+    int outputs = 3, width = 640, height = 360, crystals = 333, people = 0, samples = 4, frames = 150, failing = 0;
     double rate = 30, seconds = 30;  // Hz; s per run
 };
 

@@ -38,7 +38,7 @@ void playShow(const Settings& settings) {
                             settings.driver, settings.width, settings.height, settings.rate);
     const std::filesystem::path file = std::filesystem::temp_directory_path() / fmt::format("outputs-bench-{}.yaml", ::getpid());
     must(writeFile(file, text));
-    const show::Site site = valueOf(show::readSite(file));
+    show::Site site = valueOf(show::readSite(file));
     std::filesystem::remove(file);
     show::CueList cues;
     cues.dark.outputs.resize(site.outputs.size());
@@ -47,6 +47,8 @@ void playShow(const Settings& settings) {
     cues.cues.push_back({look, Time{}, std::nullopt});
 
     app::Devices devices = valueOf(app::openDevices(site, app::Backends::AsDeclared, {clock}));
+    for (int i = 0; i < settings.failing; ++i)
+        site.outputs[site.outputs.size() - 1 - static_cast<std::size_t>(i)].projection.size = {1 << 20, 1};
     const PictureSource source = settings.people > 0 ? PictureSource(swayingPeople({settings.people}))
                                                      : PictureSource(swayingCrystals({settings.crystals}));
     show::InputLog inputs(cues);
@@ -55,6 +57,7 @@ void playShow(const Settings& settings) {
     const Time start = loop.refreshFrom(clock.now() + std::chrono::milliseconds(200)),
                end = start + fromSeconds(settings.seconds);
     loop.begin(show::ShowClock(start));
+    loop.makeRenderersAside();
     inputs.submit({Time{}, show::Input::Kind::Go});
     app::RunReport report;
     {
@@ -79,6 +82,8 @@ void playShow(const Settings& settings) {
     const app::Report json = app::jsonOf(report);
     const std::string shown = settings.people > 0 ? fmt::format("shadows of {} people", settings.people)
                                                   : fmt::format("{} triangles", settings.crystals * 60);
+    for (const DeviceStatus& status : loop.withFaults(devices.statuses()))
+        if (status.state == DeviceState::Faulted) fmt::print("{}: {}\n", status.name, status.detail);
     fmt::print("{} outputs of {} x {} at {} Hz, {} each, {}, {} s\n", settings.outputs, settings.width, settings.height,
                settings.rate, shown, settings.driver, settings.seconds);
     for (const char* key : {"frames_by_output", "late_frames_by_cause", "yardstick", "frame_ms", "swap_skew_ms"})
@@ -105,6 +110,8 @@ int runBench(int argc, char** argv) {
     show->add_option("--driver", settings.driver, "headless, or glfw on an X server")->capture_default_str();
     show->add_option("--seconds", settings.seconds)->capture_default_str();
     show->add_option("--rate", settings.rate, "Hz")->capture_default_str();
+    show->add_option("--failing", settings.failing, "Outputs of these that can never be drawn: OpenGL has too few pixels")
+        ->capture_default_str();
     show->add_option("--people", settings.people, "Shadows of so many people, of 5,000 triangles each, instead of crystals");
     CLI11_PARSE(program, argc, argv);
     if (show->parsed()) playShow(settings);

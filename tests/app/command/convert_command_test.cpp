@@ -114,7 +114,7 @@ TEST_F(ConvertCommand, joints_in_a_gltf_are_where_the_poses_have_them) {
     for (const std::string file : {"a.glb", "a.gltf"}) {
         const Outcome outcome = run({"convert", "a.cast.yaml", "-o", file});
         ASSERT_THAT(outcome, exits(0));
-        EXPECT_THAT(outcome.out, HasSubstr("2 actors, 4 frames at 12.5 a second"));
+        EXPECT_THAT(outcome.out, HasSubstr("2 actors, 4 frames at 12.5 per second"));
         const Imported imported(folder_ / file);
         for (std::size_t actor : {0u, 1u}) expectJoints(imported, cast, actor, fmt::format("actor {} ", actor + 1), ' ');
     }

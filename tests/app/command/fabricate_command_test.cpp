@@ -137,7 +137,7 @@ TEST_F(FabricateCommand, takes_the_frame_that_is_asked_for) {
     const std::string first = text("a.stl");
     ASSERT_THAT(fabricate({"--frame", "2"}), exits(0));
     EXPECT_FALSE(first == text("a.stl"));
-    EXPECT_THAT(fabricate({"--frame", "3"}), AllOf(exits(1), testing::Field(&Outcome::errors, HasSubstr("beyond its last, 2"))));
+    EXPECT_THAT(fabricate({"--frame", "3"}), AllOf(exits(1), testing::Field(&Outcome::errors, HasSubstr("beyond the last frame, 2"))));
 }
 
 TEST_F(FabricateCommand, leaves_nothing_when_it_is_interrupted) {
