@@ -71,7 +71,7 @@ TEST(OpenDmx, has_to_be_told_which_adapter_it_is) {
         const auto port = drivers::openDmxPort(node, 1, {clock});
         return port ? "accepted" : port.error().message();
     };
-    EXPECT_THAT(open(""), HasSubstr("'serial' or 'port' is wanted"));
+    EXPECT_THAT(open(""), HasSubstr("'serial' or 'port' is needed"));
     EXPECT_THAT(open("serial: AB12\nbreak: 50\n"), HasSubstr("break"));
     EXPECT_EQ(open("serial: AB12\nbreak: 100\nmark_after_break: 12\nrate: 20\n"), "accepted");
 }

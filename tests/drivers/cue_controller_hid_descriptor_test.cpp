@@ -129,8 +129,8 @@ TEST(HidDescriptor, refuses_what_is_broken_and_says_where) {
     EXPECT_THAT(refusalOf("a1 01"), HasSubstr("no end"));
     EXPECT_THAT(refusalOf("c0"), HasSubstr("without a collection"));
     EXPECT_THAT(refusalOf("b4"), HasSubstr("pop without a push"));
-    EXPECT_THAT(refusalOf("85 00"), HasSubstr("report id 0"));
-    EXPECT_THAT(refusalOf("86 00 01"), HasSubstr("report id 256"));
+    EXPECT_THAT(refusalOf("85 00"), HasSubstr("0 is not a report id"));
+    EXPECT_THAT(refusalOf("86 00 01"), HasSubstr("256 is not a report id"));
     EXPECT_THAT(refusalOf("a9 00"), HasSubstr("delimiter"));
     EXPECT_THAT(refusalOf("a9 01 09 01"), HasSubstr("delimiter has no end"));
     EXPECT_THAT(refusalOf("19 05 29 03"), HasSubstr("range of usages"));

@@ -130,7 +130,7 @@ TEST_F(ModbusKeys, with_good_ones_a_device_that_is_not_there_opens) {
 TEST_F(ModbusKeys, bad_ones_are_refused_with_their_place) {
     EXPECT_THAT(relays("driver: modbus_tcp\nhost: relays.local\n"),
                 StartsWith("site.yaml:2:7: host: 'relays.local' is not an IPv4 address"));
-    EXPECT_THAT(relays(tcp_ + "unit: 250\n"), StartsWith("site.yaml:4:7: unit: 250 is kept"));
+    EXPECT_THAT(relays(tcp_ + "unit: 250\n"), StartsWith("site.yaml:4:7: unit: 250 is reserved"));
     EXPECT_THAT(relays(tcp_ + "watchdogs: {}\n"), StartsWith("site.yaml:4:1: watchdogs: unknown key (did you mean 'watchdog'?)"));
     EXPECT_THAT(relays(tcp_ + "kind: discrete_inputs\n"), StartsWith("site.yaml:4:7: kind"));
     EXPECT_THAT(relays(tcp_ + "watchdog: {period: 1}\n"), HasSubstr("watchdog"));
