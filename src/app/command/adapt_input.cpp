@@ -24,27 +24,33 @@ constexpr int kLookRows = 96;         // of those that are compared to find the 
 constexpr double kCovered = 0.8;      // intersection over union: what a picture and its triangles have at least
 constexpr std::size_t kMostTold = 3;  // warnings of a kind
 
-// A folder without a sequence.yaml is one of pictures, in the order of their names.
+// In the order of their names.
+Result<std::vector<fs::path>> picturesIn(const fs::path& folder) {
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored)) return Error(fmt::format("{}: is not there", folder.string()));
+    std::vector<fs::path> pictures;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const std::string ending = entry.path().extension().string();
+        if (ending == ".png" || ending == ".jpg" || ending == ".jpeg") pictures.push_back(entry.path());
+    }
+    if (pictures.empty())
+        return Error(
+            fmt::format("{}: has neither a sequence.yaml nor pictures; 'fantascope deform' writes both", folder.string()));
+    std::sort(pictures.begin(), pictures.end());
+    return pictures;
+}
+
+// A folder without a sequence.yaml is one of pictures.
 Result<SilhouetteSequence> sequenceAt(const AdaptOptions& options) {
     const fs::path& given = options.sequence;
     std::error_code ignored;
     const fs::path file = fs::is_directory(given, ignored) ? given / "sequence.yaml" : given;
-    if (fs::exists(file, ignored)) {
-        SilhouetteSequence sequence = TRY(theatre::readSequence(file));
-        sequence.framesPerSecond = options.frameRate.value_or(sequence.framesPerSecond);
-        return sequence;
-    }
-    if (!fs::is_directory(given, ignored)) return Error(fmt::format("{}: is not there", given.string()));
-    SilhouetteSequence sequence;
-    for (const auto& entry : fs::directory_iterator(given)) {
-        const std::string ending = entry.path().extension().string();
-        if (ending == ".png" || ending == ".jpg" || ending == ".jpeg") sequence.pictures.push_back(entry.path());
-    }
-    if (sequence.pictures.empty())
-        return Error(
-            fmt::format("{}: has neither a sequence.yaml nor pictures; 'fantascope deform' writes both", given.string()));
-    std::sort(sequence.pictures.begin(), sequence.pictures.end());
-    if (options.frameRate) sequence.framesPerSecond = *options.frameRate;
+    Result<SilhouetteSequence> sequence = SilhouetteSequence{};
+    if (fs::exists(file, ignored))
+        sequence = theatre::readSequence(file);
+    else
+        sequence->pictures = TRY(picturesIn(given));
+    if (sequence && options.frameRate) sequence->framesPerSecond = *options.frameRate;
     return sequence;
 }
 
