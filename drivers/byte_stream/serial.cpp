@@ -25,6 +25,9 @@ constexpr std::size_t kCapacity = std::size_t{1} << 16;
 constexpr Time kLookAgain = std::chrono::milliseconds(20);
 constexpr Time kUntilSomethingHappens = std::chrono::hours(1);
 
+// How long the last bytes may take to leave when the line closes.
+constexpr Time kDrainTimeout = std::chrono::milliseconds(250);
+
 std::string described(const UsbFile& line) {
     return fmt::format("{} ({} {}, serial {})", line.file.string(), line.usb.manufacturer, line.usb.name,
                        line.usb.serial.empty() ? "none" : line.usb.serial);
@@ -84,8 +87,23 @@ FileHandle opened(const std::filesystem::path& path, const SerialSettings& setti
     }
     const int rts = TIOCM_RTS;
     ioctl(file.get(), settings.requestToSend ? TIOCMBIS : TIOCMBIC, &rts);
-    ioctl(file.get(), TCFLSH, TCIOFLUSH);  // bytes from before this life
+    ioctl(file.get(), TCFLSH, TCIFLUSH);  // bytes from before this life
     return file;
+}
+
+// How many bytes the kernel still holds back from the adapter. Nothing: the line is lost.
+std::optional<int> heldBack(int file) {
+    int count = 0;
+    return ioctl(file, TIOCOUTQ, &count) == 0 ? std::optional(count) : std::nullopt;
+}
+
+// Lets the last bytes leave. Only what the adapter does not take in time is dropped: a
+// pseudo-terminal would lose bytes that it has already taken.
+void drain(int file) {
+    SteadyClock clock;
+    const Time end = clock.now() + kDrainTimeout;
+    while (heldBack(file).value_or(0) > 0 && clock.now() < end) clock.sleepUntil(clock.now() + std::chrono::milliseconds(1));
+    if (heldBack(file).value_or(0) > 0) ioctl(file, TCFLSH, TCOFLUSH);
 }
 
 }  // namespace
@@ -157,9 +175,9 @@ Result<void> SerialStream::setBreak(bool on) {
 Result<std::size_t> SerialStream::unsent() {
     const std::lock_guard lock(mutex_);
     if (outage_) return refusal();
-    int count = 0;
-    if (ioctl(file_.get(), TIOCOUTQ, &count) != 0) return failed("ask");
-    return static_cast<std::size_t>(count);
+    const auto count = heldBack(file_.get());
+    if (!count) return failed("ask");
+    return static_cast<std::size_t>(*count);
 }
 
 Result<bool> SerialStream::isDrained() {
@@ -231,8 +249,8 @@ Outage SerialStream::runOnce(Service& service) {
         else
             service.wait(kLookAgain);
     }
+    drain(number);
     const std::lock_guard lock(mutex_);
-    ioctl(number, TCFLSH, TCOFLUSH);
     file_ = FileHandle();
     return outage_.value_or(Outage{});
 }

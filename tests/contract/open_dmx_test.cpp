@@ -29,6 +29,7 @@ public:
         const std::lock_guard lock(mutex_);
         return out_;
     }
+    std::optional<DmxFrame> lastOut() const { return out(); }
     int framesOut() const {
         const std::lock_guard lock(mutex_);
         return frames_;
@@ -40,10 +41,10 @@ private:
         for (std::size_t have = 0; !ending_;) {
             pollfd waited{line_, POLLIN, 0};
             if (poll(&waited, 1, 10) <= 0) continue;
+            const std::lock_guard lock(mutex_);  // so whoever sees the line empty sees what the bytes did
             const ssize_t count = read(line_, arrived.data() + have, arrived.size() - have);
             if (count <= 0 || (have += static_cast<std::size_t>(count)) < arrived.size()) continue;
             have = 0;
-            const std::lock_guard lock(mutex_);
             ++frames_;
             if (arrived[0] == 0) std::copy(arrived.begin() + 1, arrived.end(), out_.emplace().begin());
         }

@@ -49,14 +49,17 @@ public:
         FANTASCOPE_CHECK(::write(far_.get(), bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()),
                          "the line has room for what a test sends");
     }
-    // Whether everything that was sent has been read at the near end. The question itself moves
-    // pending bytes to that end.
-    bool hasBeenRead() const {
-        pollfd line{near_.get(), POLLIN, 0};
+    // Whether everything that was sent has been read at the near end, or taken at the far one. The
+    // question itself moves pending bytes to that end.
+    bool hasBeenRead() const { return isEmpty(near_); }
+    bool isTaken() const { return isEmpty(far_); }
+
+private:
+    static bool isEmpty(const drivers::FileHandle& end) {
+        pollfd line{end.get(), POLLIN, 0};
         return poll(&line, 1, 0) == 0;
     }
 
-private:
     drivers::FileHandle far_;
     drivers::FileHandle near_;  // kept open, so that the far end is not hung up while the program has the file closed
     std::string name_;

@@ -39,8 +39,9 @@ private:
     bool& sent_;
 };
 
-// AnySocket is like Socket. Its far end has out(), the frame that its lamps get, and framesOut(),
-// the number of frames.
+// AnySocket is like Socket. Its far end has out(), the frame that its lamps get, lastOut(), the one
+// that they got last, and framesOut(), the number of frames. hasTakenAll(): the far end has taken all
+// that was sent before the port ran again.
 template <class AnySocket>
 class SerialDmxPortRig final : public DmxPortRig {
 public:
@@ -72,7 +73,10 @@ public:
         return *neighbour_;
     }
     std::optional<DmxFrame> line() override { return socket_->in() ? socket_->farEnd().out() : std::nullopt; }
-    std::optional<DmxFrame> lastFrame() override { return socket_->farEnd().out(); }
+    std::optional<DmxFrame> lastFrame() override {
+        eventually("the far end has taken what was sent", [&] { return runs(*port_) && socket_->hasTakenAll(); });
+        return socket_->farEnd().lastOut();
+    }
 
 private:
     std::unique_ptr<DmxPort> open(const AnySocket& socket, int universe) {

@@ -111,5 +111,23 @@ TEST(SerialStreamContract, is_kept_over_a_pseudo_terminal_that_comes_back_by_ano
     EXPECT_THAT(violations(byteStreamSuite(), [] { return std::make_unique<SerialRig>(); }), IsEmpty());
 }
 
+TEST(SerialStream, loses_nothing_that_it_took_when_it_closes) {
+    for (int life = 0; life < 300; ++life) {
+        Adapter adapter;
+        auto stream = adapter.open();
+        eventually("it runs", [&] { return runs(*stream); });
+        const Bytes sent(600, static_cast<std::uint8_t>(life));
+        ASSERT_EQ(stream->write(sent).value(), sent.size());
+        stream.reset();
+        Bytes arrived;
+        eventually("all has arrived", [&] {
+            const Bytes more = adapter.line().receive();
+            arrived.insert(arrived.end(), more.begin(), more.end());
+            return adapter.line().isTaken();
+        });
+        ASSERT_EQ(arrived, sent) << "life " << life;
+    }
+}
+
 }  // namespace
 }  // namespace fantascope::contract

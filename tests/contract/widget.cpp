@@ -30,7 +30,12 @@ Widget::~Widget() {
 
 std::optional<Widget::Frame> Widget::out() const {
     const std::lock_guard lock(mutex_);
-    return out_;
+    return input_ ? std::nullopt : lastOut_;
+}
+
+std::optional<Widget::Frame> Widget::lastOut() const {
+    const std::lock_guard lock(mutex_);
+    return lastOut_;
 }
 
 int Widget::framesOut() const {
@@ -75,9 +80,9 @@ void Widget::run() {
         pollfd waited{line_, POLLIN, 0};
         if (poll(&waited, 1, 10) <= 0 || deaf_) continue;
         std::uint8_t bytes[4096];
+        const std::lock_guard lock(mutex_);  // so whoever sees the line empty sees what the bytes did
         const ssize_t count = read(line_, bytes, sizeof bytes);
         if (count <= 0) continue;
-        const std::lock_guard lock(mutex_);
         heard_.insert(heard_.end(), bytes, bytes + count);
         while (take()) {
         }
@@ -106,10 +111,7 @@ bool Widget::take() {
 void Widget::answer(std::uint8_t label, const std::vector<std::uint8_t>& data) {
     const auto digits = [&](int from) { return static_cast<std::uint8_t>(std::stoi(number_.substr(from, 2), nullptr, 16)); };
     // Every message except a frame to send, or a request for its parameters, makes it an input.
-    if (label != 6 && label != 3) {
-        out_.reset();
-        input_ = true;
-    }
+    if (label != 6 && label != 3) input_ = true;
     if (label == 3 && data.size() == 2) {
         if (!silent_) say(3, {44, 1, parameters_.breakTime, parameters_.markAfterBreak, parameters_.rate});
     } else if (label == 4 && data.size() == 5) {
@@ -118,7 +120,7 @@ void Widget::answer(std::uint8_t label, const std::vector<std::uint8_t>& data) {
         parameters_ = {data[2], data[3], data[4]};
         ++written_;
     } else if (label == 6 && !data.empty() && data.size() <= 513 && data[0] == 0) {
-        std::copy(data.begin() + 1, data.end(), out_.emplace(Frame{}).begin());
+        std::copy(data.begin() + 1, data.end(), lastOut_.emplace(Frame{}).begin());
         input_ = false;
         ++framesOut_;
     } else if (label == 8 && data.size() == 1) {

@@ -30,8 +30,10 @@ public:
     explicit Widget(int line, std::string number = "01234567", Parameters parameters = {});
     ~Widget();
 
-    // Its DMX output: the frame that it repeats, and how many it was sent.
+    // Its DMX output: the frame that it repeats, the one that its lamps got last, and how many it was
+    // sent.
     std::optional<Frame> out() const;
+    std::optional<Frame> lastOut() const;
     int framesOut() const;
     // The first violation of the protocol by the host; "" if none.
     std::string complaint() const;
@@ -59,7 +61,7 @@ private:
     mutable std::mutex mutex_;
     Parameters parameters_;
     std::vector<std::uint8_t> heard_;
-    std::optional<Frame> out_;
+    std::optional<Frame> lastOut_;
     int framesOut_ = 0, written_ = 0;
     bool input_ = true, everyFrame_ = true, toldToReceive_ = false;
     std::string complaint_;

@@ -33,6 +33,7 @@ public:
         line_.reset();
     }
     bool in() const { return line_.has_value(); }
+    bool hasTakenAll() const { return line_->isTaken(); }
     FarEnd& farEnd() { return *farEnd_; }
     PseudoTerminal& line() { return *line_; }
     std::filesystem::path file() const { return folder_ / name_; }

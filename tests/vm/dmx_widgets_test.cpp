@@ -91,6 +91,7 @@ public:
         widget_.reset();
     }
     bool in() const { return widget_.has_value(); }
+    bool hasTakenAll() const { return true; }  // a port runs once its question was answered, which comes after
     Widget& farEnd() { return *widget_; }
     std::string key() const { return "serial: " + serial(number_); }
 
