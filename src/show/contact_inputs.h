@@ -8,9 +8,10 @@
 
 namespace fantascope::show {
 
-// What a movement of a contact in a bank of the site asks for, at show time `at`; nothing for most.
-// What nobody saw move, because it was found so at the start or after a loss, is no moment for a
-// cue; dark and light are states, and hold however they came about.
+// The input that a change of a contact asks for, at show time `at`; nothing if the site file gives
+// the contact no such action. `bank` and `contact` count as in the site. `witnessed`: the change
+// was seen. A state found at the start or after a loss is not witnessed: it enters no cue and
+// toggles no blackout. Dark and Light apply nevertheless, because they are states.
 std::optional<Input> inputFor(const Site& site, std::size_t bank, std::size_t contact, bool closed, bool witnessed, Time at);
 
 }  // namespace fantascope::show

@@ -12,14 +12,14 @@ enum class Curve {
     Smooth  // begins and ends at rest: 3 s^2 - 2 s^3 of the share s of its time
 };
 
-// The way of one value in time: `from` until `start`, `to` from `start` + `length` on. Value type;
-// thread: reentrant.
+// The course of one value in time: it is `from` until `start`, and `to` from `start` + `length` on.
+// Value type; thread: reentrant.
 struct Course {
     float from = 0, to = 0;
     Time start{}, length{};
     Curve curve = Curve::Linear;
 
-    // What stands still.
+    // A value that does not change.
     static Course at(float value) { return {value, value}; }
 
     // How much of the change has happened by `time`, 0..1, before the curve.

@@ -12,14 +12,14 @@
 namespace fantascope::show {
 
 // Turns the hand controller's presses into inputs. One press is one input, however long it lasts: a
-// button that was not let go of asks for nothing more. Thread: bound to one thread at a time.
+// held button gives no further input. Thread: bound to one thread at a time.
 class CueButtons {
 public:
     // `buttons`: as in Site::buttons.
     explicit CueButtons(const std::vector<std::pair<int, Button>>& buttons);
 
-    // `button` went down or up at show time `at`. Gives the input that this asks for; none for a
-    // release, and for a button that steps no cues.
+    // Call this when `button` went down or up at show time `at`. Returns the input that this asks
+    // for. A release gives none, nor does a button that is not GO, back or blackout.
     std::optional<Input> inputFor(int button, bool pressed, Time at);
 
 private:

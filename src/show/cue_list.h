@@ -16,17 +16,17 @@ namespace fantascope::show {
 struct CueList {
     struct Cue {
         Look look;
-        Time fade{};                       // from whatever is seen when the cue is entered to its look
-        std::optional<Time> follow;        // after being entered, the next cue is entered by itself
-        std::vector<WindWish> winds = {};  // one for each output; one that is missing is the usual wind
-        std::string name = {};             // by which a revision of the list finds it again
+        Time fade{};                       // from what is seen when the cue is entered to the cue's look
+        std::optional<Time> follow;        // from when the cue is entered until the next one is; none: it waits for an input
+        std::vector<WindWish> winds = {};  // one for each output; a missing one is the usual wind
+        std::string name = {};             // a revision of the list finds the cue by it
     };
     std::vector<Cue> cues;
-    bool loops = false;      // the first cue follows the last one, if that has a `follow`
+    bool loops = false;      // the first cue follows the last one, if the last one has a `follow`
     Look dark;               // what is seen before the first cue: black pictures, levels 0, relays in their safe states
     Time goInterval{};       // after a cue was entered, GO is ignored for this long
     Time blackoutFade{};     // from full light to none and back
-    std::uint64_t seed = 1;  // of everything random in the show itself: its gusts
+    std::uint64_t seed = 1;  // of the show's own randomness: its gusts
 };
 
 }  // namespace fantascope::show

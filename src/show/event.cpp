@@ -37,13 +37,13 @@ struct Teller {
     std::string operator()(const event::PictureTaken& picture) const { return "picture: " + picture.file.string(); }
     std::string operator()(const event::PictureMissed& picture) const { return "no picture: " + picture.why; }
     std::string operator()(const event::SettingUpBegan&) const {
-        return "setting up the outputs: the keys stand on the picture, e ends it";
+        return "setting up the outputs: the picture lists the keys, e ends it";
     }
     std::string operator()(const event::SettingUpEnded& end) const {
         return end.saved ? "the outputs are set up" : "the outputs are set up but not written to the file: e, then w";
     }
     std::string operator()(const event::SiteSaved& site) const {
-        return fmt::format("{} is written; as it was before: {}", site.file.string(), site.previous.string());
+        return fmt::format("{} is written; its previous version is {}", site.file.string(), site.previous.string());
     }
     std::string operator()(const event::SiteNotSaved& site) const { return "not written: " + site.why; }
 };

@@ -15,11 +15,11 @@ namespace fantascope::show {
 // What happens while a show runs.
 namespace event {
 
-// An input was taken, or ignored.
+// The log took an input, or ignored it.
 struct InputDecided {
     LoggedInput input;
 };
-// By an input or by itself.
+// A cue was entered, by an input or by a follow.
 struct CueEntered {
     int cue = 0;  // index into Show::cues, of `cues`
     int cues = 0;
@@ -30,25 +30,26 @@ struct BlackoutChanged {
 };
 // A person took over from the schedule of a rehearsal.
 struct ScheduleEnded {};
-// The key that ends the run was pressed; it must be pressed again within `patience`.
+// Somebody pressed the key that ends the run. The run ends if it is pressed again within
+// `patience`.
 struct QuitAsked {
     std::string key;
     Time patience{};
 };
-// Something fails, or fails otherwise than before.
+// A fault began, or its reason changed.
 struct FaultBegan {
     std::string device;  // by its name in the site file; empty: none
     std::string what;
 };
 struct FaultEnded {
     std::string device;
-    std::string news;  // empty: nobody is told
+    std::string news;  // empty: the operator is not told
     Time lasted{};     // on the machine's clock
 };
-// Somebody else sends a universe now.
+// The senders of a universe changed.
 struct SendersChanged {
     int universe = 0;
-    std::vector<std::string> senders;  // at least one, the first in charge; "": the show
+    std::vector<std::string> senders;  // the senders in charge, at least one; "" is the show, which comes first
 };
 struct PictureTaken {
     std::filesystem::path file;
@@ -77,14 +78,14 @@ struct Event {
     event::What what;
 };
 
-// All events of a run in one order. Whoever wants to know has a reader of its own: terminal,
-// report, console.
+// All events of a run in one order. Terminal, report and console have a reader each.
 using EventLog = AppendLog<Event>;
 
-// "universe 1 is now sent by 'FOH' and the show".
+// "universe 1 is now sent by the show and 'FOH'".
 std::string sentenceOf(const event::SendersChanged& change);
-// What the operator is told, without a full stop; empty: nothing, as of an input that was taken or
-// a universe that a desk takes, which is a fault of its own.
+// What the operator is told, without a full stop. Empty: the operator is told nothing. An input
+// that was taken has no sentence, nor has a universe that a desk takes over: that is a fault, which
+// has its own event.
 std::string sentenceOf(const Event& event);
 
 }  // namespace fantascope::show

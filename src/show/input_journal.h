@@ -12,20 +12,20 @@
 
 namespace fantascope::show {
 
-// Writes the inputs of a log to a file as they come, so that they can be played again after the
-// program or the machine died:
+// Writes the inputs of a log to a file as they come, so that they can be replayed after the program
+// or the machine has died:
 //   fantascope-inputs 1
 //   12500000000 go 0 terminal 0        as lineOf() writes it
-// Inputs that are ignored are in it, too. Thread: bound to one thread, which may wait for the disk;
-// the log's producers never do.
+// The file also holds the inputs that were ignored. Thread: bound to one thread, which may wait for
+// the disk. The log's producers never wait.
 class InputJournal {
 public:
-    // `log` outlives it. The file must be new: an older journal may be all that is left of a night.
-    // Error: names the file and the reason.
+    // `log` outlives the journal. The file must not exist: an older journal may be all that is left
+    // of a night. Error: names the file and the reason.
     static Result<InputJournal> create(const std::filesystem::path& file, const InputLog& log);
 
-    // Writes what has come since the last call, and waits until the disk has it. Error: names the
-    // file and the reason; the next call goes on where this one stopped.
+    // Writes the inputs that have come since the last call, and waits until they are on the disk.
+    // Error: names the file and the reason. The next call continues where this one stopped.
     Result<void> write();
 
 private:
@@ -35,9 +35,9 @@ private:
     InputLog::Reader inputs_;
 };
 
-// The inputs of a journal, oldest first. Submitted to a new log in this order they give the same
-// show. A last line without an end is what a crash leaves, and is left out. Error: names the file,
-// the line and what is wrong with it.
+// The inputs of a journal, oldest first. Submitted to a new log in this order, they give the same
+// show. A crash may leave a last line without a line end; that line is left out. Error: names the
+// file, the line and what is wrong with it.
 Result<std::vector<Input>> readJournal(const std::filesystem::path& file);
 
 }  // namespace fantascope::show

@@ -16,7 +16,7 @@ int InputLog::add(std::shared_ptr<const CueList> cues) {
 LoggedInput InputLog::submit(const Input& input) {
     const std::lock_guard lock(mutex_);
     LoggedInput logged{.number = count_++, .input = input};
-    const auto revision = static_cast<std::size_t>(input.revision);  // below 0 is beyond all
+    const auto revision = static_cast<std::size_t>(input.revision);  // a negative number becomes larger than any
     if (input.kind == Input::Kind::Revise && revision < revisions_.size()) logged.revision = revisions_[revision];
     logged.outcome = playback_.apply(input, logged.revision);
     inputs_.append(logged);

@@ -19,14 +19,15 @@ struct LoggedInput {
     std::uint64_t number = 0;  // 0, 1, 2, ...
     Input input;
     Outcome outcome = Outcome::Taken;
-    std::shared_ptr<const CueList> revision{};  // of an Input::Kind::Revise: what it names, if it is there
+    std::shared_ptr<const CueList> revision{};  // only for Input::Kind::Revise: the list that it names; null: there is none
 };
 
-// The one way into the show: whoever asks for something submits it here. The log puts all inputs in
-// one order, says what becomes of each, and hands the same sequence to everybody who reads it.
-// Nothing is lost, however late somebody reads.
+// The one way into the show: every input is submitted here. The log puts all inputs in one order,
+// decides the outcome of each, and gives every reader the same sequence. A late reader misses no
+// input.
 //
-// Thread: submit() and add() from any, which wait for each other alone; readers as AppendLog says.
+// Thread: submit() and add() from any thread; they wait only for each other. Readers as AppendLog
+// says.
 class InputLog {
 public:
     using Reader = AppendLog<LoggedInput>::Reader;
@@ -34,14 +35,14 @@ public:
     explicit InputLog(std::shared_ptr<const CueList> cues) : revisions_{std::move(cues)}, playback_(revisions_[0]) {}
     explicit InputLog(const CueList& cues) : InputLog(std::make_shared<const CueList>(cues)) {}
 
-    // What the first input finds.
+    // The list that the log began with.
     std::shared_ptr<const CueList> cues() const;
-    // Another list, for an Input::Kind::Revise to come: 1, 2, 3, ...; 0 is the one that it began
-    // with. It changes nothing by itself.
+    // Adds a list that a later Input::Kind::Revise may name. Returns its number: 1, 2, 3, ...; the
+    // list that the log began with is 0. The show does not change until that input comes.
     int add(std::shared_ptr<const CueList> cues);
 
     LoggedInput submit(const Input& input);
-    // From the first input on. The log outlives it.
+    // A reader that begins with the first input. The log outlives it.
     Reader reader() const { return inputs_.reader(); }
 
 private:

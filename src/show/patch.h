@@ -1,5 +1,5 @@
 #pragma once
-// From the levels and relays of a look to what the lines of the site carry.
+// Maps the levels of a look to DMX slots, and its relays to coils.
 
 #include "show/show_state.h"
 #include "show/site/site.h"
@@ -11,12 +11,11 @@
 
 namespace fantascope::show {
 
-// Fills the 512 slots of one universe; out[0] is address 1. A level goes straight to its slot,
-// linearly, 0..1 to 0..255, rounded to the nearest; whatever curve the dimmer has is its own. Slots
-// without a fixture are 0.
+// Fills the 512 slots of one universe; out[0] is address 1. A level 0..1 becomes 0..255 linearly,
+// rounded to the nearest. The dimmer applies its own curve. Slots without a fixture are 0.
 void slotsOf(const Site& site, const Look& look, int universe, std::span<std::uint8_t, 512> out);
 
-// The levels of a Look when the show is over.
+// The end levels of all fixtures, in the order of Look::levels.
 std::vector<float> endLevels(const Site& site);
 
 // The states of a relay bank's coils, site.coilCount(bank) of them, from coil 0; true is on. Coils

@@ -12,7 +12,7 @@ namespace fantascope::show {
 
 namespace {
 
-// The last of `events` that has happened by `time`, or null. They are sorted by `at`.
+// The last of `events` that is not after `time`, or null. They are sorted by `at`.
 template <class Event>
 const Event* lastBy(Time time, const std::vector<Event>& events) {
     const auto next =
@@ -28,7 +28,7 @@ const LayerState* layerOf(SourceId source, Layers layers) {
     return found == layers.end() ? nullptr : &*found;
 }
 
-// The layers that add as light one by one.
+// The layers that add their light one by one.
 Layers addedLayers(const OutputState& output) {
     return Layers(output.layers).first(output.pictures.empty() ? output.layers.size() : output.pictures[0].first);
 }
@@ -36,7 +36,7 @@ Layers layersOf(const ComposedPicture& picture, const OutputState& output) {
     return Layers(output.layers).subspan(picture.first, picture.last - picture.first);
 }
 
-// Whether two pictures are composed alike, whenever their layers began.
+// Whether two pictures have the same composition, whenever their layers began.
 bool sameComposition(Layers a, Layers b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const LayerState& one, const LayerState& other) {
         return one.source == other.source && one.opacity == other.opacity && one.blend == other.blend;
@@ -47,18 +47,18 @@ bool isOfOneSite(const Look& a, const Look& b) {
     return a.outputs.size() == b.outputs.size() && a.levels.size() == b.levels.size() && a.relays.size() == b.relays.size();
 }
 
-// When the next cue comes by itself after one that was entered at `at`.
+// When the next cue follows a cue that was entered at `at`.
 std::optional<Time> followerAt(const CueList& list, int cue, Time at) {
     const std::optional<Time>& follow = list.cues[static_cast<std::size_t>(cue)].follow;
     const bool hasNext = list.loops || static_cast<std::size_t>(cue) + 1 < list.cues.size();
     return follow && hasNext ? std::optional(at + *follow) : std::nullopt;
 }
 
-// A cue of the list `old` in another one: that of its name, or else that of the nearest before it
-// that is still there; -1: before the first.
+// Where a cue of the list `old` is in another list: the cue of the same name, or else the nearest
+// previous one that is still there; -1: before the first.
 struct FoundCue {
     int cue = -1;
-    bool isThere = false;  // the cue itself
+    bool isThere = false;  // the other list has the cue itself
 };
 FoundCue foundAgain(int cue, const CueList& old, const CueList& list) {
     for (int before = cue; before >= 0; --before) {
@@ -91,7 +91,7 @@ Playback::Playback(std::shared_ptr<const CueList> list) : gusts_(list->seed) {
     dark.relays = list->dark.relays;
 }
 
-// What the looks of another list need besides.
+// Checks the looks of another list, and notes how much room they need.
 void Playback::examine(const CueList& list) {
     for (const CueList::Cue& cue : list.cues) {
         FANTASCOPE_CHECK(isOfOneSite(cue.look, list.dark), "all looks of a cue list are for one site");
@@ -145,15 +145,14 @@ Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revis
 
 void Playback::enter(int cue, Time at) { put(entered(entryAt(at).list, cue, at)); }
 
-// Adds an entry, and after it those that follow by themselves. What would have followed otherwise
-// is off.
+// Adds an entry and the cues that follow it. Later entries are dropped.
 void Playback::put(Entry entry) {
     while (entries_.back().at > entry.at) entries_.pop_back();
     entries_.push_back(std::move(entry));
     followOn();
 }
 
-// Adds the cues that follow by themselves after the last entry, one pass of the list at most.
+// Adds the cues that follow the last entry, at most one pass of the list.
 void Playback::followOn() {
     const std::size_t most = cues().cues.size();
     for (std::size_t added = 0; added < most; ++added) {
@@ -168,7 +167,7 @@ void Playback::foresee(Time time) {
     while (entries_.back().at <= time && entries_.back().left) followOn();
 }
 
-// A cue with the courses from what is seen at `at` to its look.
+// The entry of a cue, with the courses from what is seen at `at` to the cue's look.
 Playback::Entry Playback::entered(const std::shared_ptr<const CueList>& list, int cue, Time at) const {
     const CueList::Cue& wanted = list->cues[static_cast<std::size_t>(cue)];
     Entry entry{.at = at, .list = list, .cue = cue, .entered = at, .whole = at + wanted.fade, .left = followerAt(*list, cue, at)};
@@ -176,7 +175,7 @@ Playback::Entry Playback::entered(const std::shared_ptr<const CueList>& list, in
     return entry;
 }
 
-// Gives an entry the courses to a look. Winds that are missing are the usual one.
+// Gives an entry the courses to a look. A missing wind is the usual one.
 void Playback::setOut(Entry& entry, const Look& look, const std::vector<WindWish>& winds, Time fade) const {
     Look from;
     lookAt(entry.at, from);
@@ -215,7 +214,7 @@ Outcome Playback::revise(std::shared_ptr<const CueList> list, Time at) {
     return Outcome::Taken;
 }
 
-// A source goes on where both pictures have it.
+// A source that both pictures have does not begin again.
 Playback::OutputCourse Playback::courseOf(const OutputState& from, const OutputState& to, Time at, Time fade) {
     OutputCourse course;
     const auto begunOf = [&](SourceId source) {
@@ -231,7 +230,7 @@ Playback::OutputCourse Playback::courseOf(const OutputState& from, const OutputS
     for (const LayerState& layer : after)
         if (!layerOf(layer.source, before)) add(layer.source);
 
-    // The course of a composition; a new one where none is alike.
+    // The course of a composition; a new one if there is none yet.
     const auto composed = [&](const ComposedPicture& picture, const OutputState& of) -> PictureCourse& {
         const Layers layers = layersOf(picture, of);
         for (PictureCourse& there : course.pictures)
@@ -275,7 +274,7 @@ void Playback::stateAt(Time time, ShowState& out) const {
 
 const Playback::Entry& Playback::entryAt(Time time) const { return *lastBy(time, entries_); }
 
-// What is seen, blackout aside.
+// What would be seen without a blackout.
 void Playback::lookAt(Time time, Look& out) const {
     const Entry& entry = entryAt(time);
     out.outputs.resize(entry.outputs.size());
@@ -301,8 +300,8 @@ void Playback::lookAt(Time time, Look& out) const {
     out.relays = entry.relays;
 }
 
-// The factor of pictures and levels that blackout leaves: it moves at a constant rate, so that a
-// change of mind on the way has no step.
+// The factor that a blackout applies to pictures and levels. It moves at a constant rate, so that a
+// reversal during the fade makes no step.
 float Playback::lightAt(Time time) const {
     const Shutter* shutter = lastBy(time, shutters_);
     if (!shutter) return 1;

@@ -22,54 +22,52 @@ namespace fantascope::show {
 // the inputs so far. Asking changes nothing, so the same inputs give the same state in whatever
 // order the moments are asked for.
 //
-// - Everything that is seen has a course of its own (Course, WindCourse): each layer, picture, channel and wind. A cue that is
-// entered
-//   gives each a new one, in its `fade`, from what is seen at that moment (the middle of another fade, perhaps) to its look.
-//   Layers that only add their light are matched by source. Relays take their new state at once.
-// - The wind of each output goes to what the cue asks for without a jump, whether there is light or not.
-// - A cue with `follow` is left for the next one by itself, that time after it was entered in whatever way, unless an input
-// enters
-//   another one first. In a list that loops, the first cue comes after the last.
-// - GO is ignored until `goInterval` after a cue was entered, by hand or by itself, so that a trembling or late press skips
-// nothing.
-// - Blackout dims pictures and levels to nothing in `blackoutFade`, over whatever is running; a second one, or Light, gives them
-// back. The
-//   cues go on underneath. Relays do not heed it: a dark picture is no reason for dark streets.
-// - With a revision the cue of the same name goes on: what is seen goes to its new look in what is left of its fade, at least
-//   in the new `blackoutFade`, and it follows on as if it had always been so. If the cue is gone, what is seen stays until an
-//   input comes; GO then enters what follows the nearest cue before it that is still there. What was seen before the input
-//   stays as it was.
+// - Each layer, picture, channel and wind has a course of its own (Course, WindCourse). When a cue is entered, each of them
+//   begins a new course, which lasts the cue's `fade`. It leads from what is seen at that moment, perhaps the middle of
+//   another fade, to the cue's look. Layers that only add their light are matched by source. Relays switch at once.
+// - The wind of each output moves to the wind of the cue without a jump, even while the output is dark.
+// - A cue with `follow` enters the next cue by itself, that long after it was entered, unless an input enters another cue
+//   first. In a list that loops, the first cue comes after the last.
+// - GO is ignored for `goInterval` after a cue is entered, by an input or by a follow. So a bouncing or late press skips no
+//   cue.
+// - A blackout dims pictures and levels to zero in `blackoutFade`, over whatever is running. A second one, or Light, ends it.
+//   The cues continue underneath. Blackout does not switch relays: a dark picture is no reason for dark streets.
+// - After a revision the cue of the same name continues. What is seen moves to the cue's new look in the rest of its new
+//   fade, but in no less than the new `blackoutFade`. Its follow counts from when the cue was entered. If the cue is gone,
+//   what is seen stays until an input comes. GO then enters the cue after the nearest previous one that is still there. The
+//   past does not change.
 //
-// Thread: what is const is reentrant; the rest is bound to one thread at a time and may not run
-// beside it.
+// Thread: const functions are reentrant. The others are bound to one thread at a time, and no const
+// function may run beside them.
 class Playback {
 public:
     explicit Playback(std::shared_ptr<const CueList> list);
     explicit Playback(CueList list) : Playback(std::make_shared<const CueList>(std::move(list))) {}
 
-    // The list that the inputs so far step through.
+    // The cue list after the newest revision.
     const CueList& cues() const { return *entries_.back().list; }
 
-    // Takes one input, or says why not. Inputs take effect in the order in which they are given:
-    // one whose time is before that of its forerunner takes effect at its forerunner's time. It
-    // changes what is seen from then on and nothing before.
-    // `revision`: of an Input::Kind::Revise the list to go on with; null: there is none.
+    // Takes one input, or says why not. Inputs take effect in the order of the calls: an input
+    // whose time is earlier than that of the previous one takes effect at the previous one's time.
+    // It changes what is seen from then on and nothing before.
+    // `revision`: only for Input::Kind::Revise, the list to continue with; null: there is none.
     Outcome apply(const Input& input, std::shared_ptr<const CueList> revision = nullptr);
 
-    // Works out which cues follow by themselves until `time`. Every input does so for one pass of
-    // the list, so only a list that loops needs more; the others do nothing here.
+    // Works out the follows until `time`. Every input works them out for one pass of the list, so
+    // only a list that loops needs this call; for other lists it does nothing.
     void foresee(Time time);
 
-    // How much of its fade the cue of that time has still before it; 0 once its look is whole, and
-    // before the first cue.
+    // The rest of the current cue's fade at `time`; 0 once the fade is over, and before the first
+    // cue.
     Time fadeLeftAt(Time time) const;
     bool fadesAt(Time time) const { return fadeLeftAt(time) > Time{}; }
-    // How long after that time the next cue comes by itself; nothing if it waits for an input.
+    // The time from `time` until the next cue follows by itself; nothing if the current cue waits
+    // for an input.
     std::optional<Time> untilFollowAt(Time time) const;
 
-    // What is seen at `time`, which may be any; a list that loops must have been foreseen until
-    // then. Binary searches and one course for each thing; it allocates only when it sees `out` the
-    // first time.
+    // What is seen at `time`. Any time will do, but a list that loops must have been foreseen until
+    // then. The cost is a few binary searches and the evaluation of each course. The call allocates
+    // only when it fills `out` for the first time.
     void stateAt(Time time, ShowState& out) const;
 
 private:
@@ -78,35 +76,36 @@ private:
         Course opacity;
         Time begun{};
     };
-    // Two looks may show one composition: then its light comes and goes at once.
+    // Both looks of a fade may have the same composition. Then it fades in and out at the same
+    // time.
     struct PictureCourse {
         std::vector<LayerState> layers;
         Course coming, leaving;  // of its share
     };
     struct OutputCourse {
-        std::vector<LayerCourse> layers;  // that add as light one by one
+        std::vector<LayerCourse> layers;  // each adds its light by itself
         std::vector<PictureCourse> pictures;
         WindCourse wind{WindWish()};
     };
-    // A cue that was entered, or that will be by itself if no input comes before; and the courses
-    // that it has begun.
+    // A cue that was entered, or that will follow by itself if no input comes first; and the
+    // courses that it begins.
     struct Entry {
         Time at = Time::min();
         std::shared_ptr<const CueList> list;
         int cue = -1;                // of `list`
-        Time entered = Time::min();  // of the cue; before `at` if a revision has come since
-        Time whole = Time::min();    // when all of its look is seen
-        std::optional<Time> left;    // when the next cue comes by itself
-        bool isGone = false;         // what is seen is of a cue that `list` has not; `cue` is the nearest before
+        Time entered = Time::min();  // when the cue was entered; earlier than `at` if a revision has come since
+        Time whole = Time::min();    // when the fade is over
+        std::optional<Time> left;    // when the next cue follows by itself
+        bool isGone = false;         // `list` has lost the cue that is seen; `cue` is the nearest one before it
         std::vector<OutputCourse> outputs{};
         std::vector<Course> levels{};
         std::vector<std::uint8_t> relays{};
     };
-    // The operator took the light away or gave it back.
+    // A blackout began or ended.
     struct Shutter {
         Time at{};
         bool dark = false;
-        float from = 1;  // the light's factor then
+        float from = 1;  // the light's factor at that time
         Time fade{};     // from full light to none
     };
 
@@ -123,15 +122,15 @@ private:
     void lookAt(Time time, Look& out) const;
     float lightAt(Time time) const;
 
-    Gusts gusts_;                 // of the first list's seed: they go on
-    std::set<SourceId> sources_;  // that looks show: as many layers add as light on one output at most
+    Gusts gusts_;                 // of the first list's seed; a revision does not change them
+    std::set<SourceId> sources_;  // of all looks: at most so many layers add their light on one output
     struct {
         std::size_t layers = 0, pictures = 0;
-    } composed_;                     // of all looks and outputs, more than one output can show in a chain of fades
-    std::vector<Entry> entries_;     // by time, those in the future last; the first one is the dark before any cue
+    } composed_;                     // of all looks and outputs: an upper bound for one output in a chain of fades
+    std::vector<Entry> entries_;     // by time, future ones last; the first one is the dark before any cue
     std::vector<Shutter> shutters_;  // by time
     std::vector<Time> taken_;        // when each input took effect
-    Time newest_ = Time::min();      // of all inputs, ignored ones included
+    Time newest_ = Time::min();      // the latest time of all inputs, including ignored ones
 };
 
 }  // namespace fantascope::show

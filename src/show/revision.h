@@ -10,9 +10,9 @@
 
 namespace fantascope::show {
 
-// A show and a site as they were read together at one time. It never changes: whoever plays holds
-// the one that is in effect, and a newer one is delivered as an input (InputLog::add). Two may be
-// in use at once. Thread: any.
+// A show and a site that were read together. A revision never changes. A player holds the current
+// one, and an input delivers a newer one (InputLog::add). Two revisions may be in use at once.
+// Thread: any.
 struct Revision {
     Show show;
     Site site;
@@ -20,7 +20,7 @@ struct Revision {
 
     // Error: as Show::bind.
     static Result<std::shared_ptr<const Revision>> of(Show show, Site site);
-    // The cue list, which keeps all of the revision alive.
+    // The cue list of a revision. The pointer keeps the whole revision alive.
     static std::shared_ptr<const CueList> cuesOf(const std::shared_ptr<const Revision>& revision) {
         return {revision, &revision->cues};
     }

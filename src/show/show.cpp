@@ -36,8 +36,7 @@ std::vector<std::string> namesOf(const Range& things) {
     return names;
 }
 
-// The index of `name` among `known`, or why not: "no output is called 'lefd' (did you mean
-// 'left'?)".
+// The index of `name` among `known`. Error: "no output is called 'lefd' (did you mean 'left'?)".
 Result<std::size_t> find(std::string_view name, const std::vector<std::string>& known, std::string_view what) {
     const auto found = std::find(known.begin(), known.end(), name);
     if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
@@ -48,8 +47,8 @@ Result<std::size_t> find(std::string_view name, const std::vector<std::string>& 
     return Error(fmt::format("no {} is called '{}' ({})", what, name, advice));
 }
 
-// The sources that a look may name, those that are wrong as well: they are no fault of who names
-// them.
+// The sources that a look may name. A faulty source is among them: it is reported once, and not
+// again at each look that names it.
 struct KnownSources {
     std::vector<std::string> names;
     std::vector<SourceId> ids;  // of `names`
@@ -75,7 +74,7 @@ Result<OutputState> readLayers(const ConfigNode& node, const KnownSources& sourc
                 fmt::format("'{}' is on this output already; one layer of a source is enough", sources.names[source]));
         output.layers.push_back(layer);
     }
-    // Light that is only added needs no order, so that a fade can take each source for itself.
+    // Layers that only add their light need no order, so a fade can treat each source by itself.
     const auto adds = [](const LayerState& layer) { return layer.blend == Blend::Add; };
     if (!std::all_of(output.layers.begin(), output.layers.end(), adds))
         output.pictures.push_back({0, static_cast<std::uint32_t>(output.layers.size()), 1.0f});
@@ -170,11 +169,11 @@ Result<std::vector<Cue>> readCues(const ConfigNode& node, const std::vector<std:
             cues.push_back(std::move(cue));
         });
     TRY(faults.result());
-    if (cues.back().follow) return items.back().error("no cue comes after this one; take its 'follow' away");
+    if (cues.back().follow) return items.back().error("no cue comes after this one; remove its 'follow'");
     return cues;
 }
 
-// Where in the site the thing is that a show calls by name.
+// The index in the site of a thing that the show calls by name.
 template <class Wish>
 Result<std::size_t> indexOf(const Named<Wish>& wanted, const std::vector<std::string>& known, std::string_view what,
                             const Site& site) {
@@ -183,7 +182,7 @@ Result<std::size_t> indexOf(const Named<Wish>& wanted, const std::vector<std::st
     return *index;
 }
 
-// The outputs that a look means by a name: one, or all that throw parts of one canvas.
+// The outputs that a name in a look means: one output, or all outputs of one canvas.
 Result<std::vector<std::size_t>> outputsOf(const Named<NamedLook::OutputWish>& wanted, const Site& site) {
     std::vector<std::string> names = namesOf(site.outputs);
     if (const auto one = std::find(names.begin(), names.end(), wanted.name); one != names.end())
@@ -196,7 +195,7 @@ Result<std::vector<std::size_t>> outputsOf(const Named<NamedLook::OutputWish>& w
     return indexOf(wanted, names, names.size() > outputs ? "output or canvas" : "output", site).error();
 }
 
-// What is seen of a look that names nothing.
+// The look that names nothing.
 Look darkLook(const Site& site) {
     Look look;
     look.outputs.resize(site.outputs.size());
@@ -205,10 +204,10 @@ Look darkLook(const Site& site) {
     return look;
 }
 
-// What the site does not have goes to `faults`.
+// Names that the site does not have go to `faults`.
 Look bindLook(const NamedLook& named, const Site& site, ConfigFaults& faults) {
     Look look = darkLook(site);
-    // An output's own layers go before those of its canvas.
+    // An output's own layers, set last, replace those of its canvas.
     for (const bool own : {false, true})
         for (const auto& output : named.outputs)
             if (const auto outputs = outputsOf(output, site)) {
@@ -235,7 +234,7 @@ Look bindLook(const NamedLook& named, const Site& site, ConfigFaults& faults) {
     return look;
 }
 
-// Its outputs are those of `site`.
+// The winds of a look, one for each output of `site`.
 std::vector<WindWish> bindWinds(const NamedLook& named, const Site& site) {
     std::vector<WindWish> winds(site.outputs.size(), named.wind);
     for (const bool own : {false, true})
@@ -267,7 +266,7 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder, SourceNames& 
     fields.optional().time("blackout_fade", show.blackoutFade, 0, kLongestBlackoutFade);
     fields.optional().integer("seed", show.seed, 0, std::numeric_limits<std::int64_t>::max());
     KnownSources known;
-    std::vector<std::string> lookNames;  // also of those that are wrong: they are no fault of who names them
+    std::vector<std::string> lookNames;  // also of faulty looks: a cue that names one is no further fault
     fields.read("sources", show.sources, [&](const ConfigNode& node) -> Result<std::vector<Source>> {
         std::vector<Source> sources;
         ConfigFaults faults;

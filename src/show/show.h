@@ -19,22 +19,23 @@
 
 namespace fantascope::show {
 
-// Something that the show wants of a thing of the site, which it calls by name.
+// What the show asks of a thing of the site, which it calls by name.
 template <class Wish>
 struct Named {
     std::string name;
-    FilePlace at;  // for whoever has to refuse the name
+    FilePlace at;  // for an error about the name
     Wish wish;
 };
 
-// A look as its author wrote it. What it does not name is black, at level 0, or in its safe state.
+// A look as its author wrote it. Outputs that it does not name are black, fixtures are at level 0,
+// and relays are in their safe states.
 struct NamedLook {
     using ChannelLevels = std::vector<Named<float>>;
-    using Levels = std::variant<float, ChannelLevels>;  // one for all channels of a fixture, or each by its name
+    using Levels = std::variant<float, ChannelLevels>;  // one level for all channels of a fixture, or levels by channel
     std::string name;
     struct OutputWish {
         OutputState layers;
-        std::optional<WindWish> wind;  // without it, that of the look
+        std::optional<WindWish> wind;  // none: that of the look
     };
     std::vector<Named<OutputWish>> outputs;
     WindWish wind;
@@ -56,23 +57,22 @@ struct Show {
     std::string title;
     Time goInterval{};
     Time blackoutFade{};
-    std::uint64_t seed = 1;  // of what is random in the show itself
+    std::uint64_t seed = 1;  // of the show's own randomness
     std::vector<Source> sources;
     std::vector<NamedLook> looks;
     std::vector<Cue> cues;
 
     // Reads a show.yaml, or the one in a folder. Strict; the files that it names must exist.
-    // Sources get their ids from `names`: the same as those of whatever was read with them before.
+    // Sources get their ids from `names`, so a source keeps its id when the show is read again.
     // Error: file, line, column, key, advice.
     static Result<Show> load(const std::filesystem::path& fileOrFolder, SourceNames& names);
-    // The same of a show that is the only one: its sources have the ids 0, 1, 2, ... in their
-    // order.
+    // Reads the only show of a program: its sources have the ids 0, 1, 2, ... in their order.
     static Result<Show> load(const std::filesystem::path& fileOrFolder);
 
     // Looks every name up in `site`. Error: place in the show file, and what the site has instead.
     Result<CueList> bind(const Site& site) const;
 
-    // The index of a cue. Error: no cue has this name; says which one was perhaps meant.
+    // The index of a cue. Error: no cue has this name; suggests the nearest name.
     Result<std::size_t> cueNamed(std::string_view name) const;
 };
 

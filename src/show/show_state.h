@@ -1,6 +1,6 @@
 #pragma once
-// The one value that the show gives out: what is to be seen at one moment. Renderer and lighting
-// read it; nothing flows back.
+// The show's only result: what is seen at one moment. Renderer and lighting read it and send
+// nothing back.
 
 #include "show/source_id.h"
 
@@ -12,12 +12,12 @@
 
 namespace fantascope::show {
 
-// How a layer lies on those below it, all in linear light.
+// How a layer combines with the layers below it, all in linear light.
 enum class Blend {
-    Add,       // as another projector's light would
+    Add,       // adds its light, as another projector would
     Over,      // covers them where it is drawn
-    Multiply,  // lets through as much of their light as its own says, as a slide does
-    Screen     // as Add, but light on light comes to no more than white
+    Multiply,  // filters their light by its own, as a slide does
+    Screen     // adds its light, but the sum does not exceed white
 };
 
 // One picture source on one output.
@@ -25,19 +25,19 @@ struct LayerState {
     SourceId source;
     float opacity = 0;  // 0..1, in linear light
     Blend blend = Blend::Add;
-    Time begun{};  // show time at which the source came onto the output: where a video begins
+    Time begun{};  // show time at which the source came onto the output; a video begins there
     friend bool operator==(const LayerState&, const LayerState&) = default;
 };
 
-// Layers [first, last) that are composed from black, the first at the bottom.
+// Layers [first, last), composed from black; the first is at the bottom.
 struct ComposedPicture {
     std::uint32_t first = 0, last = 0;
     float share = 1;  // of its light
     friend bool operator==(const ComposedPicture&, const ComposedPicture&) = default;
 };
 
-// One output's picture: the light of its layers and pictures, added up; nothing is black. Layers
-// before those of the first picture add as light one by one, each source once.
+// One output's picture: the sum of the light of its layers and pictures; without any it is black.
+// Layers before those of the first picture add their light one by one, each source once.
 struct OutputState {
     std::vector<LayerState> layers;
     std::vector<ComposedPicture> pictures{};  // in the order of their layers
@@ -52,13 +52,13 @@ struct Look {
     friend bool operator==(const Look&, const Look&) = default;
 };
 
-// The look of one moment of show time. Value type; reused from frame to frame, so that its vectors
-// keep their capacity.
+// The look at one moment of show time. Value type. Reuse it from frame to frame: its vectors keep
+// their capacity.
 struct ShowState : Look {
     std::vector<Wind> winds;   // one for each of Site::outputs
     Time time{};               // show time
-    int cue = -1;              // index into Show::cues of the cue that was entered last; -1 before the first
-    bool blackout = false;     // the operator holds the pictures and the lamps dark
+    int cue = -1;              // index into Show::cues of the current cue; -1 before the first
+    bool blackout = false;     // pictures and fixtures are held dark
     std::uint64_t inputs = 0;  // how many inputs have taken effect so far
     friend bool operator==(const ShowState&, const ShowState&) = default;
 };

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Seen from the Earth (Ji et al. 2015, section 5.1, say 0.5).
+// The sun's apparent diameter (Ji et al. 2015, section 5.1, have 0.5 degrees).
 constexpr double kSun = radians(0.53);
 
 // Limits. Metres, seconds.
@@ -46,7 +46,7 @@ Result<fs::path> readPatternFile(const ConfigNode& node) {
     return readFile(node, fmt::format("make it with 'fantascope pattern GUIDE -o {}'", TRY(node.path()).string()));
 }
 
-// What stands behind a kind's key.
+// Reads the value of a kind's key.
 template <class Kind>
 Result<Kind> readAs(const ConfigNode& node) = delete;
 
@@ -150,12 +150,12 @@ Result<MirrorBallSource> readAs(const ConfigNode& node) {
     fields.optional().number("turn", mirrors.turn, -kLongestTurn, kLongestTurn, "s");
     TRY(fields.finish());
     if (mirrors.ball.z <= mirrors.radius || mirrors.lamp.z <= 0)
-        return node.error("the ball and the lamp stand before the wall: the third number of 'ball' and 'lamp' says how far");
+        return node.error("the ball and the lamp are in front of the wall: the third number of 'ball' and 'lamp' says how far");
     if (glm::distance(mirrors.ball, mirrors.lamp) <= mirrors.radius) return node.error("the lamp is inside the ball");
     if (mirrors.facet < kSmallestFacet * mirrors.radius || mirrors.facet > mirrors.radius)
         return node.error(fmt::format("a ball of {} m radius has mirrors of {} m to {} m", mirrors.radius,
                                       kSmallestFacet * mirrors.radius, mirrors.radius));
-    if (std::abs(mirrors.turn) < 1) return node.error("a turn takes a second at least");
+    if (std::abs(mirrors.turn) < 1) return node.error("a turn takes at least a second");
     return mirrors;
 }
 
@@ -183,7 +183,7 @@ Result<CameraSource> readAs(const ConfigNode& node) {
     return CameraSource{};
 }
 
-// What a lamp does to the screen; what else there is stays with `fields`.
+// Declares the keys that every lamp has; the caller finishes `fields`.
 void declareLamp(ConfigFields& fields, ShadowSource::Lamp& lamp) {
     fields.optional().number("size", lamp.size, 0, kWidestLamp, "m");
     fields.optional().vector3("light", lamp.light, 0, 1);
@@ -206,7 +206,7 @@ Result<ShadowSource::Lamp> readLamp(const ConfigNode& node) {
 
 Result<glm::dvec2> readSide(const ConfigNode& node) {
     const glm::dvec2 side = TRY(node.vector2(-kLargest, kLargest, "m"));
-    if (side.y - side.x < kSmallest) return node.error("from where to where: the smaller number comes first");
+    if (side.y - side.x < kSmallest) return node.error("[from, to]: the smaller number comes first");
     return side;
 }
 
@@ -247,7 +247,7 @@ Result<ShadowSource> readAs(const ConfigNode& node) {
     return shadow;
 }
 
-// Declares the keys of all kinds. `given` counts those that are there.
+// Declares the keys of all kinds. `given` counts the keys that the file has.
 template <class... Kinds>
 void declareKinds(ConfigFields& fields, std::variant<Kinds...>& picture, int& given) {
     const auto declare = [&]<class Kind>(std::type_identity<Kind>) {

@@ -14,12 +14,12 @@
 
 namespace fantascope::show {
 
-// Where a layer's picture comes from. Files exist; what is in them was not looked at.
+// Where a layer's picture comes from. Its files exist, but they have not been opened.
 struct Source {
     std::string name;
     SourceId id;
     SourceKind picture;
-    FilePlace at;  // for whoever has to refuse what is in its files
+    FilePlace at;  // for errors about its files' contents
     Fit fit = Fit::Contain;
 };
 
@@ -27,8 +27,7 @@ struct Source {
 // advice.
 Result<Source> readSource(const std::string& name, SourceId id, const ConfigNode& node);
 
-// All files that a source names and that can be checked by themselves: patterns, images, videos,
-// casts.
+// The files that a source names and that can be checked alone: patterns, images, videos, casts.
 std::vector<std::filesystem::path> filesOf(const Source& source);
 
 }  // namespace fantascope::show

@@ -1,8 +1,7 @@
 #pragma once
-// The kinds of picture that a source can be, as a show's author asks for them: plain values, and
-// SourceKind is their only list. Whoever has to know every kind follows it by type, so that a new
-// kind does not compile before it is handled everywhere. docs/show-format.md has the keys; kKey is
-// what a kind is called there.
+// The kinds of source, as a show's author asks for them: plain values. SourceKind is their only
+// list. Code that handles every kind visits it by type, so a new kind does not compile until it is
+// handled everywhere. docs/show-format.md describes the keys; kKey is the key of a kind.
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -33,20 +32,20 @@ struct FoliageSource {
     static constexpr std::string_view kKey = "foliage";
     struct Layer {
         std::filesystem::path pattern;
-        bool holes = false;                           // the pattern's shapes are holes in a dark canopy, and no leaves
-        double distance = 0;                          // metres from the leaves to what their shadow falls on
-        std::optional<std::filesystem::path> filter;  // a picture of what one small hole throws; without it a disc
+        bool holes = false;                           // the pattern's shapes are holes in a dark canopy, not leaves
+        double distance = 0;                          // metres from the leaves to the surface of their shadow
+        std::optional<std::filesystem::path> filter;  // a picture of what one small hole projects; none: a disc
     };
     glm::dvec3 light{1.0}, shadow{0.0};  // linear light; `light` may exceed 1
-    double height = 1;                   // of the canvas where it falls, metres
-    double sun = 0;                      // the angle that the sun appears under, radians
+    double height = 1;                   // of the canvas on the wall or ground, metres
+    double sun = 0;                      // apparent diameter of the sun, radians
     std::vector<Layer> layers;
 };
 
-// Sunlight on the floor of wavy water, as the waves gather and scatter it.
+// Sunlight on the floor under wavy water: the waves focus and scatter it.
 struct CausticsSource {
     static constexpr std::string_view kKey = "caustics";
-    glm::vec3 light{0.1f, 0.15f, 0.17f};  // of still water: linear light; the bright lines have several times as much
+    glm::vec3 light{0.1f, 0.15f, 0.17f};  // under still water, linear light; the bright lines have several times as much
     glm::dvec2 size{16.0 / 3, 3};         // of the canvas on the floor, metres
     double depth = 1.2;                   // of the water, metres
     double waveLength = 0.55;             // metres, on average
@@ -58,23 +57,23 @@ struct CausticsSource {
 // canvas's middle: right, up, out of the wall.
 struct MirrorBallSource {
     static constexpr std::string_view kKey = "mirror_ball";
-    glm::vec3 light{3};              // of a spot as far from the lamp as the wall behind the ball, and as straight: linear light
+    glm::vec3 light{3};              // of a spot seen straight on, as far from the lamp as the wall behind the ball; linear light
     glm::dvec2 size{16.0 / 3, 3};    // of the canvas on the wall, metres
-    glm::dvec3 ball{0, 0.5, 2.2};    // its centre; before the wall
+    glm::dvec3 ball{0, 0.5, 2.2};    // its centre; in front of the wall
     double radius = 0.25;            // metres
     double facet = 0.017;            // a mirror's edge, metres
-    glm::dvec3 lamp{2.6, 1.8, 1.0};  // outside the ball, before the wall
+    glm::dvec3 lamp{2.6, 1.8, 1.0};  // outside the ball, in front of the wall
     double lampRadius = 0.03;        // metres
-    double turn = 60;                // seconds for one turn; below 0 the other way round
+    double turn = 60;                // seconds for one turn; negative: the other way round
 };
 
-// A picture that stands still.
+// A still picture.
 struct ImageSource {
     static constexpr std::string_view kKey = "image";
     std::filesystem::path file;
 };
 
-// The numbers are those of render::VideoSource.
+// A video. The numbers have the meaning of render::VideoSource's.
 struct VideoSource {
     static constexpr std::string_view kKey = "video";
     std::filesystem::path file;
@@ -87,7 +86,7 @@ struct CameraSource {
     static constexpr std::string_view kKey = "camera";
 };
 
-// Shadow theatre. The numbers are those of render::ShadowSource.
+// Shadow theatre. The numbers have the meaning of render::ShadowSource's.
 struct ShadowSource {
     static constexpr std::string_view kKey = "shadow";
     struct Lamp {
@@ -101,12 +100,12 @@ struct ShadowSource {
         glm::dvec2 x{0}, y{0};  // from, to; metres on the screen
     };
     std::filesystem::path cast;  // a *.cast.yaml
-    int beam = 1;                // of the cast's stage, whose screen is seen
+    int beam = 1;                // the beam of the cast's stage whose screen is seen
     std::vector<Lamp> lamps;     // the beam's own first
     int samples = 16;
-    std::optional<Play> play;  // none: a loop if the silhouette moves in one, else once
+    std::optional<Play> play;  // none: Loop if the silhouette moves in a loop, else Once
     double speed = 1;
-    std::optional<Picture> picture;  // what the canvas is of the screen; none: the target's picture
+    std::optional<Picture> picture;  // the part of the screen that the canvas shows; none: the target's picture
 };
 
 using SourceKind = std::variant<PatternSource, SolidSource, FoliageSource, CausticsSource, MirrorBallSource, ImageSource,

@@ -9,13 +9,13 @@
 namespace fantascope::show {
 namespace {
 
-constexpr double kLag = 0.5;                   // seconds, each of the two
+constexpr double kLag = 0.5;                   // seconds, of each of the two lags
 constexpr std::uint64_t kGustStream = 0x6701;  // of the show's seed
-constexpr double kSlowestGust = 0.05;          // Hz; each wave is some octave above the one before
-constexpr double kScatter = 0.15;              // of the frequencies, so that they have no common period
+constexpr double kSlowestGust = 0.05;          // Hz; each wave is about an octave above the previous one
+constexpr double kScatter = 0.15;              // of the frequencies, as a share, so that they have no common period
 
-// A value that follows what is asked for, `from` + `rate` * time, through both lags: first' =
-// (asked - first) / lag, second' = (first - second) / lag. Exact.
+// A value that follows the wanted value, `asked` + `rate` * time, through both lags: first' =
+// (asked - first) / lag, second' = (first - second) / lag. The solution is exact.
 struct Followed {
     double asked, first, second;
 
@@ -44,7 +44,7 @@ Gusts::Gusts(std::uint64_t seed) {
 double Gusts::lullAt(Time time) const {
     double lull = 0.5;
     for (const Wave& wave : waves_) lull += 0.5 * wave.amplitude * std::sin(wave.angularFrequency * seconds(time) + wave.phase);
-    return std::clamp(lull, 0.0, 1.0);  // of rounding alone: the amplitudes' sum is 1
+    return std::clamp(lull, 0.0, 1.0);  // against rounding errors only: the sum of the amplitudes is 1
 }
 
 WindCourse::WindCourse(const WindWish& wish) : target_(valuesOf(wish)) { from_ = {target_, target_, target_}; }

@@ -117,7 +117,7 @@ TEST_F(ShowWithShadows, is_exported_from_its_first_frame_to_its_last) {
 
 TEST_F(ShowWithShadows, says_what_cannot_be_played) {
     EXPECT_THAT(refusal("{cast: moving.cast.yaml, play: loop}"), HasSubstr("as a loop it would jump; take 'to_and_fro'"));
-    EXPECT_THAT(refusal("{cast: bar.cast.yaml, actors: [[1, 0, 0], [0, 1, 0]]}"), HasSubstr("2 colours of 'actors', and"));
+    EXPECT_THAT(refusal("{cast: bar.cast.yaml, actors: [[1, 0, 0], [0, 1, 0]]}"), HasSubstr("2 colours of 'actors', but"));
     folder_.file("broken.cast.yaml", "fantascope: cast\nversion: 1\n");
     EXPECT_THAT(refusal("broken.cast.yaml"), HasSubstr("broken.cast.yaml"));
     fs::remove(folder_ / "bar.png");

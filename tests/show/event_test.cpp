@@ -45,11 +45,11 @@ TEST(Events, say_one_sentence_each) {
     EXPECT_EQ(said(event::SendersChanged{1, {"", "FOH"}}), "universe 1 is now sent by the show and 'FOH'");
     EXPECT_EQ(said(event::PictureTaken{"pictures/a.png"}), "picture: pictures/a.png");
     EXPECT_EQ(said(event::PictureMissed{"'left' shows nothing"}), "no picture: 'left' shows nothing");
-    EXPECT_EQ(said(event::SettingUpBegan{}), "setting up the outputs: the keys stand on the picture, e ends it");
+    EXPECT_EQ(said(event::SettingUpBegan{}), "setting up the outputs: the picture lists the keys, e ends it");
     EXPECT_EQ(said(event::SettingUpEnded{true}), "the outputs are set up");
     EXPECT_EQ(said(event::SettingUpEnded{false}), "the outputs are set up but not written to the file: e, then w");
     EXPECT_EQ(said(event::SiteSaved{"site.yaml", "site.yaml.previous"}),
-              "site.yaml is written; as it was before: site.yaml.previous");
+              "site.yaml is written; its previous version is site.yaml.previous");
     EXPECT_EQ(said(event::SiteNotSaved{"the disk is full"}), "not written: the disk is full");
 }
 

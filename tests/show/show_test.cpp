@@ -204,7 +204,7 @@ TEST(ShowFile, water_and_mirrors_need_no_numbers) {
     EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {ball: [0, 0, 0.1]}}"), HasSubstr("before the wall"));
     EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {lamp: [0, 0.5, 2.2]}}"), HasSubstr("inside the ball"));
     EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {facet: 0.001}}"), HasSubstr("has mirrors of 0.005 m to 0.25 m"));
-    EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {turn: 0}}"), HasSubstr("a turn takes a second at least"));
+    EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {turn: 0}}"), HasSubstr("a turn takes at least a second"));
 }
 
 TEST(ShowFile, shadow_theatre_is_a_cast_with_its_lamps) {
@@ -286,7 +286,7 @@ TEST(ShowFile, cues_have_their_own_names_and_the_last_does_not_follow) {
     EXPECT_EQ(refusalAfter("name: Night", "name: Dusk"),
               "show.yaml:16:5: cues[1]: another cue is called 'Dusk'; each needs its own name");
     EXPECT_EQ(refusalAfter("fade: 0}", "fade: 0, follow: 3}"),
-              "show.yaml:17:5: cues[2]: no cue comes after this one; take its 'follow' away");
+              "show.yaml:17:5: cues[2]: no cue comes after this one; remove its 'follow'");
     EXPECT_EQ(refusal(std::string(kShow.substr(0, kShow.find("cues:"))) + "cues: []\n"),
               "show.yaml:14:7: cues: a list of at least 1 items is needed, here are 0");
 }

@@ -10,7 +10,7 @@ namespace {
 using Name = Key::Name;
 namespace edit = show::edit;
 
-// With Shift ten steps at once, with Control a tenth of one.
+// Shift moves ten steps at once, Control a tenth of a step.
 glm::dvec2 move(const Key& key, glm::dvec2 direction) { return direction * (key.shift ? 10 : key.control ? 0.1 : 1); }
 
 std::optional<show::EditCommand> letterCommand(const Key& key, edit::Tool tool, glm::ivec2 mesh) {
@@ -106,8 +106,8 @@ std::optional<Key> TerminalKeyParser::take(char character) {
         key.shift = key.letter != character;
         return key;
     }
-    // ESC [ ... LETTER, or ESC O LETTER (ECMA-48, xterm): digits in between carry the modifiers, 2
-    // for Shift and 5 for Control.
+    // A sequence is ESC [ ... LETTER, or ESC O LETTER (ECMA-48, xterm). Digits in between carry the
+    // modifiers: 2 for Shift, 5 for Control.
     sequence_ += character;
     pausedSince_.reset();
     if (sequence_.size() == 2 && (character == '[' || character == 'O')) return std::nullopt;

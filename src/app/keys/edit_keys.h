@@ -12,21 +12,22 @@
 
 namespace fantascope::app {
 
-// What a key asks of the editor; nothing if it has no meaning there. The keys that make points more
-// or fewer mean those of the masks where these are the tool, elsewhere those of the chosen output's
-// mesh, which are `mesh` now.
+// The editor's command for a key; nothing if the key has no meaning there. The keys that add and
+// remove points change the chosen mask if `tool` is Masks. With any other tool they change the
+// chosen output's mesh, which has `mesh` points now.
 std::optional<show::EditCommand> editCommandFor(const Key& key, show::edit::Tool tool, glm::ivec2 mesh);
 
-// The keys in words, for people who stand before the picture.
+// The legend of the keys, which is shown on the picture.
 std::vector<std::string> editKeyLegend();
 
-// Puts together what a terminal sends for one key. Thread: thread-bound.
+// Joins the characters that a terminal sends for one key. Thread: thread-bound.
 class TerminalKeyParser {
 public:
-    // The next of the terminal's characters. Gives the key that ends with it.
+    // Takes the terminal's next character. Returns the key that it completes.
     std::optional<Key> take(char character);
-    // The terminal has no more for now. An escape that nothing has followed for a while was the key
-    // of that name; over a slow line the rest of a sequence comes later than its beginning.
+    // Call this while the terminal sends nothing. An escape character that nothing follows for a
+    // while was the Escape key. The wait is needed because a slow line may delay the rest of a
+    // sequence.
     std::optional<Key> pause(Time moment);
 
 private:

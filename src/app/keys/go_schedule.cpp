@@ -4,7 +4,7 @@ namespace fantascope::app {
 
 Time GoSchedule::next() const {
     if (ended()) return Time::max();
-    constexpr double kDarkness = 1.0 / 6;  // of a cue's share
+    constexpr double kDarkness = 1.0 / 6;  // of a cue's share of the length
     const double share = seconds(length_) / (static_cast<double>(presses_) + (cueIsOn_ ? 1 : 0));
     return fromSeconds(share * (static_cast<double>(pressed_) + (cueIsOn_ ? 1 : kDarkness)));
 }

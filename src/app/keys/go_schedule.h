@@ -6,17 +6,17 @@
 
 namespace fantascope::app {
 
-// When a rehearsal without hands presses GO, so that it reaches every cue in an equal share of its
-// length: one press for each cue that is to be entered. The first comes after a moment of darkness,
-// or, where a cue is on from the start, after that cue's share.
+// The schedule by which a rehearsal without an operator presses GO: once for each cue that is to be
+// entered, so that every cue gets an equal share of the length. The first press comes after a short
+// darkness, or, if a cue is on from the start, after that cue's share.
 class GoSchedule {
 public:
     GoSchedule(std::size_t presses, bool cueIsOn, Time length) : presses_(presses), cueIsOn_(cueIsOn), length_(length) {}
-    // Whether the next press is due; each is so once.
+    // Whether the next press is due. Returns true once for each press.
     bool due(Time runTime);
-    // The run time of the next press; Time::max() if none is to come.
+    // The run time of the next press; Time::max() if there is none.
     Time next() const;
-    void end() { pressed_ = presses_; }  // the operator has taken over
+    void end() { pressed_ = presses_; }  // for when the operator takes over
     bool ended() const { return pressed_ == presses_; }
 
 private:

@@ -28,7 +28,7 @@ void OperatorKeys::tick(Time moment) {
     nextGo_ = schedule_.next();
 }
 
-// Keys act as a hand controller; whoever presses one has taken over from the schedule.
+// A key acts like a button of the hand controller. A key that gives an input ends the schedule.
 void OperatorKeys::press(const Key& key, Source source, Time moment) {
     if (actions_.setUp(key)) return;
     const auto action = actionOf(key.letter);
@@ -48,7 +48,7 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
             events_.append({showTime, show::event::QuitAsked{std::string(keyFor(*action)), QuitKey::kPatience}});
             return;
         case RunKey::Action::SetUp:
-            return;  // taken by setUp
+            return;  // setUp has taken this key
     }
 }
 

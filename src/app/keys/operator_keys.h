@@ -20,29 +20,29 @@
 
 namespace fantascope::app {
 
-// The keys that work a running show, at the terminal and at the displays' windows; and the schedule
-// that presses GO until a person takes over.
-// Thread: all on the input thread, but for what says otherwise.
+// The keys that control a running show, at the terminal and at the displays' windows; and the
+// schedule that presses GO until a person takes over.
+// Thread: the input thread, except where a function says otherwise.
 class OperatorKeys {
 public:
-    // What a key does beside inputs. Called on the input thread.
+    // What keys and schedule do besides inputs. Called on the input thread.
     struct Actions {
-        std::function<bool(const Key&)> setUp;  // true: the key was taken to set the outputs up
-        std::function<bool()> pressGo;          // the schedule's, at the hand controller; false: there is none
+        std::function<bool(const Key&)> setUp;  // true: setting up has taken the key
+        std::function<bool()> pressGo;          // presses the simulated controller's GO; false: there is none
         std::function<void()> takePictures;
         std::function<void()> end;
     };
-    // The logs outlive it. `terminal`: null where nobody can press a key.
+    // The logs outlive this. `terminal`: null if nobody can press a key there.
     OperatorKeys(show::InputLog& inputs, show::EventLog& events, const show::ShowClock& showClock,
                  std::unique_ptr<TerminalKeys> terminal, GoSchedule schedule, QuitKey quitKey, Actions actions);
 
     void tick(Time moment);  // as often as Hand::tick()
-    // A key was pressed at a window at that moment. Thread: any.
+    // Takes a key that was pressed at a window at `moment`. Thread: any.
     void pressedAtScreen(const Key& key, Time moment) { screenKeys_.append({key, moment}); }
 
-    // The run time of the schedule's next press; Time::max(): none is to come. Thread: any.
+    // The run time of the schedule's next press; Time::max() if there is none. Thread: any.
     Time nextGo() const { return nextGo_; }
-    // The terminal is as it was before. After the last tick.
+    // Restores the terminal's settings. Call it after the last tick.
     void close() { terminal_.reset(); }
 
 private:

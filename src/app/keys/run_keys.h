@@ -9,7 +9,7 @@
 
 namespace fantascope::app {
 
-// What a key of the terminal, or of a display's window, does while a show runs.
+// A key, at the terminal or at a display's window, and its action while a show runs.
 struct RunKey {
     enum class Action { Go, Back, Blackout, Pictures, SetUp, Quit };
     char letter;
@@ -18,7 +18,7 @@ struct RunKey {
     Action action;
 };
 
-// All of them. README.md has the same table.
+// All keys. README.md has the same table.
 constexpr std::array<RunKey, 6> kRunKeys = {{{' ', "space", "GO: the next cue", RunKey::Action::Go},
                                              {'b', "b", "back: the cue before", RunKey::Action::Back},
                                              {'0', "0", "blackout; again: light", RunKey::Action::Blackout},
@@ -29,17 +29,18 @@ constexpr std::array<RunKey, 6> kRunKeys = {{{' ', "space", "GO: the next cue", 
 std::optional<RunKey::Action> actionOf(char letter);
 std::string_view keyFor(RunKey::Action action);
 
-// For --help: a line for each key.
+// The text for --help: a line for each key.
 std::string runKeysHelp();
 
-// The key that ends a run. A rehearsal ends at once, as it is easily begun again; a night with an
-// audience only when the key is pressed twice, so that a slip of the finger does not end it.
+// The key that ends a run. A rehearsal ends at once, because it is easy to begin again. A night
+// with an audience ends only when the key is pressed twice, so that a slip of the finger does not
+// end it.
 // Thread: one at a time.
 class QuitKey {
 public:
     static constexpr Time kPatience = std::chrono::seconds(3);
     explicit QuitKey(bool asks) : asks_(asks) {}
-    // Whether the run ends now, at `moment` on the machine's clock.
+    // Takes a press at `moment` on the machine's clock. Returns whether it ends the run.
     bool press(Time moment);
 
 private:

@@ -20,37 +20,38 @@
 
 namespace fantascope::app {
 
-// What fails while a show runs: each fault is an event, once, and kept for the report. A device has
-// one fault of a topic at a time. It is told the machine's moments, since a device is missing as
-// long while the show stands still; events and report have show time. Thread: any.
+// The faults of a run. Each fault becomes an event once, and is kept for the report. A device has
+// at most one fault of a topic at a time. Calls give moments on the machine's clock, because a
+// fault lasts just as long while the show is paused. Events and report have show time. Thread: any.
 class FaultLog {
 public:
     enum class Topic { Missing, Trouble, Relays, Desk, SafeStates, EndLevels, Guard, Recording, RecordedFrames, Part };
 
-    // After kBurst faults of a topic within kRestless the next one is told as coming and going, and
-    // nothing more until it was steady for so long.
+    // After kBurst faults of a topic within kRestless, the next one is reported as coming and
+    // going. Nothing more is reported until the topic has been steady for kRestless.
     static constexpr int kBurst = 10;
     static constexpr Time kRestless = std::chrono::seconds(5);
 
-    // `events` outlives it.
+    // `events` outlives the log.
     explicit FaultLog(show::EventLog& events) : events_(events) {}
-    // By which moments are show times. Before the first fault.
+    // Sets the clock that converts moments to show time. Call it before the first fault.
     void begin(const show::ShowClock& showClock) { showClock_ = showClock; }
 
-    // What is wrong at `moment`. The same again changes nothing; something else takes its place.
+    // Reports what is wrong at `moment`. The same text again changes nothing; another text ends the
+    // present fault and begins another.
     void raise(Time moment, const std::string& device, Topic topic, const std::string& what);
-    // Nothing is wrong at `moment`. If something was, `news` is told with how long that lasted;
-    // empty: nothing is told.
+    // Reports that nothing is wrong at `moment`. If there was a fault, the operator is told `news`
+    // and how long the fault lasted. With empty `news` the operator is not told.
     void clear(Time moment, const std::string& device, Topic topic, const std::string& news);
 
-    std::vector<FaultReport> faults() const;  // by their beginning
+    std::vector<FaultReport> faults() const;  // in the order of their beginning
 
 private:
     struct TopicState {
         std::optional<std::size_t> open;  // index into faults_
-        std::vector<std::size_t> recent;  // the newest kBurst at most
+        std::vector<std::size_t> recent;  // at most the newest kBurst
         bool restless = false;
-        Time raised{};  // last
+        Time raised{};  // the last time
     };
     struct Fault {
         Time moment{};
@@ -66,25 +67,25 @@ private:
     std::vector<Fault> faults_;
 };
 
-// Looks at all devices again and again, and reports each that is missing at the start, goes, or
+// Polls the status of all devices. Reports each device that is missing at the start, is lost, or
 // comes back.
 // Thread: thread-bound.
 class DeviceWatch {
 public:
-    // `faults` outlives this. A relay bank that is there counts switching by others as a loss;
-    // Lighting reports that.
+    // `faults` outlives this. A running relay bank counts it as a loss when something else switches
+    // its relays; Lighting reports that.
     DeviceWatch(FaultLog& faults, std::vector<std::string> relayBanks, Time runStart)
         : faults_(faults), relayBanks_(std::move(relayBanks)), runStart_(runStart) {}
 
     static constexpr double kRate = 10;                          // Hz
-    static constexpr Time kPatience = std::chrono::seconds(10);  // with devices that are being looked for at the start
+    static constexpr Time kPatience = std::chrono::seconds(10);  // how long a device may take to start
     void look(Time moment, std::span<const DeviceStatus> devices);
 
 private:
     FaultLog& faults_;
     const std::vector<std::string> relayBanks_;
     const Time runStart_;
-    std::map<std::string, int> losses_;  // of each device, as it was seen last
+    std::map<std::string, int> losses_;  // of each device, at the last poll
 };
 
 }  // namespace fantascope::app

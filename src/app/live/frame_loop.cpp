@@ -30,9 +30,9 @@ FrameLoop::FrameLoop(const show::Site& site, const show::InputLog& inputs, rende
 }
 
 FrameLoop::~FrameLoop() {
-    // What belongs to a context goes while it is current.
+    // Objects of a context are destroyed while it is current.
     for (Output& output : outputs_) {
-        output.making.reset();  // when the attempt has ended
+        output.making.reset();  // waits until the attempt has ended
         if (!becomesCurrent(output)) forget(output);
         output.tap.reset();
         output.renderer.reset();
@@ -45,7 +45,7 @@ render::FrameTap& FrameLoop::tap(std::size_t output) {
     return *tap;
 }
 
-// Whether what it has in OpenGL can be given back.
+// Makes the output's context current. Returns whether its OpenGL objects can be deleted.
 bool FrameLoop::becomesCurrent(Output& output) noexcept {
     try {
         return output.display.context() == output.context && output.display.makeCurrent();
@@ -72,7 +72,7 @@ void FrameLoop::look() {
             if (output.display.context() == output.context) return;
             forget(output);
             output.context = output.display.context();
-            output.retryAt = Time{};  // another context is another chance
+            output.retryAt = Time{};  // a new context is a new chance
         });
     }
 }
@@ -88,7 +88,7 @@ void FrameLoop::alone(Output& output, const Work& work) {
     }
 }
 
-// What an exception has left of the renderer is not known.
+// After an exception the renderer's state is unknown, so the renderer is dropped.
 void FrameLoop::giveUp(Output& output, const char* why) {
     output.running = output.drawn = false;
     output.shown.reset();
@@ -105,7 +105,7 @@ void FrameLoop::tell(std::vector<std::string>& faults, const Output& output, con
 std::vector<DeviceStatus> FrameLoop::withFaults(std::vector<DeviceStatus> statuses) const {
     const std::lock_guard lock(faultsMutex_);
     for (std::size_t i = 0; i < faults_.size(); ++i) {
-        DeviceStatus& display = statuses[i];  // Devices lists them first
+        DeviceStatus& display = statuses[i];  // Devices lists the displays first
         if (display.state != DeviceState::Running) continue;
         if (!unfollowed_[i].empty()) display.trouble = unfollowed_[i];
         const bool hangs = i == inHand_ && clock_.now().count() > hangsFrom_;
@@ -155,7 +155,7 @@ Result<void> FrameLoop::beReady(Output& output) {
     if (output.tap) TRY(output.tap->prepare());
     TRY(makeRenderer(output, output.site.projection, output.blend));
     output.fresh = true;
-    return output.display.finish();  // whoever draws next does not wait for this
+    return output.display.finish();  // so that the next draw does not wait for this work
 }
 
 Result<void> FrameLoop::attempt(Output& output) {
@@ -169,11 +169,11 @@ Result<void> FrameLoop::attempt(Output& output) {
 }
 
 void FrameLoop::makeAside(Output& output) {
-    output.running = false;  // it is lent
+    output.running = false;  // the output is lent
     output.display.release();
     auto making = std::make_unique<Making>();
     making->thread = std::jthread([this, &output, &making = *making] {
-        setThreadRank(Rank::Input);  // what is shown goes first
+        setThreadRank(Rank::Input);  // the pictures that are shown have priority
         making.made = attempt(output);
         output.display.release();
         making.ended = true;
@@ -228,17 +228,17 @@ Result<void> FrameLoop::prepare() {
 void FrameLoop::followSettings(Output& output) {
     if (!output.settings->update() && !output.fresh) return;
     output.fresh = false;
-    if (!output.settings->value()) return;  // as the site file says
+    if (!output.settings->value()) return;  // the site file's settings hold
     const OutputSettings& wanted = *output.settings->value();
     const auto followed = [&]() -> Result<void> {
-        // Only a renderer that was made for a mesh bends exactly.
+        // Only a renderer that was made for a mesh draws a mesh exactly.
         if (wanted.projection.warp.bends() && !output.bends)
             TRY(makeRenderer(output, wanted.projection, wanted.blend));
         else
             TRY(output.renderer->follow(wanted.projection, wanted.blend));
         return output.renderer->setUp(wanted.overlay.get(), wanted.card.get());
     }();
-    tell(unfollowed_, output, followed ? "" : "it stays as it was set before: " + followed.error().message());
+    tell(unfollowed_, output, followed ? "" : "it keeps its previous settings: " + followed.error().message());
 }
 
 void FrameLoop::spend(Output& output, FramePart part, Time time) {
@@ -277,7 +277,7 @@ Time FrameLoop::refreshFrom(Time moment) {
         while (leads->display.refreshTime(number) < moment) ++number;
         return leads->display.refreshTime(number);
     }
-    // Nothing is to be seen; the show goes on at its pace.
+    // No display runs; the show goes on at the first output's rate.
     const double rate = outputs_.empty() ? 1.0 : outputs_[0].site.refreshRate;
     return tickTime(tickAt(std::max(moment, clock_.now()), rate) + 1, rate);
 }
@@ -285,7 +285,7 @@ Time FrameLoop::refreshFrom(Time moment) {
 void FrameLoop::begin(const show::ShowClock& showClock) {
     showClock_ = showClock;
     hangsFrom_ = (showClock.runStart() + kHangs).count();
-    for (Output& output : outputs_) output.shown = Shown{.at = showClock.runStart()};  // every refresh after it is one to be met
+    for (Output& output : outputs_) output.shown = Shown{.at = showClock.runStart()};  // every later refresh needs a frame
 }
 
 void FrameLoop::countLate(Output& output, std::int64_t refreshes) {
@@ -299,8 +299,8 @@ void FrameLoop::countLate(Output& output, std::int64_t refreshes) {
 
 void FrameLoop::finish(Time end) {
     hangsFrom_ = kNotYet;
-    // A refresh right at the end belongs to the show, and a display tells its moments to a part of
-    // a period only.
+    // A refresh right at the end belongs to the show. The tolerance, a share of a period, allows
+    // for the inaccuracy of a display's moments.
     constexpr double kTolerance = 0.1;
     for (Output& output : outputs_) {
         if (const std::optional<Shown> shown = std::exchange(output.shown, std::nullopt); shown && shown->at < end)
@@ -323,7 +323,7 @@ void FrameLoop::show(Output& output, const Presenting& present) {
     if (!shown) return;
     output.shown = *shown;
     spend(output, FramePart::Swap, shown->swap);
-    // Whatever kept us: every refresh since the last one that had a frame counts.
+    // Every refresh since the previous frame counts as late, whatever the reason.
     if (before) countLate(output, std::llround(seconds(shown->at - before->at) * output.display.refreshRate()) - 1);
     output.spentUntilShown = spent_;
     ++framesShownOn_[static_cast<std::size_t>(&output - outputs_.data())];
@@ -351,15 +351,14 @@ void FrameLoop::measureSkew() {
 }
 
 void FrameLoop::measureInputToFrame(Time input, Time seen) {
-    // An input from before this run has no moment in it.
+    // An input from before this run has no moment in this run.
     if (const auto given = showClock_.momentOf(input, showClock_.runStart())) inputToFrame_.add(seen - *given);
 }
 
 void FrameLoop::step() {
     look();
     Output* const leads = leader();
-    // A display that takes the lead may hold no frame yet for a refresh that the others have theirs
-    // for.
+    // A new leader's next refresh may be one that the other displays already have a frame for.
     if (nextDue() <= newest_) clock_.sleepUntil(newest_);
     const Time due = newest_ = nextDue();
     hangsFrom_ = (due + kHangs).count();
@@ -371,7 +370,7 @@ void FrameLoop::step() {
         alone(outputs_[i], [&] { draw(outputs_[i], state_.outputs[i], state_.winds[i], showTime); });
     for (Output& output : outputs_) alone(output, [&] { finish(output); });
 
-    // The leader waits as its refreshes ask, the others show with it.
+    // The leader waits for its refresh; the others show their frames with it.
     const auto showOn = [&](Output& output, const Presenting& present) { alone(output, [&] { show(output, present); }); };
     if (leads != nullptr) showOn(*leads, [](DisplaySink& display) { return display.present(); });
     const bool led = leads != nullptr && leads->shown;

@@ -25,88 +25,90 @@
 
 namespace fantascope::app {
 
-// How an output is set while somebody sets it up.
+// The settings of an output during setting up.
 struct OutputSettings {
     Projection projection;
     std::shared_ptr<const render::BlendMap> blend;
     std::shared_ptr<const RgbaImage> overlay, card;  // as OutputRenderer::setUp() takes them; null: none
 };
 
-// The render thread's work: frame after frame it asks the playback what is to be seen when the next
-// refresh takes place, draws that on every output and shows it. The first running display leads:
-// its refresh paces the loop; the others follow within the same refresh. A display that is lost is
-// left out until it is back. All pictures of a frame are finished before the first is shown. A
-// display that holds a finished frame lets the loop be a frame ahead.
+// The render thread's work. For each frame it asks the playback what is seen at the next refresh,
+// draws that on every output, and shows it. The first running display leads: its refresh paces the
+// loop, and the others follow within the same refresh. A lost display is left out until it is back.
+// All pictures of a frame are finished before the first one is shown. If a display can hold a
+// finished frame, the loop may be a frame ahead.
 //
-// An output that cannot be drawn (a shader is missing, OpenGL has no memory, an exception) is a
-// fault of that output alone: it is left out, and tried again with a back-off from kSoonestRetry to
-// kLatestRetry. A context that is lost takes the output's renderer along; the next one gets
-// another.
-// Thread: bound to the render thread, but for the slots, counters and withFaults().
+// If an output cannot be drawn (a shader is missing, OpenGL has no memory, an exception), that is a
+// fault of this output alone. It is left out, and tried again with a back-off from kSoonestRetry to
+// kLatestRetry. When a context is lost, the output's renderer is lost too; the next context gets
+// another renderer.
+// Thread: bound to the render thread, except the slots, the counters and withFaults().
 class FrameLoop {
 public:
     static constexpr Time kSoonestRetry = std::chrono::seconds(1), kLatestRetry = std::chrono::seconds(32);
-    // Without a frame for so long, the loop hangs in a display.
+    // After so long without a frame the loop counts as hanging in a display.
     static constexpr Time kHangs = std::chrono::seconds(5);
 
-    // All outlive it. `assets`: the folder of the shaders.
+    // All arguments by reference outlive the loop. `assets`: the folder of the shaders.
     FrameLoop(const show::Site& site, const show::InputLog& inputs, render::PictureSources sources, std::filesystem::path assets,
               Devices& devices, Clock& clock);
     ~FrameLoop();
 
-    // Where the frames that `output` shows are read. Readers come before the first frame, best
-    // before prepare().
+    // The tap for the frames that `output` shows. Add readers before the first frame, best before
+    // prepare().
     render::FrameTap& tap(std::size_t output);
-    // The state of the newest frame goes into this slot too. Before the first frame.
+    // Also publishes the state of each new frame to `slot`. Call it before the first frame.
     void publishStateTo(LatestValue<show::ShowState>& slot) { stateSlot_ = &slot; }
 
-    // New settings of an output, from one other thread: they hold from the next frame on.
+    // The slot for new settings of an output. One other thread writes it. Settings take effect with
+    // the next frame.
     LatestValue<std::shared_ptr<const OutputSettings>>& settingsOf(std::size_t output) { return *outputs_[output].settings; }
 
-    // Makes the renderers, also of displays that are to come, and draws every source once, so that
-    // nothing is compiled while people watch. A display that has no context yet gets its renderer
-    // with that. Error: no output can be drawn that has a context, such as where the installation
-    // lacks a file. A fault of some outputs alone is no error: withFaults() tells of it.
+    // Makes the renderers, and draws every source once, so that nothing is compiled while people
+    // watch. A display without a context gets its renderer together with its context. Error: no
+    // output with a context can be drawn, for example because the installation lacks a file. A
+    // fault of only some outputs is no error: withFaults() reports it.
     Result<void> prepare();
-    // From now on a renderer that is missing is made on a thread of its own, to which the display
-    // lends its context: the other outputs miss no frame, however long that takes and whether it
-    // succeeds. Otherwise all wait for it, which a stepped clock does not notice, and the bytes are
-    // the same every time. Before the first frame.
+    // From now on, a missing renderer is made on a thread of its own, and the display lends its
+    // context to that thread. The other outputs miss no frame, however long this takes and whether
+    // it succeeds or not. Without this call all outputs wait for the renderer. A stepped clock does
+    // not notice the wait, and the recorded bytes are the same every time. Call it before the first
+    // frame.
     void makeRenderersAside() { makesAside_ = true; }
-    // The first refresh at or after a moment; a show that begins with one has a whole period for
-    // its first frame.
+    // The first refresh at or after a moment. A show that begins with a refresh has a whole period
+    // for its first frame.
     Time refreshFrom(Time moment);
-    // Refreshes after the run's start are to be met. Before the first frame.
+    // From the run's start on, every refresh without a frame counts as late. Call it before the
+    // first frame.
     void begin(const show::ShowClock& showClock);
-    // The moment that the next frame is for: the first refresh that can still be met.
+    // The moment of the next frame: the first refresh that can still be met.
     Time nextDue();
-    // One frame on every output; returns when another can be made.
+    // Makes one frame on every output. Returns when the next frame can be made.
     void step();
-    // The show is over: refreshes up to `end` that no frame was made for count as late, and the
-    // taps' readers get what is still on its way. After the last frame.
+    // Ends the show. Refreshes until `end` without a frame count as late, and the taps' readers get
+    // the frames that are still on their way. Call it after the last frame.
     void finish(Time end);
 
-    // `statuses`, Devices::statuses(), with what the loop knows besides: a display that runs is
-    // Faulted where its picture cannot be drawn, or where it keeps the loop from going on, and in
-    // trouble where it could not follow its newest settings. Thread-safe; never waits for the
-    // render thread.
+    // Adds what the loop knows to `statuses`, which Devices::statuses() gave. A running display
+    // becomes Faulted if its picture cannot be drawn, or if the loop hangs in it. It has trouble if
+    // it could not follow its newest settings. Thread-safe; never waits for the render thread.
     std::vector<DeviceStatus> withFaults(std::vector<DeviceStatus> statuses) const;
 
     // Counters for the progress line. Thread-safe.
     std::int64_t framesShown() const { return framesShown_; }  // on all outputs
     std::int64_t framesShown(std::size_t output) const { return framesShownOn_[output]; }
     std::int64_t framesLate() const { return framesLate_; }
-    // After the last frame.
+    // The figures of the run. Call these after the last frame.
     std::vector<OutputReport> outputs() const;
     const Durations& swapSkew() const { return swapSkew_; }
     const Durations& inputToFrame() const { return inputToFrame_; }
 
 private:
-    // An attempt to make an output's renderer while the others are shown.
+    // An attempt to make an output's renderer while the other outputs are shown.
     struct Making {
         Result<void> made;
         std::atomic<bool> ended = false;  // the context is free again
-        std::jthread thread;              // last, so that it ends before the rest goes
+        std::jthread thread;              // last, so that it ends before the other members are destroyed
     };
     struct Output {
         const show::Output& site;
@@ -114,39 +116,40 @@ private:
         std::shared_ptr<const render::BlendMap> blend;  // by the site file
         std::unique_ptr<LatestValue<std::shared_ptr<const OutputSettings>>> settings =
             std::make_unique<LatestValue<std::shared_ptr<const OutputSettings>>>();
-        std::unique_ptr<render::OutputRenderer> renderer{};  // made when the display's context is first there
-        std::unique_ptr<render::FrameTap> tap{};             // where somebody reads
-        int context = 0;                                     // the display's, that they are in
-        bool fresh = false;                                  // the renderer knows the site file's settings alone
-        bool faulted = false;                                // it could not be drawn the last time
-        Time retryAt{}, pause{};                             // ... and is tried again then; after how long
+        std::unique_ptr<render::OutputRenderer> renderer{};  // made as soon as the display has a context
+        std::unique_ptr<render::FrameTap> tap{};             // null: nobody reads the frames
+        int context = 0;                                     // the display's context that renderer and tap belong to
+        bool fresh = false;                                  // the renderer has only the site file's settings
+        bool faulted = false;                                // the last attempt failed
+        Time retryAt{}, pause{};                             // when the next attempt is due; the back-off
         bool bends = false;                                  // the renderer was made for a mesh
-        bool running = false;                                // when it was asked last
+        bool running = false;                                // at the last poll
         bool drawn = false;                                  // in the frame that is being made
         PartTimes spent{};                                   // on that frame so far
-        std::optional<Shown> shown{};                        // the newest frame; none since it was lost
-        PartTimes spentUntilShown{};                         // spent_ then
-        std::unique_ptr<Making> making{};                    // while it is there the display is lent, and so is all else here
+        std::optional<Shown> shown{};                        // the newest frame; none if the display was lost since
+        PartTimes spentUntilShown{};                         // spent_ at that time
+        std::unique_ptr<Making> making{};                    // while this is set, its thread owns the display and all else here
         OutputReport report{};
     };
-    // In place of the one that is there, which stays where this fails.
+    // Replaces the renderer. The old one stays if this fails.
     Result<void> makeRenderer(Output& output, const Projection& projection, const std::shared_ptr<const render::BlendMap>& blend);
     Result<void> beReady(Output& output);
-    // beReady(), where an exception is an error, too.
+    // Calls beReady(), and turns an exception into an error.
     Result<void> attempt(Output& output);
     void makeAside(Output& output);
-    // What became of the newest attempt: whether it can be drawn now, or at least once its display
-    // is there.
+    // Notes the result of the newest attempt. Returns whether the output can be drawn now, or at
+    // least once its display is there.
     bool settle(Output& output, const Result<void>& made);
-    bool ready(Output& output, Time now);  // settles an attempt where one is due
-    // Takes an output back whose attempt has ended. Whether it is here, and not lent.
+    bool ready(Output& output, Time now);  // makes an attempt if one is due
+    // Takes an output back if its attempt has ended. Returns whether the output is here and not
+    // lent.
     bool isHere(Output& output);
-    // Does something for one output. An exception is a fault of that output alone: it is taken for
-    // one that cannot be drawn, and gets another renderer.
+    // Does some work for one output. An exception is a fault of that output alone: the output
+    // counts as one that cannot be drawn, and gets another renderer.
     template <class Work>
     void alone(Output& output, const Work& work);
     void giveUp(Output& output, const char* why);
-    // Tells, or takes back (""), why it cannot be drawn, or not follow its settings.
+    // Sets or clears ("") the reason why an output cannot be drawn or cannot follow its settings.
     void tell(std::vector<std::string>& faults, const Output& output, const std::string& fault);
     bool becomesCurrent(Output& output) noexcept;
     void forget(Output& output);
@@ -158,7 +161,7 @@ private:
     void show(Output& output, const Presenting& present);
     void giveToReaders(Output& output);
     void measureSkew();
-    void measureInputToFrame(Time input, Time seen);  // show time of the one, the other's moment
+    void measureInputToFrame(Time input, Time seen);  // `input`: show time; `seen`: on the machine's clock
     void look();
     Output* leader();
     void spend(Output& output, FramePart part, Time time);
@@ -168,7 +171,7 @@ private:
     std::filesystem::path assets_;
     Clock& clock_;
     show::ShowClock showClock_;
-    Time newest_{};  // the moment that the newest frame is for
+    Time newest_{};  // the moment of the newest frame
     PlaybackReplica replica_;
     show::ShowState state_;
     std::vector<Output> outputs_;
@@ -178,14 +181,14 @@ private:
     Durations swapSkew_;
     Durations inputToFrame_;
     std::atomic<std::int64_t> framesShown_ = 0, framesLate_ = 0;
-    std::vector<std::atomic<std::int64_t>> framesShownOn_;  // each output
+    std::vector<std::atomic<std::int64_t>> framesShownOn_;  // by output
 
     mutable std::mutex faultsMutex_;
     std::vector<std::string> faults_;             // by output; "": none
-    std::vector<std::string> unfollowed_;         // settings, by output: why not; "": followed
+    std::vector<std::string> unfollowed_;         // by output: why it could not follow its settings; "": it did
     std::vector<Time> madeSince_;                 // by output: since when its renderer is made aside; kNever: it is not
     std::atomic<std::size_t> inHand_ = 0;         // the output that the loop works on
-    std::atomic<Time::rep> hangsFrom_ = kNotYet;  // on the clock: it hangs in that output unless it has gone on until then
+    std::atomic<Time::rep> hangsFrom_ = kNotYet;  // on the clock: the moment from which the loop counts as hanging in inHand_
     static constexpr Time::rep kNotYet = Time::max().count();
     static constexpr Time kNever = Time::max();
 };

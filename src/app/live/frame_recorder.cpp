@@ -8,7 +8,8 @@
 namespace fantascope::app {
 namespace {
 
-// Of each output, frames that a recording may be behind: so many bytes of them, but a few at least.
+// How far a recording may be behind each output: so many bytes of frames, but at least a few
+// frames.
 constexpr std::size_t kQueueBytes = std::size_t{256} << 20, kLeastQueue = 4, kMostQueue = 240;
 constexpr double kTablesRate = 1;  // Hz
 
@@ -32,7 +33,7 @@ void FrameRecorder::begin(Time runStart) {
 
 std::vector<Part> FrameRecorder::parts() {
     std::vector<Part> parts;
-    const Time phase = runStart_ + tickTime(1, 2 * rate_);  // half a refresh after the frames became visible
+    const Time phase = runStart_ + tickTime(1, 2 * rate_);  // half a refresh period after the frames become visible
     for (const Video& video : recording_.videos())
         parts.push_back({"recording", rate_, phase, [this, video](Time moment) { record(video, moment); }, Rank::Watch});
     return parts;
@@ -52,8 +53,8 @@ void FrameRecorder::record(Time moment) {
     for (const Video& video : recording_.videos()) record(video, moment);
 }
 
-// What became visible until a moment and was not recorded yet: the oldest first, on whichever
-// output.
+// Records the frames that became visible until a moment and are not recorded yet, the oldest first,
+// whatever their output.
 void FrameRecorder::record(const Video& video, Time moment) {
     for (;;) {
         Output* oldest = nullptr;
@@ -65,7 +66,7 @@ void FrameRecorder::record(const Video& video, Time moment) {
             }
         if (oldest == nullptr) break;
         const render::ShownFrame* const frame = oldest->frames->next(moment);
-        if (frame == nullptr) continue;  // its context was lost meanwhile
+        if (frame == nullptr) continue;  // the frame's context has been lost
         const Result<void> written = recording_.frame(frame->output, frame->image, frame->shown, frame->showTime);
         if (!written)
             tell(frame->shown.at, frame->output, FaultLog::Topic::Recording,
@@ -81,7 +82,7 @@ void FrameRecorder::record(const Video& video, Time moment) {
 }
 
 void FrameRecorder::finish(Time moment, std::vector<OutputReport>& outputs) {
-    record(Time::max());  // the last frame's moment came with the end of the parts
+    record(Time::max());  // the last frames may have become visible after the parts had ended
     if (const Result<void> finished = recording_.finish(); !finished)
         faults_.raise(moment, "", FaultLog::Topic::Recording, "recording: " + finished.error().message());
     for (std::size_t i = 0; i < outputs.size(); ++i) {

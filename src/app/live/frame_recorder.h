@@ -18,28 +18,29 @@
 
 namespace fantascope::app {
 
-// Brings every frame that the outputs show into a recording, and tells of those that are not in it:
-// the show goes on without them.
-// Thread: a video's part on one thread; the rest on the render thread, record() and finish() while
-// no part runs.
+// Brings every frame that the outputs show into a recording. Frames that are missing from it are
+// reported as faults, and the show goes on.
+// Thread: a video's part on one thread; the rest on the render thread. No part runs during record()
+// and finish().
 class FrameRecorder {
 public:
-    // All outlive it. Before FrameLoop::prepare(), since it reads every output's frames from the
-    // first one on. `advanced` is called after each frame, on the thread that recorded it.
+    // All arguments by reference outlive this. Construct it before FrameLoop::prepare(), because it
+    // reads every output's frames from the first one on. `advanced` is called after each frame, on
+    // the thread that recorded it.
     FrameRecorder(Recording& recording, const show::Site& site, FrameLoop& frames, Clock& clock, FaultLog& faults,
                   std::function<void()> advanced);
 
-    // The videos begin with the run. Before the first frame.
+    // Sets the moment at which the videos begin. Call it before the first frame.
     void begin(Time runStart);
-    // In real time: one for each video, so that one that is slow does not hold up the others.
+    // The parts for real time: one for each video, so that a slow one does not hold up the others.
     std::vector<Part> parts();
-    // On either clock: brings the recording's tables to the disk now and then.
+    // The part, for either clock, that writes the recording's tables to the disk now and then.
     Part tables();
-    // On the stepped clock instead of parts(), after each frame: whatever became visible until
-    // `moment`. The show waits for it, so that nothing is left out.
+    // Records the frames that became visible until `moment`. For the stepped clock, instead of
+    // parts(): call it after each frame. The show waits for it, so no frame is left out.
     void record(Time moment);
-    // Ends the files at `moment`, and tells what is not in them; `outputs`, the outputs' reports,
-    // get their counts.
+    // Ends the files at `moment`, reports what is missing from them, and sets the counts in
+    // `outputs`, the outputs' reports.
     void finish(Time moment, std::vector<OutputReport>& outputs);
 
 private:
@@ -59,7 +60,7 @@ private:
     const std::function<void()> advanced_;
     const double rate_;  // Hz, the leading output's
     Time runStart_{};
-    std::vector<Output> outputs_;  // each its video's thread's
+    std::vector<Output> outputs_;  // each belongs to the thread of its video
 };
 
 }  // namespace fantascope::app

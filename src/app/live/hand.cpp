@@ -10,7 +10,7 @@
 namespace fantascope::app {
 namespace {
 
-// On a key, in the order of show::Button.
+// The labels of the buttons, in the order of show::Button.
 constexpr std::array<std::string_view, 14> kWords = {"GO",   "BACK", "DARK",   "EDIT", "LEFT",    "RIGHT", "UP",
                                                      "DOWN", "NEXT", "OUTPUT", "TOOL", "PICTURE", "UNDO",  "WRITE"};
 static_assert(kWords.size() == static_cast<std::size_t>(show::Button::Write) + 1);
@@ -72,7 +72,7 @@ ButtonLight Hand::lightOf(show::Button button, Time showTime) const {
                 return lit(state_.blackout, State::Alarm);
             case show::Button::Edit:
                 return lit(editing(), State::Active);
-            default:  // of no use but there
+            default:  // the other buttons are for setting up only
                 return lit(editing(), State::Ready);
         }
     };

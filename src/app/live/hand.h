@@ -15,22 +15,23 @@
 
 namespace fantascope::app {
 
-// The operator's side of a run: polls the cue controller and the contacts and submits what they say
-// as inputs; lights the controller's buttons by what they are good for; puts what became of the
-// inputs, and each cue that is entered, among the events.
+// The operator's side of a run. It polls the hand controller and the contacts, and submits inputs
+// for them. It lights each button that has a use at the moment. It logs the outcome of every input,
+// and every cue that is entered, as events.
 class Hand {
 public:
-    // All outlive it, but for the clock; without `devices`' controller or contacts it does without.
+    // All arguments by reference outlive this, except `showClock`. `devices` may lack the hand
+    // controller or contacts.
     Hand(const show::Show& show, show::InputLog& inputs, const show::Site& site, Devices& devices,
          const show::ShowClock& showClock, show::EventLog& events);
 
-    // How often both are asked: a press waits 5 ms at most.
+    // Hz; the poll rate of both. A press waits at most 5 ms.
     static constexpr double kRate = 200;
     void tick(Time moment);
 
-    // Called on the input thread with buttons that set the outputs up.
+    // Called on the input thread for the buttons of setting up.
     std::function<void(show::Button, bool pressed)> edit = [](show::Button, bool) {};
-    // Asked on the input thread: whether they do so now.
+    // Called on the input thread: whether the outputs are being set up now.
     std::function<bool()> editing = [] { return false; };
 
 private:
@@ -47,7 +48,7 @@ private:
     PlaybackReplica replica_;
     show::InputLog::Reader outcomes_;
     show::ShowState state_;
-    std::vector<ButtonLight> lights_;  // of Site::buttons, as the controller was told
+    std::vector<ButtonLight> lights_;  // of Site::buttons, as last sent to the controller
     int cue_ = -1;
     bool blackout_ = false;
 };

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kRelayRate = 20;  // Hz; a relay clicks in tens of milliseconds
 constexpr const char* kUnanswered = "it has not answered yet";
-constexpr const char* kNotSent = "they were not sent any more";
+constexpr const char* kNotSent = "they were never sent";
 
 }  // namespace
 
@@ -71,16 +71,16 @@ void Lighting::tick(Time moment) {
         std::array<std::uint8_t, kDmxSlots> slots;
         show::slotsOf(site_, state_, line.universe, slots);
         if (shared_[i]) mergeWithDesk(line, *shared_[i], clock_.now(), slots);
-        // A line that is not there says so in its status and comes back by itself; the newest
-        // levels go out at the next tick.
+        // A lost line reports this in its status and comes back by itself. The newest levels are
+        // sent at the next tick.
         const Result<void> sent = line.port->send(slots);
         if (sent && recording_ != nullptr) recording_->lighting(showTime, line.universe, slots);
         if (!atEnd) return;
         const std::lock_guard lock(linesMutex_);
         whyUnended_[i] = sent ? "" : sent.error().message();
     };
-    // A line whose driver throws stops neither the other lines nor the relays; the part's guard
-    // tells.
+    // An exception of one line's driver stops neither the other lines nor the relays. The part's
+    // guard reports it.
     std::exception_ptr failure;
     for (std::size_t i = 0; i < devices_.lines.size(); ++i) {
         try {
@@ -143,8 +143,8 @@ Result<void> Lighting::bringTo(const Coils& wanted, std::size_t number, Time mom
     const Result<void> written = device.write(wanted);
     bank.tried = wanted;
     if (!written) {
-        // One that is not there is tried at every tick, which costs nothing, so that it has its
-        // states as soon as it is back.
+        // A missing bank is tried at every tick, so that it has its states as soon as it is back.
+        // Such a try costs nothing.
         if (isThere) bank.nextTry = clock_.now() + bank.backOff.failed(clock_.now());
         if (!bank.ending && device.status().state == DeviceState::Running) reportRefusal(number, written.error(), moment);
         return written;
@@ -156,10 +156,12 @@ Result<void> Lighting::bringTo(const Coils& wanted, std::size_t number, Time mom
     return {};
 }
 
-// Who knows what they are now: where the bank was gone, in their safe states.
+// After a loss the states of the relays are unknown. A bank that was gone may be in its safe
+// states.
 void Lighting::takeLoss(std::size_t number, Time moment) {
     Bank& bank = banks_[number];
-    const std::string moved = bank.ending ? "" : differing(number, bank.written);  // safe states wait for no question
+    const std::string moved =
+        bank.ending ? "" : differing(number, bank.written);  // at the end, the safe states do not wait for a read
     bank.written.clear();
     bank.nextTry = clock_.now() + bank.backOff.failed(clock_.now());
     if (moved.empty()) return;

@@ -15,7 +15,8 @@ void setThreadRank(Rank rank) {
     const sched_param realTime{.sched_priority = 1}, ordinary{.sched_priority = 0};
     if (rank == Rank::Render && sched_setscheduler(0, SCHED_RR, &realTime) == 0) return;
     sched_setscheduler(0, SCHED_OTHER, &ordinary);
-    // On Linux scheduling and niceness belong to the thread. A refusal leaves them as they were.
+    // On Linux, scheduling policy and niceness belong to the thread. A refusal leaves them
+    // unchanged.
     constexpr int kNiceness[] = {-10, -5, 0, 10};
     [[maybe_unused]] const int refused =
         setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNiceness[static_cast<std::size_t>(rank)]);
@@ -25,7 +26,7 @@ PartThreads::PartThreads(Clock& clock, std::vector<Part> parts) {
     for (Part& part : parts) {
         const Rank rank = part.rank;
         threads_.push_back({rank, std::jthread([&clock, part = std::move(part)](const std::stop_token& stop) {
-                                setThreadRank(part.rank);  // a new thread has that of the one that made it
+                                setThreadRank(part.rank);  // a new thread inherits the rank of its creator
                                 for (std::int64_t next = 0; !stop.stop_requested();) {
                                     clock.sleepUntil(part.phase + tickTime(next, part.rate));
                                     next = std::max(next, tickAt(clock.now() - part.phase, part.rate));

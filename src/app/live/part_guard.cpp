@@ -29,7 +29,7 @@ bool PartGuard::run(Time moment, const std::function<void(Time)>& work) {
     return true;
 }
 
-// Telling may fail as well, where the machine has no memory left: the next try tells.
+// The report may fail, too, if the machine has no memory left. Then the next failure is reported.
 void PartGuard::tellFailure(Time moment, const char* why) noexcept {
     const Time pause = backOff_.failed(moment);
     nextTry_ = rank_ == Rank::Lighting ? Time::min() : moment + pause;

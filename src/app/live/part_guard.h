@@ -11,11 +11,10 @@
 
 namespace fantascope::app {
 
-// Lets the work of one part fail alone: an exception out of it is a fault of that part, which is
-// told and stands in the report, and the other parts play on. The part is tried again with a
-// back-off from kSoonest to kLatest, or to kLatestInput where a person may be waiting for it. A
-// part of the lighting rank is tried again at its next tick, because lamps and relays must not
-// wait.
+// Keeps a failure of one part from the others. An exception in a part's work is a fault of that
+// part: it is reported, and the other parts go on. The part is tried again with a back-off from
+// kSoonest to kLatest, or to kLatestInput if a person may be waiting for it. A part of the lighting
+// rank is tried again at its next tick, because fixtures and relays must not wait.
 // A broken invariant (FANTASCOPE_CHECK) still ends the program.
 // Thread: that of the part.
 class PartGuard {
@@ -23,10 +22,11 @@ public:
     static constexpr Time kSoonest = std::chrono::milliseconds(50), kLatestInput = std::chrono::seconds(1),
                           kLatest = std::chrono::seconds(10);
 
-    // `faults` outlives it.
+    // `faults` outlives the guard.
     PartGuard(std::string part, Rank rank, FaultLog& faults);
 
-    // Does the work for a moment, unless it failed a short time ago. Whether it was done.
+    // Does the work for a moment, unless the back-off is still on. Returns whether the work
+    // succeeded.
     bool run(Time moment, const std::function<void(Time)>& work);
 
 private:

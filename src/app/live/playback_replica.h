@@ -7,16 +7,16 @@
 
 namespace fantascope::app {
 
-// One thread's own copy of the playback. Playback is a pure function of the inputs and everybody
-// reads the same log of them, so all copies agree and no thread has to ask another one. Thread:
-// bound to the one that owns the copy.
+// One thread's own copy of the playback. Playback is a pure function of the inputs, and every
+// replica reads the same log. So all replicas agree, and no thread has to ask another. Thread:
+// bound to the thread that owns the replica.
 class PlaybackReplica {
 public:
-    // `inputs` outlives it.
+    // `inputs` outlives the replica.
     explicit PlaybackReplica(const show::InputLog& inputs) : playback_(inputs.cues()), inputs_(inputs.reader()) {}
 
-    // What is seen at `time` given all inputs so far. `taken` is called with each input that is new
-    // since the last call.
+    // What is seen at `time`, given all inputs so far. `taken` is called with each input since the
+    // last call.
     void stateAt(Time time, show::ShowState& state, const auto& taken) {
         while (const show::LoggedInput* const logged = inputs_.next()) {
             FANTASCOPE_CHECK(playback_.apply(logged->input, logged->revision) == logged->outcome,
@@ -30,7 +30,7 @@ public:
         stateAt(time, state, [](const show::Input&) {});
     }
 
-    // With the inputs that the last stateAt() took.
+    // The playback after the inputs that the last stateAt() took.
     const show::Playback& playback() const { return playback_; }
 
 private:

@@ -23,11 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The pictures of a show's sources, and for each the drawing that it should read as, where there is
-// one.
+// The pictures of a show's sources, and for each source its guide, if it has one.
 struct Pictures {
     struct Guide {
-        GreyImage drawing;  // stored values, as the pattern was compared with them
+        GreyImage drawing;  // stored values, as in the search for the pattern
         double aspect = 1;  // width / height of the source's picture
         Fit fit = Fit::Contain;
     };
@@ -40,11 +39,11 @@ struct Picture {
     std::optional<Pictures::Guide> guide;
 };
 
-// How sources are read.
+// The options for reading sources.
 struct Reading {
     render::VideoStream::Pace pace;
     const std::shared_ptr<render::PictureFeed>& camera;  // null: the site has none
-    bool isWatched = false;                              // somebody compares what is seen with the drawings
+    bool isWatched = false;                              // the camera's pictures are compared with the guides
 };
 
 Result<Pictures::Guide> readGuide(const pattern::ShapePattern& pattern, const fs::path& file) {
@@ -62,7 +61,7 @@ Result<Picture> readPicture(const show::PatternSource& source, const Reading& re
 
 Result<Picture> readPicture(const show::SolidSource& source, const Reading&) { return Picture{source, {}}; }
 
-// A picture of what a small hole throws, as linear light.
+// Reads a picture of what a small hole projects, as linear light.
 Result<std::shared_ptr<const GreyImage>> readFilter(const fs::path& file) {
     GreyImage picture = TRY(readGrey(file));
     for (float& value : picture.pixels()) value = linearFromSrgb(value);
@@ -127,7 +126,7 @@ Result<render::ShadowSource::Play> playOf(const show::ShadowSource& source, cons
 }
 
 Result<Picture> readPicture(const show::ShadowSource& source, const Reading&) {
-    constexpr int kRows = 64;  // nothing is compared here
+    constexpr int kRows = 64;  // a low resolution is enough, because nothing is compared here
     auto cast = std::make_shared<const theatre::Cast>(TRY(theatre::readCast(source.cast)));
     render::ShadowSource shadow;
     shadow.cast = cast;
@@ -136,16 +135,16 @@ Result<Picture> readPicture(const show::ShadowSource& source, const Reading&) {
     shadow.speed = source.speed;
     if (static_cast<std::size_t>(source.beam) > cast->stage.beams.size())
         return Error(
-            fmt::format("'beam' is {}, and the stage of {} has {}", source.beam, source.cast.string(), cast->stage.beams.size()));
+            fmt::format("'beam' is {}, but the stage of {} has {}", source.beam, source.cast.string(), cast->stage.beams.size()));
     shadow.beam = static_cast<std::size_t>(source.beam - 1);
     const glm::dvec3 light = cast->stage.beams[shadow.beam].light;
     for (const show::ShadowSource::Lamp& lamp : source.lamps) {
         const glm::dvec3 place = lamp.at.value_or(light);
         if (cast->stage.screenOf(shadow.beam).screenFromStage(place).z <= 0)
-            return Error(fmt::format("the lamp at [{}, {}, {}] is not before the screen, which it is to light", place.x, place.y,
-                                     place.z));
+            return Error(
+                fmt::format("the lamp at [{}, {}, {}] is not in front of the screen that it lights", place.x, place.y, place.z));
         if (!lamp.actors.empty() && lamp.actors.size() != cast->actors.size())
-            return Error(fmt::format("{} colours of 'actors', and {} has {}; say one for each, in its order", lamp.actors.size(),
+            return Error(fmt::format("{} colours of 'actors', but {} has {}; give one for each, in its order", lamp.actors.size(),
                                      source.cast.string(), cast->actors.size()));
         shadow.lamps.push_back(
             {place, lamp.size, lamp.light, lamp.shadow, std::vector<glm::vec3>(lamp.actors.begin(), lamp.actors.end())});
@@ -156,8 +155,8 @@ Result<Picture> readPicture(const show::ShadowSource& source, const Reading&) {
         return Picture{std::move(shadow), {}};
     }
     if (shadow.beam >= cast->targets.size())
-        return Error(fmt::format("{} has no target for beam {}; say with 'picture' what of its screen is seen",
-                                 source.cast.string(), source.beam));
+        return Error(fmt::format("{} has no target for beam {}; give the part of its screen by 'picture'", source.cast.string(),
+                                 source.beam));
     const theatre::Cast::Target& wanted = cast->targets[shadow.beam];
     auto read = readGrey(wanted.file);
     if (!read) return namedIn(source.cast, wanted.file, read.error());
@@ -168,7 +167,7 @@ Result<Picture> readPicture(const show::ShadowSource& source, const Reading&) {
     shadow.from = given.metresAt({0, given.height()});
     shadow.to = given.metresAt({given.width(), 0});
     std::optional<Pictures::Guide> guide;
-    // On a white screen a still reads as its drawing's negative.
+    // On a white screen, a shadow that does not move looks like the negative of its drawing.
     if (cast->actors.front().poses.size() == 1)
         guide = Pictures::Guide{inverted(std::move(drawing)), static_cast<double>(given.width()) / given.height()};
     return Picture{std::move(shadow), std::move(guide)};

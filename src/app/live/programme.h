@@ -17,31 +17,33 @@
 
 namespace fantascope::app {
 
-// Everything that a run reads from files, before anything lights up. Constant afterwards, but for
-// what moves in its pictures.
+// Everything that a run reads from files before it shows anything. It is constant afterwards,
+// except for the decoding of videos and for camera pictures.
 struct Programme {
     explicit Programme(std::shared_ptr<const show::Revision> played)
         : revision(std::move(played)), show(revision->show), site(revision->site), cues(show::Revision::cuesOf(revision)) {}
 
     std::shared_ptr<const show::Revision> revision;
-    const show::Show& show;  // of `revision`, as these:
-    const show::Site& site;
-    std::shared_ptr<const show::CueList> cues;
+    const show::Show& show;                       // of `revision`
+    const show::Site& site;                       // of `revision`
+    std::shared_ptr<const show::CueList> cues;    // of `revision`
     std::optional<show::Input> firstInput;        // the cue to start from
     render::PictureSources sources;               // in the order of Show::sources
-    std::shared_ptr<render::PictureFeed> camera;  // what the camera's sources show; null where the site has none
+    std::shared_ptr<render::PictureFeed> camera;  // the pictures of camera sources; null if the site has no camera
     std::vector<Watch::Comparisons> comparisons;  // [output]
 };
 
-// A pattern with its movement, ready to be drawn. Error: as pattern::readPattern.
+// Reads a pattern with its movement, ready to be drawn. Error: as pattern::readPattern.
 Result<render::PatternSource> readPatternSource(const std::filesystem::path& file);
 
-// A show's source, ready to be drawn. `camera`: what a camera's source shows; null if the site has
-// none. Error: the source's place, and that of whatever is wrong in its files.
+// Reads the files of a show's source, so that it is ready to be drawn. `camera`: the pictures of a
+// camera source; null if the site has no camera. Error: the place of the source, and the place of
+// the fault in its files.
 Result<render::PictureSource> readPictureSource(const show::Source& source, render::VideoStream::Pace pace,
                                                 const std::shared_ptr<render::PictureFeed>& camera);
 
-// Error: all sources that cannot be used, with their places and what to do.
+// Reads everything that a run with these options needs. Error: what is wrong, with its place and
+// advice; all faulty sources at once.
 Result<Programme> readProgramme(const RunOptions& options);
 
 }  // namespace fantascope::app

@@ -14,11 +14,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Of a video's clock, a refresh of its output: a display may refresh a little faster than its site
-// file says.
+// Ticks of a video's clock per refresh of its output. There are several, because a display may
+// refresh a little faster than the site file says.
 constexpr int kTicks = 4;
 
-// FNV-1a, 64 bits, over the stored bytes: two runs that show the same give the same lines.
+// FNV-1a, 64 bits, over the stored bytes. Two runs that show the same pictures give the same
+// hashes.
 std::uint64_t hashOf(const RgbaImage& picture) {
     std::uint64_t hash = 0xcbf29ce484222325u;
     for (const Rgba8& pixel : picture.pixels())
@@ -63,7 +64,8 @@ std::vector<std::vector<std::size_t>> Recording::videos() const {
     return videos;
 }
 
-// A video whose writing fails is given up at once: its bytes may be what the disk has no room for.
+// Writes a picture. If that fails, the video is given up at once, because its bytes may be what
+// fills the disk.
 Result<void> Recording::write(Video& video, const RgbaImage& picture, Time at) {
     const double rate = outputs_[sideBySide() ? 0 : static_cast<std::size_t>(&video - videos_.data())].frameRate;
     video.number = std::max<std::int64_t>(video.number + 1, std::llround(seconds(at - runStart_) * rate * kTicks));
@@ -79,8 +81,8 @@ Result<void> Recording::frame(std::size_t output, const RgbaImage& picture, cons
         TRY(write(video, picture, shown.at));
         addLine({showTime, output, frames_[output].count, shown.refresh, hashOf(picture)});
     } else {
-        // What becomes visible within half a refresh is seen together. An output that refreshes
-        // more quickly may have its next frame within that time.
+        // Frames that become visible within half a refresh period count as simultaneous. A faster
+        // output may have its next frame within that time.
         const bool together = video.tiled && shown.at - *video.tiled <= tickTime(1, 2 * outputs_[0].frameRate);
         if (!together || frames_[output].tiled) TRY(writeTiled());
         if (!video.tiled) video.tiled = shown.at;
@@ -101,7 +103,7 @@ Result<void> Recording::writeTiled() {
 }
 
 void Recording::lighting(Time showTime, int universe, std::span<const std::uint8_t> slots) {
-    // The dark end of a universe says nothing.
+    // Trailing slots at 0 are left out.
     while (!slots.empty() && slots.back() == 0) slots = slots.first(slots.size() - 1);
     if (!sideBySide()) dmx_.add(fmt::format("{:.6f},{},{}\n", seconds(showTime), universe, fmt::join(slots, " ")));
 }
@@ -115,7 +117,7 @@ void Recording::relays(Time showTime, const std::string& bank, const std::vector
 
 void Recording::cue(int index, const std::string& label, const RgbaImage& picture) { cues_[index] = {label, picture}; }
 
-// In the order in which they were shown, once no output can have an older one.
+// Keeps the lines in the order of show time: a line waits until no output can have an older one.
 void Recording::addLine(const Line& line) {
     const std::lock_guard lock(linesMutex_);
     lines_.insert(line);

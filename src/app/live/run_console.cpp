@@ -16,12 +16,12 @@ constexpr int kAnyWidth = std::numeric_limits<int>::max();
 constexpr const char* kBetween = "  ";
 constexpr Time kRedraw = std::chrono::milliseconds(100), kRepeat = std::chrono::minutes(1);
 
-// The parts of the line from left to right, each in its forms from the longest to the shortest. An
-// empty form takes no room.
+// The parts of the line from left to right. Each has several forms, from the longest to the
+// shortest. An empty form takes no room.
 enum Part { Blackout, SettingUp, Cue, Fade, Next, Left, Late, Rate, Scores, kParts };
 using Forms = std::vector<std::string>;
 
-// Which part becomes one form shorter when the line is too long, in this order.
+// The parts to shorten by one form, in this order, while the line is too long.
 constexpr Part kShortening[] = {Scores, Rate, Next,      Cue, Cue,       Late,     Fade, Left,
                                 Next,   Next, SettingUp, Cue, SettingUp, Blackout, Cue};
 

@@ -18,34 +18,35 @@ namespace fantascope::app {
 // What the person at the terminal sees of a run at one moment.
 struct RunStatus {
     Time showTime{};
-    int cue = -1, cues = 0;                 // the number of the one that is on, from 0; -1 before the first
+    int cue = -1, cues = 0;                 // the current cue, from 0, -1 before the first; the number of cues
     std::string cueName, nextName;          // empty: there is none
     Time fadeLeft{};                        // 0: nothing fades
-    std::optional<Time> untilNext;          // until the next cue comes without a person
-    std::optional<Time> left;               // of the run, where it has a length
-    bool blackout = false;                  // pictures and lamps are held dark
-    bool settingUp = false;                 // the keys are those of the outputs' setting up
-    bool keys = false;                      // somebody may press some
-    std::optional<double> framesPerSecond;  // of all outputs together; none before it was measured
+    std::optional<Time> untilNext;          // until the next cue comes by a follow or by the schedule; none: it waits
+    std::optional<Time> left;               // of the run; none: the run has no length
+    bool blackout = false;                  // pictures and fixtures are held dark
+    bool settingUp = false;                 // the keys are those of setting up
+    bool keys = false;                      // somebody can press keys
+    std::optional<double> framesPerSecond;  // of all outputs together; none before the first measurement
     std::int64_t lateFrames = 0;
-    std::vector<std::pair<std::string, double>> zCamera;  // the newest of each output; negative: none yet
+    std::vector<std::pair<std::string, double>> zCamera;  // the newest z of each output; negative: none yet
     std::string said;                                     // news for the operator since the last status
 };
 
-// The status in one line of at most so many columns. Where it does not fit, what matters least goes
-// first: scores and frame rates, then the ends of long names, then countdowns; last go the cue's
-// number and a blackout. columns >= 0.
+// The status in one line of at most `columns` >= 0 columns. If it does not fit, the least important
+// parts are left out first: scores and frame rates, then the ends of long names, then countdowns,
+// and last the cue's number and a blackout.
 std::string statusLine(const RunStatus& status, int columns);
 
-// What is worth saying once the run is over.
+// A summary of the run in one line.
 std::string summaryOf(const RunReport& report);
 
-// Tells of a run while it lasts. On a terminal: one line that is always there, and above it the
-// news. Elsewhere, as in a journal: the news, and the line once a minute. Thread: one at a time.
+// Reports on a run while it lasts. A terminal shows a permanent status line, with the news above
+// it. Any other output, such as a system journal, gets the news, and the status line once a minute.
+// Thread: one at a time.
 class RunConsole {
 public:
-    // `clock` and `out` outlive it; `columns`: of the terminal, asked again and again; none: it is
-    // no terminal.
+    // `clock` and `out` outlive the console. `columns` returns the terminal's present width; empty:
+    // `out` is no terminal.
     RunConsole(const Clock& clock, std::ostream& out, std::function<int()> columns);
     void tell(const RunStatus& status);
 
@@ -53,7 +54,7 @@ private:
     const Clock& clock_;
     std::ostream& out_;
     std::optional<TerminalLine> line_;
-    std::optional<Time> told_;  // when the line was, on the clock
+    std::optional<Time> told_;  // when the line was last drawn, on the clock
 };
 
 }  // namespace fantascope::app

@@ -12,7 +12,7 @@
 namespace fantascope::app {
 namespace {
 
-constexpr Time kLookAgain = std::chrono::milliseconds(5);  // whether they are there
+constexpr Time kLookAgain = std::chrono::milliseconds(5);  // poll interval in await()
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void RunLights::raiseFaults(Time moment) {
         for (const show::Relay& relay : site_.relays)
             if (site_.relayBanks[relay.bank].name == bank) relays.push_back(relay.name + (relay.safe ? " on" : " off"));
         faults_.raise(moment, bank, FaultLog::Topic::SafeStates,
-                      fmt::format("'{}' has not confirmed its safe states: {}. Look yourself: {}", bank, why, listed(relays)));
+                      fmt::format("'{}' has not confirmed its safe states: {}. Check on site: {}", bank, why, listed(relays)));
     }
     for (const UnendedLine& line : unended_)
         faults_.raise(moment, fmt::format("universe {}", line.universe), FaultLog::Topic::EndLevels, sentenceOf(line));

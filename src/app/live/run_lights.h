@@ -19,30 +19,30 @@
 
 namespace fantascope::app {
 
-// Lamps and relays from their parts' start to their closing, which also happens where the render
-// thread hangs.
-// Thread: close() and whileOpen() from any, the rest on the run's own.
+// The life of fixtures and relays in a run, from the start of their parts to their closing. They
+// are closed even if the render thread hangs.
+// Thread: close() and whileOpen() from any thread, the rest from the run's thread.
 class RunLights {
 public:
-    // All outlive it; `guard` may be null.
+    // All arguments by reference outlive this. `guard` may be null.
     RunLights(const show::Site& site, Devices& devices, Lighting& lighting, FaultLog& faults, Clock& clock, RelayGuard* guard)
         : site_(site), devices_(devices), lighting_(lighting), faults_(faults), clock_(clock), guard_(guard) {}
 
-    // The lights' parts, on threads that end with close().
+    // Starts the lights' parts on threads that end with close().
     void start(std::vector<Part> parts) { threads_.emplace(clock_, std::move(parts)); }
-    // Waits until lamps and relays are where they are to be at the end, for as long as that may
-    // take.
+    // Waits until the fixtures have their end levels and the relays their safe states, or until the
+    // time allowed for this is over.
     void await();
-    // Ends what works on lamps and relays and closes both; `terminal` is called in between. Where
-    // all relays are safe the guard may go. Only the first call counts.
+    // Ends the parts and closes lines and banks. `terminal` is called in between. If all relays are
+    // safe, the guard is dismissed. Only the first call has an effect.
     void close(const std::function<void()>& terminal);
-    // Calls it unless they are closed; they stay open meanwhile.
+    // Calls `work` unless the devices are closed. They stay open during the call.
     void whileOpen(const std::function<void()>& work);
 
-    // Once they are closed.
+    // The banks and lines that did not end as they should. Call these after close().
     const std::vector<UnsafeBank>& unsafe() const { return unsafe_; }
     const std::vector<UnendedLine>& unended() const { return unended_; }
-    // What is not as it is to be at the end becomes faults of that moment.
+    // Raises faults at `moment` for these banks and lines.
     void raiseFaults(Time moment);
 
 private:
@@ -56,7 +56,7 @@ private:
     bool closed_ = false;
     std::vector<UnsafeBank> unsafe_;
     std::vector<UnendedLine> unended_;
-    std::optional<PartThreads> threads_;  // last, so that none works on what has gone
+    std::optional<PartThreads> threads_;  // last, so that the threads end before the other members are destroyed
 };
 
 }  // namespace fantascope::app

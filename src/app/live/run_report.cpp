@@ -53,7 +53,7 @@ std::string sentenceOf(const std::vector<UnsafeBank>& unsafe) {
 }
 
 std::string sentenceOf(const UnendedLine& line) {
-    return fmt::format("the lamps of universe {} did not get their end levels ({}). Look yourself", line.universe, line.why);
+    return fmt::format("the lamps of universe {} did not get their end levels ({}). Check on site", line.universe, line.why);
 }
 
 Report jsonOf(const RunReport& report) {

@@ -15,20 +15,21 @@
 
 namespace fantascope::app {
 
-// What the terminal shows of the show: what is on, what comes and when, and what has happened since
-// it looked last.
+// What the terminal shows of a run: the current cue, the next cue and when it comes, and the news
+// since the last status.
 // Thread: one at a time.
 class RunView {
 public:
-    // All outlive it, but for the clock. `length`: of the run, in run time; nothing: until somebody
-    // ends it.
+    // All arguments by reference outlive this, except `showClock`. `length`: of the run, in run
+    // time; none: the run goes on until somebody ends it.
     RunView(const show::Show& show, const show::InputLog& inputs, const show::EventLog& events, const show::ShowClock& showClock,
             std::optional<Time> length)
         : show_(show), showClock_(showClock), length_(length), replica_(inputs), events_(events.reader()) {}
 
-    // `nextGo`: run time of the next GO that no person presses; Time::max(): none is to come.
+    // The status at `moment`. `nextGo`: run time of the schedule's next GO; Time::max() if there is
+    // none.
     RunStatus at(Time moment, Time nextGo);
-    // Whether something has happened that at() has not told yet.
+    // Whether there is news that at() has not reported yet.
     bool hasNews();
 
 private:

@@ -11,13 +11,13 @@
 namespace fantascope::app {
 namespace {
 
-// Frames that are under way when somebody asks are for a moment before this: every output gets its
-// picture of the same one.
+// Pictures are taken this long after the request. Frames that are in progress at the request are
+// for earlier moments, so every output gives its picture of the same moment.
 constexpr Time kAhead = std::chrono::milliseconds(100);
-constexpr Time kPatience = std::chrono::seconds(3);  // for an output that is drawn at all
+constexpr Time kPatience = std::chrono::seconds(3);  // timeout for an output's frame
 
-// A cue's name as part of a file's: letters of any alphabet, and '-' for all that a shell or
-// another system might read its own way.
+// A cue's name as part of a file name. Letters of any alphabet, digits and '_' stay. All other
+// characters become '-', because a shell or another system might interpret them.
 std::string inFileName(std::string text) {
     for (char& letter : text) {
         const auto byte = static_cast<unsigned char>(letter);
@@ -39,7 +39,7 @@ Screenshots::Screenshots(std::filesystem::path folder, const show::Show& show, c
 
 void Screenshots::tick(Time moment) {
     const Time showTime = showClock_.showTime(moment);
-    replica_.stateAt(showTime, state_);  // takes what was pressed, whether or not there is a picture to name
+    replica_.stateAt(showTime, state_);  // takes the inputs, even if there is no picture to name
     if (std::ranges::none_of(outputs_, &Output::awaited) && wanted_.exchange(false)) {
         from_ = showClock_.showTime(moment + kAhead);
         until_ = moment + kAhead + kPatience;
@@ -51,7 +51,7 @@ void Screenshots::tick(Time moment) {
     for (Output& output : outputs_) {
         if (!output.awaited) continue;
         const render::ShownFrame* const frame = output.frames->next(moment);
-        // One that was asked for in vain may come after all.
+        // A frame of an earlier request that timed out may still come; it is ignored.
         if (frame != nullptr && frame->showTime >= from_) {
             const Result<std::filesystem::path> file = write(output.name, *frame);
             if (file)
@@ -72,8 +72,8 @@ Result<std::filesystem::path> Screenshots::write(const std::string& output, cons
         state_.cue < 0 ? "before-the-first-cue"
                        : fmt::format("{}-{}", state_.cue + 1, inFileName(show_.cues[static_cast<std::size_t>(state_.cue)].name));
     const std::string name = fmt::format("{:09.3f}s-{}-{}", seconds(frame.showTime), cue, output);
-    // Pictures of another night stay.
-    std::error_code unknown;  // writing will tell
+    // Existing pictures, such as those of another night, are not overwritten.
+    std::error_code unknown;  // ignored: an error will show when the file is written
     std::filesystem::path file = folder_ / (name + ".png");
     for (int copy = 2; std::filesystem::exists(file, unknown); ++copy) file = folder_ / fmt::format("{}-{}.png", name, copy);
     TRY(writePng(file, frame.image));

@@ -17,23 +17,23 @@
 
 namespace fantascope::app {
 
-// What every output shows at one moment, as PNG files, whenever the operator wants it:
+// Writes what every output shows at one moment to PNG files, whenever the operator asks for it:
 //   00012.400s-2-First-light-left.png   show time, the cue's number and name, the output
 // The pixels are those that the display was given. Thread: take() from any thread; all else from
 // one.
 class Screenshots {
 public:
-    // All outlive it, but for the clock. `frames` of each output: those alone that are asked for.
-    // The folder is made with the first picture. Where a picture is, or why there is none, goes to
-    // `events`.
+    // All arguments by reference outlive this, except `showClock`. `frames`: a reader for each
+    // output, which reads only frames that are asked for. The folder is created with the first
+    // picture. Events report each picture's file, or why there is no picture.
     Screenshots(std::filesystem::path folder, const show::Show& show, const show::InputLog& inputs,
                 const std::vector<std::string>& outputs, const std::vector<render::NewestFrame*>& frames,
                 const show::ShowClock& showClock, show::EventLog& events);
 
-    // How often it looks for what was asked for.
+    // Hz; how often it checks for requests.
     static constexpr double kRate = 20;
-    // A picture of every output, a moment later in the show. Another call before they are taken
-    // takes another one.
+    // Asks for a picture of every output, a moment later. A call while pictures are being taken
+    // asks for another set.
     void take() { wanted_ = true; }
     void tick(Time moment);
 
@@ -49,11 +49,11 @@ private:
     const show::Show& show_;
     const show::ShowClock showClock_;
     show::EventLog& events_;
-    PlaybackReplica replica_;  // names the cue of a frame
+    PlaybackReplica replica_;  // finds the cue of a frame
     show::ShowState state_;
     std::vector<Output> outputs_;
     Time from_{};   // show time of the frames that were asked for
-    Time until_{};  // the moment at which nobody waits for them any more
+    Time until_{};  // the moment at which the wait for them ends
     std::atomic<bool> wanted_ = false;
 };
 

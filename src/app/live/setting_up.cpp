@@ -16,15 +16,15 @@ namespace {
 
 namespace edit = show::edit;
 
-// A direction that is held on the hand controller goes on by itself after this long, with every
-// tick.
+// A direction that is held on the hand controller this long repeats with every tick.
 constexpr Time kHold = std::chrono::milliseconds(400);
-// Terminal keys that come closer together than this belong to one movement: a little more than what
-// comes before a held key is repeated.
+// Terminal keys that come closer together than this belong to one movement. It is a little more
+// than the delay before a terminal repeats a held key.
 constexpr Time kPause = std::chrono::milliseconds(600);
 
 bool isCard(TestPicture picture) { return picture == TestPicture::Bars || picture == TestPicture::Ramp; }
-// Where light is judged, blends belong to it; where places are, all of every picture is to be seen.
+// Pictures for judging light are shown with blends. Pictures for judging positions are shown
+// without, so that all of each output is visible.
 bool blendsShow(TestPicture picture) { return picture == TestPicture::None || isCard(picture); }
 
 }  // namespace
@@ -44,8 +44,8 @@ SettingUp::SettingUp(const show::Site& site, FrameLoop& frames, Devices& devices
         drawn_[i].light = site.outputs[i].projection.light;
         drawn_[i].masks = site.outputs[i].projection.masks;
     }
-    // From here on somebody else's changes of the file are noticed. One that cannot be changed says
-    // so when it is to be written.
+    // From here on, changes of the file by others are noticed. A file that cannot be edited is
+    // reported when it is to be written.
     if (auto document = ConfigDocument::load(site.file)) document_ = std::move(*document);
 }
 
@@ -64,7 +64,7 @@ void SettingUp::tick(Time moment, const std::function<void(const Key&, Time)>& o
     now_ = moment;
     moved_ = false;
     while (const Press* const press = pressed_.next()) {
-        // A terminal tells of no key's release.
+        // A terminal does not report the release of a key.
         if (press->key && moment - std::exchange(lastKey_, moment) > kPause) run(edit::Release{});
         if (press->key)
             take(*press->key);
@@ -165,7 +165,7 @@ void SettingUp::run(const show::EditCommand& command) {
     const std::size_t output = editor_.output();
     const Result<void> done = editor_.apply(command);
     if (editor_.output() != output) pointer_.reset();
-    // What a key has brought about stays to be read when it is let go of.
+    // A message about a key stays readable when the key is released.
     if (!std::holds_alternative<edit::Release>(command)) message_ = done ? "" : done.error().message();
     moved_ |= std::holds_alternative<edit::Move>(command) || std::holds_alternative<edit::MoveTo>(command);
 }
@@ -195,7 +195,7 @@ void SettingUp::save() {
         message_.clear();
         tell(show::event::SiteSaved{file, file.string() + ".previous"});
     } else {
-        document_.reset();  // it may hold a part of the changes
+        document_.reset();  // it may contain some of the changes
         message_ = written.error().message();
         tell(show::event::SiteNotSaved{message_});
     }
@@ -229,7 +229,7 @@ void SettingUp::show() {
         warpsMoved |= drawn_[i].warp != projection.warp.shape();
         blendsDue_ |= drawn_[i].masks != projection.masks || drawn_[i].light.blackLevel != projection.light.blackLevel;
     }
-    // Blends take long: they are worked out once what moves has come to rest.
+    // Blends take long to compute, so this waits until nothing moves.
     blendsDue_ |= warpsMoved;
     const bool newBlends = blendsDue_ && !moved_ && blendsShow(editor_.picture());
     if (newBlends) {

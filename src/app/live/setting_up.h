@@ -22,34 +22,34 @@
 
 namespace fantascope::app {
 
-// Sets the outputs up while the show runs: turns keys, mouse and the hand controller's buttons into
-// the editor's commands, shows what comes of them on the outputs, and writes the site file. Away
-// from it the show is as it was, with the new settings.
+// Sets up the outputs while the show runs. It turns keys, mouse and the hand controller's buttons
+// into the editor's commands, shows the result on the outputs, and writes the site file. When
+// setting up ends, the show is seen again, with the new settings.
 //
-// What it draws and works out takes milliseconds and more, so it has a part of the run for itself.
-// Thread: key() and button() from the input thread, tick() from its part's.
+// Drawing and computing take milliseconds and more, so setting up is a part of its own.
+// Thread: key() and button() from the input thread, tick() from its part's thread.
 class SettingUp {
 public:
-    // All outlive it, but for the clock.
+    // All arguments by reference outlive this, except `showClock`.
     SettingUp(const show::Site& site, FrameLoop& frames, Devices& devices, const show::ShowClock& showClock,
               show::EventLog& events);
 
     static constexpr double kRate = 30;  // Hz
 
     bool on() const { return on_; }
-    // A key of the terminal. Returns whether it is taken: all are while it is on, and before that
-    // the one that begins it.
+    // Takes a key of the terminal. Returns whether it has taken the key. While setting up is on it
+    // takes all keys, otherwise only the key that begins it.
     bool key(const Key& key);
-    // A button of the hand controller with a meaning here.
+    // Takes a press or release of a hand controller's button for setting up.
     void button(show::Button button, bool pressed);
-    // Does what was asked for. `other`: keys at the displays that are none of this, and when they
-    // were pressed.
+    // Carries out the commands so far. `other` is called with each key at a display that is not for
+    // setting up, and with the moment when it was pressed.
     void tick(Time moment, const std::function<void(const Key&, Time)>& other);
-    // Whether something was set that the file does not have. When the part has ended.
+    // Whether some settings are not in the file. Call it when the part has ended.
     bool unsaved() const;
 
 private:
-    // What an output shows of the editing: drawn anew only when it differs.
+    // What an output shows during setting up. It is redrawn only when this differs.
     struct Drawn {
         WarpShape warp{};
         double canvasAspect = 0;
@@ -77,8 +77,8 @@ private:
     void take(const ScreenEvent& event, std::size_t output);
     void run(const show::EditCommand& command);
     void save();
-    // Where a change of the site as it was read belongs in the file as it stands. Error: its output
-    // is gone.
+    // The place in the present file of a place in the site as it was read. Error: the file no
+    // longer has the output.
     Result<ConfigPath> inFile(const ConfigPath& path) const;
     void repeatHeld(Time moment);
     RgbaImage overlayOf(std::size_t output, const Projection& projection, const Drawn& drawn) const;
@@ -93,12 +93,12 @@ private:
     AppendLog<Press>::Reader pressed_ = presses_.reader();
 
     show::SiteEditor editor_;
-    std::optional<ConfigDocument> document_;  // none: it could not be read, or not be written
+    std::optional<ConfigDocument> document_;  // none: the file could not be read or written
     std::string message_;                     // why the last command was refused
     std::optional<glm::dvec2> pointer_;       // on the chosen output
     std::optional<glm::dvec2> grip_;          // from the mouse to the handle that it drags
     bool legend_ = true, moved_ = false;
-    std::optional<glm::dvec2> held_;  // a direction of the hand controller
+    std::optional<glm::dvec2> held_;  // the direction held on the hand controller
     Time heldUntil_{}, lastKey_{}, now_{};
     std::vector<Drawn> drawn_;
     std::vector<std::shared_ptr<const render::BlendMap>> blends_;

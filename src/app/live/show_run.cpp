@@ -42,7 +42,7 @@ namespace {
 
 constexpr double kSiteRate = 120;                          // Hz; a camera frame is exposed at most a tick late
 constexpr double kProgressRate = 2;                        // Hz
-constexpr Time kStartUp = std::chrono::milliseconds(100);  // for the parts to be made and their threads to be there
+constexpr Time kStartUp = std::chrono::milliseconds(100);  // for making the parts and starting their threads
 
 std::vector<std::string> namesOf(const auto& named) {
     std::vector<std::string> names;
@@ -50,11 +50,11 @@ std::vector<std::string> namesOf(const auto& named) {
     return names;
 }
 
-// A show while it runs: its parts, and what they pass to each other. Each part is declared in one
-// function below.
+// A running show: its parts, and what they pass to each other. lightParts() and otherParts() list
+// the parts.
 class ShowRun {
 public:
-    // All outlive it; `recording` and `guard` may be null.
+    // All arguments by reference or pointer outlive this. `recording` and `guard` may be null.
     ShowRun(const RunOptions& options, const Programme& programme, OpenSite& openSite, Recording* recording, Clock& clock,
             const std::filesystem::path& assets, Supervisor& supervisor, RelayGuard* guard)
         : options_(options),
@@ -103,8 +103,8 @@ public:
         supervisor_.step("closing the devices: look at the X server");
     }
 
-    // What goes on until lamps and relays are closed: nothing that waits for a display, a file or a
-    // terminal.
+    // The parts that go on until fixtures and relays are closed. None of them waits for a display,
+    // a file or a terminal.
     std::vector<Part> lightParts() {
         std::vector<Part> parts;
         const Time start = showClock_.runStart();
@@ -143,10 +143,10 @@ public:
         return guardedParts(std::move(parts));
     }
 
-    // On the stepped clock the lights' parts are with the others.
+    // Starts the lights' parts in real time. The stepped clock runs them together with the others.
     void startLights() { lights_.start(lightParts()); }
 
-    // The render thread's life. The end has begun when it returns.
+    // The render thread's loop. When it returns, the lights have begun to end.
     Result<void> draw() {
         TRY(std::move(prepared_));
         clock_.sleepUntil(showClock_.runStart());
@@ -158,7 +158,7 @@ public:
             if (recorder_ && options_.asFastAsPossible)
                 recording.run(clock_.now(), [this](Time moment) { recorder_->record(moment); });
         }
-        if (!stopped()) clock_.sleepUntil(end);  // the last frame is seen
+        if (!stopped()) clock_.sleepUntil(end);  // the last frame is seen until the end
         const bool inTime = !stopped();
         length_ = showClock_.runTime(clock_.now());
         endLights();
@@ -166,13 +166,13 @@ public:
         return {};
     }
 
-    // Relays to their safe states, lamps to their end levels, from now on. Never waits. Thread:
-    // any.
+    // Ends the show's control: relays go to their safe states, fixtures to their end levels. Never
+    // waits. Thread: any.
     void endLights() {
         lighting_.end(clock_.now());
         supervisor_.requestEnd();
     }
-    // What the supervisor needs to end it while the render thread hangs.
+    // The functions that the supervisor needs to end the run while the render thread hangs.
     Supervisor::Run supervised() {
         return {[this] { endLights(); },
                 [this] { lighting_.hurry(); },
@@ -186,8 +186,8 @@ public:
     void closeLights() {
         lights_.close([this] { keys_.close(); });
     }
-    // Tells which relays are not safe and which lamps not at their end levels, and whatever else
-    // nobody was told yet. Once the lights are closed.
+    // Reports which relays are not safe and which fixtures do not have their end levels, and any
+    // other news. Call it once the lights are closed.
     void tellTheRest(const std::function<void(const RunStatus&)>& progress) {
         const Time end = showClock_.runStart() + length_;
         lights_.raiseFaults(end);
@@ -195,14 +195,14 @@ public:
         if (view_.hasNews()) guard.run(end, [&](Time moment) { progress(statusAt(moment)); });
     }
 
-    // Once all parts have ended.
+    // Finishes the recording and makes the report. Call it once all parts have ended.
     RunReport report() {
         std::vector<OutputReport> outputs = frames_.outputs();
         if (recorder_) recorder_->finish(showClock_.runStart() + length_, outputs);
         recordingIsOpen_ = false;
         if (settingUp_.unsaved())
             log::warning("app",
-                         "how the outputs were set up was not written to " + programme_.site.file.string() + " and is lost");
+                         "the outputs' new settings were not written to " + programme_.site.file.string() + " and are lost");
         RunReport report = reportOfLights();
         report.length = length_;
         report.stopReason = options_.length && report.length >= *options_.length ? "length" : "interrupted";
@@ -239,7 +239,7 @@ private:
                           another ? "the relay guard died" : "the relay guard died: " + another.error().message());
         if (another) faults_.clear(now, "", FaultLog::Topic::Guard, "there is a new relay guard");
     }
-    // What is known once the lights are closed, whatever the render thread does.
+    // The figures that are known once the lights are closed, whatever the render thread does.
     RunReport reportOfLights() const {
         RunReport report;
         report.length = showClock_.runTime(clock_.now());
@@ -281,11 +281,11 @@ private:
     }
     std::unique_ptr<FrameRecorder> recorderOf(Recording* recording) {
         if (recording == nullptr) return nullptr;
-        // What is not written yet at the end may take longer than a step's patience.
+        // At the end, writing the rest of the recording may take longer than a step's timeout.
         return std::make_unique<FrameRecorder>(*recording, programme_.site, frames_, clock_, faults_,
                                                [this] { supervisor_.advance(); });
     }
-    // A reader of each output's frames, where somebody reads.
+    // A reader for each output's frames; none unless `wanted`.
     template <class Add>
     std::vector<std::invoke_result_t<Add, render::FrameTap&>> readers(bool wanted, const Add& add) {
         std::vector<std::invoke_result_t<Add, render::FrameTap&>> readers;
@@ -302,7 +302,7 @@ private:
                 [this] { endLights(); }};
     }
 
-    // What the displays show is what the simulated projectors throw, whatever display it is.
+    // The simulated projectors throw what the displays show, whatever the displays' drivers are.
     Part simulatedSite() {
         openSite_.simulation->begin(showClock_.runStart());
         return {"site", kSiteRate, showClock_.runStart(),
@@ -344,30 +344,30 @@ private:
     FaultLog faults_;
     show::InputLog inputs_;
     FrameLoop frames_;
-    std::unique_ptr<TerminalKeys> terminal_;      // null: as fast as possible, there is nobody to press a key
-    const bool attended_;                         // somebody at the terminal may press one
-    std::vector<render::NewestFrame*> wall_;      // what simulated projectors throw; none where they are real
+    std::unique_ptr<TerminalKeys> terminal_;      // null: as fast as possible, nobody presses keys
+    const bool attended_;                         // somebody at the terminal can press keys
+    std::vector<render::NewestFrame*> wall_;      // what simulated projectors throw; empty if they are real
     std::unique_ptr<FrameRecorder> recorder_;     // null: nothing is recorded
-    std::atomic<bool> recordingIsOpen_;           // its files are not there yet
-    std::vector<render::NewestFrame*> pictured_;  // none where no terminal listens
+    std::atomic<bool> recordingIsOpen_;           // its files are not finished yet
+    std::vector<render::NewestFrame*> pictured_;  // empty unless somebody at the terminal can press keys
     Result<void> prepared_;
-    const show::ShowClock showClock_;  // starts after everything slow, with a refresh
-    DeviceWatch deviceWatch_;          // the devices part's
+    const show::ShowClock showClock_;  // starts with a refresh, after everything slow
+    DeviceWatch deviceWatch_;          // belongs to the devices part
     Lighting lighting_;
     Hand hand_;
     Watch watch_;
     SettingUp settingUp_;
     OperatorKeys keys_;
-    RunView view_;  // the progress part's
+    RunView view_;  // belongs to the progress part
     std::optional<Screenshots> screenshots_;
     Time length_{};
-    bool guardIsAway_ = false;  // the supervisor's
+    bool guardIsAway_ = false;  // belongs to the supervisor's thread
     std::int64_t framesBefore_ = 0;
     Yardstick yardstick_;
-    RunLights lights_;  // last, so that none of its threads works on what has gone
+    RunLights lights_;  // last, so that its threads end before the other members are destroyed
 };
 
-// A guard where relays are real.
+// A guard, if the site's relays are real; otherwise null.
 Result<std::unique_ptr<RelayGuard>> guardOf(const RunOptions& options, const show::Site& site, const SiteClaims& claims) {
     if (options.backends != Backends::AsDeclared || site.relayBanks.empty()) return std::unique_ptr<RelayGuard>();
     return RelayGuard::start(site, claims.files());
@@ -384,12 +384,13 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
     SteadyClock steadyClock;
     SteppedClock steppedClock;
     Clock& clock = options.asFastAsPossible ? static_cast<Clock&>(steppedClock) : steadyClock;
-    SiteClaims claims;  // what is simulated takes nothing from anybody
+    SiteClaims claims;  // a simulated site needs none
     if (options.backends == Backends::AsDeclared) claims = TRY(SiteClaims::take(programme.site, interrupt));
     const std::unique_ptr<RelayGuard> guard = TRY(guardOf(options, programme.site, claims));
     Supervisor supervisor(interrupt, guard.get());
     supervisor.step("opening the devices: look at the X server");
-    if (!options.asFastAsPossible) setThreadRank(Rank::Render);  // before the displays make threads of their own
+    if (!options.asFastAsPossible)
+        setThreadRank(Rank::Render);  // before the displays start threads of their own, which inherit it
     const auto openSite = TRY(OpenSite::open(programme.site, options.backends, options.seed, clock));
     std::unique_ptr<Recording> recording;
     if (!options.recordTo.empty()) {

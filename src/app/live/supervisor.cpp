@@ -18,12 +18,12 @@ namespace fantascope::app {
 namespace {
 
 constexpr Time kLook = std::chrono::milliseconds(50);
-constexpr Time kOnePress = std::chrono::milliseconds(500);                                       // signals within it are one
+constexpr Time kOnePress = std::chrono::milliseconds(500);                                       // signals within it count as one
 constexpr Time kFirstPause = std::chrono::seconds(1), kLongestPause = std::chrono::seconds(30);  // between guards that die
-constexpr Time kLampsWithin = std::chrono::seconds(1);  // their next frame, on a machine that is busy
-constexpr unsigned kLastResort = 15;                    // s; whatever hangs in the way out as well
+constexpr Time kLampsWithin = std::chrono::seconds(1);  // for the next DMX frame, on a busy machine
+constexpr unsigned kLastResort = 15;                    // s; then the program exits, even if leave() hangs, too
 
-// Whether somebody may read a file of ours as we write it, and go.
+// Whether the file is a pipe, whose reader may go away.
 bool isPipe(int file) {
     struct stat status {};
     return fstat(file, &status) == 0 && S_ISFIFO(status.st_mode);
@@ -43,7 +43,7 @@ Supervisor::Supervisor(const Interrupt& interrupt, RelayGuard* guard)
       }) {}
 
 Supervisor::~Supervisor() {
-    const std::lock_guard lock(mutex_);  // never, where it is leaving
+    const std::lock_guard lock(mutex_);  // never acquired while leave() runs
     thread_.request_stop();
 }
 
@@ -96,13 +96,14 @@ void Supervisor::keepGuard(Time now) {
     guardPause_ = std::clamp(2 * guardPause_, kFirstPause, kLongestPause);
     nextGuard_ = now + guardPause_;
     const std::lock_guard lock(mutex_);
-    if (run_) run_->tellGuardDied(restarted);  // without a run no relay was switched, or all is told
+    if (run_) run_->tellGuardDied(restarted);  // without a run, no relay was switched yet, or everything has been reported
 }
 
-// Nobody draws a status line yet, and an X server that hangs answers no call.
+// Writes to the terminal directly: there is no status line yet, and a hanging X server answers no
+// call.
 void Supervisor::tellOfSlowSetUp(Time now) {
     if (!isSettingUp_ || doing_.empty() || now - since_ < patience_) return;
-    isSettingUp_ = false;  // once
+    isSettingUp_ = false;  // reported only once
     std::fputs(fmt::format("fantascope: still {}; lamps and relays wait for that. Ctrl-C ends\n", doing_).c_str(), stderr);
 }
 
@@ -113,7 +114,7 @@ void Supervisor::live(const std::stop_token& stop) {
         ppoll(&request, 1, &patience, nullptr);
         try {
             look(stop);
-        } catch (const std::exception& failure) {  // at the next look it may have memory again
+        } catch (const std::exception& failure) {  // there may be memory again at the next look
             std::fputs("\nfantascope: error: the supervisor failed: ", stderr);
             std::fputs(failure.what(), stderr);
             std::fputs("\n", stderr);
@@ -132,7 +133,7 @@ void Supervisor::look(const std::stop_token& stop) {
     }
     if (stop.stop_requested()) return;
     begin(now);
-    // Some programs that start others hand a signal on that they all got.
+    // Some parent programs pass on a signal that this program has received directly as well.
     if (interrupt_.count() > std::exchange(signals_, interrupt_.count()) && now - *began_ > kOnePress) pressedAgain_ = true;
     if (const auto why = hung(now)) leave(*why);
 }
@@ -141,7 +142,7 @@ void Supervisor::leave(const std::string& why) {
     signal(SIGALRM, [](int) { _exit(1); });
     alarm(kLastResort);
     if (run_) {
-        run_->hurry();  // most lamps keep the last levels that they got
+        run_->hurry();  // most fixtures hold the last levels that they received
         const Time latest = std::max(*began_ + kSafeWithin, clock_.now() + kLampsWithin);
         while (!run_->ended() && clock_.now() < latest) clock_.sleepUntil(clock_.now() + std::chrono::milliseconds(5));
         run_->close();

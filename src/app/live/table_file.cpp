@@ -25,7 +25,7 @@ Error TableFile::refused(int reason) const {
 }
 
 Result<void> TableFile::open() {
-    std::error_code unknown;  // opening will tell
+    std::error_code unknown;  // ignored: an error will show when the file is opened
     if (path_.has_parent_path()) fs::create_directories(path_.parent_path(), unknown);
     file_ = drivers::FileHandle(::open(unfinished().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
     if (!file_.isOpen()) return refused(errno);

@@ -12,24 +12,23 @@
 
 namespace fantascope::app {
 
-// A text file that grows line by line while a show runs. Whoever adds a line never waits for the
-// disk: lines wait in memory until somebody writes them, about every second. Until finish() the
-// file is called PATH.unfinished, and a program that ends before leaves that behind, whole lines up
-// to some point.
+// A text file that grows line by line while a show runs. add() never waits for the disk: lines wait
+// in memory until write(), about every second. Until finish() the file is called PATH.unfinished. A
+// program that ends earlier leaves that file, with whole lines up to some point.
 // Thread: add() from any; the rest from one at a time.
 class TableFile {
 public:
-    // So much may wait for a disk that does not keep up.
+    // The most text that may wait for a slow disk.
     static constexpr std::size_t kMostWaiting = std::size_t{64} << 20;  // bytes
 
-    // Nothing is written yet. `heading`: the first line, with its end.
+    // Writes nothing yet. `heading`: the first line, with its line end.
     TableFile(std::filesystem::path path, std::string heading) : path_(std::move(path)), waiting_(std::move(heading)) {}
 
-    void add(std::string_view line);  // with its end
-    // Writes what waits. Error, once: names the file, and why it ends here; whatever is added later
-    // is left out.
+    void add(std::string_view line);  // with its line end
+    // Writes the waiting lines. Error, only once: names the file, and why it ends here. Lines added
+    // later are dropped.
     Result<void> write();
-    // The same, and gives the file its name.
+    // Writes the waiting lines, and gives the file its name.
     Result<void> finish();
 
 private:
@@ -39,8 +38,8 @@ private:
     Error refused(int reason) const;
 
     const std::filesystem::path path_;
-    drivers::FileHandle file_;  // closed before the first write(), and once it has ended
-    std::string writing_;       // what write() has taken; keeps its room
+    drivers::FileHandle file_;  // closed before the first write(), and once the file has ended
+    std::string writing_;       // what write() has taken; a member, so that it keeps its capacity
     std::mutex mutex_;          // of:
     std::string waiting_;
     bool overflowed_ = false, ended_ = false;

@@ -21,8 +21,8 @@ Watch::Watch(const show::Show& show, std::vector<std::string> outputs, std::vect
 }
 
 const vision::GuideComparison* Watch::comparisonOf(std::size_t output) const {
-    // In a crossfade of two drawings neither is what should be seen, and what is nearly dark cannot
-    // be told from the night.
+    // A crossfade of two sources is not compared with either guide. Nor is a picture that is nearly
+    // dark, because the camera cannot distinguish it from the night.
     constexpr float kAlone = 0.05f, kBright = 0.5f;
     if (shown_.value().blackout || output >= shown_.value().outputs.size()) return nullptr;
     const vision::GuideComparison* comparison = nullptr;
@@ -54,8 +54,8 @@ void Watch::tick(Time) {
 }
 
 void Watch::keepForCue(int cue, std::shared_ptr<const CameraFrame> frame, Time showTime) {
-    // Lamps and relays may be a moment ahead of the pictures, so a cue's last frame may show the
-    // next cue already: the one before counts.
+    // Fixtures and relays may be a moment ahead of the pictures, so a cue's last camera frame may
+    // already show the next cue. Therefore the frame before it is kept.
     if (recording_ != nullptr && last_.frame && cue >= 0 && cue == last_.cue) {
         const std::string& name = show_.cues[static_cast<std::size_t>(cue)].name;
         recording_->cue(cue, fmt::format("{} {}  ({:.1f} s)", cue + 1, name, seconds(last_.showTime)), last_.frame->image);

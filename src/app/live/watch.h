@@ -19,28 +19,29 @@
 
 namespace fantascope::app {
 
-// The eye on the site: scores each output's picture on the wall against the guide of the pattern
-// that is on it, and keeps what the camera saw of each cue. It is told which cue and sources are
-// on, the camera's frames and the nominal site, and nothing of what really happens.
+// Watches the site through its camera. It scores each output's picture on the wall against the
+// guide of the source that is on it, and keeps the camera's last picture of each cue. It knows the
+// show state, the camera's frames and the nominal site, but not what really happens at the site.
 class Watch {
 public:
-    // What an output is compared with, for each source of the show that can be compared.
+    // The comparisons of an output, for each source of the show that has a guide.
     using Comparisons = show::BySource<std::shared_ptr<const vision::GuideComparison>>;
 
-    // All outlive it, but for the clock; `camera`, `pictures` and `recording` may be null.
-    // `comparisons[output]`. What the camera sees goes on into `pictures`.
+    // All arguments by reference or pointer outlive this, except `showClock`. `camera`, `pictures`
+    // and `recording` may be null. `comparisons`: by output. The camera's pictures are passed on to
+    // `pictures`.
     Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
           render::PictureFeed* pictures, const show::ShowClock& showClock, Recording* recording);
 
-    // How often the camera is asked for a new frame.
+    // Hz; how often the camera is polled for a new frame.
     static constexpr double kRate = 50;
-    // The state that is shown, from the render thread.
+    // The slot for the show state that is shown; the render thread writes it.
     LatestValue<show::ShowState>& shown() { return shown_; }
     void tick(Time moment);
 
-    // The newest score of each output, for the progress line; negative: none yet. Thread-safe.
+    // The newest score of each output, for the status line; negative: none yet. Thread-safe.
     std::vector<double> newestScores() const;
-    // Once the part has ended: z_camera by output.
+    // z_camera by output. Call it once the part has ended.
     const std::map<std::string, std::vector<std::pair<Time, double>>>& series() const { return series_; }
 
 private:

@@ -8,9 +8,9 @@
 
 namespace fantascope::app {
 
-// What the machine itself misses: a part with the render thread's rank that does nothing. Its late
-// ticks are the machine's.
-// Thread: tick() on its part's; the rest once that has ended.
+// Measures what the machine itself misses: a part with the render thread's rank that does nothing.
+// If its ticks are late, the machine is the cause.
+// Thread: tick() on its part's thread; the rest once the part has ended.
 class Yardstick {
 public:
     // `rate`: Hz, that of the frames.

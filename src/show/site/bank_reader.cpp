@@ -3,8 +3,8 @@
 namespace fantascope::show {
 namespace {
 
-constexpr int kLastCoil = 1967;   // one Modbus request writes 1968 coils at most (Modbus 1.1b3, section 6.11)
-constexpr int kLastInput = 1999;  // one Modbus request reads 2000 inputs at most (section 6.2)
+constexpr int kLastCoil = 1967;   // one Modbus request writes at most 1968 coils (Modbus 1.1b3, section 6.11)
+constexpr int kLastInput = 1999;  // one Modbus request reads at most 2000 inputs (section 6.2)
 
 }  // namespace
 

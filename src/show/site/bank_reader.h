@@ -12,10 +12,11 @@
 
 namespace fantascope::show {
 
-// The banks of one kind, and which places in each are taken.
+// The banks of one kind, and the places that are taken in each.
 class Banks {
 public:
-    // The keys of the file's lists of them, and of what is in them.
+    // `key`: of the file's list of these banks. `membersKey`: of the list of their relays or
+    // contacts.
     Banks(std::string_view key, std::string_view membersKey) : key_(key), membersKey_(membersKey) {}
 
     Result<Bank> read(const ConfigNode& node, std::set<std::string>& deviceNames) {
@@ -23,15 +24,15 @@ public:
         ConfigFields fields(node);
         fields.read("name", bank.name, onceNamed(deviceNames, "device"));
         fields.read("device", bank.device, readDevice);
-        banks_.push_back(bank);  // what is wrong with it is no fault of its relays or contacts
+        banks_.push_back(bank);  // even a faulty one: its relays or contacts are no further faults
         nodes_.push_back(node);
         names_.push_back(bank.name);
         areAllKnown_ = areAllKnown_ && !bank.name.empty();
         TRY(fields.finish());
         return bank;
     }
-    // Declares the keys that say where a relay or contact is. Who has one bank need not call it by
-    // its name.
+    // Declares the keys that say where a relay or contact is. A site with one bank of the kind may
+    // omit `bank`.
     void declarePlace(ConfigFields& fields, std::size_t& bank, std::string_view placeKey, int& place, std::string_view owner,
                       int last) {
         std::optional<std::size_t> known;
@@ -45,22 +46,22 @@ public:
         fields.read(placeKey, place, [&](const ConfigNode& node) -> Result<int> {
             if (names_.empty() && !std::exchange(toldOfNone_, true))
                 return node.error(fmt::format("there is no bank; add it under '{}'", key_));
-            if (!known) return 0;  // whether the place is free nobody can say
+            if (!known) return 0;  // without the bank, the place cannot be checked
             bank = *known;
             return onceNumbered(taken_[bank], owner, 0, last)(node);
         });
         areAllPlaced_ = areAllPlaced_ && fields.right();
     }
-    // Once all relays or contacts are read.
+    // Refuses empty banks. Call it once all relays or contacts are read.
     void check(ConfigFields& fields) const {
         for (std::size_t bank = 0; bank < nodes_.size() && areAllKnown_ && areAllPlaced_; ++bank)
             if (!taken_.contains(bank))
                 fields.check(nodes_[bank],
-                             nodes_[bank].error(fmt::format("nothing is in the bank '{}'; say what under '{}', or take it away",
+                             nodes_[bank].error(fmt::format("the bank '{}' is empty; add to it under '{}', or remove it",
                                                             names_[bank], membersKey_)));
     }
 
-    // ask(bank, how many places it has) of every bank whose device is named.
+    // Calls ask(bank, number of its places) for every bank whose driver is named.
     template <class Ask>
     void each(Ask ask) const {
         for (std::size_t bank = 0; bank < banks_.size(); ++bank)
@@ -72,15 +73,15 @@ private:
     const std::string_view key_, membersKey_;
     std::vector<Bank> banks_;
     std::vector<ConfigNode> nodes_;
-    std::vector<std::string> names_;  // empty where one could not be read
-    bool areAllKnown_ = true;         // the names
-    bool areAllPlaced_ = true;        // nothing is wrong with what is in the banks
+    std::vector<std::string> names_;  // "" for a name that could not be read
+    bool areAllKnown_ = true;         // every name could be read
+    bool areAllPlaced_ = true;        // no relay or contact so far has a fault
     bool toldOfNone_ = false;
-    std::map<std::size_t, std::set<int>> taken_;  // places in each
+    std::map<std::size_t, std::set<int>> taken_;  // the places that are taken, by bank
 };
 
-// One entry of a site's `relays`, or of its `contacts`. `names`: of those so far. Error: place,
-// key, advice.
+// Reads one entry of a site's `relays`, or of its `contacts`. `names`: of the entries so far.
+// Error: place, key, advice.
 Result<Relay> readRelay(const ConfigNode& node, std::set<std::string>& names, Banks& banks);
 Result<Contact> readContact(const ConfigNode& node, std::set<std::string>& names, Banks& banks);
 

@@ -47,7 +47,7 @@ void DmxMerge::mergeAt(Time now, std::span<const std::uint8_t, 512> own, std::sp
         setSlots(own_, own, now);
     else
         std::copy(own.begin(), own.end(), own_.slots.begin());
-    // Somebody silent keeps its place until it has settled.
+    // A silent desk keeps its place until its settling time is over.
     const auto isOver = [&](const Source& source) { return now - source.arrived > source.silence + settings_.settling; };
     for (std::size_t i = 0; i < count_;) {
         if (!isOver(sources_[i])) {

@@ -12,28 +12,28 @@
 
 namespace fantascope::show {
 
-// Something that can be moved.
+// Something that the editor can move.
 struct EditHandle {
-    std::optional<glm::dvec2> at;  // projector pixels, for what has a place there
+    std::optional<glm::dvec2> at;  // projector pixels; none: the handle has no place on the picture
     std::string label;
 };
 
-// What can be moved of the masks. Images are the file's alone.
+// A handle of a mask. Masks that are images have none: only the file changes them.
 struct MaskHandle {
     enum class Kind { Point, Whole, Feather };
     Kind kind = Kind::Point;
     std::size_t mask = 0, point = 0;
 };
 
-// Of all masks, in their order: the points of one, the whole of it, its feather.
+// The handles of all masks, mask by mask: its points, the whole mask, its feather.
 std::vector<MaskHandle> maskHandles(const std::vector<Mask>& masks);
 
-// The one that a handle belongs to. Error: there is none.
+// The mask handle with the index `handle`. Error: no mask can be moved.
 Result<MaskHandle> chosenOf(const std::vector<Mask>& masks, std::size_t handle);
 
 EditHandle editHandle(const std::vector<Mask>& masks, const MaskHandle& handle);
 
-// What it is now, in words.
+// The handle's present value, in words.
 std::string valueText(const Mask& mask, const MaskHandle& handle);
 
 // "12.50, 3.00"

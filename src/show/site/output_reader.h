@@ -7,8 +7,8 @@
 
 namespace fantascope::show {
 
-// One entry of a site's `outputs`. Its canvas is empty if the file names none. `names`: of the
-// outputs so far, to which it adds its own. Error: place, key, advice.
+// Reads one entry of a site's `outputs`. Its canvas is empty if the file names none. `names`: of
+// the outputs so far; the function adds this output's name. Error: place, key, advice.
 Result<Output> readOutput(const ConfigNode& node, std::set<std::string>& names, DriversWord& drivers);
 
 }  // namespace fantascope::show

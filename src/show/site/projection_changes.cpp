@@ -18,12 +18,12 @@ ConfigValue valueOf(const Mask& mask) {
     return map;
 }
 
-// What makes one list of masks of another, as calls of set(differs, path, value): what differs is
-// written at its place, and what goes is taken from the end of that.
+// Calls set(differs, path, value) for each step that turns the list of masks `then` into `now`.
+// Different masks are written at their places; surplus ones are erased behind those, from the end.
 template <class Set>
 void maskChanges(const std::vector<Mask>& then, const std::vector<Mask>& now, const Set& set) {
     if (now.empty()) return set(!then.empty(), {"masks"}, std::nullopt);
-    std::size_t behind = 0;  // which moves up as it is, with its remarks
+    std::size_t behind = 0;  // equal masks at the end: they move up unchanged, with their comments in the file
     while (now.size() < then.size() && behind < now.size() && now[now.size() - 1 - behind] == then[then.size() - 1 - behind])
         ++behind;
     const std::size_t written = now.size() - behind;

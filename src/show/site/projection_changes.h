@@ -9,14 +9,14 @@
 
 namespace fantascope::show {
 
-// One entry of the site file that is to read otherwise.
+// A change of one entry of the site file.
 struct SiteChange {
     ConfigPath path;
-    std::optional<ConfigValue> value;  // none: the key goes
+    std::optional<ConfigValue> value;  // none: erase the key
 };
 
-// What makes one projection of another in the file: each value that differs, at its place in the
-// site's output number `output`.
+// The changes of the file that turn the projection `then` of the site's output number `output` into
+// `now`: one for each value that differs.
 std::vector<SiteChange> projectionChanges(const Projection& then, const Projection& now, std::size_t output);
 
 }  // namespace fantascope::show

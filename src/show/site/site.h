@@ -21,7 +21,7 @@
 
 namespace fantascope::show {
 
-constexpr double kBrightestBlack = 0.1;  // of a projector: 10 : 1, in bright surroundings
+constexpr double kBrightestBlack = 0.1;  // of a projector: a contrast of 10 : 1, with bright ambient light
 
 // A device as the site file declares it: the registry's name of its driver and the driver's own
 // keys, which the driver reads.
@@ -37,13 +37,14 @@ struct Surface {
     glm::dvec3 normal{0, 0, 1};  // unit, towards the projector
 };
 
-// Where a projector or a camera stands by the drawings, and its optics.
+// Where a projector stands by the plan, and its optics.
 struct NominalProjector {
     Pose pose;
     double throwRatio = 1.5;    // distance / picture width
     glm::dvec2 lensShift{0.0};  // in picture widths and heights, right and up
 };
 
+// Where the camera stands by the plan, and its optics.
 struct NominalCamera {
     Pose pose;
     glm::ivec2 size{640, 360};
@@ -55,8 +56,8 @@ struct Output {
     std::string name;
     DeviceConfig display;
     double refreshRate = 60;               // Hz
-    std::string canvas;                    // the outputs of one name throw parts of one picture; its own name where no other does
-    std::optional<glm::dvec2> canvasSize;  // width and height of the whole canvas on the wall, metres, as somebody measured it
+    std::string canvas;                    // outputs with the same canvas show parts of one picture; default: the output's name
+    std::optional<glm::dvec2> canvasSize;  // width and height of the whole canvas on the wall, metres, as measured
     Projection projection;
     std::optional<NominalProjector> projector;
     std::optional<Surface> surface;
@@ -64,7 +65,7 @@ struct Output {
     glm::ivec2 size() const { return projection.size; }  // pixels of the projector
 };
 
-// Somebody else's desk, which may take a universe over.
+// Another lighting controller, which may take over a universe.
 struct Desk {
     DeviceConfig device;
     DmxMerge::Settings merge;
@@ -76,74 +77,74 @@ struct Universe {
     std::optional<Desk> desk;
 };
 
-// A DMX lamp: consecutive slots, one level each.
+// What DMX lights: consecutive slots, one level each.
 struct Fixture {
     std::string name;
     int universe = 1;
     int address = 1;                    // 1 .. 512, of the first channel
     std::vector<std::string> channels;  // "intensity", "red", ...
-    std::vector<float> end{};           // 0..1, of each channel when the show is over; channels beyond the last one are dark
+    std::vector<float> end{};           // 0..1, end levels of the first channels; the other channels end dark
 };
 
 // A module with relays, or one with contacts.
 struct Bank {
-    std::string name;  // no other device has it
+    std::string name;  // unique among all devices
     DeviceConfig device;
 };
 
 struct Relay {
     std::string name;
     std::size_t bank = 0;  // of Site::relayBanks
-    int coil = 0;          // its place in the bank, from 0; each once
-    bool safe = true;      // the state to fall back to; street lamps: on
+    int coil = 0;          // its place in the bank, from 0; unique
+    bool safe = true;      // the safe state; street lamps: on
 };
 
-// From Edit on they set the outputs up (SiteEditor).
+// What a button of the hand controller does. Edit and all after it are for setting up (SiteEditor).
 enum class Button { Go, Back, Blackout, Edit, Left, Right, Up, Down, Next, Output, Tool, Picture, Undo, Write };
 
 std::string_view nameOf(Button button);  // its key in the site file: "go"
 
-// What a contact that moves asks for: a door may be a GO, an emergency button the dark.
+// What a contact asks for when it closes or opens: a door may give GO, an emergency button Dark.
 enum class ContactAction { Go, Back, Blackout, Dark, Light };
 
 struct Contact {
     std::string name;
     std::size_t bank = 0;                        // of Site::contactBanks
-    int input = 0;                               // its place in the bank, from 0; each once
+    int input = 0;                               // its place in the bank, from 0; unique
     std::optional<ContactAction> closes, opens;  // at least one
 };
 
-// The place as the technician wrote it down: the nominal site. Read at start, constant afterwards.
-// See docs/site-format.md.
+// The nominal site: the place as the technician described it. It is read at the start and constant
+// afterwards. See docs/site-format.md.
 struct Site {
     std::filesystem::path file;
     std::string text;  // the file as it was read
     std::vector<Output> outputs;
     std::vector<Universe> universes;
     std::vector<Fixture> fixtures;
-    Time endFade = std::chrono::seconds(1);  // in which lamps go to Fixture::end when the show is over
+    Time endFade = std::chrono::seconds(1);  // fade of the fixtures to their end levels when the show is over
     std::vector<Bank> relayBanks;            // each with at least one relay
     std::vector<Relay> relays;
     std::optional<DeviceConfig> cueController;
-    std::vector<std::pair<int, Button>> buttons;  // controller button -> what it does; each number once
+    std::vector<std::pair<int, Button>> buttons;  // controller button -> what it does; numbers are unique
     std::vector<Bank> contactBanks;               // each with at least one contact
     std::vector<Contact> contacts;
     std::optional<DeviceConfig> camera;
-    std::optional<NominalCamera> nominalCamera;  // there whenever `camera` is
+    std::optional<NominalCamera> nominalCamera;  // set whenever `camera` is
     std::optional<ConfigNode> simulation;        // the simulated site's own section
 
-    // The same with projectors that have `factor` times as many pixels across and down.
+    // The same site with `factor` times as many projector pixels across and down.
     Site scaled(glm::dvec2 factor) const;
-    // The indices of the outputs that throw parts of one canvas, in the site's order.
+    // The indices of the outputs that show parts of one canvas, in the site's order.
     std::vector<std::size_t> outputsOn(std::string_view canvas) const;
     std::size_t firstLevel(std::size_t fixture) const;  // where a fixture's channels begin in Look::levels
     std::size_t channelCount() const;                   // of all fixtures: the size of Look::levels
-    std::size_t coilCount(std::size_t bank) const;      // a relay bank's highest coil + 1: its size
-    std::size_t inputCount(std::size_t bank) const;     // a contact bank's highest input + 1: its size
+    std::size_t coilCount(std::size_t bank) const;      // the size of a relay bank: its highest coil + 1
+    std::size_t inputCount(std::size_t bank) const;     // the size of a contact bank: its highest input + 1
 };
 
-// Reads the keys of a site file that are a driver's own: show knows no driver. Nothing is opened.
-// Each call gives all that is wrong with them.
+// Checks the drivers' own keys of a site file, because show knows no driver. It opens no device.
+// Error of each call: all that is wrong with the keys.
 class DeviceReader {
 public:
     virtual ~DeviceReader() = default;
@@ -154,17 +155,18 @@ public:
     virtual Result<void> contactBank(const Bank& bank, std::size_t size) = 0;
     virtual Result<void> cueController(const DeviceConfig& device) = 0;
     virtual Result<void> camera(const DeviceConfig& device) = 0;
-    // Of a site with a `simulation` section, when all other sections are right.
+    // Called for a site with a `simulation` section, if all other sections are right.
     virtual Result<void> simulation(const Site& site) = 0;
 };
 
-// Strict. Besides types, ranges and unknown keys it refuses two things of one name, coil or button;
-// fixtures on top of each other, beyond slot 512 or on no universe; a bank without a relay or
-// contact, and those of no bank; a contact that asks for nothing; folded corners; a surface turned
-// from its projector. `devices` reads what the drivers need; null: nobody does. Error: all that is
-// wrong, a line for each with file, line, column, key, advice.
+// Reads a site file. Strict. Besides wrong types, ranges and unknown keys it refuses: two things
+// with one name, coil or button; fixtures that overlap, end beyond slot 512 or are on no universe;
+// a bank without relays or contacts; a relay or contact without a bank; a contact without an
+// action; folded corners; a surface that faces away from its projector. `devices` checks the
+// drivers' keys; null: they are not checked. Error: all faults, one line each, with file, line,
+// column, key, advice.
 Result<Site> readSite(const std::filesystem::path& file, DeviceReader* devices = nullptr);
-// The same of a text that stood in `file`.
+// Reads a site from the text of `file`.
 Result<Site> parseSite(std::string text, const std::filesystem::path& file, DeviceReader* devices = nullptr);
 
 }  // namespace fantascope::show

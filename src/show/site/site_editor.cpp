@@ -18,12 +18,12 @@ namespace {
 
 using edit::Tool;
 
-// More than an evening's work; each step keeps a mesh and masks at most.
+// This is more than an evening's work. Each step keeps one projection: a mesh and masks at most.
 constexpr std::size_t kMostUndone = 1000;
 
-// Coarse, usual and fine. A tenth of a pixel moves an antialiased edge just so that it is seen.
+// Coarse, usual and fine steps. A tenth of a pixel moves an antialiased edge just visibly.
 constexpr std::array<double, 3> kPixels = {10, 1, 0.1}, kShares = {0.01, 0.001, 0.0001};
-constexpr double kPixelGrain = 100, kShareGrain = 100000;  // what is kept of a number, parts of one: files stay readable
+constexpr double kPixelGrain = 100, kShareGrain = 100000;  // values are rounded to 1 / grain, so that files stay readable
 
 double rounded(double value, double grain) { return std::round(value * grain) / grain; }
 glm::dvec2 rounded(glm::dvec2 value, double grain) { return {rounded(value.x, grain), rounded(value.y, grain)}; }
@@ -31,7 +31,7 @@ glm::dvec2 rounded(glm::dvec2 value, double grain) { return {rounded(value.x, gr
 constexpr std::string_view kCornerNames[] = {"top left", "top right", "bottom right", "bottom left", "whole picture"};
 constexpr std::string_view kEdgeNames[] = {"left edge", "top edge", "right edge", "bottom edge"};
 constexpr std::string_view kToolNames[] = {"corners", "mesh", "part of the canvas", "masks", "light"};
-constexpr std::size_t kWhole = 4;  // of the corners' handles
+constexpr std::size_t kWhole = 4;  // the index of "whole picture"
 constexpr const char* kNoMaskChosen = "choose a mask first";
 
 // A number of the projector's light.
@@ -42,7 +42,7 @@ struct LightValue {
     double (*read)(const ProjectorLight&);
     void (*write)(ProjectorLight&, double);
 };
-constexpr double kUsualGamma = 2.2;  // where one begins who leaves sRGB
+constexpr double kUsualGamma = 2.2;  // the first gamma after sRGB
 constexpr LightValue kLightValues[] = {
     {"brightness",
      {0.1, 0.01, 0.001},
@@ -82,7 +82,7 @@ constexpr LightValue kLightValues[] = {
      [](ProjectorLight& light, double value) { light.white.b = value; }},
 };
 
-// `index` + `step`, round a circle of `count`.
+// (`index` + `step`) modulo `count`, never negative.
 std::size_t stepped(std::size_t index, int step, std::size_t count) {
     const auto size = static_cast<std::ptrdiff_t>(count);
     return static_cast<std::size_t>(((static_cast<std::ptrdiff_t>(index) + step) % size + size) % size);
@@ -130,7 +130,7 @@ std::vector<EditHandle> SiteEditor::handles() const {
     std::vector<EditHandle> handles;
     switch (tool_) {
         case Tool::Corners: {
-            // Where the picture's corners are seen, so with the mesh, if there is one.
+            // The corners as they are seen: with the mesh, if there is one.
             const auto square = rectangleCorners(1, 1);
             for (std::size_t i = 0; i < 4; ++i)
                 handles.push_back({shape.corners[i] + warp.offsetAt(square[i]), std::string(kCornerNames[i])});
@@ -199,7 +199,7 @@ std::vector<std::string> SiteEditor::lines() const {
             fmt::format("{}{}step {}", value, value.empty() ? "" : "   ", step), unsaved().empty() ? "saved" : "not saved"};
 }
 
-// Takes the projection over if it can be projected; a move that goes on is undone as one.
+// Adopts the projection if it can be projected. Successive moves are undone as one.
 Result<void> SiteEditor::change(Projection wanted, bool moves) {
     if (!wanted.warp.reaches(wanted.size)) return Error("nothing of the picture would be seen");
     if (!(moves && moving_)) done_.push_back({output_, projection()});
@@ -227,7 +227,7 @@ Result<void> SiteEditor::moveBy(glm::dvec2 move, bool pixels) {
             shape.mesh.offsets[handle_] = rounded(shape.mesh.offsets[handle_] + move, kPixelGrain);
             break;
         case Tool::Part: {
-            // Pixels of the picture stand for as much of the canvas.
+            // Converts pixels of the picture to canvas widths and heights.
             const glm::dvec2 share =
                 pixels ? move / glm::dvec2(wanted.size) * (shape.part.high - shape.part.low) : move * kShares[step];
             double& edge = edgeOf(shape.part, handle_);
@@ -247,12 +247,12 @@ Result<void> SiteEditor::moveBy(glm::dvec2 move, bool pixels) {
             const auto isFar = [](glm::dvec2 point) {
                 return std::max(std::abs(point.x), std::abs(point.y)) > Mask::kMaxCoordinate;
             };
-            if (std::any_of(mask.polygon.begin(), mask.polygon.end(), isFar)) return Error("so far away it hides nothing");
+            if (std::any_of(mask.polygon.begin(), mask.polygon.end(), isFar)) return Error("a mask so far away hides nothing");
             return change(std::move(wanted), true);
         }
         case Tool::Light: {
             const LightValue& value = kLightValues[handle_];
-            // Right and up are more.
+            // A move to the right or up increases the value.
             const double steps = pixels ? (move.x - move.y) / kPixels[1] : move.x - move.y;
             const double now = rounded(value.read(wanted.light) + steps * value.steps[step], kShareGrain);
             value.write(wanted.light, std::clamp(now, value.low, value.high));
@@ -334,7 +334,7 @@ Result<void> SiteEditor::run(const edit::AddMask&) {
     wanted.masks.push_back({.polygon = std::move(polygon)});
     TRY(change(std::move(wanted), false));
     tool_ = Tool::Masks;
-    handle_ = handleCount() - 2;  // the whole of it
+    handle_ = handleCount() - 2;  // the whole mask
     return {};
 }
 Result<void> SiteEditor::run(const edit::MaskPoints& points) {
@@ -395,7 +395,7 @@ Result<void> SiteEditor::run(const edit::Reset&) {
             handle_ = 0;
             break;
         case Tool::Light:
-            // Table and dither are the file's alone.
+            // Only the file changes the colour table and `dither`.
             wanted.light.gamma = ProjectorLight().gamma;
             wanted.light.blackLevel = ProjectorLight().blackLevel;
             wanted.light.white = ProjectorLight().white;
@@ -415,12 +415,12 @@ Result<void> SiteEditor::run(const edit::Show& show) {
     return {};
 }
 Result<void> SiteEditor::run(const edit::Undo&) {
-    if (done_.empty()) return Error("there is nothing to take back");
+    if (done_.empty()) return Error("there is nothing to undo");
     swapWith(done_, undone_);
     return {};
 }
 Result<void> SiteEditor::run(const edit::Redo&) {
-    if (undone_.empty()) return Error("nothing was taken back");
+    if (undone_.empty()) return Error("there is nothing to redo");
     swapWith(undone_, done_);
     return {};
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Setting up the outputs in the dark: what a technician may ask for, and what becomes of the site.
+// Setting up the outputs in the dark: the technician's commands, and the site that results.
 
 #include "show/site/mask_handles.h"
 #include "show/site/projection_changes.h"
@@ -19,13 +19,12 @@
 
 namespace fantascope::show {
 
-// One thing that is asked for. Keyboard, mouse, hand controller and whatever comes later all end in
-// these.
+// The commands. Keyboard, mouse and hand controller all give these.
 namespace edit {
 
 enum class Tool { Corners, Mesh, Part, Masks, Light };
 
-struct Output {  // the one `step` places further in the site's order
+struct Output {  // choose the output `step` places further in the site's order
     int step = 1;
 };
 struct OutputNumber {
@@ -35,34 +34,34 @@ struct Choose {
     Tool tool = Tool::Corners;
 };
 struct NextTool {};
-struct Handle {  // what is moved: the one `step` places further
+struct Handle {  // choose the handle `step` places further
     int step = 1;
 };
-struct Grasp {  // the handle nearest to a pixel of the chosen output
+struct Grasp {  // choose the handle nearest to a pixel of the chosen output
     glm::dvec2 pixel{0.0};
 };
-struct Move {  // in steps: right and down
+struct Move {  // move the handle by steps, right and down
     glm::dvec2 steps{0.0};
 };
-struct MoveTo {  // a pixel of the chosen output
+struct MoveTo {  // move the handle to a pixel of the chosen output
     glm::dvec2 pixel{0.0};
 };
-struct Release {};  // key or button up: what comes next is undone by itself
-struct StepSize {   // coarser, or below 0 finer
+struct Release {};  // key or button up: the next move is undone separately
+struct StepSize {   // make the steps coarser; negative: finer
     int change = 1;
 };
 struct MeshPoints {  // 0: no mesh
     glm::ivec2 points{0};
 };
-struct AddMask {};   // in the middle of the picture; it is chosen
-struct MaskPoints {  // one more behind the chosen point, or below 0 that one less; of the last three the mask goes
+struct AddMask {};   // add a mask in the middle of the picture, and choose it
+struct MaskPoints {  // add a point behind the chosen one; negative: remove the chosen one, or a mask of three points
     int change = 1;
 };
-struct TurnMask {};  // hides what is outside of the chosen mask, or again what is inside
+struct TurnMask {};  // toggle the side that the chosen mask hides: inside or outside
 struct Flip {};      // none, horizontal, vertical, none ...
 struct Turn {};      // by a quarter, clockwise
-struct Reset {};     // the tool's values, as a site without them has them; masks that are pictures stay
-struct Picture {     // on all outputs: the one `step` further
+struct Reset {};     // set the tool's values to their defaults; masks that are images stay
+struct Picture {     // show the test picture `step` places further, on all outputs
     int step = 1;
 };
 struct Show {
@@ -77,30 +76,31 @@ using EditCommand =
                  edit::MoveTo, edit::Release, edit::StepSize, edit::MeshPoints, edit::AddMask, edit::MaskPoints, edit::TurnMask,
                  edit::Flip, edit::Turn, edit::Reset, edit::Picture, edit::Show, edit::Undo, edit::Redo>;
 
-// A site while somebody sets its outputs up. Every state of it could be saved and loaded: what
-// could not is refused and changes nothing, so that the last good picture stays on the wall.
+// A site while its outputs are set up. Every state of it can be saved and loaded. A command that
+// would break this is refused and changes nothing, so that the last good picture stays on the wall.
 // Thread: thread-bound.
 class SiteEditor {
 public:
     explicit SiteEditor(Site site);
 
-    // Error: why not, and nothing has changed.
+    // Carries out a command. Error: why not; nothing has changed.
     Result<void> apply(const EditCommand& command);
 
     const Site& site() const { return site_; }
     std::size_t output() const { return output_; }
     edit::Tool tool() const { return tool_; }
     TestPicture picture() const { return picture_; }
-    // Of the tool on the chosen output; never empty.
+    // The handles of the tool on the chosen output; never empty.
     std::vector<EditHandle> handles() const;
     std::size_t handle() const { return handle_; }
-    // What is being edited, in words: output, tool and handle; its value and the step; what was not
-    // saved.
+    // The editor's state in words, in three lines: output, tool and handle; value and step; saved
+    // or not saved.
     std::vector<std::string> lines() const;
 
     using Change = SiteChange;
-    // What has changed since it was loaded or last saved, and the word that it was.
+    // The changes since the site was loaded or last saved.
     std::vector<Change> unsaved() const;
+    // Call this when the changes have been saved.
     void saved();
 
 private:
@@ -142,8 +142,8 @@ private:
     std::size_t output_ = 0, handle_ = 0;
     edit::Tool tool_ = edit::Tool::Corners;
     TestPicture picture_ = TestPicture::None;
-    int step_ = 1;         // of kSteps: 0 is the coarsest
-    bool moving_ = false;  // the next move belongs to the one before
+    int step_ = 1;         // the step size: 0 is the coarsest
+    bool moving_ = false;  // the next move is undone together with the previous one
     std::vector<Step> done_, undone_;
 };
 

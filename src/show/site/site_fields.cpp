@@ -3,14 +3,14 @@
 namespace fantascope::show {
 namespace {
 
-constexpr int kMostPixels = 16384;  // along one side of a picture: what graphics cards take
+constexpr int kMostPixels = 16384;  // along one side of a picture: a usual limit of graphics cards
 
 }  // namespace
 
 Result<std::string> readName(const ConfigNode& node) {
     const std::string name = TRY(node.text());
     if (name.starts_with('.') || name.find('/') != std::string::npos)
-        return node.error(fmt::format("'{}' is no name: it may not hold a '/' or begin with a '.'", name));
+        return node.error(fmt::format("'{}' is no name: it may not contain a '/' or begin with a '.'", name));
     return name;
 }
 

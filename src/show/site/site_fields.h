@@ -1,5 +1,5 @@
 #pragma once
-// What the readers of a site file's sections share.
+// Readers that the sections of a site file share.
 
 #include "show/site/site.h"
 
@@ -19,9 +19,9 @@
 
 namespace fantascope::show {
 
-constexpr double kFarthest = 1000;  // metres; it only catches a slipped digit or unit
+constexpr double kFarthest = 1000;  // metres; this limit only catches a wrong digit or unit
 
-// A reader of values that may stand only once among all that share `taken`.
+// A reader of values that must be unique among all readers that share `taken`.
 template <class Value, class Read>
 auto once(std::set<Value>& taken, std::string_view owner, Read read) {
     return [&taken, owner, read](const ConfigNode& node) -> Result<Value> {
@@ -32,7 +32,7 @@ auto once(std::set<Value>& taken, std::string_view owner, Read read) {
     };
 }
 
-// Names end up in the names of recorded files.
+// Reads a name. It becomes part of the names of recorded files, so some characters are refused.
 Result<std::string> readName(const ConfigNode& node);
 
 inline auto onceNamed(std::set<std::string>& taken, std::string_view owner) { return once(taken, owner, readName); }
@@ -41,16 +41,16 @@ inline auto onceNumbered(std::set<int>& taken, std::string_view owner, int low, 
     return once(taken, owner, [low, high](const ConfigNode& node) { return node.integer(low, high); });
 }
 
-// The driver's own keys are left to the driver.
+// Reads a device. Only the driver checks its own keys.
 Result<DeviceConfig> readDevice(const ConfigNode& node);
 
-// What the drivers say of the devices. It is told beside what else is wrong, so that one mistake in
-// a device does not hide others.
+// The drivers' findings about the devices. They are reported beside all other faults, so that one
+// fault in a device does not hide others.
 class DriversWord {
 public:
     explicit DriversWord(DeviceReader* reader) : reader_(reader) {}
 
-    // Asks the drivers, if there are any, of the device at `at`: ask(reader).
+    // Calls ask(reader) for the device at `at`, if there is a reader.
     template <class Ask>
     void ask(const ConfigNode& at, Ask ask) {
         if (reader_ != nullptr) said_.emplace_back(at, ask(*reader_));
@@ -64,16 +64,16 @@ private:
     std::vector<std::pair<ConfigNode, Result<void>>> said_;
 };
 
-// Pixels across and down.
+// Reads a size: pixels across and down.
 Result<glm::ivec2> readSize(const ConfigNode& node);
 
-// The keys that say where a projector or a camera stands and looks. Ask for pose() after the fields
-// are finished.
+// The keys that say where a projector or a camera stands, and where it looks. Call pose() after the
+// fields are finished.
 struct Aim {
     glm::dvec3 position{0.0}, target{0.0}, up{0, 1, 0};
 
     void declare(ConfigFields& fields);
-    // Error: it looks nowhere, at the place of `node`.
+    // The pose. Error, at the place of `node`: the keys give no direction of view.
     Result<Pose> pose(const ConfigNode& node) const;
 };
 

@@ -61,7 +61,8 @@ Result<Universe> readUniverse(const ConfigNode& node, Universes& universes, Driv
     return universe;
 }
 
-// One level for all channels, or a map with the levels of some; the others are dark.
+// Reads end levels: one for all channels, or a map with the levels of some channels; the others are
+// dark.
 Result<std::vector<float>> readEndLevels(const ConfigNode& node, const Fixture& fixture) {
     const std::vector<std::string>& channels = fixture.channels;
     if (!node.isMap()) return std::vector<float>(channels.size(), static_cast<float>(TRY(node.number(0, 1))));
@@ -76,7 +77,7 @@ Result<std::vector<float>> readEndLevels(const ConfigNode& node, const Fixture& 
     return levels;
 }
 
-// `owners`: which fixture has the slot (universe, address) so far.
+// `owners`: the fixture of each slot (universe, address) that is taken so far.
 Result<Fixture> readFixture(const ConfigNode& node, std::set<std::string>& names, const Universes& universes,
                             std::map<std::pair<int, int>, std::string>& owners) {
     Fixture fixture;
@@ -122,7 +123,7 @@ Result<std::vector<std::pair<int, Button>>> readButtons(const ConfigNode& node) 
     return buttons;
 }
 
-// As long as there was one bank of each kind.
+// Refuses the old keys, from when a site had at most one bank of each kind.
 Result<void> refuseOldBanks(const ConfigNode& root) {
     for (const auto& [key, value] : TRY(root.entries()))
         for (const auto& [old, members] : {std::pair("relay_bank", "relays"), std::pair("contact_bank", "contacts")})
@@ -134,7 +135,7 @@ Result<void> refuseOldBanks(const ConfigNode& root) {
     return {};
 }
 
-// Reads one site file, section by section in the order in which they need each other.
+// Reads one site file, section by section, in the order of their dependencies.
 class SiteReader {
 public:
     SiteReader(const ConfigNode& root, DeviceReader* devices) : fields_(root), drivers_(devices) {}
@@ -185,7 +186,7 @@ private:
     }
 
     void readBanks() {
-        // What any other device is called, in its status and in a fault script.
+        // The names of all other devices, in their status and in a fault script.
         std::set<std::string> deviceNames(outputNames_);
         deviceNames.insert({"cue controller", "camera"});
         for (const int number : universes_.numbers)
@@ -235,7 +236,7 @@ private:
     }
 
     void checkCanvases() {
-        // A look calls outputs and canvases alike.
+        // A look uses the names of outputs and canvases in the same way.
         for (const auto& [canvas, node] : canvasNodes_)
             if (outputNames_.contains(canvas))
                 fields_.check(node, node.error(fmt::format("'{}' is the name of an output; give the canvas another", canvas)));
@@ -264,7 +265,7 @@ private:
     DriversWord drivers_;
     Site site_;
     std::set<std::string> outputNames_;
-    std::vector<std::pair<std::string, ConfigNode>> canvasNodes_;  // of each output: its canvas as the file names it
+    std::vector<std::pair<std::string, ConfigNode>> canvasNodes_;  // of each output: its canvas as named in the file, or ""
     Universes universes_;
     Banks relayBanks_{"relay_banks", "relays"}, contactBanks_{"contact_banks", "contacts"};
 };

@@ -10,9 +10,9 @@
 
 namespace fantascope::theatre {
 
-// M_n = (v_0, q_0, q_1 .. q_M) of Won & Lee 2016, section 3: where the root is and how it is
-// turned, in the stage's frame (metres), and how each further joint is turned against its parent,
-// in the body's order.
+// M_n = (v_0, q_0, q_1 .. q_M) of Won & Lee 2016, section 3: the root's position (metres) and
+// rotation in the stage's frame, and the rotation of each further joint relative to its parent, in
+// the body's order.
 struct ActorPose {
     glm::dvec3 root{0};
     std::vector<glm::dquat> turns;  // of all joints, the root's first

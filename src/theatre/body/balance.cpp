@@ -9,8 +9,8 @@
 namespace fantascope::theatre {
 namespace {
 
-// Of the cap of a sphere that lies so deep below a plane; of one that is pressed into the ground no
-// more than its great circle.
+// The radius of the circle in which a plane cuts a sphere that reaches `depth` below it; at most
+// the great circle, for a sphere pressed deeper.
 double capRadius(double radius, double depth) {
     const double cap = std::min(depth, radius);
     return std::sqrt(cap * (2 * radius - cap));
@@ -32,7 +32,7 @@ glm::dvec2 begin(std::span<const Point> points, Contacts& contacts) {
     return groundPlace(*lowest);
 }
 
-// Where the edges of a skin go through a height.
+// Visits the points where the edges of a skin cross a height.
 void cut(std::span<const glm::vec3> vertices, std::span<const MeshEdge> edges, double height, std::vector<Contact>& discs) {
     for (const MeshEdge& edge : edges) {
         const float from = vertices[edge.from].y, to = vertices[edge.to].y;
@@ -43,7 +43,7 @@ void cut(std::span<const glm::vec3> vertices, std::span<const MeshEdge> edges, d
     }
 }
 
-// How much of its own place and size a point so high above the ground has: findBearings().
+// The share that a point at this height above the ground bears: findBearings().
 double bearingShare(double height, double bearing) { return std::min(1.0, 1 - (height - kTouch / 2) / bearing); }
 
 }  // namespace

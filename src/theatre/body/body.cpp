@@ -15,16 +15,15 @@ namespace {
 
 using glm::dvec3;
 
-// Of a capsule's ends, in shares of the stature: its place in the T-pose, from the floor's middle.
-// Capsules that meet share one; where they turn against each other it lies on the joint, so that it
-// is in one place for both. They were fitted to humanMesh().
+// A ball at a capsule's end, in shares of the stature; its place is that in the T-pose, from the
+// floor's middle. Capsules that meet share a ball. Where they turn against each other, the ball
+// lies on the joint, so that both see it in one place. The balls were fitted to humanMesh().
 struct Ball {
     dvec3 place{0};
     double radius = 0;
 };
 
-// Builds a body in shares of the stature, from the middle to the left; what is on the left is
-// mirrored to the right.
+// Builds a body in shares of the stature. The left side is mirrored to the right.
 class Builder {
 public:
     explicit Builder(double stature) : stature_(stature) { body_.stature = stature; }
@@ -50,13 +49,14 @@ public:
         const std::uint32_t first = sphere(joint, from.place, from.radius);
         body_.capsules.push_back({joint, first, sphere(joint, to.place, to.radius)});
     }
-    // Of the skin's volume what is nearest to the joint's capsules.
+    // `share`: the part of the skin's volume that is nearest to the joint's capsules. `centre`: its
+    // mass centre.
     void mass(std::uint32_t joint, double share, dvec3 centre) {
         // Body mass index 22: the middle of what the World Health Organization calls normal.
         body_.joints[joint].mass = share * 22 * stature_ * stature_;
         body_.joints[joint].massCentre = stature_ * (centre - places_[joint]);
     }
-    // On a ball's skin, in a direction.
+    // A point on a ball's surface, in a direction.
     void part(BodyPart part, std::uint32_t joint, Ball ball, dvec3 direction) {
         body_.parts[static_cast<std::size_t>(part)] = {joint, local(joint, ball.place + ball.radius * glm::normalize(direction))};
     }
@@ -64,8 +64,8 @@ public:
     Body& body() { return body_; }
 
 private:
-    // One that is there already serves again: of the same joint, or around a joint between two
-    // segments, where it is at rest in both.
+    // An existing sphere is reused if it is on the same joint, or lies on the joint between the two
+    // segments, where neither moves it.
     std::uint32_t sphere(std::uint32_t joint, dvec3 place, double radius) {
         for (std::uint32_t i = 0; i < ends_.size(); ++i) {
             const End& end = ends_[i];

@@ -23,7 +23,7 @@ struct Sphere {
 // A cone with round ends, fixed to a joint: the hull of two of the body's spheres.
 struct Capsule {
     std::uint32_t joint = 0;
-    std::uint32_t from = 0, to = 0;  // spheres of this joint's, or at the place of a joint that hangs on it
+    std::uint32_t from = 0, to = 0;  // indices of spheres on this joint, or at the place of a child joint
 };
 
 // A body of rigid segments that turn about joints (Won & Lee 2016, section 3: M_n = (v_0, q_0, q_1
@@ -31,36 +31,36 @@ struct Capsule {
 // stands on the floor, looks along +z and has +y up and its left side at +x: all q are 1 in it.
 // Metres, kilograms, radians.
 //
-// Its degrees of freedom are numbers in the order of the joints: first the root's position and
-// rotation vector, in the stage's frame, then those of each joint's motion.
+// Its degrees of freedom are numbers: first the root's position and rotation vector in the stage's
+// frame, then those of each JointMotion, in the order of the joints.
 struct Body {
     struct Joint {
         std::string name;
         std::uint32_t parent = 0;
         glm::dvec3 offset{0};   // from the parent, in its frame, at rest
         JointMotion motion;     // of all but the root
-        std::size_t first = 0;  // of its numbers
-        double mass = 0;        // of the segment that turns with it
+        std::size_t first = 0;  // index of its first degree of freedom
+        double mass = 0;        // of the segment that turns with it, kilograms
         glm::dvec3 massCentre{0};
     };
     static constexpr std::size_t kRootDofs = 6;
-    // A step of a search that is neither large nor small: metres for the root's place, radians for
-    // all else.
+    // The typical search step of a degree of freedom: metres for the root's position, radians for
+    // all others.
     static constexpr double scaleOf(std::size_t dof) { return dof < 3 ? 0.3 : dof < kRootDofs ? 0.5 : 0.35; }
 
     double stature = 0;
     std::vector<Joint> joints;
     std::vector<Sphere> spheres;
-    std::vector<Capsule> capsules;  // the ends of those that meet are one sphere
-    // The pairs of capsules that must not run into each other: neither on one joint or on
-    // neighbours, nor in each other at rest.
+    std::vector<Capsule> capsules;  // capsules that meet share a sphere
+    // The pairs of capsules that must not penetrate each other. Pairs on one joint or on adjacent
+    // joints, and pairs that overlap at rest, are left out.
     std::vector<std::array<std::uint32_t, 2>> apart;
     std::size_t dofs = kRootDofs;
     glm::dvec3 eyes{0}, gaze{0, 0, 1};  // in the head's frame
     std::uint32_t head = 0;
-    // Where each BodyPart is: a point of the skin, fixed to a joint, in its frame. Of limbs it is
-    // the outermost tip: fingers, toes, the elbow's and the knee's corner as they bend, the
-    // shoulder's and the hip's side; the crown; the nape; the breastbone; the seat.
+    // Where each BodyPart is: a point of the skin, in the frame of its joint. It is the outermost
+    // tip of a hand or foot, the corner of a bent elbow or knee, the side of a shoulder or hip, the
+    // crown, the nape, the breastbone, or the seat.
     struct Point {
         std::uint32_t joint = 0;
         glm::dvec3 local{0};
@@ -68,17 +68,18 @@ struct Body {
     std::array<Point, kBodyParts> parts{};
 
     double mass() const;
-    // Must be the name of one of the joints: another ends the program.
+    // The index of a joint. An unknown name ends the program.
     std::uint32_t joint(std::string_view name) const;
-    // The numbers of the rest pose, its root at a place; joints whose limits exclude it are as near
-    // to it as they can.
+    // The degrees of freedom of the rest pose with the root at a given place. A joint whose limits
+    // exclude the rest pose takes the nearest orientation it can.
     std::vector<double> restPose(glm::dvec3 rootPosition, const glm::dquat& rootOrientation) const;
-    // Brings all numbers within the limits, the root's rotation vector to no more than pi.
+    // Clamps all degrees of freedom to the joint limits, and the root's rotation vector to a length
+    // of pi.
     void limit(std::span<double> dofs) const;
 };
 
-// A person of this stature, metres. Lengths of segments: Drillis & Contini 1966 (after Winter 2009,
-// figure 4.1); masses and their centres: the volume of humanMesh(),
+// A person of this stature in metres. Lengths of segments: Drillis & Contini 1966 (after Winter
+// 2009, figure 4.1); masses and their centres: the volume of humanMesh(),
 // docs/decisions/0038-a-body-weighs-what-its-skin-holds.md; girths: mean circumferences of adults,
 // as shares of the stature; limits: ranges of motion of the American Academy of Orthopaedic
 // Surgeons 1965 (after Norkin & White 2016), put into cones and balls.

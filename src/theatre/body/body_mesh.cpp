@@ -22,14 +22,14 @@ using glm::dvec3;
 
 constexpr std::size_t kTriangles = 5000, kFewTriangles = 1500;
 
-// From one place to the next in steps of about a size.
+// Grid planes between two places, in steps of about a given size.
 void addPlanes(std::vector<double>& planes, double to, double step) {
     const double from = planes.back();
     const int count = std::max(1, static_cast<int>(std::lround((to - from) / step)));
     for (int i = 1; i <= count; ++i) planes.push_back(from + (to - from) * i / count);
 }
 
-// Closer at the hands, the ears, the face and the soles.
+// The planes are closer at the hands, the ears, the face and the soles.
 GridPlanes gridOfAPerson() {
     GridPlanes planes{{{-0.56}, {-0.012}, {-0.092}}};
     auto& [x, y, z] = planes;
@@ -40,13 +40,13 @@ GridPlanes gridOfAPerson() {
     return planes;
 }
 
-// Of a place at rest: hands and face are small, and looked at.
+// The importance of a place at rest. Hands and face are small, and people look at them.
 double importance(const glm::vec3& p) {
     const bool isHand = std::abs(p.x) > 0.47f, isFace = p.y > 0.87f && p.z > 0.02f;
     return isHand ? 10 : isFace ? 6 : 1;
 }
 
-// How far a point is from the capsules of each joint, at rest, metres; negative inside.
+// The distance of a point from the capsules of each joint at rest, in metres; negative inside.
 void feelJoints(const Body& body, const PosedBody& atRest, const dvec3& point, std::vector<double>& distances) {
     distances.assign(body.joints.size(), std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < body.capsules.size(); ++i) {
@@ -56,12 +56,13 @@ void feelJoints(const Body& body, const PosedBody& atRest, const dvec3& point, s
     }
 }
 
-// Each joint's share of a point at rest. The joint whose capsules are nearest moves it, and that
-// joint's parent and children the less the farther theirs are. Elsewhere two limbs may lie beside
-// each other, and share nothing.
+// Each joint's share of a point at rest. The joint with the nearest capsules has the largest share.
+// Its parent and children have shares that fall with the distance of their capsules. All other
+// joints have none: two limbs may lie beside each other and must not move each other's skin.
 void shareOut(const Body& body, const PosedBody& atRest, const dvec3& point, std::vector<double>& shares) {
-    // Shares fall to 1/e over `falloff`, also beyond `reach` from the joint, where a turn moves the
-    // skin far. In shares of the stature; the spine bends over its length.
+    // Shares fall to 1/e over `falloff`. They also fall beyond `reach` from the joint, where a
+    // rotation moves the skin far. Both are in shares of the stature. They are larger for the
+    // spine, which bends over its length.
     struct Bend {
         double falloff, reach;
     };
@@ -74,7 +75,7 @@ void shareOut(const Body& body, const PosedBody& atRest, const dvec3& point, std
     double sum = 1;
     for (std::size_t j = 0; j < distances.size(); ++j) {
         if (j == nearest || (body.joints[j].parent != nearest && body.joints[nearest].parent != j)) continue;
-        const std::size_t between = body.joints[j].parent == nearest ? j : nearest;  // the joint is that of the child
+        const std::size_t between = body.joints[j].parent == nearest ? j : nearest;  // the child's joint
         const Bend& bend = body.joints[between].motion.kind() == JointMotion::Kind::Spherical ? kSpine : kLimb;
         const double beyond = std::max(0.0, glm::distance(point, atRest.place(between)) - bend.reach * body.stature);
         shares[j] = std::exp((distances[nearest] - distances[j] - beyond) / (bend.falloff * body.stature));
@@ -83,13 +84,13 @@ void shareOut(const Body& body, const PosedBody& atRest, const dvec3& point, std
     for (double& share : shares) share /= sum;
 }
 
-// The largest few, to add up to 1.
+// The largest few shares, scaled to add up to 1.
 void keepLargest(const std::vector<double>& shares, std::array<std::uint16_t, BodyMesh::kInfluences>& joints,
                  std::array<float, BodyMesh::kInfluences>& kept) {
     std::vector<std::uint16_t> order(shares.size());
     for (std::size_t j = 0; j < order.size(); ++j) order[j] = static_cast<std::uint16_t>(j);
     std::stable_sort(order.begin(), order.end(), [&](std::uint16_t a, std::uint16_t b) { return shares[a] > shares[b]; });
-    // Less moves nothing by a millimetre.
+    // A smaller share moves no vertex by a millimetre.
     constexpr double kLeast = 0.005;
     double sum = 0;
     for (std::size_t i = 0; i < BodyMesh::kInfluences; ++i)
@@ -101,7 +102,7 @@ void keepLargest(const std::vector<double>& shares, std::array<std::uint16_t, Bo
     }
 }
 
-// For humanBody(1).
+// The skin of humanBody(1).
 BodyMesh bound(const Body& body, TriangleMesh form) {
     BodyMesh mesh;
     mesh.atRest = std::move(form);
@@ -119,7 +120,7 @@ BodyMesh bound(const Body& body, TriangleMesh form) {
     return mesh;
 }
 
-// Of the simpler one nothing is looked at but its outline.
+// In the simpler skin only the outline matters.
 struct UnitMeshes {
     BodyMesh whole, simpler;
     UnitMeshes() {
@@ -130,14 +131,14 @@ struct UnitMeshes {
     }
 };
 
-// Vertices are blended in groups, each part of the sum in a row, so that what follows goes four at
-// a time.
+// Vertices are blended in groups. Each component of the sums is contiguous in memory, so that the
+// compiler can vectorise the arithmetic.
 constexpr std::size_t kGroup = 64;
 struct Group {
     std::array<std::array<float, kGroup>, 8> motion;
     std::array<float, kGroup> x, y, z;
 
-    // Kavan et al. 2008, section 4, algorithm 1: the blend, made unit, moves the points.
+    // Kavan et al. 2008, section 4, algorithm 1: the normalised blend moves the points.
     void move() {
         for (std::size_t i = 0; i < kGroup; ++i) {
             const float w = motion[0][i], a = motion[1][i], b = motion[2][i], c = motion[3][i];
@@ -194,7 +195,7 @@ void jointMotions(const Body& body, const PosedBody& posed, std::span<DualQuater
         const Body::Joint& joint = body.joints[j];
         restPlaces[j] = j == 0 ? joint.offset : restPlaces[joint.parent] + joint.offset;
         const glm::dquat& q = posed.turn(j);
-        // Of the two quaternions of a turn that nearer to the parent's.
+        // Of the two quaternions of a rotation, take the one nearer to the parent's.
         double sign = 1;
         if (j > 0) {
             const DualQuaternion& p = motions[joint.parent];

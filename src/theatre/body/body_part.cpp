@@ -9,7 +9,7 @@ namespace {
 constexpr std::array<std::string_view, kBodyParts> kNames = {
     "head",      "neck",       "chest",    "pelvis",    "left shoulder", "right shoulder", "left elbow", "right elbow",
     "left hand", "right hand", "left hip", "right hip", "left knee",     "right knee",     "left foot",  "right foot"};
-// Of the pairs, in their order.
+// The plurals of the pairs, in their order.
 constexpr std::size_t kFirstPair = static_cast<std::size_t>(BodyPart::LeftShoulder);
 constexpr std::array<std::string_view, (kBodyParts - kFirstPair) / 2> kPlurals = {"shoulders", "elbows", "hands",
                                                                                   "hips",      "knees",  "feet"};

@@ -7,8 +7,8 @@
 
 namespace fantascope::theatre {
 
-// Parts of a body that artists name: what may match a hint (Won & Lee 2016, Table 1) or hold a
-// prop. Left and right are the body's own.
+// Parts of a body by the names that artists use. A part may match a hint (Won & Lee 2016, Table 1)
+// or hold a prop. Left and right are the body's own.
 enum class BodyPart : std::uint8_t {
     Head,
     Neck,
@@ -30,11 +30,12 @@ enum class BodyPart : std::uint8_t {
 constexpr std::size_t kBodyParts = 16;
 
 std::string_view name(BodyPart part);  // "left hand"
-// The names of all parts, in their order: what stands for one part.
+// The names of all parts, in their order. Each stands for one part.
 const std::vector<std::string>& partNames();
-// These and the plurals ("hands", "feet"), each the left one and the right one.
+// The same, and the plurals ("hands", "feet"), each of which stands for the left part and the right
+// part.
 const std::vector<std::string>& partWords();
-// What a word of partWords() stands for; nothing for any other word.
+// The parts that a word of partWords() stands for. Empty for any other word.
 std::vector<BodyPart> partsOf(std::string_view word);
 
 }  // namespace fantascope::theatre

@@ -19,8 +19,8 @@ struct Section {
     double along = 0, wideCentre = 0, thinCentre = 0, wide = 0, radius = 0;
 };
 
-// What runs along an axis through cross-sections, smoothly, and ends round. `along`, `across`:
-// which of x, y, z; the discs are stretched along `across`.
+// A tube along an axis, smooth through its cross-sections, with round ends. `along` and `across`
+// select x, y or z; the discs are stretched along `across`.
 struct Limb {
     int along = 1, across = 0;
     std::span<const Section> sections;
@@ -33,7 +33,7 @@ struct Limb {
     }
 
 private:
-    // Through the sections by cubic Hermite curves with the slopes of Catmull & Rom 1974.
+    // Cubic Hermite curves with the slopes of Catmull & Rom 1974 interpolate the sections.
     Section section(double along) const {
         if (along <= sections.front().along) return sections.front();
         if (along >= sections.back().along) return sections.back();
@@ -52,7 +52,7 @@ private:
     }
 };
 
-// A cone with round ends, neither in the other.
+// A cone with round ends. Neither end contains the other.
 struct Cone {
     dvec3 from{0};
     double fromRadius = 0;
@@ -80,8 +80,8 @@ struct Ellipsoid {
     }
 };
 
-// The union of two forms, filled out where their surfaces are nearer to each other than `round`;
-// and what is left when one is cut out.
+// The smooth union and the smooth difference of two forms. The blend acts where their surfaces are
+// nearer to each other than `round`.
 double joined(double a, double b, double round) {
     const double h = std::max(round - std::abs(a - b), 0.0) / round;
     return std::min(a, b) - 0.25 * round * h * h;

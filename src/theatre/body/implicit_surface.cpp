@@ -12,14 +12,14 @@
 namespace fantascope::theatre {
 namespace {
 
-constexpr std::size_t kBlock = 4;  // cells a side of what is skipped as a whole
+constexpr std::size_t kBlock = 4;  // cells along a side of a block; a block far from the surface is skipped as a whole
 
 // The corners of a cell are numbered by their bits: 1 is a step along x, 2 along y, 4 along z. Each
 // tetrahedron goes from corner 0 to corner 7 by one step along each axis, and is right-handed.
 constexpr std::array<std::array<unsigned, 4>, 6> kTetrahedra = {
     {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
-// Even orders of a tetrahedron's corners, which leave its hand: with one corner first that lies
-// alone on its side of the surface, or with the two first that lie inside.
+// Even permutations of a tetrahedron's corners, which keep its orientation. They put first the
+// corner that lies alone on its side of the surface, or the two corners that lie inside.
 constexpr std::array<std::array<unsigned, 4>, 4> kAroundOne = {{{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
 constexpr std::array<std::array<unsigned, 4>, 6> kAroundTwo = {
     {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
@@ -80,7 +80,7 @@ private:
     const GridPlanes& planes_;
     double slack_;
     Node count_{};
-    std::vector<double> values_;  // of the nodes; not a number: not asked for yet
+    std::vector<double> values_;  // of the nodes; NaN if not evaluated yet
     TetrahedraSurface surface_;
 };
 

@@ -10,13 +10,13 @@ namespace {
 
 glm::dvec3 vectorPart(const glm::dquat& q) { return {q.x, q.y, q.z}; }
 
-// q = swing * twist, the twist about a unit axis and by less than a half turn.
+// Decomposes q = swing * twist. The twist is about a unit axis and less than half a turn.
 struct SwingTwist {
     glm::dquat swing, twist;
 };
 SwingTwist decompose(const glm::dquat& q, const glm::dvec3& axis) {
     const double along = glm::dot(vectorPart(q), axis), length = std::hypot(q.w, along);
-    if (length == 0) return {q, {1, 0, 0, 0}};  // a half turn across the axis has any twist
+    if (length == 0) return {q, {1, 0, 0, 0}};  // after half a turn across the axis the twist is arbitrary
     const double sign = q.w < 0 ? -1 : 1;
     const glm::dquat twist(sign * q.w / length, sign * along / length * axis);
     return {q * glm::conjugate(twist), twist};
@@ -30,7 +30,7 @@ double angleAbout(const glm::dquat& twist, const glm::dvec3& axis) {
 
 glm::dquat rotationOf(const glm::dvec3& vector) {
     const double angle = glm::length(vector);
-    // sin(x/2)/x to the fourth order where the quotient would lose digits.
+    // sin(x/2)/x as a series to the fourth order, where the quotient would lose digits.
     const double scale = angle < 1e-4 ? 0.5 - angle * angle / 48 : std::sin(angle / 2) / angle;
     return {std::cos(angle / 2), scale * vector};
 }

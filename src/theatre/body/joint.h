@@ -9,9 +9,9 @@
 
 namespace fantascope::theatre {
 
-// One bound on a joint's orientation in unit quaternion space: how the angle measure gamma reads a
-// quaternion (Lee 2000, chapter on joint limits; Won & Lee 2016, section 4), and between which
-// values, in radians. With r = centre^-1 q:
+// One bound on a joint's orientation in unit quaternion space: the angle measure gamma of a
+// quaternion (Lee 2000, chapter on joint limits; Won & Lee 2016, section 4), and its min and max in
+// radians. With r = centre^-1 q:
 //   Axial      the signed rotation about `axis` that is part of r, -pi .. pi
 //   Conic      the angle by which r tips `axis`, 0 .. pi
 //   Spherical  the geodesic distance of r from no rotation, 0 .. pi
@@ -26,9 +26,9 @@ struct JointLimit {
     double measure(const glm::dquat& orientation) const;
 };
 
-// How a joint turns against its parent, and in which numbers a search sees it: q = centre * swing *
-// twist. Every number is an angle in radians; within the limits numbers and orientations correspond
-// one to one.
+// How a joint rotates relative to its parent, and its parametrisation for a search: q = centre *
+// swing * twist. Every number is an angle in radians. Within the limits, numbers and orientations
+// correspond one to one.
 //   Axial       1: the rotation about the axis                                (elbow, knee)
 //   Conic       2: the rotation vector's parts across the axis, no twist      (clavicle, ankle)
 //   ConicAxial  3: those, and the twist about the axis                        (shoulder, wrist, hip, neck)
@@ -45,13 +45,13 @@ public:
     static JointMotion spherical(glm::dquat centre, double radius);
 
     Kind kind() const { return kind_; }
-    std::size_t size() const;  // of the numbers, 1..3
+    std::size_t size() const;  // the number of degrees of freedom, 1 .. 3
     glm::dquat orientation(std::span<const double> numbers) const;
     // The numbers nearest to an orientation that this joint can take.
     void numbers(const glm::dquat& orientation, std::span<double> numbers) const;
-    // Brings the numbers within the limits: the twist and the length of the swing are cut.
+    // Clamps the numbers to the limits: the twist and the length of the swing.
     void limit(std::span<double> numbers) const;
-    // What a small change of each number turns about, in the parent's frame: d q = 1/2 axis q.
+    // The rotation axis of a small change of each number, in the parent's frame: d q = 1/2 axis q.
     void axes(std::span<const double> numbers, std::span<glm::dvec3> axes) const;
     // The bounds as measures of an orientation.
     std::vector<JointLimit> limits() const;
@@ -65,13 +65,13 @@ private:
     double cone_ = 0, low_ = 0, high_ = 0;
 };
 
-// The rotation by the length of a vector about its direction; and the vector of a rotation, no
-// longer than pi.
+// The exponential map: a rotation by the length of a vector about its direction. And its inverse:
+// the rotation vector, no longer than pi.
 glm::dquat rotationOf(const glm::dvec3& vector);
 glm::dvec3 vectorOf(const glm::dquat& rotation);
 
-// The matrix that turns a change of a rotation vector into the rotation that it adds in front:
-// exp(v + dv) = exp(J dv) exp(v), applied to dv.
+// The left Jacobian J of the exponential map, applied to dv: exp(v + dv) = exp(J dv) exp(v) to
+// first order.
 glm::dvec3 leftJacobian(const glm::dvec3& vector, const glm::dvec3& change);
 
 }  // namespace fantascope::theatre

@@ -31,7 +31,7 @@ MeshDistance::MeshDistance(const TriangleMesh& mesh, double around) : around_(ar
     sign(mesh);
 }
 
-// Distances without a sign.
+// Measures unsigned distances.
 void MeshDistance::measure(const TriangleMesh& mesh) {
     std::vector<std::int32_t> nearest(values_.size(), -1);
     const auto corner = [&](std::int32_t triangle, int i) {
@@ -43,7 +43,7 @@ void MeshDistance::measure(const TriangleMesh& mesh) {
             glm::distance(node, nearestOf(node, corner(triangle, 0), corner(triangle, 1), corner(triangle, 2))));
         if (distance < values_[at]) values_[at] = distance, nearest[at] = triangle;
     };
-    // Around each triangle.
+    // Exact distances around each triangle.
     for (std::int32_t triangle = 0; triangle < static_cast<std::int32_t>(mesh.triangles.size()); ++triangle) {
         const dvec3 a = corner(triangle, 0), b = corner(triangle, 1), c = corner(triangle, 2);
         const dvec3 low = (glm::min(glm::min(a, b), c) - least_) / cell_, high = (glm::max(glm::max(a, b), c) - least_) / cell_;
@@ -56,7 +56,8 @@ void MeshDistance::measure(const TriangleMesh& mesh) {
             for (int y = from[1]; y <= to[1]; ++y)
                 for (int x = from[0]; x <= to[0]; ++x) take(index(x, y, z), x, y, z, triangle);
     }
-    // And from node to node, twice in each of the eight directions.
+    // Then the nearest triangles propagate from node to node, in two rounds of the eight sweep
+    // directions.
     for (int pass = 0; pass < 16; ++pass) {
         const int sx = (pass & 1) != 0 ? 1 : -1, sy = (pass & 2) != 0 ? 1 : -1, sz = (pass & 4) != 0 ? 1 : -1;
         const auto first = [](int step, int nodes) { return step > 0 ? 1 : nodes - 2; };
@@ -77,7 +78,7 @@ void MeshDistance::measure(const TriangleMesh& mesh) {
 void MeshDistance::sign(const TriangleMesh& mesh) {
     std::vector<std::uint8_t> votes(values_.size(), 0), crossings(values_.size());
     for (int axis = 0; axis < 3; ++axis) {
-        // Of each line of nodes along the axis: before which node how many triangles cross it.
+        // For each grid line along the axis: how many triangles cross it before each node.
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
         std::fill(crossings.begin(), crossings.end(), std::uint8_t{0});
         const auto nodesOf = [&](int i) { return nodes_[static_cast<std::size_t>(i)]; };

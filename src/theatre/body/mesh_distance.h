@@ -9,20 +9,20 @@
 
 namespace fantascope::theatre {
 
-// The signed distance to a mesh, negative inside, on a grid that is made once and read between its
-// nodes (Bridson 2015, Fluid Simulation for Computer Graphics, section 4.3: exact near the surface,
-// the nearest triangles carried on from there). Inside is what an odd number of triangles lies
-// before, by two of the three axes, so that a small hole in the mesh does no harm. Metres, the
-// mesh's frame. Thread: reentrant.
+// The signed distance to a mesh, negative inside, on a precomputed grid with interpolation (Bridson
+// 2015, Fluid Simulation for Computer Graphics, section 4.3: exact near the surface, the nearest
+// triangles propagated from there). A node is inside if, along at least two of the three axes, an
+// odd number of triangles lies before it, so that a small hole in the mesh does no harm. Metres,
+// the mesh's frame. Thread: reentrant.
 class MeshDistance {
 public:
     // The grid reaches `around` beyond the mesh and has kCells cells along its longest side; `mesh`
-    // has a triangle.
+    // has at least one triangle.
     MeshDistance(const TriangleMesh& mesh, double around);
     static constexpr int kCells = 64;
 
-    // The distance, and in `outward` the unit direction in which it grows. Outside the grid it is
-    // no more than the true one and more than `around`.
+    // The distance; `outward` becomes the unit direction in which it grows. Outside the grid the
+    // result is a lower bound of the true distance, but exceeds `around`.
     double at(const glm::dvec3& point, glm::dvec3& outward) const;
 
 private:

@@ -62,8 +62,9 @@ void PoseEquations::addPlace(std::size_t joint, const glm::dvec3& point, const g
     }
 }
 
-// A turn is the moment's part of a spatial vector. To turn on about the vector itself is all that a
-// rotation vector's length follows.
+// A rotation is the moment part of a spatial vector. The rotation vector's Jacobian is taken as the
+// identity. The gradient stays exact, since only rotation about the vector itself changes its
+// length.
 void PoseEquations::addTurn(std::size_t joint, const glm::dvec3& off, double weight) {
     for (int axis = 0; axis < 3; ++axis) {
         squares_[joint](3 + axis, 3 + axis) += weight;
@@ -106,8 +107,8 @@ void PoseEquations::finish() {
         squares_[body_.joints[i].parent] += squares_[i];
         pulls_[body_.joints[i].parent] += pulls_[i];
     }
-    // Two degrees of freedom move together what hangs on the lower of their joints, if one is above
-    // the other.
+    // Two degrees of freedom are coupled only if one joint is above the other: both move everything
+    // that hangs on the lower one.
     for (std::size_t k = 0; k < screws_.size(); ++k) {
         const std::size_t joint = jointOf_[k];
         const Spatial asked = squares_[joint] * screws_[k];
@@ -136,7 +137,7 @@ const Eigen::VectorXd& PoseEquations::step(double damping, std::span<const char>
     if (factors.info() == Eigen::Success)
         factors.solveInPlace(step_);
     else
-        step_.setZero();  // rounding has the better of it: more damping is asked for
+        step_.setZero();  // rounding made the matrix indefinite; the caller will ask for more damping
     return step_;
 }
 

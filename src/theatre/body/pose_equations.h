@@ -11,42 +11,43 @@
 namespace fantascope::theatre {
 
 // The normal equations of a least-squares problem over one actor's degrees of freedom: sum over
-// residuals e of weight * e^2, each linear in small changes. How a point of a joint moves with the
-// degrees of freedom of the joints above it is the product of two spatial vectors (Featherstone
-// 2008, chapter 2): what is asked of all points of a joint adds up to a 6 x 6 matrix, and the
-// matrices of a chain to those above it.
+// residuals e of weight * e^2, each linear in small changes. The derivative of a point by a degree
+// of freedom above it is the product of two spatial vectors (Featherstone 2008, chapter 2). So the
+// residuals of all points of a joint add up to one 6 x 6 matrix, and the matrices along a chain add
+// up towards the root.
 // Thread: thread-bound.
 class PoseEquations {
 public:
     explicit PoseEquations(const Body& body);
 
-    // Forgets all residuals; `dofs`: the pose around which they will be linear, `posed` in it.
+    // Discards all residuals. `dofs`: the pose around which residuals are linearised; `posed` is
+    // the body in that pose.
     void begin(const PosedBody& posed, std::span<const double> dofs);
-    // A residual that grows by direction.dx when `point`, fixed to `joint`, moves by dx; stage
+    // Adds a residual that grows by direction.dx when `point`, fixed to `joint`, moves by dx. Stage
     // frame, metres.
     void addPoint(std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction, double residual, double weight);
-    // Three: how far `point` is off from where it is to be, along x, y and z.
+    // Adds three residuals: the offset of `point` from its wanted place, along x, y and z.
     void addPlace(std::size_t joint, const glm::dvec3& point, const glm::dvec3& off, double weight);
-    // Three: how a joint's segment is turned off from how it is to be in the stage's frame, a
-    // rotation vector.
+    // Adds three residuals: the rotation vector from a segment's wanted rotation to its own, in the
+    // stage's frame.
     void addTurn(std::size_t joint, const glm::dvec3& off, double weight);
-    // The same of how it is turned against its parent, by the joint's own degrees of freedom alone;
-    // `off` in the stage's frame, too.
+    // The same for the rotation relative to its parent: only the joint's own degrees of freedom
+    // count. `off` is in the stage's frame, too.
     void addBend(std::size_t joint, const glm::dvec3& off, double weight);
-    // One that depends on two points of the body.
+    // Adds a residual that depends on two points of the body.
     void addPoints(std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction, std::size_t otherJoint,
                    const glm::dvec3& otherPoint, const glm::dvec3& otherDirection, double residual, double weight);
-    // One whose derivative by each degree of freedom is `row`; addMotion() adds to it what one of
-    // the points above would.
+    // Adds a residual whose derivative by each degree of freedom is `row`. addMotion() adds to
+    // `row` the derivative of a point's movement along `direction`.
     void addRow(const Eigen::VectorXd& row, double residual, double weight);
     void addMotion(Eigen::VectorXd& row, std::size_t joint, const glm::dvec3& point, const glm::dvec3& direction) const;
 
-    // Sums up what was added; the step is then to be asked for, with any damping.
+    // Sums up the residuals. After it, step() may be called with any damping.
     void finish();
-    // The step of Levenberg, with the degrees of freedom measured in Body::scaleOf(): damping each
-    // by its own diagonal, as Marquardt has it, would make those move most that hardly matter.
-    // `damping`: 1 is as stiff as the residuals are on average. `moves`: for each degree of freedom
-    // whether it may change; empty: all may.
+    // Levenberg's step, with the degrees of freedom in units of Body::scaleOf(). Marquardt's
+    // damping by the diagonal would move those most that hardly matter. `damping`: 1 is the mean
+    // stiffness of the residuals. `moves`: for each degree of freedom whether it may change; empty:
+    // all may.
     const Eigen::VectorXd& step(double damping, std::span<const char> moves);
 
 private:
@@ -57,9 +58,9 @@ private:
 
     const Body& body_;
     std::vector<std::size_t> jointOf_;  // of each degree of freedom
-    std::vector<std::uint64_t> above_;  // of each joint: itself and those above it, as bits
+    std::vector<std::uint64_t> above_;  // of each joint: itself and its ancestors, as bits
     std::vector<glm::dvec3> axes_;
-    std::vector<Spatial> screws_;  // of each degree of freedom: how space moves with it
+    std::vector<Spatial> screws_;  // of each degree of freedom: its spatial velocity
     std::vector<Spatials> squares_;
     std::vector<Spatial> pulls_;  // of each joint
     Eigen::MatrixXd hessian_, damped_;

@@ -9,8 +9,8 @@
 
 namespace fantascope::theatre {
 
-// The nearest points of two segments: Ericson 2005, section 5.1.9. That the taper shifts them is
-// left out: girths change little along a limb.
+// The nearest points of two segments: Ericson 2005, section 5.1.9. The shift by the taper is
+// neglected, since girths change little along a limb.
 CapsuleTouch touching(const PlacedCapsule& a, const PlacedCapsule& b) {
     const glm::dvec3 along = a.to - a.from, other = b.to - b.from, between = a.from - b.from;
     const double aa = glm::dot(along, along), bb = glm::dot(other, other), ab = glm::dot(along, other);

@@ -9,7 +9,7 @@
 
 namespace fantascope::theatre {
 
-// In the stage's frame, metres.
+// A sphere in the stage's frame, metres.
 struct PlacedSphere {
     glm::dvec3 centre{0};
     double radius = 0;
@@ -20,7 +20,7 @@ struct PlacedCapsule {
     glm::dvec3 from{0}, to{0};
     double fromRadius = 0, toRadius = 0;
     glm::dvec3 middle{0};
-    double reach = 0;  // of a ball around its middle that holds it
+    double reach = 0;  // radius of a ball around `middle` that contains the capsule
 
     PlacedCapsule() = default;
     PlacedCapsule(const PlacedSphere& one, const PlacedSphere& other)
@@ -32,25 +32,24 @@ struct PlacedCapsule {
           reach(0.5 * glm::distance(from, to) + std::max(fromRadius, toRadius)) {}
 };
 
-// Whether the balls around two capsules meet; most pairs' do not.
+// Whether the bounding balls of two capsules meet. For most pairs they do not.
 inline bool areNear(const PlacedCapsule& a, const PlacedCapsule& b) {
     const glm::dvec3 between = a.middle - b.middle;
     const double reach = a.reach + b.reach;
     return between.x * between.x + between.y * between.y + between.z * between.z < reach * reach;
 }
 
-// Where two capsules are nearest to each other: the spheres around the nearest points of their
-// axes.
+// The closest approach of two capsules: the spheres around the nearest points of their axes.
 struct CapsuleTouch {
-    double depth = 0;                    // of the spheres in each other, metres; negative: their distance
+    double depth = 0;                    // penetration of the spheres, metres; if negative, their distance
     glm::dvec3 onFirst{0}, onSecond{0};  // the spheres' centres
     glm::dvec3 normal{0, 1, 0};          // from the second to the first, unit
 };
 CapsuleTouch touching(const PlacedCapsule& a, const PlacedCapsule& b);
 inline double penetration(const PlacedCapsule& a, const PlacedCapsule& b) { return touching(a, b).depth; }
 
-// A body in a pose: where forward kinematics puts its joints and capsules. Metres, stage frame. It
-// keeps its memory from pose to pose.
+// A body in a pose: forward kinematics of its joints and capsules. Metres, stage frame. Memory is
+// reused from pose to pose.
 // Thread: thread-bound.
 class PosedBody {
 public:
@@ -62,21 +61,21 @@ public:
     const PlacedCapsule& capsule(std::size_t index) const { return capsules_[index]; }
     std::span<const PlacedCapsule> capsules() const { return capsules_; }
     glm::dvec3 massCentre() const { return massCentre_; }
-    // A point of a joint's frame.
+    // A point of a joint's frame, in the stage's frame.
     glm::dvec3 point(std::size_t joint, const glm::dvec3& local) const { return places_[joint] + turns_[joint] * local; }
     glm::dvec3 point(const Body::Point& at) const { return point(at.joint, at.local); }
     // The height of the lowest point of the capsules.
     double lowest() const { return least_.y; }
-    // Whether a capsule's ball reaches into the box around the body.
+    // Whether a capsule's bounding ball reaches into the body's bounding box.
     bool isNear(const PlacedCapsule& capsule) const {
         for (int i = 0; i < 3; ++i)
             if (capsule.middle[i] + capsule.reach < least_[i] || capsule.middle[i] - capsule.reach > most_[i]) return false;
         return true;
     }
 
-    // What a small change of each degree of freedom turns about: `axes` of the rotations, about the
-    // place of the degree of freedom's joint; the root's first three degrees of freedom are shifts
-    // along x, y and z. All of body.dofs, in the stage's frame.
+    // The rotation axis of a small change of each degree of freedom, through the place of its
+    // joint. The root's first three degrees of freedom are translations along x, y and z. `axes`
+    // has body.dofs elements, in the stage's frame.
     void axes(const Body& body, std::span<const double> dofs, std::span<glm::dvec3> axes) const;
 
 private:

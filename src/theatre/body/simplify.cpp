@@ -15,9 +15,9 @@ namespace {
 
 using glm::dvec3;
 
-// What a vertex loses by standing for others far along the surface, against what it does by leaving
-// their planes: without it the straight parts of limbs become long needles, which break where they
-// bend.
+// The weight of a vertex's distance along the surface from those it replaces, against its distance
+// from their planes. Without it the straight parts of limbs would become long needles, which break
+// where the limbs bend.
 constexpr double kSpread = 0.004;
 
 // The sum of squared distances from planes, weighted: x'Ax + 2 b'x + c.
@@ -44,7 +44,7 @@ struct Quadric {
         return {xx * p.x + xy * p.y + xz * p.z, xy * p.x + yy * p.y + yz * p.z, xz * p.x + yz * p.y + zz * p.z};
     }
     double operator()(const dvec3& p) const { return std::max(0.0, glm::dot(p, times(p)) + 2 * glm::dot(b, p) + c); }
-    // Where it is least, by Cramer's rule; `otherwise` where that is nowhere.
+    // The minimiser, by Cramer's rule; `otherwise` if there is none.
     dvec3 least(const dvec3& otherwise) const {
         const dvec3 x(xx, xy, xz), y(xy, yy, yz), z(xz, yz, zz), across = glm::cross(y, z);
         const double determinant = glm::dot(x, across);
@@ -84,7 +84,7 @@ public:
         while (left_ > triangles && !offers_.empty()) {
             const Offer best = offers_.top();
             offers_.pop();
-            if (best.change != changes_[best.from] + changes_[best.to]) continue;  // made before one of them moved
+            if (best.change != changes_[best.from] + changes_[best.to]) continue;  // outdated: one of them has moved since
             collapse(best.from, best.to);
         }
     }
@@ -149,8 +149,8 @@ private:
     dvec3 target(std::uint32_t a, std::uint32_t b) const { return joined(a, b).least(0.5 * (places_[a] + places_[b])); }
     void offer(std::uint32_t a, std::uint32_t b) { offers_.push({joined(a, b)(target(a, b)), a, b, changes_[a] + changes_[b]}); }
 
-    // A closed surface stays one if the two ends have no neighbours in common but the two of the
-    // edge's triangles.
+    // Link condition: the surface stays a closed manifold if the two ends share only the two
+    // neighbours that belong to the edge's triangles.
     bool keepsTheSurface(std::uint32_t a, std::uint32_t b) {
         findNeighbours(a, nearA_);
         findNeighbours(b, nearB_);
@@ -158,13 +158,14 @@ private:
         std::set_intersection(nearA_.begin(), nearA_.end(), nearB_.begin(), nearB_.end(), std::back_inserter(common_));
         return common_.size() == 2 && nearA_.size() + nearB_.size() > 7;
     }
-    // Twice the area against the sides: .58 of an equilateral triangle, 0 of a needle.
+    // Twice the area over the sum of the squared sides: 0.29 for an equilateral triangle, 0 for a
+    // needle.
     static double quality(const dvec3& a, const dvec3& b, const dvec3& c) {
         const dvec3 ab = b - a, ac = c - a, bc = c - b;
         const double sides = glm::dot(ab, ab) + glm::dot(ac, ac) + glm::dot(bc, bc);
         return sides > 0 ? glm::length(glm::cross(ab, ac)) / sides : 0;
     }
-    // Whether a triangle of `moved` is turned by more than some 75 degrees, or becomes a needle.
+    // Whether a triangle of `moved` turns by more than about 75 degrees, or becomes a needle.
     bool spoils(std::uint32_t moved, std::uint32_t gone, const dvec3& to) const {
         for (const std::uint32_t t : around_[moved]) {
             if (has(triangles_[t], gone)) continue;
@@ -200,8 +201,8 @@ private:
         around_[gone].clear();
         places_[kept] = to;
         quadrics_[kept] += quadrics_[gone];
-        // Never to be equal again to what an offer has seen: both counts only grow, and the one
-        // that is gone is in no new offer.
+        // The sum can never again equal that of an earlier offer: both counts only grow, and the
+        // removed vertex is in no new offer.
         changes_[kept] += changes_[gone] + 1;
         changes_[gone] += changes_[kept] + 1;
         if (!offersAreMade_) return true;
@@ -211,7 +212,7 @@ private:
     }
 
     std::vector<dvec3> places_;
-    std::vector<glm::uvec3> triangles_;  // those that are gone are 0, 0, 0
+    std::vector<glm::uvec3> triangles_;  // removed ones are 0, 0, 0
     std::size_t left_;
     std::vector<Quadric> quadrics_;
     std::vector<std::vector<std::uint32_t>> around_;  // the triangles at each vertex

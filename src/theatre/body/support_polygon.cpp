@@ -21,18 +21,17 @@ dvec2 turnedLeft(const dvec2& v) { return {-v.y, v.x}; }
 // The product of complex numbers: turns add up.
 dvec2 product(const dvec2& a, const dvec2& b) { return {a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x}; }
 
-// Where a common tangent's normal points that touches first one disc and then, anticlockwise, the
-// other.
+// The normal of the common tangent that touches one disc first and then, anticlockwise, the other.
 dvec2 normalBetween(const Contact& from, const Contact& to) {
     const dvec2 apart = to.place - from.place;
     const double square = glm::dot(apart, apart), less = from.radius - to.radius;
     return glm::normalize(less * apart - std::sqrt(std::max(0.0, square - less * less)) * turnedLeft(apart));
 }
 
-// How far to turn a tangent of one disc until it touches another.
+// The angle by which a tangent of one disc must turn until it touches another.
 struct Turn {
     dvec2 half{0};      // the direction of half the turn, 0 .. pi, of any length
-    double onward = 0;  // how far beyond the first disc the second is touched
+    double onward = 0;  // distance from the first disc's touching point to the second's
 
     bool isBefore(const Turn& other) const {
         const double between = cross(half, other.half);
@@ -40,13 +39,14 @@ struct Turn {
     }
 };
 
-// Anticlockwise from the tangent of `from` with this normal; false: `to` lies in `from`. `to` must
-// not reach beyond that tangent.
+// The turn is anticlockwise from the tangent of `from` with this normal. False if `to` lies in
+// `from`. `to` must not reach beyond that tangent.
 //
 // With the other's place relative to this one's, (a, b) along and across the normal, and r, the
 // difference of the radii, the other is touched after a turn t where a cos t + b sin t = r: a
-// quadratic equation for tan(t / 2). Of its solutions that is taken after which the other reaches
-// farther. Where it is touched already, or lies around this one, the turn is 0.
+// quadratic equation for tan(t / 2). The solution taken is the one after which the other disc
+// reaches farther. If the tangent touches the other disc already, or the other disc contains this
+// one, the turn is 0.
 bool findTurn(const Contact& from, const Contact& to, const dvec2& normal, Turn& turn) {
     const dvec2 apart = to.place - from.place;
     const double r = from.radius - to.radius, square = glm::dot(apart, apart) - r * r;
@@ -75,7 +75,7 @@ void SupportPolygon::addCorner(std::span<const Contact> contacts, std::uint32_t 
     corners_.push_back({contact, contacts[contact].place, contacts[contact].radius, outward, isWide});
 }
 
-// A skin has many: Andrew 1979.
+// A skin has many contacts, all points: Andrew 1979.
 void SupportPolygon::buildOfPoints(std::span<const Contact> contacts) {
     places_.clear();
     for (const Contact& contact : contacts) places_.push_back(contact.place);
@@ -86,10 +86,10 @@ void SupportPolygon::buildOfPoints(std::span<const Contact> contacts) {
     }
 }
 
-// Gift wrapping (Jarvis 1973): a tangent rolls around the discs, from each to that which it touches
-// next.
+// Gift wrapping (Jarvis 1973): a tangent rolls around the discs, from each to the one that it
+// touches next.
 void SupportPolygon::buildOfDiscs(std::span<const Contact> contacts) {
-    // From any direction in which edges are seldom.
+    // The start direction is arbitrary, but one in which edges are rare.
     const dvec2 start(std::cos(1.0), std::sin(1.0));
     const auto reach = [&](const Contact& contact) { return glm::dot(contact.place, start) + contact.radius; };
     std::uint32_t first = 0;
@@ -99,15 +99,15 @@ void SupportPolygon::buildOfDiscs(std::span<const Contact> contacts) {
             first = i;
 
     std::uint32_t current = first;
-    dvec2 normal = start, half(1, 0), firstHalf(1, 0);  // half: of all turns so far
-    while (corners_.size() < 2 * contacts.size()) {     // a hull of n discs has less
+    dvec2 normal = start, half(1, 0), firstHalf(1, 0);  // half: half the sum of all turns so far
+    while (corners_.size() < 2 * contacts.size()) {     // a hull of n discs has fewer corners
         Turn least, turn;
         std::uint32_t next = current;
         for (std::uint32_t i = 0; i < contacts.size(); ++i)
             if (i != current && findTurn(contacts[current], contacts[i], normal, turn) &&
                 (next == current || turn.isBefore(least)))
                 least = turn, next = i;
-        if (next == current) {  // all others lie in it
+        if (next == current) {  // it contains all others
             corners_.clear();
             return addCorner(contacts, current, dvec2(0), true);
         }
@@ -121,7 +121,8 @@ void SupportPolygon::buildOfDiscs(std::span<const Contact> contacts) {
         addCorner(contacts, current, normal, least.half.x < 0);
         half = sum, current = next;
     }
-    // The last arc goes on to the start: it is the first's, or there is an edge right there.
+    // The last arc ends at the start direction: it merges with the first arc, or an edge lies
+    // exactly there.
     const dvec2 rest(-half.x, half.y);
     if (current == first)
         corners_[0].isWide = product(rest, firstHalf).x < 0;
@@ -150,8 +151,8 @@ bool SupportPolygon::hasOnArc(std::size_t corner, const dvec2& direction) const 
            (glm::dot(from, direction) >= 0 || glm::dot(to, direction) >= 0);
 }
 
-// The least distance of all tangents. It is that of an edge, or of the tangent of an arc across the
-// way from the disc's middle to the mass centre.
+// The smallest distance over all tangents. It belongs to an edge, or to the tangent of an arc whose
+// normal points along the line from the disc's centre to the mass centre.
 double SupportPolygon::margin(const glm::dvec3& massCentre) const {
     const dvec2 centre(massCentre.x, massCentre.z);
     double least = std::numeric_limits<double>::infinity();
@@ -171,8 +172,8 @@ void SupportPolygon::findTangents(const glm::dvec3& massCentre, double tolerance
     for (std::size_t i = 0; i < corners_.size(); ++i) {
         const Corner &corner = corners_[i], &next = after(i);
         const dvec2 away = centre - corner.place, along = turnedLeft(corner.outward);
-        // Of an edge where the foot of the mass centre is on it, of an arc where the mass centre is
-        // beyond the disc's middle.
+        // An edge counts if the mass centre projects onto it; an arc counts if the mass centre lies
+        // beyond the disc's centre.
         const double onward = glm::dot(away, along), left = glm::dot(next.place - centre, along);
         const double ofEdge = corner.radius - glm::dot(away, corner.outward);
         if (corners_.size() > 1 && onward >= 0 && left >= 0 && ofEdge <= most) {
@@ -195,7 +196,7 @@ double SupportPolygon::area() const {
         twice += cross(place + corner.radius * to, next.place - corners_[0].place + next.radius * to);
         if (corner.radius == 0) continue;
         double turn = std::atan2(cross(from, to), glm::dot(from, to));
-        if (turn < 0) turn = corner.isWide || turn < -1 ? turn + 2 * std::numbers::pi : 0;  // rounded: half a turn, or none
+        if (turn < 0) turn = corner.isWide || turn < -1 ? turn + 2 * std::numbers::pi : 0;  // rounding: half a turn, or none
         twice += corner.radius * (corner.radius * turn + cross(place, to - from));
     }
     return 0.5 * twice;

@@ -19,21 +19,21 @@ constexpr std::size_t kMostHandles = 100, kMostKeys = 10'000;
 constexpr double kLeastSeconds = 0.01, kMostSeconds = 3600;
 constexpr double kFarthest = 10;  // in shares of the picture
 
-// The slope at a key from the slopes on its two sides, over so long: none where they turn back, so
-// that nothing overshoots.
+// The slope at a key: the weighted harmonic mean of the slopes of the adjacent intervals. 0 if they
+// differ in sign, so that nothing overshoots.
 double slopeAt(double before, double lengthBefore, double after, double lengthAfter) {
     if (before * after <= 0) return 0;
     const double a = 2 * lengthAfter + lengthBefore, b = lengthAfter + 2 * lengthBefore;
     return (a + b) / (a / before + b / after);
 }
 
-// Hermite's cubic over a piece of this length.
+// The cubic Hermite polynomial over an interval of this length.
 double eased(double from, double slopeFrom, double to, double slopeTo, double length, double share) {
     const double s = share, r = 1 - share;
     return r * r * (1 + 2 * s) * from + s * s * (1 + 2 * r) * to + length * s * r * (r * slopeFrom - s * slopeTo);
 }
 
-// What the file says, once it is known how large the picture and how long the motion is.
+// Reads the handles. The size of the picture and the length of the motion are known by then.
 class MotionReader {
 public:
     MotionReader(const TriangulatedSilhouette& silhouette, const HandleMotion& motion)
@@ -116,7 +116,7 @@ private:
         return key;
     }
 
-    // A key at a loop's very end is the one at its beginning, and there only once.
+    // In a loop, a key at the very end repeats the one at the beginning, so it is dropped.
     Result<void> closeLoop(const ConfigNode& node, HandleMotion::Handle& handle) const {
         auto& keys = handle.keys;
         if (!motion_.loops || keys.size() < 2 || keys.front().time > 0 || keys.back().time < motion_.seconds) return {};
@@ -142,7 +142,7 @@ glm::dvec2 HandleMotion::placeAt(const Handle& handle, double time) const {
     if (keys.empty()) return handle.at;
     if (keys.size() == 1) return keys[0].place;
     const auto count = static_cast<std::ptrdiff_t>(keys.size());
-    // A loop's keys go on for ever on both sides.
+    // A loop's keys repeat periodically in both directions.
     const auto keyAt = [&](std::ptrdiff_t i) {
         const std::ptrdiff_t round = i < 0 ? -1 : i / count;
         Key key = keys[static_cast<std::size_t>(i - round * count)];

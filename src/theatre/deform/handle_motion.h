@@ -12,7 +12,8 @@
 
 namespace fantascope::theatre {
 
-// How the handles of a silhouette move: key frames. Pixels of the silhouette's picture, seconds.
+// The movement of a silhouette's handles, as key frames. Pixels of the silhouette's picture,
+// seconds.
 struct HandleMotion {
     struct Key {
         double time = 0;
@@ -22,7 +23,7 @@ struct HandleMotion {
         std::string name;
         glm::dvec2 at{0};  // at rest
         CarriedPoint point;
-        std::vector<Key> keys;  // times rise; none: it is fixed
+        std::vector<Key> keys;  // ascending times; empty: the handle is fixed
     };
     static constexpr int kMostFrames = 10'000;
     static constexpr double kMostFramesPerSecond = 240, kLeastFramesPerSecond = 1;
@@ -32,16 +33,17 @@ struct HandleMotion {
     bool loops = false;  // the end is the beginning
     std::vector<Handle> handles;
 
-    // Eased from key to key by a cubic that rises or falls between two keys and nothing else, for x
-    // and y apart, its velocity without jumps (Fritsch & Butland 1984). Before the first key and
-    // after the last it stays there; a loop goes on from the last to the first.
+    // The place of a handle at a time, by monotone cubic interpolation between keys with a
+    // continuous velocity, separately for x and y (Fritsch & Butland 1984). Before the first key
+    // and after the last the handle stays there. In a loop the last key leads to the first.
     glm::dvec2 placeAt(const Handle& handle, double time) const;
     std::vector<glm::dvec2> placesAt(double time) const;
 };
 
-// *.motion.yaml, docs/motion-format.md, for a silhouette. Error: names file, line, the handle and
-// what to do: two of one name or at the same point, one farther than kFarOutside from the white,
-// times that do not rise or go beyond the end, a loop whose end is not its beginning.
+// Reads *.motion.yaml, docs/motion-format.md, for a silhouette. Error: names file, line, the handle
+// and what to do; for instance two handles of one name or at the same point, a handle farther than
+// kFarOutside from the white, times that do not rise or exceed the end, or a loop that does not end
+// where it begins.
 Result<HandleMotion> readMotion(const std::filesystem::path& file, const TriangulatedSilhouette& silhouette);
 constexpr double kFarOutside = 2, kSamePoint = 1;  // pixels
 

@@ -27,8 +27,8 @@ Sparse matrixOf(Eigen::Index rows, Eigen::Index columns, const Triplets& entries
     return matrix;
 }
 
-// Section 4.2: for each triangle and edge the square of what the edge differs by from the fitted
-// triangle's. The same for x and y.
+// Section 4.2: the squared difference of each triangle's edges from those of the fitted triangle,
+// as a quadratic form. It is the same for x and y.
 Sparse edgeError(const FlatMesh& rest) {
     Triplets entries;
     for (const glm::uvec3& triangle : rest.triangles)
@@ -40,9 +40,9 @@ Sparse edgeError(const FlatMesh& rest) {
     return matrixOf(size, size, entries);
 }
 
-// Minimises v' G v - 2 b' v where C v = q. G leaves some movements free (its null space) which the
-// constraints hold, so G + C'C is positive definite, and adding (C v - q)^2, which is zero at the
-// solution, changes nothing.
+// Minimises v' G v - 2 b' v subject to C v = q. G is singular, but the constraints fix its null
+// space, so G + C'C is positive definite. The added term (C v - q)^2 is zero at the solution and
+// changes nothing.
 class ConstrainedQuadratic {
 public:
     ConstrainedQuadratic(const Sparse& form, const Sparse& constraints) : constraints_(constraints) {
@@ -54,17 +54,17 @@ public:
         multipliers_.compute(constraints * response_);
     }
 
-    // A column a problem.
+    // Each column of b and q is a problem of its own.
     Eigen::MatrixXd minimum(const Eigen::MatrixXd& b, const Eigen::MatrixXd& q) const {
         const Eigen::MatrixXd free = solved(b + constraints_.transpose() * q);
         return free + response_ * multipliers_.solve(q - constraints_ * free);
     }
 
 private:
-    // Constraints that follow from others but for rounding.
+    // Below this threshold, constraints are redundant up to rounding.
     static constexpr double kRedundant = 1e-9;
 
-    // Refined once: a rigid movement comes out to the last digits.
+    // One step of iterative refinement makes rigid movements accurate to the last digits.
     Eigen::MatrixXd solved(const Eigen::MatrixXd& right) const {
         const Eigen::MatrixXd first = factored_.solve(right);
         return first + factored_.solve(right - matrix_ * first);
@@ -73,7 +73,7 @@ private:
     Sparse matrix_, constraints_;
     Eigen::SimplicialLDLT<Sparse> factored_;
     Eigen::MatrixXd response_;                                             // to each constraint's multiplier
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> multipliers_;  // those of constraints that repeat others share
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> multipliers_;  // redundant constraints share them
 };
 
 }  // namespace
@@ -88,8 +88,8 @@ Sparse scaleFreeError(const FlatMesh& rest) {
             const std::array<Complex, 3> v = {complexOf(rest.vertices[at[0]]), complexOf(rest.vertices[at[1]]),
                                               complexOf(rest.vertices[at[2]])};
             const Complex local = (v[2] - v[0]) / (v[1] - v[0]);
-            // What v2 is away by from there: the sum of these times the vertices. |sum|^2 is the
-            // form whose entries are conj(a) b as real 2 x 2 blocks.
+            // The deviation of v2 from that place is the sum of these factors times the vertices.
+            // Its squared modulus is a quadratic form with entries conj(a) b, as real 2 x 2 blocks.
             const std::array<Complex, 3> factors = {local - 1.0, -local, Complex(1)};
             for (std::size_t a = 0; a < 3; ++a)
                 for (std::size_t b = 0; b < 3; ++b) {
@@ -105,8 +105,8 @@ Sparse scaleFreeError(const FlatMesh& rest) {
     return matrixOf(size, size, entries);
 }
 
-// One island with the handles on it. Its own vertices are counted from 0 and lie about their
-// middle, so that digits are not lost.
+// One island with its handles. Its vertices are renumbered from 0 and relative to their mean, so
+// that digits are not lost.
 class ShapeManipulation::Island {
 public:
     Island(FlatMesh rest, std::vector<std::size_t> vertices, std::vector<CarriedPoint> points, std::vector<std::size_t> handles)
@@ -158,8 +158,8 @@ private:
         return result;
     }
 
-    // Each triangle as it was at rest is turned onto what step one made of it; then all are brought
-    // together.
+    // Each triangle at rest is rotated to fit the result of step one. Then all triangles are joined
+    // by least squares.
     std::vector<glm::dvec2> scaleAdjusted(const std::vector<glm::dvec2>& intermediate, const Eigen::MatrixXd& q) const {
         Eigen::MatrixXd b = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rest_.vertices.size()), 2);
         for (const glm::uvec3& triangle : rest_.triangles) {
@@ -178,15 +178,15 @@ private:
         return result;
     }
 
-    // The rotation that fits best in the sense of least squares; the paper's similarity has the
-    // same, and its scale is dropped.
+    // The rotation that fits best in the least-squares sense. It is that of the paper's similarity,
+    // without the scale.
     Complex turnOf(const glm::uvec3& triangle, const std::vector<glm::dvec2>& intermediate) const {
         constexpr double kCollapsed = 1e-12;
         Complex sum = 0;
         double most = 0;
         for (int corner = 0; corner < 3; ++corner) {
-            // The sum over the edges is three times that over the corners as seen from their
-            // middle.
+            // The sum over the edges is three times the sum over the corners relative to their
+            // mean.
             const std::uint32_t i = triangle[corner], j = triangle[(corner + 1) % 3];
             const Complex edge = complexOf(rest_.vertices[j] - rest_.vertices[i]);
             sum += std::conj(edge) * complexOf(intermediate[j] - intermediate[i]);
@@ -197,7 +197,7 @@ private:
 
     FlatMesh rest_;
     glm::dvec2 middle_{0};
-    std::vector<std::size_t> vertices_, handles_;            // numbers in the whole
+    std::vector<std::size_t> vertices_, handles_;            // indices in the whole shape
     Eigen::MatrixXd atRest_;                                 // of the handles
     std::optional<ConstrainedQuadratic> stepOne_, stepTwo_;  // none for a single handle
 };

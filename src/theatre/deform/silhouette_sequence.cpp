@@ -27,7 +27,7 @@ constexpr std::uint32_t kMostVertices = 1'000'000;
 constexpr double kFarthest = 1e6;  // pixels
 constexpr double kLeastRate = 0.001, kMostRate = 1000;
 
-// Numbers with spaces between, as one text: a list of them would be a hundred times as large in
+// Numbers are one text, separated by spaces: a YAML list would be a hundred times as large in
 // memory.
 template <class Number>
 Result<std::vector<Number>> readNumbers(const ConfigNode& node, Number low, Number high) {
@@ -41,7 +41,7 @@ Result<std::vector<Number>> readNumbers(const ConfigNode& node, Number low, Numb
         Number number{};
         const auto [next, failure] = std::from_chars(at, end, number);
         if (failure != std::errc() || (next != end && *next != ' ') || !(number >= low && number <= high))
-            return node.error(fmt::format("'{}' is no number within {} .. {}; numbers stand with a space between",
+            return node.error(fmt::format("'{}' is no number within {} .. {}; a space separates two numbers",
                                           std::string_view(at, std::find(at, end, ' ')), low, high));
         numbers.push_back(number);
         at = next;
@@ -158,7 +158,7 @@ Result<void> writeSequence(const fs::path& file, const SilhouetteSequence& seque
             list(vertices, 2);
         }
     }
-    // What could not be read back is found before a good file is lost to it.
+    // The text is read back first, so that an unreadable one never replaces a good file.
     if (const auto readable = sequenceOf(TRY(ConfigNode::parse(text, file))); !readable)
         return readable.error().in("not written, as it could not be read again");
     return writeFile(file, text);

@@ -11,10 +11,10 @@
 
 namespace fantascope::theatre {
 
-// A silhouette that moves (Won & Lee 2016, section 5).
+// A moving silhouette (Won & Lee 2016, section 5).
 struct SilhouetteSequence {
-    // Its interior, the same triangles in each frame: the consistent triangulation that poses are
-    // carried along by.
+    // Its interior, the same triangles in each frame: the consistent triangulation by which poses
+    // follow it.
     struct Interior {
         std::vector<glm::uvec3> triangles;
         std::vector<std::vector<glm::dvec2>> vertices;  // [frame][vertex], pixels of the pictures, x right, y down
@@ -25,11 +25,11 @@ struct SilhouetteSequence {
     std::optional<Interior> interior;
 };
 
-// sequence.yaml, docs/sequence-format.md. Error: names file, line, column and key; a picture that
-// is not there, or of another size than the first.
+// Reads sequence.yaml, docs/sequence-format.md. Error: names file, line, column and key; for
+// instance a picture that is missing, or whose size differs from the first.
 Result<SilhouetteSequence> readSequence(const std::filesystem::path& file);
-// Written aside and renamed; numbers come back to the last bit. The pictures lie in the file's
-// folder or below it, and need not be there yet.
+// Writes to a temporary file that is then renamed. Numbers are written so that they are read back
+// exactly. The pictures must lie in the file's folder or below it, and need not exist yet.
 Result<void> writeSequence(const std::filesystem::path& file, const SilhouetteSequence& sequence);
 
 }  // namespace fantascope::theatre

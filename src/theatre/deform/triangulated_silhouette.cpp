@@ -18,25 +18,25 @@
 namespace fantascope::theatre {
 namespace {
 
-// Pixels. The blur takes the steps of a picture without greys out of the outline, and moves a
-// straight border not at all.
+// Pixels. The blur removes the pixel staircase from the outline of a black and white picture. It
+// does not move a straight border.
 constexpr double kBlur = 0.6, kMargin = 4;
-// How far the triangles' border may be from the picture's: a share of their edges, and at least so
-// many pixels, what the fine outline does not show.
+// The tolerance of the triangles' border from the picture's: a share of the edge length, and at
+// least a number of pixels that the fine outline hides.
 constexpr double kCoarse = 0.06, kLeastCoarse = 0.1;
 constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 
 double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 
-// Positive for one around white.
+// The signed area of a ring; positive if it encloses white.
 double areaOf(const std::vector<glm::dvec2>& ring) {
     double twice = 0;
     for (std::size_t i = 0; i < ring.size(); ++i) twice += cross(ring[i], ring[(i + 1) % ring.size()]);
     return twice / 2;
 }
 
-// The parts that hang together over whole edges: two that meet in a corner alone would turn about
-// it freely.
+// The number of parts that are connected by edges. Two parts that meet only in a corner would
+// rotate about it freely.
 std::size_t partsOf(const FlatMesh& mesh) {
     DisjointSets parts(mesh.triangles.size());
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> edges;
@@ -77,8 +77,8 @@ Result<void> checkBorders(const Outline& borders, const GreyImage& picture) {
     return {};
 }
 
-// Coarser than the picture's outline where nothing is lost by it: what comes apart, or together, is
-// cut finer.
+// A mesh that is coarser than the picture's outline. If islands split or merge, the tolerance is
+// reduced.
 Result<FlatMesh> meshOf(const Outline& borders, double edge) {
     const auto islands = static_cast<std::size_t>(
         std::count_if(borders.rings.begin(), borders.rings.end(), [](const auto& ring) { return areaOf(ring) > 0; }));
@@ -93,7 +93,7 @@ Result<FlatMesh> meshOf(const Outline& borders, double edge) {
     return Error("some of its parts all but touch each other; draw them a pixel or two apart, or together");
 }
 
-// Of a mesh with about so many vertices.
+// A mesh with about this many vertices.
 Result<FlatMesh> meshOf(const Outline& borders, int vertices) {
     constexpr int kRounds = 6;
     constexpr double kNear = 0.05;
@@ -158,13 +158,14 @@ Result<TriangulatedSilhouette> TriangulatedSilhouette::of(const GreyImage& pictu
     TRY(PoseTarget::checkSize(picture.width(), picture.height()));
     Outline borders = tracedBorders(picture);
     TRY(checkBorders(borders, picture));
-    // A line one pixel wide does not outlast the blur.
+    // The blur is used only if it preserves all rings: a line one pixel wide would vanish.
     if (Outline smooth = smoothBordersOf(picture); smooth.rings.size() == borders.rings.size()) borders = std::move(smooth);
     TriangulatedSilhouette silhouette;
     silhouette.width = picture.width();
     silhouette.height = picture.height();
     silhouette.rest = TRY(meshOf(borders, vertices));
-    // All its points: a straight side is not straight once the triangles along it are bent.
+    // All points are kept: a straight side does not stay straight when the triangles along it
+    // deform.
     for (const auto& ring : borders.rings) {
         auto& points = silhouette.outline.emplace_back();
         for (const glm::dvec2 point : ring) points.push_back(silhouette.carried(point));

@@ -10,11 +10,11 @@
 namespace fantascope::theatre {
 namespace {
 
-constexpr double kEnds = 0.25;  // of a capsule's width: what its round ends add to its length, beyond what lies in the next one's
+constexpr double kEnds = 0.25;  // share of a capsule's width that its round ends add to its length; the rest overlaps the next
 
-// Of a body's shadow what is beside or above the frame, pixels: of each capsule that is as long as
-// its axis's shadow and as wide as its ends' on average the part whose axis is outside, and more
-// the farther it is.
+// The approximate area of a body's shadow beside or above the frame, in pixels. A capsule's shadow
+// is as long as its axis's and as wide as the mean of its ends. The part whose axis is outside
+// counts, weighted more the farther out it is.
 double areaBeyond(const ScreenFrame& frame, const PosedBody& body) {
     const double width = frame.width();
     double area = 0;
@@ -103,9 +103,9 @@ BitMask BeamEnergy::propShadow() const {
     return shadow;
 }
 
-// Whether a target's point has the nearest point that it had: no contour pixel as near has come or
-// gone, which takes a change of the pixel or of a neighbour, and nothing by which the nearest is
-// measured has changed.
+// Whether the cached nearest point of a target's point is still valid. No contour pixel at most as
+// far away may have appeared or vanished, which takes a change of the pixel or of a neighbour. And
+// the disc in which the nearest point is measured must be unchanged.
 bool BeamEnergy::isAsBefore(std::size_t point) const {
     if (!hasNearest_) return false;
     if (!changes_.isAny()) return true;
@@ -114,9 +114,9 @@ bool BeamEnergy::isAsBefore(std::size_t point) const {
     return !changes_.mayReach(wanted, away + 1) && !changes_.mayReach(got, disc_.radius());
 }
 
-// Equation 2, from the target's contour to the nearest points of the shadow's. Whose (equation 4):
-// the actor whose shadow holds that point; of several the one whose the last point was, else the
-// first; nobody if it is a prop's.
+// Equation 2, from the target's contour to the nearest points of the shadow's contour. Also their
+// owners, for equation 4: the actor whose shadow contains the point. Of several actors it is the
+// previous point's owner, or else the first. A point in nobody's shadow is a prop's.
 void BeamEnergy::compareContours(EnergyTerms& terms) {
     const PoseTarget& target = target_;
     const double scale = target.refPixelsPerPixel * target.refPixelsPerPixel, each = target.perPoint();
@@ -131,7 +131,7 @@ void BeamEnergy::compareContours(EnergyTerms& terms) {
         } else if ((pixel = contour_.nearest(wanted.pixel, pixel))) {
             nearest_[i] = disc_.at(shadow_, *pixel);
         } else {
-            // No shadow at all: as far as the picture is wide.
+            // Without any shadow the distance is the width of the mask.
             terms.contourPoint += each * scale * target.mask.width() * target.mask.width();
             nearest_[i] = {};
         }

@@ -26,7 +26,8 @@ void forPairs(const PosedBody& a, const PosedBody& b, Visit visit) {
                 if (areNear(one, other)) visit(penetration(one, other));
 }
 
-// The floor and the first screen count together, by the deeper; the others each.
+// The floor and the first screen count once, by the greater depth. Each further screen counts on
+// its own.
 template <class Visit>
 void forStage(const Stage& stage, const PosedBody& posed, Visit visit) {
     glm::dvec3 outward;
@@ -42,9 +43,9 @@ void forStage(const Stage& stage, const PosedBody& posed, Visit visit) {
 double unseen(const glm::dvec3& eyes, const glm::dvec3& gaze, const glm::dvec3& screenMiddle) {
     const glm::dvec3 wanted = screenMiddle - eyes;
     const double distance = glm::length(wanted);
-    // Eyes at the middle itself see it.
+    // Eyes exactly at the middle see it.
     const double off = distance > 0 ? std::acos(std::clamp(glm::dot(gaze, wanted) / distance, -1.0, 1.0)) - kSight : 0;
-    // Beyond a right angle to the cone's side its apex is nearest.
+    // At more than a right angle from the cone's side, the apex is the nearest point.
     const double near = off <= 0 ? 0 : off < std::numbers::pi / 2 ? distance * std::sin(off) : distance;
     // The screen's plane is at z = 0: the cone reaches it if one of its rays goes towards -z.
     const double away = std::acos(std::clamp(-gaze.z, -1.0, 1.0)) - kSight - std::numbers::pi / 2;

@@ -41,7 +41,7 @@ Result<std::vector<BodyPart>> readParts(const ConfigNode& node, const std::strin
     return parts;
 }
 
-// Of those that somebody holds.
+// A prop by its name; somebody must hold it.
 Result<const Prop*> readProp(const ConfigNode& node, const std::string& hint, const Stage& stage) {
     const std::string name = TRY(node.text());
     std::vector<std::string> held;
@@ -72,11 +72,10 @@ Result<glm::dvec2> readPlace(const ConfigNode& node, const std::string& hint, co
                         hint, share.x, share.y));
     const auto flat = target.flatFromGiven(share * glm::dvec2(target.given.width(), target.given.height()));
     if (!flat)
-        return node.error(
-            fmt::format("hint '{}' is where the light does not come on the curved screen; move it to the silhouette", hint));
+        return node.error(fmt::format("hint '{}' is where no light reaches the curved screen; move it to the silhouette", hint));
     const glm::dvec2 place = *flat;
-    // Where the picture is larger than the mask all is black: as far as its edge is, and the way to
-    // it.
+    // The picture may be larger than the mask and is black beyond it. There the distance is that to
+    // the mask's edge plus the one read at the edge.
     const ScreenFrame& frame = target.frame;
     const glm::dvec2 pixel = frame.pixelAt(place.x, place.y);
     const glm::dvec2 inMask = glm::clamp(pixel, glm::dvec2(0), glm::dvec2(frame.width(), frame.height()) - 1e-9);

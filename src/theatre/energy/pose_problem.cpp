@@ -16,16 +16,17 @@
 namespace fantascope::theatre {
 namespace {
 
-constexpr double kMargin = 1.0 / 3;  // of the silhouette's height, around it
+constexpr double kMargin = 1.0 / 3;  // around a silhouette, as a share of its height
 
-// White pixels that hang together, over corners too.
+// A connected component of white pixels (8-connected).
 struct Island {
     std::int64_t area = 0;
-    glm::ivec2 pixel{0};  // its first
+    glm::ivec2 pixel{0};  // its first in scan order
     int left = 0, right = 0;
 };
 
-// Runs of a row join those that they touch in the row above: no more memory than the runs take.
+// Each run of a row is joined with the runs that it touches in the row above. Memory is
+// proportional to the number of runs.
 std::vector<Island> findIslands(const BitMask& mask) {
     struct Run {
         int from, to;
@@ -72,7 +73,7 @@ void sampleContour(PoseTarget& target, std::size_t points) {
 // A picture's silhouette, row 0 at the top.
 struct Silhouette {
     BitMask mask;
-    int left = 0, right = 0, top = 0, bottom = 0;  // the columns and rows that it lies in: [left, right) x [top, bottom)
+    int left = 0, right = 0, top = 0, bottom = 0;  // bounding box: columns [left, right), rows [top, bottom)
 };
 
 Result<Silhouette> silhouetteOf(const GreyImage& picture) {
@@ -101,11 +102,11 @@ Result<Silhouette> silhouetteOf(const GreyImage& picture) {
     return found;
 }
 
-// Error: it has parts that nobody could join.
+// Error: the silhouette has parts that are too far from each other for people to join.
 Result<void> checkIslands(const BitMask& mask, int rows) {
     if (findIslands(mask).size() <= 1) return {};
-    // Islands are near if they hang together once each has grown by half of how far apart they may
-    // be.
+    // Islands are near enough if they are connected after each is dilated by half of the allowed
+    // distance.
     const BitMask joined = deeperThan(signedDistance(mask), -0.5 * PoseTarget::kFarApart * rows);
     if (const std::size_t apart = findIslands(joined).size(); apart > 1)
         return Error(
@@ -115,7 +116,8 @@ Result<void> checkIslands(const BitMask& mask, int rows) {
     return {};
 }
 
-// Whether a pixel is white, by 3 x 3 samples; `isWhite(dx, dy)`: so far into it.
+// Whether a pixel is white, by the majority of 3 x 3 samples. `isWhite(dx, dy)` samples at that
+// offset into the pixel, 0 .. 1.
 template <class IsWhite>
 bool isMostlyWhite(IsWhite isWhite) {
     int white = 0;
@@ -132,8 +134,8 @@ Result<double> middleOf(const TargetPlace& place, const Stage& stage) {
     return Error("its screen is curved, and the light stands beside it; move the light, or make the screen's radius larger");
 }
 
-// Error: somewhere in [left, right] x [0, top] of the unrolled screen the light does not come, for
-// the screen's own curve or for another screen.
+// Error: the light does not reach all of [left, right] x [0, top] of the unrolled screen, because
+// of the screen's own curve or another screen.
 Result<void> checkWay(const TargetPlace& place, const Stage& stage, double left, double right, double top) {
     if (stage.screens.size() == 1 && !stage.screens[0].isCurved()) return {};
     constexpr int kAlong = 64, kSteps = 64;
@@ -142,7 +144,7 @@ Result<void> checkWay(const TargetPlace& place, const Stage& stage, double left,
     const glm::dvec3 light = stage.lightOnScreen(place.beam);
     if (const double most = std::abs(own.radius) * Screen::kMostArc; own.isCurved() && std::max(-left, right) > most)
         return Error(
-            fmt::format("its silhouette is to reach from {:.2f} m to {:.2f} m along a screen of which, with a radius of {} m, "
+            fmt::format("its silhouette is to reach from {:.2f} m to {:.2f} m along a screen with a radius of {} m, of which "
                         "{:.2f} m to either side can be seen; make it less high, or the radius larger",
                         left, right, own.radius, most));
     for (int i = 0; i <= kAlong; ++i)
@@ -166,8 +168,8 @@ Result<void> checkWay(const TargetPlace& place, const Stage& stage, double left,
     return {};
 }
 
-// Error: [left, right] x [0, top] of the unrolled screen is not all in a projector's picture, which
-// is measured on the flat screen.
+// Error: [left, right] x [0, top] of the unrolled screen is not entirely in the projector's
+// picture, which is measured on the flat screen.
 Result<void> checkLit(const TargetPlace& place, const Stage& stage, double left, double right, double top) {
     const auto lit = stage.beams[place.beam].lit;
     if (!lit) return {};
@@ -177,7 +179,7 @@ Result<void> checkLit(const TargetPlace& place, const Stage& stage, double left,
         for (const double up : {0.0, top})
             if (const auto flat = flatFromUnrolled(stage.screenOf(place.beam), light, {along, up}))
                 least = glm::min(least, *flat), most = glm::max(most, *flat);
-    // Below the floor's line it is not to be lit.
+    // Only the part above the floor must be lit.
     const glm::dvec2 from = lit->from, to = lit->to;
     if (least.x < from.x || most.x > to.x || from.y > 0 || most.y > to.y)
         return Error(
@@ -188,13 +190,14 @@ Result<void> checkLit(const TargetPlace& place, const Stage& stage, double left,
     return {};
 }
 
-// A target that was laid on the unrolled screen, as it falls on the flat one. `isWhite(place)`: of
-// the silhouette on the unrolled screen, metres; it lies in [left, right] x [0, top].
+// Maps a target from the unrolled screen to the flat one. `isWhite(place)` tells whether the
+// silhouette is white at a place of the unrolled screen, metres. The silhouette lies in [left,
+// right] x [0, top].
 template <class IsWhite>
 PoseTarget onFlatScreen(PoseTarget&& laid, const Stage& stage, double left, double right, double top, IsWhite isWhite) {
     const Screen& screen = stage.screenOf(laid.beam);
     const glm::dvec3 light = stage.lightOnScreen(laid.beam);
-    // The box around it on the flat screen, but no less than from the floor up.
+    // Its bounding box on the flat screen; the box reaches at least down to the floor.
     glm::dvec2 least(std::numeric_limits<double>::infinity()), most = -least;
     constexpr int kAlong = 256;
     for (int i = 0; i <= kAlong; ++i)
@@ -233,8 +236,8 @@ PoseTarget onFlatScreen(PoseTarget&& laid, const Stage& stage, double left, doub
     return target;
 }
 
-// Silhouettes of pictures of one size as targets in one frame on the screen, which is laid by one
-// of them.
+// Turns silhouettes of pictures of one size into targets in one ScreenFrame. Silhouette `by`
+// decides the placement and the scale.
 Result<std::vector<PoseTarget>> laidOut(std::span<const Silhouette> silhouettes, std::size_t by, const Stage& stage,
                                         double height, int rows, const TargetPlace& place) {
     const Silhouette& measure = silhouettes[by];
@@ -250,8 +253,7 @@ Result<std::vector<PoseTarget>> laidOut(std::span<const Silhouette> silhouettes,
                             nameOf(i), below, by + 1));
     }
 
-    // One pixel of the mask is `step` pixels of the picture; it is sampled at the mask's pixels'
-    // centres by area.
+    // A pixel of the mask is `step` pixels of the picture. Each mask pixel is sampled by area.
     const double step = double(measure.bottom - measure.top) / rows, pixel = height / rows;
     const double middle = 0.5 * (measure.left + measure.right), given = pixel / step;  // a pixel of the picture, metres
     const double half = std::max(middle - left, right - middle) / step, high = (measure.bottom - top) / step;
@@ -271,7 +273,7 @@ Result<std::vector<PoseTarget>> laidOut(std::span<const Silhouette> silhouettes,
             256.0 / rows,
             ScreenFrame(stage, x - middle * given, measure.bottom * given, given, whole.width(), whole.height(), place.beam),
             place.beam};
-        const auto isWhite = [&](double right, double up) {  // from the middle of the silhouette's foot, pixels of the mask
+        const auto isWhite = [&](double right, double up) {  // from the foot's middle, mask pixels
             return whole.at(static_cast<int>(std::floor(middle + right * step)),
                             static_cast<int>(std::floor(measure.bottom - up * step)));
         };
@@ -302,7 +304,7 @@ Result<void> PoseTarget::checkSize(int width, int height) {
 
 TargetPlace TargetPlace::on(const Stage& stage, std::size_t beam) {
     if (beam == 0) return {};
-    constexpr double kBefore = 1.8;  // the first screen, metres: the middle of where a search begins
+    constexpr double kBefore = 1.8;  // distance from the first screen, metres: the middle of a search's start positions
     glm::dvec3 people(stage.beams[0].light.x, 0, std::min(kBefore, 0.5 * stage.beams[0].light.z));
     if (const auto& area = stage.standing) {
         const glm::dvec2 floor = glm::clamp(glm::dvec2(people.x, people.z), area->from, area->to);
@@ -313,7 +315,7 @@ TargetPlace TargetPlace::on(const Stage& stage, std::size_t beam) {
         return light / (light - stage.screenOf(i).screenFromStage(people).z);
     };
     const double scale = larger(beam);
-    if (!(scale > 0) || !std::isfinite(scale)) return {beam};  // they are behind the light
+    if (!(scale > 0) || !std::isfinite(scale)) return {beam};  // the people are behind the light
     const glm::dvec3 light = stage.lightOnScreen(beam), at = stage.screenOf(beam).screenFromStage(people);
     const auto middle = unrolledFromFlat(stage.screenOf(beam), light, {light.x + scale * (at.x - light.x), light.y});
     if (!middle) return {beam};
@@ -374,7 +376,7 @@ PoseTarget PoseTarget::halved(const Stage& stage) const {
                       given,
                       beam,
                       unrolled};
-    // From the floor up; a pixel is white if half of it is.
+    // Pixels are paired from the floor up. A pixel is white if at least half of it is.
     const int cut = 2 * height - mask.height();
     const auto halve = [&](const BitMask& from) {
         BitMask to(width, height);

@@ -63,7 +63,7 @@ void SceneEnergy::pose(std::size_t index, std::span<const double> dofs) {
     actor.own.contactTurn = drift.turn;
 }
 
-// Equation 5, of the screen that needs least of a turn of the head.
+// Equation 5, for the screen whose middle is nearest to the cone of sight.
 double SceneEnergy::unseenScreen(const Body& body, const PosedBody& posed) const {
     const glm::dvec3 eyes = posed.point(body.head, body.eyes), gaze = posed.turn(body.head) * body.gaze;
     double least = std::numeric_limits<double>::infinity();

@@ -26,7 +26,7 @@ constexpr std::array kWeights = {
     Weight{"w13", &PoseWeights::w13}, Weight{"w14", &PoseWeights::w14}, Weight{"w15", &PoseWeights::w15},
     Weight{"w16", &PoseWeights::w16}};
 
-// `base` but for what the node says.
+// `base`, overridden by the weights of the node.
 Result<PoseWeights> changed(PoseWeights base, const ConfigNode& node) {
     ConfigFields fields(node);
     for (const Weight& weight : kWeights) fields.optional().number(weight.name, base.*weight.value, 0, kMost);
@@ -46,7 +46,7 @@ Result<PoseWeights> readWeights(const std::filesystem::path& file, std::string_v
     fields.optional().read("presets", presets,
                            [](const ConfigNode& node) -> Result<std::vector<std::pair<std::string, ConfigNode>>> {
                                auto entries = TRY(node.entries());
-                               // Those that are not asked for have to be right too.
+                               // Presets that are not asked for must be valid, too.
                                for (const auto& [name, entry] : entries) TRY(changed({}, entry));
                                return entries;
                            });

@@ -9,10 +9,10 @@
 
 namespace fantascope::theatre {
 
-// Weights w1 .. w12 of a file (docs/weights-format.md): those of `base` but for what the file's
-// `common` says, and then, if `preset` is not empty, what its preset of that name says. A file of
-// one's own has only what is to be different. Error: names file, line and weight: one that is
-// negative, an unknown one, or a preset that is not there.
+// Reads weights w1 .. w16 from a file (docs/weights-format.md). They start from `base`. The file's
+// `common` overrides them, and then, if `preset` is not empty, its preset of that name. So a file
+// needs only the weights that differ. Error: names file, line and weight; for instance a negative
+// or unknown weight, or a missing preset.
 Result<PoseWeights> readWeights(const std::filesystem::path& file, std::string_view preset = "", const PoseWeights& base = {});
 
 }  // namespace fantascope::theatre

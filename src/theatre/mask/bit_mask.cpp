@@ -8,7 +8,7 @@
 namespace fantascope::theatre {
 namespace {
 
-// Both ends included.
+// Sets the bits [first, last], both ends included.
 void setBits(std::uint64_t* words, int first, int last) {
     constexpr unsigned kBits = BitMask::kBits;
     const unsigned from = static_cast<unsigned>(first), to = static_cast<unsigned>(last), firstWord = from / kBits,
@@ -151,8 +151,8 @@ bool Changes::mayReach(glm::ivec2 pixel, int within) const {
 void ConvexFiller::fill(std::span<const glm::vec2> polygon, BitMask& mask) {
     float top = std::numeric_limits<float>::max(), bottom = -top;
     for (const glm::vec2& point : polygon) top = std::min(top, point.y), bottom = std::max(bottom, point.y);
-    // The first row whose centre is not above y, and the last whose is not below it, within the
-    // mask.
+    // The first row whose centre is not above y, and the last row whose centre is not below y,
+    // clamped to the mask.
     const auto height = static_cast<float>(mask.height());
     const auto rowFrom = [&](float y) { return static_cast<int>(std::ceil(std::clamp(y, 0.0f, height) - 0.5f)); };
     const auto rowTo = [&](float y) { return static_cast<int>(std::floor(std::clamp(y, 0.0f, height) - 0.5f)); };
@@ -163,11 +163,11 @@ void ConvexFiller::fill(std::span<const glm::vec2> polygon, BitMask& mask) {
     right_.assign(rows, 0);
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         glm::vec2 a = polygon[i], b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
-        // Down on the right, up on the left.
+        // An edge that goes down bounds the polygon on the right; one that goes up, on the left.
         std::vector<float>& side = b.y > a.y ? right_ : left_;
         if (a.y > b.y) std::swap(a, b);
         const int from = rowFrom(a.y), to = rowTo(b.y);
-        // A level edge through centres has no slope; its ends are those of its neighbours.
+        // A horizontal edge has no slope. Its neighbours provide its ends.
         if (from > to || a.y == b.y) continue;
         const float slope = (b.x - a.x) / (b.y - a.y);
         float x = a.x + (static_cast<float>(from) + 0.5f - a.y) * slope;

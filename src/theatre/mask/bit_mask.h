@@ -13,8 +13,9 @@
 
 namespace fantascope::theatre {
 
-// A black and white picture, 64 neighbours of a row in a word, the lowest bit on the left; bits
-// beyond the width are 0. `rowsFrom` and `rowsTo` bound the rows that have any bit.
+// A picture of one bit a pixel. A word holds 64 neighbouring pixels of a row, the leftmost in the
+// lowest bit. Bits beyond the width are 0. `rowsFrom` and `rowsTo` bound the rows that have a white
+// pixel.
 class BitMask {
 public:
     static constexpr int kBits = 64;
@@ -41,17 +42,16 @@ public:
     }
 
     void clear();
-    // White from `from` to before `to`, cut at the edges.
+    // Sets the pixels [from, to) of a row to white. The range is clipped to the width.
     void fill(int y, int from, int to);
-    // The same in rows below each other, in pixels with fractions: white where a pixel's centre
-    // lies between.
+    // The same for consecutive rows from y on, with fractional bounds: a pixel becomes white if its
+    // centre lies between them.
     void fill(int y, std::span<const float> from, std::span<const float> to);
     void add(const BitMask& other);
-    // Blackens all but the columns from `left` to before `right` of the rows from `top` to before
-    // `bottom`.
+    // Blackens all pixels outside columns [left, right) and rows [top, bottom).
     void keep(int left, int top, int right, int bottom);
-    void keep(const BitMask& other);           // all that is not white in it, of the same size
-    void noteRow(int y) { spread(y, y + 1); }  // words of this row were set through row()
+    void keep(const BitMask& other);           // blackens what is black in `other`, which has the same size
+    void noteRow(int y) { spread(y, y + 1); }  // must be called after words of this row were set through row()
     std::int64_t count() const;
     friend std::int64_t differing(const BitMask& a, const BitMask& b);
     friend std::int64_t shared(const BitMask& a, const BitMask& b);
@@ -66,17 +66,17 @@ private:
     std::vector<std::uint64_t> words_;
 };
 
-// Of masks of one size: how many pixels differ, and which; how many are white in both, and what
-// share that is of those that are white in either, of which there are some; whether some are white
-// in both; whether all that are white in one are in the other.
+// Comparisons of two masks of one size. differing(): the number of pixels that differ. shared():
+// the number that are white in both. meet(): whether any pixel is white in both. isWithin():
+// whether every white pixel of `inner` is white in `outer`.
 std::int64_t differing(const BitMask& a, const BitMask& b);
 std::int64_t shared(const BitMask& a, const BitMask& b);
 BitMask difference(const BitMask& a, const BitMask& b);
-double intersectionOverUnion(const BitMask& a, const BitMask& b);  // one of them has something white
+double intersectionOverUnion(const BitMask& a, const BitMask& b);  // at least one mask has a white pixel
 bool meet(const BitMask& a, const BitMask& b);
 bool isWithin(const BitMask& inner, const BitMask& outer);
 
-// `count` bits of a mask's row, 1..64, from column x on; x may lie outside.
+// `count` bits (1 .. 64) of a mask's row, from column x on. Columns outside the mask read as 0.
 inline std::uint64_t window(std::span<const std::uint64_t> row, int x, int count) {
     const std::uint64_t mask = ~std::uint64_t{0} >> (BitMask::kBits - count);
     if (x < 0) return x + count <= 0 ? 0 : (row[0] << -x) & mask;
@@ -88,12 +88,13 @@ inline std::uint64_t window(std::span<const std::uint64_t> row, int x, int count
     return bits & mask;
 }
 
-// Where two masks of one size differ: the columns, of a band of rows each.
+// Where two masks of one size differ. For each band of kBand rows it keeps the columns that differ.
 class Changes {
 public:
     void find(const BitMask& a, const BitMask& b);
     bool isAny() const { return isAny_; }
-    // Whether a pixel that differs may be so near in x and in y; true may be wrong, false is not.
+    // Whether a differing pixel may lie within this distance in x and in y. True is conservative;
+    // false is exact.
     bool mayReach(glm::ivec2 pixel, int within) const;
 
 private:
@@ -104,18 +105,18 @@ private:
     std::vector<std::uint64_t> columns_;
 };
 
-// Fills a convex polygon; points in pixels, clockwise as seen.
+// Fills convex polygons. Points are in pixels, clockwise as seen.
 class ConvexFiller {
 public:
     void fill(std::span<const glm::vec2> polygon, BitMask& mask);
-    // A triangle, either way around.
+    // A triangle, in either orientation.
     void fill(std::array<glm::vec2, 3> triangle, BitMask& mask);
 
 private:
     std::vector<float> left_, right_;  // scratch, kept for its memory
 };
 
-// What triangles cover; corners in pixels, x right, y down.
+// The union of triangles as a mask. `corners` are in pixels, x right, y down.
 BitMask filled(int width, int height, std::span<const glm::uvec3> triangles, std::span<const glm::dvec2> corners);
 
 }  // namespace fantascope::theatre

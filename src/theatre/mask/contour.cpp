@@ -14,7 +14,7 @@
 namespace fantascope::theatre {
 namespace {
 
-// Of the bits of half a row: how many are set, and the sum of their places.
+// For the bits of half a disc row: how many are set, and the sum of their positions.
 constexpr int kHalf = 16;
 struct Bits {
     std::uint8_t count = 0, places = 0;
@@ -60,7 +60,8 @@ ContourPoint ContourDisc::at(const BitMask& mask, glm::ivec2 pixel) const {
     ContourPoint point{pixel};
     const double length = glm::length(glm::dvec2(moment));
     if (length > 0) point.normal = -glm::dvec2(moment) / length;
-    // The pixel itself is white and lies on the line: half of what the disc's middle row takes.
+    // The pixel itself is white and lies on the contour, so half of the disc's middle row is
+    // subtracted.
     const double share = (area - radius_ - 0.5) / full_;
     point.curvature = 3 * std::numbers::pi * (0.5 - share);
     return point;
@@ -91,15 +92,15 @@ std::optional<glm::ivec2> Contour::nearest(glm::ivec2 pixel, std::optional<glm::
     int least = std::numeric_limits<int>::max();
     if (other) {
         const glm::ivec2 away = *other - pixel;
-        least = away.x * away.x + away.y * away.y + 1;  // one that is as near is still found in its turn
+        least = away.x * away.x + away.y * away.y + 1;  // a tie is still found in scan order
     }
     const auto take = [&](int x, int y) {
         const glm::ivec2 away = glm::ivec2(x, y) - pixel;
         const int distance = away.x * away.x + away.y * away.y;
         if (distance < least) least = distance, best = glm::ivec2(x, y);
     };
-    // All that is less than half a word away lies in one word around the pixel's column: its own
-    // column and those on the left, then those on the right.
+    // One word around the pixel's column covers every column less than half a word away: first its
+    // own column and those on the left, then those on the right.
     constexpr int kHalf = BitMask::kBits / 2;
     const auto lookNear = [&](int y) {
         const std::uint64_t bits = window(pixels_.row(y), pixel.x - kHalf, BitMask::kBits);
@@ -149,12 +150,12 @@ std::vector<glm::ivec2> outerContour(const BitMask& mask) {
     double largestArea = 0;
     for (int y = std::max(0, mask.rowsFrom()); y < mask.rowsTo(); ++y)
         for (int x = 0; x < mask.width(); ++x) {
-            // Each island once, from its topmost leftmost pixel; an inner contour's pixels have
-            // white on their left or were seen.
+            // Each outer contour is traced once, from its topmost leftmost pixel. A start on an
+            // inner contour is told apart by its area below.
             if (!mask.at(x, y) || mask.at(x - 1, y) || seen.at(x, y)) continue;
             std::vector<glm::ivec2> chain;
             glm::ivec2 here(x, y);
-            std::size_t back = 0;  // the neighbour from which we came: black
+            std::size_t back = 0;  // the direction of the black neighbour examined last
             const std::size_t limit = 4 * static_cast<std::size_t>(mask.width()) * static_cast<std::size_t>(mask.height());
             std::optional<std::size_t> firstMove;
             while (chain.size() < limit) {
@@ -167,7 +168,7 @@ std::vector<glm::ivec2> outerContour(const BitMask& mask) {
                 if (!move) break;  // a single pixel
                 if (!firstMove) firstMove = move;
                 here += kAround[*move];
-                // The neighbour looked at before, as seen from the new place.
+                // The neighbour examined last, as seen from the new pixel.
                 back = (*move + (*move % 2 == 0 ? 6 : 5)) % 8;
             }
             double area = 0;
@@ -175,7 +176,7 @@ std::vector<glm::ivec2> outerContour(const BitMask& mask) {
                 const glm::dvec2 a = chain[i], b = chain[(i + 1) % chain.size()];
                 area += 0.5 * (a.x * b.y - a.y * b.x);
             }
-            // Clockwise as seen, with y down, has a positive area: an outer contour.
+            // An outer contour runs clockwise as seen, so with y down its area is positive.
             if (area > largestArea || largest.empty()) largestArea = area, largest = std::move(chain);
         }
     return largest;

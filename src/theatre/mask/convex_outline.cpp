@@ -20,7 +20,7 @@ double distanceTo(const dvec2& a, const dvec2& b, const dvec2& p) {
 }
 
 void findHull(std::span<const dvec2> points, std::vector<std::uint32_t>& corners) {
-    // The points from left to right come first, the hull is laid behind them.
+    // The points sorted from left to right come first; the hull is built behind them.
     corners.resize(points.size());
     std::iota(corners.begin(), corners.end(), 0u);
     std::sort(corners.begin(), corners.end(), [&](std::uint32_t a, std::uint32_t b) {

@@ -6,11 +6,12 @@
 
 namespace fantascope::theatre {
 
-// Of every pixel of a mask, the distance to its contour, pixels: positive in the white, negative
-// outside; exact distances between pixel centres, less a half (Felzenszwalb & Huttenlocher 2012).
+// The signed distance of every pixel to the mask's border, in pixels: positive in the white,
+// negative outside. It is the exact distance between pixel centres, less a half (Felzenszwalb &
+// Huttenlocher 2012).
 GreyImage signedDistance(const BitMask& mask);
-// The pixels that are farther in than this: those of a mask that has shrunk by so much, or grown by
-// as much below zero.
+// The pixels whose signed distance exceeds `depth`: the mask eroded by `depth` pixels, or dilated
+// if `depth` is negative.
 BitMask deeperThan(const GreyImage& distance, double depth);
 
 }  // namespace fantascope::theatre

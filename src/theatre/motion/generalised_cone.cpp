@@ -12,8 +12,8 @@ namespace {
 
 double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 
-// The barycentric coordinates, in a triangle, of its point nearest to another (Ericson 2005,
-// section 5.1.5).
+// The barycentric coordinates of the point of a triangle that is nearest to a given one (Ericson
+// 2005, section 5.1.5).
 glm::dvec3 nearestIn(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 point) {
     const double area = cross(b - a, c - a);
     if (area != 0) {

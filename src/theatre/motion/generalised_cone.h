@@ -10,26 +10,29 @@
 
 namespace fantascope::theatre {
 
-// The light and a target whose interior is triangulated: a tetrahedron for each triangle, the light
-// its apex (Won & Lee 2016, section 5, figure 7). What stands in one tetrahedron of a frame's cone
-// has a place in the same tetrahedron of another's. Metres, stage frame.
+// The generalised cone of the light over a triangulated target: a tetrahedron for each triangle,
+// with its apex at the light (Won & Lee 2016, section 5, figure 7). A point in a tetrahedron of one
+// frame's cone has a corresponding place in the same tetrahedron of another frame's. Metres, stage
+// frame.
 // Thread: reentrant.
 class GeneralisedCone {
 public:
-    // `corners`: of the triangles, (x, y) on the screen, which is z = 0. At least one triangle.
+    // `corners`: of the triangles, (x, y) on the screen, z = 0, metres. There must be at least one
+    // triangle.
     GeneralisedCone(const glm::dvec3& light, std::span<const glm::uvec3> triangles, std::span<const glm::dvec2> corners);
 
-    // Barycentric coordinates: of the light and of the corners of a tetrahedron's triangle. They
-    // add up to 1, and none is negative.
+    // Barycentric coordinates in a tetrahedron: first the light's, then those of the triangle's
+    // corners. They add up to 1, and none is negative.
     struct Coordinates {
         std::size_t tetrahedron = 0;
         glm::dvec4 weights{0};
-        // A point whose shadow falls beside all triangles has the coordinates of where the nearest
-        // one is nearest, and the rest of the way on the screen, along that triangle's first edge
-        // and across it: negative coordinates would carry it off as that triangle shears.
+        // If the shadow of a point falls outside all triangles, the coordinates are those of the
+        // nearest point of the nearest triangle. `beside` is the remaining offset on the screen,
+        // metres, along that triangle's first edge and across it. Negative coordinates would
+        // instead amplify the shear of the triangle.
         glm::dvec2 beside{0};
     };
-    // `point`: nearer to the screen than the light is.
+    // `point` must be nearer to the screen than the light is.
     Coordinates coordinates(const glm::dvec3& point) const;
     glm::dvec3 point(const Coordinates& coordinates) const;
 

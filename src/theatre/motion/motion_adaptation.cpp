@@ -21,12 +21,13 @@ namespace fantascope::theatre {
 namespace {
 
 constexpr int kReachSteps = 20, kWalkSteps = 8, kFitSteps = 30, kRefitSteps = 12, kLastFitSteps = 15, kPassSteps = 12;
-// Of the silhouette's height: how far its farthest corner goes in a step from a frame to the next,
-// which a fit follows; and how many steps at most.
+// Steps from a frame to the next: how far the fastest corner moves in a step that a fit can follow,
+// as a share of the silhouette's height; and the maximum number of steps.
 constexpr double kStride = 0.02;
 constexpr int kMostStrides = 20;
 constexpr double kClearlyLess = 0.02;  // of intersection over union
-// Physics' stiffness on the way back from kMending; and the search of one whom that does not help.
+// The stiffness of physics on the way back from kMending; and the search for a single actor whom
+// mending does not help.
 constexpr std::array kRelaxing = {8.0, 4.0, 2.0, 1.0};
 constexpr DofSearch::Settings kAlone{.sigma = 0.05, .population = 16, .generations = 15, .stiffness = kMending.back()};
 
@@ -60,7 +61,7 @@ public:
     }
 
     MotionAdaptation::Frames run() {
-        // Forwards and backwards know nothing of each other; around a loop they go until they meet.
+        // The forward and the backward pass are independent. In a loop they go on until they meet.
         const std::size_t count = frames_.size(), before = motion_.loops ? (count - 1) / 2 : motion_.representative;
         parallelFor(2, options_.threads, [&](int way) {
             const std::size_t steps = way == 0 ? count - 1 - before : before;
@@ -105,7 +106,7 @@ private:
         for (std::size_t a = 0; a < problem.actors.size(); ++a) problem.continuity[a].neighbours.push_back(frame.poses[a]);
     }
 
-    // Lines 7 and 8 of Algorithm 1.
+    // Algorithm 1, lines 7 and 8: the guess through the generalised cone.
     std::vector<double> throughCone(std::size_t frame, std::vector<double> dofs) const {
         const PoseProblem& principal = motion_.principal;
         const GeneralisedCone cone(principal.stage.beams[0].light, motion_.triangles, motion_.corners[frame]);
@@ -127,15 +128,15 @@ private:
     }
     void keep(std::size_t i, AdaptedFrame frame) {
         const std::lock_guard lock(mutex_);
-        // All that follows is reckoned from what can be written: a run that goes on from a file
-        // comes to the same.
+        // The frame is converted to the precision of the file. So a run that continues from a file
+        // gives the same result.
         frame.poses = posesOf(frame.dofs);
         frame.dofs = dofsOf(frame.poses);
         frames_[i] = std::move(frame);
         if (watch_.tell) watch_.tell(i, *frames_[i]);
     }
 
-    // What the silhouette is like on the way from one frame to another: its triangles.
+    // The silhouette between two frames, with its triangles' corners interpolated.
     PoseTarget between(std::size_t from, std::size_t to, double share) const {
         const PoseTarget& target = motion_.targets[to];
         std::vector<glm::dvec2> corners;
@@ -146,8 +147,8 @@ private:
         return target.reshaped(filled(target.mask.width(), target.mask.height(), motion_.triangles, corners));
     }
 
-    // Takes poses along from one frame towards another, in steps that a fit can follow: farther
-    // than a limb is thick it finds nothing.
+    // Moves poses from one frame towards another, in steps that a fit can follow. A fit fails if
+    // the silhouette moves by more than the thickness of a limb.
     void walk(std::size_t from, std::size_t to, AdaptedFrame& frame) const {
         double farthest = 0;
         for (std::size_t i = 0; i < motion_.corners[to].size(); ++i)
@@ -164,8 +165,8 @@ private:
         }
     }
 
-    // Line 10, from the poses of a frame beside this one; nothing if it is to end before that is
-    // done.
+    // Algorithm 1, line 10, from the poses of an adjacent frame. None if the run is stopped before
+    // it is done.
     std::optional<AdaptedFrame> adapted(std::size_t frame, std::size_t beside) {
         PoseProblem problem = problemAt(frame);
         addNeighbour(problem, *frames_[beside]);
@@ -189,7 +190,8 @@ private:
         return found;
     }
 
-    // Local search that only goes down: poses that match more and more, near to where they were.
+    // A local search that accepts only lower energies, so that the poses stay near to where they
+    // were.
     std::vector<double> searched(Workshop& shop, std::size_t frame, std::vector<double> dofs) {
         Rng rng(streamSeed(seed_, {Stream::Moves, frame}));
         shop.energy.pose(dofs);
@@ -203,7 +205,7 @@ private:
         return dofs;
     }
 
-    // The last steps, on the true skins, until everyone stands.
+    // The last fits, on the full skins, until everyone stands.
     void finish(std::size_t i, const PoseProblem& problem, AdaptedFrame& frame, int steps) const {
         Workshop shop(in256Rows(problem));
         PoseSearch::Quality quality;
@@ -217,7 +219,7 @@ private:
             fit(frame.dofs, stiffness);
         }
         if (!quality.isValid()) {
-            // Whom no small step brings back to his balance is searched, by himself.
+            // An actor whom no fit brings back into balance is searched on his own.
             Rng rng(streamSeed(seed_, {Stream::Mending, i}));
             for (std::size_t a = 0; a < quality.actors.size(); ++a) {
                 if (quality.actors[a].isValid()) continue;
@@ -226,7 +228,8 @@ private:
                 shop.search.run(shop.energy, frame.dofs, his, kAlone, rng);
                 fit(frame.dofs, kMending.back());
             }
-            // That cost some of the shadow, which comes back where everyone still stands.
+            // Stiff physics cost some of the match. It is regained with softer physics as long as
+            // everyone stands.
             std::vector<double> relaxed = frame.dofs;
             for (const double stiffness : kRelaxing) {
                 if (!quality.isValid()) break;
@@ -239,8 +242,8 @@ private:
         frame.evaluations += shop.evaluations();
     }
 
-    // Every frame but the representative one between both its neighbours: first every other one,
-    // then those between.
+    // Fits every frame but the representative one between both its neighbours: first the even
+    // frames, then the odd ones.
     void settle() {
         for (std::size_t parity = 0; parity < 2; ++parity) {
             std::vector<std::size_t> which;
@@ -253,8 +256,8 @@ private:
         }
     }
 
-    // Those that a frame lies between. A loop of an odd number of frames has two neighbours in one
-    // half: then the one that may be at work is left out.
+    // The neighbours of a frame. In a loop of an odd number of frames, the first and the last frame
+    // are processed at the same time, so neither is the other's neighbour.
     std::vector<std::size_t> neighboursOf(std::size_t i) const {
         const std::size_t last = frames_.size() - 1;
         const bool isRound = motion_.loops && last % 2 == 1;
@@ -264,8 +267,8 @@ private:
         return neighbours;
     }
 
-    // From its own poses, and, where it matches clearly less than a neighbour does, or cannot be
-    // held, from that one's too, whichever way it was found.
+    // Fits a frame from its own poses. If a neighbour matches clearly better, or only the neighbour
+    // is valid, the frame is also fitted from the neighbour's poses, on either side.
     AdaptedFrame settled(std::size_t i) const {
         const std::vector<std::size_t> neighbours = neighboursOf(i);
         PoseProblem problem = problemAt(i);
@@ -300,7 +303,7 @@ private:
     MotionAdaptation::Frames frames_;
     std::vector<std::vector<GeneralisedCone::Coordinates>> coordinates_;  // C_n^0, of each actor's joints
     std::vector<Continuity> continuity_;                                  // without neighbours
-    std::mutex mutex_;                                                    // of isStopped_, the watch, and where a frame is kept
+    std::mutex mutex_;  // guards isStopped_, the watch, and the storing of frames
     bool isStopped_ = false;
 };
 

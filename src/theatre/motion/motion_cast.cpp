@@ -22,7 +22,7 @@ MotionAdaptation::Frames resumedFrames(const MotionProblem& motion, std::span<co
     if (!written.sequence || written.actors.size() != motion.principal.actors.size()) return {};
     const auto& [file, representative, first] = *written.sequence;
     const std::size_t count = written.actors[0].poses.size(), all = motion.targets.size();
-    const std::size_t own = (representative + all - first) % all;  // of its poses, those of the representative frame
+    const std::size_t own = (representative + all - first) % all;  // index of the representative frame's poses
     if (representative != motion.representative || count >= all || first >= all || own >= count) return {};
     for (std::size_t a = 0; a < written.actors.size(); ++a) {
         const Body& body = motion.principal.actors[a];

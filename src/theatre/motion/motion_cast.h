@@ -8,16 +8,16 @@
 
 namespace fantascope::theatre {
 
-// What an adaptation leaves in a cast, and how a later one resumes from it.
+// How an adaptation is stored in a cast, and how a later one resumes from it.
 // Thread: reentrant.
 
-// The frames that have poses, in the order in which they are played. They hang together; in a loop
-// also over its end.
+// The frames that have poses, in the order in which they are played. They are contiguous; in a loop
+// they may wrap around its end.
 std::vector<std::size_t> playedFrames(const MotionProblem& motion, const MotionAdaptation::Frames& frames);
 
-// The frames of a motion that was interrupted, for MotionAdaptation::run() to resume from: those
-// that `written` has, if it is of these principal poses and of this sequence. Nothing if it is not,
-// or is whole.
+// The frames of an interrupted motion, from which MotionAdaptation::run() resumes: those of
+// `written`, if it has these principal poses and this sequence. Empty if it has others, or if it is
+// complete.
 MotionAdaptation::Frames resumedFrames(const MotionProblem& motion, std::span<const double> principal, const Cast& written);
 
 }  // namespace fantascope::theatre

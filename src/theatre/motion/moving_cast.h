@@ -9,26 +9,26 @@
 
 namespace fantascope::theatre {
 
-// Whether a cast's last frame leads to its first: it is the whole of a silhouette's motion that
-// loops. Error: as readSequence().
+// Whether a cast's last frame leads to its first: its sequence loops, and it has all frames of it.
+// Error: as readSequence().
 Result<bool> loops(const Cast& cast);
 
-// A cast's people as they move, at any moment between its frames: what a show plays live. Thread:
-// thread-bound.
+// The people of a moving cast, posed at any moment between its frames, for a show that plays live.
+// Thread: thread-bound.
 class MovingCast {
 public:
-    // `loops`: after the last frame comes the first. `cast` must live on.
+    // `loops`: after the last frame comes the first. `cast` must outlive this object.
     MovingCast(const Cast& cast, bool loops);
     MovingCast(const MovingCast&) = delete;
     MovingCast& operator=(const MovingCast&) = delete;
 
-    // Poses everybody as they are at a moment, in frames from the first; of a loop any moment, else
-    // the ends are held. No allocation after the first.
+    // Poses everybody at a moment, in frames from the first. A loop takes any moment; otherwise the
+    // ends are held. Only the first call allocates.
     void pose(double frame);
 
     std::size_t actors() const { return bodies_.size(); }
     const Body& body(std::size_t actor) const { return bodies_[actor]; }
-    // In the pose last given.
+    // In the current pose.
     const PosedBody& posed(std::size_t actor) const { return posed_[actor]; }
     std::span<const PlacedProp> held(std::size_t actor) const { return held_[actor]; }
 

@@ -13,17 +13,17 @@
 namespace fantascope::theatre {
 namespace {
 
-constexpr double kOnePlace = 0.02;  // metres: what goes no farther from a frame to the next has not taken a step
+constexpr double kOnePlace = 0.02;  // metres: a contact that moves no farther between two frames has not taken a step
 
-// The logarithm of a unit quaternion as half its rotation vector, on the side of the double cover
-// that it is on.
+// The logarithm of a unit quaternion: half its rotation vector. The side of the double cover is
+// kept.
 glm::dvec3 halfVector(const glm::dquat& q) {
     const glm::dvec3 vector(q.x, q.y, q.z);
     const double sine = glm::length(vector);
     return sine < 1e-12 ? glm::dvec3(0) : std::atan2(sine, q.w) / sine * vector;
 }
 
-// Along the great arc on the side that they are on.
+// Spherical interpolation (slerp). The side of the double cover is kept.
 glm::dquat arc(const glm::dquat& from, const glm::dquat& to, double t) {
     return from * rotationOf(2 * t * halfVector(glm::conjugate(from) * to));
 }

@@ -9,26 +9,27 @@
 
 namespace fantascope::theatre {
 
-// What can be said of a silhouette that moves before anybody follows it. Masks of one size, one a
-// frame, each with something white.
+// Properties of a moving silhouette that are known before any poses follow it. Masks are of one
+// size, one a frame, each with at least one white pixel.
 // Thread: reentrant.
 
-// Of each frame the least intersection over union with any other: principal poses of the frame with
-// the greatest have the shortest way to all. Of many frames some kLooks are compared with.
+// For each frame, the minimum intersection over union with any other frame. Principal poses of the
+// frame with the greatest value have the shortest way to all others. If there are many frames, each
+// is compared with about kLooks of them.
 std::vector<double> leastOverlaps(std::span<const BitMask> frames);
 constexpr std::size_t kLooks = 64;
 
-// Of those the frame with the greatest; and whether it is so much greater than that of `frame` that
-// poses for it are likely to follow better.
+// The frame with the greatest value: the middle frame. And whether its value exceeds that of
+// `frame` by so much that its poses are likely to follow better.
 std::size_t middleFrame(std::span<const double> leastOverlaps);
 bool isOffTheMiddle(std::size_t frame, std::span<const double> leastOverlaps);
 constexpr double kNearer = 0.05;
 
-// The intersection over union of two targets on one stage, each in a frame of its own whose middle
-// is before the light.
+// The intersection over union of two targets on one stage. Each has its own ScreenFrame, whose
+// middle is straight before the light.
 double overlap(const PoseTarget& a, const PoseTarget& b);
 
-// The frame that poses for a target are of: the one most like it.
+// The frame of a sequence that is most like a target, to which the target's poses belong.
 struct Likeness {
     std::size_t frame = 0;
     double overlap = 0;
@@ -37,7 +38,7 @@ struct Likeness {
 };
 Likeness mostAlike(std::span<const PoseTarget> frames, const PoseTarget& wanted);
 
-// From one frame to the next so little stays where it is that poses of the one say little of the
+// Two successive frames that overlap so little that poses of one hardly help to find those of the
 // other.
 struct Jump {
     std::size_t from = 0, to = 0;

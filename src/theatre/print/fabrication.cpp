@@ -21,11 +21,11 @@ namespace {
 using glm::dvec2, glm::dvec3;
 
 constexpr double kPlate = 3, kPlateShare = 0.04;  // the plate's thickness, mm
-// Of the grid's cells: how far the surface may be off for the sake of fewer triangles, and around
-// what it stays as it was.
+// In cells of the grid: the tolerance for simplifying the surface, and the radius around a
+// self-intersection within which it is not simplified.
 constexpr double kTolerance = 0.08, kKeptAround = 6;
 constexpr int kTries = 5;
-constexpr std::size_t kSamples = 50'000;  // of the surface, where the wall behind it is measured
+constexpr std::size_t kSamples = 50'000;  // triangles at which the wall behind the surface is measured
 constexpr int kCellsHigh = 280, kCellsInWall = 4;
 
 // From the solid's frame into the print's.
@@ -47,13 +47,13 @@ struct PrintSurface {
 Result<PrintSurface> makeSurface(VoxelSolid&& solid, double cell, const PrintStep& step) {
     TriangleMesh fine;
     {
-        const VoxelSolid gone = std::move(solid);  // the grid's memory is needed
+        const VoxelSolid gone = std::move(solid);  // frees the grid's memory afterwards
         fine = gone.surface();
     }
     PrintSurface made;
     for (glm::vec3& v : fine.vertices) v = inPrint(dvec3(v));
-    // Fewer triangles, as long as none runs through another: around those that do the surface stays
-    // as fine as it was.
+    // The surface is simplified. Around triangles that intersect afterwards, the next attempt keeps
+    // it as fine as it was.
     std::vector<glm::vec3> kept;
     const auto near = static_cast<float>(kKeptAround * cell);
     for (int attempt = 0; attempt <= kTries; ++attempt) {
@@ -67,15 +67,15 @@ Result<PrintSurface> makeSurface(VoxelSolid&& solid, double cell, const PrintSte
         for (const std::uint32_t t : made.check.crossings) kept.push_back(made.mesh.vertices[made.mesh.triangles[t].x]);
     }
     if (!made.check.isSound() || made.check.pieces != 1)
-        return Error("the surface did not become one closed solid; another --detail may do");
+        return Error("the surface did not become one closed solid; try another --detail");
     return made;
 }
 
-// The sheet is drawn for one lamp and one flat screen.
+// Warns of further beams and curved screens: the sheet is drawn for one lamp and one flat screen.
 void warnOfOtherScreens(const Stage& stage, Fabrication& made) {
     if (const Screen& screen = stage.screenOf(0); screen.isCurved())
         made.warnings.push_back(fmt::format(
-            "the screen is curved: on a flat one the shadow is drawn out to the sides; bend it to a radius of {:.0f} mm, {}",
+            "the screen is curved: on a flat one the shadow is stretched sideways; bend it to a radius of {:.0f} mm, {}",
             made.scale * std::abs(screen.radius), screen.radius > 0 ? "hollow towards the lamp" : "bulging towards the lamp"));
     for (std::size_t beam = 1; beam < stage.beams.size(); ++beam) {
         const Screen& screen = stage.screenOf(beam);
@@ -88,7 +88,7 @@ void warnOfOtherScreens(const Stage& stage, Fabrication& made) {
     }
 }
 
-// The print's shadow, against the poses' and the target's.
+// Compares the print's shadow with the poses' and the target's.
 void measureShadow(const PoseProblem& problem, const SceneEnergy& scene, const PrintFrame& print, Fabrication& made) {
     const ScreenFrame& frame = problem.targets[0].frame;
     TriangleMesh onStage = made.mesh;
@@ -96,7 +96,7 @@ void measureShadow(const PoseProblem& problem, const SceneEnergy& scene, const P
     made.shadow = BitMask(frame.width(), frame.height());
     addShadow(frame, onStage, made.shadow);
     BitMask poses = scene.shadow(), target = problem.targets[0].mask;
-    // The plate's shadow begins below the floor.
+    // The plate's shadow lies below the floor's line, so rows below it are cut off.
     const int floor = static_cast<int>(std::floor(frame.pixelAt(0, 0).y + 1e-6));
     for (BitMask* const mask : {&made.shadow, &poses, &target}) {
         mask->keep(0, 0, frame.width(), std::clamp(floor, 0, frame.height()));
@@ -107,7 +107,7 @@ void measureShadow(const PoseProblem& problem, const SceneEnergy& scene, const P
     made.posesIou = intersectionOverUnion(poses, target);
 }
 
-// The share of a surface that has another straight behind it, nearer than a wall.
+// The share of a surface with another surface straight behind it at less than `wall`.
 double shareBelow(const TriangleMesh& mesh, double wall) {
     const std::size_t every = mesh.triangles.size() / kSamples + 1;
     const std::vector<double> walls = thicknesses(mesh, every);
@@ -122,7 +122,7 @@ double shareBelow(const TriangleMesh& mesh, double wall) {
     return below / all;
 }
 
-// What the sheet shows of the plate, and where the print stands on it.
+// The data of the plate, its marks and the contacts, for the sheet.
 void describe(const PrintLayout& layout, const PrintSolid& solid, const Fabrication::Options& options, Fabrication& made) {
     constexpr int kRound = 32;
     std::vector<dvec2> outline;

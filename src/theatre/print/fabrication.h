@@ -17,18 +17,18 @@
 
 namespace fantascope::theatre {
 
-// A cast as one solid that a printer makes, and that throws the same shadow before a small lamp
-// (Won & Lee 2016, section 6, "3D Fabrication"): people, platforms and props united, what is
-// thinner than a wall made thicker, feet joined to a base plate and reinforced where they are
-// small. Lengths are millimetres of the print. Its frame: the origin in the middle of the plate's
-// upper side, which is the stage's floor; x to the right as seen from the lamp, y towards the
-// screen, z up. The same input, the same bytes.
+// A cast as one solid for a 3D printer, which throws the same shadow before a small lamp (Won & Lee
+// 2016, section 6, "3D Fabrication"). People, platforms and props are united. Parts thinner than a
+// wall are thickened. Feet are joined to a base plate, and reinforced if they are small. Lengths
+// are millimetres of the print. Its frame: the origin is in the middle of the plate's upper side,
+// which is the stage's floor; x to the right as seen from the lamp, y towards the screen, z up. The
+// same input gives the same bytes.
 struct Fabrication {
     struct Options {
         double height = 100;  // from the floor to the highest point
-        double plate = 0;     // thickness; 0: 3, and of a high print 4 % of its height
-        double margin = 8;    // of the plate around what stands on it
-        double wall = 1.2;    // the thinnest that the printer makes well
+        double plate = 0;     // thickness; 0: 3 mm, or 4 % of the height if that is more
+        double margin = 8;    // of the plate around everything that stands on it
+        double wall = 1.2;    // the thinnest wall that the printer makes well
         double cell = 0;      // of the grid; 0: cellFor(height, wall)
         Result<void> check() const;
     };
@@ -38,29 +38,29 @@ struct Fabrication {
     struct Contact {
         std::string who;  // "actor 2, left ankle"
         glm::dvec2 place{0};
-        double area = 0;                    // of what bears
-        double gap = 0;                     // height above the ground, which was closed; negative: depth in the ground
-        double reinforcedBy = 0;            // how far a foot was added around it; 0: it is large enough
-        std::vector<glm::dvec2> outline{};  // of what bears: convex
+        double area = 0;                    // of the bearing surface, square millimetres
+        double gap = 0;                     // height above the ground, a gap that the print closes; negative: depth in the ground
+        double reinforcedBy = 0;            // width of the foot that was added around it; 0: it is large enough
+        std::vector<glm::dvec2> outline{};  // convex hull of the bearing surface
     };
     // A body part that was thinner than the wall.
     struct ThinPart {
         std::string who;
         double thickness = 0;  // the median of its thin places
-        double height = 0;     // of a print in which that is as thick as the wall
+        double height = 0;     // height of a print in which that would be as thick as the wall
     };
-    // Holds an actor or a thing that nothing bears.
+    // A rod that holds an actor or a thing that touches nothing that stands.
     struct Rod {
         std::string who;
         double length = 0;
     };
 
     TriangleMesh mesh;
-    double scale = 0;  // millimetres a metre of the stage
+    double scale = 0;  // millimetres of the print a metre of the stage
     double cell = 0;
-    glm::dvec3 stageOrigin{0};                   // where the print's origin is on the stage, metres
+    glm::dvec3 stageOrigin{0};                   // the print's origin on the stage, metres
     glm::dvec3 light{0};                         // in the print's frame
-    double screen = 0;                           // the y of the screen
+    double screen = 0;                           // y of the screen in the print's frame
     std::vector<glm::dvec2> plate;               // its outline, anticlockwise
     double thickness = 0;                        // of the plate
     std::vector<std::vector<glm::dvec2>> marks;  // lines engraved in it: the arrow to the lamp, and one along the screen
@@ -69,14 +69,14 @@ struct Fabrication {
     std::vector<Rod> rods;
     std::vector<std::string> warnings;
     SolidCheck check;
-    // Thinnest wall found; equals `wall` and an empty name if none is thinner. A wall is measured
-    // between two surfaces, through the middle of the solid that they bound.
+    // Thickness of the thinnest wall. Equals `wall`, with an empty name, if no part is thinner. A
+    // wall is measured between two surfaces, through the middle of the solid that they bound.
     double thinnestWall = 0;
     std::string thinnestWallAt{};
-    // The share of the surface that has another surface straight behind it, nearer than `wall`;
-    // sharp edges count.
+    // The share of the surface with another surface straight behind it at less than `wall`. Sharp
+    // edges count.
     double shareBelowWall = 0;
-    double shadowIou = 0;  // of its shadow and the poses', above the floor
+    double shadowIou = 0;  // intersection over union of its shadow and the poses', above the floor
     double targetIou = 0;  // of its shadow and the target's
     double posesIou = 0;   // of the poses' shadow and the target's
     BitMask shadow;        // of the print
@@ -92,9 +92,9 @@ struct FabricationWatch {
     std::function<bool()> askStop;
 };
 
-// `problem` has skins; `dofs` of all actors, one after the other. Error: options that cannot be,
-// nothing higher than a hand above the floor, a grid beyond what a machine holds, or it was
-// stopped.
+// `problem` must have skins. `dofs`: of all actors, one after the other. Error: invalid options,
+// nothing more than 5 cm above the floor, a grid too large for memory, a surface that is not one
+// closed solid, or `watch.askStop` gave true.
 Result<Fabrication> fabricate(const PoseProblem& problem, std::span<const double> dofs, const Fabrication::Options& options,
                               const FabricationWatch& watch);
 

@@ -20,11 +20,12 @@ namespace {
 
 using glm::dvec2, glm::dvec3;
 
-constexpr double kHover = 0.04;  // metres of the stage: what stands no higher above the ground was meant to stand on it
+constexpr double kHover = 0.04;  // metres of the stage: a part no higher above the ground is meant to stand on it
 constexpr double kLow = kPrintedLow, kMark = kPrintedMark;
-constexpr double kLine = 30;  // that is engraved along the screen, mm
+constexpr double kLine = 30;  // least length of the line engraved along the screen, mm
 
-// People, platforms and props in the solid's frame, on the middle of which the origin is.
+// People, platforms and props in the solid's frame, with the origin at the middle of their bounding
+// box.
 Result<PrintLayout> placed(const PoseProblem& problem, const SceneEnergy& scene, double height) {
     PrintLayout layout;
     std::vector<PrintPiece>& pieces = layout.pieces;
@@ -42,8 +43,8 @@ Result<PrintLayout> placed(const PoseProblem& problem, const SceneEnergy& scene,
                           std::nullopt, isPlatform, thing.mesh});
         if (edgesOf(thing.mesh).empty())
             layout.warnings.push_back(
-                fmt::format("the mesh of prop '{}' is not closed: what an odd number of its faces lies before "
-                            "was taken for solid; look at it, or close its holes",
+                fmt::format("the mesh of prop '{}' is not closed: places behind an odd number of its faces "
+                            "were taken as solid; check the print, or close its holes",
                             thing.name));
     }
     dvec3 least(std::numeric_limits<double>::infinity()), most = -least;
@@ -58,7 +59,7 @@ Result<PrintLayout> placed(const PoseProblem& problem, const SceneEnergy& scene,
     return layout;
 }
 
-// Vertices of a piece that are low over the ground and hang together along the mesh.
+// Groups of connected vertices of a piece that are close to the ground.
 struct LowParts {
     std::vector<double> grounds;  // under each vertex, mm
     std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
@@ -79,7 +80,7 @@ LowParts lowParts(const PrintPiece& piece, const PrintFrame& frame, const Stage&
     };
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const dvec3 place = frame.onStage(vertices[i]);
-        // What has sunk in a little still stands there.
+        // A part that has sunk in a little still stands there.
         grounds[i] = piece.isPlatform ? 0 : s * stage.groundUnder(place + dvec3(0, 0.5 * kHover, 0));
     }
     const auto isLow = [&](std::uint32_t i) { return vertices[i].y - grounds[i] < s * kHover; };
@@ -93,7 +94,7 @@ LowParts lowParts(const PrintPiece& piece, const PrintFrame& frame, const Stage&
     return low;
 }
 
-// Where a piece stands.
+// The footings of a piece.
 std::vector<Footing> footingsOf(const PoseProblem& problem, const PrintFrame& frame, const std::vector<PrintPiece>& pieces,
                                 std::size_t index) {
     const double s = frame.scale;
@@ -136,7 +137,7 @@ void findFootings(const PoseProblem& problem, PrintLayout& layout) {
     }
 }
 
-// So that the origin comes to the plate's middle.
+// Shifts everything, so that the origin comes to the plate's middle.
 void moveAll(PrintLayout& layout, const dvec2& shift) {
     const dvec3 by(shift.x, 0, shift.y);
     layout.frame.stageOrigin -= by / layout.frame.scale;
@@ -149,7 +150,7 @@ void moveAll(PrintLayout& layout, const dvec2& shift) {
     }
 }
 
-// Around all that stands on the floor, and what is above it.
+// The plate surrounds everything that stands on the floor, and the actors' mass centres.
 void findPlate(const PoseProblem& problem, const SceneEnergy& scene, PrintLayout& layout) {
     std::vector<dvec2> points;
     for (const Footing& footing : layout.footings)
@@ -177,12 +178,12 @@ std::vector<std::vector<dvec2>> marksOn(const std::vector<dvec2>& hull, const Pr
     const auto arrow = partWithin(hull, inset, centre, toLamp, 1e4);
     const dvec2 tip = arrow[1], back = -0.8 * margin * toLamp, side = dvec2(-toLamp.y, toLamp.x) * 0.4 * margin;
     std::vector<std::vector<dvec2>> marks{{arrow[0], tip}, {tip + back + side, tip, tip + back - side}};
-    // And a line along the screen: where the screen stands, or at the plate's edge towards it.
+    // The line along the screen lies where the screen stands, or at the plate's edge towards it,
     const double screen = frame.inSolid({0, 0, 0}).z;
     double nearest = std::numeric_limits<double>::infinity();
     for (const dvec2& p : hull)
         if (p.y < nearest) nearest = p.y, middle.x = p.x;
-    // .. or as far from it as makes the line long enough to lay a rule along.
+    // or as far from that edge as needed for a line long enough to lay a ruler along.
     std::vector<dvec2> line;
     for (double y = std::max(screen, nearest - inset + kMark);; y += kMark) {
         const double share = std::clamp((y - nearest) / std::max(centre.y - nearest, kMark), 0.0, 1.0);

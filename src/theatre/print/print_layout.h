@@ -16,19 +16,19 @@ namespace fantascope::theatre {
 // the solid's frame: millimetres, the stage's axes, the floor at y = 0, the origin under the
 // plate's middle.
 
-constexpr double kPrintedLow = 0.01;    // metres of the stage: what is no higher throws a shadow that nobody misses
-constexpr double kPrintedMark = 1;      // the width of what is engraved, mm
-constexpr double kPrintedFigure = 100;  // height of the print that lengths of its reinforcement are said for, mm
+constexpr double kPrintedLow = 0.01;    // metres of the stage: a part no higher has a negligible shadow
+constexpr double kPrintedMark = 1;      // width of engraved lines, mm
+constexpr double kPrintedFigure = 100;  // height of the print for which reinforcement lengths are given, mm
 
 struct PrintFrame {
     double scale = 0;           // millimetres a metre of the stage
-    glm::dvec3 stageOrigin{0};  // where its origin is on the stage, metres
+    glm::dvec3 stageOrigin{0};  // the solid's origin on the stage, metres
 
     glm::dvec3 inSolid(const glm::dvec3& onStage) const { return scale * (onStage - stageOrigin); }
     glm::dvec3 onStage(const glm::dvec3& inSolid) const { return stageOrigin + inSolid / scale; }
 };
 
-// An actor, a platform or a prop.
+// An actor, a platform or a prop, with its mesh in the solid's frame.
 struct PrintPiece {
     std::string name;
     std::optional<std::size_t> actor{};
@@ -39,7 +39,7 @@ struct PrintPiece {
 // A part of a piece that stands on the plate or on a platform.
 struct Footing {
     std::size_t piece = 0;
-    double ground = 0;  // the height of what it stands on
+    double ground = 0;  // height of the ground under it, mm
     std::vector<glm::dvec3> bearing{};
     Fabrication::Contact contact{};  // (x, z)
 };
@@ -48,18 +48,18 @@ struct PrintLayout {
     PrintFrame frame;
     std::vector<PrintPiece> pieces{};
     std::vector<Footing> footings{};
-    std::vector<glm::dvec2> hull{};                // (x, z) of what the plate carries: the plate is wider by its margin
+    std::vector<glm::dvec2> hull{};                // (x, z) hull of everything on the plate; the plate is wider by its margin
     std::vector<std::vector<glm::dvec2>> marks{};  // (x, z), lines that are engraved
     std::vector<std::string> warnings{};
 
     // The piece with the vertex nearest to a place.
     const PrintPiece& pieceAt(const glm::dvec3& place) const;
-    // The name of a piece, and of an actor's the joint that has most of the skin nearest to a
-    // place.
+    // The name of a piece. For an actor also the joint with the largest share of the skin's vertex
+    // nearest to a place.
     static std::string partAt(const PoseProblem& problem, const PrintPiece& piece, const glm::dvec3& place);
 };
 
-// `scene` is posed. Error: nothing higher than a hand above the floor.
+// `scene` must be posed. Error: nothing more than 5 cm above the floor.
 Result<PrintLayout> layOut(const PoseProblem& problem, const SceneEnergy& scene, const Fabrication::Options& options);
 
 }  // namespace fantascope::theatre

@@ -23,14 +23,14 @@ using glm::dvec2, glm::dvec3;
 
 constexpr double kLow = kPrintedLow, kMark = kPrintedMark, kFigure = kPrintedFigure;
 // Millimetres of the print.
-constexpr double kFirm = 20;  // the area in square millimetres that bears a figure of kFigure well; it grows with its square
-constexpr double kLeastFlare = 0.8, kMostFlare = 5;  // of a figure of kFigure
-constexpr double kFlareSlope = 1.5;                  // its height, of its reach
-constexpr double kMarkDepth = 0.6;                   // of what is engraved
-constexpr double kLeastRod = 1;                      // its radius
-constexpr std::size_t kCrumb = 64;                   // nodes; what is smaller is lost
+constexpr double kFirm = 20;  // square millimetres that bear a figure of height kFigure well; grows with the square of the height
+constexpr double kLeastFlare = 0.8, kMostFlare = 5;  // reach of a foot, for a figure of height kFigure
+constexpr double kFlareSlope = 1.5;                  // height of a foot, in units of its reach
+constexpr double kMarkDepth = 0.6;                   // of engraved lines
+constexpr double kLeastRod = 1;                      // radius of a rod, for a figure of height kFigure
+constexpr std::size_t kCrumb = 64;                   // nodes; smaller pieces are removed
 constexpr double kMostNodes = 250e6;
-constexpr double kFold = 3;  // of the wall: what is thin along less is a fold of the skin
+constexpr double kFold = 3;  // in walls: a part that is thin over a shorter length is a fold of the skin
 
 class SolidMaker {
 public:
@@ -53,8 +53,8 @@ public:
         measureWalls();
         TRY(step_(0.48, "plate"));
         addPlate();
-        solid_->cutBelow(-options_.plate);  // for the bed, what has sunk through it
-        TRY(step_(0.50, "what hangs together"));
+        solid_->cutBelow(-options_.plate);  // removes parts that have sunk through the plate, for the printer's bed
+        TRY(step_(0.50, "connected pieces"));
         joinIslands();
         solid_->fillCavities();
         return PrintSolid{std::move(*solid_), std::move(thin_),     std::move(reinforcedBy_),
@@ -75,7 +75,7 @@ private:
             most = glm::max(most, dvec3(p.x + reach, 0, p.y + reach));
         }
         least -= around, most += around;
-        // The floor lies between two planes of nodes.
+        // The grid is placed so that the floor lies between two planes of nodes.
         least.y = -(std::ceil((std::max(options_.plate, -least.y) + around) / cell) + 0.5) * cell;
         if (const double nodes = VoxelSolid::nodesOf({least, most}, cell); nodes > kMostNodes)
             return Error(
@@ -92,7 +92,7 @@ private:
             TRY(step_(0.05 + 0.25 * static_cast<double>(i) / static_cast<double>(layout_.pieces.size()), "union"));
             solid_->add(layout_.pieces[i].mesh, options_.wall);
         }
-        // What is held is held by more than a touch.
+        // A rod joins each held prop to its holder, since a touch alone would be too weak.
         for (std::size_t a = 0; a < problem_.actors.size(); ++a)
             for (const PlacedProp& held : scene_.held(a)) {
                 const Body::Point& part = problem_.actors[a].parts[static_cast<std::size_t>(held.prop->holder->part)];
@@ -111,11 +111,12 @@ private:
         return {};
     }
 
-    // What was thinner than a wall, before.
+    // Thickens parts thinner than a wall, and gives them as they were before.
     std::vector<VoxelSolid::Thin> thicken() {
         std::vector<VoxelSolid::Thin> thin = solid_->thinnerThan(options_.wall);
-        // A rod from each middle to the nearest few: balls alone would be beads. No farther than a
-        // wall: what is thickened would touch there.
+        // A rod goes from each middle to the nearest few, since balls alone would look like beads.
+        // Rods are no longer than a wall is thick; at that distance the thickened parts touch
+        // anyway.
         constexpr std::size_t kNeighbours = 3;
         const double reach = options_.wall, radius = 0.5 * options_.wall + 0.25 * options_.cell;
         using Bucket = std::array<int, 3>;
@@ -143,7 +144,7 @@ private:
         return thin;
     }
 
-    // Of each part, unless it is a mere fold of the skin.
+    // Reports each thin part, unless it is only a fold of the skin.
     void tellThin(const std::vector<VoxelSolid::Thin>& thin) {
         std::map<std::string, std::vector<double>> parts;
         for (const VoxelSolid::Thin& at : thin)
@@ -156,8 +157,8 @@ private:
         }
     }
 
-    // How far a place is outside what the poses shade, on the spot; negative: hidden in their
-    // shadow.
+    // The distance of a place outside the poses' shadow volume, mm of the print. Negative: hidden
+    // in their shadow.
     double seen(const dvec3& p) const {
         const ScreenFrame& frame = problem_.targets[0].frame;
         const dvec3 place = layout_.frame.onStage(p);
@@ -173,7 +174,7 @@ private:
         for (const Footing& footing : layout_.footings) {
             const double ground = footing.ground, into = ground - 0.5 * options_.plate,
                          radius = std::max(1.5 * options_.cell, 0.25 * options_.wall);
-            // What hovers comes down, and what barely touches goes in.
+            // Columns join hovering parts to the ground, and sink parts that barely touch into it.
             for (const dvec3& p : footing.bearing)
                 if (p.y > into)
                     solid_->add(
@@ -185,7 +186,7 @@ private:
             const Fabrication::Contact& contact = footing.contact;
             dvec2 least(std::numeric_limits<double>::infinity()), most = -least;
             for (const dvec2& q : contact.outline) least = glm::min(least, q), most = glm::max(most, q);
-            // Things have few vertices.
+            // A thing has too few vertices for columns, so its whole outline is extended down.
             if (!layout_.pieces[footing.piece].actor && contact.gap > 0)
                 solid_->add(
                     [&, top = ground + contact.gap + options_.cell](const dvec3& at) {
@@ -197,8 +198,8 @@ private:
         }
     }
 
-    // A foot of the print's own: as wide as makes the area firm, and the less the higher; hidden
-    // where it is not low. Gives how far it reaches.
+    // Adds a foot around a contact. It is wide enough to make the area firm, and tapers upwards.
+    // Its upper part is added only where the poses' shadow hides it. Gives how far it reaches.
     double reinforce(const Footing& footing, double firm) {
         const double ground = footing.ground, into = ground - 0.5 * options_.plate, grow = options_.height / kFigure;
         const Fabrication::Contact& contact = footing.contact;
@@ -208,7 +209,8 @@ private:
                      wanted = (-p + std::sqrt(p * p + 4 * std::numbers::pi * (firm - contact.area))) / (2 * std::numbers::pi);
         const double reach = std::clamp(wanted, kLeastFlare * grow, kMostFlare * grow),
                      height = kFlareSlope * reach + std::max(0.0, contact.gap), lowest = layout_.frame.scale * kLow;
-        // The flank's slope and the shadow's edge make the field steeper than 1.
+        // The flank's slope and the shadow's edge make the field steeper than 1, so it is scaled
+        // down.
         constexpr double kSteep = 0.5;
         solid_->add(
             [&](const dvec3& at) {
@@ -241,7 +243,7 @@ private:
             {{least.x, -t, least.y}, {most.x, 0, most.y}});
     }
 
-    // The shortest, but that what of it is not hidden in the poses' shadow counts ten times.
+    // The shortest rod, where a length that the poses' shadow does not hide counts ten times.
     std::pair<dvec3, dvec3> rodBetween(const std::vector<dvec3>& island, const std::vector<dvec3>& others) const {
         constexpr std::size_t kOfIsland = 300, kOfOthers = 2000;
         constexpr int kSamples = 12;
@@ -259,11 +261,11 @@ private:
         return best;
     }
 
-    // What does not hang together with the plate is held by a rod.
+    // Joins each piece that is not connected to the plate by a rod. Crumbs are removed.
     void joinIslands() {
         for (;;) {
             std::vector<VoxelSolid::Piece> pieces = solid_->pieces();
-            // The plate's: it has the lowest node.
+            // The piece with the lowest node is the plate's.
             const auto lowest = [](const VoxelSolid::Piece& piece) {
                 double low = std::numeric_limits<double>::infinity();
                 for (const dvec3& p : piece.some) low = std::min(low, p.y);
@@ -290,7 +292,7 @@ private:
         }
     }
 
-    // Above the plate, whose thickness is known.
+    // Finds the thinnest wall above the plate. The plate's own thickness is known.
     void measureWalls() {
         wall_ = options_.wall;
         std::optional<VoxelSolid::Thin> thinnest;
@@ -306,7 +308,7 @@ private:
     const PrintLayout& layout_;
     const Fabrication::Options& options_;
     const PrintStep& step_;
-    GreyImage hidden_;  // how deep in the poses' shadow, pixels
+    GreyImage hidden_;  // depth in the poses' shadow, pixels
     std::optional<VoxelSolid> solid_;
     std::vector<Fabrication::ThinPart> thin_;
     std::vector<double> reinforcedBy_;

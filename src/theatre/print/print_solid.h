@@ -9,10 +9,10 @@
 
 namespace fantascope::theatre {
 
-// Tells how far a print has come; an error ends it.
+// Reports the progress of a print, 0 .. 1. An error ends the print.
 using PrintStep = std::function<Result<void>(double share, const char* what)>;
 
-// The second stage of a print: one piece on a grid, with walls that a printer makes.
+// The second stage of a print: one connected solid on a grid, with walls that a printer can make.
 struct PrintSolid {
     VoxelSolid solid;
     std::vector<Fabrication::ThinPart> thin{};
@@ -23,8 +23,8 @@ struct PrintSolid {
     std::string thinnestWallAt{};  // as Fabrication's
 };
 
-// `scene` is posed and its terms asked for. `options` say plate and cell. Error: a grid beyond what
-// a machine holds, or `step`'s.
+// `scene` must be posed and its terms() up to date. `options` must have a plate and a cell above 0.
+// Error: a grid too large for memory, or `step`'s.
 Result<PrintSolid> makeSolid(const PoseProblem& problem, const SceneEnergy& scene, const PrintLayout& layout,
                              const Fabrication::Options& options, const PrintStep& step);
 

@@ -23,8 +23,8 @@ namespace {
 using glm::dvec3;
 
 constexpr float kFar = std::numeric_limits<float>::max();
-// Of a cell: no surface comes nearer to a node, lest a triangle there be lost to rounding; and what
-// is farther has no say.
+// In cells: the surface is kept at least this far from a node, so that no triangle is lost to
+// rounding; and values farther than this are ignored.
 constexpr double kNearest = 0.1, kFarthest = 1.75;
 
 double distanceToSegment(const dvec3& p, const dvec3& a, const dvec3& b) {
@@ -84,7 +84,8 @@ float& VoxelSolid::make(const Node& node) {
     return *find(node);
 }
 
-// With what the solid was: the distance to a union is the least of those to its parts.
+// Unites a node with the solid so far: the distance to a union is the minimum of the distances to
+// its parts.
 void VoxelSolid::unite(const Node& node, double distance) {
     std::uint8_t& inside = inside_[index(node)];
     if (distance >= band_) return;
@@ -105,7 +106,7 @@ double VoxelSolid::value(const Node& node) const {
     return inside_[index(node)] != 0 ? -size : size;
 }
 
-// Between the nodes.
+// Trilinear interpolation between the nodes.
 double VoxelSolid::at(const dvec3& point) const {
     const dvec3 wanted = (point - least_) / cell_;
     Node node;
@@ -125,8 +126,8 @@ double VoxelSolid::at(const dvec3& point) const {
     return sum;
 }
 
-// A vote for each node of a box that is inside by the triangles before it along an axis: that it
-// winds around, or that are an odd number.
+// Gives a vote to each node of a box that is inside along an axis: by the winding number (`winds`),
+// or by an odd number of triangles before it.
 void VoxelSolid::vote(const TriangleMesh& mesh, int axis, bool winds, const std::array<Node, 2>& box,
                       std::vector<std::uint8_t>& votes) const {
     struct Crossing {
@@ -212,7 +213,7 @@ void VoxelSolid::add(const TriangleMesh& mesh, double sheet) {
         }
         return false;
     };
-    // Of the nodes around each triangle: from it, without a sign; and of sheets with theirs.
+    // Unsigned distances of the nodes around each triangle. Sheets are united at once.
     std::vector<float> distances(votes.size(), kFar);
     for (const glm::uvec3& triangle : mesh.triangles) {
         const dvec3 a = mesh.vertices[triangle.x], b = mesh.vertices[triangle.y], c = mesh.vertices[triangle.z];
@@ -268,8 +269,8 @@ void VoxelSolid::cutBelow(double height) {
         }
 }
 
-// Nodes hang together along the edges of the tetrahedra: a step along any of the axes, all of one
-// sign.
+// Nodes are connected along the edges of the tetrahedra: by a step along one or more axes, all of
+// the same sign.
 VoxelSolid::Runs VoxelSolid::runsOf(bool inside) const {
     Runs all;
     DisjointSets joined;
@@ -310,7 +311,7 @@ VoxelSolid::Runs VoxelSolid::runsOf(bool inside) const {
 
 void VoxelSolid::fillCavities() {
     const Runs air = runsOf(false);
-    const std::uint32_t outside = air.runs[0].component;  // the grid's first node is
+    const std::uint32_t outside = air.runs[0].component;  // the grid's first node is outside
     for (std::size_t row = 0; row + 1 < air.rows.size(); ++row)
         for (std::size_t i = air.rows[row]; i < air.rows[row + 1]; ++i) {
             const Run& run = air.runs[i];
@@ -332,7 +333,7 @@ std::vector<VoxelSolid::Piece> VoxelSolid::pieces() {
         if (isNew) pieces.emplace_back().number = run.component;
         pieces[found->second].nodes += static_cast<std::uint64_t>(run.to - run.from);
     }
-    // The ends of runs lie on the surface; of many every so manieth.
+    // The ends of runs lie next to the surface. If there are many, every n-th run is taken.
     std::vector<std::size_t> runs(pieces.size(), 0), seen(pieces.size(), 0);
     for (const Run& run : solid.runs) ++runs[known[run.component]];
     for (std::size_t row = 0; row + 1 < solid.rows.size(); ++row)

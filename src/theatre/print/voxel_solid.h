@@ -11,58 +11,58 @@
 
 namespace fantascope::theatre {
 
-// A solid on a grid of nodes, the union of whatever is added to it, however that overlaps or runs
-// into itself. Kept are which nodes are inside, and near the surface how far it is. Any unit of
+// A solid on a grid of nodes: the union of everything added, which may overlap or intersect itself.
+// It stores which nodes are inside, and near the surface their distance from it. Any unit of
 // length. Thread: thread-bound.
 class VoxelSolid {
 public:
-    // The signed distance to something, negative inside, or less; no steeper than 1.
+    // A signed distance, negative inside, or a lower bound of it; its slope is at most 1.
     using Field = std::function<double(const glm::dvec3&)>;
     struct Box {
         glm::dvec3 least, most;
     };
 
-    // The grid begins at `within.least`; whatever is added lies three cells or more within. `band`:
-    // up to what distance from the surface distances are known; three cells or more.
+    // The grid begins at `within.least`. Everything added must lie three cells or more within the
+    // box. `band`: the distance from the surface up to which distances are stored; three cells or
+    // more.
     VoxelSolid(const Box& within, double cell, double band);
     static double nodesOf(const Box& within, double cell);
     double cell() const { return cell_; }
 
-    // What a closed mesh winds around; of one that is open, what an odd number of its triangles
-    // lies before by two of the three axes, so that a small hole does no harm. Where that is so
-    // thin that no node a cell behind a triangle is inside, the triangle itself becomes solid, this
-    // thick.
+    // Adds the interior of a mesh. For a closed mesh it is where the winding number is not 0. For
+    // an open one a node is inside if, along at least two of the three axes, an odd number of
+    // triangles lies before it, so that a small hole does no harm. If no node a cell behind a
+    // triangle is inside, the triangle itself becomes a solid sheet of thickness `sheet`.
     void add(const TriangleMesh& mesh, double sheet);
-    // `around`: a box that holds it.
+    // `around`: a box that contains the field's interior.
     void add(const Field& field, const Box& around);
     void addRod(const glm::dvec3& from, const glm::dvec3& to, double radius);
 
-    // Takes away what lies below a height.
+    // Removes everything below a height.
     void cutBelow(double height);
-    // What nothing from outside reaches becomes solid.
+    // Cavities with no connection to the outside become solid.
     void fillCavities();
-    // A piece that hangs together, apart from the others: some nodes next to its surface, not more
-    // than kSome.
+    // A connected component, with a sample of nodes next to its surface, about kSome at most.
     struct Piece {
-        std::uint64_t nodes = 0;  // inside
+        std::uint64_t nodes = 0;  // number of its nodes
         std::vector<glm::dvec3> some;
         std::uint32_t number = 0;
     };
     static constexpr std::size_t kSome = 20'000;
-    // The largest first. Numbers stay true until something is added.
+    // The pieces, the largest first. Their numbers are valid until something is added.
     std::vector<Piece> pieces();
     void remove(const Piece& piece);
 
-    // Where a ball that touches the surface all around would be smaller than a wall is to be:
-    // middles of limbs and sheets, not the corners of what is thick. `thickness`: from surface to
-    // surface, through the middle.
+    // Where an inscribed ball would have a diameter less than `wall`: the middles of limbs and
+    // sheets, not the corners of thick parts. `thickness`: from surface to surface, through the
+    // middle.
     struct Thin {
         glm::dvec3 middle{0};
         double thickness = 0;
     };
     std::vector<Thin> thinnerThan(double wall) const;
 
-    // Closed, no triangle without an area, and none that runs through another.
+    // The surface: closed, without degenerate triangles, and without self-intersections.
     TriangleMesh surface() const;
 
 private:
@@ -85,7 +85,7 @@ private:
                static_cast<std::size_t>(node[0]);
     }
     glm::dvec3 place(const Node& node) const { return least_ + cell_ * glm::dvec3(node[0], node[1], node[2]); }
-    // The nodes in a box, cut at the grid's edges.
+    // The first and the last node in a box, clamped to the grid.
     std::array<Node, 2> nodesIn(const Box& box) const;
     std::size_t blockOf(const Node& node) const;
     static std::size_t inBlock(const Node& node) {
@@ -100,10 +100,10 @@ private:
     void vote(const TriangleMesh& mesh, int axis, bool winds, const std::array<Node, 2>& box,
               std::vector<std::uint8_t>& votes) const;
     Runs runsOf(bool inside) const;
-    // How far it is from a place on the surface straight on to the other side, `most` at most; the
-    // first `from` of it are known to be inside.
+    // The distance from a place on the surface, along `way`, to the opposite surface, at most
+    // `most`. The first `from` of it are known to be inside.
     double through(const glm::dvec3& surface, const glm::dvec3& way, double from, double most) const;
-    // All but those of the grid's outermost layer.
+    // Visits all inner nodes except the grid's outermost layer.
     template <class Visit>
     void forNodesInside(Visit visit) const {
         for (int z = 1; z + 1 < count_[2]; ++z)
@@ -116,7 +116,7 @@ private:
     double cell_ = 1, band_ = 3;
     Node count_{}, blockCount_{};
     std::vector<std::uint8_t> inside_;
-    // Distances, negative inside, where one is known: in blocks of nodes.
+    // Distances, where known, in blocks of nodes; negative inside.
     std::vector<std::int32_t> block_;
     std::vector<std::array<float, kBlock * kBlock * kBlock>> values_;
 };

@@ -10,12 +10,12 @@ namespace fantascope::theatre {
 
 using glm::dvec3;
 
-// How deep nodes inside lie, as far as they are no deeper than asked for: by the nearest place
-// where the surface crosses an edge of the grid, carried inwards from node to node.
+// The depths of inner nodes, up to `deepest`. A depth is the distance to the nearest place where
+// the surface crosses an edge of the grid; places are propagated inwards from node to node.
 class VoxelSolid::Depths {
 public:
     struct Depth {
-        dvec3 surface{0};  // the nearest place
+        dvec3 surface{0};  // the nearest place on the surface
         double depth = 0;
     };
     Depths(const VoxelSolid& solid, double deepest) : solid_(solid), deepest_(deepest), blocks_(solid.block_.size(), -1) {
@@ -35,9 +35,9 @@ public:
         const std::int32_t number = numbers_[static_cast<std::size_t>(block)][inBlock(node)];
         return number < 0 ? nullptr : &depths_[static_cast<std::size_t>(number)];
     }
-    // Whether a node is as deep as its neighbours, but for the slope of a limb's taper. Towards the
-    // middle of what is thick, the wedge of an edge grows deeper by more, up to edges of some 40
-    // degrees.
+    // Whether a node is a local maximum of depth, up to the slope of a limb's taper. In a thick
+    // part's edge the depth grows faster towards the middle, unless the edge is sharper than about
+    // 40 degrees.
     bool isMiddle(const Node& node, const Depth& found) const {
         constexpr double kTaper = 0.35;
         bool isMiddle = true;
@@ -59,7 +59,7 @@ private:
         numbers_[static_cast<std::size_t>(block)][inBlock(node)] = static_cast<std::int32_t>(depths_.size());
         depths_.push_back(depth);
     }
-    // Of a node inside with a neighbour outside along an axis.
+    // The depth of an inner node that has an outer neighbour along an axis.
     std::optional<Depth> besideSurface(const Node& node) const {
         std::optional<Depth> nearest;
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -107,7 +107,7 @@ private:
     const VoxelSolid& solid_;
     const double deepest_;
     std::vector<Depth> depths_;
-    // Of each node its place among the depths, in blocks; -1: none.
+    // The index of each node in depths_, in blocks; -1: none.
     std::vector<std::int32_t> blocks_;
     std::vector<std::array<std::int32_t, kBlock * kBlock * kBlock>> numbers_;
 };

@@ -9,7 +9,7 @@
 namespace fantascope::theatre {
 namespace {
 
-constexpr double kBeside = 3;  // from an artefact, pixels of a target 256 high
+constexpr double kBeside = 3;  // distance from an artefact that counts as beside it, pixels of a target 256 high
 
 // The shadow of each joint's capsules on a beam's screen.
 std::vector<BitMask> partShadows(const PoseProblem& problem, const SceneEnergy& energy, std::size_t actor, std::size_t beam) {
@@ -40,7 +40,7 @@ std::vector<BitMask> visibleArtefacts(const SceneEnergy& energy) {
 }
 
 std::vector<Dofs> occludedChains(const PoseProblem& problem, const SceneEnergy& energy) {
-    // What each part, and what props throw on each beam's screen.
+    // The shadows of each part and of the props on a beam's screen.
     struct OnScreen {
         std::vector<std::vector<BitMask>> parts;  // of each actor
         BitMask props;
@@ -53,7 +53,7 @@ std::vector<Dofs> occludedChains(const PoseProblem& problem, const SceneEnergy& 
     std::vector<std::vector<char>> isFree;
     for (const Body& body : problem.actors) isFree.emplace_back(body.joints.size(), 0);
 
-    // Whether what is free of an actor is hidden by all that is not.
+    // Whether the shadow of an actor's free parts is hidden by that of everything not free.
     const auto isHidden = [&](std::size_t actor) {
         return std::all_of(screens.begin(), screens.end(), [&](const OnScreen& screen) {
             BitMask free(screen.props.width(), screen.props.height()), rest = screen.props;
@@ -76,7 +76,7 @@ std::vector<Dofs> occludedChains(const PoseProblem& problem, const SceneEnergy& 
             if (isEnd[end] == 0) continue;
             Dofs chain;
             for (std::size_t joint = end; joint != 0; joint = body.joints[joint].parent) {
-                // What carries more than this chain is not free with it.
+                // A joint that carries more than this chain is not part of it.
                 const bool carriesOther = std::any_of(body.joints.begin() + 1, body.joints.end(), [&](const Body::Joint& other) {
                     return other.parent == joint && isFree[a][static_cast<std::size_t>(&other - body.joints.data())] == 0;
                 });

@@ -12,7 +12,7 @@
 #include <utility>
 
 // Numbers in brackets are the tutorial's equations, B.2 and B.3 its appendices. Steps y and all
-// matrices are in units of the step size and of `scales`, so that a candidate is x = mean + sigma *
+// matrices are normalised by the step size and by `scales`: a candidate is x = mean + sigma *
 // scales * y.
 
 namespace fantascope::theatre {
@@ -36,7 +36,7 @@ VectorXd rawWeights(int populationSize) {
     return weights;
 }
 
-// mu_eff and mu_eff^-: how many equal weights would weigh as much.
+// mu_eff and mu_eff^-: the effective number of equal weights.
 double effective(const VectorXd& weights) { return square(weights.sum()) / weights.squaredNorm(); }
 
 }  // namespace
@@ -46,10 +46,10 @@ struct CmaEs::Block {
     double c1, cMu, cC;  // learning rates (56)-(58)
     VectorXd weights;    // by rank (53)
     VectorXd path;       // p_c
-    MatrixXd C;          // its lower half is kept
+    MatrixXd C;          // only its lower triangle is kept
     MatrixXd B, BD;      // C = B D^2 B^T when it was last decomposed
     VectorXd D;
-    double condition = 1;   // of C then; infinite where it was no longer positive definite
+    double condition = 1;   // of C at that time; infinite if it was no longer positive definite
     int interval, age = 0;  // generations from one decomposition to the next, and since the last
 
     Eigen::SelfAdjointEigenSolver<MatrixXd> solver;
@@ -57,8 +57,8 @@ struct CmaEs::Block {
     VectorXd rotatedMean;        // scratch of tell
 
     Block(Index first, Index size, const Options& options);
-    // Steps y of this block's coordinates, a candidate a column, best first, and the mean's own
-    // step.
+    // Updates the block from its part of the steps y (one candidate a column, best first) and of
+    // the mean's step.
     void learn(const Eigen::Ref<const MatrixXd, 0, Eigen::OuterStride<>>& y, const Eigen::Ref<const VectorXd>& meanStep,
                double muEffective, bool learnsPath);
     void decompose();
@@ -78,8 +78,8 @@ CmaEs::Block::Block(Index first, Index size, const Options& options) : first(fir
     weights = better / better.sum() - alpha * worse / worse.sum();                                           // (53)
     if (!options.negativeWeights) weights.conservativeResize(mu);
 
-    // The tutorial's interval (B.2) is n times shorter, which changes nothing but the time: a tenth
-    // of the matrix is new at most.
+    // The tutorial's interval (B.2) is n times shorter. Ours saves time and has no other effect,
+    // since at most a tenth of the matrix is new.
     interval = std::max(1, static_cast<int>(0.1 / (c1 + cMu)));
     path = VectorXd::Zero(size);
     C = B = BD = MatrixXd::Identity(size, size);
@@ -96,8 +96,8 @@ void CmaEs::Block::learn(const Eigen::Ref<const MatrixXd, 0, Eigen::OuterStride<
 
     for (Index i = 0; i < weights.size(); ++i) weighted.col(i) = cMu * weights[i] * y.col(i);
     if (const Index worse = rotated.cols(); worse > 0) {
-        // A negative weight counts for a step of the expected length, in whatever direction:
-        // |C^(-1/2) y| = |D^-1 B^T y| (46).
+        // A step with a negative weight is rescaled to the expected length: |C^(-1/2) y| = |D^-1
+        // B^T y| (46).
         rotated.noalias() = B.transpose() * y.rightCols(worse);
         for (Index i = 0; i < worse; ++i)
             weighted.rightCols(worse).col(i) *=
@@ -167,7 +167,7 @@ CmaEs::CmaEs(std::span<const double> mean, const Options& options)
     dSigma_ = 1 + 2 * std::max(0.0, std::sqrt((muEffective_ - 1) / (n + 1)) - 1) + cSigma_;  // (55)
     chi_ = std::sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * square(n)));                          // E |N(0, I)|
     blocks_.reserve(
-        options_.blocks.size());  // an Eigen solver must not move before it has solved: it would copy what is not set yet
+        options_.blocks.size());  // an Eigen solver must not be moved before its first use: it would copy uninitialised members
     Index first = 0;
     for (const int size : options_.blocks) {
         blocks_.emplace_back(first, size, options);
@@ -222,7 +222,8 @@ void CmaEs::tell(std::span<const double> values) {
     const double length = path.norm();
     sigma_ *= std::exp(cSigma_ / dSigma_ * (length / chi_ - 1));  // (44)
 
-    // h_sigma: a long path means that sigma is far too small; the matrix must not learn from that.
+    // h_sigma: a long path means that sigma is far too small. Then the matrix must not learn from
+    // the path.
     const double unbiased = length / std::sqrt(1 - std::pow(1 - cSigma_, 2 * generation_));
     const bool learnsPath = unbiased < (1.4 + 2 / (static_cast<double>(n) + 1)) * chi_;
     for (Block& block : blocks_)
@@ -230,7 +231,7 @@ void CmaEs::tell(std::span<const double> values) {
     stopReason_ = reasonToStop();
 }
 
-// Candidates by value, best first; the best of all so far; the histories of (B.3).
+// Ranks the candidates, best first; updates the best of all so far and the histories of (B.3).
 void CmaEs::rankCandidates(std::span<const double> values) {
     std::transform(values.begin(), values.end(), values_.begin(),
                    [](double value) { return std::isfinite(value) ? value : kInfinity; });
@@ -249,8 +250,7 @@ void CmaEs::rankCandidates(std::span<const double> values) {
     medianValues_.push_back(values_[ranking_[ranking_.size() / 2]]);
 }
 
-// Whether the newest 30 % of the last generations are no better than the first 30 % of them, by the
-// median.
+// Whether the newest 30 % of the history are no better than its first 30 %, by the median.
 bool CmaEs::stagnates(const std::vector<double>& history) {
     const auto n = std::ssize(mean_), lambda = std::ptrdiff_t{options_.populationSize};
     const std::ptrdiff_t window = std::min(std::max(std::ptrdiff_t{generation_ / 5}, 120 + 30 * n / lambda), kLongestHistory);
@@ -269,8 +269,8 @@ std::optional<CmaEs::StopReason> CmaEs::reasonToStop() {
     if (bestValues_.size() >= window) {
         const auto [least, most] =
             std::minmax_element(bestValues_.end() - static_cast<std::ptrdiff_t>(window), bestValues_.end());
-        // An infinite value makes the range infinite or no number, and neither stops. 0 <= 0: equal
-        // values stop.
+        // An infinite value makes the range infinite or NaN, and neither stops the search. Equal
+        // values do: 0 <= 0.
         if (*most - *least <= options_.tolHistFun) return StopReason::TolHistFun;
         if (std::max(*most, values_[ranking_.back()]) - *least <= options_.tolFun) return StopReason::TolFun;
     }
@@ -283,8 +283,8 @@ std::optional<CmaEs::StopReason> CmaEs::reasonToStop() {
         if (sigma_ * block.D[block.size - 1] > options_.tolXUp * options_.sigma) return StopReason::TolXUp;
         if (!(block.condition <= options_.conditionCov)) return StopReason::ConditionCov;
     }
-    // A part of a standard deviation that rounding swallows, along one axis a generation or along
-    // any coordinate.
+    // Stops if a fraction of a standard deviation is lost to rounding, along one axis (a different
+    // one each generation) or along any coordinate.
     const auto mean = vectorOf(std::as_const(mean_)), scales = vectorOf(std::as_const(options_.scales));
     for (const Block& block : blocks_) {
         const auto m = mean.segment(block.first, block.size).array(), unit = scales.segment(block.first, block.size).array();

@@ -20,8 +20,8 @@ std::vector<std::size_t> limb(const Body& body, std::size_t joint) {
     return dofs;
 }
 
-// The degrees of freedom of an actor that plays: his number, his first, and which of `which` are
-// his.
+// The part of `which` that belongs to one actor: his number, his first degree of freedom, and his
+// range in `which`.
 struct DofSearch::Part {
     std::size_t actor, first, from, to;
 };
@@ -49,7 +49,8 @@ double DofSearch::run(SceneEnergy& energy, std::span<double> dofs, std::span<con
     CmaEs::Options options;
     options.populationSize = settings.population;
     options.sigma = settings.sigma;
-    // A search that is ended by its generations may change on the way what is searched.
+    // The stiffness may change the function on the way, so criteria that compare generations are
+    // off or coarse.
     options.tolFun = options.tolHistFun = settings.converged;
     options.tolX = 0;
     options.stagnation = false;
@@ -85,7 +86,7 @@ double DofSearch::run(SceneEnergy& energy, std::span<double> dofs, std::span<con
     return best;
 }
 
-// The energy of a candidate, which is brought within the limits.
+// Clamps a candidate to the limits and gives its energy.
 double DofSearch::evaluate(SceneEnergy& energy, std::span<const Part> parts, std::span<const std::size_t> which,
                            std::span<double> own) {
     for (std::size_t i = 0; i < which.size(); ++i) candidate_[which[i]] = own[i];
@@ -127,7 +128,7 @@ void DofSearch::disturb(SceneEnergy& energy, std::span<double> dofs, Rng& rng, d
     }
 }
 
-// The pose itself, if nothing is held.
+// The pose with held contacts restored; the pose itself if nothing is held.
 std::span<const double> DofSearch::held(std::size_t actor, std::span<const double> pose) {
     if (problem_.continuity.empty() || problem_.continuity[actor].contacts.empty()) return pose;
     held_.assign(pose.begin(), pose.end());

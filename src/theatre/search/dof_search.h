@@ -13,41 +13,40 @@
 
 namespace fantascope::theatre {
 
-// The degrees of freedom of a joint, of all that hang on it, and of the one that it hangs on; not
-// the root's.
+// The degrees of freedom of a joint, of all joints below it, and of its parent; not the root's.
 std::vector<std::size_t> limb(const Body& body, std::size_t joint);
 
-// CMA-ES over some of the degrees of freedom of a scene while the others are held: of one limb, of
-// one actor, or all of them. Each actor's are a block of the covariance matrix, unless it is to be
-// full.
+// CMA-ES over some or all degrees of freedom of a scene, for instance those of one limb or one
+// actor; the others stay fixed. Each actor's are a block of the covariance matrix, unless
+// Settings::fullCovariance is set.
 // Thread: thread-bound.
 class DofSearch {
 public:
     struct Settings {
-        double sigma = 0.5;  // in Body::scaleOf()
+        double sigma = 0.5;  // in units of Body::scaleOf()
         int population = 40, generations = 100;
-        double converged = 0;         // ends when the energies of the last generations differ by no more; 0: never
+        double converged = 0;         // stops when the energies of the last generations differ by no more than this; 0: never
         bool fullCovariance = false;  // between actors too
-        // Of physics (SceneEnergy::pose()) at the first generation. It grows by the same factor
-        // each generation, so that it would be the last after `generations`.
+        // The stiffness of physics (SceneEnergy::pose()) at the first generation. It changes by a
+        // constant factor each generation and would reach `lastStiffness` after `generations`.
         double stiffness = 1;
-        std::optional<double> lastStiffness{};  // none: it does not change
+        std::optional<double> lastStiffness{};  // none: the stiffness is constant
         double stiffnessAt(int generation) const;
     };
 
-    // `problem` must live on.
+    // `problem` must outlive this object.
     explicit DofSearch(const PoseProblem& problem);
 
-    // Searches from `dofs` over those with a number in `which` (ascending, of all actors' degrees
-    // of freedom; of a joint all, since its limits are theirs together) and leaves the best
-    // candidate of the last generation there; gives its energy. Candidates are brought within the
-    // limits, and what is held to where it is held, by whatever degrees of freedom it takes. The
-    // search ends when `goesOn`, asked before each generation, gives false.
+    // Searches from `dofs` over the degrees of freedom in `which`: ascending indices among those of
+    // all actors. It must have all or none of a joint's, since they share limits. `dofs` becomes
+    // the best candidate of the last generation; the result is its energy. Candidates are clamped
+    // to the limits, and held contacts are restored, for which any degree of freedom may move. The
+    // search stops when `goesOn`, asked before each generation, gives false.
     double run(SceneEnergy& energy, std::span<double> dofs, std::span<const std::size_t> which, const Settings& settings,
                Rng& rng, const std::function<bool()>& goesOn = {});
 
-    // How a local search leaves where it is: one actor is searched anew, or one of his limbs, or he
-    // makes a step in the dark.
+    // The perturbation of a local search. For a random actor, it searches all his degrees of
+    // freedom or one limb anew, or makes a random step.
     void disturb(SceneEnergy& energy, std::span<double> dofs, Rng& rng, double stiffness = 1);
 
     std::int64_t evaluations() const { return evaluations_; }

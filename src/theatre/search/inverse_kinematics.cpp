@@ -8,12 +8,12 @@
 namespace fantascope::theatre {
 namespace {
 
-// Against the joints' squared metres: of a contact's place, and of its turn, a foot's length from
-// it.
+// Weights relative to the joints' squared metres: of a contact's place; and of its rotation,
+// measured a foot's length away.
 constexpr double kHeldPlace = 1000, kHeldTurn = 20;
 constexpr double kReachDamping = 0.02, kHoldDamping = 1e-4, kMostDamping = 10;
 constexpr double kHeld = 0.0002;   // metres, and radians a tenth of a metre away
-constexpr double kSettled = 1e-5;  // of the objective: what a step must bring
+constexpr double kSettled = 1e-5;  // the least relative decrease of the objective by a step
 constexpr int kHoldSteps = 12;
 constexpr double kLever = 0.1;  // metres
 
@@ -81,8 +81,8 @@ bool InverseKinematics::descend(std::span<double> dofs, std::span<const glm::dve
     const Eigen::VectorXd& step = equations_.step(damping, {});
     best_.assign(dofs.begin(), dofs.end());
     double least = before;
-    // The joints' limits make corners in the line, so it is looked at in a few places rather than
-    // fitted.
+    // The joint limits make the objective along the line non-smooth, so it is sampled at a few
+    // lengths rather than fitted.
     for (const double length : {1.5, 1.0, 0.6, 0.3, 0.1, 0.02}) {
         trial_.assign(dofs.begin(), dofs.end());
         for (std::size_t k = 0; k < trial_.size(); ++k) trial_[k] += length * step[static_cast<Eigen::Index>(k)];
@@ -91,7 +91,7 @@ bool InverseKinematics::descend(std::span<double> dofs, std::span<const glm::dve
         if (const double now = objective(places, contacts); now < least)
             least = now, std::swap(best_, trial_);
         else if (least < before)
-            break;  // past the least
+            break;  // past the minimum
     }
     std::copy(best_.begin(), best_.end(), dofs.begin());
     posed_.pose(body_, dofs);

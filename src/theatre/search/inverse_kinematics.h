@@ -8,28 +8,29 @@
 
 namespace fantascope::theatre {
 
-// A body's pose from where its joints are to be: steps of the damped Jacobian pseudo-inverse, each
-// as long as a line minimisation finds best (Won & Lee 2016, section 5, Algorithm 1, line 8).
+// Inverse kinematics: a body's pose from the wanted places of its joints, by steps of the damped
+// Jacobian pseudo-inverse with a line search (Won & Lee 2016, section 5, Algorithm 1, line 8).
 // Thread: thread-bound.
 class InverseKinematics {
 public:
-    // `body` must live on.
+    // `body` must outlive this object.
     explicit InverseKinematics(const Body& body);
 
-    // Moves `dofs` so that the joints come near to `places` (of each joint, metres, stage frame),
-    // while `contacts` weigh so much more that they stay where they are. Ends after `steps`, or
-    // when a step brings nothing. Gives the root mean square of the joints' distances, metres.
+    // Changes `dofs` so that the joints come near to `places` (one a joint, metres, stage frame).
+    // `contacts` weigh so much more that they stay where they are. Stops after `steps` iterations,
+    // or when a step brings no improvement. Gives the root mean square distance of the joints,
+    // metres.
     double reach(std::span<double> dofs, std::span<const glm::dvec3> places, std::span<const HeldContact> contacts, int steps);
-    // Brings the contacts to where they are held by as small a change of all else as it takes.
-    // False: they cannot be reached within a fifth of a millimetre.
+    // Brings the contacts to where they are held, with the smallest change of the rest.
+    // False: they cannot be reached to within 0.2 mm.
     bool hold(std::span<double> dofs, std::span<const HeldContact> contacts);
 
-    const PosedBody& posed() const { return posed_; }  // in the degrees of freedom last given, as they were left
+    const PosedBody& posed() const { return posed_; }  // in the resulting degrees of freedom of the last call
 
 private:
     double objective(std::span<const glm::dvec3> places, std::span<const HeldContact> contacts) const;
     void linearise(std::span<const double> dofs, std::span<const glm::dvec3> places, std::span<const HeldContact> contacts);
-    // Whether it went down.
+    // Makes one step; whether the objective fell.
     bool descend(std::span<double> dofs, std::span<const glm::dvec3> places, std::span<const HeldContact> contacts,
                  double damping);
 

@@ -14,11 +14,11 @@
 namespace fantascope::theatre {
 namespace {
 
-constexpr double kGlobalShare = 0.85;  // of the evaluations, for all degrees of freedom at once
+constexpr double kGlobalShare = 0.85;  // share of the evaluations for the search over all degrees of freedom
 constexpr double kSigma = 0.5, kRefinedSigma = 0.3;
 constexpr int kRefinedGenerations = 25;
-constexpr double kPapersStiffness = 0.1;  // of physics, as in Table 1; then what holds people up
-constexpr double kConverged = 0.1;        // energies that differ by less than nobody sees
+constexpr double kPapersStiffness = 0.1;  // stiffness of physics at first, as in Table 1; refinement uses 1
+constexpr double kConverged = 0.1;        // smaller differences of energy are invisible
 
 class TrialRun {
 public:
@@ -42,7 +42,7 @@ private:
         return trial_.reason != PoseSearch::StopReason::Interrupted;
     }
 
-    // CMA-ES over these degrees of freedom, from where the poses are.
+    // CMA-ES over the degrees of freedom in `which`, starting from `dofs`.
     double search(const PoseProblem& problem, SceneEnergy& energy, std::vector<double>& dofs, const Dofs& which, double sigma,
                   double stiffness, std::int64_t evaluations) {
         DofSearch search(problem);
@@ -66,7 +66,7 @@ private:
         SceneEnergy energy(problem);
         energy.pose(trial_.dofs);
         double best = energy.energy();
-        // Whether these degrees of freedom could make it better.
+        // Searches these degrees of freedom and keeps a better result; whether there was one.
         const auto improves = [&](const Dofs& which) {
             const std::int64_t left = options_.evaluations - trial_.evaluations;
             if (which.empty() || left <= 0 || trial_.reason != PoseSearch::StopReason::Evaluations) return false;
@@ -91,7 +91,7 @@ private:
             bool isBetter = false;
             for (const Dofs& chain : occludedChains(problem, energy)) isBetter |= improves(chain);
             if (isBetter) continue;
-            // Without artefacts what remains is to be had from anybody.
+            // Without artefacts, any degree of freedom may lower the rest of the energy.
             Dofs beside = dofsBeside(problem, energy, artefacts);
             if (beside.empty()) {
                 beside.resize(trial_.dofs.size());

@@ -7,15 +7,15 @@
 namespace fantascope::theatre {
 namespace {
 
-// As many evaluations of a trial as a thread finishes within the time, but no more than a trial
-// needs. The report has what was found so, and --evaluations repeats it.
+// The number of evaluations of a trial that a thread finishes within the time, but no more than a
+// trial needs. The report states this number, so that --evaluations can repeat the run.
 std::int64_t evaluationsWithin(double seconds, PoseSearch::Options options, const PoseProblem& problem, std::uint64_t seed,
                                const Clock& clock) {
     constexpr std::int64_t kProbe = 1500;
-    constexpr double kSpare = 0.74;  // threads get in each other's way
+    constexpr double kSpare = 0.74;  // reserve, since threads slow each other down
     const std::int64_t enough = std::exchange(options.evaluations, kProbe);
-    // What an evaluation takes is felt between the first time that the probe asks and the last; a
-    // trial's beginning and end take theirs once.
+    // The time of an evaluation is measured between the probe's first and last question. The
+    // beginning and the end of a trial cost a fixed time on top.
     struct Look {
         std::int64_t evaluations = 0;
         Time at{};
@@ -34,8 +34,8 @@ std::int64_t evaluationsWithin(double seconds, PoseSearch::Options options, cons
     return static_cast<std::int64_t>(std::clamp(fit, 1000.0, static_cast<double>(enough)));
 }
 
-// The trials of these actors until `seconds` after the start, if there is such an end; with
-// `isLast` false only half of what is left of them, unless something satisfies.
+// Runs the trials of one round until `seconds` after `start`, if given. Unless `isLast`, the round
+// stops after half of the remaining time if no trial is satisfactory.
 Result<PoseRounds::Round> searchWith(const PoseRounds::Options& options, PoseProblem problem, std::optional<double> seconds,
                                      bool isLast, const Clock& clock, Time start, const TrialsWatch& watch) {
     problem.buildSkins();
@@ -68,7 +68,7 @@ Result<PoseRounds> PoseRounds::run(const Task& task, const Options& options, con
         if (more > 0)
             troupe =
                 Troupe::of(task.area, static_cast<int>(task.troupe.statures.size()) + more, task.troupe.height, task.statures);
-        if (!troupe) break;  // they would have too little of it
+        if (!troupe) break;  // each would have too little of the silhouette
         TRY(task.stage.checkHolders(troupe->statures.size()));
         PoseProblem problem{task.stage, task.targets, {}, task.weights, {}, task.hints, {}};
         for (const double stature : troupe->statures) problem.actors.push_back(humanBody(stature));

@@ -32,7 +32,7 @@ bool isWithinLimits(const Body& body, std::span<const double> dofs) {
     return true;
 }
 
-// Moves a place on the floor before screens that stand elsewhere, with room for outstretched arms.
+// Moves a place on the floor to the front of the further screens, with room for outstretched arms.
 void keepBeforeScreens(const Stage& stage, glm::dvec2& floor) {
     constexpr double kRoom = 0.8;
     glm::dvec3 outward;
@@ -47,7 +47,7 @@ PoseSearch::Quality::Match matchOf(const BeamEnergy& beam, std::size_t actors) {
     BitMask people(target.mask.width(), target.mask.height());
     for (std::size_t i = 0; i < actors; ++i) people.add(beam.shadow(i));
     PoseSearch::Quality::Match match;
-    // What falls beside the masks is too much, too.
+    // Shadow beside the masks counts as a difference, too.
     const auto iou = [&](const BitMask& shadow, const BitMask& silhouette) {
         const auto both = static_cast<double>(shared(shadow, silhouette));
         return both / (both + static_cast<double>(differing(shadow, silhouette)) + beam.beyond());
@@ -103,12 +103,13 @@ std::vector<double> PoseSearch::start(const PoseProblem& problem) {
     const double middle = frame.metresAt({0.5 * frame.width(), 0}).x;
     std::vector<double> dofs;
     const auto count = static_cast<double>(problem.actors.size());
-    // However many: near enough to the middle to have the screen's in sight.
+    // However many there are, all are near enough to the middle to have the screen's middle in
+    // sight.
     const double apart = std::min(0.6, 3 / count);
     for (std::size_t i = 0; i < problem.actors.size(); ++i) {
         const Body& body = problem.actors[i];
-        // Behind each other by the golden section: whoever stands next has his arms before or
-        // behind.
+        // Depths follow the golden ratio, so that neighbours' arms are in front of or behind each
+        // other.
         const double share = std::fmod(0.618034 * static_cast<double>(i), 1.0);
         glm::dvec2 floor(middle + apart * (static_cast<double>(i) - 0.5 * (count - 1)), 1 + 1.6 * share);
         if (const auto& area = problem.stage.standing) floor = glm::clamp(floor, area->from, area->to);

@@ -11,7 +11,7 @@
 namespace fantascope::theatre {
 
 // Discovery of principal poses (Won & Lee 2016, section 4): poses of all actors at once whose
-// shadow is the target's.
+// shadow matches the target.
 //
 // A trial's length is a number of evaluations of the energy, never a time: the same problem, seed
 // and options give the same poses, byte for byte, on any number of threads.
@@ -27,9 +27,9 @@ public:
         std::int64_t evaluations = 40'000;  // of a trial; 1000 or more
         int population = 40;                // lambda of the CMA-ES, 4 .. 1000
 
-        // Of the paper's method.
-        double residual = 150;        // the energy that needs no refinement unless artefacts are seen, >= 0
-        bool fullCovariance = false;  // between actors too: the paper's CMA-ES to the letter, and slower
+        // Only for the paper's method.
+        double residual = 150;        // energy up to which no refinement is needed unless artefacts are visible, >= 0
+        bool fullCovariance = false;  // between actors too: exactly the paper's CMA-ES, and slower
 
         // Error: names the option that is out of range.
         Result<void> check() const;
@@ -38,22 +38,23 @@ public:
     enum class StopReason {
         NotRun,
         Evaluations,
-        Satisfied,  // the paper's method: little residual energy and no visible artefacts
+        Satisfied,  // only the paper's method: the residual energy is low and no artefacts are visible
         Interrupted
     };
 
-    // How good poses are, for people and reports.
+    // The quality of poses, for people and reports.
     struct Actor {
-        double margin = 0;                   // of balance, metres
-        bool touches = false;                // the floor, or a platform
-        double lowest = 0;                   // height of the lowest point above what is under it, metres
-        double deepest = 0;                  // in the own body, another's, the floor, a screen, a platform or a prop, metres
+        double margin = 0;     // of balance, metres
+        bool touches = false;  // whether he touches the floor or a platform
+        double lowest = 0;     // height of the lowest point above what is under it, metres
+        double deepest = 0;    // greatest depth in his own body, another's, the floor, a screen, a platform or a prop, metres
         bool withinLimits = false;           // all joint angle measures between their bounds
-        double outside = 0;                  // how far what bears is outside where people may stand, metres
+        double outside = 0;                  // how far a contact lies outside the standing area, metres
         std::vector<glm::dvec2> contacts{};  // (x, z) of all that touches the floor or a platform, metres
 
-        // He stands with kStandMargin to spare, within the joints' limits, no deeper than
-        // kMostDepth in anything, nor farther than that from where he may stand.
+        // Whether he touches the ground with a margin of at least kStandMargin, is within the joint
+        // limits, and neither penetrates anything nor leaves the standing area by more than
+        // kMostDepth.
         bool isValid() const;
     };
     struct Quality {
@@ -62,18 +63,18 @@ public:
         // Of a beam's shadow and target.
         struct Match {
             double iou = 0;                           // intersection over union, as seen on the screen
-            double flatIou = 0;                       // on the flat one, which is curved for the former
-            double iouWithoutProps = 0;               // of the people's shadow alone, without that of platforms and props
-            double propsCover = 0;                    // the share of the target that is in the shadow of platforms and props
+            double flatIou = 0;                       // the same on the flat screen, which differs if the screen is curved
+            double iouWithoutProps = 0;               // of the people's shadow alone, without platforms and props
+            double propsCover = 0;                    // share of the target that platforms and props cover
             double contourMean = 0, contourMost = 0;  // |p - p'|, pixels of a target 256 high
         };
         std::vector<Match> matches;               // of each beam
-        double iou = 0, iouWithoutProps = 0;      // the least of theirs
-        double propsCover = 0;                    // the most
+        double iou = 0, iouWithoutProps = 0;      // the minimum over the beams
+        double propsCover = 0;                    // the maximum over the beams
         double contourMean = 0, contourMost = 0;  // of all
         std::vector<Actor> actors;
 
-        bool isValid() const;  // everyone is
+        bool isValid() const;  // whether every actor is valid
     };
     static constexpr double kStandMargin = 0.01, kMostDepth = 0.02;  // metres
 
@@ -84,14 +85,14 @@ public:
         std::int64_t evaluations = 0;
         StopReason reason = StopReason::NotRun;
         std::vector<double>
-            history;  // of the local search: the best energy after each change, in coarse pixels and then in fine ones
+            history;  // of the local search: the best energy after each change, first in coarse pixels, then in fine ones
     };
 
     struct Progress {
         std::int64_t evaluations = 0;
         double energy = 0;
     };
-    // Asked now and then; true ends the trial with the best so far.
+    // Called now and then. True stops the trial with the best so far.
     using AskStop = std::function<bool(const Progress&)>;
 
     // The actors' T-poses in a row before the screen, looking at it.
@@ -100,7 +101,7 @@ public:
     // One trial by the options' method. Quality is measured in the problem's own pixels.
     static Trial run(const PoseProblem& problem, std::uint64_t seed, const Options& options, const AskStop& askStop = {});
 
-    // The seed (63 bits) of a trial, from 0, of a search's.
+    // The seed (63 bits) of trial `number` (from 0) of a search with `seed`.
     static std::uint64_t trialSeed(std::uint64_t seed, std::uint64_t number);
 
     static Quality measure(const PoseProblem& problem, std::span<const double> dofs);

@@ -10,14 +10,14 @@
 namespace fantascope::theatre {
 namespace {
 
-// What all threads share. Each asks whether its trial goes on, one at a time: so a pause holds up
-// all of them.
+// The state that all threads share. Threads ask one at a time whether their trial goes on, so a
+// pause blocks all of them.
 class Course {
 public:
     Course(const PoseTrials::Options& options, const Clock& clock, const TrialsWatch& watch)
         : options_(options), clock_(clock), watch_(watch), start_(clock.now()) {}
 
-    // The number of the next trial, if there is one.
+    // Begins the next trial and gives its number; none if there is no further one.
     std::optional<std::size_t> begin() {
         const std::lock_guard lock(mutex_);
         const std::size_t number = began_.size();
@@ -34,9 +34,9 @@ public:
         const auto tell = [&](bool isPaused) {
             if (watch_.tell) watch_.tell({share(), number, now.energy, best_, isPaused});
         };
-        if (now.evaluations > 0) tell(false);  // there is an energy
+        if (now.evaluations > 0) tell(false);  // the trial has an energy
         if (!isInterrupted_ && watch_.goesOn) isInterrupted_ = !watch_.goesOn([&] { tell(true); });
-        // The time cuts none short that came before one that is finished.
+        // The time limit does not cut a trial short if a later one has finished.
         return isInterrupted_ || (isTimeUp() && number >= afterFinished_);
     }
 
@@ -81,7 +81,7 @@ private:
                (options_.patience && now >= *options_.patience && !isSatisfied_);
     }
 
-    // Of the whole run; none where it has no end.
+    // The share of the whole run that is done; none if the run has no end.
     std::optional<double> share() const {
         std::optional<double> done;
         if (options_.seconds && *options_.seconds > 0) done = fantascope::seconds(worked()) / *options_.seconds;
@@ -96,15 +96,15 @@ private:
     const PoseTrials::Options& options_;
     const Clock& clock_;
     const TrialsWatch& watch_;
-    std::mutex mutex_;  // of all that follows
+    std::mutex mutex_;  // guards all that follows
     const Time start_;
     bool isInterrupted_ = false;
     std::vector<Time> began_;                // of each trial
     std::vector<std::int64_t> evaluations_;  // of each so far
-    std::size_t afterFinished_ = 0;          // the number after the last that is finished
+    std::size_t afterFinished_ = 0;          // one more than the highest number of a finished trial
     std::optional<PoseSearch::Quality> best_;
     bool isSatisfied_ = false;
-    std::vector<PoseTrials::Trial> trials_;  // that are over
+    std::vector<PoseTrials::Trial> trials_;  // ended, finished or not
 };
 
 }  // namespace

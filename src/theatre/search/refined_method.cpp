@@ -14,16 +14,16 @@
 namespace fantascope::theatre {
 namespace {
 
-constexpr double kGlobalShare = 0.15;            // of the evaluations, in pixels of twice the side
-constexpr double kCoarseShare = 0.8;             // so far they are used; the rest sees every pixel
+constexpr double kGlobalShare = 0.15;            // share of the evaluations for the global stage, in coarse pixels
+constexpr double kCoarseShare = 0.8;             // share up to which coarse pixels are used; the rest uses fine ones
 constexpr double kWeak = 0.01, kLessWeak = 0.1;  // stiffness at the beginning and at the end of the global stage
 constexpr double kGlobalSigma = 0.5;
 constexpr std::array kStiffer = {0.01, 0.03, 0.1};  // while the outline is fitted
 constexpr double kHeld = 0.1,
-                 kHeldBy = 0.87;  // at the beginning of the coarse local search, and the share of it by which it is 1
+                 kHeldBy = 0.87;  // stiffness at the start of the coarse local search; share of it after which the stiffness is 1
 constexpr int kFitSteps = 20, kRefitSteps = 20, kLastFitSteps = 60;
-// How much energy a change may cost at the beginning of the local search, and the share of it at
-// the end.
+// The temperature of simulated annealing at the beginning, in units of energy, and the factor by
+// which it has fallen at the end.
 constexpr double kHot = 6, kCool = 0.05;
 
 class TrialRun {
@@ -75,7 +75,7 @@ private:
                         rng_, [&] { return goesOn(shop.energy.lastEnergy()); });
     }
 
-    // While somebody cannot stand physics grows ever stiffer.
+    // Fits with ever stiffer physics until all poses are valid.
     void mend(Workshop& shop) {
         for (const double stiffness : kMending) {
             if (trial_.reason == PoseSearch::StopReason::Interrupted || PoseSearch::measure(shop.problem, trial_.dofs).isValid())
@@ -84,13 +84,13 @@ private:
         }
     }
 
-    // The outline first, then a little more of standing.
+    // Fits the outline first, then with a little stiffer physics.
     void stiffen(Workshop& shop) {
         for (const double stiffness : kStiffer) shop.fit.run(shop.energy, trial_.dofs, kFitSteps, stiffness);
     }
 
-    // Iterated local search until a share of the evaluations is spent, while physics becomes what
-    // holds people up.
+    // Iterated local search until a share of the evaluations is spent. Meanwhile the stiffness of
+    // physics rises to 1.
     void searchLocally(Workshop& shop, double share, double firstStiffness) {
         const auto first = evaluations(), last = static_cast<std::int64_t>(share * static_cast<double>(options_.evaluations));
         std::vector<double> here = trial_.dofs, next;
@@ -108,7 +108,8 @@ private:
             const double progress = double(evaluations()) / double(options_.evaluations);
             const double tolerance = -kHot * std::pow(kCool, progress) * std::log(1 - rng_.uniform());
             if (found < current + tolerance) here = next, current = found;
-            // While physics stiffens energies cannot be compared: the newest is the best.
+            // While physics stiffens, energies of different iterations are not comparable: the
+            // newest counts as the best.
             if (firstStiffness < 1 || current < best) best = current, trial_.dofs = here;
             trial_.history.push_back(best);
         }

@@ -15,21 +15,21 @@
 namespace fantascope::theatre {
 namespace {
 
-// Of the shadow's contour so many points at most are asked where they should be.
+// The approximate number of the shadow's contour points that have a residual.
 constexpr int kShadowPoints = 500;
-// No point is asked to go farther at once, pixels: beyond it the derivative says nothing.
+// The greatest residual of a point, pixels. Beyond it the derivative is meaningless.
 constexpr double kFarthest = 12;
-// A hole's edge lies deep in the target: it is asked to go as far as this.
+// A hole's edge lies deep in the target. Its residual is at most this, pixels.
 constexpr double kIntoHole = 6;
-// Residuals nearer to nothing than this are weighted as if they were this: pixels, centimetres;
-// millimetres of height.
+// Smaller residuals are weighted as if they were this: pixels, centimetres of margin, millimetres
+// of height.
 constexpr double kNearest = 0.7;
-constexpr double kNarrow = 0.01;  // metres; sides whose margins differ by less are all asked for more: of a narrow support both
-constexpr double kHold = 0.002;   // how much a bearing point resists, in w9 a squared millimetre
+constexpr double kNarrow = 0.01;  // metres; tangents this near to the least margin have residuals: both sides of a narrow support
+constexpr double kHold = 0.002;   // resistance of a bearing point to vertical movement, in w9 a squared millimetre
 constexpr double kFirstDamping = 0.1, kMostDamping = 1e5;
 
-// The outlines of the shadows of a body's capsules: each as round as its ends and as straight
-// between, which is near enough.
+// The outlines of the shadows of a body's capsules, approximated by two circles and straight lines
+// between.
 class Outlines {
 public:
     static constexpr double kNear = 3;  // pixels
@@ -39,7 +39,7 @@ public:
         FANTASCOPE_CHECK(posed.capsules().size() <= 64, "a set of capsules is a word");
         for (const PlacedCapsule& capsule : posed.capsules()) {
             const double fromDepth = frame.fromLight(capsule.from).z, toDepth = frame.fromLight(capsule.to).z;
-            if (fromDepth <= capsule.fromRadius || toDepth <= capsule.toRadius) {  // at the light: without a shadow
+            if (fromDepth <= capsule.fromRadius || toDepth <= capsule.toRadius) {  // reaches the light: no bounded shadow
                 outlines_.push_back({});
                 continue;
             }
@@ -57,10 +57,10 @@ public:
     struct Nearest {
         bool isFound = false;
         std::size_t capsule = 0;
-        double share = 0;         // of the way along it
+        double share = 0;         // position along its axis, 0 .. 1
         double distance = kNear;  // from its outline, pixels; negative inside
     };
-    // Whether one of them is nearer to a pixel of the frame than what is known.
+    // Whether one of the outlines is nearer to a pixel than `nearest`, which is then updated.
     bool findNearer(glm::dvec2 pixel, Nearest& nearest) const {
         bool isNearer = false;
         for (std::uint64_t near = rows_[band(pixel.y)] & columns_[band(pixel.x)]; near != 0; near &= near - 1) {
@@ -82,7 +82,7 @@ private:
         glm::dvec2 from{0}, along{0};
         double radius = 0, growth = 0, perSquare = 0;
     };
-    // Which capsules come near to each band of rows, and of columns.
+    // The capsules that come near to each band of rows, and of columns, as bits.
     static constexpr int kBand = 8;  // pixels
     static std::size_t bands(int pixels) { return static_cast<std::size_t>(pixels / kBand + 1); }
     static std::size_t band(double at) { return static_cast<std::size_t>(at / kBand); }
@@ -157,8 +157,8 @@ void SilhouetteFit::linearise(SceneEnergy& energy, std::span<const double> dofs)
     for (PoseEquations& equations : equations_) equations.finish();
 }
 
-// A point of the shadow's contour belongs to the capsule on whose outline it lies: of those whose
-// shadow is nearest, the first.
+// A point of the shadow's contour belongs to the capsule whose outline is nearest; ties go to the
+// first.
 void SilhouetteFit::addContour(const BeamEnergy& beam, const SceneEnergy& energy, const GreyImage& distance) {
     const PoseTarget& target = beam.target();
     const ScreenFrame& frame = target.frame;
@@ -167,7 +167,8 @@ void SilhouetteFit::addContour(const BeamEnergy& beam, const SceneEnergy& energy
     for (std::size_t a = 0; a < equations_.size(); ++a) outlines.emplace_back(frame, energy.posed(a));
     const PoseWeights& weights = problem_.weights;
     const double squarePixel = target.refPixelsPerPixel * target.refPixelsPerPixel * target.perPoint();
-    // `residual`: how far beyond its place the outline is along the outward normal, pixels.
+    // `residual`: the distance of the outline beyond its wanted place, along the outward normal,
+    // pixels.
     const auto add = [&](glm::dvec2 pixel, glm::dvec2 normal, double residual, double weight) {
         std::size_t owner = 0;
         Outlines::Nearest nearest;
@@ -179,23 +180,24 @@ void SilhouetteFit::addContour(const BeamEnergy& beam, const SceneEnergy& energy
         const PlacedCapsule& capsule = body.capsule(nearest.capsule);
         const double radius = std::lerp(capsule.fromRadius, capsule.toRadius, nearest.share);
         const glm::dvec3 point = glm::mix(capsule.from, capsule.to, nearest.share) + radius * glm::dvec3(normal.x, -normal.y, 0);
-        // The derivative of foot + focus (x, y) / z along the normal, by metres of the stage: x
-        // right, y up, z to the light.
+        // The derivative of foot + focus (x, y) / z along the normal, by metres in the stage's
+        // frame.
         const glm::dvec3 d = frame.fromLight(point);
         const double scale = frame.focus() / d.z, forward = (normal.x * d.x + normal.y * d.y) / d.z;
         equations_[owner].addPoint(problem_.actors[owner].capsules[nearest.capsule].joint, point,
                                    frame.onStage(scale * glm::dvec3(normal, -forward)), residual, weight);
     };
 
-    // Equation 2: the contour's points pull the nearest point of the shadow's contour.
+    // Equation 2: each point of the target's contour pulls the nearest point of the shadow's
+    // contour.
     const auto pulled = beam.nearest();
     for (std::size_t i = 0; i < pulled.size(); ++i) {
         const glm::dvec2 away = target.contour[i].pixel - pulled[i].pixel;
         const double along = std::clamp(glm::dot(away, pulled[i].normal), -kFarthest, kFarthest);
         if (pulled[i].normal != glm::dvec2(0)) add(pulled[i].pixel, pulled[i].normal, -along, weights.w1 * squarePixel);
     }
-    // Equation 3: so many pixels of the shadow's contour stand for all of them, each for as much
-    // area as it is off.
+    // Equation 3: a sample of the shadow's contour pixels stands for all of them. Each accounts for
+    // an area proportional to its distance from the target's contour.
     const BitMask& contour = beam.contour();
     const std::int64_t all = contour.count(), stride = std::max<std::int64_t>(1, all / kShadowPoints);
     const double charge = weights.w4 / target.area * static_cast<double>(stride);
@@ -213,7 +215,7 @@ void SilhouetteFit::addContour(const BeamEnergy& beam, const SceneEnergy& energy
             }
 }
 
-// Equation 7: the nearest part goes to its hint, to the right and down alike.
+// Equation 7: the nearest part goes to its hint, with a residual along each axis of the picture.
 void SilhouetteFit::addHints(const SceneEnergy& energy) {
     const ScreenFrame& frame = problem_.targets[0].frame;
     const double weight = problem_.weights.w12 * problem_.targets[0].refPixelsPerPixel * problem_.targets[0].refPixelsPerPixel;
@@ -230,8 +232,8 @@ void SilhouetteFit::addHints(const SceneEnergy& energy) {
     }
 }
 
-// Equation 6, E_k: an actor, or what he holds, leaves what it is in. What another holds is asked
-// for its half in the other's turn.
+// Equation 6, E_k: an actor and the props that he holds leave obstacles. If the obstacle is another
+// actor's prop, each of the two takes half of the way.
 void SilhouetteFit::addIntrusions(const SceneEnergy& energy, std::size_t actor, double weight) {
     PoseEquations& equations = equations_[actor];
     for (const Intrusion& intrusion : energy.intrusions(actor)) {
@@ -280,7 +282,7 @@ void SilhouetteFit::addContinuity(const SceneEnergy& energy, std::span<const dou
     }
 }
 
-// Equation 6: what is too deep.
+// Equation 6: penetrations, and the resistance of bearing points.
 void SilhouetteFit::addPhysics(SceneEnergy& energy) {
     PoseWeights weights = problem_.weights;
     for (double* weight : {&weights.w7, &weights.w9, &weights.w10, &weights.w11}) *weight *= energy.stiffness();
@@ -288,8 +290,8 @@ void SilhouetteFit::addPhysics(SceneEnergy& energy) {
         PoseEquations& equations = equations_[a];
         const Body& body = problem_.actors[a];
         const PosedBody& posed = energy.posed(a);
-        // `own`: whether the other capsule is this body's too, on this joint; another's actor is
-        // asked for his half in his turn.
+        // `own`: the other capsule's joint if it belongs to the same body. If not, each of the two
+        // actors takes half of the way.
         const auto addPair = [&](const PlacedCapsule& one, const PlacedCapsule& other, std::size_t joint,
                                  std::optional<std::size_t> own) {
             if (!areNear(one, other)) return;
@@ -320,7 +322,8 @@ void SilhouetteFit::addPhysics(SceneEnergy& energy) {
             for (const Screen& screen : problem_.stage.screens) push(radius - screen.distance(centre, outward));
         }
         addIntrusions(energy, a, weights.w11);
-        // What bears is not let go of lightly: the margin would be another one then.
+        // Bearing points resist a change of height, since losing one would change the margin
+        // abruptly.
         const auto above = energy.aboveGround(a);
         const double lowest = energy.bearings(a).lowest;
         for (std::size_t i = 0; i < above.size(); ++i) {
@@ -332,18 +335,19 @@ void SilhouetteFit::addPhysics(SceneEnergy& energy) {
     }
 }
 
-// The height above the floor; and the margin: how the contacts on the nearest tangents move against
-// the mass centre.
+// Residuals for the standing area, the height above the floor and the margin. The margin depends on
+// the movement of the contacts on the nearest tangents relative to the mass centre.
 void SilhouetteFit::addBalance(const SceneEnergy& energy, std::size_t index, const PoseWeights& weights) {
     PoseEquations& equations = equations_[index];
     const Body& body = problem_.actors[index];
     const PosedBody& posed = energy.posed(index);
     const Contacts& contacts = energy.bearings(index);
-    // A vertex of the skin goes with the joint that has most of it.
+    // A vertex of the skin moves with the joint that has the largest share of it.
     const auto jointOf = [&](std::uint32_t source) {
         return problem_.skins.empty() ? body.spheres[source].joint : problem_.skins[index]->joints[source][0];
     };
-    // Contacts are as if on the floor: on a platform they are higher.
+    // Heights of contacts are measured from the ground; on a platform the ground is higher than the
+    // floor.
     const auto groundUnder = [&](std::uint32_t source) {
         return problem_.skins.empty() ? posed.spheres()[source].centre.y - energy.aboveGround(index)[source].centre.y
                                       : double(energy.skin(index)[source].y - energy.skinAboveGround(index)[source].y);
@@ -367,13 +371,13 @@ void SilhouetteFit::addBalance(const SceneEnergy& energy, std::size_t index, con
     for (const SupportTangent& tangent : tangents_) {
         const double lacking = lackOfMargin(tangent.margin);
         if (lacking <= 0) continue;
-        const double centimetre = tangent.margin < kSureMargin ? 100 * kUnsure : 100;  // what a metre counts
+        const double centimetre = tangent.margin < kSureMargin ? 100 * kUnsure : 100;  // centimetres that a metre counts for
         const glm::dvec3 outward(tangent.outward.x, 0, tangent.outward.y), up(0, 1, 0);
         Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(body.dofs));
         for (const SupportTangent::Touch& touch : tangent.touches) {
             const Contact& contact = contacts.discs[touch.contact];
-            // Raised against the lowest point a contact moves inwards: a fading one to the lowest
-            // point, the cut of an edge along it.
+            // A contact that rises relative to the lowest point moves inwards: a partly bearing one
+            // towards the lowest point, the cut of an edge along the edge.
             double inwards = 0;
             if (contact.share < 1)
                 inwards = (glm::dot(outward, contact.point - lowest) + contact.radius / contact.share) / energy.bearingDepth();

@@ -19,9 +19,9 @@ double between(const PlacedActor& a, const PlacedActor& b) {
     return sum / static_cast<double>(a.joints.size());
 }
 
-// The least sum of costs with one column for each row: the Hungarian method with potentials (Kuhn
-// 1955; Jonker & Volgenant 1987). cost(row, column) is finite. Inside, both count from 1, and 0 is
-// none.
+// The minimum-cost assignment of one column to each row: the Hungarian method with potentials (Kuhn
+// 1955; Jonker & Volgenant 1987). cost(row, column) is finite. Inside, rows and columns count from
+// 1, and 0 means none.
 template <class Cost>
 double leastAssignment(std::size_t count, Cost cost) {
     std::vector<double> ofRow(count + 1, 0), ofColumn(count + 1, 0);
@@ -51,7 +51,7 @@ double leastAssignment(std::size_t count, Cost cost) {
             }
             column = next;
         } while (rowOf[column] != 0);
-        // Along the path every column goes to the row before it.
+        // Along the path, every column is reassigned to the previous row.
         while (column != 0) rowOf[column] = rowOf[before[column]], column = before[column];
     }
     double sum = 0;
@@ -64,7 +64,7 @@ double leastAssignment(std::size_t count, Cost cost) {
 double difference(std::span<const PlacedActor> a, std::span<const PlacedActor> b) {
     FANTASCOPE_CHECK(a.size() == b.size(), "solutions of one problem have the same actors");
     if (a.empty()) return 0;
-    // Each stature on its own.
+    // Each stature is assigned separately.
     std::vector<double> statures;
     for (const PlacedActor& actor : a) statures.push_back(actor.stature);
     std::sort(statures.begin(), statures.end());
@@ -88,7 +88,7 @@ double difference(std::span<const PlacedActor> a, std::span<const PlacedActor> b
 
 std::vector<std::size_t> mostDifferent(std::span<const std::vector<PlacedActor>> solutions, std::size_t count) {
     std::vector<std::size_t> chosen;
-    std::vector<double> nearest(solutions.size(), kInfinite);  // to what is chosen; -1: it is chosen itself, and stays so
+    std::vector<double> nearest(solutions.size(), kInfinite);  // distance to the nearest chosen solution; -1: chosen itself
     while (chosen.size() < std::min(count, solutions.size())) {
         const auto next = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
         chosen.push_back(next);

@@ -8,20 +8,20 @@
 
 namespace fantascope::theatre {
 
-// Where a solution of a pose problem has its people: what makes it another one than the next.
+// The joint positions of an actor in a solution, by which solutions are compared.
 struct PlacedActor {
     double stature = 0;
-    std::vector<glm::dvec3> joints;  // metres, stage frame; of all actors as many
+    std::vector<glm::dvec3> joints;  // metres, stage frame; every actor has as many
 };
 
-// How far two solutions are from each other, metres: the mean distance of the joints, with those of
-// the other's actors assigned to each actor that make it least. People of one stature can play each
-// other's parts; of each stature both have as many.
+// The distance of two solutions, metres: the mean distance of corresponding joints, under the
+// assignment of `b`'s actors to `a`'s that makes it smallest. Only actors of equal stature are
+// assigned to each other. Both solutions must have equally many of each stature.
 double difference(std::span<const PlacedActor> a, std::span<const PlacedActor> b);
 
-// Which solutions to show of many, given the best first: the best, then again and again the one
-// that is farthest from all chosen (of several the better). In the order of their choice, `count`
-// of them or all.
+// Chooses which of many solutions, given best first, to show: the best, and then repeatedly the one
+// that is farthest from all chosen (ties go to the better). Gives `count` indices, or all, in the
+// order of choice.
 std::vector<std::size_t> mostDifferent(std::span<const std::vector<PlacedActor>> solutions, std::size_t count);
 
 }  // namespace fantascope::theatre

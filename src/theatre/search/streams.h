@@ -4,8 +4,9 @@
 
 namespace fantascope::theatre {
 
-// What a random stream is for: it leads the stream's identity (core/random.h), so that no two
-// purposes ever share one. The values are part of what a seed means: never change or reuse one.
+// The purpose of a random stream. It is the first part of the stream's identity (core/random.h), so
+// that no two purposes share a stream. The values determine the results of a seed: never change or
+// reuse one.
 struct Stream {
     enum : std::uint64_t {
         Trial = 1,    // + number: the seed of a search's trial

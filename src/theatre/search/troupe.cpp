@@ -11,7 +11,7 @@ namespace {
 
 constexpr auto kMost = Troupe::kMostActors;
 
-// How much of a silhouette these people stand for: 1 each of kStature.
+// The number of actors of kStature that these people are equivalent to.
 double weightOf(std::span<const double> statures) {
     double sum = 0;
     for (const double stature : statures) sum += stature * stature / (Troupe::kStature * Troupe::kStature);
@@ -20,8 +20,8 @@ double weightOf(std::span<const double> statures) {
 
 std::string people(double count) { return fmt::format("{:.0f} actor{}", count, count == 1 ? "" : "s"); }
 
-// The heights at which so many people have enough of the silhouette and not too much, rounded
-// inwards to centimetres; or "".
+// The option for heights at which these people have neither too little nor too much of the
+// silhouette, rounded inwards to centimetres. Empty if there is none.
 std::string heightsThatFit(double area, double weight) {
     const double least = std::max(Troupe::kLeastHeight, std::sqrt(Troupe::kLeastShare * weight / area));
     const double most = std::min(Troupe::kMostHeight, std::sqrt(Troupe::kMostShare * weight / area));
@@ -29,7 +29,7 @@ std::string heightsThatFit(double area, double weight) {
     return fmt::format("--height {:.2f} .. {:.2f}", std::ceil(100 * least) / 100, std::floor(100 * most) / 100);
 }
 
-// How many people would do at this height; or "".
+// The option for numbers of actors that fit this height. Empty if there is none.
 std::string actorsThatFit(double squareMetres, double weightOfOne) {
     const double least = std::max(1.0, std::ceil(squareMetres / (Troupe::kMostShare * weightOfOne)));
     const double most = std::min(double{kMost}, std::floor(squareMetres / (Troupe::kLeastShare * weightOfOne)));

@@ -10,10 +10,10 @@
 
 namespace fantascope::theatre {
 
-// Physics' stiffness, step by step, while somebody cannot stand.
+// The rising stiffness of physics, for fits that are repeated while a pose is invalid.
 constexpr std::array kMending = {2.0, 4.0, 8.0, 16.0};
 
-// A problem and what works on it. Thread: bound to one thread at a time.
+// A problem with its energy, search and fit. Thread: bound to one thread at a time.
 struct Workshop {
     explicit Workshop(PoseProblem given) : problem(std::move(given)), energy(problem), search(problem), fit(problem) {}
     Workshop(const Workshop&) = delete;

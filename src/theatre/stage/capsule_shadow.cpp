@@ -8,14 +8,14 @@
 namespace fantascope::theatre {
 namespace {
 
-// By a little at least: a shadow without an end has no rows.
+// The sphere must clear the light by a little, since an unbounded shadow has no rows.
 bool isBeforeLight(const glm::dvec3& fromLight, double radius) { return fromLight.z > 1.0001 * radius; }
 
 }  // namespace
 
 // The light's rays v that touch a sphere at d with radius r have (d.v)^2 = (d.d - r^2) v.v; with v
-// = (x, y, 1) that is an ellipse in x and y whose rows reach from y1 to y2, and whose row y reaches
-// to both sides of its middle by a root of (y - y1) (y2 - y).
+// = (x, y, 1) this is an ellipse in x and y. Its rows reach from y1 to y2, and row y reaches to
+// both sides of its middle by the root of a multiple of (y - y1) (y2 - y).
 bool CapsuleShadow::add(const ScreenFrame& frame, const PlacedSphere& sphere, BitMask& mask) {
     const glm::dvec3 d = frame.fromLight(sphere.centre);
     const double r = sphere.radius;
@@ -23,7 +23,7 @@ bool CapsuleShadow::add(const ScreenFrame& frame, const PlacedSphere& sphere, Bi
     const double depth = d.z * d.z - r * r, upright = depth + d.y * d.y, focus = frame.focus();
     const double middle = d.y * d.z / depth, reach = r * std::sqrt(upright) / depth;
     const double top = frame.foot().y + focus * (middle - reach), bottom = frame.foot().y + focus * (middle + reach);
-    // The rows whose centres are between, within the mask.
+    // The rows whose centres lie between y1 and y2, clamped to the mask.
     const double height = mask.height();
     const int first = static_cast<int>(std::ceil(std::clamp(top, 0.0, height) - 0.5));
     const int last = static_cast<int>(std::floor(std::clamp(bottom, 0.0, height) - 0.5));
@@ -53,7 +53,7 @@ void CapsuleShadow::addBetween(const ScreenFrame& frame, const PlacedCapsule& ca
     const glm::dvec3 across = glm::cross(d1, d2);
     const double square = glm::dot(across, across);
     const double a = r1 * bb - r2 * ab, b = r2 * aa - r1 * ab, rest = square - (a * r1 + b * r2);
-    if (rest <= 0) return;  // one end's shadow holds the other's
+    if (rest <= 0) return;  // one end's shadow contains the other's
     const glm::dvec3 common = (a * d1 + b * d2) / square, beside = std::sqrt(rest) / square * across;
     const auto shadow = [&](const glm::dvec3& p) { return glm::vec2(frame.foot() + frame.focus() / p.z * glm::dvec2(p)); };
     const glm::dvec3 one = common + beside, other = common - beside;

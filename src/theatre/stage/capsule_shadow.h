@@ -8,21 +8,21 @@
 
 namespace fantascope::theatre {
 
-// The shadows of spheres and capsules. A sphere's is an ellipse; a capsule's is the convex hull of
-// its ends' ellipses: they and the quadrilateral between the points where the light's two tangent
-// planes of both spheres touch them.
+// The shadows of spheres and capsules. A sphere's shadow is an ellipse. A capsule's shadow is the
+// convex hull of its ends' ellipses. It consists of the ellipses and a quadrilateral between the
+// points where the light's two common tangent planes touch the spheres.
 // Thread: thread-bound.
 class CapsuleShadow {
 public:
-    // Adds the shadow to a mask of the frame's size. A sphere that reaches the light's height above
-    // the screen, where it would throw no bounded shadow, adds nothing and gives false, and so does
-    // what hangs on it.
+    // Adds the shadow to a mask of the frame's size. A sphere that reaches as far from the screen
+    // as the light has no bounded shadow: it adds nothing, and the result is false. Capsules with
+    // such an end add nothing either.
     bool add(const ScreenFrame& frame, const PlacedSphere& sphere, BitMask& mask);
     bool add(const ScreenFrame& frame, const PlacedCapsule& capsule, BitMask& mask);
     bool add(const ScreenFrame& frame, const PosedBody& body, BitMask& mask);
 
 private:
-    // What a capsule's shadow has beyond those of its ends.
+    // Adds the part of a capsule's shadow that its ends' shadows do not cover.
     void addBetween(const ScreenFrame& frame, const PlacedCapsule& capsule, BitMask& mask);
 
     std::vector<float> left_, right_;  // of the rows of an ellipse; scratch, kept for its memory

@@ -32,11 +32,11 @@ Result<glm::dquat> readTurn(const ConfigNode& node) {
     const glm::dquat turn(values[0], values[1], values[2], values[3]);
     if (std::abs(glm::length(turn) - 1) > kRounding)
         return node.error(
-            fmt::format("a turn is a quaternion [w, x, y, z] of length 1, this one's is {:.4f}", glm::length(turn)));
+            fmt::format("a turn is a quaternion [w, x, y, z] of length 1; the length of this one is {:.4f}", glm::length(turn)));
     return turn;
 }
 
-// The joints by their names, each once.
+// One rotation for each joint, by its name.
 Result<ActorPose> readPose(const ConfigNode& node, const Body& body) {
     ActorPose pose;
     pose.turns.resize(body.joints.size());
@@ -175,7 +175,7 @@ Result<void> writeCast(const fs::path& file, const Cast& cast) {
             }
         }
     }
-    // What could not be read back is found before a good file is lost to it.
+    // The text is read back first, so that an unreadable one never replaces a good file.
     if (const auto readable = castOf(TRY(ConfigNode::parse(text, file))); !readable)
         return readable.error().in("not written, as it could not be read again");
     return writeFile(file, text);

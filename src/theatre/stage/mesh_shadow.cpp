@@ -10,14 +10,15 @@ namespace {
 
 constexpr std::size_t kDigits = 8;  // of a word
 constexpr std::uint64_t kOnes = 0x0101010101010101u, kTops = 0x8080808080808080u;
-// What windings are counted from: rounding may turn a sliver over, and its digits are not to borrow
-// from their neighbours.
+// The offset of the winding numbers. Rounding may turn a sliver over; the offset keeps its negative
+// digits from borrowing from their neighbours.
 constexpr std::uint64_t kNone = 64;
 
 }  // namespace
 
 bool MeshShadow::add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<const glm::vec3> vertices, BitMask& mask) {
-    // Nearer to the light's height than this a shadow is as good as unbounded, metres.
+    // Closer than this to the light's distance from the screen, a shadow is practically unbounded.
+    // Metres.
     constexpr float kNearest = 1e-3f;
     const std::size_t count = vertices.size();
     x_.resize(count), y_.resize(count);
@@ -60,13 +61,14 @@ bool MeshShadow::add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<c
     for (int y = within(top - 1, mask.height()); y <= lastRow; ++y) {
         std::uint64_t* const turns = &turns_[stride_ * static_cast<std::size_t>(y)];
         std::uint64_t* const row = mask.row(y).data();
-        std::uint64_t winding = kNone;  // around the pixel before
+        std::uint64_t winding = kNone;  // of the previous pixel
         for (std::size_t i = firstWord; i <= lastWord; ++i) {
             if (turns[i] == 0 && winding == kNone) continue;
-            // The sums of digits so far are the digits of a product.
+            // The running sums of the digits are the digits of a product.
             const std::uint64_t windings = (std::exchange(turns[i], 0) + winding) * kOnes;
             winding = windings >> 56;
-            // The highest bit of each digit that is not kNone, then those bits side by side.
+            // The highest bit of each digit that is not kNone; then those bits are packed side by
+            // side.
             const std::uint64_t away = windings ^ (kNone * kOnes), some = (((away & ~kTops) + ~kTops) | away) & kTops;
             if (i < static_cast<std::size_t>(mask.stride()) * kDigits)
                 row[i / kDigits] |= ((some >> 7) * 0x0102040810204080u >> 56) << (8 * (i % kDigits));
@@ -76,7 +78,7 @@ bool MeshShadow::add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<c
     return true;
 }
 
-// Without a branch: which edges they are nobody can foretell.
+// There is no branch, since it would be unpredictable.
 void MeshShadow::findOutline(const BodyMesh& mesh) {
     outline_.resize(mesh.edges.size());
     std::size_t count = 0;
@@ -87,8 +89,8 @@ void MeshShadow::findOutline(const BodyMesh& mesh) {
     outline_.resize(count);
 }
 
-// The rows whose centres lie between the ends, that at the upper end included, that at the lower
-// not, so that an outline crosses a row as often down as up.
+// The rows whose centres lie between the ends. A centre at the upper end counts, one at the lower
+// end does not, so that an outline crosses each row as often down as up.
 void MeshShadow::cross(glm::vec2 a, glm::vec2 b, int turn, const BitMask& mask) {
     if (a.y > b.y) std::swap(a, b), turn = -turn;
     const auto width = static_cast<float>(mask.width()), height = static_cast<float>(mask.height());

@@ -7,15 +7,15 @@
 namespace fantascope::theatre {
 
 // The shadow of a closed mesh: the pixels whose centres lie in the shadow of any of its triangles.
-// Seen from the light every ray enters a closed mesh as often as it leaves it, so that a pixel's
-// shadow is told by how often the outlines of what faces the light, the edges between a triangle
-// that does and one that does not, wind around it. Thread: thread-bound; it keeps its memory from
-// mesh to mesh.
+// A ray from the light enters a closed mesh as often as it leaves it. So a pixel is in shadow if
+// the winding number of the outline around it is not 0. The outline consists of the edges between a
+// triangle that faces the light and one that does not. Memory is reused from mesh to mesh. Thread:
+// thread-bound.
 class MeshShadow {
 public:
     // Adds the shadow to a mask of the frame's size. `vertices`: those of the mesh in a pose,
-    // metres, stage frame. A mesh that reaches the light's height above the screen, where it would
-    // throw no bounded shadow, adds nothing and gives false.
+    // metres, stage frame. A mesh that reaches as far from the screen as the light has no bounded
+    // shadow: it adds nothing, and the result is false.
     bool add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<const glm::vec3> vertices, BitMask& mask);
 
 private:
@@ -24,10 +24,10 @@ private:
 
     std::vector<float> x_, y_;            // the vertices' shadows, pixels
     std::vector<std::uint8_t> faces_;     // of each triangle, whether it faces the light
-    std::vector<std::uint32_t> outline_;  // edges between a triangle that does and one that does not
-    // How much more often the outlines wind around a pixel than around its left neighbour: eight
-    // pixels of a row in a word, as digits to the base of 256 that may be negative. All 0 from mesh
-    // to mesh.
+    std::vector<std::uint32_t> outline_;  // edges between a triangle that faces the light and one that does not
+    // The change of the winding number from a pixel's left neighbour to the pixel. A word holds
+    // eight pixels of a row, as digits to the base 256 that may be negative. All are 0 between
+    // calls.
     std::vector<std::uint64_t> turns_;
     std::size_t stride_ = 0;  // words a row
 };

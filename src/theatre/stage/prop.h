@@ -12,13 +12,13 @@
 
 namespace fantascope::theatre {
 
-// A rigid thing on the stage, scenery or something that an actor holds: E_k of Won & Lee 2016,
-// equation 6. Its shadow is nobody's.
+// A rigid object on the stage, either scenery or held by an actor: E_k of Won & Lee 2016, equation
+// 6. Its shadow belongs to no actor.
 struct Prop {
     // In the prop's frame, metres.
     struct Shape {
         explicit Shape(TriangleMesh given) : mesh(std::move(given)), distance(mesh, kAround) {}
-        static constexpr double kAround = 0.2;  // no body's capsule is thicker
+        static constexpr double kAround = 0.2;  // metres around the mesh; no capsule of a body is thicker
         TriangleMesh mesh;
         MeshDistance distance;
     };
@@ -28,11 +28,12 @@ struct Prop {
     };
 
     std::string name;
-    std::filesystem::path file{};  // that its mesh was read from
+    std::filesystem::path file{};  // of its mesh
     std::shared_ptr<const Shape> shape;
-    std::optional<Holder> holder;  // none: it stands
-    // Of the prop's frame: of one that stands in the stage's. Of one that is held, from the part's
-    // point, in the axes of the T-pose: +x the holder's left, +y up, +z before him.
+    std::optional<Holder> holder;  // none: the prop stands
+    // Position and rotation of the prop's frame. A standing prop's are in the stage's frame. A held
+    // prop's are relative to the part's point, in the axes of the T-pose: +x to the holder's left,
+    // +y up, +z to his front.
     glm::dvec3 place{0};
     glm::dquat turn{1, 0, 0, 0};
 };

@@ -28,7 +28,7 @@ double Screen::distance(const glm::dvec3& point, glm::dvec3& outward) const {
     if (radius > 0 && fromAxis.y < 0) {
         const double away = glm::length(fromAxis);
         distance = reach - away, out = -fromAxis / away;
-        // From within the wall the way out is before it, too.
+        // From inside the wall, too, the way out is towards its front.
         if (beside > 0 && fromAxis.y > distance) distance = fromAxis.y, out = {0, 1};
     } else if (radius > 0) {
         const glm::dvec2 fromEdge(std::min(0.0, beside), fromAxis.y);
@@ -60,21 +60,22 @@ std::optional<glm::dvec2> flatFromUnrolled(const Screen& screen, const glm::dvec
     const double angle = unrolled.x / screen.radius;
     if (std::abs(angle) > Screen::kMostArc) return std::nullopt;
     const glm::dvec3 point = screen.surface(unrolled), toLight = light - point;
-    // A surface that is turned away is dark.
+    // A surface that faces away from the light is dark.
     if (toLight.z <= 0 || toLight.z * std::cos(angle) <= toLight.x * std::sin(angle)) return std::nullopt;
     return glm::dvec2(light) - light.z / toLight.z * glm::dvec2(toLight);
 }
 
 std::optional<glm::dvec2> unrolledFromFlat(const Screen& screen, const glm::dvec3& light, glm::dvec2 flat) {
     if (!screen.isCurved()) return flat;
-    // The ray light + t way, with t = 1 on the flat screen, is as far from the axis as the radius
-    // where a t^2 + 2 b t + c = 0.
+    // The ray light + t way reaches the flat screen at t = 1. It meets the cylinder where a t^2 + 2
+    // b t + c = 0.
     const glm::dvec3 way = glm::dvec3(flat, 0) - light;
     const glm::dvec2 along(way.x, way.z), from(light.x, light.z - screen.radius);
     const double a = glm::dot(along, along), b = glm::dot(along, from), c = glm::dot(from, from) - screen.radius * screen.radius;
     const double root = b * b - a * c;
     if (root < 0) return std::nullopt;
-    // It leaves a hollow one, and enters one that bulges.
+    // The ray meets a hollow screen where it leaves the cylinder, and a bulging one where it
+    // enters.
     const double t = (-b + std::copysign(std::sqrt(root), screen.radius)) / a;
     const glm::dvec2 hit = (from + t * along) / screen.radius;  // (sine, -cosine) of the arc
     const double angle = std::atan2(hit.x, -hit.y);

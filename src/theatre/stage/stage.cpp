@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kOnFloor = 0.01;  // metres
 
-// In a platform's own axes, from its centre.
+// A point in a platform's own axes, from its centre.
 glm::dvec3 inAxesOf(const Stage::Platform& platform, const glm::dvec3& point) {
     const glm::dvec3 d = point - platform.centre;
     const double c = std::cos(platform.turn), s = std::sin(platform.turn);
@@ -33,7 +33,7 @@ bool Stage::Platform::isUnder(double x, double z) const {
 
 double Stage::Platform::distance(const glm::dvec3& point, glm::dvec3& outward) const {
     const glm::dvec3 local = inAxesOf(*this, point);
-    // What stands on the floor has no way out below.
+    // A platform on the floor has no way out below.
     const bool isOnFloor = centre.y - 0.5 * size.y < kOnFloor;
     const glm::dvec3 beyond =
         glm::dvec3(std::abs(local.x), isOnFloor ? local.y : std::abs(local.y), std::abs(local.z)) - 0.5 * size;

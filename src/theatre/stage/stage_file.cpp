@@ -36,16 +36,16 @@ Result<glm::dvec3> readLight(const ConfigNode& node) {
     return light;
 }
 
-// [from, to].
+// A pair [from, to], ascending.
 Result<glm::dvec2> readRange(const ConfigNode& node, double least) {
     const glm::dvec2 range = TRY(node.vector2(least, kFarthest, "m"));
     if (range.x >= range.y)
         return node.error(
-            fmt::format("from {} to {} is nothing; the smaller number comes first", shortest(range.x), shortest(range.y)));
+            fmt::format("from {} to {} is empty; the smaller number comes first", shortest(range.x), shortest(range.y)));
     return range;
 }
 
-// A projector's lens and what it lights. `readLens` says which lenses are good.
+// A projector's lens and what it lights. `readLens` checks the lens.
 template <class ReadLens>
 Result<std::pair<glm::dvec3, Stage::Area>> readProjector(const ConfigNode& node, ReadLens readLens) {
     glm::dvec3 lens(0);
@@ -64,7 +64,7 @@ Result<std::pair<glm::dvec3, Stage::Area>> readProjector(const ConfigNode& node,
     return std::pair(lens, Stage::Area{{across.x, up.x}, {across.y, up.y}});
 }
 
-// A beam's lamp or projector, one of them.
+// A beam's lamp or projector; exactly one of them.
 template <class ReadLight>
 void readLights(ConfigFields& fields, Stage::Beam& beam, int& lights, ReadLight readLight) {
     fields.optional().read("light", beam.light, [&lights, readLight](const ConfigNode& node) {
@@ -112,7 +112,7 @@ std::string nameOf(std::size_t screen, const Stage& stage) {
                                          : "the screen, which is at z = 0";
 }
 
-// How far the farthest of some points is behind which screen, if one is.
+// How deep the noted points reach behind a screen, metres, and behind which screen, if any.
 struct Behind {
     double depth = kRounding;
     std::optional<std::size_t> screen;
@@ -123,8 +123,8 @@ struct Behind {
     }
 };
 
-// Error: where it is it could not light its screen, or one screen would keep a beam from another.
-// `beam`: the last of the stage's.
+// Error: the light cannot reach its screen, or one screen blocks the beam of another. `beam`: the
+// stage's last one.
 Result<void> checkBeam(const ConfigNode& node, const Stage& stage, const Stage::Beam& beam) {
     glm::dvec3 outward;
     const Screen& own = stage.screens[beam.screen];
@@ -145,7 +145,7 @@ Result<void> checkBeam(const ConfigNode& node, const Stage& stage, const Stage::
     return {};
 }
 
-// A beam after those that `stage` has; it is added there.
+// Reads a further beam and adds it to `stage`.
 Result<void> readFurther(const ConfigNode& node, Stage& stage) {
     Stage::Beam beam;
     int lights = 0;
@@ -190,14 +190,14 @@ Result<Stage::Area> readStanding(const ConfigNode& node, double lightZ) {
     return Stage::Area{{x.x, z.x}, {x.y, z.y}};
 }
 
-// The name of a platform or a prop, each with its own.
+// The name of a platform or a prop. Names are unique.
 Result<std::string> readName(const ConfigNode& node, std::vector<std::string>& names) {
     const std::string name = TRY(node.text());
     if (std::find(names.begin(), names.end(), name) != names.end())
         return node.error(fmt::format("two things are called '{}'; give each a name of its own", name));
     if (name.find('/') != std::string::npos)
         return node.error(
-            fmt::format("'{}': a mesh's file may be called so (prop-NAME.obj), and '/' is between folders; leave it out", name));
+            fmt::format("'{}': a mesh's file may have this name (prop-NAME.obj), and '/' separates folders; leave it out", name));
     names.push_back(name);
     return name;
 }
@@ -215,7 +215,7 @@ Result<Stage::Platform> readPlatform(const ConfigNode& node, const Stage& stage,
             "platform '{}' reaches {:.3f} m below the floor; the y of a centre is half the height if it stands on it: {}",
             platform.name, -bottom, shortest(0.5 * platform.size.y)));
     Behind behind;
-    constexpr int kSteps = 8;  // a screen that bulges may reach in between the corners
+    constexpr int kSteps = 8;  // a bulging screen may intrude between the corners
     for (int i = 0; i <= kSteps; ++i)
         for (int j = 0; j <= kSteps; ++j)
             behind.note(stage, platform.point({double(i) / kSteps - 0.5, 0, double(j) / kSteps - 0.5}));

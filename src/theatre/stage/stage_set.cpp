@@ -13,10 +13,11 @@ namespace {
 
 using glm::dvec3;
 
-constexpr int kMostSpheres = 16;  // that a capsule is felt by
+constexpr int kMostSpheres = 16;  // sampled along a capsule, at most
 
-// Of the spheres that make a capsule, no farther from each other than the smaller end's radius, the
-// one that is deepest in something. `distance(point, outward)` is the signed distance to it.
+// Samples a capsule by spheres no farther apart than the smaller end's radius, and finds the sphere
+// that is deepest in an obstacle. `distance(point, outward)` is the signed distance to the
+// obstacle.
 template <class Distance>
 void addDeepest(std::uint32_t joint, const PlacedCapsule& capsule, std::optional<std::uint32_t> otherJoint, Distance distance,
                 std::vector<Intrusion>& intrusions) {
@@ -34,14 +35,14 @@ void addDeepest(std::uint32_t joint, const PlacedCapsule& capsule, std::optional
     if (most.depth > 0) intrusions.push_back(most);
 }
 
-// In a prop's grid a distance is true to within a cell: what is near in it is near.
+// The distance in a prop's grid is accurate to a cell.
 double distanceTo(const PlacedProp& prop, const dvec3& point, dvec3& outward) {
     const double distance = prop.prop->shape->distance.at(glm::conjugate(prop.turn) * (point - prop.place), outward);
     outward = prop.turn * outward;
     return distance;
 }
 
-// Of the corners of a prop that somebody holds, the one that is deepest.
+// The corner of a held prop that is deepest in an obstacle.
 template <class Distance>
 void addDeepestCorner(const PlacedProp& held, Distance distance, std::vector<Intrusion>& intrusions) {
     Intrusion most{held.joint, {}, {}, 0, std::nullopt};
@@ -54,7 +55,7 @@ void addDeepestCorner(const PlacedProp& held, Distance distance, std::vector<Int
     if (most.depth > 0) intrusions.push_back(most);
 }
 
-// The shadows of flat, convex faces between given places.
+// Adds the shadows of flat, convex faces with the given corners.
 class FaceShadow {
 public:
     FaceShadow(const ScreenFrame& frame, std::span<const glm::vec3> places) : shadows_(places.size()), throws_(places.size()) {

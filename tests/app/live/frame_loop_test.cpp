@@ -419,7 +419,7 @@ TEST(FrameLoop, keeps_its_renderer_where_a_new_one_cannot_be_made) {
     EXPECT_EQ(shown(), before);
     EXPECT_EQ(told().state, DeviceState::Running);
     EXPECT_THAT(told().trouble,
-                testing::AllOf(testing::StartsWith("it stays as it was set before: "), testing::HasSubstr("shape.frag")));
+                testing::AllOf(testing::StartsWith("it keeps its previous settings: "), testing::HasSubstr("shape.frag")));
     std::filesystem::rename(folder / "aside", folder / "assets/shaders/shape.frag");
     give();
     EXPECT_NE(shown(), before) << "and takes the next settings";

@@ -434,8 +434,9 @@ TEST(LightingWithSeveralBanks, a_bank_that_hangs_holds_up_no_other) {
     EXPECT_EQ(hanging.written().size(), 2u) << "and none that is over";
 }
 
-// A desk of higher priority has the universe whole; when it says goodbye the show has it again, and
-// the operator knows who has. Example failure: the show's levels flicker between the desk's frames.
+// A desk of higher priority has the whole universe. After its termination packet the show has it
+// again. The operator is told of both. Example failure: the show's levels flicker between the
+// desk's frames.
 TEST(LightingWithADesk, gives_the_universe_away_and_takes_it_back) {
     RunningShow run;
     run.site.universes[0].desk = show::Desk{run.site.universes[0].port, {.ownPriority = 100}};

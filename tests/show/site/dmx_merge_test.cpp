@@ -166,7 +166,7 @@ TEST(DmxMerge, a_wiggled_cable_is_not_seen) {
     }
 }
 
-TEST(DmxMerge, a_goodbye_acts_at_once) {
+TEST(DmxMerge, a_termination_acts_at_once) {
     Universe universe({.settling = 1h});
     universe.sends("desk", levels(200), 1s, 150);
     universe.leaves("desk", 2s);
@@ -176,7 +176,7 @@ TEST(DmxMerge, a_goodbye_acts_at_once) {
     EXPECT_EQ(universe.at(3s), Slots(30, 0)) << "it may come back";
 }
 
-TEST(DmxMerge, a_goodbye_while_it_settles_acts_at_once_too) {
+TEST(DmxMerge, a_termination_while_it_settles_acts_at_once_too) {
     Universe universe({.settling = 1h});
     universe.sends("desk", levels(200), 1s, 150);
     EXPECT_THAT(universe.inChargeAt(10s), ElementsAre("desk:150 settling"));

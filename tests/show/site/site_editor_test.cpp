@@ -228,7 +228,7 @@ TEST(SiteEditor, refuses_what_could_not_be_projected_and_changes_nothing) {
     EXPECT_THAT(edited.apply(edit::Move{{5000, 0}}), HasSubstr("has no area"));
     EXPECT_THAT(edited.apply(edit::MeshPoints{{1, 5}}), HasSubstr("2 to 129 points"));
     EXPECT_THAT(edited.apply(edit::OutputNumber{2}), HasSubstr("no such output"));
-    EXPECT_THAT(edited.apply(edit::Undo{}), HasSubstr("nothing to take back"));
+    EXPECT_THAT(edited.apply(edit::Undo{}), HasSubstr("nothing to undo"));
     EXPECT_TRUE(sameProjection(before, edited.editor.site().outputs[0].projection));
     EXPECT_THAT(edited.editor.unsaved(), IsEmpty());
 }
@@ -248,7 +248,7 @@ TEST(SiteEditor, takes_back_a_movement_as_a_whole) {
     edited.apply(edit::Redo{});
     edited.apply(edit::Redo{});
     EXPECT_EQ(edited.warp().corners[0], before[0] + glm::dvec2(30, 1));
-    EXPECT_THAT(edited.apply(edit::Redo{}), HasSubstr("nothing was taken back"));
+    EXPECT_THAT(edited.apply(edit::Redo{}), HasSubstr("nothing to redo"));
     edited.apply(edit::Undo{});
     edited.apply(edit::Output{1});
     edited.apply(edit::Flip{});

@@ -168,7 +168,7 @@ TEST(Site, mistakes_are_refused_with_place_and_advice) {
 
 TEST(Site, names_that_recordings_could_not_be_called_by_are_refused) {
     EXPECT_EQ(refusalAfter("name: right", "name: ../right"),
-              "site.yaml:11:12: outputs[1].name: '../right' is no name: it may not hold a '/' or begin with a '.'");
+              "site.yaml:11:12: outputs[1].name: '../right' is no name: it may not contain a '/' or begin with a '.'");
 }
 
 // A show that names one of two things of one name would light the wrong one.
@@ -206,7 +206,7 @@ TEST(Site, a_bank_is_named_where_there_are_several_and_holds_something) {
     EXPECT_EQ(refusalAfter("bank: stage", "bank: street"),
               "site.yaml:20:95: relays[1].coil: 4 is taken by another relay of its bank; each needs its own");
     EXPECT_EQ(refusalAfter("fog, bank: stage, coil: 4", "fog, bank: street, coil: 1"),
-              "site.yaml:19:60: relay_banks[1]: nothing is in the bank 'stage'; say what under 'relays', or take it away");
+              "site.yaml:19:60: relay_banks[1]: the bank 'stage' is empty; add to it under 'relays', or remove it");
     EXPECT_EQ(refusalAfter("contact_banks: [{name: doors, device: {driver: simulated}}]\n", ""),
               "site.yaml:26:25: contacts[0].input: there is no bank; add it under 'contact_banks'");
 }
