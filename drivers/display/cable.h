@@ -27,6 +27,11 @@ public:
         if (in()) return {};
         return plug_->absent();
     }
+    // Error: a simulated site has OpenGL fail for this output.
+    Result<void> checkGraphics() const {
+        if (!plug_ || plug_->world().graphicsWork(name_)) return {};
+        return Error(name_ + ": its OpenGL fails, by a fault of the simulated site");
+    }
     // The status of a display of `driver` that fails only by its cable.
     DeviceStatus status(const std::string& driver) const {
         DeviceStatus status{name_, driver, DeviceState::Running, LossAction::Dark, "", 0};

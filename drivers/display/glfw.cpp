@@ -277,6 +277,7 @@ bool GlfwDisplay::updatePlace() {
 
 Result<void> GlfwDisplay::makeCurrent() {
     if (context_ == 0) return Error(fmt::format("{} has no OpenGL context: {}", request_.name, absence_));
+    TRY(cable_.checkGraphics());
     glfwGetError(nullptr);  // clears older errors
     glfwMakeContextCurrent(window_);
     const char* why = nullptr;

@@ -115,6 +115,7 @@ std::int64_t HeadlessDisplay::nextRefresh() const { return std::max(refreshes_.r
 Time HeadlessDisplay::refreshTime(std::int64_t number) const { return refreshes_.timeOf(number); }
 
 Result<void> HeadlessDisplay::makeCurrent() {
+    TRY(cable_.checkGraphics());
     // Making the current context current again would make EGL flush.
     if (eglGetCurrentContext() == context_) return {};
     eglBindAPI(EGL_OPENGL_API);  // each thread has its own, at first another

@@ -57,6 +57,8 @@ std::string tell(const Fault& fault, bool begins) {
             return fmt::format("{} {}", fault.device, begins ? "unplugged" : "plugged in again");
         case Fault::Kind::Freeze:
             return fmt::format("{} {}", fault.device, begins ? "froze" : "moves again");
+        case Fault::Kind::Graphics:
+            return fmt::format("graphics of {} {}", fault.device, begins ? "fail" : "work again");
         case Fault::Kind::Bump:
             if (!begins) return fmt::format("projector {} put back", fault.device);
             return fmt::format("projector {} bumped by {:.3f} m and {:.2f} degrees", fault.device, glm::length(fault.move),
@@ -98,6 +100,7 @@ struct SimulatedSite::Impl {
             if (closing.until) moves.push_back({*closing.until, closing.contact, false});
         }
         std::stable_sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.at < b.at; });
+        fail(Time{});  // so that a device that is missing at first is missing when the show is prepared
     }
 
     // Applies everything up to a time since begin().
@@ -109,6 +112,11 @@ struct SimulatedSite::Impl {
             const NominalSite::Contact& contact = nominal.contacts[move.contact];
             world.setContact(contact.bank, contact.input, closings > 0);
         }
+        fail(until);
+    }
+
+    // Begins and ends the faults up to a time since begin().
+    void fail(Time until) {
         for (; nextChange < changes.size() && changes[nextChange].at <= until; ++nextChange) {
             const Change& change = changes[nextChange];
             if (change.begins)
@@ -137,6 +145,9 @@ struct SimulatedSite::Impl {
                     frozen.erase(device);
                 else
                     frozen.emplace(device, world.frame(device));  // null for the camera, which repeats its own frame
+                break;
+            case Fault::Kind::Graphics:
+                world.setGraphics(device, !isActive(Fault::Kind::Graphics));
                 break;
             case Fault::Kind::Bump:
                 bump(device);

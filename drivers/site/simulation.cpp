@@ -204,10 +204,10 @@ Result<Fault> readFault(const ConfigNode& node, const NominalSite& nominal) {
     bool kindKnown = false;
     for (const auto& [key, value] : TRY(node.entries()))
         if (key == "kind") {
-            fault.kind = static_cast<Fault::Kind>(TRY(value.choice({"unplug", "freeze", "bump", "fog"})));
+            fault.kind = static_cast<Fault::Kind>(TRY(value.choice({"unplug", "freeze", "graphics", "bump", "fog"})));
             kindKnown = true;
         }
-    if (!kindKnown) return node.error("'kind' is missing; one of unplug, freeze, bump, fog is needed");
+    if (!kindKnown) return node.error("'kind' is missing; one of unplug, freeze, graphics, bump, fog is needed");
 
     const Span span{fault.at, fault.until};
     ConfigFields fields(node);
@@ -225,6 +225,9 @@ Result<Fault> readFault(const ConfigNode& node, const NominalSite& nominal) {
             break;
         case Fault::Kind::Freeze:
             if (nominal.camera) outputs.emplace_back("camera");
+            readDevice("device", outputs);
+            break;
+        case Fault::Kind::Graphics:
             readDevice("device", outputs);
             break;
         case Fault::Kind::Bump: {

@@ -38,11 +38,11 @@ struct SimulatedCamera {
 
 // A fault of the simulated truth. Times count from begin().
 struct Fault {
-    enum class Kind { Unplug, Freeze, Bump, Fog };
+    enum class Kind { Unplug, Freeze, Graphics, Bump, Fog };
     Kind kind = Kind::Unplug;
     Time at{};
     std::optional<Time> until;        // nothing: for good
-    std::string device;               // Unplug: any device; Freeze: an output or the camera; Bump: an output
+    std::string device;               // Unplug: any device; Freeze: an output or the camera; Graphics, Bump: an output
     glm::dvec3 move{0.0}, turn{0.0};  // Bump: along and about the projector's own axes right, down, forward; metres, radians
     double density = 0;               // Fog: extinction per metre at its thickest
     Time rise{};                      // Fog: how long it takes to build up, and to clear after `until`

@@ -42,6 +42,19 @@ int World::losses(const std::string& device) const {
     return found == plugs_.end() ? 0 : found->second.losses;
 }
 
+void World::setGraphics(const std::string& output, bool work) {
+    const std::lock_guard lock(mutex_);
+    if (work)
+        withoutGraphics_.erase(output);
+    else
+        withoutGraphics_.insert(output);
+}
+
+bool World::graphicsWork(const std::string& output) const {
+    const std::lock_guard lock(mutex_);
+    return !withoutGraphics_.contains(output);
+}
+
 bool World::isIn(const std::string& device) const {
     const auto found = plugs_.find(device);
     return found == plugs_.end() || found->second.in;

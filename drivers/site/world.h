@@ -40,6 +40,10 @@ public:
     // a loss that was over before the driver looked.
     int losses(const std::string& device) const;
 
+    // Whether OpenGL works for an output, plugged in or not. It does at first.
+    void setGraphics(const std::string& output, bool work);
+    bool graphicsWork(const std::string& output) const;
+
     // Lamps: the last frame of each universe; all zero before the first. Lamps hold it while the
     // line is silent.
     // False: the line is unplugged; the lamps see nothing.
@@ -96,6 +100,7 @@ private:
     const Clock& clock_;
     mutable std::mutex mutex_;
     std::map<std::string, Plug> plugs_;
+    std::set<std::string> withoutGraphics_;
     std::map<int, std::array<std::uint8_t, kDmxSlots>> slots_;
     std::map<std::string, Relays> relays_;
     std::set<std::pair<std::string, std::size_t>> closed_;

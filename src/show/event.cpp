@@ -8,9 +8,9 @@ namespace fantascope::show {
 namespace {
 
 std::string durationText(Time time) {
-    const double whole = seconds(time);
-    if (whole < 60) return fmt::format("{:.1f} s", whole);
-    return fmt::format("{:.0f} min {:02.0f} s", std::floor(whole / 60), std::fmod(whole, 60));
+    const auto tenths = std::llround(seconds(time) * 10);
+    if (tenths < 600) return fmt::format("{}.{} s", tenths / 10, tenths % 10);
+    return fmt::format("{} min {:02} s", tenths / 600, tenths % 600 / 10);
 }
 
 struct Teller {

@@ -244,6 +244,19 @@ TEST(SimulatedSite, unplugs_a_device_and_plugs_it_in_again) {
     EXPECT_THAT(told(*stage.site_), ElementsAre("1.0 left unplugged", "2.0 left plugged in again", "3.0 camera unplugged"));
 }
 
+// Example failure: a fault at 0 comes only when the show begins, after the renderers were made.
+TEST(SimulatedSite, has_the_graphics_of_an_output_fail) {
+    Stage stage("faults: [{kind: graphics, device: left, at: 0, until: 1}, {kind: graphics, device: right, at: 2}]");
+    EXPECT_FALSE(stage.world_.graphicsWork("left"));
+    EXPECT_TRUE(stage.world_.graphicsWork("right"));
+    stage.advanceTo(1s);
+    EXPECT_TRUE(stage.world_.graphicsWork("left"));
+    stage.advanceTo(2s);
+    EXPECT_FALSE(stage.world_.graphicsWork("right"));
+    EXPECT_THAT(told(*stage.site_),
+                ElementsAre("0.0 graphics of left fail", "1.0 graphics of left work again", "2.0 graphics of right fail"));
+}
+
 TEST(SimulatedSite, freezes_a_projector_or_the_camera) {
     Stage stage("faults: [{kind: freeze, device: left, at: 1, until: 2}, {kind: freeze, device: camera, at: 3, until: 4}]");
     stage.show("left", 255);
@@ -397,10 +410,9 @@ TEST(SimulatedSite, refuses_a_malformed_section_with_place_and_advice) {
 
     const auto fault = [&](const std::string& keys) { return with("faults: [{" + keys + "}]"); };
     EXPECT_THAT(fault("at: 1, device: left"), HasSubstr("faults[0]: 'kind' is missing"));
-    EXPECT_THAT(
-        fault("device: left, kind: unplugg, at: 1"),
-        HasSubstr(
-            "13:31: faults[0].kind: one of unplug, freeze, bump, fog is needed, here is 'unplugg' (did you mean 'unplug'?)"));
+    EXPECT_THAT(fault("device: left, kind: unplugg, at: 1"),
+                HasSubstr("13:31: faults[0].kind: one of unplug, freeze, graphics, bump, fog is needed, here is 'unplugg' (did "
+                          "you mean 'unplug'?)"));
     EXPECT_THAT(fault("kind: unplug, device: universe 4, at: 1"), HasSubstr("did you mean 'universe 3'?"));
     EXPECT_THAT(fault("kind: freeze, device: road, at: 1"), HasSubstr("one of left, right, camera is needed"));
     EXPECT_THAT(fault("kind: bump, output: left, at: 1, density: 0.1"), HasSubstr("density: unknown key"));

@@ -172,6 +172,41 @@ TEST(Rehearsal, an_unplugged_projector_goes_dark_and_comes_back_while_the_other_
     EXPECT_THAT(outcome.errors, HasSubstr("left (headless) is back"));
 }
 
+// Adds a third output to the default site's two.
+void addOutput(const fs::path& site) {
+    std::string text = contentsOf(site / "site.yaml");
+    replace(text,
+            "\nuniverses:", "  - {name: middle, display: {driver: headless}, size: [640, 360], refresh_rate: 30}\n\nuniverses:");
+    std::ofstream(site / "site.yaml") << text;
+}
+
+TEST(Rehearsal, an_output_whose_graphics_never_work_costs_the_others_no_frame_and_the_report_says_it) {
+    const ScratchFolder folder;
+    const fs::path site = siteWith(folder, "  faults:\n    - {at: 0, kind: graphics, device: middle}\n");
+    addOutput(site);
+    const Outcome outcome = rehearse(folder.path(), {"--seconds", "8", "--by-hand", "--from", "Full", "--site", site.string()});
+    ASSERT_THAT(outcome, exits(0));
+    const json report = json::parse(contentsOf(folder / "report.json"));
+    EXPECT_EQ(report["frames_by_output"], json({{"left", 240}, {"middle", 0}, {"right", 240}}));
+    EXPECT_EQ(report["late_frames"], 0);
+    const auto fault = std::find_if(report["faults"].begin(), report["faults"].end(),
+                                    [](const json& each) { return each.value("device", "") == "middle"; });
+    ASSERT_NE(fault, report["faults"].end()) << report["faults"];
+    EXPECT_THAT((*fault)["what"].get<std::string>(), HasSubstr("its picture cannot be drawn: middle: its OpenGL fails"));
+    EXPECT_FALSE(fault->contains("until")) << *fault;
+    EXPECT_THAT(outcome.errors, HasSubstr("middle (headless) is missing: its picture cannot be drawn"));
+}
+
+TEST(Rehearsal, an_output_whose_graphics_work_again_is_drawn_again) {
+    const ScratchFolder folder;
+    const fs::path site = siteWith(folder, "  faults:\n    - {at: 2, until: 2.5, kind: graphics, device: left}\n");
+    ASSERT_THAT(rehearse(folder.path(), {"--seconds", "6", "--by-hand", "--from", "Full", "--site", site.string()}), exits(0));
+    const json report = json::parse(contentsOf(folder / "report.json"));
+    EXPECT_EQ(report["frames_by_output"]["right"], 180);
+    EXPECT_NEAR(report["frames_by_output"]["left"].get<double>(), 150, 2) << "it is tried again after a second";
+    EXPECT_EQ(report["late_frames"], 0);
+}
+
 TEST(Rehearsal, an_outage_stands_in_the_report_with_its_length) {
     const ScratchFolder folder;
     const fs::path site = siteWith(folder, "  faults:\n    - {at: 1, until: 2, kind: unplug, device: road}\n");

@@ -42,6 +42,8 @@ TEST(Events, say_one_sentence_each) {
     EXPECT_EQ(said(event::FaultBegan{"road", "'road' is missing"}), "'road' is missing");
     EXPECT_EQ(said(event::FaultEnded{"road", "'road' is back", 3200ms}), "'road' is back after 3.2 s");
     EXPECT_EQ(said(event::FaultEnded{"road", "'road' is back", 125s}), "'road' is back after 2 min 05 s");
+    EXPECT_EQ(said(event::FaultEnded{"road", "'road' is back", 59960ms}), "'road' is back after 1 min 00 s");
+    EXPECT_EQ(said(event::FaultEnded{"road", "'road' is back", 119700ms}), "'road' is back after 1 min 59 s");
     EXPECT_EQ(said(event::SendersChanged{1, {"", "FOH"}}), "universe 1 is now sent by the show and 'FOH'");
     EXPECT_EQ(said(event::PictureTaken{"pictures/a.png"}), "picture: pictures/a.png");
     EXPECT_EQ(said(event::PictureMissed{"'left' shows nothing"}), "no picture: 'left' shows nothing");
