@@ -150,7 +150,8 @@ Result<MirrorBallSource> readAs(const ConfigNode& node) {
     fields.optional().number("turn", mirrors.turn, -kLongestTurn, kLongestTurn, "s");
     TRY(fields.finish());
     if (mirrors.ball.z <= mirrors.radius || mirrors.lamp.z <= 0)
-        return node.error("the ball and the lamp are in front of the wall: the third number of 'ball' and 'lamp' says how far");
+        return node.error(
+            "the ball and the lamp must be in front of the wall: the third number of 'ball' and 'lamp' says how far");
     if (glm::distance(mirrors.ball, mirrors.lamp) <= mirrors.radius) return node.error("the lamp is inside the ball");
     if (mirrors.facet < kSmallestFacet * mirrors.radius || mirrors.facet > mirrors.radius)
         return node.error(fmt::format("a ball of {} m radius has mirrors of {} m to {} m", mirrors.radius,

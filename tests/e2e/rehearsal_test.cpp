@@ -175,8 +175,14 @@ TEST(Rehearsal, an_unplugged_projector_goes_dark_and_comes_back_while_the_other_
 // Adds a third output to the default site's two.
 void addOutput(const fs::path& site) {
     std::string text = contentsOf(site / "site.yaml");
-    replace(text,
-            "\nuniverses:", "  - {name: middle, display: {driver: headless}, size: [640, 360], refresh_rate: 30}\n\nuniverses:");
+    replace(text, "\nuniverses:",
+            "  - name: middle\n"
+            "    display: {driver: headless}\n"
+            "    size: [640, 360]\n"
+            "    refresh_rate: 30\n"
+            "    projector: {position: [0, 3.6, 11], look_at: [0, 2.3, 0], throw_ratio: 1.7, lens_shift: [0, 0]}\n"
+            "    surface: {point: [0, 0, 0], normal: [0, 0, 1]}\n\n"
+            "universes:");
     std::ofstream(site / "site.yaml") << text;
 }
 

@@ -201,7 +201,7 @@ TEST(ShowFile, water_and_mirrors_need_no_numbers) {
     EXPECT_THAT(refusalAfter(solid, "{caustics: {wave_length: 0.01}}"), HasSubstr("too short to be seen"));
     EXPECT_THAT(refusalAfter(solid, "{caustics: {wave_height: 0.3}}"), HasSubstr("too steep"));
     EXPECT_THAT(refusalAfter(solid, "{caustics: {depth: 900}}"), HasSubstr("scatters the light all over"));
-    EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {ball: [0, 0, 0.1]}}"), HasSubstr("before the wall"));
+    EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {ball: [0, 0, 0.1]}}"), HasSubstr("must be in front of the wall"));
     EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {lamp: [0, 0.5, 2.2]}}"), HasSubstr("inside the ball"));
     EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {facet: 0.001}}"), HasSubstr("has mirrors of 0.005 m to 0.25 m"));
     EXPECT_THAT(refusalAfter(solid, "{mirror_ball: {turn: 0}}"), HasSubstr("a turn takes at least a second"));

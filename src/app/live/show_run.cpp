@@ -389,8 +389,7 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
     const std::unique_ptr<RelayGuard> guard = TRY(guardOf(options, programme.site, claims));
     Supervisor supervisor(interrupt, guard.get());
     supervisor.step("opening the devices: look at the X server");
-    if (!options.asFastAsPossible)
-        setThreadRank(Rank::Render);  // before the displays start threads of their own, which inherit it
+    if (!options.asFastAsPossible) setThreadRank(Rank::Render);  // before the displays start threads, which inherit it
     const auto openSite = TRY(OpenSite::open(programme.site, options.backends, options.seed, clock));
     std::unique_ptr<Recording> recording;
     if (!options.recordTo.empty()) {

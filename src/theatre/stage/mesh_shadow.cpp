@@ -17,8 +17,7 @@ constexpr std::uint64_t kNone = 64;
 }  // namespace
 
 bool MeshShadow::add(const ScreenFrame& frame, const BodyMesh& mesh, std::span<const glm::vec3> vertices, BitMask& mask) {
-    // Closer than this to the light's distance from the screen, a shadow is practically unbounded.
-    // Metres.
+    // A vertex closer to the light than this, metres, throws a practically unbounded shadow.
     constexpr float kNearest = 1e-3f;
     const std::size_t count = vertices.size();
     x_.resize(count), y_.resize(count);
