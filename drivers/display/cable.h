@@ -12,8 +12,8 @@
 
 namespace fantascope::drivers {
 
-// The line from an output to its projector. A simulated site can unplug it by the output's name;
-// elsewhere it is always plugged in.
+// What a simulated site does to an output: it unplugs the line to the projector, or has OpenGL
+// fail. Without a simulated site the line counts as plugged in, and OpenGL as working.
 // Thread: thread-safe.
 class Cable {
 public:

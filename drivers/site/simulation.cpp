@@ -198,16 +198,19 @@ Result<Closing> readClosing(const ConfigNode& node, const std::vector<std::strin
     return closing;
 }
 
+// In the order of Fault::Kind.
+const std::vector<std::string> kFaultKinds = {"unplug", "freeze", "graphics", "bump", "fog"};
+
 Result<Fault> readFault(const ConfigNode& node, const NominalSite& nominal) {
     Fault fault;
     // A fault's keys depend on its kind, so the kind is read first, wherever it stands.
     bool kindKnown = false;
     for (const auto& [key, value] : TRY(node.entries()))
         if (key == "kind") {
-            fault.kind = static_cast<Fault::Kind>(TRY(value.choice({"unplug", "freeze", "graphics", "bump", "fog"})));
+            fault.kind = static_cast<Fault::Kind>(TRY(value.choice(kFaultKinds)));
             kindKnown = true;
         }
-    if (!kindKnown) return node.error("'kind' is missing; one of unplug, freeze, graphics, bump, fog is needed");
+    if (!kindKnown) return node.error(fmt::format("'kind' is missing; one of {} is needed", fmt::join(kFaultKinds, ", ")));
 
     const Span span{fault.at, fault.until};
     ConfigFields fields(node);

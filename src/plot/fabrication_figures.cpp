@@ -203,7 +203,7 @@ private:
         say(fmt::format("print: {:.0f} high, on a plate {:.1f} thick", box_[2].most, print_.thickness));
         say(fmt::format("size {:.1f} x {:.1f}, 1:{:.2f} of the stage", box_[0].size(), box_[1].size(), 1000 / print_.scale));
         y += 0.5 * kLine;
-        say(fmt::format("lamp: {:.1f} before the screen,", print_.screen - print_.light.y));
+        say(fmt::format("lamp: {:.1f} in front of the screen,", print_.screen - print_.light.y));
         say(fmt::format("{:.1f} above the plate's upper side", print_.light.z));
         say(fmt::format("{:.1f} from the arrow's tip,",
                         glm::distance(print_.marks[1][1], dvec2(print_.light.x, print_.light.y))));

@@ -41,7 +41,7 @@ private:
         for (std::size_t have = 0; !ending_;) {
             pollfd waited{line_, POLLIN, 0};
             if (poll(&waited, 1, 10) <= 0) continue;
-            const std::lock_guard lock(mutex_);  // so whoever sees the line empty sees what the bytes did
+            const std::lock_guard lock(mutex_);  // once the line is empty, the bytes have taken effect
             const ssize_t count = read(line_, arrived.data() + have, arrived.size() - have);
             if (count <= 0 || (have += static_cast<std::size_t>(count)) < arrived.size()) continue;
             have = 0;

@@ -80,7 +80,7 @@ void Widget::run() {
         pollfd waited{line_, POLLIN, 0};
         if (poll(&waited, 1, 10) <= 0 || deaf_) continue;
         std::uint8_t bytes[4096];
-        const std::lock_guard lock(mutex_);  // so whoever sees the line empty sees what the bytes did
+        const std::lock_guard lock(mutex_);  // once the line is empty, the bytes have taken effect
         const ssize_t count = read(line_, bytes, sizeof bytes);
         if (count <= 0) continue;
         heard_.insert(heard_.end(), bytes, bytes + count);

@@ -163,8 +163,8 @@ TEST(SiteLight, fine_patterns_average_in_linear_light) {
 }
 
 TEST(SiteLight, an_object_casts_its_shadow_in_every_light) {
-    // A sheet of 0.4 m, one metre before the wall. The lights stand to the right, so the shadow
-    // lies to the left.
+    // A sheet of 0.4 m, one metre in front of the wall. The lights stand to the right, so the
+    // shadow lies to the left.
     const Scene scene({sheet({0, 0, 0}, 10), sheet({0, 0, 1}, 0.2f)});
     CameraView view(scene, kCamera, {0, 0, 0}, {0, 0, 0});
     view.addLamp(lampAt({1.5, 0, 3}, 100));

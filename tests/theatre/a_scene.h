@@ -20,7 +20,7 @@ inline void setTarget(PoseTarget& target, const BitMask& mask) {
 }
 inline void setTarget(PoseProblem& problem, const BitMask& mask) { setTarget(problem.targets[0], mask); }
 
-// Actors of these statures on a stage, before a screen of some 7 m x 3.3 m; 128 rows are 2.5 m
+// Actors of these statures on a stage, in front of a screen of some 7 m x 3.3 m; 128 rows are 2.5 m
 // high. The target is yet to be set.
 inline PoseProblem aScene(const std::vector<double>& statures) {
     const Stage stage = aStage({0, 0.1, 7});

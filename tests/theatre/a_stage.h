@@ -6,7 +6,7 @@
 
 namespace fantascope::theatre {
 
-// One light before a flat screen: a lamp, or a projector's lens that lights an area.
+// One light in front of a flat screen: a lamp, or a projector's lens that lights an area.
 inline Stage aStage(const glm::dvec3& light, std::optional<Stage::Area> lit = std::nullopt) {
     Stage stage;
     stage.beams[0].light = light;

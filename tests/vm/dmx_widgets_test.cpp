@@ -91,7 +91,8 @@ public:
         widget_.reset();
     }
     bool in() const { return widget_.has_value(); }
-    bool hasTakenAll() const { return true; }  // a port runs once its question was answered, which comes after
+    // The far end takes bytes in order, and a port runs once its own question is answered.
+    bool hasTakenAll() const { return true; }
     Widget& farEnd() { return *widget_; }
     std::string key() const { return "serial: " + serial(number_); }
 

@@ -151,7 +151,7 @@ Result<void> run(const Options& options) {
         fmt::print("{} is {:.2f} mm thick: made {:g} mm; thick enough by itself at --height {:.0f}\n", part.who, part.thickness,
                    options.print.wall, std::ceil(part.height));
     if (!made.thinnestWallAt.empty()) fmt::print("thinnest now: {:.2f} mm, {}\n", made.thinnestWall, made.thinnestWallAt);
-    fmt::print("lamp: {:.1f} mm before the screen, {:.1f} mm above the plate's upper side\n", made.screen - made.light.y,
+    fmt::print("lamp: {:.1f} mm in front of the screen, {:.1f} mm above the plate's upper side\n", made.screen - made.light.y,
                made.light.z);
     return {};
 }

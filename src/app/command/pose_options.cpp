@@ -60,7 +60,7 @@ void declareTask(CLI::App& command, PoseOptions& options) {
                        "(docs/weights-format.md)");
     command.add_option("--stage", options.stage,
                        "Light or projector, platforms and props, *.stage.yaml (docs/stage-format.md); default: a lamp on the "
-                       "floor, 7 m before the screen");
+                       "floor, 7 m in front of the screen");
 }
 
 void declareFurther(CLI::App& command, PoseOptions& options) {
@@ -79,7 +79,7 @@ void declareFurther(CLI::App& command, PoseOptions& options) {
         .add_option(
             "--further-middle", options.furtherMiddles,
             "Where on its screen the middle of each is: metres to the right of where the screen stands (default: where the "
-            "shadow falls of people who stand before the first light)")
+            "shadow falls of people who stand in front of the first light)")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(CLI::Range(-kFarthest, kFarthest));

@@ -27,7 +27,7 @@ struct PoseOptions {
     std::optional<std::string> weights;                  // a preset's name, or a file
     std::optional<std::filesystem::path> image, view, each, solutions, meshes, report;
 
-    // The silhouettes' files, one a beam.
+    // The silhouettes' files, one for each beam.
     std::vector<std::filesystem::path> targets() const;
 };
 

@@ -26,7 +26,7 @@ std::vector<MeshEdge> edgesOf(const TriangleMesh& mesh);
 using DualQuaternion = std::array<float, 8>;
 DualQuaternion motionOf(const glm::dquat& turn, const glm::dvec3& shift);  // first turned, then shifted
 // The motion of each joint from the rest pose, ready for blending: adjacent joints are on one side
-// of the double cover. `motions` has one element a joint.
+// of the double cover. `motions` has one element for each joint.
 void jointMotions(const Body& body, const PosedBody& posed, std::span<DualQuaternion> motions);
 
 // The skin of a body: a closed mesh that follows the joints (Theta of Won & Lee 2016, section 3) by

@@ -65,8 +65,8 @@ private:
     double cone_ = 0, low_ = 0, high_ = 0;
 };
 
-// The exponential map: a rotation by the length of a vector about its direction. And its inverse:
-// the rotation vector, no longer than pi.
+// The exponential map gives a rotation by the length of a vector about its direction. Its inverse
+// gives the rotation vector, no longer than pi.
 glm::dquat rotationOf(const glm::dvec3& vector);
 glm::dvec3 vectorOf(const glm::dquat& rotation);
 

@@ -19,7 +19,7 @@ struct SilhouetteSequence {
         std::vector<glm::uvec3> triangles;
         std::vector<std::vector<glm::dvec2>> vertices;  // [frame][vertex], pixels of the pictures, x right, y down
     };
-    std::vector<std::filesystem::path> pictures;  // one a frame, all of one size
+    std::vector<std::filesystem::path> pictures;  // one for each frame, all of one size
     double framesPerSecond = 12;
     bool loops = false;  // after the last frame comes the first
     std::optional<Interior> interior;

@@ -18,8 +18,8 @@
 
 namespace fantascope::theatre {
 
-// The number of points sampled on the contour of a target of 256 rows. And the radius of the disc
-// in which normals and curvatures are measured, in pixels of such a target.
+// A target of 256 rows has this number of points sampled on its contour. Normals and curvatures are
+// measured in a disc of this radius, in pixels of such a target.
 constexpr std::size_t kContourPoints = 200;
 constexpr double kDiscRadius = 6;
 
@@ -27,7 +27,7 @@ constexpr double kDiscRadius = 6;
 // metres from the screen frame's x = 0.
 struct TargetPlace {
     std::size_t beam = 0;
-    std::optional<double> middle{};  // none: straight before the light
+    std::optional<double> middle{};  // none: straight in front of the light
 
     double scale = 1;  // size of a shadow there relative to the first beam's screen
 
@@ -103,7 +103,7 @@ struct PoseTarget {
 
 struct PoseProblem {
     Stage stage;
-    std::vector<PoseTarget> targets;  // one a beam of the stage
+    std::vector<PoseTarget> targets;  // one for each beam of the stage
     std::vector<Body> actors;
     PoseWeights weights;
     // One an actor, or none. With skins, shadows and contacts are computed from the skins; without,
@@ -112,7 +112,7 @@ struct PoseProblem {
     // Builds the actors' skins. Actors of one stature share a skin.
     void buildSkins();
     std::vector<PoseHint> hints{};
-    std::vector<Continuity> continuity{};  // one an actor, at a frame of a motion; empty: a still
+    std::vector<Continuity> continuity{};  // one for each actor, at a frame of a motion; empty: a still
 
     std::size_t dofs() const { return firstDof(actors.size()); }
     // The index of an actor's first degree of freedom among those of all actors.

@@ -43,7 +43,7 @@ glm::dvec3 nearestIn(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 point)
 GeneralisedCone::GeneralisedCone(const glm::dvec3& light, std::span<const glm::uvec3> triangles,
                                  std::span<const glm::dvec2> corners)
     : light_(light) {
-    FANTASCOPE_CHECK(!triangles.empty() && light.z > 0, "a cone has a light before the screen, and a triangle");
+    FANTASCOPE_CHECK(!triangles.empty() && light.z > 0, "a cone has a light in front of the screen, and a triangle");
     for (const glm::uvec3& corner : triangles) {
         Triangle triangle{corners[corner.x], corners[corner.y], corners[corner.z]};
         const glm::dvec2 edge = triangle.b - triangle.a;

@@ -56,7 +56,7 @@ public:
         int passes = 2;        // passes of fitting between both neighbours
         int threads = 1;
     };
-    using Frames = std::vector<std::optional<AdaptedFrame>>;  // one a frame; none: not adapted
+    using Frames = std::vector<std::optional<AdaptedFrame>>;  // one for each frame; none: not adapted
 
     // `dofs`: the principal poses. `known`: the frames of an earlier run, with their `poses`, or
     // empty. Known frames are not adapted again.

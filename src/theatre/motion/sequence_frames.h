@@ -10,7 +10,7 @@
 namespace fantascope::theatre {
 
 // Properties of a moving silhouette that are known before any poses follow it. Masks are of one
-// size, one a frame, each with at least one white pixel.
+// size, one for each frame, each with at least one white pixel.
 // Thread: reentrant.
 
 // For each frame, the minimum intersection over union with any other frame. Principal poses of the
@@ -19,14 +19,14 @@ namespace fantascope::theatre {
 std::vector<double> leastOverlaps(std::span<const BitMask> frames);
 constexpr std::size_t kLooks = 64;
 
-// The frame with the greatest value: the middle frame. And whether its value exceeds that of
-// `frame` by so much that its poses are likely to follow better.
+// middleFrame() gives the frame with the greatest value. isOffTheMiddle() says whether that value
+// exceeds that of `frame` by kNearer, so that the middle frame's poses are likely to follow better.
 std::size_t middleFrame(std::span<const double> leastOverlaps);
 bool isOffTheMiddle(std::size_t frame, std::span<const double> leastOverlaps);
 constexpr double kNearer = 0.05;
 
 // The intersection over union of two targets on one stage. Each has its own ScreenFrame, whose
-// middle is straight before the light.
+// middle is straight in front of the light.
 double overlap(const PoseTarget& a, const PoseTarget& b);
 
 // The frame of a sequence that is most like a target, to which the target's poses belong.

@@ -17,12 +17,12 @@
 
 namespace fantascope::theatre {
 
-// A cast as one solid for a 3D printer, which throws the same shadow before a small lamp (Won & Lee
-// 2016, section 6, "3D Fabrication"). People, platforms and props are united. Parts thinner than a
-// wall are thickened. Feet are joined to a base plate, and reinforced if they are small. Lengths
-// are millimetres of the print. Its frame: the origin is in the middle of the plate's upper side,
-// which is the stage's floor; x to the right as seen from the lamp, y towards the screen, z up. The
-// same input gives the same bytes.
+// A cast as one solid for a 3D printer, which throws the same shadow in front of a small lamp (Won
+// & Lee 2016, section 6, "3D Fabrication"). People, platforms and props are united. Parts thinner
+// than a wall are thickened. Feet are joined to a base plate, and reinforced if they are small.
+// Lengths are millimetres of the print. Its frame: the origin is in the middle of the plate's upper
+// side, which is the stage's floor; x to the right as seen from the lamp, y towards the screen, z
+// up. The same input gives the same bytes.
 struct Fabrication {
     struct Options {
         double height = 100;  // from the floor to the highest point
@@ -56,7 +56,7 @@ struct Fabrication {
     };
 
     TriangleMesh mesh;
-    double scale = 0;  // millimetres of the print a metre of the stage
+    double scale = 0;  // millimetres of the print per metre of the stage
     double cell = 0;
     glm::dvec3 stageOrigin{0};                   // the print's origin on the stage, metres
     glm::dvec3 light{0};                         // in the print's frame

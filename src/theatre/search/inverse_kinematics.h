@@ -16,10 +16,10 @@ public:
     // `body` must outlive this object.
     explicit InverseKinematics(const Body& body);
 
-    // Changes `dofs` so that the joints come near to `places` (one a joint, metres, stage frame).
-    // `contacts` weigh so much more that they stay where they are. Stops after `steps` iterations,
-    // or when a step brings no improvement. Gives the root mean square distance of the joints,
-    // metres.
+    // Changes `dofs` so that the joints come near to `places` (one for each joint, metres, stage
+    // frame). `contacts` weigh so much more that they stay where they are. Stops after `steps`
+    // iterations, or when a step brings no improvement. Gives the root mean square distance of the
+    // joints, metres.
     double reach(std::span<double> dofs, std::span<const glm::dvec3> places, std::span<const HeldContact> contacts, int steps);
     // Brings the contacts to where they are held, with the smallest change of the rest.
     // False: they cannot be reached to within 0.2 mm.

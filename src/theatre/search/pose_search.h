@@ -95,7 +95,7 @@ public:
     // Called now and then. True stops the trial with the best so far.
     using AskStop = std::function<bool(const Progress&)>;
 
-    // The actors' T-poses in a row before the screen, looking at it.
+    // The actors' T-poses in a row in front of the screen, looking at it.
     static std::vector<double> start(const PoseProblem& problem);
 
     // One trial by the options' method. Quality is measured in the problem's own pixels.

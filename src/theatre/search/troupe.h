@@ -20,8 +20,8 @@ struct Troupe {
     // What is not given is chosen so that everyone has about kShare of the silhouette: the height,
     // in whole centimetres, or up to kMostUnasked actors. If neither is given, the height is
     // kUsualHeight. `area`: the silhouette's, in squares of its height. `statures`: one for all, or
-    // one an actor, metres. Error: says what is out of range, and which heights and numbers of
-    // actors are possible.
+    // one for each actor, metres. Error: says what is out of range, and which heights and numbers
+    // of actors are possible.
     static Result<Troupe> of(double area, std::optional<int> actors, std::optional<double> height,
                              std::span<const double> statures);
 

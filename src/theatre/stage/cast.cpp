@@ -130,7 +130,7 @@ Result<Cast> castOf(const ConfigNode& root) {
     for (const ConfigNode& node : TRY(actors.items(1, kMostActors))) {
         cast.actors.push_back(TRY(readActor(node)));
         if (cast.actors.back().poses.size() != cast.actors.front().poses.size())
-            return node.error(fmt::format("{} poses, and the first actor has {}; each has one a frame",
+            return node.error(fmt::format("{} poses, and the first actor has {}; each has one for each frame",
                                           cast.actors.back().poses.size(), cast.actors.front().poses.size()));
     }
     if (const std::size_t frames = cast.actors.front().poses.size(); frames > 1 && cast.framesPerSecond <= 0)

@@ -16,7 +16,7 @@ namespace fantascope::theatre {
 struct Cast {
     struct Actor {
         double stature = 0;            // metres, of humanBody()
-        std::vector<ActorPose> poses;  // one a frame; every actor has as many
+        std::vector<ActorPose> poses;  // one for each frame; every actor has as many
     };
     // A silhouette on the screen of a beam.
     struct Target {

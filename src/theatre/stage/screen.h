@@ -36,7 +36,7 @@ struct Screen {
 };
 
 // These map places between the flat and the unrolled screen along the light's rays. `light`: in the
-// screen's frame, before the screen. If the screen is flat, they give the place itself.
+// screen's frame, in front of the screen. If the screen is flat, they give the place itself.
 // None: no light reaches the place, or only beyond kMostArc.
 std::optional<glm::dvec2> flatFromUnrolled(const Screen& screen, const glm::dvec3& light, glm::dvec2 unrolled);
 std::optional<glm::dvec2> unrolledFromFlat(const Screen& screen, const glm::dvec3& light, glm::dvec2 flat);

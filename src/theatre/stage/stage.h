@@ -92,7 +92,7 @@ public:
 
     // The frame as a pinhole camera at the light that looks at the screen. A pixel is at foot +
     // focus (x, y) / z.
-    glm::dvec2 foot() const { return foot_; }              // the pixel straight before the light
+    glm::dvec2 foot() const { return foot_; }              // the pixel straight in front of the light
     double focus() const { return focus_; }                // the light's distance from the screen, pixels
     glm::dvec3 fromLight(const glm::dvec3& point) const {  // x right, y down, z towards the screen
         const glm::dvec3 way(point.x - light_.x, light_.y - point.y, light_.z - point.z);

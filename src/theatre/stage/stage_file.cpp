@@ -30,8 +30,9 @@ Result<glm::dvec3> readLight(const ConfigNode& node) {
             fmt::format("the light is {} m behind the screen, which is at z = 0; people stand between the two: give it a z > 0",
                         shortest(-light.z)));
     if (light.z < kNearestLight)
-        return node.error(fmt::format("the light is {} m before the screen, and nobody fits between; move it to {} m or farther",
-                                      shortest(light.z), shortest(kNearestLight)));
+        return node.error(
+            fmt::format("the light is {} m in front of the screen, and nobody fits between; move it to {} m or farther",
+                        shortest(light.z), shortest(kNearestLight)));
     if (light.y < 0) return node.error(fmt::format(kBelowFloor, shortest(-light.y)));
     return light;
 }
@@ -134,7 +135,7 @@ Result<void> checkBeam(const ConfigNode& node, const Stage& stage, const Stage::
             shortest(-away)));
     if (const double away = own.distance(beam.light, outward); away < kNearestLight)
         return node.error(
-            fmt::format("its light is {:.3g} m before its screen, and nobody fits between; move it to {} m or farther", away,
+            fmt::format("its light is {:.3g} m in front of its screen, and nobody fits between; move it to {} m or farther", away,
                         shortest(kNearestLight)));
     for (std::size_t i = 0; i < stage.beams.size(); ++i)
         for (std::size_t k = 0; k < stage.screens.size(); ++k)

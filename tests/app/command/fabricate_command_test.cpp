@@ -66,7 +66,8 @@ TEST_F(FabricateCommand, lamp_and_screen_are_where_the_shadow_is_the_poses) {
     const TriangleMesh print = readMesh(folder_ / "a.stl").value();
     const glm::dvec3 lamp(report["lamp_mm"][0], report["lamp_mm"][1], report["lamp_mm"][2]);
     const double screen = report["screen_mm"], mm = 1000 * report["scale"].get<double>();  // of the print, in a metre
-    // The picture's rectangle on the screen: 11/9 as wide as high, before the lamp, on the floor.
+    // The picture's rectangle on the screen: 11/9 as wide as high, in front of the lamp, on the
+    // floor.
     constexpr int kAcross = 500, kUp = 250;
     const double pixel = cast.targets[0].height * mm / 160;
     const auto isTarget = [&](int x, int y) {
@@ -137,7 +138,8 @@ TEST_F(FabricateCommand, takes_the_frame_that_is_asked_for) {
     const std::string first = text("a.stl");
     ASSERT_THAT(fabricate({"--frame", "2"}), exits(0));
     EXPECT_FALSE(first == text("a.stl"));
-    EXPECT_THAT(fabricate({"--frame", "3"}), AllOf(exits(1), testing::Field(&Outcome::errors, HasSubstr("beyond the last frame, 2"))));
+    EXPECT_THAT(fabricate({"--frame", "3"}),
+                AllOf(exits(1), testing::Field(&Outcome::errors, HasSubstr("beyond the last frame, 2"))));
 }
 
 TEST_F(FabricateCommand, leaves_nothing_when_it_is_interrupted) {

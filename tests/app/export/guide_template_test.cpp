@@ -158,7 +158,7 @@ TEST_F(TemplateTest, marks_what_is_hidden_from_the_projector) {
             hatched += blocked && colour.r - colour.b > 70;
         }
     EXPECT_GT(hidden, 0.05 * kSize.x * kSize.y);
-    EXPECT_LE(wrong, 0.002 * kSize.x * kSize.y) << "the edges, and the last centimetres of the ground before the wall";
+    EXPECT_LE(wrong, 0.002 * kSize.x * kSize.y) << "the edges, and the last centimetres of the ground in front of the wall";
     EXPECT_GT(hatched, hidden / 12) << "it can be seen";
     EXPECT_LT(hatched, hidden / 2) << "and what it lies on too";
 }

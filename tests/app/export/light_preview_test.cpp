@@ -146,7 +146,7 @@ protected:
         return runProgram(arguments, folder_.path());
     }
     const std::string kPattern = sourceFolder() + "/shows/light-movement/left.pattern.yaml";
-    // Projector and viewer on one spot before the wall, each with a picture that just fits it:
+    // Projector and viewer on one spot in front of the wall, each with a picture that just fits it:
     // atan(1.6 / 4) to either side.
     const std::vector<std::string> kSquarely = {"--projector",     "0,0,4",        "--throw",   "1.25", "--viewer",  "0,0,4",
                                                 "--field-of-view", "43.602818972", "--seconds", "3",    "--ambient", "0.05"};

@@ -350,12 +350,12 @@ TEST(Beams, a_target_is_refused_where_the_light_does_not_come) {
     EXPECT_THAT(refusal(kTall, stage, {}), HasSubstr("stands beside it"));
 }
 
-// Where people stand before the first light, there they throw a shadow from the others.
+// Where people stand in front of the first light, there they throw a shadow from the others.
 TEST(Beams, further_targets_are_where_the_same_people_throw_their_shadow) {
     const Stage stage = aCorner();
     const TargetPlace place = TargetPlace::on(stage, 1);
     ASSERT_TRUE(place.middle);
-    // 1.8 m before the first screen is 0.2 m to the left of the second light's middle.
+    // 1.8 m in front of the first screen is 0.2 m to the left of the second light's middle.
     EXPECT_NEAR(*place.middle, -0.2 * 8.2 / 5, 1e-9);
     EXPECT_NEAR(place.scale, 8.2 / 5 / (7 / 5.2), 1e-9);
     EXPECT_FALSE(TargetPlace::on(stage, 0).middle);

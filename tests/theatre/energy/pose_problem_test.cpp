@@ -118,7 +118,7 @@ TEST(PoseTarget, takes_parts_that_are_near_and_refuses_those_that_are_far) {
     };
     const auto near = PoseTarget::from(parts(5), kStage, 2, 128);
     ASSERT_TRUE(near);
-    // Both are there, and their middle is before the light.
+    // Both are there, and their middle is in front of the light.
     EXPECT_NEAR(near->area, 130 * 100 * 1.28 * 1.28, 300);
     int left = near->mask.width(), right = 0;
     for (int x = 0; x < near->mask.width(); ++x)

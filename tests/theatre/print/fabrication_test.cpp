@@ -80,7 +80,7 @@ TEST(Fabrication, a_person_becomes_one_solid_with_the_same_shadow) {
     EXPECT_GT(made.shadowIou, 0.96) << "with hands of a millimetre, at four centimetres";
     EXPECT_EQ(made.posesIou, 1);
     EXPECT_THAT(made.rods, IsEmpty());
-    // The lamp, 7 m before the screen.
+    // The lamp, 7 m in front of the screen.
     EXPECT_NEAR(made.screen - made.light.y, 7 * made.scale, 1e-9);
     EXPECT_NEAR(made.light.z, 0.1 * made.scale, 1e-9);
     // Its origin is in the plate's middle.

@@ -13,7 +13,7 @@ namespace {
 
 using glm::dvec3;
 
-// The light 7 m before a screen of 6 m x 4 m, of which a pixel is 1 cm.
+// The light 7 m in front of a screen of 6 m x 4 m, of which a pixel is 1 cm.
 const Stage kStage = aStage({0, 0, 7});
 ScreenFrame frameOf() { return ScreenFrame(kStage, -3, 4, 0.01, 600, 400); }
 

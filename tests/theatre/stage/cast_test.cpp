@@ -160,7 +160,7 @@ TEST_F(CastFile, has_a_target_for_each_beam) {
     EXPECT_EQ(read->targets[1].file, written.targets[1].file);
     EXPECT_EQ(read->targets[1].height, 1.25);
     EXPECT_EQ(read->targets[1].middle, -0.375);
-    EXPECT_FALSE(read->targets[0].middle) << "it is before the light";
+    EXPECT_FALSE(read->targets[0].middle) << "it is in front of the light";
     EXPECT_EQ(read->stage.beams.size(), 2u);
 
     written.targets.pop_back();

@@ -43,7 +43,7 @@ TEST(Screen, is_unrolled_as_rays_meet_it) {
                         const glm::dvec3 p = glm::mix(light, glm::dvec3(x, y, 0), t);
                         return (std::hypot(p.x, p.z - radius) - std::abs(radius)) * (radius > 0 ? 1 : -1);
                     };
-                    // From before the screen, which with a hollow one is within it.
+                    // From in front of the screen, which with a hollow one is within it.
                     double before = 0, behind = 1;
                     while (beyond(behind) <= 0) behind += 0.01;
                     while (beyond(before) > 0) before += 0.01;

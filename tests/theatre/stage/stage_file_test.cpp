@@ -176,7 +176,7 @@ TEST_F(StageFile, is_refused_where_a_beam_cannot_be) {
     EXPECT_THAT(beam("light: [-6, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: 90}"),
                 AllOf(HasSubstr("a.stage.yaml:5:5: further_beams[0]"), HasSubstr("8.5 m behind its screen"), HasSubstr("180")));
     EXPECT_THAT(beam("light: [2.2, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: -90}"),
-                AllOf(HasSubstr("0.3 m before its screen"), HasSubstr("0.5 m or farther")));
+                AllOf(HasSubstr("0.3 m in front of its screen"), HasSubstr("0.5 m or farther")));
     EXPECT_THAT(beam("light: [3, -1, 6]"), HasSubstr("1 m below the floor"));
     EXPECT_THAT(beam("light: [3, 0, -6]"), HasSubstr("behind its screen"));
     EXPECT_THAT(beam("light: [0, 0, 7]"), HasSubstr("beam 1 over again"));
@@ -192,7 +192,7 @@ TEST_F(StageFile, is_refused_where_a_beam_cannot_be) {
     EXPECT_THAT(refusal(light + "further_beams: []\n"), HasSubstr("further_beams"));
     EXPECT_THAT(refusal(light + "screen: {radius: 0}\n"), AllOf(HasSubstr("screen.radius"), HasSubstr("leave 'radius' out")));
     EXPECT_THAT(refusal(light + "screen: {at: [0, 0, 1]}\n"), HasSubstr("unknown key"));
-    EXPECT_THAT(refusal("light: [4, 0, 2]\nscreen: {radius: 3}\n"), HasSubstr("before its screen"));
+    EXPECT_THAT(refusal("light: [4, 0, 2]\nscreen: {radius: 3}\n"), HasSubstr("in front of its screen"));
     const std::string corner = light + "further_beams: [{light: [-6, 0, 1.5], screen: {at: [2.5, 0, 1.5], turned: -90}}]\n";
     EXPECT_THAT(refusal(corner + "platforms:\n  - {name: step, centre: [2.3, 0.2, 2], size: [1, 0.4, 1]}\n"),
                 HasSubstr("platform 'step' reaches 0.300 m through screen 2"));
