@@ -4,6 +4,10 @@
 
 namespace fantascope::app {
 
+std::string jsonText(const Report& report) { return report.dump(); }
+
+Report parseJson(const std::string& text) { return Report::parse(text, nullptr, false); }
+
 Result<void> writeReport(const std::filesystem::path& file, const Report& report) {
     return writeFile(file, report.dump(2) + "\n");
 }

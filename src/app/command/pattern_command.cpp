@@ -129,7 +129,7 @@ Result<std::vector<pattern::ShapeSettings>> chosenShapes(const Options& options,
 // Whether a .gltf refers to further files. One with embedded buffers can be copied alone.
 bool hasOtherFiles(const fs::path& file) {
     const auto text = readFile(file);
-    const Report gltf = Report::parse(text ? *text : "", nullptr, false);
+    const Report gltf = parseJson(text ? *text : "");
     const auto buffers = gltf.find("buffers");
     return buffers != gltf.end() && std::any_of(buffers->begin(), buffers->end(), [](const Report& buffer) {
                const auto uri = buffer.find("uri");

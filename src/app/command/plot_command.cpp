@@ -78,7 +78,7 @@ void declare(CLI::App& command, Options& options) {
 }
 
 Result<plot::SearchHistory> readHistory(const fs::path& file) {
-    const Report report = Report::parse(TRY(readFile(file)), nullptr, false);
+    const Report report = parseJson(TRY(readFile(file)));
     try {
         const auto& history = report.at("history");
         const plot::SearchHistory read{.method = report.at("method"),

@@ -1,3 +1,4 @@
+#include "app/base/report.h"
 #include "app/export/motion_scene.h"
 
 #include "theatre/stage/stage_set.h"
@@ -63,7 +64,7 @@ public:
         Json buffer{{"byteLength", bytes_.size()}};
         if (!binary) buffer["uri"] = "data:application/octet-stream;base64," + base64(bytes_);
         file["buffers"] = {std::move(buffer)};
-        std::string json = file.dump();
+        std::string json = jsonText(file);
         if (!binary) return json + "\n";
         json.resize((json.size() + 3) / 4 * 4, ' ');
         std::string all = "glTF";
