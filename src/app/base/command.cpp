@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 namespace fantascope::app {
 namespace {
@@ -20,15 +19,15 @@ std::string whatWasMeant(const std::string& file) {
 
 }  // namespace
 
-CLI::Option* addProjectorOption(CLI::App& command, std::string& projector, const std::string& description) {
-    return command.add_option("--output", projector, description)->type_name("NAME")->check([](const std::string& given) {
-        return isFileName(given) ? whatWasMeant(given) : std::string();
-    });
+Option addProjectorOption(Command& command, std::string& projector, const std::string& description) {
+    const auto refuse = [](const std::string& given) { return isFileName(given) ? whatWasMeant(given) : ""; };
+    return command.add("--output", projector, description).typeName("NAME").check({refuse, ""});
 }
 
-void refuseProjectorOption(CLI::App& command) {
-    const auto refuse = [](const std::string& given) { throw CLI::ValidationError("--output", whatWasMeant(given)); };
-    command.add_option_function<std::string>("--output", refuse)->group("");  // --help does not list it
+Option addOutOption(Command& command, std::filesystem::path& file, const std::string& description) {
+    // A command without outputs answers `--output FILE` with the right option, -o.
+    if (!command.has("--output")) command.addParsed("--output", whatWasMeant, "").hidden();
+    return command.add("-o,--out", file, description);
 }
 
 }  // namespace fantascope::app

@@ -27,27 +27,27 @@ std::optional<glm::dvec3> pointFrom(const std::string& text) {
 }
 
 template <class Value>
-CLI::Option* addParsed(CLI::App& command, const std::string& name, std::optional<Value>& target, const std::string& description,
-                       std::optional<Value> (*parse)(const std::string&), const std::string& form) {
+Option addParsed(Command& command, const std::string& name, std::optional<Value>& target, const std::string& description,
+                 std::optional<Value> (*parse)(const std::string&), const std::string& form) {
     const auto refuse = [parse, form](const std::string& text) {
         return parse(text) ? "" : fmt::format("'{}' is not {}", text, form);
     };
-    return command
-        .add_option_function<std::string>(
-            name, [&target, parse](const std::string& text) { target = parse(text); }, description)
-        ->type_name(form)
-        ->check(CLI::Validator(refuse, ""));
+    const auto take = [&target, parse](const std::string& text) {
+        target = parse(text);
+        return std::string();
+    };
+    return command.addParsed(name, take, description).typeName(form).check({refuse, ""});
 }
 
 }  // namespace
 
-CLI::Option* addSizeOption(CLI::App& command, const std::string& name, std::optional<glm::ivec2>& target,
-                           const std::string& description) {
+Option addSizeOption(Command& command, const std::string& name, std::optional<glm::ivec2>& target,
+                     const std::string& description) {
     return addParsed(command, name, target, description, sizeFrom, fmt::format("WIDTHxHEIGHT, 2 .. {} px each", kLargestSide));
 }
 
-CLI::Option* addPointOption(CLI::App& command, const std::string& name, std::optional<glm::dvec3>& target,
-                            const std::string& description) {
+Option addPointOption(Command& command, const std::string& name, std::optional<glm::dvec3>& target,
+                      const std::string& description) {
     return addParsed(command, name, target, description, pointFrom, "X,Y,Z");
 }
 

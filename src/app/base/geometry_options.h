@@ -1,7 +1,8 @@
 #pragma once
 // Options that are points and sizes, the same in every subcommand.
 
-#include <CLI/CLI.hpp>
+#include "app/base/command_line.h"
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -11,10 +12,10 @@
 namespace fantascope::app {
 
 // --name WIDTHxHEIGHT, in pixels: 2 .. 16384 each.
-CLI::Option* addSizeOption(CLI::App& command, const std::string& name, std::optional<glm::ivec2>& target,
-                           const std::string& description);
+Option addSizeOption(Command& command, const std::string& name, std::optional<glm::ivec2>& target,
+                     const std::string& description);
 // --name X,Y,Z
-CLI::Option* addPointOption(CLI::App& command, const std::string& name, std::optional<glm::dvec3>& target,
-                            const std::string& description);
+Option addPointOption(Command& command, const std::string& name, std::optional<glm::dvec3>& target,
+                      const std::string& description);
 
 }  // namespace fantascope::app

@@ -9,7 +9,7 @@ namespace fantascope::app {
 
 namespace fs = std::filesystem;
 
-CLI::Validator onlyYaml(const std::string& example) {
+ValueCheck onlyYaml(const std::string& example) {
     return {[example](const std::string& file) {
                 return fs::path(file).extension() == ".yaml"
                            ? std::string()
@@ -18,7 +18,7 @@ CLI::Validator onlyYaml(const std::string& example) {
             "YAML"};
 }
 
-CLI::Validator onlyEnding(const std::string& ending, const std::string& type) {
+ValueCheck onlyEnding(const std::string& ending, const std::string& type) {
     return {[ending](const std::string& file) {
                 return fs::path(file).extension() == ending ? std::string()
                                                             : fmt::format("'{}' does not end in {}", file, ending);

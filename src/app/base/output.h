@@ -1,9 +1,9 @@
 #pragma once
 // The files that a command writes, and the files that they refer to.
 
-#include "core/result.h"
+#include "app/base/command_line.h"
 
-#include <CLI/CLI.hpp>
+#include "core/result.h"
 
 #include <filesystem>
 #include <string>
@@ -12,9 +12,9 @@ namespace fantascope::app {
 
 // Requires a name that ends in .yaml, such as `example`, so that a typing mistake cannot overwrite
 // a picture.
-CLI::Validator onlyYaml(const std::string& example);
+ValueCheck onlyYaml(const std::string& example);
 // The same for another extension, such as ".mp4". `type`: its name in the help.
-CLI::Validator onlyEnding(const std::string& ending, const std::string& type);
+ValueCheck onlyEnding(const std::string& ending, const std::string& type);
 
 // Checks before the work whether `file` can be written. Its folder need not exist yet.
 Result<void> checkWritable(const std::filesystem::path& file);

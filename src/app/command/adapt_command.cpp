@@ -21,54 +21,51 @@ namespace {
 namespace fs = std::filesystem;
 using theatre::MotionAdaptation;
 
-void declareSearch(CLI::App& command, AdaptOptions& options) {
+void declareSearch(Command& command, AdaptOptions& options) {
     command
-        .add_option("--wanted", options.search.wanted,
-                    "Intersection over union of shadow and target: a frame that has it is not searched any further")
-        ->check(CLI::Range(0.0, 1.0))
-        ->capture_default_str();
-    command.add_option("--searches", options.search.searches, "Steps of local search, for a frame that has not")
-        ->check(CLI::Range(0, 100'000))
-        ->capture_default_str();
-    command.add_option("--passes", options.search.passes, "In which each frame is fitted between both its neighbours")
-        ->check(CLI::Range(0, 100))
-        ->capture_default_str();
-    command.add_option("--seed", options.seed, "Another seed, another motion; the same seed, the same motion")
-        ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
-        ->capture_default_str();
-    command.add_option("--threads", options.search.threads, "How many to use; the motion is the same for any number")
-        ->check(CLI::Range(1, 256));
+        .add("--wanted", options.search.wanted,
+             "Intersection over union of shadow and target: a frame that has it is not searched any further")
+        .range(0.0, 1.0)
+        .showDefault();
+    command.add("--searches", options.search.searches, "Steps of local search, for a frame that has not")
+        .range(0, 100'000)
+        .showDefault();
+    command.add("--passes", options.search.passes, "In which each frame is fitted between both its neighbours")
+        .range(0, 100)
+        .showDefault();
+    command.add("--seed", options.seed, "Another seed, another motion; the same seed, the same motion")
+        .range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()})
+        .showDefault();
+    command.add("--threads", options.search.threads, "How many to use; the motion is the same for any number").range(1, 256);
 }
 
-void declare(CLI::App& command, AdaptOptions& options) {
-    command.add_option("CAST", options.cast, "The principal poses, *.cast.yaml, as 'fantascope pose' finds them")->required();
+void declare(Command& command, AdaptOptions& options) {
+    command.add("CAST", options.cast, "The principal poses, *.cast.yaml, as 'fantascope pose' finds them").required();
     command
-        .add_option("SEQUENCE", options.sequence,
-                    "The silhouette that moves: a folder that 'fantascope deform' wrote, or one with a picture a frame, in the "
-                    "order of their names")
-        ->required();
+        .add("SEQUENCE", options.sequence,
+             "The silhouette that moves: a folder that 'fantascope deform' wrote, or one with a picture a frame, in the "
+             "order of their names")
+        .required();
     addOutOption(command, options.output, "The motion to write, M.cast.yaml. An interrupted one is resumed")
-        ->required()
-        ->check(onlyYaml("M.cast.yaml"));
+        .required()
+        .check(onlyYaml("M.cast.yaml"));
     command
-        .add_option("--representative", options.representative,
-                    "The frame that the poses are of, from 1 (default: the one most like the cast's target)")
-        ->check(CLI::PositiveNumber);
+        .add("--representative", options.representative,
+             "The frame that the poses are of, from 1 (default: the one most like the cast's target)")
+        .positive();
     command
-        .add_option(
-            "--fps", options.frameRate,
-            "Frames a second, whatever the sequence says: the same frames, sooner or later (default: the sequence's; of a "
-            "folder of pictures 12)")
-        ->check(CLI::Range(1.0, 1000.0));
+        .add("--fps", options.frameRate,
+             "Frames a second, whatever the sequence says: the same frames, sooner or later (default: the sequence's; of a "
+             "folder of pictures 12)")
+        .range(1.0, 1000.0);
     declareSearch(command, options);
-    command.add_option("--sheet", options.sheet, "Also draw people and shadow at moments of the motion, side by side")
-        ->check(onlyEnding(".png", "PNG"));
+    command.add("--sheet", options.sheet, "Also draw people and shadow at moments of the motion, side by side")
+        .check(onlyEnding(".png", "PNG"));
     command
-        .add_option(
-            "--video", options.video,
-            "Also write a video of people and shadow, H.264, with poses in between where there are fewer than 30 a second")
-        ->check(onlyEnding(".mp4", "MP4"));
-    command.add_option("--report", options.report, "Also write figures, as JSON (docs/report.md)");
+        .add("--video", options.video,
+             "Also write a video of people and shadow, H.264, with poses in between where there are fewer than 30 a second")
+        .check(onlyEnding(".mp4", "MP4"));
+    command.add("--report", options.report, "Also write figures, as JSON (docs/report.md)");
     command.footer(
         "Meanwhile the space bar pauses and goes on; escape, q and Ctrl-C end it with the frames that are done, and the same "
         "command goes on from there.");
@@ -143,8 +140,8 @@ Result<void> run(const AdaptOptions& options) {
 
 }  // namespace
 
-void addAdaptCommand(CLI::App& program, Action& action) {
-    addCommand<AdaptOptions>(program, action, "adapt", "Let poses follow a silhouette that moves", declare, run);
+void addAdaptCommand(Program& program) {
+    addCommand<AdaptOptions>(program, "adapt", "Let poses follow a silhouette that moves", declare, run);
 }
 
 }  // namespace fantascope::app

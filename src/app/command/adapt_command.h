@@ -5,6 +5,6 @@
 namespace fantascope::app {
 
 // `fantascope adapt`: principal poses follow a silhouette that moves.
-void addAdaptCommand(CLI::App& program, Action& action);
+void addAdaptCommand(Program& program);
 
 }  // namespace fantascope::app

@@ -367,18 +367,15 @@ Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>&
     return isShapeFile(path) ? checkShape(path) : checkGuide(path);
 }
 
-void declareOptions(CLI::App& command, CheckOptions& options) {
+void declareOptions(Command& command, CheckOptions& options) {
     command
-        .add_option(
-            "path", options.paths,
-            "Folders of shows, sites and sequences; files of shows, sites and patterns; casts, stages, motions, hints and "
-            "weights; guides and images, videos, shapes (SVG, meshes)")
-        ->required()
-        ->type_name("PATH");
-    command
-        .add_option("--site", options.site,
-                    "Look up the shows' outputs, fixtures and relays in this site: a folder or a site.yaml")
-        ->type_name("SITE");
+        .add("path", options.paths,
+             "Folders of shows, sites and sequences; files of shows, sites and patterns; casts, stages, motions, hints and "
+             "weights; guides and images, videos, shapes (SVG, meshes)")
+        .required()
+        .typeName("PATH");
+    command.add("--site", options.site, "Look up the shows' outputs, fixtures and relays in this site: a folder or a site.yaml")
+        .typeName("SITE");
 }
 
 Result<void> runCheck(const CheckOptions& options) { return checkFiles(options, std::cout); }
@@ -419,8 +416,8 @@ Result<void> checkFiles(const CheckOptions& options, std::ostream& out) {
     return {};
 }
 
-void addCheckCommand(CLI::App& program, Action& action) {
-    addCommand<CheckOptions>(program, action, "check", "Read files as the program would, and report what is wrong with them",
+void addCheckCommand(Program& program) {
+    addCommand<CheckOptions>(program, "check", "Read files as the program would, and report what is wrong with them",
                              declareOptions, runCheck);
 }
 

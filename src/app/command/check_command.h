@@ -4,8 +4,6 @@
 
 #include "core/result.h"
 
-#include <CLI/CLI.hpp>
-
 #include <filesystem>
 #include <optional>
 #include <ostream>
@@ -24,6 +22,6 @@ struct CheckOptions {
 Result<void> checkFiles(const CheckOptions& options, std::ostream& out);
 
 // fantascope check PATH... [--site SITE]
-void addCheckCommand(CLI::App& program, Action& action);
+void addCheckCommand(Program& program);
 
 }  // namespace fantascope::app

@@ -23,25 +23,23 @@ struct Options {
     std::optional<std::size_t> actor;
 };
 
-void declare(CLI::App& command, Options& options) {
-    command.add_option("CAST", options.cast, "A cast's poses or motion, *.cast.yaml")->required();
+void declare(Command& command, Options& options) {
+    command.add("CAST", options.cast, "A cast's poses or motion, *.cast.yaml").required();
     addOutOption(
         command, options.output,
         "What to write: .glb or .gltf (all actors with their skins, props, light and screen) or .bvh (one actor's skeleton "
         "and motion)")
-        ->required()
-        ->check(CLI::Validator(
-            [](const std::string& file) {
-                const std::string ending = fs::path(file).extension().string();
-                return ending == ".glb" || ending == ".gltf" || ending == ".bvh"
-                           ? ""
-                           : fmt::format("'{}' does not end in .glb, .gltf or .bvh", file);
-            },
-            "GLB|GLTF|BVH"));
-    command.add_option("--fps", options.frameRate, "Frames per second, with interpolated poses (default: the cast's)")
-        ->check(CLI::Range(1.0, 1000.0));
-    command.add_option("--actor", options.actor,
-                       "For a .bvh: the actor, counted from 1 (default: all, each in a file of its own)");
+        .required()
+        .check({[](const std::string& file) {
+                    const std::string ending = fs::path(file).extension().string();
+                    return ending == ".glb" || ending == ".gltf" || ending == ".bvh"
+                               ? ""
+                               : fmt::format("'{}' does not end in .glb, .gltf or .bvh", file);
+                },
+                "GLB|GLTF|BVH"});
+    command.add("--fps", options.frameRate, "Frames per second, with interpolated poses (default: the cast's)")
+        .range(1.0, 1000.0);
+    command.add("--actor", options.actor, "For a .bvh: the actor, counted from 1 (default: all, each in a file of its own)");
     command.footer("docs/converting.md says how other programs read the files.");
 }
 
@@ -87,9 +85,8 @@ Result<void> run(const Options& options) {
 
 }  // namespace
 
-void addConvertCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "convert", "Write a cast's poses or motion for other programs: glTF or BVH", declare,
-                        run);
+void addConvertCommand(Program& program) {
+    addCommand<Options>(program, "convert", "Write a cast's poses or motion for other programs: glTF or BVH", declare, run);
 }
 
 }  // namespace fantascope::app

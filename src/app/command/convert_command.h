@@ -5,6 +5,6 @@
 namespace fantascope::app {
 
 // `fantascope convert`: writes a cast's poses or motion as a scene for other programs.
-void addConvertCommand(CLI::App& program, Action& action);
+void addConvertCommand(Program& program);
 
 }  // namespace fantascope::app

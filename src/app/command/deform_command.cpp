@@ -51,27 +51,25 @@ struct Options {
     std::optional<fs::path> sheet, video, report;
 };
 
-void declare(CLI::App& command, Options& options) {
-    command.add_option("SILHOUETTE", options.silhouette, "What is to move, white on black: PNG or JPEG")->required();
-    command.add_option("--motion", options.motion, "Its handles and how they move, *.motion.yaml (docs/motion-format.md)")
-        ->required();
+void declare(Command& command, Options& options) {
+    command.add("SILHOUETTE", options.silhouette, "What is to move, white on black: PNG or JPEG").required();
+    command.add("--motion", options.motion, "Its handles and how they move, *.motion.yaml (docs/motion-format.md)").required();
     addOutOption(command, options.output,
                  "The folder to write: a picture a frame, and sequence.yaml (docs/sequence-format.md). A sequence that is "
                  "there already is replaced")
-        ->required();
-    command.add_flag("--invert", options.invert, "The silhouette is black ink on white paper");
-    command.add_option("--fps", options.frameRate, "Frames a second (default: the motion's)")
-        ->check(CLI::Range(HandleMotion::kLeastFramesPerSecond, HandleMotion::kMostFramesPerSecond));
-    command
-        .add_option("--frames", options.frames, "How many, from the motion's beginning to its end (default: by the frame rate)")
-        ->check(CLI::Range(1, HandleMotion::kMostFrames));
-    command.add_option("--vertices", options.vertices, "About how many the triangles inside have: more bend more finely")
-        ->check(CLI::Range(TriangulatedSilhouette::kFewestVertices, TriangulatedSilhouette::kMostVertices))
-        ->capture_default_str();
-    command.add_option("--sheet", options.sheet, "Also draw the frames side by side, with the triangles and the handles")
-        ->check(onlyEnding(".png", "PNG"));
-    command.add_option("--video", options.video, "Also write a video to look at, H.264")->check(onlyEnding(".mp4", "MP4"));
-    command.add_option("--report", options.report, "Also write figures, as JSON (docs/report.md)");
+        .required();
+    command.addFlag("--invert", options.invert, "The silhouette is black ink on white paper");
+    command.add("--fps", options.frameRate, "Frames a second (default: the motion's)")
+        .range(HandleMotion::kLeastFramesPerSecond, HandleMotion::kMostFramesPerSecond);
+    command.add("--frames", options.frames, "How many, from the motion's beginning to its end (default: by the frame rate)")
+        .range(1, HandleMotion::kMostFrames);
+    command.add("--vertices", options.vertices, "About how many the triangles inside have: more bend more finely")
+        .range(TriangulatedSilhouette::kFewestVertices, TriangulatedSilhouette::kMostVertices)
+        .showDefault();
+    command.add("--sheet", options.sheet, "Also draw the frames side by side, with the triangles and the handles")
+        .check(onlyEnding(".png", "PNG"));
+    command.add("--video", options.video, "Also write a video to look at, H.264").check(onlyEnding(".mp4", "MP4"));
+    command.add("--report", options.report, "Also write figures, as JSON (docs/report.md)");
     command.footer("Meanwhile the space bar pauses and goes on; escape, q and Ctrl-C end it, and nothing is written.");
 }
 
@@ -385,9 +383,9 @@ Result<void> run(const Options& options) {
 
 }  // namespace
 
-void addDeformCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "deform",
-                        "Move a silhouette by its handles, as rigidly as can be, into a sequence of pictures", declare, run);
+void addDeformCommand(Program& program) {
+    addCommand<Options>(program, "deform", "Move a silhouette by its handles, as rigidly as can be, into a sequence of pictures",
+                        declare, run);
 }
 
 }  // namespace fantascope::app

@@ -5,6 +5,6 @@
 namespace fantascope::app {
 
 // `deform SILHOUETTE --motion M.motion.yaml -o FOLDER`: a silhouette that moves with its handles.
-void addDeformCommand(CLI::App& program, Action& action);
+void addDeformCommand(Program& program);
 
 }  // namespace fantascope::app

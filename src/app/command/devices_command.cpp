@@ -358,25 +358,24 @@ Result<void> devices(const Options& options) {
     return list(site);
 }
 
-void declare(CLI::App& command, Options& options) {
-    command.add_option("--site", options.site, "report the state of this site's devices: a folder or a site.yaml");
-    CLI::Option* watches = command.add_flag("--watch", options.watch, "keep running, and report what is plugged and unplugged");
+void declare(Command& command, Options& options) {
+    command.add("--site", options.site, "report the state of this site's devices: a folder or a site.yaml");
+    const Option watches = command.addFlag("--watch", options.watch, "keep running, and report what is plugged and unplugged");
     command
-        .add_option(
+        .add(
             "--test", options.test,
             "try one device: one of the site by its name ('universe 1', 'desk 1', 'cue controller', 'camera', or a bank's name), "
             "or a found one by a part of its line. Fixtures chase, relays click, presses are printed, a camera leaves a picture")
-        ->excludes(watches);
-    command.add_flag("--yes", options.yes, "switch relays in a test without asking");
-    command.add_option("--seconds", options.length, "end after this time (default for a test: 10 s)")
-        ->check(CLI::Range(0.1, 1e6));
-    addOutOption(command, options.picture, "file for a camera's picture")->capture_default_str();
+        .excludes(watches);
+    command.addFlag("--yes", options.yes, "switch relays in a test without asking");
+    command.add("--seconds", options.length, "end after this time (default for a test: 10 s)").range(0.1, 1e6);
+    addOutOption(command, options.picture, "file for a camera's picture").showDefault();
 }
 
 }  // namespace
 
-void addDevicesCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "devices",
+void addDevicesCommand(Program& program) {
+    addCommand<Options>(program, "devices",
                         "List the devices that are found: projectors, DMX widgets and nodes, relays, hand controllers, cameras",
                         declare, devices);
 }

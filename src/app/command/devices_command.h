@@ -6,6 +6,6 @@ namespace fantascope::app {
 
 // `fantascope devices`: lists devices that it finds, reports the state of a site's devices, or
 // tries one of them.
-void addDevicesCommand(CLI::App& program, Action& action);
+void addDevicesCommand(Program& program);
 
 }  // namespace fantascope::app

@@ -19,26 +19,26 @@ struct Options {
     std::optional<Alpha> alpha;
 };
 
-void declare(CLI::App& command, Options& options) {
+void declare(Command& command, Options& options) {
     FilmRequest& film = options.film;
-    command.add_option("SHOW", film.what, "A show's folder, or a single P.pattern.yaml")->required();
+    command.add("SHOW", film.what, "A show's folder, or a single P.pattern.yaml").required();
     declareFilmOptions(command, film);
     addOutOption(command, options.file,
                  "What to write: a folder of PNG pictures, FILE.mp4, FILE.mov (ProRes 4444) or FILE.mkv (FFV1)")
-        ->required();
+        .required();
     command
-        .add_option("--seconds", film.seconds,
-                    "Length in show time (default: 60; for a pattern or a single cue: one loop of the movement)")
-        ->check(CLI::Range(0.001, 1e6));
-    command.add_option("--fps", film.frameRate, "Frames per second of show time (default: the output's; for a pattern: 30)")
-        ->check(CLI::Range(1.0, 1000.0));
+        .add("--seconds", film.seconds,
+             "Length in show time (default: 60; for a pattern or a single cue: one loop of the movement)")
+        .range(0.001, 1e6);
+    command.add("--fps", film.frameRate, "Frames per second of show time (default: the output's; for a pattern: 30)")
+        .range(1.0, 1000.0);
     addSizeOption(command, "--size", film.size, "Frame size (default: the output's; for a pattern or a canvas: 1080 rows)");
-    addChoice<Alpha>(
-        command, "--alpha", options.alpha, {{"none", Alpha::None}, {"stored", Alpha::Stored}, {"linear", Alpha::Linear}},
+    command.addChoice<Alpha>(
+        "--alpha", options.alpha, {{"none", Alpha::None}, {"stored", Alpha::Stored}, {"linear", Alpha::Linear}},
         "Make black transparent, for programs that composite stored or linear values; none: the frame as the projector "
         "gets it (default: stored; none for an .mp4, which has no alpha)");
-    command.add_flag("--canvas", film.canvas, "The whole canvas, without the output's warp, as for a light mask");
-    command.add_option("--report", options.report, "Also write figures, as JSON (docs/report.md)");
+    command.addFlag("--canvas", film.canvas, "The whole canvas, without the output's warp, as for a light mask");
+    command.add("--report", options.report, "Also write figures, as JSON (docs/report.md)");
     command.footer("During the export, the space bar pauses and resumes; Escape, q and Ctrl-C end it with the frames so far.");
 }
 
@@ -65,8 +65,8 @@ Result<void> run(const Options& options) {
 
 }  // namespace
 
-void addExportCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "export", "Write an output's frames as pictures with alpha or as a video", declare, run);
+void addExportCommand(Program& program) {
+    addCommand<Options>(program, "export", "Write an output's frames as pictures with alpha or as a video", declare, run);
 }
 
 }  // namespace fantascope::app

@@ -36,39 +36,36 @@ struct Options {
     std::optional<fs::path> sheet, view, report;
 };
 
-void declare(CLI::App& command, Options& options) {
+void declare(Command& command, Options& options) {
     const Fabrication::Options& print = options.print;
-    command.add_option("CAST", options.cast, "The poses, *.cast.yaml, as 'fantascope pose' or 'fantascope adapt' left them")
-        ->required();
+    command.add("CAST", options.cast, "The poses, *.cast.yaml, as 'fantascope pose' or 'fantascope adapt' left them").required();
     addOutOption(command, options.output, "The solid to write, binary STL: millimetres, z up")
-        ->required()
-        ->check(onlyEnding(".stl", "STL"));
-    command.add_option("--frame", options.frame, "of a cast that moves, from 0 (default: the frame of the principal poses)");
-    command.add_option("--height", options.print.height, "Of the print from the plate's upper side to its highest point, mm")
-        ->capture_default_str();
+        .required()
+        .check(onlyEnding(".stl", "STL"));
+    command.add("--frame", options.frame, "of a cast that moves, from 0 (default: the frame of the principal poses)");
+    command.add("--height", options.print.height, "Of the print from the plate's upper side to its highest point, mm")
+        .showDefault();
     command
-        .add_option("--plate", options.print.plate,
-                    "Thickness of the base plate, mm (default: 3, and of a high print 4 % of its height)")
-        ->default_str("");
-    command.add_option("--margin", options.print.margin, "Of the base plate around what stands on it, mm")->capture_default_str();
+        .add("--plate", options.print.plate,
+             "Thickness of the base plate, mm (default: 3, and of a high print 4 % of its height)")
+        .defaultText("");
+    command.add("--margin", options.print.margin, "Of the base plate around what stands on it, mm").showDefault();
     command
-        .add_option("--wall", options.print.wall,
-                    "The thinnest wall that the printer makes well, mm; what is thinner becomes as thick")
-        ->capture_default_str();
+        .add("--wall", options.print.wall, "The thinnest wall that the printer makes well, mm; what is thinner becomes as thick")
+        .showDefault();
     command
-        .add_option("--detail", options.print.cell,
-                    fmt::format("How fine the surface is made, mm (default: {:.2f} for {:g} mm of height)",
-                                Fabrication::cellFor(print.height, print.wall), print.height))
-        ->default_str("");
-    command.add_option("--sheet", options.sheet, "Also draw where lamp and screen stand, with all distances: PDF or SVG, on A4")
-        ->check(CLI::Validator(
-            [](const std::string& file) {
-                const std::string ending = fs::path(file).extension().string();
-                return ending == ".pdf" || ending == ".svg" ? "" : fmt::format("'{}' does not end in .pdf or .svg", file);
-            },
-            "PDF|SVG"));
-    command.add_option("--view", options.view, "Also draw the print")->check(onlyEnding(".png", "PNG"));
-    command.add_option("--report", options.report, "Also write figures, as JSON");
+        .add("--detail", options.print.cell,
+             fmt::format("How fine the surface is made, mm (default: {:.2f} for {:g} mm of height)",
+                         Fabrication::cellFor(print.height, print.wall), print.height))
+        .defaultText("");
+    command.add("--sheet", options.sheet, "Also draw where lamp and screen stand, with all distances: PDF or SVG, on A4")
+        .check({[](const std::string& file) {
+                    const std::string ending = fs::path(file).extension().string();
+                    return ending == ".pdf" || ending == ".svg" ? "" : fmt::format("'{}' does not end in .pdf or .svg", file);
+                },
+                "PDF|SVG"});
+    command.add("--view", options.view, "Also draw the print").check(onlyEnding(".png", "PNG"));
+    command.add("--report", options.report, "Also write figures, as JSON");
     command.footer("docs/fabricating.md tells how to print it and where the lamp goes.");
 }
 
@@ -158,8 +155,8 @@ Result<void> run(const Options& options) {
 
 }  // namespace
 
-void addFabricateCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "fabricate", "Make a cast's poses a solid for a 3D printer", declare, run);
+void addFabricateCommand(Program& program) {
+    addCommand<Options>(program, "fabricate", "Make a cast's poses a solid for a 3D printer", declare, run);
 }
 
 }  // namespace fantascope::app

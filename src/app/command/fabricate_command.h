@@ -6,6 +6,6 @@ namespace fantascope::app {
 
 // `fantascope fabricate`: a cast's poses as one solid that a printer makes, with a sheet to set up
 // its lamp.
-void addFabricateCommand(CLI::App& program, Action& action);
+void addFabricateCommand(Program& program);
 
 }  // namespace fantascope::app

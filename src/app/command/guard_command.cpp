@@ -101,18 +101,17 @@ Result<void> guard(const Options& options) {
     return {};
 }
 
-void declare(CLI::App& command, Options& options) {
-    command.add_option("site", options.site, "the site file")->required();
-    command.add_option("text", options.text, "a file with what stood in it when the run began")->required();
-    command.add_option("--bank", options.bank, "of its relay banks this one alone");
-    command.group("");  // hidden
+void declare(Command& command, Options& options) {
+    command.add("site", options.site, "the site file").required();
+    command.add("text", options.text, "a file with what stood in it when the run began").required();
+    command.add("--bank", options.bank, "of its relay banks this one alone");
+    command.hidden();
 }
 
 }  // namespace
 
-void addGuardCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, kGuardCommand, "Makes a site's relays safe when a run ends without a word", declare,
-                        guard);
+void addGuardCommand(Program& program) {
+    addCommand<Options>(program, kGuardCommand, "Makes a site's relays safe when a run ends without a word", declare, guard);
 }
 
 }  // namespace fantascope::app

@@ -4,6 +4,6 @@
 
 namespace fantascope::app {
 
-void addGuardCommand(CLI::App& program, Action& action);
+void addGuardCommand(Program& program);
 
 }  // namespace fantascope::app

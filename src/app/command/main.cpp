@@ -44,22 +44,11 @@ void openMissingStreams() {
 int run(int argc, char** argv) {
     openMissingStreams();
     std::signal(SIGXFSZ, SIG_IGN);  // a file that grows over its limit is an error of its write, as on a full disk
-    CLI::App program("A live installation controller for night-time public projection.", "fantascope");
-    program.set_version_flag("--version", FANTASCOPE_VERSION);
-    program.require_subcommand(1);
-    program.failure_message([](const CLI::App* app, const CLI::Error& error) {
-        const auto chosen = app->get_subcommands();
-        const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
-        return fmt::format("fantascope: error: {}\nSee 'fantascope{} --help'.\n", printableLines(error.what()), command);
-    });
-    Action action;
-    for (const AddCommand add : kCommands) add(program, action);
-    try {
-        program.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {  // also thrown for --help, with exit code 0
-        return program.exit(error) == 0 ? Done : WrongUsage;
-    }
-    if (const auto done = action(); !done) {
+    Program program("fantascope", "A live installation controller for night-time public projection.", FANTASCOPE_VERSION);
+    for (const AddCommand add : kCommands) add(program);
+    const Parsed parsed = program.parse(argc, argv);
+    if (parsed != Parsed::Action) return parsed == Parsed::Help ? Done : WrongUsage;
+    if (const auto done = program.action()(); !done) {
         // Whether or not it is read.
         std::fputs(fmt::format("fantascope: error: {}\n", printableLines(done.error().message())).c_str(), stderr);
         return Refused;

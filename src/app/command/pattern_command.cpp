@@ -55,48 +55,48 @@ struct Options {
     bool watch = false;
 };
 
-void declare(CLI::App& command, Options& options) {
-    command.add_option("GUIDE", options.guide, "The grey drawing: PNG, JPEG or TIFF")->required();
-    addOutOption(command, options.output, "The pattern to write, P.pattern.yaml")->required()->check(onlyYaml("P.pattern.yaml"));
+void declare(Command& command, Options& options) {
+    command.add("GUIDE", options.guide, "The grey drawing: PNG, JPEG or TIFF").required();
+    addOutOption(command, options.output, "The pattern to write, P.pattern.yaml").required().check(onlyYaml("P.pattern.yaml"));
     command
-        .add_option("--shapes", options.shapes,
-                    fmt::format("Elemental shapes, separated by commas: {}, or files (FBX, OBJ, glTF, PLY, STL, SVG, PNG) "
-                                "(default: those of the settings, else triangle)",
-                                pattern::builtInShapeList()))
-        ->delimiter(',')
-        ->allow_extra_args(false);  // the argument after the list is not part of it
-    command.add_option("--settings", options.settings, "The numerical parameters, *.pattern-settings.yaml");
-    command.add_option("--instances", options.instances, "Maximum number of instances")->check(CLI::Range(1, 100'000));
+        .add("--shapes", options.shapes,
+             fmt::format("Elemental shapes, separated by commas: {}, or files (FBX, OBJ, glTF, PLY, STL, SVG, PNG) "
+                         "(default: those of the settings, else triangle)",
+                         pattern::builtInShapeList()))
+        .delimiter(',')
+        .noExtraArguments();
+    command.add("--settings", options.settings, "The numerical parameters, *.pattern-settings.yaml");
+    command.add("--instances", options.instances, "Maximum number of instances").range(1, 100'000);
     command
-        .add_option("--seconds", options.seconds,
-                    fmt::format("Stop after so many seconds (default: {}, unless --iterations is given)", kDefaultSeconds))
-        ->check(CLI::Range(0.0, 1e6));
-    command.add_option("--iterations", options.iterations, "Stop after so many iterations; repeats a run exactly")
-        ->check(CLI::Range(0, std::numeric_limits<int>::max()));
-    command.add_option("--target-z", options.targetZ, "Stop once the mean difference from the guide is below this")
-        ->check(CLI::Range(0.0, 1.0));
-    addChoice<PatternSearch::Method>(command, "--method", options.method,
-                                     {{"refined", PatternSearch::Method::Refined}, {"paper", PatternSearch::Method::Paper}},
-                                     "refined: one exact move at a time; paper: Ji et al. 2015, section 4.1, as written")
-        ->default_str("refined");
-    auto* start = command.add_option("--start", options.start,
-                                     "Start from this pattern, with its shapes, seed and movement; refined method only");
+        .add("--seconds", options.seconds,
+             fmt::format("Stop after so many seconds (default: {}, unless --iterations is given)", kDefaultSeconds))
+        .range(0.0, 1e6);
+    command.add("--iterations", options.iterations, "Stop after so many iterations; repeats a run exactly")
+        .range(0, std::numeric_limits<int>::max());
+    command.add("--target-z", options.targetZ, "Stop once the mean difference from the guide is below this").range(0.0, 1.0);
     command
-        .add_option("--region", options.region,
-                    "With --start: LEFT,TOP,RIGHT,BOTTOM in canvas heights; instances whose centre lies outside stay as they are")
-        ->delimiter(',')
-        ->expected(4)
-        ->needs(start);
-    command.add_option("--image", options.image, "Also write the pattern, white on black and in the guide's size, as PNG");
-    command.add_flag("--shadows", options.shadows,
-                     "The shapes are dark and cover what is dark in the drawing, like leaves in a show's foliage");
-    command.add_flag("--invert", options.invert, "The drawing is dark ink on white paper: what is dark becomes light");
-    command.add_option("--seed", options.seed, "Random seed: the same seed gives the same pattern")
-        ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
-        ->capture_default_str();
-    command.add_option("--threads", options.threads, "Number of threads; does not change the pattern")->check(CLI::Range(1, 256));
-    command.add_option("--report", options.report, "Also write figures, as JSON");
-    command.add_flag("--watch", options.watch, "Show the search in a window");
+        .addChoice<PatternSearch::Method>("--method", options.method,
+                                          {{"refined", PatternSearch::Method::Refined}, {"paper", PatternSearch::Method::Paper}},
+                                          "refined: one exact move at a time; paper: Ji et al. 2015, section 4.1, as written")
+        .defaultText("refined");
+    const Option start =
+        command.add("--start", options.start, "Start from this pattern, with its shapes, seed and movement; refined method only");
+    command
+        .add("--region", options.region,
+             "With --start: LEFT,TOP,RIGHT,BOTTOM in canvas heights; instances whose centre lies outside stay as they are")
+        .delimiter(',')
+        .expected(4)
+        .needs(start);
+    command.add("--image", options.image, "Also write the pattern, white on black and in the guide's size, as PNG");
+    command.addFlag("--shadows", options.shadows,
+                    "The shapes are dark and cover what is dark in the drawing, like leaves in a show's foliage");
+    command.addFlag("--invert", options.invert, "The drawing is dark ink on white paper: what is dark becomes light");
+    command.add("--seed", options.seed, "Random seed: the same seed gives the same pattern")
+        .range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()})
+        .showDefault();
+    command.add("--threads", options.threads, "Number of threads; does not change the pattern").range(1, 256);
+    command.add("--report", options.report, "Also write figures, as JSON");
+    command.addFlag("--watch", options.watch, "Show the search in a window");
     command.footer(
         "During the search, the space bar pauses and resumes; Escape, q and Ctrl-C end it with the best pattern so far.");
 }
@@ -361,8 +361,8 @@ Result<void> run(const Options& options) {
 
 }  // namespace
 
-void addPatternCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "pattern", "Find a light pattern that reads as a guide drawing", declare, run);
+void addPatternCommand(Program& program) {
+    addCommand<Options>(program, "pattern", "Find a light pattern that reads as a guide drawing", declare, run);
 }
 
 }  // namespace fantascope::app

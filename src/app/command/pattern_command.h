@@ -7,6 +7,6 @@ namespace fantascope::app {
 // `fantascope pattern GUIDE -o P.pattern.yaml`: finds a light pattern that reads as the artist's
 // drawing. The pattern's folder holds everything that it needs: files from elsewhere are copied
 // into it, as P.guide.png and P.NAME.obj.
-void addPatternCommand(CLI::App& program, Action& action);
+void addPatternCommand(Program& program);
 
 }  // namespace fantascope::app

@@ -60,21 +60,18 @@ std::string onlyPlot(const std::string& file) {
     return plot::Page::knows(file) ? "" : fmt::format("'{}' cannot be written: a picture's name must end in .png or .svg", file);
 }
 
-void declare(CLI::App& command, Options& options) {
-    command
-        .add_option("INPUT", options.input, "A pattern, *.pattern.yaml, the report of its search, *.json, or a cast, *.cast.yaml")
-        ->required();
-    addOutOption(command, options.output, "The picture to write, PNG or SVG")
-        ->required()
-        ->check(CLI::Validator(onlyPlot, "PNG|SVG"));
+void declare(Command& command, Options& options) {
+    command.add("INPUT", options.input, "A pattern, *.pattern.yaml, the report of its search, *.json, or a cast, *.cast.yaml")
+        .required();
+    addOutOption(command, options.output, "The picture to write, PNG or SVG").required().check({onlyPlot, "PNG|SVG"});
     std::vector<std::pair<std::string, Figure>> figures;
     for (const Entry& entry : kFigures) figures.emplace_back(entry.name, entry.figure);
-    addChoice<Figure>(
-        command, "--figure", options.figure, figures,
+    command.addChoice<Figure>(
+        "--figure", options.figure, figures,
         "For a pattern: difference (from its guide, the default), trajectories or spectrum (of its movement). For a report: "
         "search (z over the iterations). For a cast: cast (stage, shadow and actors, the default), stage (from behind the "
         "lamp), side (from the side), shadow (by actor) or actors (each actor's shadow)");
-    command.add_option("--frame", options.frame, "For a cast that moves: the frame, counted from 0")->capture_default_str();
+    command.add("--frame", options.frame, "For a cast that moves: the frame, counted from 0").showDefault();
 }
 
 Result<plot::SearchHistory> readHistory(const fs::path& file) {
@@ -139,8 +136,8 @@ Result<void> run(const Options& options) {
 
 }  // namespace
 
-void addPlotCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "plot", "Draw a pattern, its search, its movement, or a cast as a figure", declare, run);
+void addPlotCommand(Program& program) {
+    addCommand<Options>(program, "plot", "Draw a pattern, its search, its movement, or a cast as a figure", declare, run);
 }
 
 }  // namespace fantascope::app

@@ -5,6 +5,6 @@
 namespace fantascope::app {
 
 // `fantascope plot PATTERN|REPORT|CAST -o PNG|SVG`: draws figures.
-void addPlotCommand(CLI::App& program, Action& action);
+void addPlotCommand(Program& program);
 
 }  // namespace fantascope::app

@@ -121,8 +121,8 @@ Result<void> run(const PoseOptions& options) {
 
 }  // namespace
 
-void addPoseCommand(CLI::App& program, Action& action) {
-    addCommand<PoseOptions>(program, action, "pose", "Find poses of people whose shadow is a silhouette", declarePose, run);
+void addPoseCommand(Program& program) {
+    addCommand<PoseOptions>(program, "pose", "Find poses of people whose shadow is a silhouette", declarePose, run);
 }
 
 }  // namespace fantascope::app

@@ -5,6 +5,6 @@
 namespace fantascope::app {
 
 // `pose TARGET -o C.cast.yaml`: people whose shadow is a silhouette.
-void addPoseCommand(CLI::App& program, Action& action);
+void addPoseCommand(Program& program);
 
 }  // namespace fantascope::app

@@ -23,110 +23,106 @@ std::string onlyPicture(const std::string& file) {
                                    : fmt::format("'{}' is no picture that can be written: its name ends in .png or .svg", file);
 }
 
-void declareActors(CLI::App& command, PoseOptions& options) {
-    command.add_option("TARGET", options.target, "The silhouette, white on black: PNG or JPEG")->required();
-    addOutOption(command, options.output, "The poses to write, C.cast.yaml")->required()->check(onlyYaml("C.cast.yaml"));
+void declareActors(Command& command, PoseOptions& options) {
+    command.add("TARGET", options.target, "The silhouette, white on black: PNG or JPEG").required();
+    addOutOption(command, options.output, "The poses to write, C.cast.yaml").required().check(onlyYaml("C.cast.yaml"));
     command
-        .add_option_function<std::string>(
+        .addParsed(
             "--actors",
             [&options](const std::string& given) {
-                int count = 0;
-                if (given == "auto") return;
-                if (!CLI::detail::lexical_cast(given, count))
-                    throw CLI::ValidationError("--actors", fmt::format("'{}' is neither a number nor 'auto'", given));
-                options.actors = count;
+                if (given == "auto") return std::string();
+                options.actors = wholeNumber(given);
+                return options.actors ? "" : fmt::format("'{}' is neither a number nor 'auto'", given);
             },
             fmt::format("How many, 1 .. {}; auto: by the silhouette's area, 1 .. {}, and up to {} more if they are not enough",
                         Troupe::kMostActors, Troupe::kMostUnasked, PoseRounds::kMostMore))
-        ->default_str("auto")
-        ->type_name("N|auto");
-    command.add_option("--height", options.height,
-                       fmt::format("Of the silhouette on the screen, metres (default: so that each actor has some {} square "
-                                   "metres of it; {} where --actors is auto)",
-                                   Troupe::kShare, Troupe::kUsualHeight));
-    command.add_option("--stature", options.statures, "Of the actors, metres: one for all, or one for each, separated by commas")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(CLI::Range(0.9, 2.1))
-        ->capture_default_str();
+        .defaultText("auto")
+        .typeName("N|auto");
+    command.add("--height", options.height,
+                fmt::format("Of the silhouette on the screen, metres (default: so that each actor has some {} square "
+                            "metres of it; {} where --actors is auto)",
+                            Troupe::kShare, Troupe::kUsualHeight));
+    command.add("--stature", options.statures, "Of the actors, metres: one for all, or one for each, separated by commas")
+        .delimiter(',')
+        .noExtraArguments()
+        .range(0.9, 2.1)
+        .showDefault();
 }
 
-void declareTask(CLI::App& command, PoseOptions& options) {
-    command.add_flag("--invert", options.invert, "The silhouettes are black ink on white paper");
-    command.add_option("--hints", options.hints,
-                       "Which body parts may come to which points of the target, *.hints.yaml (docs/hints-format.md)");
-    command.add_option("--weights", options.weights,
-                       "Of the energy's terms: a preset of assets/silhouettes/weights.yaml, such as rabbit, or a file "
-                       "(docs/weights-format.md)");
-    command.add_option("--stage", options.stage,
-                       "Light or projector, platforms and props, *.stage.yaml (docs/stage-format.md); default: a lamp on the "
-                       "floor, 7 m in front of the screen");
+void declareTask(Command& command, PoseOptions& options) {
+    command.addFlag("--invert", options.invert, "The silhouettes are black ink on white paper");
+    command.add("--hints", options.hints,
+                "Which body parts may come to which points of the target, *.hints.yaml (docs/hints-format.md)");
+    command.add("--weights", options.weights,
+                "Of the energy's terms: a preset of assets/silhouettes/weights.yaml, such as rabbit, or a file "
+                "(docs/weights-format.md)");
+    command.add("--stage", options.stage,
+                "Light or projector, platforms and props, *.stage.yaml (docs/stage-format.md); default: a lamp on the "
+                "floor, 7 m in front of the screen");
 }
 
-void declareFurther(CLI::App& command, PoseOptions& options) {
+void declareFurther(Command& command, PoseOptions& options) {
     command
-        .add_option("--further-target", options.furtherTargets,
-                    "The silhouettes for the stage's further beams, other lights or screens, in their order, separated by commas")
-        ->delimiter(',')
-        ->allow_extra_args(false);
+        .add("--further-target", options.furtherTargets,
+             "The silhouettes for the stage's further beams, other lights or screens, in their order, separated by commas")
+        .delimiter(',')
+        .noExtraArguments();
     command
-        .add_option("--further-height", options.furtherHeights,
-                    "Of each of them, metres (default: people are as high as on the first screen)")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(CLI::Range(Troupe::kLeastHeight, Troupe::kMostHeight));
+        .add("--further-height", options.furtherHeights,
+             "Of each of them, metres (default: people are as high as on the first screen)")
+        .delimiter(',')
+        .noExtraArguments()
+        .range(Troupe::kLeastHeight, Troupe::kMostHeight);
     command
-        .add_option(
-            "--further-middle", options.furtherMiddles,
-            "Where on its screen the middle of each is: metres to the right of where the screen stands (default: where the "
-            "shadow falls of people who stand in front of the first light)")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(CLI::Range(-kFarthest, kFarthest));
+        .add("--further-middle", options.furtherMiddles,
+             "Where on its screen the middle of each is: metres to the right of where the screen stands (default: where the "
+             "shadow falls of people who stand in front of the first light)")
+        .delimiter(',')
+        .noExtraArguments()
+        .range(-kFarthest, kFarthest);
 }
 
-void declareSearch(CLI::App& command, PoseOptions& options) {
-    command.add_option("--trials", options.search.trials, "Searches to take the best of (default: as many as fit into the time)")
-        ->check(CLI::Range(1, 1'000'000));
+void declareSearch(Command& command, PoseOptions& options) {
+    command.add("--trials", options.search.trials, "Searches to take the best of (default: as many as fit into the time)")
+        .range(1, 1'000'000);
     command
-        .add_option("--seconds", options.search.seconds,
-                    fmt::format("End after so long (default {} s, unless --trials is given)", PoseRounds::kDefaultSeconds))
-        ->check(CLI::Range(0.0, 1e6));
-    command.add_option("--evaluations", options.search.evaluations,
-                       fmt::format("Of the energy, in a trial (default {}, and {} for more than {} actors or targets than one; "
-                                   "fewer where the time is short)",
-                                   PoseRounds::kEvaluationsOfFew, PoseRounds::kEvaluationsOfMany, PoseRounds::kFewActors));
-    addChoice<PoseSearch::Method>(command, "--method", options.search.search.method,
-                                  {{"refined", PoseSearch::Method::Refined}, {"paper", PoseSearch::Method::Paper}},
-                                  "refined, or paper: CMA-ES as Won & Lee 2016 have it, with their refinement")
-        ->default_str("refined");
+        .add("--seconds", options.search.seconds,
+             fmt::format("End after so long (default {} s, unless --trials is given)", PoseRounds::kDefaultSeconds))
+        .range(0.0, 1e6);
+    command.add("--evaluations", options.search.evaluations,
+                fmt::format("Of the energy, in a trial (default {}, and {} for more than {} actors or targets than one; "
+                            "fewer where the time is short)",
+                            PoseRounds::kEvaluationsOfFew, PoseRounds::kEvaluationsOfMany, PoseRounds::kFewActors));
     command
-        .add_option("--residual", options.search.search.residual,
-                    "The paper's method: the energy that needs no refinement unless artefacts are seen")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    command.add_flag("--full-covariance", options.search.search.fullCovariance,
-                     "The paper's method: one covariance for all actors' degrees of freedom, as in the paper; slower");
-    command.add_option("--seed", options.search.seed, "Another seed, other poses; the same seed and trials, the same poses")
-        ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()}))
-        ->capture_default_str();
-    command.add_option("--threads", options.search.threads, "How many to use; the poses are the same for any number")
-        ->check(CLI::Range(1, 256));
+        .addChoice<PoseSearch::Method>("--method", options.search.search.method,
+                                       {{"refined", PoseSearch::Method::Refined}, {"paper", PoseSearch::Method::Paper}},
+                                       "refined, or paper: CMA-ES as Won & Lee 2016 have it, with their refinement")
+        .defaultText("refined");
+    command
+        .add("--residual", options.search.search.residual,
+             "The paper's method: the energy that needs no refinement unless artefacts are seen")
+        .nonNegative()
+        .showDefault();
+    command.addFlag("--full-covariance", options.search.search.fullCovariance,
+                    "The paper's method: one covariance for all actors' degrees of freedom, as in the paper; slower");
+    command.add("--seed", options.search.seed, "Another seed, other poses; the same seed and trials, the same poses")
+        .range(std::uint64_t{0}, std::uint64_t{std::numeric_limits<std::int64_t>::max()})
+        .showDefault();
+    command.add("--threads", options.search.threads, "How many to use; the poses are the same for any number").range(1, 256);
 }
 
-void declarePictures(CLI::App& command, PoseOptions& options) {
-    const CLI::Validator picture(onlyPicture, "PNG|SVG");
-    command.add_option("--image", options.image, "Also draw the shadow, in the colours of who throws it")->check(picture);
-    command.add_option("--view", options.view, "Also draw the stage with its people, as an outsider would see it")
-        ->check(picture);
-    command.add_option("--each", options.each, "Also draw each actor's shadow alone, and say how they stand")->check(picture);
-    command.add_option("--solutions", options.solutions,
-                       fmt::format("A folder for up to {} good solutions that differ most: solutions.png to choose from, and "
-                                   "each as a cast",
-                                   kMostSolutions));
-    command.add_option("--meshes", options.meshes,
-                       "A folder for the actors as Wavefront OBJ, and stage.json with light and screen: for other programs");
-    command.add_option("--report", options.report, "Also write figures, as JSON");
+void declarePictures(Command& command, PoseOptions& options) {
+    const ValueCheck picture{onlyPicture, "PNG|SVG"};
+    command.add("--image", options.image, "Also draw the shadow, in the colours of who throws it").check(picture);
+    command.add("--view", options.view, "Also draw the stage with its people, as an outsider would see it").check(picture);
+    command.add("--each", options.each, "Also draw each actor's shadow alone, and say how they stand").check(picture);
+    command.add("--solutions", options.solutions,
+                fmt::format("A folder for up to {} good solutions that differ most: solutions.png to choose from, and "
+                            "each as a cast",
+                            kMostSolutions));
+    command.add("--meshes", options.meshes,
+                "A folder for the actors as Wavefront OBJ, and stage.json with light and screen: for other programs");
+    command.add("--report", options.report, "Also write figures, as JSON");
     command.footer("While it searches, the space bar pauses and goes on; escape, q and Ctrl-C end it with the best so far.");
 }
 
@@ -151,7 +147,7 @@ std::vector<fs::path> PoseOptions::targets() const {
     return files;
 }
 
-void declarePose(CLI::App& command, PoseOptions& options) {
+void declarePose(Command& command, PoseOptions& options) {
     declareActors(command, options);
     declareTask(command, options);
     declareFurther(command, options);

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "app/base/command_line.h"
+
 #include "theatre/search/pose_rounds.h"
 
 #include "core/parallel.h"
-
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -33,7 +33,7 @@ struct PoseOptions {
 
 constexpr std::size_t kMostSolutions = 8;
 
-void declarePose(CLI::App& command, PoseOptions& options);
+void declarePose(Command& command, PoseOptions& options);
 
 // Refuses before the search what could not be written after it.
 Result<void> checkOutputs(const PoseOptions& options);

@@ -29,41 +29,41 @@ struct Options {
     int threads = hardwareThreads();
 };
 
-void declare(CLI::App& command, Options& options) {
+void declare(Command& command, Options& options) {
     command
-        .add_option("PATTERN", options.mask.what,
-                    "A *.pattern.yaml; a picture, such as the guide itself; or a show's folder, with --output and --cue")
-        ->required();
-    command.add_option("--scene", options.scene, "The mesh to project on: FBX, OBJ, glTF, PLY or STL")->required();
+        .add("PATTERN", options.mask.what,
+             "A *.pattern.yaml; a picture, such as the guide itself; or a show's folder, with --output and --cue")
+        .required();
+    command.add("--scene", options.scene, "The mesh to project on: FBX, OBJ, glTF, PLY or STL").required();
     declareFilmOptions(command, options.mask);
-    addOutOption(command, options.file, "What to write: FILE.png, a picture, or FILE.mp4, a film of the movement")->required();
+    addOutOption(command, options.file, "What to write: FILE.png, a picture, or FILE.mp4, a film of the movement").required();
     command
-        .add_option("--seconds", options.seconds,
-                    fmt::format("For a picture: the moment of the movement (default: 0); for a film: its length (default: {})",
-                                kFilmSeconds))
-        ->check(CLI::Range(0.0, 1e6));
+        .add("--seconds", options.seconds,
+             fmt::format("For a picture: the moment of the movement (default: 0); for a film: its length (default: {})",
+                         kFilmSeconds))
+        .range(0.0, 1e6);
     const std::string unit = ", in the mesh's unit, y up ";
     addPointOption(
         command, "--projector", options.places.projector,
         "Where the projector stands" + unit + "(default: in front, upper left); put it far away to see the mesh in sunlight");
     addPointOption(command, "--look-at", options.places.lookAt, "Where the projector looks (default: the scene's middle)");
     command
-        .add_option("--throw", options.places.throwRatio,
-                    "The projector's distance / picture width (default: the picture just contains the scene)")
-        ->check(CLI::Range(0.01, 1e5));
+        .add("--throw", options.places.throwRatio,
+             "The projector's distance / picture width (default: the picture just contains the scene)")
+        .range(0.01, 1e5);
     addPointOption(command, "--viewer", options.places.viewer, "Where the viewer stands" + unit + "(default: in front)");
     addPointOption(command, "--viewer-look-at", options.places.viewerLookAt,
                    "Where the viewer looks (default: the scene's middle)");
-    command.add_option("--field-of-view", options.fieldOfView, "The viewer's horizontal field of view, degrees (default: 35)")
-        ->check(CLI::Range(1.0, 150.0));
-    command.add_option("--ambient", options.places.ambient, "Other light, as a share of the projector's white")
-        ->check(CLI::Range(0.0, 100.0))
-        ->capture_default_str();
-    command.add_flag("--ground", options.places.ground, "Add a floor under the scene");
-    command.add_flag("--z-up", options.zUp,
-                     "The mesh has z up; it is turned to y up, and the other options' points are given after that");
+    command.add("--field-of-view", options.fieldOfView, "The viewer's horizontal field of view, degrees (default: 35)")
+        .range(1.0, 150.0);
+    command.add("--ambient", options.places.ambient, "Other light, as a share of the projector's white")
+        .range(0.0, 100.0)
+        .showDefault();
+    command.addFlag("--ground", options.places.ground, "Add a floor under the scene");
+    command.addFlag("--z-up", options.zUp,
+                    "The mesh has z up; it is turned to y up, and the other options' points are given after that");
     addSizeOption(command, "--size", options.size, "Size of the picture (default: 1280x720)");
-    command.add_option("--threads", options.threads, "Number of threads; does not change the picture")->check(CLI::Range(1, 256));
+    command.add("--threads", options.threads, "Number of threads; does not change the picture").range(1, 256);
 }
 
 // The frames for the projector; their times rise from call to call.
@@ -121,8 +121,8 @@ Result<void> run(const Options& options) {
 
 }  // namespace
 
-void addPreviewCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "preview", "Show a pattern as a light mask on a 3D scene", declare, run);
+void addPreviewCommand(Program& program) {
+    addCommand<Options>(program, "preview", "Show a pattern as a light mask on a 3D scene", declare, run);
 }
 
 }  // namespace fantascope::app

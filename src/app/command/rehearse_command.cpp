@@ -43,13 +43,12 @@ Result<void> runAndReport(const RunOptions& run) {
     return {};
 }
 
-void declareCommon(CLI::App& command, Options& options) {
-    command.add_option("--seconds", options.length, "end after this much show time")->check(CLI::Range(0.1, 1e6));
-    command.add_option("--from", options.fromCue, "enter this cue at once, by its name");
-    command.add_option("--record", options.record,
-                       "write videos, traces and a contact sheet to this folder, or one video to FILE.mp4");
-    command.add_option("--pictures", options.pictures, "folder for the pictures that the key s takes")->capture_default_str();
-    command.add_option("--report", options.report, "write the run's figures to this JSON file (docs/report.md)");
+void declareCommon(Command& command, Options& options) {
+    command.add("--seconds", options.length, "end after this much show time").range(0.1, 1e6);
+    command.add("--from", options.fromCue, "enter this cue at once, by its name");
+    command.add("--record", options.record, "write videos, traces and a contact sheet to this folder, or one video to FILE.mp4");
+    command.add("--pictures", options.pictures, "folder for the pictures that the key s takes").showDefault();
+    command.add("--report", options.report, "write the run's figures to this JSON file (docs/report.md)");
     command.footer(runKeysHelp());
 }
 
@@ -66,14 +65,14 @@ RunOptions commonOf(const Options& options) {
     return run;
 }
 
-void declareRehearse(CLI::App& command, Options& options) {
-    command.add_option("show", options.show, "a show's folder (default: shows/light-movement)");
-    command.add_option("--site", options.site, "the site to simulate (default: config/simulated)");
+void declareRehearse(Command& command, Options& options) {
+    command.add("show", options.show, "a show's folder (default: shows/light-movement)");
+    command.add("--site", options.site, "the site to simulate (default: config/simulated)");
     declareCommon(command, options);
-    command.add_option("--seed", options.seed, "seed of the simulated site's noise")->capture_default_str();
-    command.add_flag("--window", options.window, "show the pictures in windows");
-    command.add_flag("--as-fast-as-possible", options.asFastAsPossible, "use a stepped clock: the same bytes every time");
-    command.add_flag("--by-hand", options.byHand, "press no GO, and wait for the keys below");
+    command.add("--seed", options.seed, "seed of the simulated site's noise").showDefault();
+    command.addFlag("--window", options.window, "show the pictures in windows");
+    command.addFlag("--as-fast-as-possible", options.asFastAsPossible, "use a stepped clock: the same bytes every time");
+    command.addFlag("--by-hand", options.byHand, "press no GO, and wait for the keys below");
 }
 
 Result<void> rehearse(const Options& options) {
@@ -89,9 +88,9 @@ Result<void> rehearse(const Options& options) {
     return runAndReport(run);
 }
 
-void declareRun(CLI::App& command, Options& options) {
-    command.add_option("show", options.show, "a show's folder")->required();
-    command.add_option("--site", options.site, "the site: a folder or a site.yaml")->required();
+void declareRun(Command& command, Options& options) {
+    command.add("show", options.show, "a show's folder").required();
+    command.add("--site", options.site, "the site: a folder or a site.yaml").required();
     declareCommon(command, options);
 }
 
@@ -99,12 +98,12 @@ Result<void> runNight(const Options& options) { return runAndReport(commonOf(opt
 
 }  // namespace
 
-void addRehearseCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "rehearse", "Play a show on the simulated site", declareRehearse, rehearse);
+void addRehearseCommand(Program& program) {
+    addCommand<Options>(program, "rehearse", "Play a show on the simulated site", declareRehearse, rehearse);
 }
 
-void addRunCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "run", "Play a show on the site's own devices", declareRun, runNight);
+void addRunCommand(Program& program) {
+    addCommand<Options>(program, "run", "Play a show on the site's own devices", declareRun, runNight);
 }
 
 }  // namespace fantascope::app

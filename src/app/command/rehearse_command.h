@@ -5,8 +5,8 @@
 namespace fantascope::app {
 
 // fantascope rehearse [SHOW]: a show on the simulated site, in real time or as fast as possible.
-void addRehearseCommand(CLI::App& program, Action& action);
+void addRehearseCommand(Program& program);
 // fantascope run SHOW --site SITE: a show on the devices that the site file names.
-void addRunCommand(CLI::App& program, Action& action);
+void addRunCommand(Program& program);
 
 }  // namespace fantascope::app

@@ -29,16 +29,15 @@ struct Options {
     int threads = hardwareThreads();
 };
 
-void declare(CLI::App& command, Options& options) {
-    command.add_option("SITE", options.site, "A site's folder, or a site.yaml")->required();
-    addProjectorOption(command, options.output, "The projector whose canvas to draw")->required();
-    addOutOption(command, options.file, "The picture to write, PNG")->required();
+void declare(Command& command, Options& options) {
+    command.add("SITE", options.site, "A site's folder, or a site.yaml").required();
+    addProjectorOption(command, options.output, "The projector whose canvas to draw").required();
+    addOutOption(command, options.file, "The picture to write, PNG").required();
     addSizeOption(
         command, "--size", options.size,
         fmt::format("Size of the picture, and so of the guide (default: {} rows, in the canvas's aspect on its surface)", kRows));
-    command.add_option("--grid", options.grid, "Metres between grid lines (default: some ten lines on the canvas)")
-        ->check(CLI::Range(0.001, 1000.0));
-    command.add_option("--threads", options.threads, "Number of threads; does not change the picture")->check(CLI::Range(1, 256));
+    command.add("--grid", options.grid, "Metres between grid lines (default: some ten lines on the canvas)").range(0.001, 1000.0);
+    command.add("--threads", options.threads, "Number of threads; does not change the picture").range(1, 256);
 }
 
 // 1, 2 or 5 times a power of ten that divides a length into about `parts` parts.
@@ -88,9 +87,9 @@ Result<void> run(const Options& options) {
 
 }  // namespace
 
-void addTemplateCommand(CLI::App& program, Action& action) {
-    addCommand<Options>(program, action, "template",
-                        "Draw the site from a projector's point of view, as a picture to draw a guide over", declare, run);
+void addTemplateCommand(Program& program) {
+    addCommand<Options>(program, "template", "Draw the site from a projector's point of view, as a picture to draw a guide over",
+                        declare, run);
 }
 
 }  // namespace fantascope::app

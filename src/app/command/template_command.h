@@ -6,6 +6,6 @@ namespace fantascope::app {
 
 // `fantascope template SITE --output NAME -o PNG`: draws the scene from the projector's point of
 // view, as a picture to draw a guide over. See docs/drawing.md.
-void addTemplateCommand(CLI::App& program, Action& action);
+void addTemplateCommand(Program& program);
 
 }  // namespace fantascope::app

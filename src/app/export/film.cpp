@@ -98,12 +98,12 @@ bool isPattern(const fs::path& path) {
 
 }  // namespace
 
-void declareFilmOptions(CLI::App& command, FilmRequest& request) {
+void declareFilmOptions(Command& command, FilmRequest& request) {
     addProjectorOption(command, request.output, "For a show: the projector whose picture to show");
-    command.add_option("--site", request.site, "For a show: the site to play on (default: config/simulated)");
-    CLI::Option* const cue =
-        command.add_option("--cue", request.cue, "For a show: only this cue, faded in, with the movement from its beginning");
-    command.add_option("--from", request.from, "For a show: enter this cue at once and play on")->excludes(cue);
+    command.add("--site", request.site, "For a show: the site to play on (default: config/simulated)");
+    const Option cue =
+        command.add("--cue", request.cue, "For a show: only this cue, faded in, with the movement from its beginning");
+    command.add("--from", request.from, "For a show: enter this cue at once and play on").excludes(cue);
 }
 
 Result<Film> Film::open(const FilmRequest& request) {

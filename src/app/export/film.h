@@ -1,12 +1,12 @@
 #pragma once
 
+#include "app/base/command_line.h"
 #include "app/export/off_screen.h"
 
 #include "core/clock.h"
 #include "core/result.h"
 #include "media/image.h"
 
-#include <CLI/CLI.hpp>
 #include <glm/vec2.hpp>
 
 #include <filesystem>
@@ -31,7 +31,7 @@ struct FilmRequest {
 };
 
 // Declares --output, --site, --cue and --from, for every command that takes a show.
-void declareFilmOptions(CLI::App& command, FilmRequest& request);
+void declareFilmOptions(Command& command, FilmRequest& request);
 
 // An output's frames by show time, as the projector would get them. The show plays without its
 // devices, and GO is pressed as in a rehearsal.

@@ -1,9 +1,7 @@
 #include "app/keys/run_keys.h"
 
-#include "app/base/command.h"
-#include "app/command/rehearse_command.h"
-
 #include "core/file.h"
+#include "program.h"
 #include "source_folder.h"
 
 #include <fmt/format.h>
@@ -16,12 +14,8 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 
 TEST(RunKeys, stand_in_the_help_of_both_commands) {
-    CLI::App program;
-    Action action;
-    addRunCommand(program, action);
-    addRehearseCommand(program, action);
     for (const char* command : {"run", "rehearse"}) {
-        const std::string help = program.get_subcommand(command)->help();
+        const std::string help = runProgram({command, "--help"}, std::filesystem::temp_directory_path()).out;
         for (const RunKey& key : kRunKeys) EXPECT_THAT(help, HasSubstr(fmt::format("\n  {:<7}{}\n", key.name, key.does)));
         EXPECT_THAT(help, testing::AllOf(HasSubstr("\n  Ctrl-C "), HasSubstr("\n  Ctrl-Z ")));
     }
