@@ -38,12 +38,12 @@ inline RgbaImage shaded(glm::ivec2 size) {
 }
 
 // The greatest difference in any channel, and where. `wanted` may be larger.
-struct Difference {
+struct WorstPixel {
     int most = 0;
     glm::ivec2 at{0};
 };
-inline Difference differenceOf(const RgbaImage& seen, const RgbaImage& wanted) {
-    Difference difference;
+inline WorstPixel differenceOf(const RgbaImage& seen, const RgbaImage& wanted) {
+    WorstPixel difference;
     for (int y = 0; y < seen.height(); ++y)
         for (int x = 0; x < seen.width(); ++x) {
             const Rgba8 a = seen.at(x, y), b = wanted.at(x, y);

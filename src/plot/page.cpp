@@ -18,7 +18,7 @@ struct Release {
     void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
     void operator()(cairo_t* context) const { cairo_destroy(context); }
 };
-using Surface = std::unique_ptr<cairo_surface_t, Release>;
+using CairoSurface = std::unique_ptr<cairo_surface_t, Release>;
 using Context = std::unique_ptr<cairo_t, Release>;
 
 cairo_status_t append(void* bytes, const unsigned char* data, unsigned count) {
@@ -30,7 +30,7 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned count) {
 
 // Records what is drawn, to replay it in any format.
 struct Page::Cairo {
-    Surface surface;
+    CairoSurface surface;
     Context context;
 
     // Replays on `target`, whose output goes into `bytes`, finishes it and writes the bytes to the
@@ -97,7 +97,7 @@ void Page::box(glm::dvec2 topLeft, glm::dvec2 bottomRight, glm::dvec3 colour) {
 }
 
 void Page::picture(const RgbaImage& picture, glm::dvec2 topLeft, glm::dvec2 bottomRight) {
-    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, picture.width(), picture.height()));
+    const CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, picture.width(), picture.height()));
     cairo_surface_flush(surface.get());
     unsigned char* const bytes = cairo_image_surface_get_data(surface.get());
     const int stride = cairo_image_surface_get_stride(surface.get());
@@ -169,23 +169,23 @@ Result<void> Page::write(const std::filesystem::path& file) const {
     if (!knows(file)) return Error(fmt::format("{}: a plot's name must end in .png or .svg", file.string()));
     std::string bytes;
     if (file.extension() == ".svg") {
-        const Surface surface(cairo_svg_surface_create_for_stream(append, &bytes, width_, height_));
+        const CairoSurface surface(cairo_svg_surface_create_for_stream(append, &bytes, width_, height_));
         cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_PX);
         return cairo_->drawOn(surface.get(), file, bytes);
     }
-    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_, height_));
+    const CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_, height_));
     return cairo_->drawOn(surface.get(), file, bytes);
 }
 
 Result<void> Page::writeAsPaper(const std::filesystem::path& file) const {
     std::string bytes;
     if (file.extension() == ".svg") {
-        const Surface surface(cairo_svg_surface_create_for_stream(append, &bytes, width_, height_));
+        const CairoSurface surface(cairo_svg_surface_create_for_stream(append, &bytes, width_, height_));
         cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_PT);
         return cairo_->drawOn(surface.get(), file, bytes);
     }
     if (file.extension() != ".pdf") return Error(fmt::format("{}: a sheet's name must end in .pdf or .svg", file.string()));
-    const Surface surface(cairo_pdf_surface_create_for_stream(append, &bytes, width_, height_));
+    const CairoSurface surface(cairo_pdf_surface_create_for_stream(append, &bytes, width_, height_));
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");  // the same drawing, the same bytes
     return cairo_->drawOn(surface.get(), file, bytes);
 }

@@ -274,7 +274,7 @@ TEST(CodedFrame, of_every_width_is_right_to_the_last_pixel_and_nothing_is_touche
             std::ranges::copy(bytes, frame.begin());
             RgbaImage picture(width, kRows, {1, 2, 3, 4});
             ASSERT_TRUE(decoder.decode(frame, picture));
-            const Difference difference = differenceOf(picture, wanted);
+            const WorstPixel difference = differenceOf(picture, wanted);
             const int tolerance = coding == FrameCoding::Mjpg ? 6 : 3;
             EXPECT_LE(difference.most, tolerance)
                 << nameOf(coding) << ", " << width << " wide, at " << difference.at.x << "," << difference.at.y;

@@ -198,8 +198,8 @@ class Line:
             return
         loop = asyncio.get_event_loop()
         server = self.server
-        # Not of the ports that the kernel gives to who connects: one that connects again and again to such a port while nobody listens
-        # is sooner or later connected to itself.
+        # Not of the ports that the kernel gives to who connects: one that connects again and again
+        # to such a port while nobody listens is sooner or later connected to itself.
         for port in [self.where] if self.where else range(20000 + os.getpid() % 10000, 32000):
             try:
                 self.listener = await loop.create_server(lambda: TcpHandler(server), "127.0.0.1", port, reuse_address=True)

@@ -263,7 +263,7 @@ TEST_F(Videos, keep_their_alpha) {
 }
 
 // Nothing may be written behind the end of the picture or of the decoder's own memory.
-Difference differenceOfFirstFrame(const std::filesystem::path& file, const RgbaImage& wanted) {
+WorstPixel differenceOfFirstFrame(const std::filesystem::path& file, const RgbaImage& wanted) {
     const auto decoder = valueOf(VideoDecoder::open(valueOf(VideoDecoder::examine(file))));
     FANTASCOPE_CHECK(decoder->next() == 0u, "the first frame");
     const FencedAllocations fence;
@@ -280,7 +280,7 @@ TEST_F(Videos, of_every_width_are_right_to_the_last_pixel_and_nothing_is_written
             const RgbaImage wanted = shaded({width, kRows});
             writeVideo(folder_ / "a.mkv", {.encoder = "ffv1", .pixels = pixels, .size = {width, kRows}}, 1,
                        [&](int) { return wanted; });
-            const Difference difference = differenceOfFirstFrame(folder_ / "a.mkv", wanted);
+            const WorstPixel difference = differenceOfFirstFrame(folder_ / "a.mkv", wanted);
             EXPECT_LE(difference.most, 3) << pixels << ", " << width << " wide, at " << difference.at.x << "," << difference.at.y;
         }
 }
@@ -293,7 +293,7 @@ TEST_F(Videos, of_real_sizes_are_right_to_the_last_pixel) {
     for (const glm::ivec2 size : kSizes) {
         const RgbaImage wanted = shaded(size);
         writeVideo(folder_ / "a.mkv", {.encoder = "ffv1", .size = size}, 1, [&](int) { return wanted; });
-        const Difference difference = differenceOfFirstFrame(folder_ / "a.mkv", wanted);
+        const WorstPixel difference = differenceOfFirstFrame(folder_ / "a.mkv", wanted);
         EXPECT_LE(difference.most, 3) << size.x << " x " << size.y << ", at " << difference.at.x << "," << difference.at.y;
     }
 }

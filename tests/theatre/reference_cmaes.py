@@ -42,7 +42,8 @@ def rastrigin(x):
     return float(np.sum(x * x + 10 - 10 * np.cos(2 * math.pi * x)))
 
 
-# function, dimensions, population, every coordinate of the start, sigma, target, most evaluations, whether with negative weights
+# function, dimensions, population, every coordinate of the start, sigma, target, most evaluations,
+# whether with negative weights
 CASES = [(f, n, 40, start, sigma, 1e-8, 400_000, 1)
          for f, start, sigma in ((sphere, 3, 2), (ellipsoid, 3, 2), (rotated_ellipsoid, 3, 2), (rosenbrock, 0, 0.5))
          for n in (5, 10, 20)]

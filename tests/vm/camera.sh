@@ -1,6 +1,7 @@
 #!/bin/bash
-# tests/vm/camera.sh PROGRAM V4L2LOOPBACK FILM: what is run inside the virtual machine, as root, to try the camera driver. PROGRAM is
-# vm_camera_test, V4L2LOOPBACK the module built for the machine's kernel, FILM a video of JPEG pictures, 640 x 360.
+# tests/vm/camera.sh PROGRAM V4L2LOOPBACK FILM: what is run inside the virtual machine, as root, to
+# try the camera driver. PROGRAM is vm_camera_test, V4L2LOOPBACK the module built for the machine's
+# kernel, FILM a video of JPEG pictures, 640 x 360.
 set -eu
 export FANTASCOPE_FILM=$3
 # The webcam among vivid's inputs has sizes and rates as a USB camera does.

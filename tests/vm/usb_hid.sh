@@ -1,6 +1,7 @@
 #!/bin/bash
-# tests/vm/usb_hid.sh PROGRAM [ARGUMENT...]: what is run inside the virtual machine, as root, to try the hand controller's driver. PROGRAM is vm_usb_hid_test.
-# The kernel's own gadgets make two USB devices of this machine, and dummy_hcd plugs them into the same machine.
+# tests/vm/usb_hid.sh PROGRAM [ARGUMENT...]: what is run inside the virtual machine, as root, to try
+# the hand controller's driver. PROGRAM is vm_usb_hid_test. The kernel's own gadgets make two USB
+# devices of this machine, and dummy_hcd plugs them into the same machine.
 set -eu
 modprobe dummy_hcd num=2
 modprobe -a libcomposite usb_f_hid usbhid
@@ -18,7 +19,8 @@ gadget() { # NAME SERIAL: its end here is the next /dev/hidg*
   echo 0 > functions/hid.usb0/protocol
   echo 0 > functions/hid.usb0/subclass
   echo 1 > functions/hid.usb0/report_length
-  # Eight buttons in a byte, and three lamps in another. In one piece: every write is a descriptor of its own.
+  # Eight buttons in a byte, and three lamps in another. In one piece: every write is a descriptor
+  # of its own.
   printf '\x05\x01\x09\x05\xa1\x01\x05\x09\x19\x01\x29\x08\x15\x00\x25\x01\x75\x01\x95\x08\x81\x02'\
 '\x05\x08\x19\x01\x29\x03\x95\x03\x91\x02\x95\x05\x91\x03\xc0' > functions/hid.usb0/report_desc
   ln -s functions/hid.usb0 configs/c.1/

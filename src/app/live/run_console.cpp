@@ -18,12 +18,12 @@ constexpr Time kRedraw = std::chrono::milliseconds(100), kRepeat = std::chrono::
 
 // The parts of the line from left to right. Each has several forms, from the longest to the
 // shortest. An empty form takes no room.
-enum Part { Blackout, SettingUp, Cue, Fade, Next, Left, Late, Rate, Scores, kParts };
+enum LinePart { Blackout, SettingUp, Cue, Fade, Next, Left, Late, Rate, Scores, kParts };
 using Forms = std::vector<std::string>;
 
 // The parts to shorten by one form, in this order, while the line is too long.
-constexpr Part kShortening[] = {Scores, Rate, Next,      Cue, Cue,       Late,     Fade, Left,
-                                Next,   Next, SettingUp, Cue, SettingUp, Blackout, Cue};
+constexpr LinePart kShortening[] = {Scores, Rate, Next,      Cue, Cue,       Late,     Fade, Left,
+                                    Next,   Next, SettingUp, Cue, SettingUp, Blackout, Cue};
 
 Forms cueForms(const RunStatus& status) {
     if (status.cue < 0) return {"no cue yet", ""};
@@ -78,7 +78,7 @@ std::string statusLine(const RunStatus& status, int columns) {
         return text;
     };
     std::string text = line();
-    for (const Part part : kShortening) {
+    for (const LinePart part : kShortening) {
         if (columnsOf(text) <= columns) break;
         if (form[part] + 1 < parts[part].size()) ++form[part];
         text = line();

@@ -73,7 +73,7 @@ TEST(VideoWriter, is_right_to_the_last_pixel_at_every_width_and_touches_nothing_
                 const auto byte = [](std::uint16_t word) { return static_cast<std::uint8_t>(word / 257); };
                 return Rgba8{byte(pixel.r), byte(pixel.g), byte(pixel.b), byte(pixel.a)};
             });
-            const Difference difference = differenceOf(seen, wanted);
+            const WorstPixel difference = differenceOf(seen, wanted);
             EXPECT_LE(difference.most, even ? 12 : kind.tolerance + 2)
                 << kind.file << ", " << width << " wide, at " << difference.at.x << "," << difference.at.y;
         }

@@ -119,7 +119,15 @@ public:
     }
 };
 
-// The default show on the simulated default site. Each of the things below can be made to throw.
+// The simulated default site, with outputs of few pixels: the recording of a minute would take the
+// test's time.
+show::Site aSmallSite() {
+    show::Site site = valueOf(show::readSite(sourceFolder() + "/config/simulated/site.yaml"));
+    for (show::Output& output : site.outputs) output.projection.size = {160, 90};
+    return site;
+}
+
+// The default show on that site. Each of the things below can be made to throw.
 class Night : public testing::Test {
 protected:
     Night() {
@@ -203,7 +211,7 @@ protected:
     }
 
     const ScratchFolder folder_;
-    show::Site site_ = valueOf(show::readSite(sourceFolder() + "/config/simulated/site.yaml"));
+    show::Site site_ = aSmallSite();
     show::Show show_ = valueOf(show::Show::load(sourceFolder() + "/shows/light-movement"));
     show::CueList cues_ = valueOf(show_.bind(site_));
     show::InputLog inputs_{cues_};

@@ -76,7 +76,7 @@ protected:
 };
 
 // What a device's section may hold: keys with values that are right, and with values that are not.
-struct Key {
+struct SiteKey {
     std::string_view name;
     std::vector<std::string_view> right, wrong;
     bool isNeeded = false;
@@ -84,38 +84,38 @@ struct Key {
 struct Section {
     std::string Parts::*part;
     std::string_view driver;
-    std::vector<Key> keys;
+    std::vector<SiteKey> keys;
 };
 
-const std::vector<Key> kTcp = {{"host", {"127.0.0.1"}, {"relay.local", "10.0.0", "[1]", "::1"}, true},
-                               {"port", {"9", "65535"}, {"99999", "0", "five", "{a: 1}"}, true},
-                               {"unit", {"1", "255"}, {"0", "250", "x"}},
-                               {"first", {"0", "100"}, {"-1", "65534", "65536"}},
-                               {"response_timeout", {"0.02", "0.1"}, {"9", "soon", "0"}}};
-const std::vector<Key> kRtu = {{"device", {"/dev/fantascope-none"}, {"ttyUSB0", "[]", "''"}, true},
-                               {"unit", {"1", "247"}, {"255", "0"}},
-                               {"baud", {"9600", "115200"}, {"9601", "300", "fast"}},
-                               {"parity", {"none", "odd"}, {"evn", "1"}},
-                               {"stop_bits", {"1", "2"}, {"3", "1.5"}},
-                               {"rs485", {"true", "false"}, {"yes please", "1"}}};
+const std::vector<SiteKey> kTcp = {{"host", {"127.0.0.1"}, {"relay.local", "10.0.0", "[1]", "::1"}, true},
+                                   {"port", {"9", "65535"}, {"99999", "0", "five", "{a: 1}"}, true},
+                                   {"unit", {"1", "255"}, {"0", "250", "x"}},
+                                   {"first", {"0", "100"}, {"-1", "65534", "65536"}},
+                                   {"response_timeout", {"0.02", "0.1"}, {"9", "soon", "0"}}};
+const std::vector<SiteKey> kRtu = {{"device", {"/dev/fantascope-none"}, {"ttyUSB0", "[]", "''"}, true},
+                                   {"unit", {"1", "247"}, {"255", "0"}},
+                                   {"baud", {"9600", "115200"}, {"9601", "300", "fast"}},
+                                   {"parity", {"none", "odd"}, {"evn", "1"}},
+                                   {"stop_bits", {"1", "2"}, {"3", "1.5"}},
+                                   {"rs485", {"true", "false"}, {"yes please", "1"}}};
 
-std::vector<Key> with(std::vector<Key> keys, const std::vector<Key>& more) {
+std::vector<SiteKey> with(std::vector<SiteKey> keys, const std::vector<SiteKey>& more) {
     keys.insert(keys.end(), more.begin(), more.end());
     return keys;
 }
 
 // Every network driver is kept on the loopback, whatever else is wrong.
-const Key kLoopback{"interface", {"lo"}, {"[lo]"}, true};
-const std::vector<Key> kRelayKeys = {
+const SiteKey kLoopback{"interface", {"lo"}, {"[lo]"}, true};
+const std::vector<SiteKey> kRelayKeys = {
     {"kind", {"coils", "holding_registers"}, {"coil", "discrete_inputs"}},
     {"one_by_one", {"true", "false"}, {"often"}},
     {"timeout", {"2", "30"}, {"0", "31", "0.05"}},
     {"rate", {"0.2", "50"}, {"0", "51", "x"}},
     {"watchdog", {"{register: 4, period: 0.5}"}, {"{register: 4}", "{register: 70000, period: 1}", "4"}}};
-const std::vector<Key> kContactKeys = {{"kind", {"discrete_inputs", "input_registers"}, {"inputs", "[]"}},
-                                       {"rate", {"0.2", "200"}, {"0", "201"}},
-                                       {"debounce", {"0", "0.01"}, {"-1", "2"}},
-                                       {"normally_closed", {"[0]", "[1, 3]"}, {"[4]", "0", "[-1]"}}};
+const std::vector<SiteKey> kContactKeys = {{"kind", {"discrete_inputs", "input_registers"}, {"inputs", "[]"}},
+                                           {"rate", {"0.2", "200"}, {"0", "201"}},
+                                           {"debounce", {"0", "0.01"}, {"-1", "2"}},
+                                           {"normally_closed", {"[0]", "[1, 3]"}, {"[4]", "0", "[-1]"}}};
 const std::vector<Section> kSections = {
     {&Parts::display, "headless", {}},
     {&Parts::display,
@@ -193,7 +193,7 @@ TEST_F(SiteFileTest, check_passes_exactly_those_sites_whose_devices_open) {
     for (const Section& section : kSections)
         for (int i = 0; i < each; ++i) {
             std::vector<std::pair<std::string, std::string>> entries{{"driver", std::string(section.driver)}};
-            for (const Key& key : section.keys)
+            for (const SiteKey& key : section.keys)
                 if (key.isNeeded || below(3) == 0) entries.emplace_back(key.name, key.right[below(key.right.size())]);
             bool isWrong = true;
             switch (i % 6) {
@@ -211,7 +211,7 @@ TEST_F(SiteFileTest, check_passes_exactly_those_sites_whose_devices_open) {
                 case 4: {  // a wrong value
                     isWrong = !section.keys.empty();
                     if (!isWrong) break;
-                    const Key& key = section.keys[below(section.keys.size())];
+                    const SiteKey& key = section.keys[below(section.keys.size())];
                     std::erase_if(entries, [&](const auto& entry) { return entry.first == key.name; });
                     entries.emplace_back(key.name, key.wrong[below(key.wrong.size())]);
                     break;

@@ -35,7 +35,7 @@ PoseTarget emptyTarget(const Stage& stage, std::size_t beam) {
 }
 
 // aScene() on a stage of any number of beams.
-PoseProblem aScene(const Stage& stage, const std::vector<double>& statures) {
+PoseProblem aSceneOn(const Stage& stage, const std::vector<double>& statures) {
     PoseProblem problem{stage, {}, {}, {}};
     for (std::size_t i = 0; i < stage.beams.size(); ++i) problem.targets.push_back(emptyTarget(stage, i));
     for (const double stature : statures) problem.actors.push_back(humanBody(stature));
@@ -73,7 +73,7 @@ EnergyTerms termsOf(const PoseProblem& problem, const std::vector<double>& poses
 
 // Two people whose arms are a little bent, and the targets that other poses make.
 struct Corner {
-    PoseProblem problem = aScene(aCorner(), {1.7, 1.5});
+    PoseProblem problem = aSceneOn(aCorner(), {1.7, 1.5});
     std::vector<double> wanted = aRow(problem, {-0.75, 0.75}, 2), poses;
     explicit Corner(double size = 0.15) {
         wanted[problem.actors[0].joints[problem.actors[0].joint("left elbow")].first] += 0.5;
@@ -120,7 +120,7 @@ TEST(Beams, it_does_not_matter_which_screen_is_the_first) {
     const glm::dvec3 origin = screen.screenFromStage({0, 0, 0});
     turned.screens.push_back({{origin.x, origin.z}, -screen.turn});
     turned.beams.push_back({screen.screenFromStage(stage.beams[0].light), 1});
-    PoseProblem problem = aScene(turned, {1.7, 1.5});
+    PoseProblem problem = aSceneOn(turned, {1.7, 1.5});
     setTarget(problem.targets[0], corner.problem.targets[1].mask);
     setTarget(problem.targets[1], corner.problem.targets[0].mask);
     const EnergyTerms one = termsOf(corner.problem, corner.poses),
@@ -192,7 +192,7 @@ TEST(Beams, a_shadow_moves_as_the_camera_at_its_light_says) {
 
 TEST(Beams, every_screen_is_in_the_way) {
     const auto share = [](Stage stage, double x, double z) {
-        PoseProblem problem = aScene(stage, {1.7});
+        PoseProblem problem = aSceneOn(stage, {1.7});
         problem.weights = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
         problem.weights.w11 = 1;
         std::vector<double> poses = aRow(problem, {x}, z);
@@ -211,7 +211,7 @@ TEST(Beams, every_screen_is_in_the_way) {
     curved.screens[0].radius = -3;
     EXPECT_LT(share(curved, 0, 0.05), 0.02) << "the body in one that bulges";
     // What somebody holds, too.
-    PoseProblem problem = aScene(aCorner(), {1.7});
+    PoseProblem problem = aSceneOn(aCorner(), {1.7});
     Prop staff = aBox({6, 0.03, 0.03}, {0, 0, 0});
     staff.holder = Prop::Holder{0, BodyPart::RightHand};
     problem.stage.props = {staff};
@@ -228,7 +228,7 @@ TEST(Beams, every_screen_is_in_the_way) {
 
 // Behind a wall, to the first light.
 TEST(Beams, who_is_hidden_from_one_light_alone_is_not_occluded) {
-    PoseProblem problem = aScene(aCorner(), {1.7});
+    PoseProblem problem = aSceneOn(aCorner(), {1.7});
     problem.stage.props = {aBox({4, 3, 0.1}, {0, 1.5, 4.5})};
     const std::vector<double> poses = aRow(problem, {0}, 1.5);
     makeTargets(problem, poses);
@@ -246,7 +246,7 @@ TEST(Beams, who_is_hidden_from_one_light_alone_is_not_occluded) {
 
 // Where the second shadow sticks out at the height of a hand.
 TEST(Beams, artefacts_of_any_screen_name_who_could_mend_them) {
-    PoseProblem problem = aScene(aCorner(), {1.7});
+    PoseProblem problem = aSceneOn(aCorner(), {1.7});
     std::vector<double> poses = aRow(problem, {0}, 2);
     makeTargets(problem, poses);
     poses[problem.actors[0].joints[problem.actors[0].joint("left shoulder")].first] += 1;
@@ -383,7 +383,7 @@ TEST(Beams, a_search_serves_all_of_them_and_is_the_same_each_time) {
 TEST(Beams, people_start_before_every_screen) {
     Stage stage = aCorner();
     stage.screens[1].at.x = 0.5;
-    PoseProblem problem = aScene(stage, {1.7, 1.7, 1.7});
+    PoseProblem problem = aSceneOn(stage, {1.7, 1.7, 1.7});
     const std::vector<double> start = PoseSearch::start(problem);
     makeTargets(problem, start);
     for (const PoseSearch::Actor& actor : PoseSearch::measure(problem, start).actors) EXPECT_LT(actor.deepest, 0.7);
