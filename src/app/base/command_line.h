@@ -61,12 +61,12 @@ class Command {
 public:
     explicit Command(CLI::App* command) : command_(command) {}
 
-    // An option that sets a field. `names`: as "-o,--out", or "GUIDE" for a positional argument.
+    // An option that sets a field. `names`: "-o,--out", or "GUIDE" for a positional argument.
     // The types of fields are listed at the end of command_line.cpp.
     template <class Field>
     Option add(const std::string& names, Field& field, const std::string& help);
     Option addFlag(const std::string& names, bool& field, const std::string& help);
-    // An option whose text `take` takes. It returns why it refuses it, or "".
+    // An option whose text is handed to `take`, which returns why it refuses the text, or "".
     Option addParsed(const std::string& names, std::function<std::string(const std::string& given)> take,
                      const std::string& help);
     // An option whose value is one of these names; --help lists them in this order.
@@ -98,7 +98,7 @@ using Action = std::function<Result<void>()>;
 enum class Parsed {
     Action,
     Help,  // or the version; it has been printed
-    Wrong  // it is no command line of this program; why has been told
+    Wrong  // not a command line of this program; the reason has been printed
 };
 
 class Program {

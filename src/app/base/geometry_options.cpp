@@ -29,14 +29,11 @@ std::optional<glm::dvec3> pointFrom(const std::string& text) {
 template <class Value>
 Option addParsed(Command& command, const std::string& name, std::optional<Value>& target, const std::string& description,
                  std::optional<Value> (*parse)(const std::string&), const std::string& form) {
-    const auto refuse = [parse, form](const std::string& text) {
-        return parse(text) ? "" : fmt::format("'{}' is not {}", text, form);
-    };
-    const auto take = [&target, parse](const std::string& text) {
+    const auto take = [&target, parse, form](const std::string& text) {
         target = parse(text);
-        return std::string();
+        return target ? "" : fmt::format("'{}' is not {}", text, form);
     };
-    return command.addParsed(name, take, description).typeName(form).check({refuse, ""});
+    return command.addParsed(name, take, description).typeName(form);
 }
 
 }  // namespace
