@@ -17,6 +17,18 @@ constexpr std::size_t kAlignment = 16;
 thread_local std::int64_t allocations = 0;
 thread_local bool isFenced = false;
 
+// Set by FailingAllocations.
+constexpr std::size_t kNever = ~std::size_t{0};
+std::atomic<std::size_t> failsFrom = kNever;  // bytes
+std::atomic<std::int64_t> failed = 0;         // calls
+thread_local bool isSpared = false;
+
+bool hasFailed(std::size_t bytes) {
+    if (bytes < failsFrom || isSpared) return false;
+    ++failed;
+    return true;
+}
+
 struct Fenced {
     std::atomic<void*> memory = nullptr;
     void* pages = nullptr;
@@ -64,6 +76,7 @@ void release(void* memory) {
 // These replace the standard library's for the whole test program.
 void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
     ++allocations;
+    if (hasFailed(bytes)) return nullptr;
     return isFenced ? allocateFenced(bytes, kAlignment) : std::malloc(bytes);
 }
 void* operator new(std::size_t bytes) {
@@ -72,6 +85,7 @@ void* operator new(std::size_t bytes) {
 }
 void* operator new(std::size_t bytes, std::align_val_t asked) {
     ++allocations;
+    if (hasFailed(bytes)) throw std::bad_alloc();
     const std::size_t alignment = std::max(static_cast<std::size_t>(asked), kAlignment);
     if (isFenced) return allocateFenced(bytes, alignment);
     void* memory = nullptr;
@@ -87,3 +101,14 @@ std::int64_t fantascope::allocationsSoFar() { return allocations; }
 
 fantascope::FencedAllocations::FencedAllocations() { isFenced = true; }
 fantascope::FencedAllocations::~FencedAllocations() { isFenced = false; }
+
+fantascope::FailingAllocations::FailingAllocations(std::size_t bytes) {
+    isSpared = true;
+    failed = 0;
+    failsFrom = bytes;
+}
+fantascope::FailingAllocations::~FailingAllocations() {
+    failsFrom = kNever;
+    isSpared = false;
+}
+std::int64_t fantascope::FailingAllocations::failures() const { return failed; }

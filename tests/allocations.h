@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace fantascope {
@@ -18,6 +19,18 @@ public:
     ~FencedAllocations();
     FencedAllocations(const FencedAllocations&) = delete;
     FencedAllocations& operator=(const FencedAllocations&) = delete;
+};
+
+// While one lives, the machine has no memory left for the other threads: whatever they allocate
+// with `new` of at least `bytes` throws std::bad_alloc. One at a time.
+class FailingAllocations {
+public:
+    explicit FailingAllocations(std::size_t bytes = 0);
+    ~FailingAllocations();
+    FailingAllocations(const FailingAllocations&) = delete;
+    FailingAllocations& operator=(const FailingAllocations&) = delete;
+
+    std::int64_t failures() const;  // so far
 };
 
 }  // namespace fantascope

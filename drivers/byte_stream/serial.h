@@ -44,9 +44,9 @@ Result<std::filesystem::path> findSerialLine(const SerialIdentity& which);
 
 // A serial line of this machine, exclusive to this program while open. When it is lost, it is
 // searched again, so an adapter is found under whatever name it comes back. Everything that arrives
-// is read at once, because what the kernel holds is lost with the adapter. When the line closes, the
-// last bytes have a quarter of a second to leave; then they are dropped. Otherwise an adapter that
-// takes nothing would block the program for half a minute.
+// is read at once, because what the kernel holds is lost with the adapter. When the line closes,
+// the last bytes have a quarter of a second to leave; then they are dropped. Otherwise an adapter
+// that takes nothing would block the program for half a minute.
 // Thread: as ByteStream; the other methods as read() and write().
 class SerialStream final : public ByteStream {
 public:

@@ -13,6 +13,16 @@ namespace {
 
 constexpr int kRetry = 1000;  // ms
 
+std::string whatOf(const std::exception_ptr& failure) {
+    try {
+        std::rethrow_exception(failure);
+    } catch (const std::exception& known) {
+        return known.what();
+    } catch (...) {
+        return "an exception of unknown kind";
+    }
+}
+
 }  // namespace
 
 Result<std::shared_ptr<MonitorWatch>> MonitorWatch::shared() {
@@ -135,17 +145,26 @@ std::string MonitorWatch::follow() {
     return {};
 }
 
-// An exception is as good as the end of the connection: it is opened anew.
+// An exception is as good as the end of the connection: it is opened anew. What failed is said
+// then, because there may be no memory for it now.
 void MonitorWatch::run() {
+    std::exception_ptr failure;
     while (!ending()) {
         try {
+            if (failure) deny("the monitors cannot be looked at: " + whatOf(std::exchange(failure, nullptr)), Whom::All);
             attend();
-        } catch (const std::exception& failure) {
-            deny(std::string("the monitors cannot be looked at: ") + failure.what(), Whom::All);
-            screen_.reset();
+        } catch (...) {
+            failure = std::current_exception();
+            loseScreen();
             wait(-1, kRetry);
         }
     }
+}
+
+void MonitorWatch::loseScreen() {
+    screen_.reset();
+    const std::lock_guard lock(mutex_);
+    placement_.restart();
 }
 
 void MonitorWatch::attend() {
@@ -157,9 +176,7 @@ void MonitorWatch::attend() {
                 deny(opened.error().message(), Whom::All);
         } else if (const std::string gone = follow(); !gone.empty()) {
             deny(gone, Whom::All);
-            screen_.reset();
-            const std::lock_guard lock(mutex_);
-            placement_.restart();
+            loseScreen();
         }
         if (!screen_) wait(-1, kRetry);
     }

@@ -60,7 +60,8 @@ private:
     void settle();
     enum class Whom { NewClaims, All };
     void deny(const std::string& why, Whom whom);
-    void publish();  // with the mutex held
+    void publish();     // with the mutex held
+    void loseScreen();  // until it is opened anew
     void wake();
     // Sleeps until wake() is called, `file` is readable (-1: none), or the time has passed (-1:
     // never). Returns whether it was woken.

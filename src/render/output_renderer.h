@@ -59,8 +59,8 @@ public:
     // the show. Error: OpenGL has no memory left.
     Result<void> warmUp(unsigned framebuffer);
     // Draws the output's state at show time `time`, in the wind of that time, into the display's
-    // `framebuffer`. Layers name sources of create()'s. Does not allocate once every
-    // source has been shown.
+    // `framebuffer`. Layers name sources of create()'s. Does not allocate once every source has
+    // been shown.
     void draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer);
     // How long the last draw() spent on sending instances and pictures to the GPU.
     Time uploading() const { return tools_.uploads.sum(); }

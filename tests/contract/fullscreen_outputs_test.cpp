@@ -4,6 +4,8 @@
 #include "drivers/display/glfw.h"
 #include "drivers/registry.h"
 
+#include "allocations.h"
+#include "contract/eventually.h"
 #include "contract/projectors.h"
 #include "core/check.h"
 #include "edid_block.h"
@@ -274,6 +276,32 @@ TEST_F(FullscreenOutputs, that_are_absent_at_the_start_come_later_on_any_connect
     frame();
     EXPECT_EQ(wrongPixel({{1, cornerOf("DUMMY0")}, {2, cornerOf("DUMMY7")}}), "");
     EXPECT_EQ(d.sink->status().losses, 0) << "what was never there was not lost";
+}
+
+// Example failure: a machine that is short of memory when a projector is switched on ends the show,
+// or nobody looks at the monitors any more.
+TEST_F(FullscreenOutputs, are_followed_again_after_a_moment_without_memory) {
+    hang();
+    Output& a = openSerial("A");
+    Output& d = openSerial("D");
+    {
+        const FailingAllocations failing;
+        projectors_->switchOn("DUMMY7", {0, 0}, Projectors::kLarge);
+        projectors_->plug("DUMMY7", edidOf("D"));
+        eventually("somebody has looked for the monitor", [&] {
+            frame();
+            return failing.failures() > 0;
+        });
+        const int before = a.frames;
+        for (int i = 0; i < 5; ++i) frame();
+        EXPECT_EQ(a.frames, before + 5) << "it needs nobody who looks";
+    }
+    eventually("the other output is there", [&] {
+        frame();
+        return runs(d) && runs(a);
+    });
+    frame();
+    EXPECT_EQ(wrongPixel({{1, cornerOf("DUMMY0")}, {2, cornerOf("DUMMY7")}}), "");
 }
 
 // `xrandr` makes the X server probe its connectors before it switches one on, not after.

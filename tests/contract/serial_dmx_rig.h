@@ -40,8 +40,8 @@ private:
 };
 
 // AnySocket is like Socket. Its far end has out(), the frame that its lamps get, lastOut(), the one
-// that they got last, and framesOut(), the number of frames. hasTakenAll(): the far end has taken all
-// that was sent before the port ran again.
+// that they got last, and framesOut(), the number of frames. hasTakenAll(): the far end has taken
+// all that was sent before the port ran again.
 template <class AnySocket>
 class SerialDmxPortRig final : public DmxPortRig {
 public:

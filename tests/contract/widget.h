@@ -30,8 +30,8 @@ public:
     explicit Widget(int line, std::string number = "01234567", Parameters parameters = {});
     ~Widget();
 
-    // Its DMX output: the frame that it repeats, the one that its lamps got last, and how many it was
-    // sent.
+    // Its DMX output: the frame that it repeats, the one that its lamps got last, and how many it
+    // was sent.
     std::optional<Frame> out() const;
     std::optional<Frame> lastOut() const;
     int framesOut() const;

@@ -2,6 +2,7 @@
 #include "render/source/video_stream.h"
 
 #include "allocations.h"
+#include "contract/eventually.h"
 #include "core/file.h"
 #include "pictures.h"
 #include "scratch_folder.h"
@@ -11,8 +12,11 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <deque>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <set>
 #include <thread>
 
@@ -396,6 +400,45 @@ TEST_F(Videos, leave_out_frames_whose_pixels_cannot_be_converted) {
     const auto decoder = valueOf(VideoDecoder::open(content));
     EXPECT_EQ(decoder->next(), std::nullopt);
     EXPECT_THAT(decoder->damage(), HasSubstr("a.mkv: after frame 0: its pixels are stored as 'uyyvyy411'"));
+}
+
+// Example failures: a machine that is short of memory for a second ends the show; the opening,
+// which is decoded once, stays lost.
+TEST_F(Videos, leave_out_frames_for_which_there_is_no_memory_and_go_on) {
+    const auto file = make("a.mp4", {.keyEvery = 1}, 40);
+    std::shared_ptr<VideoStream> stream;
+    std::unique_ptr<Seen> seen;
+    {
+        const FailingAllocations failing;
+        stream = open(file);
+        seen = std::make_unique<Seen>(stream);
+        for (const VideoContent::Frame& frame : stream->content().frames) ASSERT_EQ(seen->at(frame.begins), 1);
+        EXPECT_GE(failing.failures(), 39);
+        EXPECT_EQ(stream->damagedFrames(), 39);
+    }
+    contract::eventually("every frame is there", [&] {
+        int number = 0;
+        return std::ranges::all_of(stream->content().frames,
+                                   [&](const auto& frame) { return seen->at(frame.begins) == ++number; });
+    });
+}
+
+// Example failures: the program ends; frames stand still for good.
+TEST_F(Videos, go_on_after_a_moment_without_any_memory) {
+    const auto stream = open(make("a.mp4", {.keyEvery = 1}, 40), Pace::Live);
+    const auto& frames = stream->content().frames;
+    std::deque<Seen> readers;
+    {
+        const FailingAllocations failing;
+        // The decoding thread has to note what more readers ask for than it was prepared for.
+        for (int i = 0; i < 40; ++i) readers.emplace_back(stream);
+        contract::eventually("it fails", [&, asked = 0u]() mutable {
+            readers.front().at(frames[++asked % 40].begins);
+            return failing.failures() > 0;
+        });
+    }
+    contract::eventually("frames are decoded again", [&] { return readers.front().at(frames[20].begins) == 21; });
+    contract::eventually("for the others, too", [&] { return readers.back().at(frames[30].begins) == 31; });
 }
 
 // Somebody copies a new version over the file, or the disk goes: what was there stays on the wall,

@@ -9,10 +9,7 @@
 namespace fantascope::app {
 
 PartGuard::PartGuard(std::string part, Rank rank, FaultLog& faults)
-    : part_(std::move(part)),
-      rank_(rank),
-      faults_(faults),
-      backOff_(kSoonest, rank == Rank::Input ? kLatestInput : kLatest) {}
+    : part_(std::move(part)), rank_(rank), faults_(faults), backOff_(kSoonest, rank == Rank::Input ? kLatestInput : kLatest) {}
 
 bool PartGuard::run(Time moment, const std::function<void(Time)>& work) {
     if (moment < nextTry_) return false;

@@ -51,7 +51,7 @@ void Supervisor::attend(Run run) {
     const std::lock_guard lock(mutex_);
     run_ = std::move(run);
     isSettingUp_ = false;
-    if (began_) run_->end();
+    if (began_) endRun();
 }
 
 void Supervisor::release() {
@@ -71,10 +71,11 @@ void Supervisor::advance() {
     since_ = clock_.now();
 }
 
-void Supervisor::begin(Time now) {
-    if (began_) return;
-    began_ = now;
-    if (run_) run_->end();
+// If the run's end fails, it is called again at the next look.
+void Supervisor::endRun() {
+    if (!run_ || endIsTold_) return;
+    run_->end();
+    endIsTold_ = true;
 }
 
 std::optional<std::string> Supervisor::hung(Time now) const {
@@ -115,6 +116,7 @@ void Supervisor::live(const std::stop_token& stop) {
         try {
             look(stop);
         } catch (const std::exception& failure) {  // there may be memory again at the next look
+            if (std::exchange(failureTold_, true)) continue;
             std::fputs("\nfantascope: error: the supervisor failed: ", stderr);
             std::fputs(failure.what(), stderr);
             std::fputs("\n", stderr);
@@ -132,10 +134,11 @@ void Supervisor::look(const std::stop_token& stop) {
         return;
     }
     if (stop.stop_requested()) return;
-    begin(now);
+    if (!began_) began_ = now;
     // Some parent programs pass on a signal that this program has received directly as well.
     if (interrupt_.count() > std::exchange(signals_, interrupt_.count()) && now - *began_ > kOnePress) pressedAgain_ = true;
     if (const auto why = hung(now)) leave(*why);
+    endRun();
 }
 
 void Supervisor::leave(const std::string& why) {

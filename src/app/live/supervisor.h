@@ -63,7 +63,7 @@ private:
     void look(const std::stop_token& stop);
     bool outputIsRead();
     void keepGuard(Time now);
-    void begin(Time now);            // begins the end; with the mutex held
+    void endRun();                   // with the mutex held
     void tellOfSlowSetUp(Time now);  // with the mutex held
     // Why the supervisor no longer waits for the render thread; nothing: it does. With the mutex
     // held.
@@ -75,10 +75,12 @@ private:
     SteadyClock clock_;
     std::atomic<bool> requested_ = false;
     Time nextGuard_{}, guardPause_{};
+    bool failureTold_ = false;
     std::mutex mutex_;  // of:
     std::optional<Run> run_;
     bool isSettingUp_ = true;    // the run is in preparation, and no message about a slow step was given yet
     std::optional<Time> began_;  // when the end began
+    bool endIsTold_ = false;     // to the run
     int signals_ = 0;            // counted so far
     bool pressedAgain_ = false;  // the operator does not want to wait
     std::string doing_;

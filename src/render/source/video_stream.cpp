@@ -13,6 +13,8 @@ namespace {
 
 // The cost of a seek, in frames that could be decoded in the same time.
 constexpr std::uint32_t kSeekCost = 8;
+// How long decoding rests before what failed by an exception is tried again.
+constexpr Time kRetry = std::chrono::milliseconds(10);
 
 }  // namespace
 
@@ -29,6 +31,8 @@ Result<std::shared_ptr<VideoStream>> VideoStream::open(const std::filesystem::pa
 VideoStream::VideoStream(std::shared_ptr<const VideoContent> content, std::unique_ptr<VideoDecoder> decoder,
                          std::uint32_t decoded, Pace pace)
     : content_(std::move(content)), pace_(pace) {
+    asked_.reserve(kMaxMoments);
+    wanted_.reserve(kSlots);
     findWanted();
     publish(decoded, decoder.get());
     playheads_.push_back({.decoder = std::move(decoder), .next = decoded + 1});
@@ -51,25 +55,46 @@ void VideoStream::wake() {
 void VideoStream::run() {
     while (!ended_) {
         const std::uint32_t wishes = wishes_.load(std::memory_order_acquire);
-        findWanted();
-        const auto missing = std::ranges::find_if(wanted_, [&](std::uint32_t frame) { return !has(frame); });
-        if (missing == wanted_.end())
-            wishes_.wait(wishes, std::memory_order_acquire);
-        else
-            fetchOrLeaveOut(*missing);
+        std::optional<std::uint32_t> frame;
+        try {
+            findWanted();
+            frame = missing();
+            if (frame)
+                fetch(*frame);
+            else if (std::exchange(failed_, false))
+                retry();
+            else
+                wishes_.wait(wishes, std::memory_order_acquire);
+        } catch (const std::exception& failure) {
+            leaveOut(frame, failure.what());
+        }
     }
 }
 
-// A frame whose decoding fails by an exception is a damaged one.
-void VideoStream::fetchOrLeaveOut(std::uint32_t frame) {
+// A frame whose decoding fails by an exception is a damaged one for now. Null: the exception
+// belongs to no frame.
+void VideoStream::leaveOut(std::optional<std::uint32_t> frame, const char* why) {
+    failed_ = true;
+    if (!frame) std::this_thread::sleep_for(kRetry);
+    if (frame && !has(*frame)) publish(*frame, nullptr);
+    if (std::exchange(failureTold_, true)) return;
     try {
-        fetch(frame);
-    } catch (const std::exception& failure) {
-        if (!std::exchange(failureTold_, true))
-            log::warning("render", fmt::format("{}: a frame cannot be decoded: {}; it is left out", content_->file.string(),
-                                               failure.what()));
-        if (!has(frame)) publish(frame, nullptr);
+        log::warning("render", fmt::format("{}: a frame cannot be decoded: {}; it is left out", content_->file.string(), why));
+    } catch (const std::exception&) {  // no memory for the message either
+        failureTold_ = false;
     }
+}
+
+// Frames that failed may come now, above all the opening, which is never given up otherwise.
+void VideoStream::retry() {
+    std::this_thread::sleep_for(kRetry);
+    for (Slot& slot : slots_)
+        if (const Tag tag = slot.tag; tag.state == State::Damaged) slot.change(tag, State::Free);
+}
+
+std::optional<std::uint32_t> VideoStream::missing() const {
+    const auto frame = std::ranges::find_if(wanted_, [&](std::uint32_t wanted) { return !has(wanted); });
+    return frame == wanted_.end() ? std::nullopt : std::optional(*frame);
 }
 
 void VideoStream::findWanted() {

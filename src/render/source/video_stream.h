@@ -110,7 +110,9 @@ private:
     void run();
     void findWanted();
     void fetch(std::uint32_t frame);
-    void fetchOrLeaveOut(std::uint32_t frame);
+    std::optional<std::uint32_t> missing() const;
+    void leaveOut(std::optional<std::uint32_t> frame, const char* why);
+    void retry();
     Playhead& playheadFor(std::uint32_t frame);
     bool wanted(std::uint32_t frame) const;
     bool has(std::uint32_t frame) const;
@@ -132,7 +134,7 @@ private:
     std::vector<std::uint32_t> asked_;   // by each reader
     std::vector<std::uint32_t> wanted_;  // the most urgent first
     std::uint64_t steps_ = 0;
-    bool damageTold_ = false, failureTold_ = false;
+    bool damageTold_ = false, failureTold_ = false, failed_ = false;
 
     std::atomic<bool> ended_ = false;
     std::thread thread_;

@@ -7,6 +7,8 @@
 
 #include <csignal>
 #include <cstdio>
+#include <new>
+#include <utility>
 
 namespace fantascope::app {
 namespace {
@@ -87,6 +89,41 @@ TEST_F(SupervisorDeathTest, a_step_after_the_lights_are_closed_may_hang_too) {
     };
     EXPECT_EXIT(hang(), testing::ExitedWithCode(1),
                 "^.fantascope: error: the show was to end, but it hung while closing the devices");
+}
+
+// Example failures: the program is ended and the lamps stay as they are; the relays are never told
+// of the end.
+TEST_F(SupervisorDeathTest, an_end_that_fails_is_tried_again_and_the_failure_is_told_once) {
+    const auto fail = [] {
+        const Interrupt interrupt(Interrupt::Second::IsCounted);
+        Supervisor supervisor(interrupt, nullptr);
+        Supervisor::Run run = speaking();
+        run.end = [calls = 0]() mutable {
+            if (++calls < 4) throw std::bad_alloc();
+            say("end;");
+        };
+        supervisor.attend(std::move(run));
+        supervisor.step("showing the pictures", 1s);
+        supervisor.requestEnd();
+        for (;;) pause();
+    };
+    EXPECT_EXIT(fail(), testing::ExitedWithCode(1),
+                "^.fantascope: error: the supervisor failed: std::bad_alloc.end;hurry;close;it hung while showing the pictures");
+}
+
+// Example failure: the end that fails every time hides that a step hangs.
+TEST_F(SupervisorDeathTest, an_end_that_always_fails_keeps_nobody_from_leaving) {
+    const auto fail = [] {
+        const Interrupt interrupt(Interrupt::Second::IsCounted);
+        Supervisor supervisor(interrupt, nullptr);
+        Supervisor::Run run = speaking();
+        run.end = [] { throw std::bad_alloc(); };
+        supervisor.attend(std::move(run));
+        supervisor.step("showing the pictures", 100ms);
+        supervisor.requestEnd();
+        for (;;) pause();
+    };
+    EXPECT_EXIT(fail(), testing::ExitedWithCode(1), "hurry;close;it hung while showing the pictures");
 }
 
 TEST(Supervisor, waits_for_what_is_in_time) {
