@@ -14,7 +14,12 @@ namespace {
 // The cost of a seek, in frames that could be decoded in the same time.
 constexpr std::uint32_t kSeekCost = 8;
 // How long decoding rests before what failed by an exception is tried again.
-constexpr Time kRetry = std::chrono::milliseconds(10);
+constexpr Time kRest = std::chrono::milliseconds(10);
+
+void rest() {
+    SteadyClock clock;
+    clock.sleepUntil(clock.now() + kRest);
+}
 
 }  // namespace
 
@@ -75,7 +80,7 @@ void VideoStream::run() {
 // belongs to no frame.
 void VideoStream::leaveOut(std::optional<std::uint32_t> frame, const char* why) {
     failed_ = true;
-    if (!frame) std::this_thread::sleep_for(kRetry);
+    if (!frame) rest();
     if (frame && !has(*frame)) publish(*frame, nullptr);
     if (std::exchange(failureTold_, true)) return;
     try {
@@ -87,7 +92,7 @@ void VideoStream::leaveOut(std::optional<std::uint32_t> frame, const char* why) 
 
 // Frames that failed may come now, above all the opening, which is never given up otherwise.
 void VideoStream::retry() {
-    std::this_thread::sleep_for(kRetry);
+    rest();
     for (Slot& slot : slots_)
         if (const Tag tag = slot.tag; tag.state == State::Damaged) slot.change(tag, State::Free);
 }
