@@ -1,5 +1,6 @@
 #include "app/live/frame_loop.h"
 
+#include "app/passing_display.h"
 #include "app/running_show.h"
 
 #include "pattern/motion/pattern_motion.h"
@@ -23,26 +24,17 @@ namespace {
 using namespace std::chrono_literals;
 
 // A display whose drawing takes time: the clock moves on while it is made current to be drawn.
-class SlowDisplay final : public DisplaySink {
+class SlowDisplay final : public PassingDisplay {
 public:
-    SlowDisplay(std::unique_ptr<DisplaySink> display, ManualClock& clock) : display_(std::move(display)), clock_(clock) {}
+    SlowDisplay(std::unique_ptr<DisplaySink> display, ManualClock& clock) : PassingDisplay(std::move(display)), clock_(clock) {}
     Time nextTakes{}, completionTakes{}, swapTakes{};  // of the next frame: drawing, its completion, swapping
     Time swapsAfter{};                                 // its refreshes' moments
     std::function<void()> meanwhile;                   // while it swaps
 
-    DeviceStatus status() const override { return display_->status(); }
-    glm::ivec2 size() const override { return display_->size(); }
-    double refreshRate() const override { return display_->refreshRate(); }
-    std::int64_t nextRefresh() const override { return display_->nextRefresh(); }
-    Time refreshTime(std::int64_t number) const override { return display_->refreshTime(number); }
     Result<void> makeCurrent() override {
         clock_.advance(std::exchange(nextTakes, Time{}));
         return display_->makeCurrent();
     }
-    void release() override { display_->release(); }
-    bool poll() override { return display_->poll(); }
-    int context() const override { return display_->context(); }
-    unsigned framebuffer() const override { return display_->framebuffer(); }
     Result<void> finish() override {
         clock_.advance(std::exchange(completionTakes, Time{}));
         return display_->finish();
@@ -66,7 +58,6 @@ private:
         }
         return shown;
     }
-    std::unique_ptr<DisplaySink> display_;
     ManualClock& clock_;
 };
 
@@ -428,10 +419,10 @@ TEST(FrameLoop, keeps_its_renderer_where_a_new_one_cannot_be_made) {
 
 // A display whose context can be lost, as by the end of an X server; or that has none before it
 // comes.
-class MortalDisplay final : public DisplaySink {
+class MortalDisplay final : public PassingDisplay {
 public:
     using Open = std::function<std::unique_ptr<DisplaySink>()>;
-    explicit MortalDisplay(Open open) : open_(std::move(open)) {}
+    explicit MortalDisplay(Open open) : PassingDisplay(nullptr), open_(std::move(open)) {}
     void die() {
         dead_ = std::move(display_);
         context_ = 0;
@@ -448,8 +439,6 @@ public:
     }
     glm::ivec2 size() const override { return {640, 360}; }
     double refreshRate() const override { return 30; }
-    std::int64_t nextRefresh() const override { return display_->nextRefresh(); }
-    Time refreshTime(std::int64_t number) const override { return display_->refreshTime(number); }
     // Nothing that was mapped is readable any longer than the contract says.
     bool poll() override {
         if (!dyingIsTold_ && dead_) return dyingIsTold_ = true, false;
@@ -459,15 +448,10 @@ public:
     }
     int context() const override { return context_; }
     Result<void> makeCurrent() override { return display_ ? display_->makeCurrent() : Error("it is dead"); }
-    void release() override { display_->release(); }
-    unsigned framebuffer() const override { return display_->framebuffer(); }
-    Result<void> finish() override { return display_->finish(); }
-    Result<Shown> present() override { return display_->present(); }
-    Result<Shown> presentWith(Time leading) override { return display_->presentWith(leading); }
 
 private:
     Open open_;
-    std::unique_ptr<DisplaySink> display_, dead_;
+    std::unique_ptr<DisplaySink> dead_;
     int context_ = 0, contexts_ = 0;
     bool dyingIsTold_ = false;
 };

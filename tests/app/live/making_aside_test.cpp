@@ -1,6 +1,7 @@
 // An output whose renderer is made while the others are shown, or can never be made.
 
 #include "app/live/frame_loop.h"
+#include "app/passing_display.h"
 #include "app/running_show.h"
 
 #include "source_folder.h"
@@ -21,12 +22,13 @@ using namespace std::chrono_literals;
 
 // Each attempt to make something in this display's context takes 500 ms. On the render thread the
 // clock moves on meanwhile; on another thread the attempt lasts until the clock was moved so far.
-class ReluctantDisplay final : public DisplaySink {
+class ReluctantDisplay final : public PassingDisplay {
 public:
     static constexpr Time kTakes = 500ms;
     enum class Attempt { Fails, Throws, Succeeds };
 
-    ReluctantDisplay(std::unique_ptr<DisplaySink> display, ManualClock& clock) : display_(std::move(display)), clock_(clock) {}
+    ReluctantDisplay(std::unique_ptr<DisplaySink> display, ManualClock& clock)
+        : PassingDisplay(std::move(display)), clock_(clock) {}
     std::atomic<Attempt> attempt = Attempt::Fails;
     std::atomic<int> attempts = 0;
     std::atomic<bool> patient = true;  // false: an attempt on another thread takes no time
@@ -37,8 +39,6 @@ public:
         while (released_ || (lent_ && clock_.now() >= end_.load())) std::this_thread::yield();
     }
 
-    DeviceStatus status() const override { return display_->status(); }
-    glm::ivec2 size() const override { return display_->size(); }
     double refreshRate() const override { return touch(), display_->refreshRate(); }
     std::int64_t nextRefresh() const override { return touch(), display_->nextRefresh(); }
     Time refreshTime(std::int64_t number) const override { return touch(), display_->refreshTime(number); }
@@ -65,8 +65,6 @@ public:
         display_->release();
         (std::this_thread::get_id() == renderThread_ ? released_ : lent_) = std::this_thread::get_id() == renderThread_;
     }
-    unsigned framebuffer() const override { return display_->framebuffer(); }
-    Result<void> finish() override { return display_->finish(); }
     Result<Shown> present() override { return touch(), display_->present(); }
     Result<Shown> presentWith(Time leading) override { return touch(), display_->presentWith(leading); }
 
@@ -74,7 +72,6 @@ private:
     void touch() const {
         if (lent_ && std::this_thread::get_id() == renderThread_) touched_ = true;
     }
-    std::unique_ptr<DisplaySink> display_;
     ManualClock& clock_;
     const std::thread::id renderThread_ = std::this_thread::get_id();
     std::atomic<bool> made_ = false, lent_ = false, released_ = false;

@@ -10,6 +10,7 @@
 #include "app/live/recording.h"
 #include "app/live/screenshots.h"
 #include "app/live/watch.h"
+#include "app/passing_display.h"
 #include "app/running_show.h"
 
 #include "scratch_folder.h"
@@ -60,24 +61,18 @@ private:
     Ledger& ledger_;
 };
 
-class BreakableDisplay final : public Breakable<DisplaySink> {
+class BreakableDisplay final : public PassingDisplay {
 public:
-    using Breakable::Breakable;
-    glm::ivec2 size() const override { return good_->size(); }
-    double refreshRate() const override { return good_->refreshRate(); }
-    std::int64_t nextRefresh() const override { return good_->nextRefresh(); }
-    Time refreshTime(std::int64_t number) const override { return good_->refreshTime(number); }
-    bool poll() override { return good_->poll(); }
-    int context() const override { return good_->context(); }
-    Result<void> makeCurrent() override { return good_->makeCurrent(); }
-    void release() override { good_->release(); }
-    unsigned framebuffer() const override { return good_->framebuffer(); }
+    BreakableDisplay(std::unique_ptr<DisplaySink> good, std::string name, Ledger& ledger)
+        : PassingDisplay(std::move(good)), name_(std::move(name)), ledger_(ledger) {}
     Result<void> finish() override {
-        work();
-        return good_->finish();
+        ledger_.work(name_);
+        return PassingDisplay::finish();
     }
-    Result<Shown> present() override { return good_->present(); }
-    Result<Shown> presentWith(Time leading) override { return good_->presentWith(leading); }
+
+private:
+    const std::string name_;
+    Ledger& ledger_;
 };
 
 class BreakableLine final : public Breakable<DmxPort> {

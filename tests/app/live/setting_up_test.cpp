@@ -1,5 +1,6 @@
 #include "app/live/setting_up.h"
 
+#include "app/passing_display.h"
 #include "app/running_show.h"
 #include "app/site/site_file.h"
 
@@ -23,33 +24,17 @@ using Name = Key::Name;
 using testing::HasSubstr;
 
 // A display in front of which somebody stands.
-class AttendedDisplay final : public DisplaySink {
+class AttendedDisplay final : public PassingDisplay {
 public:
-    explicit AttendedDisplay(std::unique_ptr<DisplaySink> display) : display_(std::move(display)) {}
+    using PassingDisplay::PassingDisplay;
     std::deque<ScreenEvent> events;
 
-    DeviceStatus status() const override { return display_->status(); }
-    glm::ivec2 size() const override { return display_->size(); }
-    double refreshRate() const override { return display_->refreshRate(); }
-    std::int64_t nextRefresh() const override { return display_->nextRefresh(); }
-    Time refreshTime(std::int64_t number) const override { return display_->refreshTime(number); }
-    bool poll() override { return display_->poll(); }
-    int context() const override { return display_->context(); }
-    Result<void> makeCurrent() override { return display_->makeCurrent(); }
-    void release() override { display_->release(); }
-    unsigned framebuffer() const override { return display_->framebuffer(); }
-    Result<void> finish() override { return display_->finish(); }
-    Result<Shown> present() override { return display_->present(); }
-    Result<Shown> presentWith(Time leading) override { return display_->presentWith(leading); }
     std::optional<ScreenEvent> pollEvent() override {
         if (events.empty()) return std::nullopt;
         const ScreenEvent event = events.front();
         events.pop_front();
         return event;
     }
-
-private:
-    std::unique_ptr<DisplaySink> display_;
 };
 
 // Both outputs of the default site in one colour, set up by a person whose site file is a copy.
