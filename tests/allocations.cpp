@@ -18,13 +18,12 @@ thread_local std::int64_t allocations = 0;
 thread_local bool isFenced = false;
 
 // Set by FailingAllocations.
-constexpr std::size_t kNever = ~std::size_t{0};
-std::atomic<std::size_t> failsFrom = kNever;  // bytes
-std::atomic<std::int64_t> failed = 0;         // calls
+std::atomic<bool> othersFail = false;
+std::atomic<std::int64_t> failed = 0;  // calls
 thread_local bool isSpared = false;
 
-bool hasFailed(std::size_t bytes) {
-    if (bytes < failsFrom || isSpared) return false;
+bool hasFailed() {
+    if (!othersFail || isSpared) return false;
     ++failed;
     return true;
 }
@@ -76,7 +75,7 @@ void release(void* memory) {
 // These replace the standard library's for the whole test program.
 void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
     ++allocations;
-    if (hasFailed(bytes)) return nullptr;
+    if (hasFailed()) return nullptr;
     return isFenced ? allocateFenced(bytes, kAlignment) : std::malloc(bytes);
 }
 void* operator new(std::size_t bytes) {
@@ -85,7 +84,7 @@ void* operator new(std::size_t bytes) {
 }
 void* operator new(std::size_t bytes, std::align_val_t asked) {
     ++allocations;
-    if (hasFailed(bytes)) throw std::bad_alloc();
+    if (hasFailed()) throw std::bad_alloc();
     const std::size_t alignment = std::max(static_cast<std::size_t>(asked), kAlignment);
     if (isFenced) return allocateFenced(bytes, alignment);
     void* memory = nullptr;
@@ -102,13 +101,13 @@ std::int64_t fantascope::allocationsSoFar() { return allocations; }
 fantascope::FencedAllocations::FencedAllocations() { isFenced = true; }
 fantascope::FencedAllocations::~FencedAllocations() { isFenced = false; }
 
-fantascope::FailingAllocations::FailingAllocations(std::size_t bytes) {
+fantascope::FailingAllocations::FailingAllocations() {
     isSpared = true;
     failed = 0;
-    failsFrom = bytes;
+    othersFail = true;
 }
 fantascope::FailingAllocations::~FailingAllocations() {
-    failsFrom = kNever;
+    othersFail = false;
     isSpared = false;
 }
 std::int64_t fantascope::FailingAllocations::failures() const { return failed; }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 
 namespace fantascope {
@@ -21,16 +20,16 @@ public:
     FencedAllocations& operator=(const FencedAllocations&) = delete;
 };
 
-// While one lives, the machine has no memory left for the other threads: whatever they allocate
-// with `new` of at least `bytes` throws std::bad_alloc. One at a time.
+// While one lives, the machine has no memory left for the other threads: their `new` throws
+// std::bad_alloc. One at a time.
 class FailingAllocations {
 public:
-    explicit FailingAllocations(std::size_t bytes = 0);
+    FailingAllocations();
     ~FailingAllocations();
     FailingAllocations(const FailingAllocations&) = delete;
     FailingAllocations& operator=(const FailingAllocations&) = delete;
 
-    std::int64_t failures() const;  // so far
+    std::int64_t failures() const;  // calls that failed so far
 };
 
 }  // namespace fantascope

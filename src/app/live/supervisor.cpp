@@ -115,6 +115,7 @@ void Supervisor::live(const std::stop_token& stop) {
         ppoll(&request, 1, &patience, nullptr);
         try {
             look(stop);
+            failureTold_ = false;
         } catch (const std::exception& failure) {  // there may be memory again at the next look
             if (std::exchange(failureTold_, true)) continue;
             std::fputs("\nfantascope: error: the supervisor failed: ", stderr);

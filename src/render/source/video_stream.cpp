@@ -13,13 +13,9 @@ namespace {
 
 // The cost of a seek, in frames that could be decoded in the same time.
 constexpr std::uint32_t kSeekCost = 8;
-// How long decoding rests before what failed by an exception is tried again.
-constexpr Time kRest = std::chrono::milliseconds(10);
-
-void rest() {
-    SteadyClock clock;
-    clock.sleepUntil(clock.now() + kRest);
-}
+// After an exception: how long decoding rests if no frame is known to be wanted, and when the
+// frames that failed are tried again.
+constexpr Time kRest = std::chrono::milliseconds(10), kRetry = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -66,7 +62,7 @@ void VideoStream::run() {
             frame = missing();
             if (frame)
                 fetch(*frame);
-            else if (std::exchange(failed_, false))
+            else if (clock_.now() >= retryAt_)
                 retry();
             else
                 wishes_.wait(wishes, std::memory_order_acquire);
@@ -76,12 +72,14 @@ void VideoStream::run() {
     }
 }
 
-// A frame whose decoding fails by an exception is a damaged one for now. Null: the exception
-// belongs to no frame.
+// A frame whose decoding fails by an exception is a damaged one for now. No frame: it failed before
+// one was chosen.
 void VideoStream::leaveOut(std::optional<std::uint32_t> frame, const char* why) {
-    failed_ = true;
-    if (!frame) rest();
-    if (frame && !has(*frame)) publish(*frame, nullptr);
+    retryAt_ = clock_.now() + kRetry;
+    if (!frame)
+        clock_.sleepUntil(clock_.now() + kRest);
+    else if (!has(*frame))
+        publish(*frame, nullptr);
     if (std::exchange(failureTold_, true)) return;
     try {
         log::warning("render", fmt::format("{}: a frame cannot be decoded: {}; it is left out", content_->file.string(), why));
@@ -90,9 +88,9 @@ void VideoStream::leaveOut(std::optional<std::uint32_t> frame, const char* why) 
     }
 }
 
-// Frames that failed may come now, above all the opening, which is never given up otherwise.
+// The opening is always wanted, so its damaged frames would stay damaged for good.
 void VideoStream::retry() {
-    rest();
+    retryAt_ = Time::max();
     for (Slot& slot : slots_)
         if (const Tag tag = slot.tag; tag.state == State::Damaged) slot.change(tag, State::Free);
 }

@@ -134,7 +134,9 @@ private:
     std::vector<std::uint32_t> asked_;   // by each reader
     std::vector<std::uint32_t> wanted_;  // the most urgent first
     std::uint64_t steps_ = 0;
-    bool damageTold_ = false, failureTold_ = false, failed_ = false;
+    bool damageTold_ = false, failureTold_ = false;
+    SteadyClock clock_;
+    Time retryAt_ = Time::max();  // when frames that failed by an exception are tried again
 
     std::atomic<bool> ended_ = false;
     std::thread thread_;

@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <functional>
 #include <new>
 #include <utility>
 
@@ -91,39 +92,33 @@ TEST_F(SupervisorDeathTest, a_step_after_the_lights_are_closed_may_hang_too) {
                 "^.fantascope: error: the show was to end, but it hung while closing the devices");
 }
 
+// A run that is told of its end by `end`, and whose next step hangs.
+[[noreturn]] void hangAfter(std::function<void()> end, Time patience) {
+    const Interrupt interrupt(Interrupt::Second::IsCounted);
+    Supervisor supervisor(interrupt, nullptr);
+    Supervisor::Run run = speaking();
+    run.end = std::move(end);
+    supervisor.attend(std::move(run));
+    supervisor.step("showing the pictures", patience);
+    supervisor.requestEnd();
+    for (;;) pause();
+}
+
 // Example failures: the program is ended and the lamps stay as they are; the relays are never told
 // of the end.
 TEST_F(SupervisorDeathTest, an_end_that_fails_is_tried_again_and_the_failure_is_told_once) {
-    const auto fail = [] {
-        const Interrupt interrupt(Interrupt::Second::IsCounted);
-        Supervisor supervisor(interrupt, nullptr);
-        Supervisor::Run run = speaking();
-        run.end = [calls = 0]() mutable {
-            if (++calls < 4) throw std::bad_alloc();
-            say("end;");
-        };
-        supervisor.attend(std::move(run));
-        supervisor.step("showing the pictures", 1s);
-        supervisor.requestEnd();
-        for (;;) pause();
+    const auto failThrice = [calls = 0]() mutable {
+        if (++calls < 4) throw std::bad_alloc();
+        say("end;");
     };
-    EXPECT_EXIT(fail(), testing::ExitedWithCode(1),
+    EXPECT_EXIT(hangAfter(failThrice, 1s), testing::ExitedWithCode(1),
                 "^.fantascope: error: the supervisor failed: std::bad_alloc.end;hurry;close;it hung while showing the pictures");
 }
 
 // Example failure: the end that fails every time hides that a step hangs.
 TEST_F(SupervisorDeathTest, an_end_that_always_fails_keeps_nobody_from_leaving) {
-    const auto fail = [] {
-        const Interrupt interrupt(Interrupt::Second::IsCounted);
-        Supervisor supervisor(interrupt, nullptr);
-        Supervisor::Run run = speaking();
-        run.end = [] { throw std::bad_alloc(); };
-        supervisor.attend(std::move(run));
-        supervisor.step("showing the pictures", 100ms);
-        supervisor.requestEnd();
-        for (;;) pause();
-    };
-    EXPECT_EXIT(fail(), testing::ExitedWithCode(1), "hurry;close;it hung while showing the pictures");
+    const auto fail = [] { throw std::bad_alloc(); };
+    EXPECT_EXIT(hangAfter(fail, 100ms), testing::ExitedWithCode(1), "hurry;close;it hung while showing the pictures");
 }
 
 TEST(Supervisor, waits_for_what_is_in_time) {
