@@ -14,7 +14,7 @@ namespace fantascope::plot {
 
 // The difference of guide and pattern, R = I - I' (section 4.1), in the pattern's resolution: blue
 // where only the guide has light, red where only the pattern has, white where they agree. `guide`:
-// stored values, any resolution.
+// compared values (pattern::comparedGuide), any resolution.
 RgbaImage differencePicture(const pattern::ShapePattern& pattern, const GreyImage& guide);
 
 // Figure 4c: that picture with the evaluation lattice and the cells of a few instances, in the

@@ -101,11 +101,13 @@ void declare(Command& command, Options& options) {
         "During the search, the space bar pauses and resumes; Escape, q and Ctrl-C end it with the best pattern so far.");
 }
 
-// The drawing inverted, rounded to 8 bits as in the file that it is written to.
-GreyImage turnedOver(GreyImage guide) {
-    guide = inverted(std::move(guide));
-    for (float& value : guide.pixels()) value = std::round(value * 255) / 255;
-    return guide;
+// What shapes that are dark have to cover, so that the light between them reads as the drawing: its
+// negative in the compared space, in stored values.
+GreyImage shadeOf(GreyImage drawing, pattern::GuideTransfer transfer, pattern::CompareSpace space) {
+    drawing = inverted(comparedGuide(std::move(drawing), transfer, space));
+    if (space == pattern::CompareSpace::Light && transfer == pattern::GuideTransfer::Srgb)
+        for (float& value : drawing.pixels()) value = srgbFromLinear(value);
+    return drawing;
 }
 
 // The shapes to use, each with its own settings.
@@ -159,13 +161,17 @@ Result<void> placeShapes(const fs::path& output, std::vector<pattern::ShapeSetti
     return {};
 }
 
+// `quality`, `loop`: in the space that was compared; `light`: in light.
 Report reportOf(PatternSearch::Method method, const PatternSearch::Found& found, const pattern::PatternQuality& quality,
-                const pattern::LoopQuality& loop, Time took) {
+                const pattern::PatternQuality& light, const pattern::LoopQuality& loop, Time took) {
     Report report;
     report["method"] = name(method);
+    report["compare"] = name(found.pattern.compare);
     report["z"] = quality.z;
     report["z_bound"] = quality.zBound;
     report["tone"] = quality.tone;
+    report["z_light"] = light.z;
+    report["tone_light"] = light.tone;
     report["overlap"] = quality.overlap;
     report["loop_z"] = loop.z;
     report["loop_tone"] = loop.tone;
@@ -251,7 +257,8 @@ PatternSearch::Found search(const GreyImage& guide, ShapePattern pattern, const 
 
 // What the search needs, read and checked before it begins.
 struct Task {
-    GreyImage guide;
+    GreyImage guide;     // stored values
+    GreyImage compared;  // the guide in the space that the pattern is compared in
     pattern::PatternSettings settings;
     std::optional<double> limit;  // seconds
     ShapePattern pattern;         // with the shapes; with instances if it is the one to start from
@@ -266,7 +273,7 @@ Result<GreyImage> readGuide(const Options& options) {
         log::warning("pattern",
                      fmt::format("{}: looks like dark ink on white paper, but white becomes light; use --invert to light the ink",
                                  options.guide.string()));
-    return options.shadows != options.invert ? turnedOver(std::move(guide)) : guide;
+    return options.invert ? inverted(std::move(guide)) : guide;
 }
 
 // The settings file with the command line's options in place of its own.
@@ -312,10 +319,14 @@ Result<Task> prepare(const Options& options) {
     TRY(placeShapes(options.output, shapes, task.shapeFiles));
     task.guideFile = guideFileOf(options);
     if (start) {
+        if (task.settings.compare) start->compare = *task.settings.compare;
         task.pattern = std::move(*start);
         task.pattern.shapes.clear();  // chosenShapes() has them, by the names that they get beside the new file
         task.settings.fitMotion = false;
     } else {
+        const bool isPaper = options.method == PatternSearch::Method::Paper;
+        task.pattern.compare =
+            task.settings.compare.value_or(isPaper ? pattern::CompareSpace::Stored : pattern::CompareSpace::Light);
         task.pattern.guideTransfer = task.settings.guideTransfer;
         task.pattern.seed = options.seed;
         task.pattern.motion = task.settings.motion;
@@ -324,6 +335,11 @@ Result<Task> prepare(const Options& options) {
         task.pattern.shapes.push_back(std::move(shape));
         task.settings.search.shapes.push_back(std::move(own));
     }
+    const auto& [transfer, space] = std::pair(task.pattern.guideTransfer, task.pattern.compare);
+    if (options.shadows) task.guide = shadeOf(std::move(task.guide), transfer, space);
+    if (options.shadows || options.invert)  // as in the file that it is written to
+        for (float& value : task.guide.pixels()) value = std::round(value * 255) / 255;
+    task.compared = comparedGuide(task.guide, transfer, space);
     return task;
 }
 
@@ -346,14 +362,16 @@ Result<void> run(const Options& options) {
     if (options.watch) window = TRY(drivers::PictureWindow::open(options.output.filename().string(), kWindow));
     SteadyClock clock;
     PatternSearch::Found found =
-        search(task.guide, std::move(task.pattern), task.settings.search, task.limit, options.threads, clock, window.get());
+        search(task.compared, std::move(task.pattern), task.settings.search, task.limit, options.threads, clock, window.get());
     const Time took = clock.now();
-    if (task.settings.fitMotion) found.pattern.motion = fittedMotion(found.pattern, task.guide, options.threads);
+    if (task.settings.fitMotion) found.pattern.motion = fittedMotion(found.pattern, task.compared, options.threads);
     TRY(writeFound(options, task, found.pattern));
 
-    const pattern::PatternQuality quality = measure(found.pattern, task.guide);
-    const pattern::LoopQuality loop = pattern::LoopMeasure(found.pattern, task.guide, options.threads).in({}, kLoopMoments);
-    if (options.report) TRY(writeReport(*options.report, reportOf(options.method, found, quality, loop, took)));
+    const pattern::PatternQuality quality = measure(found.pattern, task.compared);
+    const pattern::PatternQuality light =
+        measure(found.pattern, comparedGuide(task.guide, found.pattern.guideTransfer, pattern::CompareSpace::Light));
+    const pattern::LoopQuality loop = pattern::LoopMeasure(found.pattern, task.compared, options.threads).in({}, kLoopMoments);
+    if (options.report) TRY(writeReport(*options.report, reportOf(options.method, found, quality, light, loop, took)));
     fmt::print("{}: {}, {} instances, tone {:.4f}, moving tone {:.4f}\n", options.output.string(), found.summary.brief(),
                found.pattern.instances.size(), quality.tone, loop.tone);
     return {};

@@ -96,7 +96,7 @@ Result<plot::Page> drawPattern(const fs::path& file, Figure figure) {
     if (figure == Figure::Difference) {
         const auto guide = readGrey(pattern.guide);
         if (!guide) return namedIn(file, pattern.guide, guide.error());
-        return plot::differenceFigure(pattern, *guide);
+        return plot::differenceFigure(pattern, comparedGuide(*guide, pattern.guideTransfer, pattern.compare));
     }
     return figure == Figure::Trajectories ? plot::trajectoriesFigure(pattern) : plot::spectrumFigure(pattern);
 }

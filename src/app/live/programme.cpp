@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 // The pictures of a show's sources, and for each source its guide, if it has one.
 struct Pictures {
     struct Guide {
-        GreyImage drawing;  // stored values, as in the search for the pattern
+        GreyImage drawing;  // as in the search for the pattern (comparedGuide)
         double aspect = 1;  // width / height of the source's picture
         Fit fit = Fit::Contain;
     };
@@ -49,7 +49,7 @@ struct Reading {
 Result<Pictures::Guide> readGuide(const pattern::ShapePattern& pattern, const fs::path& file) {
     auto drawing = readGrey(pattern.guide);
     if (!drawing) return namedIn(file, pattern.guide, drawing.error());
-    return Pictures::Guide{std::move(*drawing), pattern.aspect()};
+    return Pictures::Guide{comparedGuide(std::move(*drawing), pattern.guideTransfer, pattern.compare), pattern.aspect()};
 }
 
 Result<Picture> readPicture(const show::PatternSource& source, const Reading& reading) {

@@ -14,7 +14,7 @@ namespace fantascope::pattern {
 // independent of its order. Thread: every const method is reentrant.
 class Goal {
 public:
-    // `guide`: stored values 0..1, in the pattern's resolution.
+    // `guide`: compared values 0..1 (comparedGuide), in the pattern's resolution.
     explicit Goal(const GreyImage& guide);
 
     // White in integer units. The values of 16-bit and 8-bit PNGs are exact in them, as 65535 = 257

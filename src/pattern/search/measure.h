@@ -10,7 +10,7 @@
 namespace fantascope::pattern {
 
 // How well a pattern at rest reads as its guide, in the pattern's resolution and in the guide's
-// stored values.
+// compared values (comparedGuide).
 struct PatternQuality {
     double z = 1;        // mean |I - I'| (Ji et al. 2015, section 4.1)
     double zBound = 0;   // mean min(I, 1 - I), the lower bound of z for white shapes on black
@@ -18,7 +18,7 @@ struct PatternQuality {
     double overlap = 0;  // share of the covered pixels that more than one instance covers
 };
 
-// `guide`: stored values, in any resolution; it is resampled to the pattern's.
+// `guide`: compared values, in any resolution; it is resampled to the pattern's.
 PatternQuality measure(const ShapePattern& pattern, const GreyImage& guide);
 
 // The same of the animated loop, which is what an audience sees.

@@ -83,7 +83,7 @@ struct PatternSearch {
 
         struct Refined {
             // The weights of wrong pixels, wrong tone and overlap in the goal; 0 .. 100.
-            double zWeight = 1, toneWeight = 0.5, overlapWeight = 0.12;
+            double zWeight = 1, toneWeight = 1.5, overlapWeight = 0.12;
             // Where the guide is white, this share of the covered pixels may overlap at no cost; 0
             // .. 1. Shapes that overlap a little open no gaps when they sway.
             double overlapFree = 0.13;
@@ -156,12 +156,12 @@ struct PatternSearch {
         Summary summary;
     };
 
-    // `guide`: stored values, in any resolution. `pattern`: has seed, shapes (at least one), motion
-    // and everything else that the search leaves alone; its resolution, instances and groups are
-    // filled in. The refined method starts from its instances, if any; those that remain keep their
-    // id, colour and group. The result depends on these arguments and the number of iterations
-    // alone, not on `threads`. `options` must pass check(). Thread: reentrant; askStop and plan are
-    // called on the calling thread.
+    // `guide`: compared values (comparedGuide), in any resolution. `pattern`: has seed, shapes (at
+    // least one), motion and everything else that the search leaves alone; its resolution,
+    // instances and groups are filled in. The refined method starts from its instances, if any;
+    // those that remain keep their id, colour and group. The result depends on these arguments and
+    // the number of iterations alone, not on `threads`. `options` must pass check(). Thread:
+    // reentrant; askStop and plan are called on the calling thread.
     static Found run(const GreyImage& guide, ShapePattern pattern, const Options& options, int threads, const AskStop& askStop,
                      const Plan& plan = {});
 };

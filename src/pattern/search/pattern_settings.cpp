@@ -169,6 +169,9 @@ Result<PatternSettings> readPatternSettings(const std::filesystem::path& file) {
     ConfigFields fields(TRY(ConfigNode::load(file)));
     fields.header("pattern-settings", kVersion);
     fields.optional().choice("guide_transfer", settings.guideTransfer, {name(GuideTransfer::Srgb), name(GuideTransfer::Linear)});
+    fields.optional().read("compare", settings.compare, [](const ConfigNode& at) -> Result<std::optional<CompareSpace>> {
+        return std::optional(static_cast<CompareSpace>(TRY(at.choice({name(CompareSpace::Light), name(CompareSpace::Stored)}))));
+    });
     const auto section = [&](const char* name, auto declare) {
         fields.optional().read(name, settings.search,
                                [&](const ConfigNode& node) { return readSection(node, settings.search, declare); });

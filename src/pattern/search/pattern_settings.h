@@ -26,6 +26,8 @@ struct PatternSettings {
     // false if the file sets one.
     bool fitMotion = true;
     GuideTransfer guideTransfer = GuideTransfer::Srgb;
+    // Absent: light for the refined method, stored values for the paper's.
+    std::optional<CompareSpace> compare;
     std::vector<ShapeSettings> shapes;  // each is named once
     std::optional<double> seconds;      // time limit of the search, for the caller; > 0
 

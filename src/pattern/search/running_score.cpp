@@ -10,14 +10,13 @@
 namespace fantascope::pattern {
 namespace {
 
-// The distance between nodes of the finer Gaussian, as a share of the height. Its sigma is height /
-// 36.
-constexpr double kSpacing = 1 / 45.0;
-// One axis of the Gaussian kernel at the surrounding nodes, in integers. Its sigma is 1.217 nodes;
-// together with the square of a node (variance 1/12) it is 1.25.
-constexpr int kReach = 3;
-constexpr std::array<double, 2 * kReach + 1> kKernel = {16, 86, 241, 338, 241, 86, 16};
+// The finer Gaussian's sigma, and about the distance between its nodes, as shares of the height.
+constexpr double kSigma = 1 / 36.0, kSpacing = 1 / 45.0;
+// How far that distance may be off, so that more of a picture's blocks can be large.
+constexpr double kSpacingTolerance = 0.125;
 constexpr double kKernelSum = 1024;
+// The kernel's least variance, for guides of a few rows: nearly no blur.
+constexpr double kSharpest = 0.01;
 // The guide counts as black or white within about this distance.
 constexpr double kBinary = 0.02;
 // The overlap counts a lighter guide as white: instances there have no room side by side.
@@ -35,14 +34,26 @@ std::uint64_t bitsOfBytes(std::uint64_t x) {
 
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
+int blocksBetweenNodes(int block, int height) { return std::max(1, static_cast<int>(std::lround(kSpacing * height / block))); }
+
 }  // namespace
+
+// The largest side of a block with which the nodes have about their distance.
+int RunningScore::blockFor(int height) {
+    int block = kLargestBlock;
+    const auto isFar = [&] {
+        return std::abs(blocksBetweenNodes(block, height) * block / (kSpacing * height) - 1) > kSpacingTolerance;
+    };
+    while (block > 1 && isFar()) block /= 2;
+    return block;
+}
 
 RunningScore::RunningScore(const SearchSpace& space)
     : space_(space),
       region_(space.options().region),
       width_(space.pixels().x),
       height_(space.pixels().y),
-      block_(std::clamp(static_cast<int>(std::bit_floor(static_cast<unsigned>(kSpacing * height_))), 1, kLargestBlock)),
+      block_(blockFor(height_)),
       blockShift_(std::countr_zero(static_cast<unsigned>(block_))),
       blocks_((width_ + block_ - 1) / block_, (height_ + block_ - 1) / block_),
       counts_(wordAt((width_ - 1) / PixelMask::kBits + 1, 0)),
@@ -53,13 +64,24 @@ RunningScore::RunningScore(const SearchSpace& space)
 
 // Fills lack_ and each scale's `lack` for a black picture.
 void RunningScore::measureGuide() {
+    // The square of a node is a part of the blur. Integers, whose sum is exact.
+    const double node = blocksBetweenNodes(block_, height_) * block_ / (kSigma * height_);  // in sigmas
+    const double variance = std::max(kSharpest, 1 / (node * node) - 1 / 12.0);              // in nodes
+    kernel_.fill(kKernelSum);
+    double sum = 0;
+    for (int i = -kReach; i <= kReach; ++i) sum += std::exp(-i * i / (2 * variance));
+    for (int i = 1; i <= kReach; ++i) {
+        const double value = std::round(kKernelSum * std::exp(-i * i / (2 * variance)) / sum);
+        kernel_[at(kReach - i)] = kernel_[at(kReach + i)] = value;
+        kernel_[at(kReach)] -= 2 * value;
+    }
     for (int y = 0; y < blocks_.y; ++y)
         for (int x = 0; x < blocks_.x; ++x)
             lack_.push_back(space_.goal().guideSum(
                 {{x * block_, y * block_}, {std::min((x + 1) * block_, width_), std::min((y + 1) * block_, height_)}}));
     for (std::size_t s = 0; s < kScales; ++s) {
         Scale& scale = scales_[s];
-        const int side = std::max(1, static_cast<int>(std::lround(kSpacing * height_ / block_))) << s;
+        const int side = blocksBetweenNodes(block_, height_) << s;
         scale.nodes = (blocks_ + side - 1) / side;
         for (int x = 0; x < blocks_.x; ++x) scale.columns.push_back(x / side);
         for (int y = 0; y < blocks_.y; ++y) scale.rows.push_back(y / side);
@@ -272,11 +294,11 @@ double RunningScore::spreadChange(Scale& scale, const Box& box) {
             const double pixels = std::exchange(changes[x], 0.0);
             if (pixels == 0) continue;
             const int first = std::max(x - kReach, from.x), last = std::min(x + kReach, to.x);
-            for (int i = first; i <= last; ++i) row_[at(i - from.x)] += pixels * kKernel[at(i - x + kReach)];
+            for (int i = first; i <= last; ++i) row_[at(i - from.x)] += pixels * kernel_[at(i - x + kReach)];
         }
         const int first = std::max(y - kReach, from.y), last = std::min(y + kReach, to.y);
         for (int i = first; i <= last; ++i) {
-            const double weight = kKernel[at(i - y + kReach)] * Goal::kWhite;
+            const double weight = kernel_[at(i - y + kReach)] * Goal::kWhite;
             double* out = scale.spread.data() + start + at(i - from.y) * at(width);
             for (int x = 0; x < width; ++x) out[x] -= weight * row_[at(x)];
         }

@@ -63,9 +63,10 @@ private:
         std::int32_t pull, cost;
         std::int32_t pulls;  // otherwise the index in pulls_, else -1
     };
-    // Changes are counted in square blocks. All but small pictures have blocks of 8 pixels, which
-    // are counted together: the counts of a word's eight blocks are the bytes of one word.
+    // Changes are counted in square blocks. Those of 8 pixels are counted together: the counts of a
+    // word's eight blocks are the bytes of one word.
     static constexpr int kLargestBlock = 8, kScales = 2;
+    static int blockFor(int height);
     struct BlockChange {
         glm::ivec2 block;
         std::int32_t pixels;
@@ -132,6 +133,9 @@ private:
     std::vector<std::array<std::uint64_t, kPullPlanes>> pulls_;
     std::vector<std::int64_t> lack_;  // per block: sum I - I', in Goal's units
     std::array<Scale, kScales> scales_;
+    // One axis of the Gaussians' kernel at the nodes around, and how far it reaches either way.
+    static constexpr int kReach = 3;
+    std::array<double, 2 * kReach + 1> kernel_{};
 
     std::int64_t sum_ = 0;                              // sum |I - I'|, in Goal's units
     std::int64_t coveredWhite_ = 0, severalWhite_ = 0;  // white pixels with at least one instance, with several

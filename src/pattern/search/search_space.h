@@ -18,7 +18,7 @@ namespace fantascope::pattern {
 // and rotations of instances. Constant during a search. Thread: every method is reentrant.
 class SearchSpace {
 public:
-    // `guide`: stored values in the pattern's resolution. `options` outlives it.
+    // `guide`: compared values in the pattern's resolution. `options` outlives it.
     SearchSpace(const GreyImage& guide, std::span<const ElementalShape> shapes, std::uint64_t seed,
                 const PatternSearch::Options& options);
 

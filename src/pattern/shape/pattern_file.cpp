@@ -67,6 +67,7 @@ Result<ShapePattern> patternOf(const ConfigNode& root) {
     fields.header("pattern", kVersion);
     fields.path("guide", pattern.guide);
     fields.choice("guide_transfer", pattern.guideTransfer, {name(GuideTransfer::Srgb), name(GuideTransfer::Linear)});
+    fields.optional().choice("compare", pattern.compare, {name(CompareSpace::Light), name(CompareSpace::Stored)});
     fields.read("size", size, readSize);
     fields.integer("seed", pattern.seed, 0, std::numeric_limits<std::int64_t>::max());
     fields.integer("groups", pattern.groups, 1, kMaxInstances);
@@ -108,7 +109,7 @@ Result<void> writePattern(const fs::path& file, const ShapePattern& pattern) {
     const auto add = [&]<class... Values>(fmt::format_string<Values...> format, Values&&... values) {
         fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
     };
-    add("guide_transfer: {}\n", name(pattern.guideTransfer));
+    add("guide_transfer: {}\ncompare: {}\n", name(pattern.guideTransfer), name(pattern.compare));
     add("size: [{}, {}]\nseed: {}\ngroups: {}\nshapes:\n", pattern.width, pattern.height, pattern.seed, pattern.groups);
     for (const ElementalShape& shape : pattern.shapes) {
         if (shape.file.empty())

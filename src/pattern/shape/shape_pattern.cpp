@@ -16,6 +16,12 @@ double ShapePattern::meanSize() const {
     return instances.empty() ? 0 : sum / static_cast<double>(instances.size());
 }
 
+GreyImage comparedGuide(GreyImage stored, GuideTransfer transfer, CompareSpace space) {
+    if (space == CompareSpace::Light && transfer == GuideTransfer::Srgb)
+        for (float& value : stored.pixels()) value = linearFromSrgb(value);
+    return stored;
+}
+
 glm::dmat3 canvasFromShape(const InstancePose& pose) {
     const double s = pose.size;
     return glm::dmat3(s, 0, 0, 0, -s, 0, 0, 0, s) * rotationXyz(pose.rotation);

@@ -3,6 +3,7 @@
 #include "pattern/shape/motion_settings.h"
 
 #include "core/result.h"
+#include "media/image.h"
 #include "media/mesh.h"
 
 #include <glm/mat3x3.hpp>
@@ -50,10 +51,22 @@ enum class GuideTransfer { Srgb, Linear };
 // As files and reports write it.
 constexpr std::string_view name(GuideTransfer transfer) { return transfer == GuideTransfer::Srgb ? "srgb" : "linear"; }
 
+// In which values pattern and guide are compared. Eye and camera add light from afar, so only a
+// pattern that was compared in light reads as the drawing from there. Stored values are the
+// paper's.
+enum class CompareSpace { Light, Stored };
+// As files and reports write it.
+constexpr std::string_view name(CompareSpace space) { return space == CompareSpace::Light ? "light" : "stored"; }
+
+// The guide's values as a pattern is compared with them: its stored values, or their linear light,
+// 0..1.
+GreyImage comparedGuide(GreyImage stored, GuideTransfer transfer, CompareSpace space);
+
 // A shape pattern: everything needed to draw it at any time. Value type; thread-safe to read.
 struct ShapePattern {
     std::filesystem::path guide;  // the drawing that it reads as, absolute or relative to the working directory
     GuideTransfer guideTransfer = GuideTransfer::Srgb;
+    CompareSpace compare = CompareSpace::Stored;  // it was compared with its guide in this space
     int width = 0, height = 0;  // pixels of the comparison with the guide; the canvas's aspect is width / height
     std::uint64_t seed = 0;     // below 2^63 in files
     std::uint32_t groups = 1;

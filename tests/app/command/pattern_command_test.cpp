@@ -125,6 +125,47 @@ TEST_F(PatternCommand, reports_the_figures_of_the_picture_that_it_writes) {
     }
 }
 
+// From afar a wall that is half covered gives half its light, whose stored value is .74.
+TEST_F(PatternCommand, covers_as_much_as_the_drawing_has_light) {
+    constexpr float kGrey = 128.0f / 255;
+    ASSERT_TRUE(writePng(folder_ / "grey.png", GreyImage(192, 108, kGrey)));
+    const auto covered = [&](const Arguments& more) {
+        Arguments arguments = {"pattern",      "grey.png", "-o",      "out/p.pattern.yaml", "--instances", "200",
+                               "--iterations", "200",      "--image", "out/p.png",          "--report",    "out/r.json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        EXPECT_THAT(run(arguments), exits(0));
+        const GreyImage image = readGrey(folder_ / "out/p.png").value();
+        double sum = 0;
+        for (const float value : image.pixels()) sum += value;
+        return sum / static_cast<double>(image.pixels().size());
+    };
+    const auto space = [&] { return pattern::readPattern(folder_ / "out/p.pattern.yaml")->compare; };
+    folder_.file("stored.yaml", "fantascope: pattern-settings\nversion: 1\ncompare: stored\n");
+    folder_.file("light.yaml", "fantascope: pattern-settings\nversion: 1\ncompare: light\n");
+    const double light = linearFromSrgb(kGrey);
+
+    EXPECT_NEAR(covered({}), light, 0.03);
+    EXPECT_EQ(space(), pattern::CompareSpace::Light);
+    EXPECT_EQ(report()["compare"], "light");
+    EXPECT_EQ(report()["z_light"], report()["z"]);
+    EXPECT_EQ(report()["tone_light"], report()["tone"]);
+    EXPECT_LT(report()["tone"], 0.03);
+
+    EXPECT_NEAR(covered({"--settings", "stored.yaml"}), kGrey, 0.03);
+    EXPECT_EQ(space(), pattern::CompareSpace::Stored);
+    EXPECT_EQ(report()["compare"], "stored");
+    EXPECT_NEAR(report()["tone_light"].get<double>(), kGrey - light, 0.03) << "too bright by so much";
+    EXPECT_LT(report()["tone"], 0.03);
+
+    covered({"--method", "paper"});
+    EXPECT_EQ(space(), pattern::CompareSpace::Stored) << "as written";
+    covered({"--method", "paper", "--settings", "light.yaml"});
+    EXPECT_EQ(space(), pattern::CompareSpace::Light);
+
+    EXPECT_NEAR(covered({"--shadows"}), 1 - light, 0.03) << "the light between the shapes is that of the drawing";
+    EXPECT_NEAR(covered({"--shadows", "--settings", "stored.yaml"}), 1 - kGrey, 0.03);
+}
+
 // Example failure: the clock has a say in more than when to stop.
 TEST_F(PatternCommand, a_run_that_stopped_by_time_is_replayed_byte_for_byte_by_its_iterations) {
     for (const char* method : {"paper", "refined"}) {

@@ -37,11 +37,13 @@ TEST(PatternSettings, without_a_key_are_the_defaults) {
     EXPECT_EQ(settings->search.tilt, PatternSearch::Options().tilt);
     EXPECT_FALSE(settings->search.size.has_value());
     EXPECT_EQ(settings->motion.frames, 2000);
+    EXPECT_FALSE(settings->compare) << "each method has its own";
 }
 
 TEST(PatternSettings, every_section_is_read_with_angles_in_degrees) {
     const auto settings = read(
         "guide_transfer: linear\n"
+        "compare: stored\n"
         "search: {rows: 200}\n"
         "paper: {lambda_create: 0.4, lambda_delete: -0.6, candidates: 3}\n"
         "refined: {tone_weight: 2, polish: 0.2}\n"
@@ -50,6 +52,7 @@ TEST(PatternSettings, every_section_is_read_with_angles_in_degrees) {
         "motion: {frames: 600, local_turn: {range: 10}}\n");
     ASSERT_TRUE(settings) << settings.error().message();
     EXPECT_EQ(settings->guideTransfer, GuideTransfer::Linear);
+    EXPECT_EQ(settings->compare, CompareSpace::Stored);
     EXPECT_EQ(settings->search.paper.lambdaCreate, 0.4);
     EXPECT_EQ(settings->search.paper.lambdaDelete, -0.6);
     EXPECT_EQ(settings->search.paper.candidates, 3);
@@ -196,6 +199,7 @@ TEST(PatternSettings, the_file_of_defaults_holds_every_number_and_changes_nothin
     EXPECT_TRUE(settings->fitMotion);
     EXPECT_FALSE(settings->search.size);
     EXPECT_FALSE(settings->seconds);
+    EXPECT_FALSE(settings->compare);
     EXPECT_EQ(settings->search.colours.size(), 1u);
     EXPECT_EQ(settings->search.colours[0].from, PatternSearch::Options::Colours().from);
     const std::string text = readFile(file).value();

@@ -28,6 +28,7 @@ constexpr std::string_view kPattern = R"(fantascope: pattern
 version: 1
 guide: guides/tree.png
 guide_transfer: linear
+compare: light
 size: [640, 360]
 seed: 9
 groups: 2
@@ -112,6 +113,7 @@ TEST(PatternFile, is_read_in_canvas_units_and_radians) {
     const ShapePattern pattern = sample(folder);
     EXPECT_EQ(pattern.guide, folder.path() / "guides/tree.png");
     EXPECT_EQ(pattern.guideTransfer, GuideTransfer::Linear);
+    EXPECT_EQ(pattern.compare, CompareSpace::Light);
     EXPECT_EQ(pattern.width, 640);
     EXPECT_EQ(pattern.height, 360);
     EXPECT_EQ(pattern.seed, 9u);
@@ -138,6 +140,14 @@ TEST(PatternFile, is_read_in_canvas_units_and_radians) {
     EXPECT_EQ(pattern.motion.localTilt.beta, 0.5);
 }
 
+// Patterns of earlier versions were compared in stored values.
+TEST(PatternFile, without_a_space_was_compared_in_stored_values) {
+    const PatternFolder folder;
+    const auto pattern = readPattern(folder.file("tree.pattern.yaml", replaced(std::string(kPattern), "compare: light\n", "")));
+    ASSERT_TRUE(pattern) << pattern.error().message();
+    EXPECT_EQ(pattern->compare, CompareSpace::Stored);
+}
+
 // An absent key has the default of its own axis, not that of another one.
 TEST(PatternFile, absent_motion_keeps_every_default) {
     const PatternFolder folder;
@@ -161,6 +171,7 @@ TEST(PatternFile, what_was_written_is_read_back) {
 
     EXPECT_EQ(once.guide, written.guide);
     EXPECT_EQ(once.guideTransfer, written.guideTransfer);
+    EXPECT_EQ(once.compare, written.compare);
     EXPECT_EQ(once.shapes[1].file, written.shapes[1].file);
     ASSERT_EQ(once.instances.size(), written.instances.size());
     for (std::size_t i = 0; i < once.instances.size(); ++i) {
@@ -197,23 +208,23 @@ TEST(PatternFile, the_same_pattern_gives_the_same_bytes_in_whatever_folder) {
 }
 
 TEST(PatternFile, what_is_wrong_is_refused_with_place_and_advice) {
-    EXPECT_EQ(refusalAfter("seed:", "sead:"), "tree.pattern.yaml:6:1: sead: unknown key (did you mean 'seed'?)");
+    EXPECT_EQ(refusalAfter("seed:", "sead:"), "tree.pattern.yaml:7:1: sead: unknown key (did you mean 'seed'?)");
     EXPECT_EQ(refusalAfter("colour: [0, 0", "color: [0, 0"),
-              "tree.pattern.yaml:16:83: instances[1].color: unknown key (did you mean 'colour'?)");
+              "tree.pattern.yaml:17:83: instances[1].color: unknown key (did you mean 'colour'?)");
     EXPECT_EQ(refusalAfter("beta", "betta"),
-              "tree.pattern.yaml:13:16: motion.local_tilt.betta: unknown key (did you mean 'beta'?)");
+              "tree.pattern.yaml:14:16: motion.local_tilt.betta: unknown key (did you mean 'beta'?)");
     EXPECT_EQ(refusalAfter("version: 1", "version: 2"),
               "tree.pattern.yaml:2:10: version: version 2 was written by a newer program, this one reads up to 1; update it");
     EXPECT_THAT(refusalAfter("fantascope: pattern", "fantascope: show"),
                 HasSubstr("this is a show file, a pattern file is needed here"));
     EXPECT_EQ(refusalAfter("shape: 1", "shape: 2"),
-              "tree.pattern.yaml:15:20: instances[0].shape: 2 is out of range, 0 .. 1 is allowed");
+              "tree.pattern.yaml:16:20: instances[0].shape: 2 is out of range, 0 .. 1 is allowed");
     EXPECT_EQ(refusalAfter("group: 1", "group: 2"),
-              "tree.pattern.yaml:16:30: instances[1].group: 2 is out of range, 0 .. 1 is allowed");
+              "tree.pattern.yaml:17:30: instances[1].group: 2 is out of range, 0 .. 1 is allowed");
     EXPECT_EQ(refusalAfter("id: 7", "id: 3"),
-              "tree.pattern.yaml:16:5: instances[1]: id 3 is given twice; every instance needs its own");
+              "tree.pattern.yaml:17:5: instances[1]: id 3 is given twice; every instance needs its own");
     EXPECT_THAT(refusalAfter("size: 0.05", "size: .nan"),
-                HasSubstr(":15:60: instances[0].size: a number in 1e-06 .. 10 canvas heights"));
+                HasSubstr(":16:60: instances[0].size: a number in 1e-06 .. 10 canvas heights"));
     EXPECT_THAT(refusalAfter("size: 0.05", "size: nan"), HasSubstr("instances[0].size: a number"));
     EXPECT_THAT(refusalAfter("size: 0.05", "size: 0"), HasSubstr("instances[0].size: 0 is out of range"));
     EXPECT_THAT(refusalAfter("[1.5, 1]", "[1.8, 1]"), HasSubstr("instances[1].centre[0]: 1.8 is out of range"));
@@ -226,25 +237,25 @@ TEST(PatternFile, what_is_wrong_is_refused_with_place_and_advice) {
 }
 
 TEST(PatternFile, a_shape_or_guide_that_cannot_be_had_is_refused_with_the_patterns_place) {
-    EXPECT_THAT(refusalAfter("sculpture.obj", "absent.obj"), StartsWith("tree.pattern.yaml:10:12: shapes[1].file: "));
+    EXPECT_THAT(refusalAfter("sculpture.obj", "absent.obj"), StartsWith("tree.pattern.yaml:11:12: shapes[1].file: "));
     EXPECT_THAT(refusalAfter("sculpture.obj", "absent.obj"), HasSubstr("absent.obj"));
     EXPECT_THAT(refusalAfter("shapes/sculpture.obj", "/sculpture.obj"),
-                HasSubstr(":10:12: shapes[1].file: '/sculpture.obj' is absolute"));
+                HasSubstr(":11:12: shapes[1].file: '/sculpture.obj' is absolute"));
     EXPECT_THAT(refusalAfter("guides/tree.png", "/tree.png"), HasSubstr(":3:8: guide: '/tree.png' is absolute"));
     EXPECT_THAT(refusalAfter("guides/tree.png", "../tree.png"), HasSubstr("guide: '../tree.png' leaves this file's folder"));
     EXPECT_THAT(refusalAfter("{builtin: triangle}", "{builtin: triangel}"),
-                HasSubstr(":9:15: shapes[0].builtin: 'triangel' is no built-in shape; there are "));
+                HasSubstr(":10:15: shapes[0].builtin: 'triangel' is no built-in shape; there are "));
     EXPECT_THAT(refusalAfter("{builtin: triangle}", "{builtin: triangel}"), HasSubstr("(did you mean 'triangle'?)"));
     EXPECT_THAT(refusalAfter("{builtin: triangle}", "{}"),
-                HasSubstr(":9:5: shapes[0]: exactly one of 'builtin' and 'file' is needed"));
+                HasSubstr(":10:5: shapes[0]: exactly one of 'builtin' and 'file' is needed"));
     EXPECT_THAT(refusalAfter("{builtin: triangle}", "{builtin: square, file: shapes/sculpture.obj}"),
-                HasSubstr(":9:5: shapes[0]: exactly one of 'builtin' and 'file' is needed"));
+                HasSubstr(":10:5: shapes[0]: exactly one of 'builtin' and 'file' is needed"));
 
     const PatternFolder folder;
     folder.file("shapes/sculpture.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     const auto pattern = readPattern(folder.file("tree.pattern.yaml", kPattern));
     ASSERT_FALSE(pattern);
-    EXPECT_THAT(pattern.error().message(), StartsWith(folder.pattern().string() + ":10:12: shapes[1].file: "));
+    EXPECT_THAT(pattern.error().message(), StartsWith(folder.pattern().string() + ":11:12: shapes[1].file: "));
     EXPECT_THAT(pattern.error().message(), HasSubstr("has no triangles"));
 }
 
