@@ -1,5 +1,6 @@
 #include "vision/warp_fit.h"
 
+#include <Eigen/Dense>
 #include <Eigen/Sparse>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

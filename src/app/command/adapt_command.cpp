@@ -1,10 +1,9 @@
-#include "app/command/adapt_command.h"
-
 #include "app/base/attendance.h"
 #include "app/base/output.h"
 #include "app/base/progress.h"
 #include "app/command/adapt_input.h"
 #include "app/command/adapt_output.h"
+#include "app/command/commands.h"
 
 #include "theatre/motion/motion_cast.h"
 

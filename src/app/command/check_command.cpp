@@ -2,6 +2,7 @@
 
 #include "app/base/drawing.h"
 #include "app/base/silhouette_file.h"
+#include "app/command/commands.h"
 #include "app/live/programme.h"
 #include "app/site/site_file.h"
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "app/base/command.h"
-
 #include "core/result.h"
 
 #include <filesystem>
@@ -20,8 +18,5 @@ struct CheckOptions {
 // for each to `out`: "ok" and what it holds, or what is wrong and where. Error: how many were
 // refused.
 Result<void> checkFiles(const CheckOptions& options, std::ostream& out);
-
-// fantascope check PATH... [--site SITE]
-void addCheckCommand(Program& program);
 
 }  // namespace fantascope::app

@@ -1,6 +1,5 @@
-#include "app/command/convert_command.h"
-
 #include "app/base/output.h"
+#include "app/command/commands.h"
 #include "app/export/motion_scene.h"
 
 #include "core/file.h"

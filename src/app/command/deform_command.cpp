@@ -1,10 +1,9 @@
-#include "app/command/deform_command.h"
-
 #include "app/base/frame_run.h"
 #include "app/base/output.h"
 #include "app/base/report.h"
 #include "app/base/silhouette_file.h"
 #include "app/base/video_writer.h"
+#include "app/command/commands.h"
 #include "app/export/motion_sheet.h"
 #include "app/export/sequence_folder.h"
 

@@ -1,6 +1,5 @@
-#include "app/command/devices_command.h"
-
 #include "app/base/interrupt.h"
+#include "app/command/commands.h"
 #include "app/command/device_trial.h"
 #include "app/site/devices.h"
 #include "app/site/relay_guard.h"

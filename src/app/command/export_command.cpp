@@ -1,8 +1,7 @@
-#include "app/command/export_command.h"
-
 #include "app/base/frame_run.h"
 #include "app/base/geometry_options.h"
 #include "app/base/report.h"
+#include "app/command/commands.h"
 #include "app/export/film.h"
 #include "app/export/frame_file.h"
 

@@ -1,9 +1,8 @@
-#include "app/command/fabricate_command.h"
-
 #include "app/base/interrupt.h"
 #include "app/base/output.h"
 #include "app/base/progress.h"
 #include "app/base/report.h"
+#include "app/command/commands.h"
 #include "app/export/cast_scene.h"
 
 #include "theatre/print/fabrication.h"

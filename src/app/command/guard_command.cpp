@@ -1,5 +1,4 @@
-#include "app/command/guard_command.h"
-
+#include "app/command/commands.h"
 #include "app/site/relay_guard.h"
 #include "drivers/registry.h"
 

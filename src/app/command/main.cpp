@@ -1,18 +1,4 @@
-#include "app/base/command.h"
-#include "app/command/adapt_command.h"
-#include "app/command/check_command.h"
-#include "app/command/convert_command.h"
-#include "app/command/deform_command.h"
-#include "app/command/devices_command.h"
-#include "app/command/export_command.h"
-#include "app/command/fabricate_command.h"
-#include "app/command/guard_command.h"
-#include "app/command/pattern_command.h"
-#include "app/command/plot_command.h"
-#include "app/command/pose_command.h"
-#include "app/command/preview_command.h"
-#include "app/command/rehearse_command.h"
-#include "app/command/template_command.h"
+#include "app/command/commands.h"
 
 #include "core/text.h"
 
@@ -27,10 +13,10 @@ namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-constexpr AddCommand kCommands[] = {addPatternCommand,   addPoseCommand,     addDeformCommand,   addAdaptCommand,
-                                    addFabricateCommand, addConvertCommand,  addRehearseCommand, addRunCommand,
-                                    addExportCommand,    addTemplateCommand, addPreviewCommand,  addPlotCommand,
-                                    addCheckCommand,     addDevicesCommand,  addGuardCommand};
+constexpr AddCommand kCommands[] = {addPatternCommand,   addPoseCommand,      addDeformCommand,   addAdaptCommand,
+                                    addFabricateCommand, addConvertCommand,   addRehearseCommand, addRunCommand,
+                                    addExportCommand,    addTemplateCommand,  addPreviewCommand,  addPlotCommand,
+                                    addCheckCommand,     addCalibrateCommand, addDevicesCommand,  addGuardCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

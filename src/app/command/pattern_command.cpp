@@ -1,10 +1,9 @@
-#include "app/command/pattern_command.h"
-
 #include "app/base/attendance.h"
 #include "app/base/drawing.h"
 #include "app/base/output.h"
 #include "app/base/progress.h"
 #include "app/base/report.h"
+#include "app/command/commands.h"
 #include "drivers/display/picture_window.h"
 
 #include "pattern/search/measure.h"

@@ -1,6 +1,5 @@
-#include "app/command/plot_command.h"
-
 #include "app/base/report.h"
+#include "app/command/commands.h"
 #include "app/export/cast_scene.h"
 
 #include "pattern/shape/shape_pattern.h"

@@ -1,9 +1,8 @@
-#include "app/command/pose_command.h"
-
 #include "app/base/attendance.h"
 #include "app/base/data_folder.h"
 #include "app/base/progress.h"
 #include "app/base/silhouette_file.h"
+#include "app/command/commands.h"
 #include "app/command/pose_options.h"
 #include "app/command/pose_output.h"
 #include "app/export/stage_material.h"

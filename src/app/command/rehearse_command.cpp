@@ -1,7 +1,6 @@
-#include "app/command/rehearse_command.h"
-
 #include "app/base/data_folder.h"
 #include "app/base/interrupt.h"
+#include "app/command/commands.h"
 #include "app/keys/run_keys.h"
 #include "app/live/run_console.h"
 #include "app/live/show_run.h"

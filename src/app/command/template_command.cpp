@@ -1,7 +1,6 @@
-#include "app/command/template_command.h"
-
 #include "app/base/data_folder.h"
 #include "app/base/geometry_options.h"
+#include "app/command/commands.h"
 #include "app/export/guide_template.h"
 #include "app/site/site_file.h"
 #include "app/site/site_models.h"

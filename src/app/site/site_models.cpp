@@ -22,12 +22,6 @@ vision::CameraModel projectorOf(const show::Output& output) {
                                                output.projector->lensShift);
 }
 
-Result<vision::CameraModel> cameraOf(const show::Site& site) {
-    const show::NominalCamera& camera = *site.nominalCamera;
-    return vision::CameraModel::fromFieldOfView(camera.pose, camera.size, camera.fieldOfView, camera.k1, camera.k2)
-        .in(site.file.string() + ": camera");
-}
-
 // Width / height of the whole canvas in an output's pixels.
 double aspectInPixels(const show::Output& output) {
     const WarpShape& warp = output.projection.warp.shape();
@@ -80,6 +74,12 @@ Result<std::size_t> outputNamed(const show::Site& site, const std::string& name)
     return Error(fmt::format(
         "{}: has no output '{}' ({})", site.file.string(), name,
         nearest.empty() ? fmt::format("its outputs: {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", nearest)));
+}
+
+Result<vision::CameraModel> cameraOf(const show::Site& site) {
+    const show::NominalCamera& camera = *site.nominalCamera;
+    return vision::CameraModel::fromFieldOfView(camera.pose, camera.size, camera.fieldOfView, camera.k1, camera.k2)
+        .in(site.file.string() + ": camera");
 }
 
 std::shared_ptr<const render::BlendMap> blendOf(const show::Site& site, std::size_t output) {

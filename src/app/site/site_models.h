@@ -16,6 +16,9 @@ namespace fantascope::app {
 // The index of an output. Error: the site has none of this name; it suggests a similar one.
 Result<std::size_t> outputNamed(const show::Site& site, const std::string& name);
 
+// The site's camera, as the site file says. The site has one. Error: its lens cannot be.
+Result<vision::CameraModel> cameraOf(const show::Site& site);
+
 // The share of the light that an output gives to each pixel, where outputs of a canvas overlap;
 // null if it gives all of it.
 std::shared_ptr<const render::BlendMap> blendOf(const show::Site& site, std::size_t output);

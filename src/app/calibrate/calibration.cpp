@@ -1,0 +1,116 @@
+#include "app/calibrate/calibration.h"
+
+#include "app/site/site_models.h"
+
+#include "show/site/projection_changes.h"
+#include "vision/largest_place.h"
+
+#include "core/config/config_edit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+using Corners = std::array<glm::dvec2, 4>;
+
+// The largest upright place of a canvas. Error: not all of its outputs were measured, or it finds
+// no place in their light.
+Result<Corners> largestPlaceOf(const show::Site& site, const std::string& canvas, const vision::CameraModel& camera,
+                               const std::map<std::size_t, LightSurvey::Output>& surveys) {
+    std::vector<vision::LitPart> parts;
+    const std::vector<std::size_t> outputs = site.outputsOn(canvas);
+    for (const std::size_t output : outputs) {
+        const auto survey = surveys.find(output);
+        if (survey == surveys.end())
+            return Error(
+                fmt::format("it shares the canvas '{}' with '{}', which was not measured; calibrate both, or say with "
+                            "--wanted where the canvas is to stand",
+                            canvas, site.outputs[output].name));
+        parts.push_back({site.outputs[output].projection.warp.shape().part, &survey->second.map});
+    }
+    const show::Output& first = site.outputs[outputs[0]];
+    const double known = first.projection.canvasAspect;
+    const double aspect = known > 0 ? known : canvasAspectInPixels(site, canvas);
+    Homography upright;
+    if (first.surface) upright = vision::uprightFromView(camera, {first.surface->point, first.surface->normal});
+    const auto place = vision::largestPlace(camera, parts, aspect, upright);
+    if (!place) return Error("no place for its canvas is lit; its outputs' pictures must touch or overlap where their parts do");
+    return *place;
+}
+
+// Fits one output's warp, and says in `trouble` why that is not good enough.
+void fit(OutputCalibration& calibration, const LightSurvey::Output& survey, const vision::CameraModel& camera,
+         const Result<Corners>& wanted, const WarpShape& now) {
+    if (!wanted) {
+        calibration.trouble = wanted.error().message();
+        return;
+    }
+    const auto fitted = vision::fitWarp(vision::sharedPoints(survey.map), {camera, *wanted}, now);
+    if (!fitted) {
+        calibration.trouble = fitted.error().message();
+        return;
+    }
+    calibration.fit = *fitted;
+    if (fitted->rms > kGoodRms)
+        calibration.trouble = fmt::format(
+            "the warp misses what was measured by {:.2f} px, {:.1f} are allowed; the surface may be too "
+            "rough, or something moved all the time",
+            fitted->rms, kGoodRms);
+}
+
+}  // namespace
+
+Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show::Site& site,
+                                                 const std::vector<std::size_t>& outputs, const WantedCorners& wanted) {
+    const vision::CameraModel camera = TRY(cameraOf(site));
+    TRY(survey.begin(outputs));
+    std::vector<OutputCalibration> calibrations;
+    std::map<std::size_t, LightSurvey::Output> surveys;
+    for (const std::size_t output : outputs) {
+        OutputCalibration& calibration = calibrations.emplace_back();
+        calibration.output = output;
+        auto found = survey.survey(output);
+        if (!found) {
+            calibration.trouble = found.error().message();
+            continue;
+        }
+        calibration.gamma = found->gamma;
+        calibration.repeated = found->repeated;
+        surveys[output] = std::move(*found);
+    }
+    std::map<std::string, Result<Corners>> places;
+    for (OutputCalibration& calibration : calibrations) {
+        const auto found = surveys.find(calibration.output);
+        if (found == surveys.end()) continue;
+        const show::Output& output = site.outputs[calibration.output];
+        const auto given = wanted.find(output.name);
+        if (given == wanted.end() && !places.contains(output.canvas))
+            places.emplace(output.canvas, largestPlaceOf(site, output.canvas, camera, surveys));
+        fit(calibration, found->second, camera, given != wanted.end() ? Result<Corners>(given->second) : places.at(output.canvas),
+            output.projection.warp.shape());
+    }
+    return calibrations;
+}
+
+Result<void> writeWarps(const show::Site& site, std::vector<OutputCalibration>& calibrations) {
+    ConfigDocument document = TRY(ConfigDocument::load(site.file));
+    for (const OutputCalibration& calibration : calibrations) {
+        if (!calibration.isGood()) continue;
+        const Projection& then = site.outputs[calibration.output].projection;
+        Projection now = then;
+        now.warp = TRY(Warp::of(calibration.fit->shape));
+        for (const show::SiteChange& change : show::projectionChanges(then, now, calibration.output))
+            TRY(change.value ? document.set(change.path, *change.value) : document.erase(change.path));
+    }
+    TRY(document.save());
+    for (OutputCalibration& calibration : calibrations) calibration.written = calibration.isGood();
+    return {};
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "app/calibrate/light_survey.h"
+#include "app/calibrate/wanted_file.h"
+
+#include "show/site/site.h"
+#include "vision/warp_fit.h"
+
+#include "core/result.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fantascope::app {
+
+// One output's calibration.
+struct OutputCalibration {
+    std::size_t output = 0;
+    std::string trouble;  // why it has no fit, or why the fit is not good enough; empty: it is good
+    std::optional<vision::WarpFit> fit;
+    double gamma = 0;  // 0: not measured
+    int repeated = 0;  // pictures that were shown again
+    bool written = false;
+
+    bool isGood() const { return fit && trouble.empty(); }
+};
+
+// The worst residual, projector pixels, with which a calibration counts as good.
+constexpr double kGoodRms = 1.0;
+
+// Finds the warps of some outputs of a site. An output that fails does not stop the others.
+// `wanted`: where canvases are to stand; an output that is not in it gets the largest upright place
+// that its canvas's outputs light, for which all of these must be among `outputs`.
+// Error: the camera gives no pictures, or sees no output.
+Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show::Site& site,
+                                                 const std::vector<std::size_t>& outputs, const WantedCorners& wanted);
+
+// Writes the good warps into the site file, and keeps the version before as FILE.previous. Error:
+// the file cannot be changed; it stays as it was.
+Result<void> writeWarps(const show::Site& site, std::vector<OutputCalibration>& calibrations);
+
+}  // namespace fantascope::app

@@ -1,0 +1,318 @@
+#include "app/calibrate/light_survey.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+using vision::LightDecoder;
+using vision::StructuredLight;
+
+constexpr Time kCameraWithin = std::chrono::seconds(5);
+constexpr int kFirstFrames = 12;
+// The longest delay from a picture to its light on the camera that can be measured.
+constexpr Time kLongestDelay = std::chrono::milliseconds(800);
+constexpr int kEdges = 5;
+constexpr int kFulls = 3;
+constexpr int kGreys = 8;
+// A pair is shown again while it leaves more of the lit pixels undecided, so many times at most.
+constexpr double kUndecided = 0.005;
+constexpr int kRounds = 4;
+// Another try has to leave less than this share of what the one before left.
+constexpr double kStubborn = 0.7;
+constexpr std::size_t kFewestLit = 400;  // camera pixels
+constexpr float kSaturated = 0.98f;
+constexpr double kSaturatedShare = 0.2;
+// The contrast at which one frame a picture is enough, and the most frames.
+constexpr double kClearContrast = 25;
+constexpr int kMostFrames = 4;
+constexpr double kSmallestGamma = 1, kLargestGamma = 4;
+
+// The mean of a stored picture's channels as linear light.
+void addLight(const RgbaImage& stored, GreyImage& sum) {
+    static const std::array<float, 256> linear = [] {
+        std::array<float, 256> values{};
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = linearFromSrgb(static_cast<float>(i) / 255) / 3;
+        return values;
+    }();
+    for (std::size_t i = 0; i < sum.pixels().size(); ++i) {
+        const Rgba8& pixel = stored.pixels()[i];
+        sum.pixels()[i] += linear[pixel.r] + linear[pixel.g] + linear[pixel.b];
+    }
+}
+
+GreyImage lightOf(const RgbaImage& stored) {
+    GreyImage light(stored.width(), stored.height());
+    addLight(stored, light);
+    return light;
+}
+
+std::shared_ptr<const RgbaImage> plain(glm::ivec2 size, double stored) {
+    const auto value = static_cast<std::uint8_t>(std::lround(255 * stored));
+    return std::make_shared<const RgbaImage>(size.x, size.y, Rgba8{value, value, value, 255});
+}
+
+// The pixels that differ most between dark and full.
+std::vector<std::size_t> brightest(const GreyImage& full, const GreyImage& dark) {
+    float most = 0;
+    for (std::size_t i = 0; i < full.pixels().size(); ++i) most = std::max(most, full.pixels()[i] - dark.pixels()[i]);
+    std::vector<std::size_t> pixels;
+    for (std::size_t i = 0; i < full.pixels().size(); ++i)
+        if (full.pixels()[i] - dark.pixels()[i] > most / 2) pixels.push_back(i);
+    return pixels;
+}
+
+double meanOver(const std::vector<std::size_t>& pixels, const GreyImage& light) {
+    double sum = 0;
+    for (const std::size_t pixel : pixels) sum += light.pixels()[pixel];
+    return pixels.empty() ? 0 : sum / static_cast<double>(pixels.size());
+}
+
+// Error: the camera sees too little of the output's light, or too much.
+Result<void> canBeMeasured(const LightDecoder& sight, const GreyImage& full) {
+    if (sight.lit() < kFewestLit)
+        return Error(fmt::format(
+            "the camera sees its light on {} pixels, {} are needed; turn the camera or the projector, or raise the exposure",
+            sight.lit(), kFewestLit));
+    std::size_t saturated = 0;
+    for (int y = 0; y < full.height(); ++y)
+        for (int x = 0; x < full.width(); ++x) saturated += sight.isLit(x, y) && full.at(x, y) > kSaturated ? 1 : 0;
+    if (static_cast<double>(saturated) > kSaturatedShare * static_cast<double>(sight.lit()))
+        return Error("the camera is saturated by its light; lower the camera's exposure or gain");
+    return {};
+}
+
+const Error& ended() {
+    static const Error error("it was ended before this output was measured");
+    return error;
+}
+
+}  // namespace
+
+Result<void> LightSurvey::stepUntil(Time until, const std::function<void(const CalibrationRig::Seen&)>& use) {
+    while (rig_.now() < until) {
+        if (!hooks_.goesOn()) return ended();
+        if (const auto seen = rig_.step()) use(*seen);
+    }
+    return {};
+}
+
+Result<void> LightSurvey::awaitCamera() {
+    std::vector<CalibrationRig::Seen> frames;
+    const Time limit = rig_.now() + kCameraWithin;
+    while (frames.size() < kFirstFrames && rig_.now() < limit) {
+        if (!hooks_.goesOn()) return ended();
+        if (const auto seen = rig_.step()) frames.push_back(*seen);
+    }
+    if (frames.size() < kFirstFrames) {
+        const std::string trouble = rig_.cameraTrouble();
+        return Error(fmt::format("the camera gave {} pictures in {} s{}", frames.size(), seconds(kCameraWithin),
+                                 trouble.empty() ? "; look at its cable, and close other programs that use it" : ": " + trouble));
+    }
+    const CameraFrame& first = *frames.front().frame;
+    const glm::ivec2 declared = site_.nominalCamera->size;
+    if (first.image.width() != declared.x || first.image.height() != declared.y)
+        return Error(fmt::format("the camera's pictures have {} x {} pixels, the site file says {} x {}; correct camera: size",
+                                 first.image.width(), first.image.height(), declared.x, declared.y));
+    std::vector<Time> periods;
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+        const CameraFrame &now = *frames[i].frame, &before = *frames[i - 1].frame;
+        periods.push_back((now.exposed - before.exposed) /
+                          static_cast<Time::rep>(std::max<std::uint64_t>(1, now.sequence - before.sequence)));
+        arrival_ = std::max(arrival_, frames[i].arrived - now.exposed);
+    }
+    std::ranges::nth_element(periods, periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2));
+    period_ = periods[periods.size() / 2];
+    return {};
+}
+
+// Lights the output and darkens it again, and notes between which two frames each change was seen.
+// False: the camera sees no difference.
+Result<bool> LightSurvey::measureDelay(std::size_t output) {
+    const auto white = plain(site_.outputs[output].size(), 1);
+    const auto stillOf = [&](bool lit) -> Result<GreyImage> {
+        rig_.show(output, lit ? white : nullptr);
+        std::shared_ptr<const CameraFrame> last;
+        TRY(stepUntil(rig_.now() + kLongestDelay + 2 * period_, [&](const CalibrationRig::Seen& seen) { last = seen.frame; }));
+        if (!last) return Error("the camera stopped; look at its cable");
+        return lightOf(last->image);
+    };
+    const GreyImage full = TRY(stillOf(true)), dark = TRY(stillOf(false));
+    const std::vector<std::size_t> pixels = brightest(full, dark);
+    const double lit = meanOver(pixels, full), unlit = meanOver(pixels, dark);
+    constexpr double kVisible = 0.01;
+    if (pixels.size() < kFewestLit || lit - unlit < kVisible) return false;
+
+    Time soonest = Time::min(), latest = Time::max();
+    std::vector<Time> arrivals;
+    for (int edge = 0; edge < kEdges; ++edge) {
+        const bool lights = edge % 2 == 0;
+        rig_.show(output, lights ? white : nullptr);
+        if (const auto seen = rig_.step(); !seen && !hooks_.goesOn()) return ended();
+        const Time shown = rig_.now();
+        std::optional<Time> before;
+        bool found = false;
+        // Each change at another moment of the camera's period.
+        TRY(stepUntil(shown + kLongestDelay + period_ * edge / kEdges, [&](const CalibrationRig::Seen& seen) {
+            if (found) return;
+            const double share = (meanOver(pixels, lightOf(seen.frame->image)) - unlit) / (lit - unlit);
+            if ((share > 0.5) != lights) {
+                before = seen.frame->exposed;
+                return;
+            }
+            found = true;
+            if (before) soonest = std::max(soonest, *before - shown);
+            latest = std::min(latest, seen.frame->exposed - shown);
+            arrivals.push_back(seen.arrived - seen.frame->exposed);
+        }));
+    }
+    if (arrivals.size() < kEdges)
+        return Error(fmt::format("the camera is slower than {} s; choose another size or format for it", seconds(kLongestDelay)));
+    if (soonest == Time::min()) soonest = latest - period_;
+    if (soonest > latest) std::swap(soonest, latest);  // the delay is not the same every time
+    const Time margin = period_ / 4;
+    delay_ = {soonest - margin, latest + margin};
+    std::ranges::sort(arrivals);
+    latency_ = delay_.middle() + arrivals[arrivals.size() / 2];
+    arrival_ = std::max(arrival_, arrivals.back());
+    return true;
+}
+
+Result<void> LightSurvey::begin(const std::vector<std::size_t>& outputs) {
+    hooks_.tell(0, "waiting for the camera");
+    TRY(awaitCamera());
+    hooks_.tell(0, "measuring the delay");
+    for (const std::size_t output : outputs) {
+        const bool seen = TRY(measureDelay(output));
+        rig_.show(output, nullptr);
+        if (seen) return {};
+    }
+    return Error("the camera sees no light of the outputs; turn it towards the picture, open its lens, or raise its exposure");
+}
+
+Result<std::vector<LightSurvey::Taken>> LightSurvey::take(std::size_t output, const Pictures& pictures, int frames) {
+    std::vector<Taken> taken(pictures.size());
+    PictureSchedule schedule(delay_, period_);
+    const auto use = [&](const CalibrationRig::Seen& seen) {
+        const auto picture = schedule.pictureOf(seen.frame->exposed);
+        if (!picture || *picture < 0) return;
+        Taken& one = taken[static_cast<std::size_t>(*picture)];
+        const RgbaImage& image = seen.frame->image;
+        if (one.light.empty()) one.light = GreyImage(image.width(), image.height());
+        addLight(image, one.light);
+        ++one.frames;
+    };
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        rig_.show(output, pictures[i]);
+        if (const auto seen = rig_.step()) use(*seen);
+        schedule.show(static_cast<std::int64_t>(i), rig_.now());
+        TRY(stepUntil(rig_.now() + schedule.dwell(frames), use));
+        hooks_.tell(done_ + share_ * static_cast<double>(i + 1) / static_cast<double>(pictures.size()), doing_);
+    }
+    rig_.show(output, nullptr);
+    if (const auto seen = rig_.step()) use(*seen);
+    schedule.show(-1, rig_.now());
+    TRY(stepUntil(rig_.now() + delay_.latest + arrival_ + 2 * period_, use));
+    for (Taken& one : taken)
+        for (float& value : one.light.pixels()) value /= static_cast<float>(one.frames);
+    if (std::ranges::all_of(taken, [](const Taken& one) { return one.frames == 0; })) {
+        const std::string trouble = rig_.cameraTrouble();
+        return Error("the camera gave no pictures" + (trouble.empty() ? "; look at its cable" : ": " + trouble));
+    }
+    done_ += share_;
+    return taken;
+}
+
+// The exponent with which the light of greys follows their stored values best.
+Result<double> LightSurvey::measureGamma(std::size_t output, const LightDecoder& decoder, const Taken& full, const Taken& dark) {
+    std::vector<std::size_t> pixels;
+    for (std::size_t i = 0; i < full.light.pixels().size(); ++i) {
+        const int width = full.light.width(), x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
+        if (decoder.isLit(x, y) && full.light.pixels()[i] < kSaturated) pixels.push_back(i);
+    }
+    Pictures greys;
+    for (int grey = 1; grey < kGreys; ++grey) greys.push_back(plain(site_.outputs[output].size(), double(grey) / kGreys));
+    const std::vector<Taken> taken = TRY(take(output, greys, 1));
+    const double unlit = meanOver(pixels, dark.light), lit = meanOver(pixels, full.light);
+    // Least squares of the logarithms, weighted by the light: dark greys are mostly noise.
+    double product = 0, square = 0;
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+        const double light = (meanOver(pixels, taken[i].light) - unlit) / (lit - unlit);
+        if (taken[i].frames == 0 || light < 0.01) continue;
+        const double stored = std::log((static_cast<double>(i) + 1) / kGreys);
+        product += light * light * stored * std::log(light);
+        square += light * light * stored * stored;
+    }
+    return std::clamp(square > 0 ? product / square : 2.2, kSmallestGamma, kLargestGamma);
+}
+
+// Shows all pairs but the full one, and those again that were disturbed. Returns how many pictures
+// were repeated.
+Result<int> LightSurvey::decode(std::size_t output, const StructuredLight& light, double gamma, LightDecoder& decoder) {
+    const int frames = std::clamp(static_cast<int>(std::ceil(std::pow(kClearContrast / decoder.contrast(), 2))), 1, kMostFrames);
+    int repeated = 0;
+    std::vector<std::size_t> due(light.pairs().size() - 1);
+    std::iota(due.begin(), due.end(), std::size_t{1});
+    for (int round = 0; round < kRounds && !due.empty(); ++round) {
+        share_ = round == 0 ? 0.7 : (1 - done_) / 2, doing_ = round == 0 ? "structured light" : "repeating what was disturbed";
+        Pictures pictures;
+        for (const std::size_t pair : due)
+            for (const bool complement : {false, true})
+                pictures.push_back(std::make_shared<const RgbaImage>(light.picture(pair, complement, gamma)));
+        if (round > 0) repeated += static_cast<int>(pictures.size());
+        const std::vector<Taken> taken = TRY(take(output, pictures, frames));
+        std::vector<std::size_t> again;
+        for (std::size_t i = 0; i < due.size(); ++i) {
+            const double before = decoder.undecided(due[i]);
+            if (taken[2 * i].frames > 0 && taken[2 * i + 1].frames > 0)
+                decoder.take(due[i], taken[2 * i].light, taken[2 * i + 1].light);
+            const double now = decoder.undecided(due[i]);
+            // What another try decides was disturbed. What it does not is something else: a lamp
+            // that saturates the camera, or a mirror.
+            const bool helps = round == 0 || now < kStubborn * before;
+            if (now > kUndecided && helps) again.push_back(due[i]);
+        }
+        due = std::move(again);
+    }
+    return repeated;
+}
+
+Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
+    if (const std::string trouble = rig_.outputTrouble(output); !trouble.empty()) return Error(trouble);
+    const glm::ivec2 projector = site_.outputs[output].size(), camera = site_.nominalCamera->size;
+    done_ = 0, share_ = 0.1, doing_ = "looking for its light";
+    const auto white = plain(projector, 1), black = plain(projector, 0);
+    Pictures flashes;
+    for (int i = 0; i < kFulls; ++i) flashes.insert(flashes.end(), {white, black});
+    const std::vector<Taken> seen = TRY(take(output, flashes, 1));
+    const auto decoderOf = [&](int period) {
+        LightDecoder decoder(StructuredLight(projector, period), camera);
+        for (std::size_t i = 0; i < seen.size(); i += 2)
+            if (seen[i].frames > 0 && seen[i + 1].frames > 0) decoder.take(0, seen[i].light, seen[i + 1].light);
+        return decoder;
+    };
+    const Taken &full = seen[seen.size() - 2], &dark = seen.back();
+    const LightDecoder sight = decoderOf(2);
+    if (full.frames == 0 || dark.frames == 0)
+        return Error("the camera missed too many pictures; close other programs that use it");
+    TRY(canBeMeasured(sight, full.light));
+
+    share_ = 0.15, doing_ = "measuring its greys";
+    Output found;
+    found.gamma = TRY(measureGamma(output, sight, full, dark));
+    const StructuredLight light(projector, StructuredLight::periodFor(projector, static_cast<double>(sight.lit())));
+    LightDecoder decoder = decoderOf(light.period());
+    found.repeated = TRY(decode(output, light, found.gamma, decoder));
+    found.map = decoder.map();
+    found.full = full.light;
+    return found;
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,76 @@
+#pragma once
+
+#include "app/calibrate/calibration_rig.h"
+#include "app/calibrate/picture_schedule.h"
+
+#include "vision/structured_light.h"
+
+#include "core/clock.h"
+#include "core/result.h"
+#include "media/image.h"
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace fantascope::app {
+
+// Shows structured light on the outputs of a rig, one after the other, and learns from the camera
+// which projector pixel lights each of its own. Thread: the rig's.
+class LightSurvey {
+public:
+    struct Hooks {
+        std::function<bool()> goesOn;                               // false: end with what there is
+        std::function<void(double done, const std::string&)> tell;  // share of the current output, and what is done
+    };
+    // The rig outlives the survey.
+    LightSurvey(CalibrationRig& rig, const show::Site& site, Hooks hooks) : rig_(rig), site_(site), hooks_(std::move(hooks)) {}
+
+    // What one output's survey found.
+    struct Output {
+        vision::ProjectorMap map;
+        GreyImage full;      // the camera's picture under full light, linear
+        double gamma = 2.2;  // of the projector: light = stored ^ gamma
+        int repeated = 0;    // pictures that were shown again because something moved
+    };
+    // Waits for the camera, and measures how long a picture takes to be seen, on the first of
+    // `outputs` that it sees. Error: the camera gives no pictures, or sees none of the outputs.
+    Result<void> begin(const std::vector<std::size_t>& outputs);
+    // Error: the camera does not see the output, is saturated, or was lost; the survey was ended.
+    Result<Output> survey(std::size_t output);
+
+    // From a picture's light to its arrival here.
+    Time latency() const { return latency_; }
+
+private:
+    // A picture, and the mean of the frames that showed it.
+    struct Taken {
+        GreyImage light;
+        int frames = 0;
+    };
+    using Pictures = std::vector<std::shared_ptr<const RgbaImage>>;
+
+    Result<void> awaitCamera();
+    Result<bool> measureDelay(std::size_t output);
+    // Steps until `until`, and calls `use` with each frame.
+    Result<void> stepUntil(Time until, const std::function<void(const CalibrationRig::Seen&)>& use);
+    // Shows the pictures one after the other for `frames` camera frames each; a picture that was
+    // missed has no frames.
+    Result<std::vector<Taken>> take(std::size_t output, const Pictures& pictures, int frames);
+    Result<int> decode(std::size_t output, const vision::StructuredLight& light, double gamma, vision::LightDecoder& decoder);
+    Result<double> measureGamma(std::size_t output, const vision::LightDecoder& decoder, const Taken& full, const Taken& dark);
+
+    CalibrationRig& rig_;
+    const show::Site& site_;
+    const Hooks hooks_;
+    Time period_{};  // of the camera
+    PictureSchedule::Delay delay_;
+    Time arrival_{};  // the longest from an exposure to its arrival
+    Time latency_{};
+    double done_ = 0, share_ = 0;  // progress of the current output: before, and by, the pictures under way
+    std::string doing_;
+};
+
+}  // namespace fantascope::app

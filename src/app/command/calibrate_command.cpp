@@ -1,0 +1,136 @@
+#include "app/base/attendance.h"
+#include "app/base/data_folder.h"
+#include "app/base/progress.h"
+#include "app/base/report.h"
+#include "app/calibrate/calibration.h"
+#include "app/calibrate/calibration_rig.h"
+#include "app/calibrate/light_survey.h"
+#include "app/calibrate/wanted_file.h"
+#include "app/command/commands.h"
+#include "app/site/site_file.h"
+#include "app/site/site_models.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+
+namespace fantascope::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    fs::path site;
+    std::vector<std::string> outputs;
+    fs::path wanted, report;
+    std::uint64_t seed = 1;
+    bool simulate = false, write = false;
+};
+
+void declare(Command& command, Options& options) {
+    command.add("SITE", options.site, "A site's folder, or a site.yaml").required();
+    command.add("OUTPUT", options.outputs, "The outputs to calibrate (default: all)");
+    command.addFlag("--simulate", options.simulate, "Calibrate the simulated site");
+    command.add(
+        "--wanted", options.wanted,
+        "Where the canvases are to stand in the camera's picture (docs/calibrating.md); default: the largest upright place");
+    command.addFlag("--write", options.write,
+                    "Write the new warps into the site file; the file as it was is kept as FILE.previous");
+    command.add("--report", options.report, "Write the figures to this JSON file (docs/report.md)");
+    command.add("--seed", options.seed, "Seed of the simulated site's noise").showDefault();
+    command.footer("Nothing may move but passers-by: what they disturb is shown again. Escape, q and Ctrl-C end it.");
+}
+
+Result<std::vector<std::size_t>> chosen(const show::Site& site, const std::vector<std::string>& names) {
+    std::vector<std::size_t> outputs;
+    for (const std::string& name : names) outputs.push_back(TRY(outputNamed(site, name)));
+    for (std::size_t output = 0; names.empty() && output < site.outputs.size(); ++output) outputs.push_back(output);
+    return outputs;
+}
+
+Report reportOf(const show::Site& site, const std::vector<OutputCalibration>& calibrations, Time took, Time latency) {
+    Report report;
+    report["seconds"] = seconds(took);
+    report["latency_ms"] = 1000 * seconds(latency);
+    int repeated = 0;
+    for (const OutputCalibration& calibration : calibrations) repeated += calibration.repeated;
+    report["repeated_frames"] = repeated;
+    report["outputs"] = Report::object();
+    for (const OutputCalibration& calibration : calibrations) {
+        Report& output = report["outputs"][site.outputs[calibration.output].name];
+        output["written"] = calibration.written;
+        if (!calibration.trouble.empty()) output["trouble"] = calibration.trouble;
+        if (calibration.gamma > 0) output["gamma"] = calibration.gamma;
+        if (!calibration.fit) continue;
+        const vision::WarpFit& fit = *calibration.fit;
+        output["rms_px"] = fit.rms;
+        output["max_px"] = fit.max;
+        output["keystone_rms_px"] = fit.keystoneRms;
+        output["keystone_max_px"] = fit.keystoneMax;
+        output["points"] = fit.points;
+        output["left_out"] = fit.leftOut;
+        output["flat"] = fit.flat;
+    }
+    return report;
+}
+
+std::string sentenceOf(const show::Site& site, const OutputCalibration& calibration) {
+    const std::string& name = site.outputs[calibration.output].name;
+    if (!calibration.fit) return fmt::format("{}: {}", name, calibration.trouble);
+    const vision::WarpFit& fit = *calibration.fit;
+    std::string words = fmt::format("{}: rms {:.2f} px, at most {:.2f}, over {} points", name, fit.rms, fit.max, fit.points);
+    if (fit.flat)
+        words += "; flat, by a keystone";
+    else
+        words += fmt::format("; uneven, by a mesh of {} x {} points (a keystone alone misses by {:.2f} px, at most {:.2f})",
+                             fit.shape.mesh.points.x, fit.shape.mesh.points.y, fit.keystoneRms, fit.keystoneMax);
+    if (fit.leftOut > 0.02) words += fmt::format("; {:.0f} % of the place lies on something else", 100 * fit.leftOut);
+    if (!calibration.trouble.empty()) words += fmt::format("; not good enough: {}", calibration.trouble);
+    if (calibration.written) words += "; written";
+    return words;
+}
+
+Result<void> run(const Options& options) {
+    const show::Site site = TRY(readSite(options.site));
+    const std::vector<std::size_t> outputs = TRY(chosen(site, options.outputs));
+    WantedCorners wanted;
+    if (!options.wanted.empty()) wanted = TRY(readWanted(options.wanted));
+    for (const auto& [name, corners] : wanted) TRY(outputNamed(site, name).in(options.wanted.string()));
+
+    const fs::path assets = TRY(dataFolder()) / "assets";
+    const CalibrationRig::Options rigOptions{options.simulate, options.seed, assets};
+    std::unique_ptr<CalibrationRig> rig;
+    {
+        const Interrupt interrupt;
+        rig = TRY(CalibrationRig::open(site, rigOptions, interrupt));
+    }
+    SteadyClock clock;
+    Attendance attendance(clock);
+    Progress progress("calibrate", clock, std::cerr, standardErrorIsTerminal());
+    LightSurvey survey(
+        *rig, site,
+        {[&] { return attendance.goesOn(); }, [&](double done, const std::string& doing) { progress.update(done, doing); }});
+    const Time began = rig->now();
+    std::vector<OutputCalibration> calibrations = TRY(calibrate(survey, site, outputs, wanted));
+    const Time took = rig->now() - began;
+    const bool anyGood = std::ranges::any_of(calibrations, &OutputCalibration::isGood);
+    if (options.write && anyGood) TRY(writeWarps(site, calibrations));
+    if (!options.report.empty()) TRY(writeReport(options.report, reportOf(site, calibrations, took, survey.latency())));
+    std::string troubles;
+    for (const OutputCalibration& calibration : calibrations) {
+        fmt::print("{}\n", sentenceOf(site, calibration));
+        if (!calibration.isGood())
+            troubles += fmt::format("{}{}", troubles.empty() ? "" : ", ", site.outputs[calibration.output].name);
+    }
+    if (!troubles.empty()) return Error(fmt::format("not calibrated: {}; what was set before is kept there", troubles));
+    return {};
+}
+
+}  // namespace
+
+void addCalibrateCommand(Program& program) {
+    addCommand<Options>(program, "calibrate", "Find the outputs' warps with the camera", declare, run);
+}
+
+}  // namespace fantascope::app
