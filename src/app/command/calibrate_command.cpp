@@ -25,7 +25,7 @@ struct Options {
     std::vector<std::string> outputs;
     fs::path wanted, report;
     std::uint64_t seed = 1;
-    bool simulate = false, write = false;
+    bool simulate = false, write = false, undo = false;
 };
 
 void declare(Command& command, Options& options) {
@@ -37,6 +37,8 @@ void declare(Command& command, Options& options) {
         "Where the canvases are to stand in the camera's picture (docs/calibrating.md); default: the largest upright place");
     command.addFlag("--write", options.write,
                     "Write the new warps into the site file; the file as it was is kept as FILE.previous");
+    command.addFlag("--undo", options.undo,
+                    "Measure nothing: go back to the site file as it was; once more, and it is the new one");
     command.add("--report", options.report, "Write the figures to this JSON file (docs/report.md)");
     command.add("--seed", options.seed, "Seed of the simulated site's noise").showDefault();
     command.footer("Nothing may move but passers-by: what they disturb is shown again. Escape, q and Ctrl-C end it.");
@@ -92,6 +94,11 @@ std::string sentenceOf(const show::Site& site, const OutputCalibration& calibrat
 }
 
 Result<void> run(const Options& options) {
+    if (options.undo) {
+        const fs::path file = TRY(undoWrite(options.site));
+        fmt::print("{0} is again as it was; what it replaces is kept as {0}.previous\n", file.string());
+        return {};
+    }
     const show::Site site = TRY(readSite(options.site));
     const std::vector<std::size_t> outputs = TRY(chosen(site, options.outputs));
     WantedCorners wanted;

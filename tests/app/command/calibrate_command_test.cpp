@@ -166,6 +166,22 @@ TEST_F(CalibrateCommand, finds_the_largest_upright_place_by_itself) {
     EXPECT_GT(wall[0].y - wall[3].y, 1.6) << "a projector's light is two metres high there";
 }
 
+TEST_F(CalibrateCommand, goes_back_to_what_was_and_forth_again) {
+    makeSite();
+    EXPECT_THAT(run({"--undo"}), refuses(HasSubstr("nothing to go back to")));
+    const std::string now = text("site.yaml"), before = now + "# as a person left it\n";
+    folder_.file("site.yaml.previous", before);
+    EXPECT_THAT(run({"--undo"}), exits(0));
+    EXPECT_EQ(text("site.yaml"), before);
+    EXPECT_EQ(text("site.yaml.previous"), now);
+    EXPECT_THAT(run({"--undo"}), exits(0));
+    EXPECT_EQ(text("site.yaml"), now);
+
+    folder_.file("site.yaml.previous", "fantascope: site\nversion: 1\noutputs: []\n");
+    EXPECT_THAT(run({"--undo"}), refuses(HasSubstr("site.yaml.previous:3")));
+    EXPECT_EQ(text("site.yaml"), now);
+}
+
 TEST_F(CalibrateCommand, writes_nothing_unless_asked) {
     makeSite();
     want({-2, 0.5}, {2, 2.5});
