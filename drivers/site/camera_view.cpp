@@ -16,9 +16,19 @@ constexpr double kPi = std::numbers::pi;
 constexpr float kSkyDistance = 60;  // metres of fog before the sky
 
 constexpr double kGrazing = 1e-3;  // pixels per square metre: a surface seen at a grazing angle
+constexpr double kLeastCosine = 0.01;
 
 // The share of light that passes through fog (Beer-Lambert law).
 float transmitted(double fog, float path) { return fog > 0 ? std::exp(-static_cast<float>(fog) * path) : 1.0f; }
+
+// What a texture shows in a cone of rays, `angle` radians across.
+glm::vec3 textureOf(const Scene::Hit& hit, const vision::Ray& ray, double angle) {
+    const glm::dvec3 normal(hit.normal);
+    const double cosine = std::max(kLeastCosine, std::abs(glm::dot(normal, ray.direction))), width = hit.distance * angle;
+    const glm::dvec3 along = ray.direction - normal * glm::dot(normal, ray.direction);
+    const double length = glm::length(along);
+    return hit.texture->around(hit.point, length > 0 ? along * (width / cosine / length) : glm::dvec3(0.0), width);
+}
 
 }  // namespace
 
@@ -42,7 +52,8 @@ CameraView::CameraView(const Scene& scene, const vision::CameraModel& camera, gl
                     steady += kShare * glm::vec4(sky, kSkyDistance);
                     continue;
                 }
-                const glm::vec3 response = hit->reflectance * (kShare / static_cast<float>(kPi));
+                glm::vec3 response = hit->reflectance * (kShare / static_cast<float>(kPi));
+                if (hit->texture != nullptr) response *= textureOf(*hit, ray, 1 / (kSide * camera.focal));
                 steady += glm::vec4(response * glm::vec3(ambient), kShare * hit->distance);
                 const double pixelsPerArea = std::max(kGrazing, camera.pixelsPerArea(hit->point, hit->normal));
                 const auto footprint = static_cast<float>(kShare / pixelsPerArea);

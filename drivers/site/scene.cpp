@@ -33,6 +33,7 @@ Scene::Scene(const std::vector<SceneObject>& objects) {
     for (const SceneObject& object : objects) {
         const auto index = static_cast<std::uint32_t>(reflectances_.size());
         reflectances_.push_back(object.reflectance);
+        textures_.push_back(object.texture);
         for (const glm::uvec3& corners : object.mesh.triangles) {
             const glm::vec3 a = object.mesh.vertices[corners.x], b = object.mesh.vertices[corners.y],
                             c = object.mesh.vertices[corners.z];
@@ -138,8 +139,12 @@ std::optional<Scene::Hit> Scene::nearest(glm::vec3 origin, glm::vec3 direction) 
     });
     if (met == nullptr) return std::nullopt;
     const glm::vec3 normal = glm::normalize(glm::cross(met->edge1, met->edge2));
-    return Hit{distance, origin + direction * distance, glm::dot(normal, direction) > 0 ? -normal : normal,
-               reflectances_[met->object], met->object};
+    return Hit{distance,
+               origin + direction * distance,
+               glm::dot(normal, direction) > 0 ? -normal : normal,
+               reflectances_[met->object],
+               met->object,
+               textures_[met->object].get()};
 }
 
 bool Scene::blocked(glm::vec3 from, glm::vec3 to) const {

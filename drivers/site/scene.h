@@ -1,5 +1,7 @@
 #pragma once
 
+#include "drivers/site/texture.h"
+
 #include "vision/camera_model.h"
 
 #include "media/mesh.h"
@@ -8,6 +10,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,9 +19,10 @@ namespace fantascope::site {
 
 // An object in the site.
 struct SceneObject {
-    TriangleMesh mesh;           // world metres
-    glm::vec3 reflectance{0.5};  // of a matt surface, linear RGB, 0..1
-    std::string name = {};       // for people
+    TriangleMesh mesh;                            // world metres
+    glm::vec3 reflectance{0.5};                   // of a matt surface, linear RGB, 0..1
+    std::string name = {};                        // for people
+    std::shared_ptr<const Texture> texture = {};  // multiplies the reflectance; null: 1
 };
 
 // All surfaces of the site, for ray queries. Immutable; thread-safe.
@@ -31,6 +35,7 @@ public:
         glm::vec3 point{0}, normal{0};  // unit, on the ray's side: every surface has two sides
         glm::vec3 reflectance{0};
         std::size_t object = 0;  // index of the object
+        const Texture* texture = nullptr;
     };
     // The first surface along the ray. `direction` is unit.
     std::optional<Hit> nearest(glm::vec3 origin, glm::vec3 direction) const;
@@ -61,7 +66,8 @@ private:
     template <class Test>
     void visit(glm::vec3 origin, glm::vec3 direction, const float& limit, Test test) const;
 
-    std::vector<glm::vec3> reflectances_;  // of the objects
+    std::vector<glm::vec3> reflectances_;                   // of the objects
+    std::vector<std::shared_ptr<const Texture>> textures_;  // of the objects
     std::vector<Triangle> triangles_;
     std::vector<Node> nodes_;
 };

@@ -1,93 +1,20 @@
 #include "drivers/site/simulation.h"
 
+#include "drivers/site/objects.h"
+
 #include "core/geometry.h"
-#include "media/mesh.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
 #include <numbers>
 
 namespace fantascope::site {
 namespace {
 
-constexpr double kMaxDistance = 1000;  // metres from the origin
-constexpr double kMaxTime = 1e6;       // seconds: eleven days
-constexpr double kMaxLight = 1e6;      // lux, candela, lumens, cd/m2
-
-// A parallelogram from one corner along two edges.
-TriangleMesh sheet(glm::dvec3 corner, glm::dvec3 right, glm::dvec3 up) {
-    return {{corner, corner + right, corner + right + up, corner + up}, {{0, 1, 2}, {0, 2, 3}}};
-}
-
-// A box around a centre, along the axes.
-TriangleMesh box(glm::dvec3 centre, glm::dvec3 size) {
-    TriangleMesh mesh;
-    for (int i = 0; i < 8; ++i) mesh.vertices.push_back(centre + size * (glm::dvec3(i & 1, (i >> 1) & 1, i >> 2) - 0.5));
-    for (const glm::uvec4& side :
-         std::array<glm::uvec4, 6>{{{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}}) {
-        mesh.triangles.emplace_back(side.x, side.y, side.z);
-        mesh.triangles.emplace_back(side.x, side.z, side.w);
-    }
-    return mesh;
-}
-
-Result<TriangleMesh> readRectangle(const ConfigNode& node) {
-    glm::dvec3 corner{}, right{}, up{};
-    ConfigFields fields(node);
-    fields.vector3("corner", corner, -kMaxDistance, kMaxDistance, "m");
-    fields.vector3("right", right, -kMaxDistance, kMaxDistance, "m");
-    fields.vector3("up", up, -kMaxDistance, kMaxDistance, "m");
-    TRY(fields.finish());
-    if (glm::length(glm::cross(right, up)) < 1e-6)
-        return node.error("'right' and 'up' must span a rectangle; they are zero or parallel");
-    return sheet(corner, right, up);
-}
-
-Result<TriangleMesh> readBox(const ConfigNode& node) {
-    glm::dvec3 centre{}, size{};
-    ConfigFields fields(node);
-    fields.vector3("centre", centre, -kMaxDistance, kMaxDistance, "m");
-    fields.vector3("size", size, 1e-3, kMaxDistance, "m");
-    TRY(fields.finish());
-    return box(centre, size);
-}
-
-Result<TriangleMesh> readPlacedMesh(const ConfigNode& node) {
-    std::filesystem::path file;
-    glm::dvec3 position{0.0};
-    double turn = 0, scale = 1;
-    ConfigFields fields(node);
-    fields.path("file", file);
-    fields.optional().vector3("position", position, -kMaxDistance, kMaxDistance, "m");
-    fields.optional().angle("turn", turn, -360, 360);
-    fields.optional().number("scale", scale, 1e-4, 1e4);
-    TRY(fields.finish());
-    TriangleMesh mesh = TRY(readMesh(file).in(node.place()));
-    const glm::dmat3 rotation = rotationXyz({0, turn, 0});
-    for (glm::vec3& vertex : mesh.vertices) vertex = rotation * glm::dvec3(vertex) * scale + position;
-    return mesh;
-}
-
-Result<SceneObject> readObject(const ConfigNode& node) {
-    SceneObject object;
-    glm::dvec3 reflectance{0.5};
-    std::optional<TriangleMesh> rectangle, box, mesh;
-    ConfigFields fields(node);
-    fields.text("name", object.name);
-    fields.optional().read("rectangle", rectangle, readRectangle);
-    fields.optional().read("box", box, readBox);
-    fields.optional().read("mesh", mesh, readPlacedMesh);
-    fields.optional().vector3("reflectance", reflectance, 0, 1);
-    TRY(fields.finish());
-    if (rectangle.has_value() + box.has_value() + mesh.has_value() != 1)
-        return node.error("exactly one of rectangle, box and mesh is needed");
-    object.mesh = std::move(*(rectangle ? rectangle : box ? box : mesh));
-    object.reflectance = reflectance;
-    return object;
-}
+constexpr double kMaxTime = 1e6;   // seconds: eleven days
+constexpr double kMaxLight = 1e6;  // lux, candela, lumens, cd/m2
 
 Result<SimulatedProjector> readProjector(const ConfigNode& node) {
     SimulatedProjector projector;
