@@ -126,37 +126,48 @@ void CameraView::moveProjector(std::size_t index, const vision::CameraModel& mod
     }
 }
 
-void CameraView::render(std::span<const glm::vec3> levels, std::span<const ProjectedLight> frames, double fog,
-                        Image<glm::vec3>& luminance) const {
-    FANTASCOPE_CHECK(levels.size() == lamps_.size() && frames.size() == projectors_.size(),
+glm::vec3 CameraView::airlight(const Lighting& lighting) const {
+    // Fog scatters light evenly in all directions, once.
+    glm::vec3 inTheAir = steady_.meanIlluminance;
+    for (std::size_t i = 0; i < lamps_.size(); ++i) inTheAir += lighting.levels[i] * lamps_[i].meanIlluminance;
+    for (std::size_t i = 0; i < projectors_.size(); ++i)
+        if (const ProjectedLight& frame = lighting.frames[i]; !frame.dark())
+            inTheAir += glm::vec3(frame.mean()) * projectors_[i].meanIlluminance;
+    return inTheAir / static_cast<float>(4 * kPi);
+}
+
+void CameraView::render(const Lighting& lighting, Rows rows, Image<glm::vec3>& luminance) const {
+    FANTASCOPE_CHECK(lighting.levels.size() == lamps_.size() && lighting.frames.size() == projectors_.size(),
                      "one level per lamp, one frame per projector");
     FANTASCOPE_CHECK(luminance.width() == camera_.size.x && luminance.height() == camera_.size.y,
                      "a picture of the camera's size");
+    FANTASCOPE_CHECK(0 <= rows.first && rows.first <= rows.end && rows.end <= camera_.size.y, "rows of the picture");
 
-    // Fog scatters light evenly in all directions, once.
-    glm::vec3 inTheAir = steady_.meanIlluminance;
-    for (std::size_t i = 0; i < lamps_.size(); ++i) inTheAir += levels[i] * lamps_[i].meanIlluminance;
-    for (std::size_t i = 0; i < projectors_.size(); ++i)
-        if (!frames[i].dark()) inTheAir += glm::vec3(frames[i].mean()) * projectors_[i].meanIlluminance;
-    const glm::vec3 airlight = inTheAir / static_cast<float>(4 * kPi);
-
+    const double fog = lighting.fog;
+    const glm::vec3 inTheAir = airlight(lighting);
     const auto out = luminance.pixels();
-    for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto pixelOfRow = [&](int row) { return static_cast<std::uint32_t>(row * camera_.size.x); };
+    const std::uint32_t first = pixelOfRow(rows.first), end = pixelOfRow(rows.end);
+    for (std::uint32_t i = first; i < end; ++i) {
         const glm::vec4 steady = steady_.light.pixels()[i];
         const float left = transmitted(fog, steady.w);
-        out[i] = glm::vec3(steady) * left + airlight * (1 - left);
+        out[i] = glm::vec3(steady) * left + inTheAir * (1 - left);
     }
     for (std::size_t lamp = 0; lamp < lamps_.size(); ++lamp) {
-        if (levels[lamp] == glm::vec3(0)) continue;
-        for (std::size_t i = 0; i < out.size(); ++i) {
+        const glm::vec3 level = lighting.levels[lamp];
+        if (level == glm::vec3(0)) continue;
+        for (std::uint32_t i = first; i < end; ++i) {
             const glm::vec4 light = lamps_[lamp].light.pixels()[i];
-            out[i] += levels[lamp] * glm::vec3(light) * transmitted(fog, light.w);
+            out[i] += level * glm::vec3(light) * transmitted(fog, light.w);
         }
     }
     for (std::size_t i = 0; i < projectors_.size(); ++i) {
-        if (frames[i].dark()) continue;
-        for (const Tap& tap : projectors_[i].taps)
-            out[tap.pixel] += tap.weight * glm::vec3(frames[i].at(tap.place)) * transmitted(fog, tap.path);
+        if (lighting.frames[i].dark()) continue;
+        const std::vector<Tap>& taps = projectors_[i].taps;  // in the order of the pixels
+        auto tap =
+            std::lower_bound(taps.begin(), taps.end(), first, [](const Tap& each, std::uint32_t p) { return each.pixel < p; });
+        for (; tap != taps.end() && tap->pixel < end; ++tap)
+            out[tap->pixel] += tap->weight * glm::vec3(lighting.frames[i].at(tap->place)) * transmitted(fog, tap->path);
     }
 }
 

@@ -34,6 +34,18 @@ struct Lamp {
     double intensity(glm::dvec3 direction) const;  // candela towards a unit direction
 };
 
+// What shines at one moment.
+struct Lighting {
+    std::span<const glm::vec3> levels;       // of the lamps: linear, 1 is full power
+    std::span<const ProjectedLight> frames;  // of the projectors
+    double fog = 0;                          // extinction per metre
+};
+
+// Rows of a picture, from `first` to before `end`.
+struct Rows {
+    int first = 0, end = 0;
+};
+
 // The camera's view of a scene as a sum over its lights. How much of each light reaches each pixel
 // is computed in advance (direct light on matt surfaces, with shadows); a picture is then one pass
 // over these weights. Thread-bound.
@@ -50,11 +62,14 @@ public:
     // Recomputes one projector's light, in some tens of milliseconds.
     void moveProjector(std::size_t projector, const vision::CameraModel& model);
 
-    // Fills `luminance` (cd/m2, the camera's size) for the lamps' levels (linear, 1 is full power)
-    // and the projectors' frames. `fog`: extinction per metre, >= 0. Fog weakens light along its
-    // whole way, and the lit fog veils distant surfaces.
+    // Fills the rows of `luminance` (cd/m2, the camera's size). Fog weakens light along its whole
+    // way, and the lit fog veils distant surfaces.
+    void render(const Lighting& lighting, Rows rows, Image<glm::vec3>& luminance) const;
+    // The same for the whole picture. `fog` >= 0.
     void render(std::span<const glm::vec3> levels, std::span<const ProjectedLight> frames, double fog,
-                Image<glm::vec3>& luminance) const;
+                Image<glm::vec3>& luminance) const {
+        render({levels, frames, fog}, {0, luminance.height()}, luminance);
+    }
 
 private:
     static constexpr int kSide = 2;  // samples across and down a camera pixel
@@ -86,6 +101,8 @@ private:
         std::vector<Tap> taps;
         float meanIlluminance = 0;  // lux of a white frame
     };
+
+    glm::vec3 airlight(const Lighting& lighting) const;  // cd/m2 of fog so thick that nothing is seen through it
 
     const Scene& scene_;
     vision::CameraModel camera_;

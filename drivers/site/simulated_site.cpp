@@ -1,6 +1,7 @@
 #include "drivers/site/simulated_site.h"
 
 #include "drivers/site/camera_view.h"
+#include "drivers/site/optics.h"
 #include "drivers/site/projected_light.h"
 #include "drivers/site/scene.h"
 #include "drivers/site/sensor.h"
@@ -36,6 +37,17 @@ glm::vec3 levelOf(const NominalSite::Fixture& fixture, const std::array<std::uin
     if (!intensity && !colour) return glm::vec3(0);
     return intensity.value_or(1) * colour.value_or(glm::vec3(1));
 }
+
+// The rows of a rolling exposure are exposed in this many bands, one after the other.
+constexpr int kBands = 8;
+
+// A picture that the camera is exposing.
+struct Exposure {
+    std::int64_t frame = 0;
+    int band = 0;          // the next
+    bool repeats = false;  // the camera is frozen, and sends its last picture again
+    bool lost = false;     // the camera was unplugged meanwhile
+};
 
 // The beginning or end of a fault.
 struct Change {
@@ -171,9 +183,9 @@ struct SimulatedSite::Impl {
         view->moveProjector(static_cast<std::size_t>(found - nominal.outputs.begin()), projector);
     }
 
-    // The camera's picture of the site now; `frame` is its number.
-    RgbaImage seen(std::int64_t frame) {
-        std::vector<glm::vec3> levels;
+    // What shines now, `time` after begin().
+    Lighting lightingAt(Time time) {
+        levels.clear();
         for (const FedLamp& lamp : simulation.lamps) {
             const NominalSite::Fixture& fixture = nominal.fixtures[lamp.feed];
             levels.push_back(levelOf(fixture, world.slots(fixture.universe)));
@@ -191,17 +203,61 @@ struct SimulatedSite::Impl {
         }
         double fog = 0;
         for (const Fault& fault : simulation.faults)
-            if (fault.kind == Fault::Kind::Fog) fog += fault.densityAt(tickTime(frame, simulation.camera.frameRate));
-        view->render(levels, light, fog, luminance);
-        return sensor.expose(luminance, static_cast<std::uint64_t>(frame));
+            if (fault.kind == Fault::Kind::Fog) fog += fault.densityAt(time);
+        return {levels, light, fog};
     }
 
-    void expose(std::int64_t frame) {
-        if (!world.plugged(kCamera)) return;
-        if (!frozen.contains(kCamera) || lastSeen.empty()) lastSeen = seen(frame);
-        const Time exposed = beginning + tickTime(frame, simulation.camera.frameRate);
-        const CameraFrame sent{lastSeen, exposed, static_cast<std::uint64_t>(frame)};
-        world.sendFromCamera(std::make_shared<const CameraFrame>(sent), exposed + simulation.camera.latency);
+    int bands() const { return simulation.camera.rolling > Time{} ? kBands : 1; }
+    // When a band is exposed, since begin(): the first band with the frame, the last one `rolling`
+    // later.
+    Time timeOf(const Exposure& picture) const {
+        const Time rolled = bands() > 1 ? simulation.camera.rolling * picture.band / (bands() - 1) : Time{};
+        return tickTime(picture.frame, simulation.camera.frameRate) + rolled;
+    }
+
+    // Exposes all bands that are due. A picture that was begun is finished; of those that are not
+    // begun only the newest is.
+    void exposeUntil(Time until) {
+        while (true) {
+            if (!exposure) {
+                const std::int64_t frame = tickAt(until, simulation.camera.frameRate);
+                if (frame <= lastFrame) return;
+                exposure = Exposure{frame};
+                lastFrame = frame;
+            }
+            for (; exposure->band < bands(); ++exposure->band) {
+                const Time due = timeOf(*exposure);
+                if (due > until) return;
+                happen(due);
+                exposeBand(*exposure, due);
+            }
+            send(*exposure);
+            exposure.reset();
+        }
+    }
+
+    void exposeBand(Exposure& picture, Time time) {
+        if (picture.band == 0) picture.repeats = frozen.contains(kCamera) && !lastSeen.empty();
+        picture.lost = picture.lost || !world.plugged(kCamera);
+        if (picture.repeats || picture.lost) return;
+        const int height = luminance.height();
+        view->render(lightingAt(time), {height * picture.band / bands(), height * (picture.band + 1) / bands()}, luminance);
+    }
+
+    void send(const Exposure& picture) {
+        if (picture.lost) return;
+        if (!picture.repeats) lastSeen = developed(static_cast<std::uint64_t>(picture.frame));
+        const Time exposed = beginning + tickTime(picture.frame, simulation.camera.frameRate);
+        const CameraFrame sent{lastSeen, exposed, static_cast<std::uint64_t>(picture.frame)};
+        world.sendFromCamera(std::make_shared<const CameraFrame>(sent),
+                             exposed + simulation.camera.rolling + simulation.camera.latency);
+    }
+
+    // The picture that lens and sensor make of the light.
+    RgbaImage developed(std::uint64_t frame) {
+        blurLight(luminance, simulation.camera.blur);
+        vignette(luminance, simulation.camera.vignetting);
+        return sensor.expose(luminance, frame);
     }
 
     World& world;
@@ -221,9 +277,11 @@ struct SimulatedSite::Impl {
 
     std::optional<CameraView> view;
     std::vector<ProjectedLight> light;  // per output
+    std::vector<glm::vec3> levels;      // per lamp
     Image<glm::vec3> luminance;
     RgbaImage lastSeen;
-    std::int64_t lastFrame = -1;
+    std::int64_t lastFrame = -1;  // the last one that was begun
+    std::optional<Exposure> exposure;
 
     mutable std::mutex mutex;
     std::vector<Happening> happenings;
@@ -244,14 +302,7 @@ void SimulatedSite::advanceTo(Time now) {
     Impl& site = *impl_;
     const Time elapsed = now - site.beginning;
     if (elapsed < Time{}) return;
-    if (site.view) {
-        const double rate = site.simulation.camera.frameRate;
-        if (const std::int64_t frame = tickAt(elapsed, rate); frame > site.lastFrame) {
-            site.happen(tickTime(frame, rate));
-            site.expose(frame);
-            site.lastFrame = frame;
-        }
-    }
+    if (site.view) site.exposeUntil(elapsed);
     site.happen(elapsed);
 }
 
@@ -260,7 +311,7 @@ Time SimulatedSite::nextEvent() const {
     Time next = Time::max();
     if (site.nextChange < site.changes.size()) next = site.beginning + site.changes[site.nextChange].at;
     if (site.nextMove < site.moves.size()) next = std::min(next, site.beginning + site.moves[site.nextMove].at);
-    if (site.view) next = std::min(next, site.beginning + tickTime(site.lastFrame + 1, site.simulation.camera.frameRate));
+    if (site.view) next = std::min(next, site.beginning + site.timeOf(site.exposure.value_or(Exposure{site.lastFrame + 1})));
     return next;
 }
 

@@ -52,7 +52,12 @@ Result<SimulatedCamera> readCamera(const ConfigNode& node) {
     fields.optional().number("shot_noise", camera.sensor.shotNoise, 0, 1);
     fields.optional().time("latency", camera.latency, 0, 10);
     fields.optional().number("frame_rate", camera.frameRate, 0.01, 240, "Hz");
+    fields.optional().number("vignetting", camera.vignetting, 0, 1);
+    fields.optional().number("blur", camera.blur, 0, 20, "pixels");
+    fields.optional().time("rolling", camera.rolling, 0, 1);
     TRY(fields.finish());
+    if (camera.rolling >= tickTime(1, camera.frameRate))
+        return node.error(fmt::format("'rolling' must be shorter than a frame's period, here {} s", 1 / camera.frameRate));
     return camera;
 }
 

@@ -32,8 +32,11 @@ struct FedLamp {
 
 struct SimulatedCamera {
     Sensor::Settings sensor;
-    Time latency = fromSeconds(0.05);  // from the exposure to the driver
+    Time latency = fromSeconds(0.05);  // from the last row's exposure to the driver
     double frameRate = 10;             // Hz
+    double vignetting = 0;             // share of the light that is lost in the picture's corners
+    double blur = 0;                   // sigma of the lens's Gaussian, pixels
+    Time rolling{};                    // from the first row's exposure to the last row's
 };
 
 // A fault of the simulated truth. Times count from begin().
