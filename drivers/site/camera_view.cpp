@@ -1,5 +1,7 @@
 #include "drivers/site/camera_view.h"
 
+#include "drivers/site/fog.h"
+
 #include "core/check.h"
 
 #include <glm/common.hpp>
@@ -17,9 +19,6 @@ constexpr float kSkyDistance = 60;  // metres of fog before the sky
 
 constexpr double kGrazing = 1e-3;  // pixels per square metre: a surface seen at a grazing angle
 constexpr double kLeastCosine = 0.01;
-
-// The share of light that passes through fog (Beer-Lambert law).
-float transmitted(double fog, float path) { return fog > 0 ? std::exp(-static_cast<float>(fog) * path) : 1.0f; }
 
 // What a texture shows in a cone of rays, `angle` radians across.
 glm::vec3 textureOf(const Scene::Hit& hit, const vision::Ray& ray, double angle) {
@@ -41,24 +40,27 @@ double Lamp::intensity(glm::dvec3 direction) const {
 
 CameraView::CameraView(const Scene& scene, const vision::CameraModel& camera, glm::dvec3 ambient, glm::dvec3 sky)
     : scene_(scene), camera_(camera), steady_{Image<glm::vec4>(camera.size.x, camera.size.y), ambient} {
-    std::uint32_t pixel = 0;
-    for (int y = 0; y < camera.size.y; ++y)
-        for (int x = 0; x < camera.size.x; ++x, ++pixel)
-            for (int i = 0; i < kSide * kSide; ++i) {
-                const vision::Ray ray = camera.rayThrough({x + (i % kSide + 0.5) / kSide, y + (i / kSide + 0.5) / kSide});
-                const auto hit = scene.nearest(ray.origin, ray.direction);
-                glm::vec4& steady = steady_.light.pixels()[pixel];
-                if (!hit) {
-                    steady += kShare * glm::vec4(sky, kSkyDistance);
-                    continue;
-                }
-                glm::vec3 response = hit->reflectance * (kShare / static_cast<float>(kPi));
-                if (hit->texture != nullptr) response *= textureOf(*hit, ray, 1 / (kSide * camera.focal));
-                steady += glm::vec4(response * glm::vec3(ambient), kShare * hit->distance);
-                const double pixelsPerArea = std::max(kGrazing, camera.pixelsPerArea(hit->point, hit->normal));
-                const auto footprint = static_cast<float>(kShare / pixelsPerArea);
-                samples_.push_back({pixel, hit->distance, footprint, hit->point, hit->normal, response});
-            }
+    const auto samples = static_cast<std::uint32_t>(camera.size.x * camera.size.y) * kSamples;
+    for (std::uint32_t index = 0; index < samples; ++index) {
+        const vision::Ray ray = rayOf(index);
+        const auto hit = scene.nearest(ray.origin, ray.direction);
+        glm::vec4& steady = steady_.light.pixels()[index / kSamples];
+        if (!hit) {
+            steady += kShare * glm::vec4(sky, kSkyDistance);
+            continue;
+        }
+        glm::vec3 response = hit->reflectance * (kShare / static_cast<float>(kPi));
+        if (hit->texture != nullptr) response *= textureOf(*hit, ray, 1 / (kSide * camera.focal));
+        steady += glm::vec4(response * glm::vec3(ambient), kShare * hit->distance);
+        const double pixelsPerArea = std::max(kGrazing, camera.pixelsPerArea(hit->point, hit->normal));
+        const auto footprint = static_cast<float>(kShare / pixelsPerArea);
+        samples_.push_back({index, hit->distance, footprint, hit->point, hit->normal, response});
+    }
+}
+
+vision::Ray CameraView::rayOf(std::uint32_t sample) const {
+    const auto width = static_cast<std::uint32_t>(camera_.size.x), pixel = sample / kSamples, place = sample % kSamples;
+    return camera_.rayThrough({pixel % width + (place % kSide + 0.5) / kSide, pixel / width + (place / kSide + 0.5) / kSide});
 }
 
 void CameraView::addLamp(const Lamp& lamp) {
@@ -74,7 +76,7 @@ void CameraView::addLamp(const Lamp& lamp) {
         const double intensity = lamp.intensity(-glm::dvec3(toLamp) / static_cast<double>(distance));
         const glm::vec3 illuminance = lamp.colour * (intensity * cosine / (distance * distance));
         if (scene_.blocked(sample.point, lamp.position)) continue;
-        add(sample.pixel, illuminance * sample.response, distance + sample.distance);
+        add(sample.index / kSamples, illuminance * sample.response, distance + sample.distance);
         layer.meanIlluminance += illuminance / static_cast<float>(samples_.size());
     }
 
@@ -99,16 +101,18 @@ void CameraView::addLamp(const Lamp& lamp) {
     }
     for (glm::vec4& light : layer.light.pixels())
         if (const float sum = light.r + light.g + light.b; sum > 0) light.w /= sum;
-    lamps_.push_back(std::move(layer));
+    lampLayers_.push_back(std::move(layer));
+    lamps_.push_back(lamp);
 }
 
 void CameraView::addProjector(const vision::CameraModel& projector, double lumens) {
-    projectors_.push_back({lumens, {}, 0});
+    projectors_.push_back({lumens});
     moveProjector(projectors_.size() - 1, projector);
 }
 
 void CameraView::moveProjector(std::size_t index, const vision::CameraModel& model) {
     Projector& projector = projectors_[index];
+    projector.model = model;
     projector.taps.clear();
     projector.meanIlluminance = 0;
     const double lumensPerPixel = projector.lumens / (model.size.x * model.size.y);
@@ -119,17 +123,18 @@ void CameraView::moveProjector(std::size_t index, const vision::CameraModel& mod
         if (pixelsPerArea <= 0 || scene_.blocked(sample.point, model.pose.position)) continue;
         const double illuminance = lumensPerPixel * pixelsPerArea;
         const auto path = static_cast<float>(glm::distance(model.pose.position, glm::dvec3(sample.point))) + sample.distance;
-        projector.taps.push_back({sample.pixel,
+        projector.taps.push_back({sample.index,
                                   ProjectedLight::placeOf(model.size, *pixel, std::sqrt(sample.footprint * pixelsPerArea)),
                                   sample.response * static_cast<float>(illuminance), path});
         projector.meanIlluminance += static_cast<float>(illuminance / static_cast<double>(samples_.size()));
     }
+    if (!sights_.empty()) noteLitPoints(projector);
 }
 
 glm::vec3 CameraView::airlight(const Lighting& lighting) const {
     // Fog scatters light evenly in all directions, once.
     glm::vec3 inTheAir = steady_.meanIlluminance;
-    for (std::size_t i = 0; i < lamps_.size(); ++i) inTheAir += lighting.levels[i] * lamps_[i].meanIlluminance;
+    for (std::size_t i = 0; i < lamps_.size(); ++i) inTheAir += lighting.levels[i] * lampLayers_[i].meanIlluminance;
     for (std::size_t i = 0; i < projectors_.size(); ++i)
         if (const ProjectedLight& frame = lighting.frames[i]; !frame.dark())
             inTheAir += glm::vec3(frame.mean()) * projectors_[i].meanIlluminance;
@@ -157,18 +162,15 @@ void CameraView::render(const Lighting& lighting, Rows rows, Image<glm::vec3>& l
         const glm::vec3 level = lighting.levels[lamp];
         if (level == glm::vec3(0)) continue;
         for (std::uint32_t i = first; i < end; ++i) {
-            const glm::vec4 light = lamps_[lamp].light.pixels()[i];
+            const glm::vec4 light = lampLayers_[lamp].light.pixels()[i];
             out[i] += level * glm::vec3(light) * transmitted(fog, light.w);
         }
     }
-    for (std::size_t i = 0; i < projectors_.size(); ++i) {
-        if (lighting.frames[i].dark()) continue;
-        const std::vector<Tap>& taps = projectors_[i].taps;  // in the order of the pixels
-        auto tap =
-            std::lower_bound(taps.begin(), taps.end(), first, [](const Tap& each, std::uint32_t p) { return each.pixel < p; });
-        for (; tap != taps.end() && tap->pixel < end; ++tap)
-            out[tap->pixel] += tap->weight * glm::vec3(lighting.frames[i].at(tap->place)) * transmitted(fog, tap->path);
-    }
+    const Covering covering = coveringOf(lighting.bodies, rows);
+    hideBehind(covering, luminance);
+    for (std::size_t i = 0; i < projectors_.size(); ++i)
+        if (!lighting.frames[i].dark()) addProjector(i, lighting, covering, rows, luminance);
+    addBodies(lighting, covering, inTheAir, luminance);
 }
 
 }  // namespace fantascope::site

@@ -1,5 +1,6 @@
 #include "drivers/site/objects.h"
 
+#include "drivers/site/limits.h"
 #include "drivers/site/texture.h"
 
 #include "core/geometry.h"

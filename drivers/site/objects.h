@@ -7,8 +7,6 @@
 
 namespace fantascope::site {
 
-constexpr double kMaxDistance = 1000;  // metres from the origin
-
 // Strict. Reads the meshes and pictures that the object names. Error: file, line, column, key.
 Result<SceneObject> readObject(const ConfigNode& node);
 

@@ -100,6 +100,7 @@ struct SimulatedSite::Impl {
             for (const FedLamp& lamp : simulation.streetLamps) view->addLamp(lamp.lamp);
             for (std::size_t i = 0; i < nominal.outputs.size(); ++i)
                 view->addProjector(nominal.outputs[i].projector, simulation.projectors[i].lumens);
+            if (!simulation.walkers.empty()) view->expectBodies();
             luminance = Image<glm::vec3>(nominal.camera->size.x, nominal.camera->size.y);
         }
         for (const Fault& fault : simulation.faults) {
@@ -204,7 +205,10 @@ struct SimulatedSite::Impl {
         double fog = 0;
         for (const Fault& fault : simulation.faults)
             if (fault.kind == Fault::Kind::Fog) fog += fault.densityAt(time);
-        return {levels, light, fog};
+        bodies.clear();
+        for (const Walker& walker : simulation.walkers)
+            if (const auto body = walker.bodyAt(time)) bodies.push_back(*body);
+        return {levels, light, fog, bodies};
     }
 
     int bands() const { return simulation.camera.rolling > Time{} ? kBands : 1; }
@@ -278,6 +282,7 @@ struct SimulatedSite::Impl {
     std::optional<CameraView> view;
     std::vector<ProjectedLight> light;  // per output
     std::vector<glm::vec3> levels;      // per lamp
+    std::vector<Body> bodies;
     Image<glm::vec3> luminance;
     RgbaImage lastSeen;
     std::int64_t lastFrame = -1;  // the last one that was begun

@@ -1,5 +1,6 @@
 #include "drivers/site/simulation.h"
 
+#include "drivers/site/limits.h"
 #include "drivers/site/objects.h"
 
 #include "core/geometry.h"
@@ -12,9 +13,6 @@
 
 namespace fantascope::site {
 namespace {
-
-constexpr double kMaxTime = 1e6;   // seconds: eleven days
-constexpr double kMaxLight = 1e6;  // lux, candela, lumens, cd/m2
 
 Result<SimulatedProjector> readProjector(const ConfigNode& node) {
     SimulatedProjector projector;
@@ -204,6 +202,7 @@ Result<Simulation> readSimulation(const ConfigNode& node, const NominalSite& nom
     fields.optional().read("street_lamps", simulation.streetLamps,
                            [&](const ConfigNode& value) { return readLamps(value, namesOf(nominal.relays), "relay"); });
     fields.optional().read("camera", simulation.camera, readCamera);
+    fields.optional().list("walkers", simulation.walkers, readWalker);
     fields.optional().list("contacts", simulation.closings,
                            [&](const ConfigNode& value) { return readClosing(value, namesOf(nominal.contacts)); });
     fields.optional().list("faults", simulation.faults, [&](const ConfigNode& value) { return readFault(value, nominal); });

@@ -5,6 +5,7 @@
 #include "drivers/site/scene.h"
 #include "drivers/site/sensor.h"
 #include "drivers/site/simulated_site.h"
+#include "drivers/site/walkers.h"
 
 #include "core/clock.h"
 #include "core/config/config.h"
@@ -69,6 +70,7 @@ struct Simulation {
     std::vector<FedLamp> lamps;                  // at fixtures
     std::vector<FedLamp> streetLamps;            // at relays
     SimulatedCamera camera;
+    std::vector<Walker> walkers;
     std::vector<Closing> closings;
     std::vector<Fault> faults;
 };
