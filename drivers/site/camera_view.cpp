@@ -29,14 +29,20 @@ glm::vec3 textureOf(const Scene::Hit& hit, const vision::Ray& ray, double angle)
     return hit.texture->around(hit.point, length > 0 ? along * (width / cosine / length) : glm::dvec3(0.0), width);
 }
 
-}  // namespace
+struct Illuminance {
+    float lux = 0;       // of white light
+    float distance = 0;  // from the lamp, metres
+};
 
-double Lamp::intensity(glm::dvec3 direction) const {
-    const double p = std::log(std::log(10.0) / std::log(2.0)) / std::log(field / beam);
-    const double a = beam / 2 / std::pow(std::log(2.0), 1 / p);
-    const double angle = std::acos(std::clamp(glm::dot(direction, aim), -1.0, 1.0));
-    return candela * std::exp(-std::pow(angle / a, p));
+// What a lamp gives to a surface, without shadows.
+Illuminance illuminanceOf(const Lamp& lamp, const Beam& beam, glm::vec3 point, glm::vec3 normal) {
+    const glm::vec3 toLamp = glm::vec3(lamp.position) - point;
+    const float distance = glm::length(toLamp), cosine = glm::dot(normal, toLamp) / distance;
+    if (cosine <= 0) return {};
+    return {beam.at(-glm::dot(toLamp, glm::vec3(lamp.aim)) / distance) * cosine / (distance * distance), distance};
 }
+
+}  // namespace
 
 CameraView::CameraView(const Scene& scene, const vision::CameraModel& camera, glm::dvec3 ambient, glm::dvec3 sky)
     : scene_(scene), camera_(camera), steady_{Image<glm::vec4>(camera.size.x, camera.size.y), ambient} {
@@ -63,6 +69,27 @@ vision::Ray CameraView::rayOf(std::uint32_t sample) const {
     return camera_.rayThrough({pixel % width + (place % kSide + 0.5) / kSide, pixel / width + (place / kSide + 0.5) / kSide});
 }
 
+// A disc in the picture, at least a pixel wide, so that the light of a distant head is not lost
+// between samples.
+template <class Add>
+void CameraView::drawHead(const Lamp& lamp, Add add) const {
+    const auto centre = camera_.pixelFromWorld(lamp.position);
+    if (!centre || scene_.blocked(camera_.pose.position, lamp.position)) return;
+    const glm::dvec3 fromLamp = camera_.pose.position - lamp.position;
+    const double distance = glm::length(fromLamp), seen = lamp.radius * camera_.focal / distance, drawn = std::max(seen, 1.0);
+    const double luminance = lamp.intensity(fromLamp / distance) / (kPi * lamp.radius * lamp.radius) * std::pow(seen / drawn, 2);
+    const glm::ivec2 low = glm::max(glm::ivec2(*centre - drawn), glm::ivec2(0));
+    const glm::ivec2 high = glm::min(glm::ivec2(*centre + drawn), camera_.size - 1);
+    for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x)
+            for (int i = 0; i < kSide * kSide; ++i) {
+                const glm::dvec2 at(x + (i % kSide + 0.5) / kSide, y + (i / kSide + 0.5) / kSide);
+                if (glm::length(at - *centre) > drawn) continue;
+                add(static_cast<std::uint32_t>((y * camera_.size.x + x) * kSide * kSide + i), lamp.colour * (luminance * kShare),
+                    distance);
+            }
+}
+
 void CameraView::addLamp(const Lamp& lamp) {
     Layer layer{Image<glm::vec4>(camera_.size.x, camera_.size.y), glm::vec3(0)};
     const auto add = [&](std::uint32_t pixel, glm::vec3 luminance, float path) {
@@ -80,25 +107,9 @@ void CameraView::addLamp(const Lamp& lamp) {
         layer.meanIlluminance += illuminance / static_cast<float>(samples_.size());
     }
 
-    // The head itself, a disc in the picture, at least a pixel wide, so that the light of a distant
-    // head is not lost between samples.
-    const auto centre = camera_.pixelFromWorld(lamp.position);
-    const glm::dvec3 fromLamp = camera_.pose.position - lamp.position;
-    if (centre && !scene_.blocked(camera_.pose.position, lamp.position)) {
-        const double distance = glm::length(fromLamp), seen = lamp.radius * camera_.focal / distance, drawn = std::max(seen, 1.0);
-        const double luminance =
-            lamp.intensity(fromLamp / distance) / (kPi * lamp.radius * lamp.radius) * std::pow(seen / drawn, 2);
-        const glm::ivec2 low = glm::max(glm::ivec2(*centre - drawn), glm::ivec2(0));
-        const glm::ivec2 high = glm::min(glm::ivec2(*centre + drawn), camera_.size - 1);
-        for (int y = low.y; y <= high.y; ++y)
-            for (int x = low.x; x <= high.x; ++x)
-                for (int i = 0; i < kSide * kSide; ++i) {
-                    const glm::dvec2 at(x + (i % kSide + 0.5) / kSide, y + (i / kSide + 0.5) / kSide);
-                    if (glm::length(at - *centre) > drawn) continue;
-                    add(static_cast<std::uint32_t>(y * camera_.size.x + x), lamp.colour * (luminance * kShare),
-                        static_cast<float>(distance));
-                }
-    }
+    drawHead(lamp, [&](std::uint32_t sample, glm::vec3 luminance, double distance) {
+        add(sample / kSamples, luminance, static_cast<float>(distance));
+    });
     for (glm::vec4& light : layer.light.pixels())
         if (const float sum = light.r + light.g + light.b; sum > 0) light.w /= sum;
     lampLayers_.push_back(std::move(layer));
@@ -138,7 +149,40 @@ glm::vec3 CameraView::airlight(const Lighting& lighting) const {
     for (std::size_t i = 0; i < projectors_.size(); ++i)
         if (const ProjectedLight& frame = lighting.frames[i]; !frame.dark())
             inTheAir += glm::vec3(frame.mean()) * projectors_[i].meanIlluminance;
+    if (lighting.fog > 0)
+        for (const Lamp& lamp : lighting.passing) inTheAir += meanIlluminanceOf(lamp);
     return inTheAir / static_cast<float>(4 * kPi);
+}
+
+// Every sixteenth sample is enough for a mean.
+glm::vec3 CameraView::meanIlluminanceOf(const Lamp& lamp) const {
+    constexpr std::size_t kStep = 16;
+    const Beam beam(lamp);
+    float sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < samples_.size(); i += kStep, ++count)
+        sum += illuminanceOf(lamp, beam, samples_[i].point, samples_[i].normal).lux;
+    return glm::vec3(lamp.colour) * (count > 0 ? sum / static_cast<float>(count) : 0.0f);
+}
+
+void CameraView::addPassing(const Lamp& lamp, const Lighting& lighting, const Covering& covering, Rows rows,
+                            Image<glm::vec3>& luminance) const {
+    const Beam beam(lamp);
+    const glm::vec3 colour(lamp.colour);
+    const auto first = static_cast<std::uint32_t>(rows.first * camera_.size.x) * kSamples;
+    const auto end = static_cast<std::uint32_t>(rows.end * camera_.size.x) * kSamples;
+    auto sample = std::lower_bound(samples_.begin(), samples_.end(), first,
+                                   [](const Sample& each, std::uint32_t index) { return each.index < index; });
+    for (; sample != samples_.end() && sample->index < end; ++sample) {
+        const auto [lux, distance] = illuminanceOf(lamp, beam, sample->point, sample->normal);
+        if (lux <= 0 || covering.hides(sample->index)) continue;
+        luminance.pixels()[sample->index / kSamples] +=
+            lux * colour * sample->response * transmitted(lighting.fog, distance + sample->distance);
+    }
+    drawHead(lamp, [&](std::uint32_t index, glm::vec3 light, double distance) {
+        if (index < first || index >= end || covering.hides(index, distance)) return;
+        luminance.pixels()[index / kSamples] += light * transmitted(lighting.fog, static_cast<float>(distance));
+    });
 }
 
 void CameraView::render(const Lighting& lighting, Rows rows, Image<glm::vec3>& luminance) const {
@@ -170,6 +214,7 @@ void CameraView::render(const Lighting& lighting, Rows rows, Image<glm::vec3>& l
     hideBehind(covering, luminance);
     for (std::size_t i = 0; i < projectors_.size(); ++i)
         if (!lighting.frames[i].dark()) addProjector(i, lighting, covering, rows, luminance);
+    for (const Lamp& lamp : lighting.passing) addPassing(lamp, lighting, covering, rows, luminance);
     addBodies(lighting, covering, inTheAir, luminance);
 }
 

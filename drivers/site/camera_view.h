@@ -1,6 +1,7 @@
 #pragma once
 
 #include "drivers/site/body.h"
+#include "drivers/site/lamp.h"
 #include "drivers/site/projected_light.h"
 #include "drivers/site/scene.h"
 
@@ -21,26 +22,13 @@ namespace fantascope::site {
 // The light of each colour channel has the photometric unit that white light of the same strength
 // has: lux on a surface, candela per square metre from it, both linear.
 
-// A lamp: a small round head whose light falls off from its aim. The intensity at an angle from the
-// aim is candela * exp(-(angle / a)^p). a and p make it a half at half the beam angle and a tenth
-// at half the field angle, as these angles are defined (ANSI E1.9).
-struct Lamp {
-    glm::dvec3 position{0.0};        // metres
-    glm::dvec3 aim{0, -1, 0};        // unit
-    double beam = 0.4, field = 0.6;  // full angles, radians; field > beam
-    glm::dvec3 colour{1.0};          // linear RGB, 0..1
-    double candela = 1000;           // along the aim
-    double radius = 0.1;             // of the luminous head, metres
-
-    double intensity(glm::dvec3 direction) const;  // candela towards a unit direction
-};
-
 // What shines at one moment.
 struct Lighting {
     std::span<const glm::vec3> levels;       // of the lamps: linear, 1 is full power
     std::span<const ProjectedLight> frames;  // of the projectors
     double fog = 0;                          // extinction per metre
     std::span<const Body> bodies = {};       // in front of the scene
+    std::span<const Lamp> passing = {};      // lamps that move, at full power; the scene throws no shadow in their light
 };
 
 // Rows of a picture, from `first` to before `end`.
@@ -135,6 +123,10 @@ private:
         std::vector<Seen> seen;
 
         bool hides(std::uint32_t sample) const { return !seenBy.empty() && seenBy[sample - first] != kNobody; }
+        // Whether a body is nearer than `distance`.
+        bool hides(std::uint32_t sample, double distance) const {
+            return hides(sample) && seen[seenBy[sample - first]].distance < distance;
+        }
     };
     // A place on a body that a sample sees.
     struct BodyPoint {
@@ -151,6 +143,13 @@ private:
     glm::vec3 airlight(const Lighting& lighting) const;  // cd/m2 of fog so thick that nothing is seen through it
 
     vision::Ray rayOf(std::uint32_t sample) const;
+    // Calls add(sample, cd/m2 in the pixel, metres to the camera) for each sample that sees a
+    // lamp's luminous head.
+    template <class Add>
+    void drawHead(const Lamp& lamp, Add add) const;
+    glm::vec3 meanIlluminanceOf(const Lamp& passing) const;  // lux, over the surfaces in view
+    void addPassing(const Lamp& lamp, const Lighting& lighting, const Covering& covering, Rows rows,
+                    Image<glm::vec3>& luminance) const;
     void noteLitPoints(Projector& projector) const;
     Covering coveringOf(std::span<const Body> bodies, Rows rows) const;
     void hideBehind(const Covering& covering, Image<glm::vec3>& luminance) const;

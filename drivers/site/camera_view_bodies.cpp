@@ -179,6 +179,8 @@ void CameraView::addBodies(const Lighting& lighting, const Covering& covering, g
         for (std::size_t i = 0; i < lamps_.size(); ++i)
             if (lighting.levels[i] != glm::vec3(0))
                 lightByLamp(points[body], lighting.bodies[body], lamps_[i], lighting.levels[i], lighting.fog);
+        for (const Lamp& lamp : lighting.passing)
+            lightByLamp(points[body], lighting.bodies[body], lamp, glm::vec3(1), lighting.fog);
         for (std::size_t i = 0; i < projectors_.size(); ++i)
             if (!lighting.frames[i].dark()) lightByProjector(points[body], body, i, lighting);
         const glm::vec3 response = lighting.bodies[body].reflectance * (kShare / kPi);

@@ -208,7 +208,10 @@ struct SimulatedSite::Impl {
         bodies.clear();
         for (const Walker& walker : simulation.walkers)
             if (const auto body = walker.bodyAt(time)) bodies.push_back(*body);
-        return {levels, light, fog, bodies};
+        passing.clear();
+        for (const Headlight& headlight : simulation.headlights)
+            if (const auto lamp = headlight.lampAt(time)) passing.push_back(*lamp);
+        return {levels, light, fog, bodies, passing};
     }
 
     int bands() const { return simulation.camera.rolling > Time{} ? kBands : 1; }
@@ -283,6 +286,7 @@ struct SimulatedSite::Impl {
     std::vector<ProjectedLight> light;  // per output
     std::vector<glm::vec3> levels;      // per lamp
     std::vector<Body> bodies;
+    std::vector<Lamp> passing;
     Image<glm::vec3> luminance;
     RgbaImage lastSeen;
     std::int64_t lastFrame = -1;  // the last one that was begun

@@ -3,10 +3,7 @@
 #include "drivers/site/limits.h"
 #include "drivers/site/objects.h"
 
-#include "core/geometry.h"
-
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <numbers>
@@ -22,24 +19,6 @@ Result<SimulatedProjector> readProjector(const ConfigNode& node) {
     fields.optional().number("gamma", projector.gamma, 0.5, 5);
     TRY(fields.finish());
     return projector;
-}
-
-Result<Lamp> readLamp(const ConfigNode& node) {
-    Lamp lamp;
-    glm::dvec3 lookAt{0.0};
-    ConfigFields fields(node);
-    fields.vector3("position", lamp.position, -kMaxDistance, kMaxDistance, "m");
-    fields.vector3("look_at", lookAt, -kMaxDistance, kMaxDistance, "m");
-    fields.angle("beam_angle", lamp.beam, 1, 175);
-    fields.angle("field_angle", lamp.field, 1, 180);
-    fields.number("candela", lamp.candela, 0, kMaxLight, "cd");
-    fields.optional().vector3("colour", lamp.colour, 0, 1);
-    fields.optional().number("radius", lamp.radius, 0.001, 10, "m");
-    TRY(fields.finish());
-    if (lamp.field <= lamp.beam) return node.error("field_angle must be larger than beam_angle");
-    if (glm::length(lookAt - lamp.position) < 1e-6) return node.error("look_at must differ from position");
-    lamp.aim = glm::normalize(lookAt - lamp.position);
-    return lamp;
 }
 
 Result<SimulatedCamera> readCamera(const ConfigNode& node) {
@@ -203,6 +182,7 @@ Result<Simulation> readSimulation(const ConfigNode& node, const NominalSite& nom
                            [&](const ConfigNode& value) { return readLamps(value, namesOf(nominal.relays), "relay"); });
     fields.optional().read("camera", simulation.camera, readCamera);
     fields.optional().list("walkers", simulation.walkers, readWalker);
+    fields.optional().list("headlights", simulation.headlights, readHeadlight);
     fields.optional().list("contacts", simulation.closings,
                            [&](const ConfigNode& value) { return readClosing(value, namesOf(nominal.contacts)); });
     fields.optional().list("faults", simulation.faults, [&](const ConfigNode& value) { return readFault(value, nominal); });

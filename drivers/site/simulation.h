@@ -2,6 +2,7 @@
 // The `simulation:` section of a site file as values; README.md lists its keys.
 
 #include "drivers/site/camera_view.h"
+#include "drivers/site/headlights.h"
 #include "drivers/site/scene.h"
 #include "drivers/site/sensor.h"
 #include "drivers/site/simulated_site.h"
@@ -71,6 +72,7 @@ struct Simulation {
     std::vector<FedLamp> streetLamps;            // at relays
     SimulatedCamera camera;
     std::vector<Walker> walkers;
+    std::vector<Headlight> headlights;
     std::vector<Closing> closings;
     std::vector<Fault> faults;
 };

@@ -15,12 +15,11 @@ namespace fantascope::site {
 
 using namespace std::chrono_literals;
 
-inline Pose facing(glm::dvec3 position, glm::dvec3 target) { return Pose::lookingAt(position, target).value(); }
-
 // A wall with two pictures side by side, a lamp of three colours and a street lamp, seen by a small
 // camera.
 inline NominalSite nominalSite() {
-    const auto projectorAt = [](double x) {
+    const auto facing = [](glm::dvec3 position, glm::dvec3 target) { return Pose::lookingAt(position, target).value(); };
+    const auto projectorAt = [&](double x) {
         return vision::CameraModel::fromThrowRatio(facing({x, 0, 3}, {x, 0, 0}), {64, 64}, 2, {0, 0});
     };
     NominalSite site;

@@ -285,7 +285,7 @@ TEST(SimulatedSite, refuses_a_malformed_section_with_place_and_advice) {
     EXPECT_EQ(with(""), "accepted");
     EXPECT_EQ(with("fogg: 3"),
               "config/site.yaml:13:1: fogg: unknown key (known here: ambient, sky, objects, projectors, lamps, "
-              "street_lamps, camera, walkers, contacts, faults)");
+              "street_lamps, camera, walkers, headlights, contacts, faults)");
     EXPECT_EQ(refusal(simulationText("", "whit: 40")),
               "config/site.yaml:12:10: camera.whit: unknown key (did you mean 'white'?)");
     EXPECT_THAT(refusal(simulationText("", "white: 0")), StartsWith("config/site.yaml:12:17: camera.white: 0 is out of range"));
