@@ -144,7 +144,7 @@ void CameraView::moveProjector(std::size_t index, const vision::CameraModel& mod
 
 glm::vec3 CameraView::airlight(const Lighting& lighting) const {
     // Fog scatters light evenly in all directions, once.
-    glm::vec3 inTheAir = steady_.meanIlluminance;
+    glm::vec3 inTheAir = steady_.meanIlluminance * lighting.ambient;
     for (std::size_t i = 0; i < lamps_.size(); ++i) inTheAir += lighting.levels[i] * lampLayers_[i].meanIlluminance;
     for (std::size_t i = 0; i < projectors_.size(); ++i)
         if (const ProjectedLight& frame = lighting.frames[i]; !frame.dark())
@@ -200,7 +200,7 @@ void CameraView::render(const Lighting& lighting, Rows rows, Image<glm::vec3>& l
     for (std::uint32_t i = first; i < end; ++i) {
         const glm::vec4 steady = steady_.light.pixels()[i];
         const float left = transmitted(fog, steady.w);
-        out[i] = glm::vec3(steady) * left + inTheAir * (1 - left);
+        out[i] = glm::vec3(steady) * (lighting.ambient * left) + inTheAir * (1 - left);
     }
     for (std::size_t lamp = 0; lamp < lamps_.size(); ++lamp) {
         const glm::vec3 level = lighting.levels[lamp];

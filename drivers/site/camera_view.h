@@ -27,6 +27,7 @@ struct Lighting {
     std::span<const glm::vec3> levels;       // of the lamps: linear, 1 is full power
     std::span<const ProjectedLight> frames;  // of the projectors
     double fog = 0;                          // extinction per metre
+    float ambient = 1;                       // times the ambient light and the sky
     std::span<const Body> bodies = {};       // in front of the scene
     std::span<const Lamp> passing = {};      // lamps that move, at full power; the scene throws no shadow in their light
 };

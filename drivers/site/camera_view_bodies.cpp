@@ -170,7 +170,8 @@ void CameraView::addBodies(const Lighting& lighting, const Covering& covering, g
         const Capsule& part = lighting.bodies[seen.body].parts[seen.part];
         const glm::dvec3 direction = sights_[seen.index].direction;
         const glm::dvec3 point = camera_.pose.position + direction * seen.distance, normal = part.normalAt(point);
-        const glm::vec3 ambient = steady_.meanIlluminance * transmitted(lighting.fog, static_cast<float>(seen.distance));
+        const glm::vec3 ambient =
+            steady_.meanIlluminance * lighting.ambient * transmitted(lighting.fog, static_cast<float>(seen.distance));
         points[seen.body].push_back({seen.index, seen.distance, seen.part, part.shareAlong(point), point, normal,
                                      std::max(kLeastCosine, -glm::dot(normal, direction)), ambient});
     }

@@ -62,4 +62,21 @@ void vignette(Image<glm::vec3>& light, double loss) {
         }
 }
 
+void coverPart(Image<glm::vec3>& light, glm::dvec2 low, glm::dvec2 high, glm::vec3 luminance) {
+    const glm::dvec2 size(light.width(), light.height());
+    for (int y = 0; y < light.height(); ++y)
+        for (int x = 0; x < light.width(); ++x) {
+            const glm::dvec2 share = glm::dvec2(x + 0.5, y + 0.5) / size;
+            if (low.x <= share.x && share.x < high.x && low.y <= share.y && share.y < high.y) light.at(x, y) = luminance;
+        }
+}
+
+void veil(Image<glm::vec3>& light, double share) {
+    if (share <= 0) return;
+    glm::dvec3 sum(0.0);
+    for (const glm::vec3& pixel : light.pixels()) sum += glm::dvec3(pixel);
+    const glm::vec3 added = sum * (share / static_cast<double>(light.pixels().size()));
+    for (glm::vec3& pixel : light.pixels()) pixel += added;
+}
+
 }  // namespace fantascope::site

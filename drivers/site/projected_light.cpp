@@ -1,5 +1,7 @@
 #include "drivers/site/projected_light.h"
 
+#include "drivers/site/optics.h"
+
 #include <glm/common.hpp>
 
 #include <algorithm>
@@ -23,15 +25,17 @@ ProjectedLight::ProjectedLight(glm::ivec2 size, double gamma, double blackLevel)
     for (; levels_.size() < kLevels && canBeLookedInto(size); size = halved(size)) levels_.emplace_back(size.x, size.y);
 }
 
-void ProjectedLight::show(std::shared_ptr<const RgbaImage> frame) {
-    if (frame == frame_) return;
+void ProjectedLight::show(std::shared_ptr<const RgbaImage> frame, double blur) {
+    if (frame == frame_ && blur == blur_) return;
     frame_ = std::move(frame);
+    blur_ = blur;
     if (dark()) return;
     const bool fits = frame_->width() == size_.x && frame_->height() == size_.y;
     const RgbaImage stretched = fits ? RgbaImage() : resized(*frame_, size_.x, size_.y);
     const RgbaImage& stored = fits ? *frame_ : stretched;
     std::transform(stored.pixels().begin(), stored.pixels().end(), levels_[0].pixels().begin(),
                    [&](Rgba8 pixel) { return glm::vec4(lightOf_[pixel.r], lightOf_[pixel.g], lightOf_[pixel.b], 0); });
+    blurLight(levels_[0], blur);
     for (std::size_t level = 1; level < levels_.size(); ++level) {
         const LightImage& fine = levels_[level - 1];
         LightImage& coarse = levels_[level];
@@ -65,7 +69,7 @@ ProjectedLight::Place ProjectedLight::placeOf(glm::ivec2 size, glm::vec2 pixel, 
 glm::vec4 ProjectedLight::mean() const {
     glm::vec4 sum(0);
     for (const glm::vec4& cell : levels_.back().pixels()) sum += cell;
-    return sum / static_cast<float>(levels_.back().pixels().size());
+    return sum * (level_ / static_cast<float>(levels_.back().pixels().size()));
 }
 
 }  // namespace fantascope::site

@@ -1,16 +1,15 @@
 #include "drivers/site/simulated_site.h"
 
 #include "drivers/site/camera_view.h"
+#include "drivers/site/fault.h"
 #include "drivers/site/optics.h"
 #include "drivers/site/projected_light.h"
 #include "drivers/site/scene.h"
 #include "drivers/site/sensor.h"
 #include "drivers/site/simulation.h"
 
-#include <fmt/format.h>
-#include <glm/geometric.hpp>
-
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -63,25 +62,6 @@ struct Move {
     bool closes = false;
 };
 
-std::string tell(const Fault& fault, bool begins) {
-    switch (fault.kind) {
-        case Fault::Kind::Unplug:
-            return fmt::format("{} {}", fault.device, begins ? "unplugged" : "plugged in again");
-        case Fault::Kind::Freeze:
-            return fmt::format("{} {}", fault.device, begins ? "froze" : "moves again");
-        case Fault::Kind::Graphics:
-            return fmt::format("graphics of {} {}", fault.device, begins ? "fail" : "work again");
-        case Fault::Kind::Bump:
-            if (!begins) return fmt::format("projector {} put back", fault.device);
-            return fmt::format("projector {} bumped by {:.3f} m and {:.2f} degrees", fault.device, glm::length(fault.move),
-                               glm::length(fault.turn) * 180 / std::numbers::pi);
-        case Fault::Kind::Fog:
-            return begins ? fmt::format("fog of {} / m comes within {} s", fault.density, seconds(fault.rise))
-                          : fmt::format("fog clears within {} s", seconds(fault.rise));
-    }
-    return "";
-}
-
 }  // namespace
 
 struct SimulatedSite::Impl {
@@ -95,12 +75,7 @@ struct SimulatedSite::Impl {
             light.emplace_back(nominal.outputs[i].projector.size, simulation.projectors[i].gamma,
                                simulation.projectors[i].blackLevel);
         if (nominal.camera) {
-            view.emplace(scene, *nominal.camera, simulation.ambient, simulation.sky);
-            for (const FedLamp& lamp : simulation.lamps) view->addLamp(lamp.lamp);
-            for (const FedLamp& lamp : simulation.streetLamps) view->addLamp(lamp.lamp);
-            for (std::size_t i = 0; i < nominal.outputs.size(); ++i)
-                view->addProjector(nominal.outputs[i].projector, simulation.projectors[i].lumens);
-            if (!simulation.walkers.empty()) view->expectBodies();
+            look();
             luminance = Image<glm::vec3>(nominal.camera->size.x, nominal.camera->size.y);
         }
         for (const Fault& fault : simulation.faults) {
@@ -165,23 +140,42 @@ struct SimulatedSite::Impl {
             case Fault::Kind::Bump:
                 bump(device);
                 break;
-            case Fault::Kind::Fog:
-                break;  // a function of time, see expose()
+            case Fault::Kind::CameraBump:
+                if (view) look();
+                break;
+            default:
+                break;  // a function of time, see lightingAt() and developed()
         }
+    }
+
+    // Where faults of a kind have brought a device.
+    vision::CameraModel bumped(vision::CameraModel model, Fault::Kind kind, const std::string& device) const {
+        Pose& pose = model.pose;
+        for (const Fault* fault : active) {
+            if (fault->kind != kind || fault->device != device) continue;
+            pose.position += pose.worldFromLocal * fault->move;
+            pose.worldFromLocal = pose.worldFromLocal * rotationXyz(fault->turn);
+        }
+        return model;
+    }
+    vision::CameraModel projector(std::size_t output) const {
+        return bumped(nominal.outputs[output].projector, Fault::Kind::Bump, nominal.outputs[output].name);
+    }
+
+    // Computes all light on its way to the camera where it stands now.
+    void look() {
+        view.emplace(scene, bumped(*nominal.camera, Fault::Kind::CameraBump, ""), simulation.ambient, simulation.sky);
+        for (const FedLamp& lamp : simulation.lamps) view->addLamp(lamp.lamp);
+        for (const FedLamp& lamp : simulation.streetLamps) view->addLamp(lamp.lamp);
+        for (std::size_t i = 0; i < nominal.outputs.size(); ++i)
+            view->addProjector(projector(i), simulation.projectors[i].lumens);
+        if (!simulation.walkers.empty()) view->expectBodies();
     }
 
     void bump(const std::string& output) {
         if (!view) return;
-        const auto found =
-            std::find_if(nominal.outputs.begin(), nominal.outputs.end(), [&](const auto& each) { return each.name == output; });
-        vision::CameraModel projector = found->projector;
-        Pose& pose = projector.pose;
-        for (const Fault* fault : active) {
-            if (fault->kind != Fault::Kind::Bump || fault->device != output) continue;
-            pose.position += pose.worldFromLocal * fault->move;
-            pose.worldFromLocal = pose.worldFromLocal * rotationXyz(fault->turn);
-        }
-        view->moveProjector(static_cast<std::size_t>(found - nominal.outputs.begin()), projector);
+        for (std::size_t i = 0; i < nominal.outputs.size(); ++i)
+            if (nominal.outputs[i].name == output) view->moveProjector(i, projector(i));
     }
 
     // What shines now, `time` after begin().
@@ -194,24 +188,25 @@ struct SimulatedSite::Impl {
         for (const FedLamp& lamp : simulation.streetLamps) {
             const NominalSite::Relay& relay = nominal.relays[lamp.feed];
             const std::vector<bool> bank = world.relays(relay.bank);
-            levels.emplace_back(relay.coil < bank.size() && bank[relay.coil] ? 1 : 0);
+            const bool on = relay.coil < bank.size() && bank[relay.coil];
+            levels.emplace_back(on ? flickerAt(simulation.faults, relay.name, time) : 0);
         }
         for (std::size_t i = 0; i < nominal.outputs.size(); ++i) {
             const std::string& output = nominal.outputs[i].name;
             const auto held = frozen.find(output);
-            const auto shown = held == frozen.end() ? world.frame(output) : held->second;
-            light[i].show(world.plugged(output) ? shown : nullptr);
+            const ProjectorState state = projectorAt(simulation.faults, output, time);
+            const auto shown = state.picture ? state.picture : held == frozen.end() ? world.frame(output) : held->second;
+            light[i].setLevel(state.level);
+            light[i].show(world.plugged(output) ? shown : nullptr, state.blur);
         }
-        double fog = 0;
-        for (const Fault& fault : simulation.faults)
-            if (fault.kind == Fault::Kind::Fog) fog += fault.densityAt(time);
         bodies.clear();
         for (const Walker& walker : simulation.walkers)
             if (const auto body = walker.bodyAt(time)) bodies.push_back(*body);
         passing.clear();
         for (const Headlight& headlight : simulation.headlights)
             if (const auto lamp = headlight.lampAt(time)) passing.push_back(*lamp);
-        return {levels, light, fog, bodies, passing};
+        const double fog = fogAt(simulation.faults, time), ambient = ambientAt(simulation.faults, time);
+        return {levels, light, fog, static_cast<float>(ambient), bodies, passing};
     }
 
     int bands() const { return simulation.camera.rolling > Time{} ? kBands : 1; }
@@ -253,7 +248,7 @@ struct SimulatedSite::Impl {
 
     void send(const Exposure& picture) {
         if (picture.lost) return;
-        if (!picture.repeats) lastSeen = developed(static_cast<std::uint64_t>(picture.frame));
+        if (!picture.repeats) lastSeen = developed(picture.frame);
         const Time exposed = beginning + tickTime(picture.frame, simulation.camera.frameRate);
         const CameraFrame sent{lastSeen, exposed, static_cast<std::uint64_t>(picture.frame)};
         world.sendFromCamera(std::make_shared<const CameraFrame>(sent),
@@ -261,10 +256,24 @@ struct SimulatedSite::Impl {
     }
 
     // The picture that lens and sensor make of the light.
-    RgbaImage developed(std::uint64_t frame) {
-        blurLight(luminance, simulation.camera.blur);
+    RgbaImage developed(std::int64_t frame) {
+        const Time time = tickTime(frame, simulation.camera.frameRate);
+        const CameraState state = cameraAt(simulation.faults, time);
+        if (state.blind) {
+            const auto stored = static_cast<std::uint8_t>(std::lround(255 * *state.blind));
+            return {luminance.width(), luminance.height(), Rgba8{stored, stored, stored, 255}};
+        }
+        const glm::dvec3 ambient = simulation.ambient * (ambientAt(simulation.faults, time) / std::numbers::pi);
+        for (const Fault* cover : state.covers)
+            coverPart(luminance, cover->low, cover->high, cover->reflectance * ambient + cover->luminance);
+        blurLight(luminance, std::hypot(simulation.camera.blur, state.blur));
+        veil(luminance, state.veil);
         vignette(luminance, simulation.camera.vignetting);
-        return sensor.expose(luminance, frame);
+        if (state.gain != 1)
+            for (glm::vec3& pixel : luminance.pixels()) pixel *= static_cast<float>(state.gain);
+        RgbaImage picture = sensor.expose(luminance, static_cast<std::uint64_t>(frame));
+        if (state.upsideDown) std::reverse(picture.pixels().begin(), picture.pixels().end());
+        return picture;
     }
 
     World& world;

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 namespace fantascope::site {
 namespace {
@@ -79,23 +78,6 @@ Result<std::vector<FedLamp>> readLamps(const ConfigNode& node, const std::vector
     return lamps;
 }
 
-// A beginning and an end; `until` is after `at`. Call check() after finish().
-struct Span {
-    Time& at;
-    std::optional<Time>& until;
-
-    void declare(ConfigFields& fields) const {
-        fields.time("at", at, 0, kMaxTime);
-        fields.optional().read("until", until, [](const ConfigNode& value) -> Result<Time> {
-            return fromSeconds(TRY(value.number(0, kMaxTime, "s")));
-        });
-    }
-    Result<void> check(const ConfigNode& node) const {
-        if (until && *until <= at) return node.error("'until' must be later than 'at'");
-        return {};
-    }
-};
-
 Result<Closing> readClosing(const ConfigNode& node, const std::vector<std::string>& contacts) {
     Closing closing;
     const Span span{closing.at, closing.until};
@@ -107,65 +89,7 @@ Result<Closing> readClosing(const ConfigNode& node, const std::vector<std::strin
     return closing;
 }
 
-// In the order of Fault::Kind.
-const std::vector<std::string> kFaultKinds = {"unplug", "freeze", "graphics", "bump", "fog"};
-
-Result<Fault> readFault(const ConfigNode& node, const NominalSite& nominal) {
-    Fault fault;
-    // A fault's keys depend on its kind, so the kind is read first, wherever it stands.
-    bool kindKnown = false;
-    for (const auto& [key, value] : TRY(node.entries()))
-        if (key == "kind") {
-            fault.kind = static_cast<Fault::Kind>(TRY(value.choice(kFaultKinds)));
-            kindKnown = true;
-        }
-    if (!kindKnown) return node.error(fmt::format("'kind' is missing; one of {} is needed", fmt::join(kFaultKinds, ", ")));
-
-    const Span span{fault.at, fault.until};
-    ConfigFields fields(node);
-    std::string kind;
-    fields.text("kind", kind);
-    span.declare(fields);
-    const auto readDevice = [&](std::string_view key, const std::vector<std::string>& names) {
-        fields.read(key, fault.device,
-                    [&](const ConfigNode& value) -> Result<std::string> { return names[TRY(value.choice(names))]; });
-    };
-    std::vector<std::string> outputs = namesOf(nominal.outputs);
-    switch (fault.kind) {
-        case Fault::Kind::Unplug:
-            readDevice("device", nominal.devices);
-            break;
-        case Fault::Kind::Freeze:
-            if (nominal.camera) outputs.emplace_back("camera");
-            readDevice("device", outputs);
-            break;
-        case Fault::Kind::Graphics:
-            readDevice("device", outputs);
-            break;
-        case Fault::Kind::Bump: {
-            readDevice("output", outputs);
-            glm::dvec3 degrees{0.0};
-            fields.optional().vector3("move", fault.move, -100, 100, "m");
-            fields.optional().vector3("turn", degrees, -180, 180, "degrees");
-            fault.turn = degrees * (std::numbers::pi / 180);
-            break;
-        }
-        case Fault::Kind::Fog:
-            fields.number("density", fault.density, 0, 10, "1/m");
-            fields.optional().time("rise", fault.rise, 0, kMaxTime);
-            break;
-    }
-    TRY(fields.finish());
-    TRY(span.check(node));
-    return fault;
-}
-
 }  // namespace
-
-double Fault::densityAt(Time time) const {
-    const auto share = [&](Time since) { return since < Time{} ? 0.0 : since >= rise ? 1.0 : seconds(since) / seconds(rise); };
-    return density * std::max(0.0, share(time - at) - (until ? share(time - *until) : 0.0));
-}
 
 Result<Simulation> readSimulation(const ConfigNode& node, const NominalSite& nominal) {
     Simulation simulation;

@@ -2,6 +2,7 @@
 // The `simulation:` section of a site file as values; README.md lists its keys.
 
 #include "drivers/site/camera_view.h"
+#include "drivers/site/fault.h"
 #include "drivers/site/headlights.h"
 #include "drivers/site/scene.h"
 #include "drivers/site/sensor.h"
@@ -39,21 +40,6 @@ struct SimulatedCamera {
     double vignetting = 0;             // share of the light that is lost in the picture's corners
     double blur = 0;                   // sigma of the lens's Gaussian, pixels
     Time rolling{};                    // from the first row's exposure to the last row's
-};
-
-// A fault of the simulated truth. Times count from begin().
-struct Fault {
-    enum class Kind { Unplug, Freeze, Graphics, Bump, Fog };
-    Kind kind = Kind::Unplug;
-    Time at{};
-    std::optional<Time> until;        // nothing: for good
-    std::string device;               // Unplug: any device; Freeze: an output or the camera; Graphics, Bump: an output
-    glm::dvec3 move{0.0}, turn{0.0};  // Bump: along and about the projector's own axes right, down, forward; metres, radians
-    double density = 0;               // Fog: extinction per metre at its thickest
-    Time rise{};                      // Fog: how long it takes to build up, and to clear after `until`
-
-    // Fog: the extinction at a time.
-    double densityAt(Time time) const;
 };
 
 // Closes a contact for a while, like a person who passes a gate.

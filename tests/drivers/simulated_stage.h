@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -54,8 +55,9 @@ inline const std::string kNoiseless = "white: 40, read_noise: 0, shot_noise: 0";
 
 class Stage {
 public:
-    explicit Stage(const std::string& more = "", const std::string& camera = kNoiseless, std::uint64_t seed = 1) {
-        const ConfigNode node = ConfigNode::parse(simulationText(more, camera), "site.yaml").value();
+    explicit Stage(const std::string& more = "", const std::string& camera = kNoiseless, std::uint64_t seed = 1,
+                   const std::filesystem::path& file = "site.yaml") {
+        const ConfigNode node = ConfigNode::parse(simulationText(more, camera), file).value();
         site_ = SimulatedSite::open(node, nominalSite(), seed, world_).value();
         world_.installRelays("road", {true, false});
         site_->begin(Time{});
@@ -78,6 +80,11 @@ public:
         advanceTo(clock_.now() + 100ms);
         clock_.advance(60ms);
         return world_.takeFromCamera();
+    }
+    // The picture that the camera exposes at a time: a multiple of 100 ms, later than now.
+    RgbaImage pictureAt(Time time) {
+        advanceTo(time - 100ms);
+        return look()->image;
     }
     // Stored values in the middle of the left and of the right picture, and between them.
     std::vector<Rgba8> lookAtPictures() {
