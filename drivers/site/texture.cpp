@@ -62,7 +62,8 @@ Texture::Cells Texture::halved(const Cells& fine) {
 
 glm::vec3 Texture::at(const Cells& cells, glm::dvec2 place) const {
     const glm::ivec2 size(cells.width(), cells.height());
-    const glm::dvec2 cell = glm::dvec2(place.x, 1 - place.y) * glm::dvec2(size) - 0.5;
+    const glm::dvec2 inside = repeats_ ? place - glm::floor(place) : glm::clamp(place, glm::dvec2(0), glm::dvec2(1));
+    const glm::dvec2 cell = glm::dvec2(inside.x, 1 - inside.y) * glm::dvec2(size) - 0.5;
     const glm::ivec2 low = glm::floor(cell);
     const glm::vec2 share = cell - glm::dvec2(low);
     const auto value = [&](int x, int y) {

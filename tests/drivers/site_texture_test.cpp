@@ -78,6 +78,18 @@ TEST(SiteTexture, repeats_from_the_corner_at_its_size) {
         }
 }
 
+// A tile of a millimetre on a rectangle of a kilometre repeats a million times each way. Example
+// failure: the number of a pixel overflows.
+TEST(SiteTexture, repeats_far_from_the_corner_as_near) {
+    const Rectangle field{{0, 0, 0}, {1000, 0, 0}, {0, 1000, 0}};
+    const Texture texture(picture(4, 1, {255, 0, 0, 0}), field, glm::dvec2(0.001));
+    for (const double x : {0.000125, 500.000125, 999.999125}) {
+        EXPECT_NEAR(texture.around({x, 999.9, 0}, glm::dvec3(0), 1e-6).g, 1, 1e-3) << x;
+        EXPECT_NEAR(texture.around({x + 0.0005, 999.9, 0}, glm::dvec3(0), 1e-6).g, 0, 1e-3) << x;
+    }
+    EXPECT_NEAR(texture.around({500, 500, 0}, {0.3, 0, 0}, 0.3).g, 0.25, 1e-3) << "the mean of the tile";
+}
+
 // The cells of these checks are far finer than the camera's pixels. One look per pixel would turn
 // them into moire, on the ground above all, where a pixel is many times as long as wide.
 TEST(SiteTexture, is_even_where_it_is_finer_than_the_camera) {
