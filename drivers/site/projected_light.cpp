@@ -69,7 +69,7 @@ ProjectedLight::Place ProjectedLight::placeOf(glm::ivec2 size, glm::vec2 pixel, 
 glm::vec4 ProjectedLight::mean() const {
     glm::vec4 sum(0);
     for (const glm::vec4& cell : levels_.back().pixels()) sum += cell;
-    return sum * (level_ / static_cast<float>(levels_.back().pixels().size()));
+    return sum / static_cast<float>(levels_.back().pixels().size()) * level_;
 }
 
 }  // namespace fantascope::site
