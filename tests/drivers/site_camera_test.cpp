@@ -91,6 +91,37 @@ TEST(SimulatedCamera, its_lens_loses_light_and_blurs) {
     EXPECT_GE(edge(soft.look()->image), edge(sharp.look()->image) + 3);
 }
 
+// Everything that moves and fails at once, twice; and with another seed.
+TEST(SimulatedCamera, gives_the_same_bytes_for_the_same_seed_with_all_that_moves) {
+    const std::string busy = R"(walkers: [{name: Ann, path: [[-2, 2], [2, 2]], at: 0.2, loop: true}]
+headlights: [{path: [[-2, 3], [2, 1]], speed: 4, at: 0.4, beam_angle: 20, field_angle: 45}]
+faults:
+  - {kind: flicker, at: 0, depth: 0.5, frequency: 7}
+  - {kind: defocus, output: left, at: 0.3, blur: 3, rise: 1}
+  - {kind: dim, output: right, at: 0.5, level: 0.2, rise: 1}
+  - {kind: bump, output: left, at: 0.6, turn: [0, 2, 0]}
+  - {kind: camera_bump, at: 0.735, until: 1.2, move: [0.1, 0, 0]}
+  - {kind: fog, at: 0.1, density: 0.05, rise: 1}
+  - {kind: dirt, at: 0.2, blur: 1, veil: 0.2, rise: 1}
+)";
+    const auto night = [&](std::uint64_t seed) {
+        Stage stage(busy, "white: 20, read_noise: 0.01, shot_noise: 0.02, vignetting: 0.3, blur: 0.8, rolling: 0.07", seed);
+        stage.world_.setRelays("road", {true, true});
+        std::vector<RgbaImage> frames;
+        for (int tick = 0; tick < 150; ++tick) {
+            stage.show("left", static_cast<std::uint8_t>(tick));
+            stage.show("right", static_cast<std::uint8_t>(255 - tick));
+            stage.advanceTo(tick * 10ms);
+            if (const auto frame = stage.world_.takeFromCamera()) frames.push_back(frame->image);
+        }
+        return frames;
+    };
+    const auto first = night(1);
+    EXPECT_EQ(first.size(), 14u) << "one every tenth of a second; the first comes at 120 ms";
+    EXPECT_EQ(first, night(1));
+    EXPECT_NE(first, night(2));
+}
+
 TEST(SimulatedCamera, refuses_what_no_lens_and_no_shutter_does) {
     const auto camera = [](const std::string& keys) { return refusal(simulationText("", keys)); };
     EXPECT_EQ(camera("vignetting: 1, blur: 20, rolling: 0.099"), "accepted");
