@@ -169,6 +169,7 @@ void CameraView::addPassing(const Lamp& lamp, const Lighting& lighting, const Co
                             Image<glm::vec3>& luminance) const {
     const Beam beam(lamp);
     const glm::vec3 colour(lamp.colour);
+    const auto out = luminance.pixels();
     const auto first = static_cast<std::uint32_t>(rows.first * camera_.size.x) * kSamples;
     const auto end = static_cast<std::uint32_t>(rows.end * camera_.size.x) * kSamples;
     auto sample = std::lower_bound(samples_.begin(), samples_.end(), first,
@@ -176,12 +177,11 @@ void CameraView::addPassing(const Lamp& lamp, const Lighting& lighting, const Co
     for (; sample != samples_.end() && sample->index < end; ++sample) {
         const auto [lux, distance] = illuminanceOf(lamp, beam, sample->point, sample->normal);
         if (lux <= 0 || covering.hides(sample->index)) continue;
-        luminance.pixels()[sample->index / kSamples] +=
-            lux * colour * sample->response * transmitted(lighting.fog, distance + sample->distance);
+        out[sample->index / kSamples] += lux * colour * sample->response * transmitted(lighting.fog, distance + sample->distance);
     }
     drawHead(lamp, [&](std::uint32_t index, glm::vec3 light, double distance) {
         if (index < first || index >= end || covering.hides(index, distance)) return;
-        luminance.pixels()[index / kSamples] += light * transmitted(lighting.fog, static_cast<float>(distance));
+        out[index / kSamples] += light * transmitted(lighting.fog, static_cast<float>(distance));
     });
 }
 

@@ -154,12 +154,19 @@ void CameraView::addProjector(std::size_t index, const Lighting& lighting, const
             return each.second.contain(lit.pixel) && each.first->blocks(projector.model.pose.position, lit.point);
         });
     };
-    const auto end = tapOfRow(rows.end);
-    for (auto tap = tapOfRow(rows.first); tap != end; ++tap) {
+    const auto out = luminance.pixels();
+    const auto add = [&](const Tap& tap) {
+        out[tap.index / kSamples] += tap.weight * glm::vec3(frame.at(tap.place)) * transmitted(lighting.fog, tap.path);
+    };
+    const auto first = tapOfRow(rows.first), end = tapOfRow(rows.end);
+    if (covering.seen.empty() && inTheLight.empty()) {
+        std::for_each(first, end, add);
+        return;
+    }
+    for (auto tap = first; tap != end; ++tap) {
         if (covering.hides(tap->index)) continue;
         if (!inTheLight.empty() && shadowed(projector.lit[static_cast<std::size_t>(tap - projector.taps.begin())])) continue;
-        luminance.pixels()[tap->index / kSamples] +=
-            tap->weight * glm::vec3(frame.at(tap->place)) * transmitted(lighting.fog, tap->path);
+        add(*tap);
     }
 }
 

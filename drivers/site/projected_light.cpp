@@ -25,20 +25,23 @@ ProjectedLight::ProjectedLight(glm::ivec2 size, double gamma, double blackLevel)
     for (; levels_.size() < kLevels && canBeLookedInto(size); size = halved(size)) levels_.emplace_back(size.x, size.y);
 }
 
-void ProjectedLight::show(std::shared_ptr<const RgbaImage> frame, double blur) {
-    if (frame == frame_ && blur == blur_) return;
+void ProjectedLight::show(std::shared_ptr<const RgbaImage> frame, double blur, double level) {
+    if (frame == frame_ && blur == blur_ && level == level_) return;
     frame_ = std::move(frame);
     blur_ = blur;
+    level_ = level;
     if (dark()) return;
     const bool fits = frame_->width() == size_.x && frame_->height() == size_.y;
     const RgbaImage stretched = fits ? RgbaImage() : resized(*frame_, size_.x, size_.y);
     const RgbaImage& stored = fits ? *frame_ : stretched;
     std::transform(stored.pixels().begin(), stored.pixels().end(), levels_[0].pixels().begin(),
                    [&](Rgba8 pixel) { return glm::vec4(lightOf_[pixel.r], lightOf_[pixel.g], lightOf_[pixel.b], 0); });
+    if (level != 1)
+        for (glm::vec4& pixel : levels_[0].pixels()) pixel *= static_cast<float>(level);
     blurLight(levels_[0], blur);
-    for (std::size_t level = 1; level < levels_.size(); ++level) {
-        const LightImage& fine = levels_[level - 1];
-        LightImage& coarse = levels_[level];
+    for (std::size_t i = 1; i < levels_.size(); ++i) {
+        const LightImage& fine = levels_[i - 1];
+        LightImage& coarse = levels_[i];
         for (int y = 0; y < coarse.height(); ++y) {
             const auto above = fine.row(2 * y), below = fine.row(std::min(2 * y + 1, fine.height() - 1));
             const auto out = coarse.row(y);
@@ -69,7 +72,7 @@ ProjectedLight::Place ProjectedLight::placeOf(glm::ivec2 size, glm::vec2 pixel, 
 glm::vec4 ProjectedLight::mean() const {
     glm::vec4 sum(0);
     for (const glm::vec4& cell : levels_.back().pixels()) sum += cell;
-    return sum / static_cast<float>(levels_.back().pixels().size()) * level_;
+    return sum / static_cast<float>(levels_.back().pixels().size());
 }
 
 }  // namespace fantascope::site

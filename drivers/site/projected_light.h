@@ -25,11 +25,9 @@ public:
     ProjectedLight(glm::ivec2 size, double gamma, double blackLevel);
 
     // Sets a new frame, stretched to the projector's own pixels if its size differs; null is no
-    // light at all. `blur`: sigma of a Gaussian, projector pixels. Setting the same again does
-    // nothing.
-    void show(std::shared_ptr<const RgbaImage> frame, double blur = 0);
-    // The share of its light that the projector gives; 1 at first.
-    void setLevel(double level) { level_ = static_cast<float>(level); }
+    // light at all. `blur`: sigma of a Gaussian, projector pixels. `level`: the share of its light
+    // that the projector gives. Setting the same again does nothing.
+    void show(std::shared_ptr<const RgbaImage> frame, double blur = 0, double level = 1);
     bool dark() const { return frame_ == nullptr; }
 
     // A place in the frame, computed once and read from every frame.
@@ -48,7 +46,7 @@ public:
         const glm::vec4* bottom = top + cells.width();
         const glm::vec4 above = top[0] + (top[1] - top[0]) * place.share.x;
         const glm::vec4 below = bottom[0] + (bottom[1] - bottom[0]) * place.share.x;
-        return (above + (below - above) * place.share.y) * level_;
+        return above + (below - above) * place.share.y;
     }
     // The mean of the whole frame. Not while dark().
     glm::vec4 mean() const;
@@ -57,8 +55,7 @@ private:
     glm::ivec2 size_;
     std::array<float, 256> lightOf_{};
     std::shared_ptr<const RgbaImage> frame_;
-    double blur_ = 0;
-    float level_ = 1;
+    double blur_ = 0, level_ = 1;
     std::vector<LightImage> levels_;  // each half as wide and high as the one before
 };
 

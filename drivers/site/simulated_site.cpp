@@ -196,8 +196,7 @@ struct SimulatedSite::Impl {
             const auto held = frozen.find(output);
             const ProjectorState state = projectorAt(simulation.faults, output, time);
             const auto shown = state.picture ? state.picture : held == frozen.end() ? world.frame(output) : held->second;
-            light[i].setLevel(state.level);
-            light[i].show(world.plugged(output) ? shown : nullptr, state.blur);
+            light[i].show(world.plugged(output) ? shown : nullptr, state.blur, state.level);
         }
         bodies.clear();
         for (const Walker& walker : simulation.walkers)
