@@ -57,6 +57,7 @@ private:
 struct ProjectorMap {
     glm::ivec2 projector{0};         // the projector's pixels
     Image<glm::vec2> at;             // by camera pixel: projector pixels from the top left; NaN: unknown
+    GreyImage light;                 // how bright the projector's full light is there, linear; 0: not lit
     std::size_t lit = 0, known = 0;  // camera pixels that the projector lights, and those that are known
 
     bool isKnown(int x, int y) const { return at.at(x, y).x == at.at(x, y).x; }

@@ -8,8 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <map>
 #include <optional>
+#include <utility>
 
 namespace fantascope::vision {
 namespace {
@@ -21,9 +22,12 @@ constexpr int kSmallestPatch = 3, kLargestPatch = 16;
 // pixels or as a share of the patch's width there.
 constexpr double kKnownShare = 0.6, kStep = 1, kStepShare = 0.3;
 constexpr std::size_t kFewestPoints = 30;
+constexpr double kMostBlur = 9;  // s^2, camera pixels
 // Points this near a plane lie on it, in projector pixels. If this share of them does, the surface
 // is flat and the rest is something else.
 constexpr double kOnPlane = 1.0, kFlatShare = 0.6;
+// Noisy points may be so many deviations from it.
+constexpr double kPlaneNoise = 3;
 // Of points that belong together, those farther off than so many deviations are left out, but never
 // nearer ones than this.
 constexpr double kOutlier = 4, kAlwaysNear = 0.3;
@@ -40,6 +44,7 @@ constexpr int kRounds = 6;
 struct Sample {
     glm::dvec2 onPicture{0.0};  // 0..1 from the picture's top left
     glm::dvec2 projector{0.0};
+    glm::ivec2 patch{0};
     bool inside = false;  // the picture
 };
 
@@ -74,10 +79,29 @@ std::optional<Homography> fittedHomography(const std::vector<Sample>& samples, c
     return Homography(matrix);
 }
 
-std::vector<double> distancesTo(const Homography& keystone, const std::vector<Sample>& samples) {
+using Residuals = std::vector<glm::dvec2>;  // of all samples, projector pixels
+
+Residuals residualsOf(const Homography& keystone, const std::vector<Sample>& samples) {
+    Residuals residuals;
+    for (const Sample& sample : samples) residuals.push_back(keystone(sample.onPicture) - sample.projector);
+    return residuals;
+}
+
+// What the points scatter by, whatever surface they lie on: a point against the mean of its four
+// neighbours.
+double noiseOf(const std::vector<Sample>& samples) {
+    std::map<std::pair<int, int>, glm::dvec2> points;
+    for (const Sample& sample : samples) points[{sample.patch.x, sample.patch.y}] = sample.projector;
     std::vector<double> distances;
-    for (const Sample& sample : samples) distances.push_back(glm::distance(keystone(sample.onPicture), sample.projector));
-    return distances;
+    for (const auto& [patch, at] : points) {
+        glm::dvec2 sum(0);
+        int count = 0;
+        for (const glm::ivec2 step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}})
+            if (const auto next = points.find({patch.first + step.x, patch.second + step.y}); next != points.end())
+                sum += next->second, ++count;
+        if (count == 4) distances.push_back(glm::distance(at, sum / 4.0));
+    }
+    return distances.empty() ? 0 : deviationOf(std::move(distances)) / std::sqrt(1 + 1 / 4.0);
 }
 
 // The samples on the plane that most of them lie on.
@@ -90,20 +114,20 @@ std::vector<bool> onOnePlane(const std::vector<Sample>& samples) {
     std::vector<unsigned char> near;
     constexpr int kTrials = 5000;
     constexpr double kSure = 0.9999;
-    cv::findHomography(from, to, cv::RANSAC, kOnPlane, near, kTrials, kSure);
+    cv::findHomography(from, to, cv::RANSAC, std::max(kOnPlane, kPlaneNoise * noiseOf(samples)), near, kTrials, kSure);
     std::vector<bool> on(samples.size(), false);
     for (std::size_t i = 0; i < near.size(); ++i) on[i] = near[i] != 0;
     return on;
 }
 
 // Leaves out what is far off, and says which samples still count.
-std::vector<bool> withoutOutliers(const std::vector<double>& distances, const std::vector<bool>& counts) {
+std::vector<bool> withoutOutliers(const Residuals& residuals, const std::vector<bool>& counts) {
     std::vector<double> counted;
-    for (std::size_t i = 0; i < distances.size(); ++i)
-        if (counts[i]) counted.push_back(distances[i]);
+    for (std::size_t i = 0; i < residuals.size(); ++i)
+        if (counts[i]) counted.push_back(glm::length(residuals[i]));
     const double limit = std::max(kAlwaysNear, kOutlier * deviationOf(std::move(counted)));
-    std::vector<bool> near(distances.size());
-    for (std::size_t i = 0; i < distances.size(); ++i) near[i] = distances[i] <= limit;
+    std::vector<bool> near(residuals.size());
+    for (std::size_t i = 0; i < residuals.size(); ++i) near[i] = glm::length(residuals[i]) <= limit;
     return near;
 }
 
@@ -112,12 +136,22 @@ struct Quality {
     std::size_t points = 0;
 };
 
-Quality qualityOf(const std::vector<Sample>& samples, const std::vector<double>& distances, const std::vector<bool>& counts) {
+Quality qualityOf(const std::vector<Sample>& samples, const Residuals& residuals, const std::vector<bool>& counts) {
+    std::map<std::pair<int, int>, glm::dvec2> counted;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        if (counts[i]) counted[{samples[i].patch.x, samples[i].patch.y}] = residuals[i];
     Quality quality;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (!counts[i] || !samples[i].inside) continue;
-        quality.rms += distances[i] * distances[i];
-        quality.max = std::max(quality.max, distances[i]);
+        glm::dvec2 sum(0);
+        int count = 0;
+        for (int y = -1; y <= 1; ++y)
+            for (int x = -1; x <= 1; ++x)
+                if (const auto at = counted.find({samples[i].patch.x + x, samples[i].patch.y + y}); at != counted.end())
+                    sum += at->second, ++count;
+        const double off = glm::length(sum / double(count));
+        quality.rms += off * off;
+        quality.max = std::max(quality.max, off);
         ++quality.points;
     }
     quality.rms = std::sqrt(quality.rms / static_cast<double>(std::max<std::size_t>(1, quality.points)));
@@ -171,11 +205,11 @@ public:
         return mesh;
     }
 
-    std::vector<double> distancesTo(const WarpMesh& mesh) const {
-        std::vector<double> distances;
+    Residuals residualsOf(const WarpMesh& mesh) const {
+        Residuals residuals;
         for (const Sample& sample : samples_)
-            distances.push_back(glm::distance(keystone_(sample.onPicture) + mesh.offsetAt(sample.onPicture), sample.projector));
-        return distances;
+            residuals.push_back(keystone_(sample.onPicture) + mesh.offsetAt(sample.onPicture) - sample.projector);
+        return residuals;
     }
 
 private:
@@ -193,46 +227,99 @@ glm::ivec2 nodesFor(std::size_t points, glm::dvec2 size) {
     return glm::clamp(glm::ivec2(glm::round(wanted)) + 1, glm::ivec2(kFewestNodes), glm::ivec2(kMostNodes));
 }
 
-// The plane through a patch's known pixels by least squares; nothing where they are too few or too
-// far from it.
-std::optional<SharedPoint> pointOf(const ProjectorMap& map, glm::ivec2 corner, int side) {
-    const double middle = side / 2.0;
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
-    int known = 0;
-    const auto forKnown = [&](const auto& use) {
-        for (int y = 0; y < side; ++y)
-            for (int x = 0; x < side; ++x)
-                if (map.isKnown(corner.x + x, corner.y + y))
-                    use(Eigen::Vector3d(1, x + 0.5 - middle, y + 0.5 - middle), map.at.at(corner.x + x, corner.y + y));
-    };
-    forKnown([&](const Eigen::Vector3d& place, glm::vec2 at) {
-        normal += place * place.transpose();
-        right += place * Eigen::RowVector2d(at.x, at.y);
-        ++known;
-    });
-    if (known < kKnownShare * side * side) return std::nullopt;
-    const Eigen::Matrix<double, 3, 2> plane = normal.ldlt().solve(right);
-    const double step = std::max(kStep, kStepShare * side * std::sqrt(std::abs(plane.bottomRows<2>().determinant())));
-    bool near = true;
-    forKnown([&](const Eigen::Vector3d& place, glm::vec2 at) {
-        const Eigen::RowVector2d off = place.transpose() * plane - Eigen::RowVector2d(at.x, at.y);
-        near = near && off.norm() <= step;
-    });
-    if (!near) return std::nullopt;
-    return SharedPoint{glm::dvec2(corner) + middle, {plane(0, 0), plane(0, 1)}};
+// How the logarithm of the light changes, per camera pixel across and down; 0 at the light's edge.
+Image<glm::vec2> slopesOf(const GreyImage& light) {
+    Image<glm::vec2> slopes(light.width(), light.height(), glm::vec2(0));
+    const auto slope = [](float before, float after) { return before > 0 && after > 0 ? std::log(after / before) / 2 : 0; };
+    for (int y = 1; y + 1 < light.height(); ++y)
+        for (int x = 1; x + 1 < light.width(); ++x)
+            slopes.at(x, y) = {slope(light.at(x - 1, y), light.at(x + 1, y)), slope(light.at(x, y - 1), light.at(x, y + 1))};
+    return slopes;
 }
+
+// Square patches of a map, each with the plane through its known pixels by least squares.
+class Patches {
+public:
+    Patches(const ProjectorMap& map, int side) : map_(map), side_(side), slopes_(slopesOf(map.light)) {}
+
+    // The camera's blur, s^2 in camera pixels: how far pixels are from their patch's plane, against
+    // what the slopes of the light make of it.
+    double blur() const {
+        double product = 0, square = 0;
+        forEach([&](glm::ivec2 corner) {
+            const auto plane = planeOf(corner, 0);
+            if (!plane) return;
+            forKnown(corner, 0, [&](const Place& place, const Eigen::RowVector2d& at, glm::vec2 slope) {
+                const Eigen::RowVector2d off = at - place.transpose() * *plane;
+                if (off.norm() > kStep + kStepShare * side_) return;
+                const Eigen::RowVector2d drawn = Eigen::RowVector2d(slope.x, slope.y) * plane->bottomRows<2>();
+                product += off.dot(drawn), square += drawn.squaredNorm();
+            });
+        });
+        return square > 0 ? std::clamp(product / square, 0.0, kMostBlur) : 0;
+    }
+
+    std::vector<SharedPoint> points(double blur) const {
+        std::vector<SharedPoint> points;
+        forEach([&](glm::ivec2 corner) {
+            const auto plane = planeOf(corner, blur);
+            if (!plane) return;
+            const double step = std::max(kStep, kStepShare * side_ * std::sqrt(std::abs(plane->bottomRows<2>().determinant())));
+            bool near = true;
+            forKnown(corner, blur, [&](const Place& place, const Eigen::RowVector2d& at, glm::vec2) {
+                near = near && (at - place.transpose() * *plane).norm() <= step;
+            });
+            if (near) points.push_back({glm::dvec2(corner) + side_ / 2.0, {(*plane)(0, 0), (*plane)(0, 1)}, corner / side_});
+        });
+        return points;
+    }
+
+private:
+    using Place = Eigen::Vector3d;  // 1, then the place from the patch's middle, camera pixels
+    using Plane = Eigen::Matrix<double, 3, 2>;
+
+    template <class Use>
+    void forEach(const Use& use) const {
+        for (int y = 0; y + side_ <= map_.at.height(); y += side_)
+            for (int x = 0; x + side_ <= map_.at.width(); x += side_) use(glm::ivec2(x, y));
+    }
+    // What a pixel saw lies beside its middle by blur * slope.
+    template <class Use>
+    void forKnown(glm::ivec2 corner, double blur, const Use& use) const {
+        const double middle = side_ / 2.0;
+        for (int y = 0; y < side_; ++y)
+            for (int x = 0; x < side_; ++x) {
+                const glm::ivec2 pixel = corner + glm::ivec2(x, y);
+                if (!map_.isKnown(pixel.x, pixel.y)) continue;
+                const glm::vec2 at = map_.at.at(pixel.x, pixel.y), slope = slopes_.at(pixel.x, pixel.y);
+                use(Place(1, x + 0.5 - middle + blur * slope.x, y + 0.5 - middle + blur * slope.y),
+                    Eigen::RowVector2d(at.x, at.y), slope);
+            }
+    }
+    std::optional<Plane> planeOf(glm::ivec2 corner, double blur) const {
+        Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+        Plane right = Plane::Zero();
+        int known = 0;
+        forKnown(corner, blur, [&](const Place& place, const Eigen::RowVector2d& at, glm::vec2) {
+            normal += place * place.transpose();
+            right += place * at;
+            ++known;
+        });
+        if (known < kKnownShare * side_ * side_) return std::nullopt;
+        return Plane(normal.ldlt().solve(right));
+    }
+
+    const ProjectorMap& map_;
+    const int side_;
+    const Image<glm::vec2> slopes_;
+};
 
 }  // namespace
 
 std::vector<SharedPoint> sharedPoints(const ProjectorMap& map) {
-    const int side =
-        std::clamp(static_cast<int>(std::sqrt(static_cast<double>(map.lit) / kPatches)), kSmallestPatch, kLargestPatch);
-    std::vector<SharedPoint> points;
-    for (int y = 0; y + side <= map.at.height(); y += side)
-        for (int x = 0; x + side <= map.at.width(); x += side)
-            if (const auto point = pointOf(map, {x, y}, side)) points.push_back(*point);
-    return points;
+    const double side = std::sqrt(static_cast<double>(map.lit) / kPatches);
+    const Patches patches(map, std::clamp(static_cast<int>(side), kSmallestPatch, kLargestPatch));
+    return patches.points(patches.blur());
 }
 
 Result<WarpFit> fitWarp(const std::vector<SharedPoint>& points, const WantedPlace& wanted, const WarpShape& now) {
@@ -247,7 +334,8 @@ Result<WarpFit> fitWarp(const std::vector<SharedPoint>& points, const WantedPlac
     std::vector<Sample> samples;
     std::size_t inside = 0;
     for (const SharedPoint& point : points) {
-        Sample sample{warp.pictureFromCanvas()(canvasFromView(viewOf(wanted.camera, point.camera))), point.projector, false};
+        Sample sample{warp.pictureFromCanvas()(canvasFromView(viewOf(wanted.camera, point.camera))), point.projector, point.patch,
+                      false};
         const glm::dvec2 beyond = glm::max(-sample.onPicture, sample.onPicture - 1.0);
         sample.inside = std::max(beyond.x, beyond.y) <= 0;
         inside += sample.inside ? 1 : 0;
@@ -265,11 +353,11 @@ Result<WarpFit> fitWarp(const std::vector<SharedPoint>& points, const WantedPlac
     if (!fit.flat) counts.assign(samples.size(), true);
     std::optional<Homography> keystone = fittedHomography(samples, counts);
     for (int round = 0; keystone && round < kRounds; ++round) {
-        counts = withoutOutliers(distancesTo(*keystone, samples), counts);
+        counts = withoutOutliers(residualsOf(*keystone, samples), counts);
         keystone = fittedHomography(samples, counts);
     }
     if (!keystone) return Error("the points that projector and camera share lie on one line; turn the camera towards the wall");
-    Quality quality = qualityOf(samples, distancesTo(*keystone, samples), counts);
+    Quality quality = qualityOf(samples, residualsOf(*keystone, samples), counts);
     fit.keystoneRms = quality.rms, fit.keystoneMax = quality.max;
     for (std::size_t i = 0; i < 4; ++i) fit.shape.corners[i] = (*keystone)(rectangleCorners(1, 1)[i]);
     if (!fit.flat) {
@@ -278,9 +366,9 @@ Result<WarpFit> fitWarp(const std::vector<SharedPoint>& points, const WantedPlac
         counts.assign(samples.size(), true);
         for (int round = 0; round < kRounds; ++round) {
             fit.shape.mesh = mesh.over(counts);
-            counts = withoutOutliers(mesh.distancesTo(fit.shape.mesh), counts);
+            counts = withoutOutliers(mesh.residualsOf(fit.shape.mesh), counts);
         }
-        quality = qualityOf(samples, mesh.distancesTo(fit.shape.mesh), counts);
+        quality = qualityOf(samples, mesh.residualsOf(fit.shape.mesh), counts);
     }
     TRY(Warp::of(fit.shape));
     fit.rms = quality.rms, fit.max = quality.max, fit.points = quality.points;

@@ -18,11 +18,16 @@ namespace fantascope::vision {
 struct SharedPoint {
     glm::dvec2 camera{0.0};     // camera pixels
     glm::dvec2 projector{0.0};  // projector pixels
+    glm::ivec2 patch{0};        // its column and row among all patches
 };
 
 // The shared points of a map: the mean over square patches of camera pixels, some thousand for a
 // picture that fills the camera's. Averaging removes the noise of single pixels. Patches across a
 // step of the surface, or with few known pixels, are left out.
+//
+// A camera's blur lets a pixel see more of its brighter side. If the blur is a Gaussian h of
+// variance s^2, it sees on average what lies s^2 grad log(h * surface) beside its middle (Robbins
+// 1956). So s^2 is estimated from the points themselves, and taken out of them.
 std::vector<SharedPoint> sharedPoints(const ProjectorMap& map);
 
 // Where the picture is to stand, in the camera's picture.
