@@ -20,11 +20,12 @@ constexpr double kTurn = 2 * std::numbers::pi;
 // still names the right period.
 constexpr int kStripesOfPeriod = 2;
 // A period is at least so many camera pixels, and so many projector pixels.
-constexpr double kCameraPixelsOfPeriod = 10;
+constexpr double kCameraPixelsOfPeriod = 6;
 constexpr int kShortestPeriod = 16;
 // A pixel is lit if its full light stands out from the noise so many times, and is this share of
 // the brightest pixels'.
 constexpr double kLitNoise = 8, kLitShare = 0.03, kBrightShare = 0.98;
+constexpr float kSaturated = 0.999f;
 // A pair is undecided where its sum differs from that of the full pair by more: as a share of the
 // full light, and as a multiple of the noise.
 constexpr double kMovedShare = 0.2, kMovedNoise = 5;
@@ -171,12 +172,13 @@ void LightDecoder::takeFull(const GreyImage& picture, const GreyImage& complemen
     const auto bright = sorted.begin() + static_cast<std::ptrdiff_t>(kBrightShare * static_cast<double>(sorted.size() - 1));
     std::nth_element(sorted.begin(), bright, sorted.end());
     const double least = std::max(kLitNoise * noise_, kLitShare * *bright);
-    litCount_ = 0;
+    litCount_ = saturatedCount_ = 0;
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        lit_.pixels()[i] = lights[i] > least ? 1 : 0;
+        const bool isLit = lights[i] > least, isSaturated = full_.pixels()[i] >= kSaturated;
+        lit_.pixels()[i] = isLit && !isSaturated ? 1 : 0;
         litCount_ += lit_.pixels()[i];
+        saturatedCount_ += isLit && isSaturated ? 1 : 0;
     }
-    brightest_ = *std::max_element(full_.pixels().begin(), full_.pixels().end());
     for (Difference& difference : differences_) difference = {};
     differences_[0].decided = litCount_;
 }

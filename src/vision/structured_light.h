@@ -70,9 +70,10 @@ public:
     // `camera`: pixels of its picture.
     LightDecoder(StructuredLight light, glm::ivec2 camera);
 
-    // Takes the camera's pictures of a pair, linear light 0..1, `camera` pixels each. The full pair
-    // comes first, best several times: each pixel counts as it was most of the time. A pair that is
-    // taken again fills the pixels that it left undecided.
+    // Takes the camera's pictures of a pair, linear light, `camera` pixels each; 1 is a saturated
+    // pixel, which is not decoded. The full pair comes first, best several times: each pixel counts
+    // as it was most of the time. A pair that is taken again fills the pixels that it left
+    // undecided.
     void take(std::size_t pair, const GreyImage& picture, const GreyImage& complement);
     // The share of the lit pixels that a pair left undecided, 0..1; 1 if it was not taken.
     double undecided(std::size_t pair) const;
@@ -81,8 +82,8 @@ public:
     // How many times brighter a typical lit pixel's full light is than the noise; 0 if none is lit.
     double contrast() const;
     bool isLit(int x, int y) const { return lit_.at(x, y) != 0; }
-    // The brightest values of the full picture: 1 is a saturated camera.
-    double brightest() const { return brightest_; }
+    // Camera pixels that the projector's full light saturates.
+    std::size_t saturated() const { return saturatedCount_; }
 
     ProjectorMap map() const;
 
@@ -101,7 +102,8 @@ private:
     GreyImage full_, dark_;  // the pixels' medians
     Image<std::uint8_t> lit_;
     std::size_t litCount_ = 0;
-    double noise_ = 0, brightest_ = 0;
+    std::size_t saturatedCount_ = 0;
+    double noise_ = 0;
     std::vector<Difference> differences_;  // by pair
 };
 

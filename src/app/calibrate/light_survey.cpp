@@ -28,14 +28,14 @@ constexpr int kRounds = 4;
 // Another try has to leave less than this share of what the one before left.
 constexpr double kStubborn = 0.7;
 constexpr std::size_t kFewestLit = 400;  // camera pixels
-constexpr float kSaturated = 0.98f;
 constexpr double kSaturatedShare = 0.2;
 // The contrast at which one frame a picture is enough, and the most frames.
 constexpr double kClearContrast = 25;
 constexpr int kMostFrames = 4;
 constexpr double kSmallestGamma = 1, kLargestGamma = 4;
 
-// The mean of a stored picture's channels as linear light.
+// Adds the mean of a stored picture's channels as linear light; 1 where a channel is saturated,
+// because then the mean says nothing.
 void addLight(const RgbaImage& stored, GreyImage& sum) {
     static const std::array<float, 256> linear = [] {
         std::array<float, 256> values{};
@@ -44,7 +44,8 @@ void addLight(const RgbaImage& stored, GreyImage& sum) {
     }();
     for (std::size_t i = 0; i < sum.pixels().size(); ++i) {
         const Rgba8& pixel = stored.pixels()[i];
-        sum.pixels()[i] += linear[pixel.r] + linear[pixel.g] + linear[pixel.b];
+        const bool saturated = std::max({pixel.r, pixel.g, pixel.b}) == 255;
+        sum.pixels()[i] += saturated ? 1 : linear[pixel.r] + linear[pixel.g] + linear[pixel.b];
     }
 }
 
@@ -76,16 +77,13 @@ double meanOver(const std::vector<std::size_t>& pixels, const GreyImage& light) 
 }
 
 // Error: the camera sees too little of the output's light, or too much.
-Result<void> canBeMeasured(const LightDecoder& sight, const GreyImage& full) {
+Result<void> canBeMeasured(const LightDecoder& sight) {
+    if (static_cast<double>(sight.saturated()) > kSaturatedShare * static_cast<double>(sight.lit() + sight.saturated()))
+        return Error("the camera is saturated by its light; lower the camera's exposure or gain");
     if (sight.lit() < kFewestLit)
         return Error(fmt::format(
             "the camera sees its light on {} pixels, {} are needed; turn the camera or the projector, or raise the exposure",
             sight.lit(), kFewestLit));
-    std::size_t saturated = 0;
-    for (int y = 0; y < full.height(); ++y)
-        for (int x = 0; x < full.width(); ++x) saturated += sight.isLit(x, y) && full.at(x, y) > kSaturated ? 1 : 0;
-    if (static_cast<double>(saturated) > kSaturatedShare * static_cast<double>(sight.lit()))
-        return Error("the camera is saturated by its light; lower the camera's exposure or gain");
     return {};
 }
 
@@ -235,8 +233,13 @@ Result<double> LightSurvey::measureGamma(std::size_t output, const LightDecoder&
     std::vector<std::size_t> pixels;
     for (std::size_t i = 0; i < full.light.pixels().size(); ++i) {
         const int width = full.light.width(), x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
-        if (decoder.isLit(x, y) && full.light.pixels()[i] < kSaturated) pixels.push_back(i);
+        if (decoder.isLit(x, y)) pixels.push_back(i);
     }
+    // The brightest quarter: in dark pixels the noise is cut off at zero, and greys look darker.
+    const auto quarter = pixels.begin() + static_cast<std::ptrdiff_t>(pixels.size() / 4);
+    std::ranges::nth_element(pixels, quarter,
+                             [&](std::size_t a, std::size_t b) { return full.light.pixels()[a] > full.light.pixels()[b]; });
+    pixels.erase(quarter, pixels.end());
     Pictures greys;
     for (int grey = 1; grey < kGreys; ++grey) greys.push_back(plain(site_.outputs[output].size(), double(grey) / kGreys));
     const std::vector<Taken> taken = TRY(take(output, greys, 1));
@@ -302,7 +305,7 @@ Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
     const LightDecoder sight = decoderOf(2);
     if (full.frames == 0 || dark.frames == 0)
         return Error("the camera missed too many pictures; close other programs that use it");
-    TRY(canBeMeasured(sight, full.light));
+    TRY(canBeMeasured(sight));
 
     share_ = 0.15, doing_ = "measuring its greys";
     Output found;
