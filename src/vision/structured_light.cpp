@@ -187,10 +187,16 @@ double LightDecoder::undecided(std::size_t pair) const {
     return litCount_ == 0 ? 1 : 1 - static_cast<double>(differences_.at(pair).decided) / static_cast<double>(litCount_);
 }
 
+std::vector<std::size_t> LightDecoder::litPixels() const {
+    std::vector<std::size_t> pixels;
+    for (std::size_t i = 0; i < lit_.pixels().size(); ++i)
+        if (lit_.pixels()[i] != 0) pixels.push_back(i);
+    return pixels;
+}
+
 double LightDecoder::contrast() const {
     std::vector<float> lights;
-    for (std::size_t i = 0; i < lit_.pixels().size(); ++i)
-        if (lit_.pixels()[i] != 0) lights.push_back(full_.pixels()[i] - dark_.pixels()[i]);
+    for (const std::size_t i : litPixels()) lights.push_back(full_.pixels()[i] - dark_.pixels()[i]);
     if (lights.empty()) return 0;
     return noise_ > 0 ? median(lights) / noise_ : std::numeric_limits<double>::infinity();
 }

@@ -81,7 +81,11 @@ public:
     std::size_t lit() const { return litCount_; }
     // How many times brighter a typical lit pixel's full light is than the noise; 0 if none is lit.
     double contrast() const;
-    bool isLit(int x, int y) const { return lit_.at(x, y) != 0; }
+    // Their indices, row by row.
+    std::vector<std::size_t> litPixels() const;
+    // The pixels' usual light under the full and the dark picture.
+    const GreyImage& full() const { return full_; }
+    const GreyImage& dark() const { return dark_; }
     // Camera pixels that the projector's full light saturates.
     std::size_t saturated() const { return saturatedCount_; }
 

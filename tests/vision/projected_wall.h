@@ -25,6 +25,7 @@ struct ProjectedWall {
     double gamma = 2.2;        // the projector's
     double black = 0.0005;     // the light of its black, as a share of white
     double noise = 2 / 255.0;  // standard deviation of stored values
+    double blur = 0;           // of the camera's lens: standard deviation, camera pixels
     double strength = 0.8;     // linear light of a white wall under full light, where it is brightest
 
     // Where a ray meets the surface.
@@ -52,6 +53,7 @@ struct ProjectedWall {
             if (sample.lit) light += strength * (black + (1 - black) * valueAt(shown, sample.projector));
             picture.at(sample.pixel.x, sample.pixel.y) += static_cast<float>(sample.reflectance * light / (kSide * kSide));
         }
+        if (blur > 0) picture = blurred(picture, blur);
         for (float& value : picture.pixels()) {
             const double stored = srgbFromLinear(std::min(1.0f, value)) + noise * rng.normal();
             value = linearFromSrgb(static_cast<float>(std::round(255 * std::clamp(stored, 0.0, 1.0)) / 255));

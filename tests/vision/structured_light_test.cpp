@@ -126,6 +126,20 @@ TEST(LightDecoder, a_pair_with_somebody_in_it_is_filled_by_another) {
     EXPECT_GT(decoder.map().known, before + 1000);
 }
 
+// Half of the wall is too bright for the camera. Example failure: it is decoded, wrongly.
+TEST(LightDecoder, leaves_saturated_pixels_out) {
+    ProjectedWall wall = slantedWall();
+    wall.reflectance = [](double x, double) { return x < 0 ? 0.3 : 1.5; };
+    Rng rng(6);
+    const StructuredLight light(wall.projector.size, 32);
+    const LightDecoder decoder = decoded(wall, light, rng);
+    EXPECT_GT(decoder.saturated(), 10000u);
+    EXPECT_GT(decoder.lit(), 10000u);
+    const Errors errors = errorsOf(decoder.map(), wall);
+    EXPECT_GT(errors.known, 10000u);
+    EXPECT_LT(errors.rms, 1.5);
+}
+
 TEST(LightDecoder, says_that_nothing_is_lit) {
     ProjectedWall wall = slantedWall();
     wall.strength = 0;

@@ -81,6 +81,22 @@ TEST(WarpFit, puts_the_canvas_on_a_flat_wall_of_bricks_by_a_keystone) {
     EXPECT_LT(max, 0.2);
 }
 
+// Behind a lens that blurs, a pixel sees more of the brighter brick beside it. Example failure: the
+// wall counts as uneven, and its bricks bend the picture.
+TEST(WarpFit, takes_a_blurred_wall_of_bricks_for_a_flat_one) {
+    ProjectedWall wall = slantedWall();
+    wall.reflectance = bricks;
+    wall.blur = 1.1;
+    Rng rng(6);
+    const WantedPlace wanted = rectangleOnTheWall(wall, {-1.2, 0.8}, {1.3, 2.2});
+    const auto fit = fitWarp(sharedPoints(mapOf(wall, rng)), wanted, wholeCanvas(wall.projector.size));
+    ASSERT_TRUE(fit) << fit.error().message();
+    EXPECT_TRUE(fit->flat);
+    const auto [rms, max] = errorsOf(*fit, wanted, wall);
+    EXPECT_LT(rms, 0.1);
+    EXPECT_LT(max, 0.3);
+}
+
 // A part of the canvas, upside down: its corners are those of the turned picture.
 TEST(WarpFit, keeps_the_part_and_the_turn_of_the_output) {
     ProjectedWall wall = slantedWall();

@@ -32,7 +32,8 @@ constexpr double kSaturatedShare = 0.2;
 // The contrast at which one frame a picture is enough, and the most frames.
 constexpr double kClearContrast = 25;
 constexpr int kMostFrames = 4;
-constexpr double kSmallestGamma = 1, kLargestGamma = 4;
+constexpr double kSmallestGamma = 1, kLargestGamma = 4, kUsualGamma = 2.2;
+constexpr double kDimmestGrey = 0.01;  // of the full light
 
 // Adds the mean of a stored picture's channels as linear light; 1 where a channel is saturated,
 // because then the mean says nothing.
@@ -229,31 +230,32 @@ Result<std::vector<LightSurvey::Taken>> LightSurvey::take(std::size_t output, co
 }
 
 // The exponent with which the light of greys follows their stored values best.
-Result<double> LightSurvey::measureGamma(std::size_t output, const LightDecoder& decoder, const Taken& full, const Taken& dark) {
-    std::vector<std::size_t> pixels;
-    for (std::size_t i = 0; i < full.light.pixels().size(); ++i) {
-        const int width = full.light.width(), x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
-        if (decoder.isLit(x, y)) pixels.push_back(i);
-    }
+Result<double> LightSurvey::measureGamma(std::size_t output, const LightDecoder& decoder) {
+    const auto full = decoder.full().pixels(), dark = decoder.dark().pixels();
+    std::vector<std::size_t> pixels = decoder.litPixels();
     // The brightest quarter: in dark pixels the noise is cut off at zero, and greys look darker.
     const auto quarter = pixels.begin() + static_cast<std::ptrdiff_t>(pixels.size() / 4);
-    std::ranges::nth_element(pixels, quarter,
-                             [&](std::size_t a, std::size_t b) { return full.light.pixels()[a] > full.light.pixels()[b]; });
-    pixels.erase(quarter, pixels.end());
+    std::ranges::nth_element(pixels, quarter, [&](std::size_t a, std::size_t b) { return full[a] > full[b]; });
+    pixels.erase(quarter + 1, pixels.end());
     Pictures greys;
     for (int grey = 1; grey < kGreys; ++grey) greys.push_back(plain(site_.outputs[output].size(), double(grey) / kGreys));
     const std::vector<Taken> taken = TRY(take(output, greys, 1));
-    const double unlit = meanOver(pixels, dark.light), lit = meanOver(pixels, full.light);
-    // Least squares of the logarithms, weighted by the light: dark greys are mostly noise.
+    // Least squares of the logarithms, weighted by the light: dark greys are mostly noise. The
+    // median of the pixels does not mind somebody before some of them.
     double product = 0, square = 0;
     for (std::size_t i = 0; i < taken.size(); ++i) {
-        const double light = (meanOver(pixels, taken[i].light) - unlit) / (lit - unlit);
-        if (taken[i].frames == 0 || light < 0.01) continue;
+        if (taken[i].frames == 0) continue;
+        std::vector<double> lights;
+        for (const std::size_t pixel : pixels)
+            lights.push_back((taken[i].light.pixels()[pixel] - dark[pixel]) / (full[pixel] - dark[pixel]));
+        const auto middle = lights.begin() + static_cast<std::ptrdiff_t>(lights.size() / 2);
+        std::ranges::nth_element(lights, middle);
+        if (*middle < kDimmestGrey) continue;
         const double stored = std::log((static_cast<double>(i) + 1) / kGreys);
-        product += light * light * stored * std::log(light);
-        square += light * light * stored * stored;
+        product += *middle * *middle * stored * std::log(*middle);
+        square += *middle * *middle * stored * stored;
     }
-    return std::clamp(square > 0 ? product / square : 2.2, kSmallestGamma, kLargestGamma);
+    return std::clamp(square > 0 ? product / square : kUsualGamma, kSmallestGamma, kLargestGamma);
 }
 
 // Shows all pairs but the full one, and those again that were disturbed. Returns how many pictures
@@ -301,20 +303,16 @@ Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
             if (seen[i].frames > 0 && seen[i + 1].frames > 0) decoder.take(0, seen[i].light, seen[i + 1].light);
         return decoder;
     };
-    const Taken &full = seen[seen.size() - 2], &dark = seen.back();
     const LightDecoder sight = decoderOf(2);
-    if (full.frames == 0 || dark.frames == 0)
-        return Error("the camera missed too many pictures; close other programs that use it");
     TRY(canBeMeasured(sight));
 
     share_ = 0.15, doing_ = "measuring its greys";
     Output found;
-    found.gamma = TRY(measureGamma(output, sight, full, dark));
+    found.gamma = TRY(measureGamma(output, sight));
     const StructuredLight light(projector, StructuredLight::periodFor(projector, static_cast<double>(sight.lit())));
     LightDecoder decoder = decoderOf(light.period());
     found.repeated = TRY(decode(output, light, found.gamma, decoder));
     found.map = decoder.map();
-    found.full = full.light;
     return found;
 }
 

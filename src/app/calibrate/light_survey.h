@@ -31,7 +31,6 @@ public:
     // What one output's survey found.
     struct Output {
         vision::ProjectorMap map;
-        GreyImage full;      // the camera's picture under full light, linear
         double gamma = 2.2;  // of the projector: light = stored ^ gamma
         int repeated = 0;    // pictures that were shown again because something moved
     };
@@ -60,7 +59,7 @@ private:
     // missed has no frames.
     Result<std::vector<Taken>> take(std::size_t output, const Pictures& pictures, int frames);
     Result<int> decode(std::size_t output, const vision::StructuredLight& light, double gamma, vision::LightDecoder& decoder);
-    Result<double> measureGamma(std::size_t output, const vision::LightDecoder& decoder, const Taken& full, const Taken& dark);
+    Result<double> measureGamma(std::size_t output, const vision::LightDecoder& decoder);
 
     CalibrationRig& rig_;
     const show::Site& site_;
