@@ -9,31 +9,28 @@
 namespace fantascope::vision {
 namespace {
 
-constexpr int kSamples = 17;  // along an edge of a part
-constexpr int kCentres = 24;  // tried across and down, then around the best, finer each time
-constexpr int kRefinements = 4;
-constexpr int kHalvings = 12;
-constexpr int kCell = 2;  // camera pixels; a cell is lit if half of its pixels are known
-constexpr double kKnownShare = 0.5;
+constexpr int kSamples = 17;                  // along an edge of a part
+constexpr int kCentres = 192, kHeights = 64;  // tried over the longer side of what is lit, and over its height
+constexpr int kRefinements = 6, kAround = 9, kHalvings = 8;
+constexpr int kCell = 2;        // camera pixels
+constexpr double kHoles = 1.5;  // cells; a blur in which small holes vanish and straight edges stay
+constexpr float kKnownShare = 0.5f;
 
-// A map's known pixels in cells, so that single unknown pixels do not count; without the cells at
-// the light's edge, where a place would lose its own edge.
+// What is lit, in cells: those around which most pixels are known, so that small holes do not
+// count. Without the cells at the light's edge, where a place would lose its own edge.
 Image<std::uint8_t> litCells(const ProjectorMap& map) {
-    Image<std::uint8_t> cells((map.at.width() + kCell - 1) / kCell, (map.at.height() + kCell - 1) / kCell);
-    for (int row = 0; row < cells.height(); ++row)
-        for (int column = 0; column < cells.width(); ++column) {
-            int known = 0, all = 0;
-            for (int y = row * kCell; y < std::min(map.at.height(), (row + 1) * kCell); ++y)
-                for (int x = column * kCell; x < std::min(map.at.width(), (column + 1) * kCell); ++x, ++all)
-                    known += map.isKnown(x, y) ? 1 : 0;
-            cells.at(column, row) = known >= kKnownShare * all ? 1 : 0;
-        }
-    Image<std::uint8_t> inner(cells.width(), cells.height());
-    for (int row = 1; row + 1 < cells.height(); ++row)
-        for (int column = 1; column + 1 < cells.width(); ++column)
-            inner.at(column, row) = cells.at(column, row) & cells.at(column - 1, row) & cells.at(column + 1, row) &
-                                    cells.at(column, row - 1) & cells.at(column, row + 1);
-    return inner;
+    const int columns = (map.at.width() + kCell - 1) / kCell, rows = (map.at.height() + kCell - 1) / kCell;
+    GreyImage known(columns, rows);
+    for (int y = 0; y < map.at.height(); ++y)
+        for (int x = 0; x < map.at.width(); ++x) known.at(x / kCell, y / kCell) += map.isKnown(x, y) ? 1.0f / (kCell * kCell) : 0;
+    known = blurred(known, kHoles);
+    const auto isLit = [&](int column, int row) { return known.at(column, row) > kKnownShare; };
+    Image<std::uint8_t> cells(columns, rows);
+    for (int row = 1; row + 1 < rows; ++row)
+        for (int column = 1; column + 1 < columns; ++column)
+            cells.at(column, row) = isLit(column, row) && isLit(column - 1, row) && isLit(column + 1, row) &&
+                                    isLit(column, row - 1) && isLit(column, row + 1);
+    return cells;
 }
 
 class Search {
@@ -54,19 +51,23 @@ public:
 
     std::optional<std::array<glm::dvec2, 4>> best() const {
         if (!(low_.x < high_.x && low_.y < high_.y)) return std::nullopt;
-        glm::dvec2 low = low_, high = high_, centre = (low + high) / 2.0;
-        double height = 0;
-        for (int round = 0; round <= kRefinements; ++round) {
-            for (int i = 0; i < kCentres * kCentres; ++i) {
-                const glm::dvec2 at = low + (high - low) * (glm::dvec2(i % kCentres, i / kCentres) + 0.5) / double(kCentres);
-                if (const double here = highestAt(at, height); here > height) height = here, centre = at;
+        // From the largest height down, everywhere: the parts of several outputs may fit at a few
+        // places only. Then around the first place that fits, finer each time.
+        const double side = std::max(high_.x - low_.x, high_.y - low_.y) / kCentres, step = (high_.y - low_.y) / kHeights;
+        std::optional<glm::dvec2> centre;
+        double height = high_.y - low_.y;
+        for (; height > 0 && !(centre = placeFor(height, side)); height -= step) continue;
+        if (!centre) return std::nullopt;
+        glm::dvec2 reach(side);
+        for (int round = 0; round < kRefinements; ++round, reach /= 2.0) {
+            const glm::dvec2 middle = *centre;
+            for (int i = 0; i < kAround * kAround; ++i) {
+                const glm::dvec2 at = middle + reach * (2.0 * glm::dvec2(i % kAround, i / kAround) / double(kAround - 1) - 1.0);
+                if (const double here = highestAt(at, height, step); here > height) height = here, centre = at;
             }
-            const glm::dvec2 step = (high - low) / double(kCentres);
-            low = centre - step, high = centre + step;
         }
-        if (height <= 0) return std::nullopt;
         std::array<glm::dvec2, 4> corners;
-        for (std::size_t i = 0; i < 4; ++i) corners[i] = *pixelOf(placed(rectangleCorners(1, 1)[i], centre, height));
+        for (std::size_t i = 0; i < 4; ++i) corners[i] = *pixelOf(placed(rectangleCorners(1, 1)[i], *centre, height));
         return corners;
     }
 
@@ -98,9 +99,18 @@ private:
             }
         return true;
     }
-    double highestAt(glm::dvec2 centre, double atLeast) const {
-        double low = atLeast, high = high_.y - low_.y;
-        if (low >= high || (low > 0 && !fits(centre, low))) return 0;
+    // A centre where this height fits, of a lattice with cells of this side.
+    std::optional<glm::dvec2> placeFor(double height, double side) const {
+        for (double y = low_.y + side / 2; y < high_.y; y += side)
+            for (double x = low_.x + side / 2; x < high_.x; x += side)
+                if (fits({x, y}, height)) return glm::dvec2(x, y);
+        return std::nullopt;
+    }
+    // The largest height that fits here, up to a step above one that is known somewhere; 0: not
+    // even that one fits.
+    double highestAt(glm::dvec2 centre, double height, double step) const {
+        if (!fits(centre, height)) return 0;
+        double low = height, high = height + step;
         for (int i = 0; i < kHalvings; ++i) {
             const double middle = (low + high) / 2;
             (fits(centre, middle) ? low : high) = middle;
