@@ -227,8 +227,7 @@ float LightDecoder::position(StructuredLight::Axis axis, int x, int y) const {
 }
 
 ProjectorMap LightDecoder::map() const {
-    ProjectorMap map{light_.projector(), Image<glm::vec2>(camera_.x, camera_.y, glm::vec2(kUnknown)),
-                     GreyImage(camera_.x, camera_.y), litCount_, 0};
+    ProjectorMap map{Image<glm::vec2>(camera_.x, camera_.y, glm::vec2(kUnknown)), GreyImage(camera_.x, camera_.y), litCount_, 0};
     for (std::size_t i = 0; i < lit_.pixels().size(); ++i)
         if (lit_.pixels()[i] != 0) map.light.pixels()[i] = full_.pixels()[i] - dark_.pixels()[i];
     for (int y = 0; y < camera_.y; ++y)

@@ -55,7 +55,6 @@ private:
 
 // Which projector pixel lights each pixel of the camera's picture.
 struct ProjectorMap {
-    glm::ivec2 projector{0};         // the projector's pixels
     Image<glm::vec2> at;             // by camera pixel: projector pixels from the top left; NaN: unknown
     GreyImage light;                 // how bright the projector's full light is there, linear; 0: not lit
     std::size_t lit = 0, known = 0;  // camera pixels that the projector lights, and those that are known
@@ -77,12 +76,12 @@ public:
     void take(std::size_t pair, const GreyImage& picture, const GreyImage& complement);
     // The share of the lit pixels that a pair left undecided, 0..1; 1 if it was not taken.
     double undecided(std::size_t pair) const;
-    // Camera pixels that the projector lights; 0 before the full pair.
+    // How many camera pixels the projector lights; 0 before the full pair.
     std::size_t lit() const { return litCount_; }
+    // The indices of these pixels, row by row.
+    std::vector<std::size_t> litPixels() const;
     // How many times brighter a typical lit pixel's full light is than the noise; 0 if none is lit.
     double contrast() const;
-    // Their indices, row by row.
-    std::vector<std::size_t> litPixels() const;
     // The pixels' usual light under the full and the dark picture.
     const GreyImage& full() const { return full_; }
     const GreyImage& dark() const { return dark_; }

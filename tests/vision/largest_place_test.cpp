@@ -15,7 +15,7 @@ CameraModel camera() {
 
 ProjectorMap lit(glm::dvec2 low, glm::dvec2 high) {
     const CameraModel eye = camera();
-    ProjectorMap map{{640, 360}, Image<glm::vec2>(320, 240, glm::vec2(std::nanf(""))), {}, 0, 0};
+    ProjectorMap map{Image<glm::vec2>(320, 240, glm::vec2(std::nanf(""))), {}, 0, 0};
     for (int y = 0; y < 240; ++y)
         for (int x = 0; x < 320; ++x) {
             const auto wall = Plane{}.hitBy(eye.rayThrough({x + 0.5, y + 0.5}));

@@ -47,7 +47,7 @@ Result<std::unique_ptr<CalibrationRig>> CalibrationRig::open(const show::Site& s
 }
 
 CalibrationRig::CalibrationRig(const show::Site& site, const Options& options)
-    : site_(site), used_(options.simulate ? site : withoutLights(site)) {
+    : used_(options.simulate ? site : withoutLights(site)) {
     clock_ = options.simulate ? static_cast<Clock*>(&stepped_) : &steady_;
 }
 

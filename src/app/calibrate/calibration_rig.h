@@ -33,7 +33,7 @@ public:
         std::uint64_t seed = 1;  // of the simulated site's noise
         std::filesystem::path assets;
     };
-    // Opens the displays and the camera; every output is dark. `site` outlives the rig. Error:
+    // Opens the displays and the camera; every output is dark. Error:
     // another program has one of them; there is no camera; a display cannot draw.
     static Result<std::unique_ptr<CalibrationRig>> open(const show::Site& site, const Options& options,
                                                         const Interrupt& interrupt);
@@ -58,7 +58,6 @@ private:
     CalibrationRig(const show::Site& site, const Options& options);
     Result<void> begin(const Options& options, const Interrupt& interrupt);
 
-    const show::Site& site_;
     show::Site used_;  // what is opened: without fixtures and relays, if they are real
     SteadyClock steady_;
     SteppedClock stepped_;

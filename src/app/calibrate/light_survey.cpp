@@ -21,12 +21,13 @@ constexpr int kFirstFrames = 12;
 constexpr Time kLongestDelay = std::chrono::milliseconds(800);
 constexpr int kEdges = 5;
 constexpr int kFulls = 3;
-constexpr int kGreys = 8;
+constexpr std::size_t kGreys = 8;
 // A pair is shown again while it leaves more of the lit pixels undecided, so many times at most.
 constexpr double kUndecided = 0.005;
 constexpr int kRounds = 4;
 // Another try has to leave less than this share of what the one before left.
 constexpr double kStubborn = 0.7;
+constexpr int kSmallestSide = 32;        // of an output, projector pixels
 constexpr std::size_t kFewestLit = 400;  // camera pixels
 constexpr double kSaturatedShare = 0.2;
 // The contrast at which one frame a picture is enough, and the most frames.
@@ -95,10 +96,17 @@ const Error& ended() {
 
 }  // namespace
 
-Result<void> LightSurvey::stepUntil(Time until, const std::function<void(const CalibrationRig::Seen&)>& use) {
+void LightSurvey::step(const Use& use) {
+    const auto seen = rig_.step();
+    if (!seen) return;
+    const RgbaImage& image = seen->frame->image;
+    if (glm::ivec2(image.width(), image.height()) == site_.nominalCamera->size) use(*seen);
+}
+
+Result<void> LightSurvey::stepUntil(Time until, const Use& use) {
     while (rig_.now() < until) {
         if (!hooks_.goesOn()) return ended();
-        if (const auto seen = rig_.step()) use(*seen);
+        step(use);
     }
     return {};
 }
@@ -154,10 +162,10 @@ Result<bool> LightSurvey::measureDelay(std::size_t output) {
     for (int edge = 0; edge < kEdges; ++edge) {
         const bool lights = edge % 2 == 0;
         rig_.show(output, lights ? white : nullptr);
-        if (const auto seen = rig_.step(); !seen && !hooks_.goesOn()) return ended();
-        const Time shown = rig_.now();
         std::optional<Time> before;
         bool found = false;
+        step([&](const CalibrationRig::Seen& seen) { before = seen.frame->exposed; });
+        const Time shown = rig_.now();
         // Each change at another moment of the camera's period.
         TRY(stepUntil(shown + kLongestDelay + period_ * edge / kEdges, [&](const CalibrationRig::Seen& seen) {
             if (found) return;
@@ -196,34 +204,35 @@ Result<void> LightSurvey::begin(const std::vector<std::size_t>& outputs) {
     return Error("the camera sees no light of the outputs; turn it towards the picture, open its lens, or raise its exposure");
 }
 
-Result<std::vector<LightSurvey::Taken>> LightSurvey::take(std::size_t output, const Pictures& pictures, int frames) {
-    std::vector<Taken> taken(pictures.size());
+Result<std::vector<LightSurvey::Taken>> LightSurvey::take(std::size_t output, std::size_t count,
+                                                          const std::function<Picture(std::size_t)>& picture, int frames) {
+    std::vector<Taken> taken(count);
     PictureSchedule schedule(delay_, period_);
     const auto use = [&](const CalibrationRig::Seen& seen) {
-        const auto picture = schedule.pictureOf(seen.frame->exposed);
-        if (!picture || *picture < 0) return;
-        Taken& one = taken[static_cast<std::size_t>(*picture)];
+        const auto shown = schedule.pictureOf(seen.frame->exposed);
+        if (!shown || *shown < 0) return;
+        Taken& one = taken[static_cast<std::size_t>(*shown)];
         const RgbaImage& image = seen.frame->image;
         if (one.light.empty()) one.light = GreyImage(image.width(), image.height());
         addLight(image, one.light);
         ++one.frames;
     };
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-        rig_.show(output, pictures[i]);
-        if (const auto seen = rig_.step()) use(*seen);
+    for (std::size_t i = 0; i < count; ++i) {
+        rig_.show(output, picture(i));
+        step(use);
         schedule.show(static_cast<std::int64_t>(i), rig_.now());
         TRY(stepUntil(rig_.now() + schedule.dwell(frames), use));
-        hooks_.tell(done_ + share_ * static_cast<double>(i + 1) / static_cast<double>(pictures.size()), doing_);
+        hooks_.tell(done_ + share_ * static_cast<double>(i + 1) / static_cast<double>(count), doing_);
     }
     rig_.show(output, nullptr);
-    if (const auto seen = rig_.step()) use(*seen);
+    step(use);
     schedule.show(-1, rig_.now());
     TRY(stepUntil(rig_.now() + delay_.latest + arrival_ + 2 * period_, use));
     for (Taken& one : taken)
         for (float& value : one.light.pixels()) value /= static_cast<float>(one.frames);
     if (std::ranges::all_of(taken, [](const Taken& one) { return one.frames == 0; })) {
         const std::string trouble = rig_.cameraTrouble();
-        return Error("the camera gave no pictures" + (trouble.empty() ? "; look at its cable" : ": " + trouble));
+        return Error("the camera gave no pictures of its size" + (trouble.empty() ? "; look at its cable" : ": " + trouble));
     }
     done_ += share_;
     return taken;
@@ -237,9 +246,8 @@ Result<double> LightSurvey::measureGamma(std::size_t output, const LightDecoder&
     const auto quarter = pixels.begin() + static_cast<std::ptrdiff_t>(pixels.size() / 4);
     std::ranges::nth_element(pixels, quarter, [&](std::size_t a, std::size_t b) { return full[a] > full[b]; });
     pixels.erase(quarter + 1, pixels.end());
-    Pictures greys;
-    for (int grey = 1; grey < kGreys; ++grey) greys.push_back(plain(site_.outputs[output].size(), double(grey) / kGreys));
-    const std::vector<Taken> taken = TRY(take(output, greys, 1));
+    const auto grey = [&](std::size_t i) { return plain(site_.outputs[output].size(), static_cast<double>(i + 1) / kGreys); };
+    const std::vector<Taken> taken = TRY(take(output, kGreys - 1, grey, 1));
     // Least squares of the logarithms, weighted by the light: dark greys are mostly noise. The
     // median of the pixels does not mind somebody before some of them.
     double product = 0, square = 0;
@@ -267,12 +275,11 @@ Result<int> LightSurvey::decode(std::size_t output, const StructuredLight& light
     std::iota(due.begin(), due.end(), std::size_t{1});
     for (int round = 0; round < kRounds && !due.empty(); ++round) {
         share_ = round == 0 ? 0.7 : (1 - done_) / 2, doing_ = round == 0 ? "structured light" : "repeating what was disturbed";
-        Pictures pictures;
-        for (const std::size_t pair : due)
-            for (const bool complement : {false, true})
-                pictures.push_back(std::make_shared<const RgbaImage>(light.picture(pair, complement, gamma)));
-        if (round > 0) repeated += static_cast<int>(pictures.size());
-        const std::vector<Taken> taken = TRY(take(output, pictures, frames));
+        const auto picture = [&](std::size_t i) {
+            return std::make_shared<const RgbaImage>(light.picture(due[i / 2], i % 2 == 1, gamma));
+        };
+        if (round > 0) repeated += static_cast<int>(2 * due.size());
+        const std::vector<Taken> taken = TRY(take(output, 2 * due.size(), picture, frames));
         std::vector<std::size_t> again;
         for (std::size_t i = 0; i < due.size(); ++i) {
             const double before = decoder.undecided(due[i]);
@@ -292,11 +299,12 @@ Result<int> LightSurvey::decode(std::size_t output, const StructuredLight& light
 Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
     if (const std::string trouble = rig_.outputTrouble(output); !trouble.empty()) return Error(trouble);
     const glm::ivec2 projector = site_.outputs[output].size(), camera = site_.nominalCamera->size;
+    if (std::min(projector.x, projector.y) < kSmallestSide)
+        return Error(fmt::format("its picture of {} x {} pixels is too small to measure; each side needs at least {}",
+                                 projector.x, projector.y, kSmallestSide));
     done_ = 0, share_ = 0.1, doing_ = "looking for its light";
-    const auto white = plain(projector, 1), black = plain(projector, 0);
-    Pictures flashes;
-    for (int i = 0; i < kFulls; ++i) flashes.insert(flashes.end(), {white, black});
-    const std::vector<Taken> seen = TRY(take(output, flashes, 1));
+    const auto whiteOrBlack = [&](std::size_t i) { return plain(projector, i % 2 == 0 ? 1 : 0); };
+    const std::vector<Taken> seen = TRY(take(output, 2 * kFulls, whiteOrBlack, 1));
     const auto decoderOf = [&](int period) {
         LightDecoder decoder(StructuredLight(projector, period), camera);
         for (std::size_t i = 0; i < seen.size(); i += 2)

@@ -49,15 +49,19 @@ private:
         GreyImage light;
         int frames = 0;
     };
-    using Pictures = std::vector<std::shared_ptr<const RgbaImage>>;
+    using Picture = std::shared_ptr<const RgbaImage>;
+    using Use = std::function<void(const CalibrationRig::Seen&)>;
 
     Result<void> awaitCamera();
     Result<bool> measureDelay(std::size_t output);
-    // Steps until `until`, and calls `use` with each frame.
-    Result<void> stepUntil(Time until, const std::function<void(const CalibrationRig::Seen&)>& use);
-    // Shows the pictures one after the other for `frames` camera frames each; a picture that was
-    // missed has no frames.
-    Result<std::vector<Taken>> take(std::size_t output, const Pictures& pictures, int frames);
+    // Shows one refresh, and calls `use` with the frame that came, unless it has another size than
+    // the site file says.
+    void step(const Use& use);
+    Result<void> stepUntil(Time until, const Use& use);
+    // Shows `count` pictures one after the other for `frames` camera frames each; a picture that
+    // was missed has no frames. `picture` makes each when it is due.
+    Result<std::vector<Taken>> take(std::size_t output, std::size_t count, const std::function<Picture(std::size_t)>& picture,
+                                    int frames);
     Result<int> decode(std::size_t output, const vision::StructuredLight& light, double gamma, vision::LightDecoder& decoder);
     Result<double> measureGamma(std::size_t output, const vision::LightDecoder& decoder);
 

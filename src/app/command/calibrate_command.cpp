@@ -41,12 +41,17 @@ void declare(Command& command, Options& options) {
                     "Measure nothing: go back to the site file as it was; once more, and it is the new one");
     command.add("--report", options.report, "Write the figures to this JSON file (docs/report.md)");
     command.add("--seed", options.seed, "Seed of the simulated site's noise").showDefault();
-    command.footer("Nothing may move but passers-by: what they disturb is shown again. Escape, q and Ctrl-C end it.");
+    command.footer(
+        "Nothing may move but passers-by: what they disturb is shown again. Escape, q and Ctrl-C end it; outputs that are "
+        "measured by then count.");
 }
 
 Result<std::vector<std::size_t>> chosen(const show::Site& site, const std::vector<std::string>& names) {
     std::vector<std::size_t> outputs;
-    for (const std::string& name : names) outputs.push_back(TRY(outputNamed(site, name)));
+    for (const std::string& name : names) {
+        const std::size_t output = TRY(outputNamed(site, name));
+        if (std::ranges::find(outputs, output) == outputs.end()) outputs.push_back(output);
+    }
     for (std::size_t output = 0; names.empty() && output < site.outputs.size(); ++output) outputs.push_back(output);
     return outputs;
 }
@@ -115,9 +120,10 @@ Result<void> run(const Options& options) {
     SteadyClock clock;
     Attendance attendance(clock);
     Progress progress("calibrate", clock, std::cerr, standardErrorIsTerminal());
-    LightSurvey survey(
-        *rig, site,
-        {[&] { return attendance.goesOn(); }, [&](double done, const std::string& doing) { progress.update(done, doing); }});
+    bool goesOn = true;  // one key ends it for all outputs
+    LightSurvey survey(*rig, site,
+                       {[&] { return goesOn = goesOn && attendance.goesOn(); },
+                        [&](double done, const std::string& doing) { progress.update(done, doing); }});
     const Time began = rig->now();
     std::vector<OutputCalibration> calibrations = TRY(calibrate(survey, site, outputs, wanted));
     const Time took = rig->now() - began;
