@@ -107,8 +107,7 @@ Result<void> writeWarps(const show::Site& site, std::vector<OutputCalibration>& 
         const Projection& then = site.outputs[calibration.output].projection;
         Projection now = then;
         now.warp = TRY(Warp::of(calibration.fit->shape));
-        for (const show::SiteChange& change : show::projectionChanges(then, now, calibration.output))
-            TRY(change.value ? document.set(change.path, *change.value) : document.erase(change.path));
+        TRY(applyChanges(document, site, show::projectionChanges(then, now, calibration.output)));
     }
     TRY(document.save());
     for (OutputCalibration& calibration : calibrations) calibration.written = calibration.isGood();

@@ -2,6 +2,7 @@
 
 #include "app/base/drawing.h"
 #include "app/base/silhouette_file.h"
+#include "app/calibrate/wanted_file.h"
 #include "app/command/commands.h"
 #include "app/live/programme.h"
 #include "app/site/site_file.h"
@@ -216,6 +217,11 @@ Result<Finding> checkPatternSettings(const fs::path& path, const std::optional<s
     return Finding{fmt::format("pattern settings, at most {}{}", counted(settings.search.instances, "instance"), shapes), {}};
 }
 
+Result<Finding> checkWanted(const fs::path& path, const std::optional<show::Site>&) {
+    const WantedCorners wanted = TRY(readWanted(path));
+    return Finding{fmt::format("wanted places, {}", counted(wanted.size(), "output")), {}};
+}
+
 // The drawing of a motion or of hints: NAME.png for NAME.motion.yaml. If it is missing, an
 // all-white one stands in, so that everything else can be checked.
 struct Drawing {
@@ -334,10 +340,12 @@ Result<Finding> checkShape(const fs::path& path) {
 using Check = Result<Finding> (*)(const fs::path&, const std::optional<show::Site>&);
 
 // A YAML file states its own kind.
-constexpr std::pair<std::string_view, Check> kKinds[] = {
-    {"show", checkShow},     {"site", checkSite},           {"pattern", checkPattern}, {"pattern-settings", checkPatternSettings},
-    {"motion", checkMotion}, {"sequence", checkSequence},   {"cast", checkCast},       {"stage", checkStage},
-    {"hints", checkHints},   {"pose-weights", checkWeights}};
+constexpr std::pair<std::string_view, Check> kKinds[] = {{"show", checkShow},       {"site", checkSite},
+                                                         {"pattern", checkPattern}, {"pattern-settings", checkPatternSettings},
+                                                         {"motion", checkMotion},   {"sequence", checkSequence},
+                                                         {"cast", checkCast},       {"stage", checkStage},
+                                                         {"hints", checkHints},     {"pose-weights", checkWeights},
+                                                         {"wanted", checkWanted}};
 
 Result<Finding> checkYaml(const fs::path& path, const std::optional<show::Site>& site) {
     std::vector<std::string> names;

@@ -170,24 +170,11 @@ void SettingUp::run(const show::EditCommand& command) {
     moved_ |= std::holds_alternative<edit::Move>(command) || std::holds_alternative<edit::MoveTo>(command);
 }
 
-Result<ConfigPath> SettingUp::inFile(const ConfigPath& path) const {
-    const show::Site& site = editor_.site();
-    const std::string& name = site.outputs[*path[1].index()].name;
-    const auto place = document_->itemNamed("outputs", name);
-    if (!place) return Error(fmt::format("{}: there is no output '{}' any more", site.file.string(), name));
-    ConfigPath there{"outputs", *place};
-    there.insert(there.end(), path.begin() + 2, path.end());
-    return there;
-}
-
 void SettingUp::save() {
     const std::filesystem::path& file = editor_.site().file;
     const auto written = [&]() -> Result<void> {
         if (!document_) document_ = TRY(ConfigDocument::load(file));
-        for (const show::SiteEditor::Change& change : editor_.unsaved()) {
-            const ConfigPath path = TRY(inFile(change.path));
-            TRY(change.value ? document_->set(path, *change.value) : document_->erase(path));
-        }
+        TRY(applyChanges(*document_, editor_.site(), editor_.unsaved()));
         return document_->save();
     }();
     if (written) {

@@ -77,9 +77,6 @@ private:
     void take(const ScreenEvent& event, std::size_t output);
     void run(const show::EditCommand& command);
     void save();
-    // The place in the present file of a place in the site as it was read. Error: the file no
-    // longer has the output.
-    Result<ConfigPath> inFile(const ConfigPath& path) const;
     void repeatHeld(Time moment);
     RgbaImage overlayOf(std::size_t output, const Projection& projection, const Drawn& drawn) const;
     void show();

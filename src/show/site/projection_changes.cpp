@@ -1,5 +1,7 @@
 #include "show/site/projection_changes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -71,6 +73,18 @@ std::vector<SiteChange> projectionChanges(const Projection& then, const Projecti
     set(now.light.white != then.light.white, {"light", "white"}, now.light.white);
     set(now.light.brightness != then.light.brightness, {"light", "brightness"}, now.light.brightness);
     return changes;
+}
+
+Result<void> applyChanges(ConfigDocument& document, const Site& site, const std::vector<SiteChange>& changes) {
+    for (const SiteChange& change : changes) {
+        const std::string& name = site.outputs[*change.path[1].index()].name;
+        const auto place = document.itemNamed("outputs", name);
+        if (!place) return Error(fmt::format("{}: there is no output '{}' any more", site.file.string(), name));
+        ConfigPath there{"outputs", *place};
+        there.insert(there.end(), change.path.begin() + 2, change.path.end());
+        TRY(change.value ? document.set(there, *change.value) : document.erase(there));
+    }
+    return {};
 }
 
 }  // namespace fantascope::show

@@ -55,12 +55,15 @@ TEST(Check, says_of_each_good_file_what_it_holds) {
         folder.file("fine.pattern-settings.yaml", "fantascope: pattern-settings\nversion: 1\nshapes: {instances: 40}\n");
     const auto guide = folder.path() / "guide.png";
     ASSERT_TRUE(writePng(guide, GreyImage(64, 36)));
-    const Checked checked = check(folder, {{folder.path() / "show.yaml", site, settings, guide}, std::nullopt});
+    const auto wanted = folder.file(
+        "wanted.yaml", "fantascope: wanted\nversion: 1\noutputs: {left: {camera: [[0, 0], [9, 0], [9, 9], [0, 9]]}}\n");
+    const Checked checked = check(folder, {{folder.path() / "show.yaml", site, settings, guide, wanted}, std::nullopt});
     EXPECT_EQ(checked.lines,
               "ok show.yaml: show, 2 cues, 1 look, 1 source\n"
               "ok site.yaml: site, 1 output, 1 fixture, 0 relays\n"
               "ok fine.pattern-settings.yaml: pattern settings, at most 40 instances\n"
-              "ok guide.png: guide, 64 x 36 px\n");
+              "ok guide.png: guide, 64 x 36 px\n"
+              "ok wanted.yaml: wanted places, 1 output\n");
     EXPECT_EQ(checked.refusal, "");
 }
 
