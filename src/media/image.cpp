@@ -216,6 +216,15 @@ float srgbFromLinear(float linear) {
     return linear <= 0.0031308f ? linear * 12.92f : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }
 
+const std::array<float, 256>& linearOfBytes() {
+    static const std::array<float, 256> linear = [] {
+        std::array<float, 256> values{};
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = linearFromSrgb(static_cast<float>(i) / 255);
+        return values;
+    }();
+    return linear;
+}
+
 Result<GreyImage> readGrey(const fs::path& path) {
     const cv::Mat picture = TRY(decode(path));
     GreyImage image(picture.cols, picture.rows);

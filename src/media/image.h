@@ -5,6 +5,7 @@
 
 #include <glm/vec2.hpp>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -63,6 +64,8 @@ using GreyImage = Image<float>;  // values 0..1; each use says whether stored or
 // The sRGB transfer function (IEC 61966-2-1), 0..1 to 0..1.
 float linearFromSrgb(float stored);
 float srgbFromLinear(float linear);
+// The linear light of each stored byte.
+const std::array<float, 256>& linearOfBytes();
 
 // Read PNG, JPEG, TIFF, BMP and WebP. Grey: stored values / the type's maximum, colours weighted as
 // Rec. 601 luma; an alpha channel is composed over black. Error: names the file: missing, not a

@@ -63,11 +63,7 @@ std::vector<Cell> cellsInSight(const NominalView& view, glm::ivec2 grid) {
 
 // The linear light of a stored frame, bilinear between pixel centres.
 glm::dvec3 linearAt(const RgbaImage& frame, glm::vec2 pixel) {
-    static const std::array<float, 256> linear = [] {
-        std::array<float, 256> values{};
-        for (std::size_t i = 0; i < values.size(); ++i) values[i] = linearFromSrgb(static_cast<float>(i) / 255);
-        return values;
-    }();
+    const std::array<float, 256>& linear = linearOfBytes();
     const auto at = [&](int x, int y) {
         const Rgba8& stored = frame.at(std::clamp(x, 0, frame.width() - 1), std::clamp(y, 0, frame.height() - 1));
         return glm::vec3(linear[stored.r], linear[stored.g], linear[stored.b]);

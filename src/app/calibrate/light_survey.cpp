@@ -39,15 +39,11 @@ constexpr double kDimmestGrey = 0.01;  // of the full light
 // Adds the mean of a stored picture's channels as linear light; 1 where a channel is saturated,
 // because then the mean says nothing.
 void addLight(const RgbaImage& stored, GreyImage& sum) {
-    static const std::array<float, 256> linear = [] {
-        std::array<float, 256> values{};
-        for (std::size_t i = 0; i < values.size(); ++i) values[i] = linearFromSrgb(static_cast<float>(i) / 255) / 3;
-        return values;
-    }();
+    const std::array<float, 256>& linear = linearOfBytes();
     for (std::size_t i = 0; i < sum.pixels().size(); ++i) {
         const Rgba8& pixel = stored.pixels()[i];
         const bool saturated = std::max({pixel.r, pixel.g, pixel.b}) == 255;
-        sum.pixels()[i] += saturated ? 1 : linear[pixel.r] + linear[pixel.g] + linear[pixel.b];
+        sum.pixels()[i] += saturated ? 1 : (linear[pixel.r] + linear[pixel.g] + linear[pixel.b]) / 3;
     }
 }
 
