@@ -8,9 +8,13 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <utility>
 
@@ -56,15 +60,11 @@ Window windowTitled(Display* display, const std::string& title) {
     return found;
 }
 
-struct Child {
-    pid_t process;
-    std::string display;
-};
-
-// Error: it does not start.
-Result<Child> launched(std::vector<std::string> command) {
+// The process of an X server with the number `display`. Error: it does not start.
+Result<pid_t> launched(std::vector<std::string> command, int display) {
     int ends[2];
     FANTASCOPE_CHECK(::pipe(ends) == 0, "no pipe");
+    command.insert(command.begin() + 1, fmt::format(":{}", display));
     // By default it resets when its last client leaves, and refuses clients meanwhile.
     command.insert(command.end(), {"-noreset", "-displayfd", std::to_string(ends[1])});
     std::vector<char*> words;
@@ -82,15 +82,28 @@ Result<Child> launched(std::vector<std::string> command) {
     ::close(ends[1]);
     // The server writes its number and a line feed once it is usable; if it ends before, the pipe
     // ends.
-    std::string number;
     char letter = 0;
-    while (::read(ends[0], &letter, 1) == 1 && letter != '\n') number += letter;
+    while (::read(ends[0], &letter, 1) == 1 && letter != '\n') {
+    }
     ::close(ends[0]);
-    if (letter == '\n') return Child{child, ":" + number};
+    if (letter == '\n') return child;
     ::kill(child, SIGTERM);
     ::waitpid(child, nullptr, 0);
     return Error(command[0] + " does not start");
 }
+
+// Whether no other test had display `number`. It is this test's then, as long as `claim` is open.
+bool claimed(int number, const drivers::FileHandle& claim) {
+    sockaddr_un name{};
+    name.sun_family = AF_UNIX;
+    // An abstract name: it begins with a zero, and ends with its process.
+    const std::string text = fmt::format("fantascope-test-display-{}", number);
+    std::copy(text.begin(), text.end(), name.sun_path + 1);
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
+    return ::bind(claim.get(), reinterpret_cast<const sockaddr*>(&name), size) == 0;
+}
+
+constexpr int kFirstDisplay = 100;  // other programs look for a free display from 0
 
 }  // namespace
 
@@ -101,12 +114,23 @@ Result<std::unique_ptr<XServer>> XServer::start() {
 }
 
 Result<std::unique_ptr<XServer>> XServer::start(std::vector<std::string> command) {
-    const Child child = TRY(launched(command));
-    return std::unique_ptr<XServer>(new XServer(std::move(command), child.process, child.display));
+    int refusals = 0;
+    for (int display = kFirstDisplay; refusals < 3; ++display) {
+        drivers::FileHandle claim(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+        if (!claimed(display, claim)) continue;
+        const auto child = launched(command, display);
+        if (child) return std::unique_ptr<XServer>(new XServer(std::move(command), *child, display, std::move(claim)));
+        ++refusals;
+    }
+    return Error(command[0] + " does not start");
 }
 
-XServer::XServer(std::vector<std::string> command, pid_t child, const std::string& display)
-    : command_(std::move(command)), child_(child), display_(display) {
+XServer::XServer(std::vector<std::string> command, pid_t child, int number, drivers::FileHandle claim)
+    : command_(std::move(command)),
+      child_(child),
+      number_(number),
+      claim_(std::move(claim)),
+      display_(fmt::format(":{}", number)) {
     if (const char* before = std::getenv("DISPLAY")) displayBefore_ = before;
     ::setenv("DISPLAY", display_.c_str(), 1);
 }
@@ -127,11 +151,9 @@ void XServer::crash() {
 }
 
 void XServer::startAgain() {
-    std::vector<std::string> command = command_;
-    command.insert(command.begin() + 1, display_);
-    const auto child = launched(command);
-    FANTASCOPE_CHECK(child.has_value() && child->display == display_, "the X server does not start again on " + display_);
-    child_ = child->process;
+    const auto child = launched(command_, number_);
+    FANTASCOPE_CHECK(child.has_value(), "the X server does not start again on " + display_);
+    child_ = *child;
 }
 
 void XServer::hang() const { ::kill(child_, SIGSTOP); }

@@ -1,6 +1,8 @@
 #pragma once
 // An X server of the test's own, and what a person in front of its screen sees and does.
 
+#include "drivers/common/file_handle.h"
+
 #include "core/result.h"
 
 #include <sys/types.h>
@@ -21,7 +23,8 @@ public:
     // Xvfb with one screen of 1280 x 720 pixels, monitor "screen". Error: it is not installed or
     // does not start.
     static Result<std::unique_ptr<XServer>> start();
-    // `command` starts an X server; -noreset and -displayfd are added. Error: it does not start.
+    // `command` starts an X server; the number of a display, -noreset and -displayfd are added.
+    // Error: it does not start.
     static Result<std::unique_ptr<XServer>> start(std::vector<std::string> command);
     ~XServer();
     XServer(const XServer&) = delete;
@@ -51,11 +54,13 @@ public:
     void goOn() const;
 
 private:
-    XServer(std::vector<std::string> command, pid_t child, const std::string& display);
+    XServer(std::vector<std::string> command, pid_t child, int number, drivers::FileHandle claim);
 
     const std::vector<std::string> command_;
     pid_t child_;
-    std::string display_;
+    const int number_;
+    const drivers::FileHandle claim_;  // while it is open, no other test takes the number, not even after a crash
+    const std::string display_;
     std::optional<std::string> displayBefore_;
 };
 
