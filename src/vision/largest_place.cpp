@@ -9,8 +9,9 @@
 namespace fantascope::vision {
 namespace {
 
-constexpr int kSamples = 17;                  // along an edge of a part
-constexpr int kCentres = 192, kHeights = 64;  // tried over the longer side of what is lit, and over its height
+constexpr int kSamples = 17;   // along an edge of a part
+constexpr int kCentres = 192;  // tried along the longer side of what is lit
+constexpr int kHeights = 64;   // tried, down from the height of what is lit
 constexpr int kRefinements = 6, kAround = 9, kHalvings = 8;
 constexpr int kCell = 2;        // camera pixels
 constexpr double kHoles = 1.5;  // cells; a blur in which small holes vanish and straight edges stay
@@ -106,8 +107,8 @@ private:
                 if (fits({x, y}, height)) return glm::dvec2(x, y);
         return std::nullopt;
     }
-    // The largest height that fits here, up to a step above one that is known somewhere; 0: not
-    // even that one fits.
+    // The largest height that fits here, between `height` and a step more; 0: `height` does not
+    // fit.
     double highestAt(glm::dvec2 centre, double height, double step) const {
         if (!fits(centre, height)) return 0;
         double low = height, high = height + step;

@@ -19,7 +19,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 // A stripe of the code: half a period, so that a code that is off by one stripe at a stripe's edge
 // still names the right period.
 constexpr int kStripesOfPeriod = 2;
-// A period is at least so many camera pixels, and so many projector pixels.
+// The least length of a period, in camera pixels and in projector pixels.
 constexpr double kCameraPixelsOfPeriod = 6;
 constexpr int kShortestPeriod = 16;
 // A pixel is lit if its full light stands out from the noise so many times, and is this share of
@@ -41,8 +41,8 @@ float median(std::vector<float>& values) {
 
 int stripe(const StructuredLight& light) { return light.period() / kStripesOfPeriod; }
 
-// Without pixels that most of their neighbours are farther from than `reach`: a code that was read
-// wrongly jumps.
+// Drops a pixel if most of its neighbours are farther from it than `reach`: there, the code was
+// read wrongly.
 Image<glm::vec2> withoutStrays(const Image<glm::vec2>& at, float reach) {
     Image<glm::vec2> kept = at;
     for (int y = 0; y < at.height(); ++y)

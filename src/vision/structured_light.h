@@ -14,9 +14,10 @@ namespace fantascope::vision {
 // code says in which stripe of the projector's picture (Inokuchi et al. 1984), the phase of a
 // shifted sinusoid says where within the stripe (Sansoni et al. 1999).
 //
-// Every picture has a complement: light turned into dark. Only their difference counts, so light
-// from elsewhere has no say, and neither has the colour of the wall. Their sum is that of the full
-// and the dark picture; where it is not, something moved in between.
+// Every picture has a complement, in which light and dark are exchanged. Only the difference of the
+// two counts, divided by the full light: it does not depend on other light or on the wall's colour.
+// The sum of the two equals that of the full and the dark picture. Where it does not, something
+// moved in between.
 class StructuredLight {
 public:
     enum class Axis { Across, Down };
@@ -31,8 +32,8 @@ public:
     // `projector`: its pixels, each side >= 2. `period`: of the sinusoid, projector pixels, even.
     StructuredLight(glm::ivec2 projector, int period);
 
-    // The shortest period that a camera sees well: where it has `cameraPixels` for all of the
-    // projector's.
+    // The shortest period that a camera sees well. `cameraPixels`: how many of its pixels the
+    // projector lights.
     static int periodFor(glm::ivec2 projector, double cameraPixels);
 
     glm::ivec2 projector() const { return projector_; }
@@ -40,8 +41,7 @@ public:
     int bits(Axis axis) const;
     // In the order in which they are best shown: the full picture first.
     const std::vector<Pair>& pairs() const { return pairs_; }
-    // A pair's picture as the projector is sent it. `gamma`: the projector's light = stored ^
-    // gamma.
+    // A pair's picture in stored values, to be sent to a projector whose light is stored ^ gamma.
     RgbaImage picture(std::size_t pair, bool complement, double gamma) const;
 
     // The sinusoid is shown at so many shifts, half of them as complements.
@@ -62,17 +62,16 @@ struct ProjectorMap {
     bool isKnown(int x, int y) const { return at.at(x, y).x == at.at(x, y).x; }
 };
 
-// Decodes what a camera saw of structured light. Pixels are judged one by one: where somebody
-// walked through a pair, that pair can be taken again, and fills the gaps. Thread: thread-bound.
+// Decodes what a camera saw of structured light. A pixel in which something moved stays undecided;
+// the same pair can be taken again to decide it. Thread: thread-bound.
 class LightDecoder {
 public:
     // `camera`: pixels of its picture.
     LightDecoder(StructuredLight light, glm::ivec2 camera);
 
     // Takes the camera's pictures of a pair, linear light, `camera` pixels each; 1 is a saturated
-    // pixel, which is not decoded. The full pair comes first, best several times: each pixel counts
-    // as it was most of the time. A pair that is taken again fills the pixels that it left
-    // undecided.
+    // pixel, which is not decoded. The full pair comes first, best several times: a pixel's median
+    // counts. Another pair that is taken again decides only pixels that were undecided.
     void take(std::size_t pair, const GreyImage& picture, const GreyImage& complement);
     // The share of the lit pixels that a pair left undecided, 0..1; 1 if it was not taken.
     double undecided(std::size_t pair) const;

@@ -35,7 +35,7 @@ constexpr double kPlaneNoise = 3;
 // Of points that belong together, those farther off than so many deviations are left out, but never
 // nearer ones than this.
 constexpr double kOutlier = 4, kAlwaysNear = 0.3;
-// How far beyond the picture's edge points still shape the mesh, as a share of its side.
+// Points up to so far beyond the picture's edge count for the mesh, as a share of its side.
 constexpr double kMargin = 0.05;
 constexpr int kFewestNodes = 5, kMostNodes = 65;
 constexpr double kPointsOfCell = 4;
@@ -91,8 +91,8 @@ Residuals residualsOf(const Homography& keystone, const std::vector<Sample>& sam
     return residuals;
 }
 
-// What the points scatter by, whatever surface they lie on: a point against the mean of its four
-// neighbours.
+// The standard deviation of single points on a smooth surface, from the distance between a point
+// and the mean of its four neighbours.
 double noiseOf(const std::vector<Sample>& samples) {
     std::map<std::pair<int, int>, glm::dvec2> points;
     for (const Sample& sample : samples) points[{sample.patch.x, sample.patch.y}] = sample.projector;
@@ -243,7 +243,7 @@ private:
     glm::ivec2 nodes_;
 };
 
-// So many nodes that a cell has a few points.
+// The number of nodes with which a cell has a few points.
 glm::ivec2 nodesFor(std::size_t points, glm::dvec2 size) {
     const double cells = std::max(1.0, static_cast<double>(points) / kPointsOfCell), aspect = size.x / size.y;
     const glm::dvec2 wanted(std::sqrt(cells * aspect), std::sqrt(cells / aspect));
@@ -277,8 +277,9 @@ class Patches {
 public:
     Patches(const ProjectorMap& map, int side) : map_(map), side_(side), slopes_(slopesOf(map.light)) {}
 
-    // The camera's blur, s^2 in camera pixels, by least squares: what is left of the pixels beside
-    // their patch's plane, against what is left of their slopes.
+    // The camera's blur s^2, in camera pixels, by least squares over all pixels. Blur moves what a
+    // pixel saw by s^2 * slope. A part of that lies in the patch's plane and is not noticed, so the
+    // rest of the slopes is compared with the pixels' distances from the plane.
     double blur() const {
         double product = 0, square = 0;
         forEach([&](glm::ivec2 corner) {

@@ -25,9 +25,9 @@ struct SharedPoint {
 // picture that fills the camera's. Averaging removes the noise of single pixels. Patches across a
 // step of the surface, or with few known pixels, are left out.
 //
-// A camera's blur lets a pixel see more of its brighter side. If the blur is a Gaussian h of
-// variance s^2, it sees on average what lies s^2 grad log(h * surface) beside its middle (Robbins
-// 1956). So s^2 is estimated from the points themselves, and taken out of them.
+// Through a camera's blur, a pixel sees more of its brighter side. If the blur is a Gaussian h of
+// variance s^2, the mean place that it sees is s^2 grad log(h * surface) away from its middle
+// (Robbins 1956). s^2 is estimated from the map, and this shift is corrected.
 std::vector<SharedPoint> sharedPoints(const ProjectorMap& map);
 
 // Where the picture is to stand, in the camera's picture.
@@ -39,12 +39,13 @@ struct WantedPlace {
 // A warp that puts the canvas where it is wanted.
 struct WarpFit {
     WarpShape shape;
-    // Distances between where the warp sends a point and where it was measured, in projector
-    // pixels, over the points inside the output's part of the canvas.
+    // Distances between where the warp sends points and where they were measured, in projector
+    // pixels, inside the output's part of the canvas. Each is a mean over a point and its
+    // neighbours, because a single point is noisy.
     double rms = 0, max = 0;
     double keystoneRms = 0, keystoneMax = 0;  // of the best keystone alone
-    std::size_t points = 0;                   // that count
-    double leftOut = 0;                       // share of the points that lie on something else
+    std::size_t points = 0;                   // how many were used
+    double leftOut = 0;                       // share of the points that were not: they lie on something else
     bool flat = true;                         // a keystone is enough
 };
 

@@ -22,10 +22,12 @@ constexpr Time kLongestDelay = std::chrono::milliseconds(800);
 constexpr int kEdges = 5;
 constexpr int kFulls = 3;
 constexpr std::size_t kGreys = 8;
-// A pair is shown again while it leaves more of the lit pixels undecided, so many times at most.
+// A pair is shown again while more than this share of the lit pixels is undecided, so many times at
+// most.
 constexpr double kUndecided = 0.005;
 constexpr int kRounds = 4;
-// Another try has to leave less than this share of what the one before left.
+// A pair is tried again only if the last try left less than this share of the pixels undecided that
+// were undecided before it.
 constexpr double kStubborn = 0.7;
 constexpr int kSmallestSide = 32;        // of an output, projector pixels
 constexpr std::size_t kFewestLit = 400;  // camera pixels
@@ -282,8 +284,8 @@ Result<int> LightSurvey::decode(std::size_t output, const StructuredLight& light
             if (taken[2 * i].frames > 0 && taken[2 * i + 1].frames > 0)
                 decoder.take(due[i], taken[2 * i].light, taken[2 * i + 1].light);
             const double now = decoder.undecided(due[i]);
-            // What another try decides was disturbed. What it does not is something else: a lamp
-            // that saturates the camera, or a mirror.
+            // Pixels that another try decides were disturbed. Pixels that it does not decide have
+            // another reason, such as a mirror, and no try will help.
             const bool helps = round == 0 || now < kStubborn * before;
             if (now > kUndecided && helps) again.push_back(due[i]);
         }

@@ -8,9 +8,9 @@
 
 namespace fantascope::app {
 
-// Which picture a camera's frame shows. Pictures follow each other without waiting for the camera:
-// when a frame arrives, its exposure says which of them it saw. A frame that may have seen the
-// change from one to the next shows none.
+// Says which picture a camera's frame shows. Pictures follow each other without waiting for the
+// camera; a frame's time stamp tells which of them it saw. A frame that may have seen two of them
+// counts for none.
 class PictureSchedule {
 public:
     // How camera time follows the projectors: a picture is seen between `soonest` and `latest`
