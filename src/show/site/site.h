@@ -1,5 +1,6 @@
 #pragma once
 
+#include "show/site/corrections.h"
 #include "show/site/dmx_merge.h"
 
 #include "core/clock.h"
@@ -131,6 +132,7 @@ struct Site {
     std::vector<Contact> contacts;
     std::optional<DeviceConfig> camera;
     std::optional<NominalCamera> nominalCamera;  // set whenever `camera` is
+    Corrections corrections;                     // what the program does by itself when the camera sees a difference
     std::optional<ConfigNode> simulation;        // the simulated site's own section
 
     // The same site with `factor` times as many projector pixels across and down.

@@ -148,6 +148,7 @@ public:
         readBanks();
         readController();
         readCamera();
+        fields_.optional().read("corrections", site_.corrections, readCorrections);
         fields_.optional().read("simulation", site_.simulation,
                                 [](const ConfigNode& node) -> Result<ConfigNode> { return node; });
         relayBanks_.check(fields_);

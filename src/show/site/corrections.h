@@ -1,0 +1,27 @@
+#pragma once
+
+#include "core/config/config.h"
+#include "core/result.h"
+
+namespace fantascope::show {
+
+// What the program may correct by itself when the camera sees that the wall is not as it should be.
+// The site file's section `corrections`.
+struct Corrections {
+    enum class Mode {
+        Off,       // nothing is estimated
+        Advise,    // the operator and the report are told, and nothing changes
+        Automatic  // corrected, within the bounds
+    };
+    // An output's picture that has moved on the wall.
+    struct Geometry {
+        Mode mode = Mode::Advise;
+        double farthest = 60;  // how far any point of the picture may be moved, projector pixels
+        double speed = 6;      // of the fastest point of the picture, projector pixels per second
+    } geometry;
+};
+
+// Reads the section. Error: place, key, advice.
+Result<Corrections> readCorrections(const ConfigNode& node);
+
+}  // namespace fantascope::show
