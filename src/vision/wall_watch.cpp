@@ -1,0 +1,172 @@
+#include "vision/wall_watch.h"
+
+#include "core/check.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fantascope::vision {
+namespace {
+
+constexpr int kWidth = 400;          // camera pixels across that are enough
+constexpr float kSaturated = 0.98f;  // linear light of a channel, from which on it says nothing
+constexpr double kGood = 0.5;        // agreement x share of the content: a picture that is found
+constexpr double kLost = 0.7;        // of the usual agreement: the picture may have moved far
+constexpr double kForgets = 0.1;     // weight of a new picture in what is usual
+
+// Bilinear between the middles of pixels; at the edge as the edge.
+float valueAt(const GreyImage& image, glm::vec2 at) {
+    const glm::vec2 corner = glm::floor(at - 0.5f), share = at - 0.5f - corner;
+    const int x = static_cast<int>(corner.x), y = static_cast<int>(corner.y);
+    const int x0 = std::clamp(x, 0, image.width() - 1), x1 = std::clamp(x + 1, 0, image.width() - 1),
+              y0 = std::clamp(y, 0, image.height() - 1), y1 = std::clamp(y + 1, 0, image.height() - 1);
+    return glm::mix(glm::mix(image.at(x0, y0), image.at(x1, y0), share.x), glm::mix(image.at(x0, y1), image.at(x1, y1), share.x),
+                    share.y);
+}
+
+Homography inPixels(const Homography& inCells, double cellSize) {
+    const glm::dmat3 scale(cellSize, 0, 0, 0, cellSize, 0, 0, 0, 1);
+    return Homography(scale * inCells.matrix() * glm::inverse(scale));
+}
+
+double scoreOf(const std::optional<Registration>& found) {
+    return found && found->gain > 0 ? found->agreement * found->used : -1;
+}
+
+}  // namespace
+
+struct WallWatch::Output {
+    OutputView view;
+    Image<glm::vec2> cell;  // by coarse camera pixel: the place in cells that lights it; NaN: none
+    GreyImage full;         // by coarse camera pixel: its full light
+    Homography now;         // in cells
+    double gain = 0;        // as usual; 0: unknown
+    double score = 0;       // as usual
+    int sinceWide = 99;     // pictures since the last wide search
+
+    // What the camera gets of this output, by coarse camera pixels.
+    void addTo(GreyImage& seen, const GreyImage& light) const {
+        for (int y = 0; y < seen.height(); ++y)
+            for (int x = 0; x < seen.width(); ++x) {
+                if (full.at(x, y) <= 0) continue;
+                const glm::dvec2 at = now(glm::dvec2(cell.at(x, y)));
+                if (at.x < 0 || at.y < 0 || at.x > light.width() || at.y > light.height()) continue;
+                seen.at(x, y) += static_cast<float>(gain) * full.at(x, y) * valueAt(light, glm::vec2(at));
+            }
+    }
+    std::optional<Registration> find(const GreyImage& seen, const GreyImage& light, const GreyImage& mask);
+};
+
+// Follows the picture. A picture that is not found near its last place is searched for more widely,
+// but not with every camera picture, since that takes longer.
+std::optional<Registration> WallWatch::Output::find(const GreyImage& seen, const GreyImage& light, const GreyImage& mask) {
+    constexpr int kWideEvery = 5;
+    std::optional<Registration> found = registerPictures(seen, light, mask, now, SearchRange::Near);
+    if (++sinceWide >= kWideEvery && scoreOf(found) < std::max(kGood, kLost * score)) {
+        sinceWide = 0;
+        for (const Homography& start : {now, Homography()}) {
+            const auto wide = registerPictures(seen, light, mask, start, SearchRange::Wide);
+            if (scoreOf(wide) > scoreOf(found)) found = wide;
+        }
+    }
+    return found;
+}
+
+WallWatch::WallWatch(const std::vector<std::optional<WatchedOutput>>& outputs, glm::ivec2 camera, const GreyImage& dark)
+    : camera_(camera), step_(std::max(1, static_cast<int>(std::lround(camera.x / static_cast<double>(kWidth))))) {
+    const glm::ivec2 coarse = camera / step_;
+    dark_ = dark.empty() ? GreyImage(coarse.x, coarse.y) : resized(dark, coarse.x, coarse.y);
+    for (const std::optional<WatchedOutput>& watched : outputs) {
+        outputs_.push_back(nullptr);
+        if (!watched) continue;
+        const auto view = OutputView::of(watched->map, watched->projector, watched->gamma, step_);
+        if (!view) continue;
+        outputs_.back() = std::make_unique<Output>(Output{
+            .view = *view, .cell = Image<glm::vec2>(coarse.x, coarse.y), .full = GreyImage(coarse.x, coarse.y), .now = {}});
+        Output& output = *outputs_.back();
+        const auto size = static_cast<float>(view->cellSize());
+        for (int y = 0; y < coarse.y; ++y)
+            for (int x = 0; x < coarse.x; ++x) {
+                const int middle = step_ / 2;
+                const glm::vec2 at = watched->map.at.at(x * step_ + middle, y * step_ + middle);
+                if (at.x != at.x) continue;
+                output.cell.at(x, y) = at / size;
+                output.full.at(x, y) = watched->map.light.at(x * step_ + middle, y * step_ + middle);
+            }
+    }
+}
+
+WallWatch::~WallWatch() = default;
+
+bool WallWatch::watches(std::size_t output) const { return outputs_[output] != nullptr; }
+
+GreyImage WallWatch::lightOf(std::size_t output, const RgbaImage& frame) const { return outputs_[output]->view.lightOf(frame); }
+
+// By coarse camera pixels; negative where a pixel is saturated.
+GreyImage WallWatch::lightSeen(const RgbaImage& picture) const {
+    const std::array<float, 256>& linear = linearOfBytes();
+    GreyImage light(camera_.x / step_, camera_.y / step_);
+    const float share = 1 / static_cast<float>(3 * step_ * step_);
+    for (int y = 0; y < light.height(); ++y)
+        for (int x = 0; x < light.width(); ++x) {
+            float sum = 0, most = 0;
+            for (int row = y * step_; row < (y + 1) * step_; ++row)
+                for (int column = x * step_; column < (x + 1) * step_; ++column) {
+                    const Rgba8& pixel = picture.at(column, row);
+                    sum += linear[pixel.r] + linear[pixel.g] + linear[pixel.b];
+                    most = std::max(most, linear[std::max({pixel.r, pixel.g, pixel.b})]);
+                }
+            light.at(x, y) = most >= kSaturated ? -1 : sum * share;
+        }
+    return light;
+}
+
+std::vector<std::optional<OutputSight>> WallWatch::look(const RgbaImage& picture, const std::vector<const GreyImage*>& shown) {
+    FANTASCOPE_CHECK(picture.width() == camera_.x && picture.height() == camera_.y, "the camera's pictures have one size");
+    const GreyImage seen = lightSeen(picture);
+    std::vector<GreyImage> predicted(outputs_.size());
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        if (!outputs_[i] || shown[i] == nullptr) continue;
+        predicted[i] = GreyImage(seen.width(), seen.height());
+        outputs_[i]->addTo(predicted[i], *shown[i]);
+    }
+    std::vector<std::optional<OutputSight>> sights(outputs_.size());
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        if (!outputs_[i] || shown[i] == nullptr) continue;
+        Output& output = *outputs_[i];
+        GreyImage rest = seen;  // without all other light that is known
+        for (std::size_t p = 0; p < rest.pixels().size(); ++p) {
+            if (seen.pixels()[p] < 0) continue;
+            float& left = rest.pixels()[p];
+            left -= dark_.pixels()[p];
+            for (std::size_t other = 0; other < outputs_.size(); ++other)
+                if (other != i && !predicted[other].empty()) left -= predicted[other].pixels()[p];
+        }
+        const GreyImage& full = output.view.full();
+        GreyImage onWall(full.width(), full.height()), mask(full.width(), full.height());
+        for (int y = 0; y < full.height(); ++y)
+            for (int x = 0; x < full.width(); ++x) {
+                if (full.at(x, y) <= 0) continue;
+                const glm::vec2 at = output.view.camera().at(x, y) / static_cast<float>(step_);
+                const int column = std::clamp(static_cast<int>(at.x), 0, seen.width() - 1),
+                          row = std::clamp(static_cast<int>(at.y), 0, seen.height() - 1);
+                if (seen.at(column, row) < 0) continue;
+                onWall.at(x, y) = valueAt(rest, at) / full.at(x, y);
+                mask.at(x, y) = 1;
+            }
+        const auto found = output.find(onWall, *shown[i], mask);
+        if (!found || scoreOf(found) <= 0) continue;
+        const double size = output.view.cellSize();
+        sights[i] =
+            OutputSight{inPixels(found->expectedFromSeen, size), found->sigma * size, found->gain, found->agreement, found->used};
+        if (scoreOf(found) < kGood) continue;
+        output.now = found->expectedFromSeen;
+        output.gain = output.gain == 0 ? found->gain : output.gain + kForgets * (found->gain - output.gain);
+        output.score = output.score == 0 ? scoreOf(found) : output.score + kForgets * (scoreOf(found) - output.score);
+    }
+    return sights;
+}
+
+}  // namespace fantascope::vision

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "vision/output_view.h"
+#include "vision/registration.h"
+
+#include "media/image.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace fantascope::vision {
+
+// An output that the camera watches.
+struct WatchedOutput {
+    ProjectorMap map;         // which of its pixels lights each camera pixel, when all stands as it should
+    glm::ivec2 projector{0};  // its pixels
+    double gamma = 2.2;       // light = stored ^ gamma
+};
+
+// What one camera picture says of one output.
+struct OutputSight {
+    // Where the picture is now: what was lit by projector pixel p is lit by shownFromPlace(p). The
+    // identity: nothing has moved.
+    Homography shownFromPlace;
+    double sigma = 0;      // standard deviation of that, rms over the picture, projector pixels
+    double gain = 0;       // contrast on the wall / what full light is said to give
+    double agreement = 0;  // correlation with the prediction where they agree at all, -1..1
+    double used = 0;       // share of the pixels with content that agree
+};
+
+// Watches the outputs on the wall while the show runs. It predicts what the camera sees from what
+// the projectors show, and registers that with what it does see. So it needs no test pictures
+// (Johnson & Fuchs 2007: predict the camera's picture, not the projector's). Thread: thread-bound.
+class WallWatch {
+public:
+    // `outputs`: nothing for an output that cannot be watched. `camera`: pixels of its picture.
+    // `dark`: the linear light that it sees when all outputs are black; empty: unknown.
+    WallWatch(const std::vector<std::optional<WatchedOutput>>& outputs, glm::ivec2 camera, const GreyImage& dark);
+    ~WallWatch();
+    WallWatch(const WallWatch&) = delete;
+    WallWatch& operator=(const WallWatch&) = delete;
+
+    bool watches(std::size_t output) const;
+    // The light of a frame by cells of the output's view, for look(). The output is watched.
+    GreyImage lightOf(std::size_t output, const RgbaImage& frame) const;
+    // Looks at a camera picture of the right size. `shown`: by output the light of the frame that
+    // was visible when the picture was exposed; null: unknown. The result is by output; nothing:
+    // the picture says nothing about this output, because it is dark, hidden or without content.
+    std::vector<std::optional<OutputSight>> look(const RgbaImage& picture, const std::vector<const GreyImage*>& shown);
+
+private:
+    struct Output;
+    GreyImage lightSeen(const RgbaImage& picture) const;
+
+    glm::ivec2 camera_;
+    int step_;  // camera pixels that count as one
+    GreyImage dark_;
+    std::vector<std::unique_ptr<Output>> outputs_;
+};
+
+}  // namespace fantascope::vision
