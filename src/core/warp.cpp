@@ -85,6 +85,21 @@ WarpShape WarpShape::scaled(glm::dvec2 factor) const {
     return result;
 }
 
+WarpShape WarpShape::moved(const Homography& map) const {
+    WarpShape result = *this;
+    for (glm::dvec2& corner : result.corners) corner = map(corner);
+    const auto before = Homography::fromCorners(rectangleCorners(1, 1), corners),
+               after = Homography::fromCorners(rectangleCorners(1, 1), result.corners);
+    if (mesh.points.x == 0 || !before || !after) return result;
+    for (int y = 0; y < mesh.points.y; ++y)
+        for (int x = 0; x < mesh.points.x; ++x) {
+            const glm::dvec2 on = glm::dvec2(x, y) / glm::dvec2(mesh.points - 1);
+            glm::dvec2& offset = result.mesh.offsets[static_cast<std::size_t>(y * mesh.points.x + x)];
+            offset = map((*before)(on) + offset) - (*after)(on);
+        }
+    return result;
+}
+
 Result<Warp> Warp::of(const WarpShape& shape) {
     const glm::dvec2 part = shape.part.high - shape.part.low;
     if (!(part.x > 0 && part.y > 0))

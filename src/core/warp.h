@@ -58,6 +58,9 @@ struct WarpShape {
 
     // The same on a projector with `factor` times as many pixels across and down.
     WarpShape scaled(glm::dvec2 factor) const;
+    // The same after a map of the projector's pixels: every point of the mesh, and every corner, is
+    // where `map` takes it. The map is nearly the identity.
+    WarpShape moved(const Homography& map) const;
     friend bool operator==(const WarpShape&, const WarpShape&) = default;
 };
 

@@ -22,11 +22,13 @@ struct CueList {
         std::string name = {};             // a revision of the list finds the cue by it
     };
     std::vector<Cue> cues;
-    bool loops = false;      // the first cue follows the last one, if the last one has a `follow`
-    Look dark;               // what is seen before the first cue: black pictures, levels 0, relays in their safe states
-    Time goInterval{};       // after a cue was entered, GO is ignored for this long
-    Time blackoutFade{};     // from full light to none and back
-    std::uint64_t seed = 1;  // of the show's own randomness: its gusts
+    bool loops = false;        // the first cue follows the last one, if the last one has a `follow`
+    Look dark;                 // what is seen before the first cue: black pictures, levels 0, relays in their safe states
+    Time goInterval{};         // after a cue was entered, GO is ignored for this long
+    double farthestShift = 0;  // a correction that moves a corner of a projector's picture farther is ignored, pixels
+    double shiftSpeed = 1;     // of the fastest corner, pixels per second
+    Time blackoutFade{};       // from full light to none and back
+    std::uint64_t seed = 1;    // of the show's own randomness: its gusts
 };
 
 }  // namespace fantascope::show

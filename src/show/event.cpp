@@ -36,6 +36,12 @@ struct Teller {
     }
     std::string operator()(const event::PictureTaken& picture) const { return "picture: " + picture.file.string(); }
     std::string operator()(const event::PictureMissed& picture) const { return "no picture: " + picture.why; }
+    std::string operator()(const event::PictureMoved& moved) const {
+        return fmt::format("the picture of '{}' has moved by {:.1f} px on the wall", moved.output, moved.px);
+    }
+    std::string operator()(const event::CameraMoved&) const {
+        return "the camera has moved: nothing is corrected any more; calibrate again after the show";
+    }
     std::string operator()(const event::SettingUpBegan&) const {
         return "setting up the outputs: the picture lists the keys, e ends it";
     }

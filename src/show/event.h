@@ -57,6 +57,13 @@ struct PictureTaken {
 struct PictureMissed {
     std::string why;
 };
+// The camera sees that an output's projector has moved.
+struct PictureMoved {
+    std::string output;
+    double px = 0;  // how far, rms over the picture, projector pixels
+};
+// The camera sees that it has moved itself.
+struct CameraMoved {};
 struct SettingUpBegan {};
 struct SettingUpEnded {
     bool saved = false;
@@ -68,8 +75,9 @@ struct SiteNotSaved {
     std::string why;
 };
 
-using What = std::variant<InputDecided, CueEntered, BlackoutChanged, ScheduleEnded, QuitAsked, FaultBegan, FaultEnded,
-                          SendersChanged, PictureTaken, PictureMissed, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+using What =
+    std::variant<InputDecided, CueEntered, BlackoutChanged, ScheduleEnded, QuitAsked, FaultBegan, FaultEnded, SendersChanged,
+                 PictureTaken, PictureMissed, PictureMoved, CameraMoved, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

@@ -4,17 +4,21 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 namespace fantascope::show {
 namespace {
 
-constexpr std::array<std::string_view, 7> kKinds = {"go", "back", "jump", "blackout", "dark", "light", "revise"};
-constexpr std::array<std::string_view, 6> kSources = {"start", "controller", "contact", "terminal", "screen", "schedule"};
-static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Revise) + 1);
-static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::Schedule) + 1);
+constexpr std::array<std::string_view, 9> kKinds = {"go",    "back",   "jump",    "blackout",   "dark",
+                                                    "light", "revise", "correct", "corrections"};
+constexpr std::array<std::string_view, 7> kSources = {"start",  "controller", "contact", "terminal",
+                                                      "screen", "schedule",   "camera"};
+static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Corrections) + 1);
+static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::Camera) + 1);
 
 std::vector<std::string_view> wordsOf(std::string_view line) {
     std::vector<std::string_view> words;
@@ -30,8 +34,9 @@ template <class Number>
 Result<Number> numberOf(std::string_view word) {
     Number number{};
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc() || end != word.data() + word.size())
-        return Error(fmt::format("'{}' is no whole number in range", word));
+    bool isNumber = error == std::errc() && end == word.data() + word.size();
+    if constexpr (std::is_floating_point_v<Number>) isNumber = isNumber && std::isfinite(number);
+    if (!isNumber) return Error(fmt::format("'{}' is no {}number in range", word, std::is_integral_v<Number> ? "whole " : ""));
     return number;
 }
 
@@ -60,25 +65,39 @@ std::string_view nameOf(Outcome outcome) {
             return "ignored: there is no such revision";
         case Outcome::OtherSite:
             return "ignored: it is for other outputs, lamps or relays";
+        case Outcome::NoSuchOutput:
+            return "ignored: there is no such output";
+        case Outcome::TooFar:
+            return "ignored: the site file allows no correction that far";
+        case Outcome::CorrectionsOff:
+            return "ignored: corrections are off";
     }
     return "unknown";
 }
 
 std::string lineOf(const Input& input) {
-    return fmt::format("{} {} {} {} {}", input.at.count(), kKinds[static_cast<std::size_t>(input.kind)],
-                       input.kind == Input::Kind::Revise ? input.revision : input.cue,
-                       kSources[static_cast<std::size_t>(input.source)], input.which);
+    std::string line = fmt::format("{} {} {} {} {}", input.at.count(), kKinds[static_cast<std::size_t>(input.kind)],
+                                   input.kind == Input::Kind::Revise ? input.revision : input.cue,
+                                   kSources[static_cast<std::size_t>(input.source)], input.which);
+    if (input.kind == Input::Kind::Correct)
+        for (const glm::vec2 corner : input.shift) line += fmt::format(" {} {}", corner.x, corner.y);
+    return line;
 }
 
 Result<Input> inputOf(std::string_view line) {
     const std::vector<std::string_view> words = wordsOf(line);
-    if (words.size() != 5) return Error(fmt::format("an input has 5 words, here are {}", words.size()));
+    constexpr std::size_t kWords = 5;
     Input input;
+    const std::size_t wanted = kWords + (words.size() > 1 && words[1] == "correct" ? 2 * input.shift.size() : 0);
+    if (words.size() != wanted) return Error(fmt::format("such an input has {} words, here are {}", wanted, words.size()));
     input.at = Time(TRY(numberOf<Time::rep>(words[0])));
     input.kind = TRY(choiceOf<Input::Kind>(words[1], kKinds));
     (input.kind == Input::Kind::Revise ? input.revision : input.cue) = TRY(numberOf<int>(words[2]));
     input.source = TRY(choiceOf<Input::Source>(words[3], kSources));
     input.which = TRY(numberOf<int>(words[4]));
+    if (input.kind == Input::Kind::Correct)
+        for (std::size_t i = 0; i < 2 * input.shift.size(); ++i)
+            input.shift[i / 2][static_cast<int>(i % 2)] = TRY(numberOf<float>(words[kWords + i]));
     return input;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "show/picture_shift.h"
+
 #include "core/clock.h"
 #include "core/result.h"
 
@@ -13,13 +15,15 @@ namespace fantascope::show {
 // lineOf() writes it as text.
 struct Input {
     enum class Kind {
-        Go,        // enter the next cue
-        Back,      // enter the cue before
-        Jump,      // enter cue `cue`; also if it is the current one
-        Blackout,  // toggle the blackout of pictures and fixtures
-        Dark,      // begin the blackout, if there is none
-        Light,     // end the blackout, if there is one
-        Revise     // continue with cue list `revision`
+        Go,          // enter the next cue
+        Back,        // enter the cue before
+        Jump,        // enter cue `cue`; also if it is the current one
+        Blackout,    // toggle the blackout of pictures and fixtures
+        Dark,        // begin the blackout, if there is none
+        Light,       // end the blackout, if there is one
+        Revise,      // continue with cue list `revision`
+        Correct,     // move the picture of output `which` to `shift`
+        Corrections  // toggle: take all corrections back and ignore further ones, or allow them again
     };
     // Where the input came from.
     enum class Source {
@@ -28,24 +32,37 @@ struct Input {
         Contact,     // Site::contacts[which]
         Terminal,    // a key at the terminal
         Screen,      // a key at a projector's window
-        Schedule     // GO by the schedule of a rehearsal without an operator
+        Schedule,    // GO by the schedule of a rehearsal without an operator
+        Camera       // what the camera sees of output `which`
     };
     Time at{};  // show time
     Kind kind = Kind::Go;
     int cue = 0;  // only for Jump: index into CueList::cues
     Source source = Source::Start;
     int which = 0;
-    int revision = 0;  // only for Revise: a number that InputLog::add() returned
+    int revision = 0;      // only for Revise: a number that InputLog::add() returned
+    PictureShift shift{};  // only for Correct
     friend bool operator==(const Input&, const Input&) = default;
 };
 
 // What became of an input.
-enum class Outcome { Taken, TooSoonAfterCue, AtLastCue, AtFirstCue, NoSuchCue, NoSuchRevision, OtherSite };
+enum class Outcome {
+    Taken,
+    TooSoonAfterCue,
+    AtLastCue,
+    AtFirstCue,
+    NoSuchCue,
+    NoSuchRevision,
+    OtherSite,
+    NoSuchOutput,
+    TooFar,
+    CorrectionsOff
+};
 // The outcome in words for the operator: "taken", "ignored: ...".
 std::string_view nameOf(Outcome outcome);
 
 // One line, without its end: show time in nanoseconds, kind, cue (of Revise: the revision), source,
-// which: "12500000000 jump 3 terminal 0".
+// which, of Correct also the shift: "12500000000 jump 3 terminal 0".
 std::string lineOf(const Input& input);
 // Reads a line that lineOf() wrote. Error: what is wrong with the line.
 Result<Input> inputOf(std::string_view line);

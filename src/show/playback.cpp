@@ -138,8 +138,23 @@ Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revis
         case Input::Kind::Revise:
             if (const Outcome outcome = revise(std::move(revision), at); outcome != Outcome::Taken) return outcome;
             break;
+        case Input::Kind::Correct:
+            if (const Outcome outcome = correct(input, *now.list, at); outcome != Outcome::Taken) return outcome;
+            break;
+        case Input::Kind::Corrections:
+            correctionsOff_ = !correctionsOff_;
+            if (correctionsOff_) shifts_.takeBack(at, now.list->shiftSpeed);
+            break;
     }
     taken_.push_back(at);
+    return Outcome::Taken;
+}
+
+Outcome Playback::correct(const Input& input, const CueList& list, Time at) {
+    if (input.which < 0 || static_cast<std::size_t>(input.which) >= list.dark.outputs.size()) return Outcome::NoSuchOutput;
+    if (correctionsOff_) return Outcome::CorrectionsOff;
+    if (farthestOf(input.shift) > list.farthestShift) return Outcome::TooFar;
+    shifts_.want(static_cast<std::size_t>(input.which), input.shift, at, list.shiftSpeed);
     return Outcome::Taken;
 }
 
@@ -266,6 +281,8 @@ void Playback::stateAt(Time time, ShowState& out) const {
     out.winds.resize(entry.outputs.size());
     std::transform(entry.outputs.begin(), entry.outputs.end(), out.winds.begin(),
                    [&](const OutputCourse& output) { return output.wind.at(time, lull); });
+    out.shifts.resize(entry.outputs.size());
+    for (std::size_t output = 0; output < out.shifts.size(); ++output) out.shifts[output] = shifts_.at(output, time);
     const Shutter* shutter = lastBy(time, shutters_);
     out.blackout = shutter && shutter->dark;
     if (const float light = lightAt(time); light < 1) dim(out, light);

@@ -3,6 +3,7 @@
 #include "show/course.h"
 #include "show/cue_list.h"
 #include "show/input.h"
+#include "show/picture_shift.h"
 #include "show/show_state.h"
 #include "show/wind.h"
 
@@ -36,6 +37,7 @@ namespace fantascope::show {
 //   fade, but in no less than the new `blackoutFade`. Its follow counts from when the cue was entered. If the cue is gone,
 //   what is seen stays until an input comes. GO then enters the cue after the nearest previous one that is still there. The
 //   past does not change.
+// - A correction moves an output's picture to a shift at the list's `shiftSpeed`. It does not depend on cues.
 //
 // Thread: const functions are reentrant. The others are bound to one thread at a time, and no const
 // function may run beside them.
@@ -115,6 +117,7 @@ private:
     void enter(int cue, Time at);
     void put(Entry entry);
     void followOn();
+    Outcome correct(const Input& input, const CueList& list, Time at);
     Outcome revise(std::shared_ptr<const CueList> list, Time at);
     Entry entered(const std::shared_ptr<const CueList>& list, int cue, Time at) const;
     void setOut(Entry& entry, const Look& look, const std::vector<WindWish>& winds, Time fade) const;
@@ -129,8 +132,10 @@ private:
     } composed_;                     // of all looks and outputs: an upper bound for one output in a chain of fades
     std::vector<Entry> entries_;     // by time, future ones last; the first one is the dark before any cue
     std::vector<Shutter> shutters_;  // by time
-    std::vector<Time> taken_;        // when each input took effect
-    Time newest_ = Time::min();      // the latest time of all inputs, including ignored ones
+    ShiftCourses shifts_;
+    bool correctionsOff_ = false;
+    std::vector<Time> taken_;    // when each input took effect
+    Time newest_ = Time::min();  // the latest time of all inputs, including ignored ones
 };
 
 }  // namespace fantascope::show

@@ -306,6 +306,8 @@ Result<CueList> Show::bind(const Site& site) const {
     list.goInterval = goInterval;
     list.blackoutFade = blackoutFade;
     list.seed = seed;
+    list.farthestShift = site.corrections.geometry.farthest;
+    list.shiftSpeed = site.corrections.geometry.speed;
     return list;
 }
 

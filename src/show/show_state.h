@@ -2,6 +2,7 @@
 // The show's only result: what is seen at one moment. Renderer and lighting read it and send
 // nothing back.
 
+#include "show/picture_shift.h"
 #include "show/source_id.h"
 
 #include "core/clock.h"
@@ -55,11 +56,12 @@ struct Look {
 // The look at one moment of show time. Value type. Reuse it from frame to frame: its vectors keep
 // their capacity.
 struct ShowState : Look {
-    std::vector<Wind> winds;   // one for each of Site::outputs
-    Time time{};               // show time
-    int cue = -1;              // index into Show::cues of the current cue; -1 before the first
-    bool blackout = false;     // pictures and fixtures are held dark
-    std::uint64_t inputs = 0;  // how many inputs have taken effect so far
+    std::vector<Wind> winds;           // one for each of Site::outputs
+    std::vector<PictureShift> shifts;  // one for each of Site::outputs
+    Time time{};                       // show time
+    int cue = -1;                      // index into Show::cues of the current cue; -1 before the first
+    bool blackout = false;             // pictures and fixtures are held dark
+    std::uint64_t inputs = 0;          // how many inputs have taken effect so far
     friend bool operator==(const ShowState&, const ShowState&) = default;
 };
 

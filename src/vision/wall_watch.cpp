@@ -3,6 +3,7 @@
 #include "core/check.h"
 
 #include <glm/common.hpp>
+#include <opencv2/calib3d.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +11,14 @@
 namespace fantascope::vision {
 namespace {
 
-constexpr int kWidth = 400;          // camera pixels across that are enough
-constexpr float kSaturated = 0.98f;  // linear light of a channel, from which on it says nothing
-constexpr double kGood = 0.5;        // agreement x share of the content: a picture that is found
-constexpr double kLost = 0.7;        // of the usual agreement: the picture may have moved far
-constexpr double kForgets = 0.1;     // weight of a new picture in what is usual
+constexpr int kWidth = 400;             // camera pixels across that are enough
+constexpr float kSaturated = 0.98f;     // linear light of a channel, from which on it says nothing
+constexpr double kGood = 0.5;           // agreement x share of the content: a picture that is found
+constexpr double kLost = 0.7;           // of the usual agreement: the picture may have moved far
+constexpr double kCorrelatedCells = 4;  // so many neighbouring cells say as much as one
+constexpr float kWellLit = 0.5f;        // light of a place whose texture can be seen
+constexpr double kSettled = 0.3;        // cells: a picture that has moved by less has not moved
+constexpr double kForgets = 0.1;        // weight of a new picture in what is usual
 
 // Bilinear between the middles of pixels; at the edge as the edge.
 float valueAt(const GreyImage& image, glm::vec2 at) {
@@ -39,12 +43,15 @@ double scoreOf(const std::optional<Registration>& found) {
 
 struct WallWatch::Output {
     OutputView view;
-    Image<glm::vec2> cell;  // by coarse camera pixel: the place in cells that lights it; NaN: none
-    GreyImage full;         // by coarse camera pixel: its full light
-    Homography now;         // in cells
-    double gain = 0;        // as usual; 0: unknown
-    double score = 0;       // as usual
-    int sinceWide = 99;     // pictures since the last wide search
+    bool isSurveyed;
+    Image<glm::vec2> cell;   // by coarse camera pixel: the place in cells that lights it; NaN: none
+    GreyImage full;          // by coarse camera pixel: its full light
+    Homography now;          // in cells
+    Homography reference{};  // in cells: `now` when the texture was learned
+    GreyImage texture{};     // by cell: how much brighter the surface is than its full light says; 0: unknown
+    double gain = 0;         // as usual; 0: unknown
+    double score = 0;        // as usual
+    int sinceWide = 99;      // pictures since the last wide search
 
     // What the camera gets of this output, by coarse camera pixels.
     void addTo(GreyImage& seen, const GreyImage& light) const {
@@ -57,7 +64,44 @@ struct WallWatch::Output {
             }
     }
     std::optional<Registration> find(const GreyImage& seen, const GreyImage& light, const GreyImage& mask);
+    double lookAtSurface(const GreyImage& seen, const GreyImage& light, const GreyImage& mask, const Registration& found);
 };
+
+// Compares the surface's texture, where it is well lit, with what it was there before, and with
+// what it was where the picture came from; learns it while nothing moves. Returns
+// OutputSight::surfaceStayed.
+double WallWatch::Output::lookAtSurface(const GreyImage& seen, const GreyImage& light, const GreyImage& mask,
+                                        const Registration& found) {
+    const Homography moved = reference.inverse() * found.expectedFromSeen;
+    const bool settled = rmsMovement(moved, {seen.width(), seen.height()}) < kSettled;
+    const GreyImage& strength = view.full();
+    double sum = 0, squares = 0;
+    for (int y = 0; y < seen.height(); ++y)
+        for (int x = 0; x < seen.width(); ++x) {
+            if (mask.at(x, y) <= 0) continue;
+            const glm::dvec2 middle(x + 0.5, y + 0.5);
+            const glm::ivec2 at(glm::floor(found.expectedFromSeen(middle)));
+            if (at.x < 1 || at.y < 1 || at.x + 2 > light.width() || at.y + 2 > light.height()) continue;
+            float least = 1;
+            for (int i = 0; i < 9; ++i) least = std::min(least, light.at(at.x + i % 3 - 1, at.y + i / 3 - 1));
+            if (least < kWellLit) continue;
+            const float ratio = seen.at(x, y) / static_cast<float>(found.gain) / light.at(at.x, at.y);
+            float& known = texture.at(x, y);
+            if (settled) {
+                known = known > 0 ? known + static_cast<float>(kForgets) * (ratio - known) : ratio;
+                continue;
+            }
+            const glm::ivec2 from(glm::floor(moved(middle)));
+            if (known <= 0 || from.x < 0 || from.y < 0 || from.x >= seen.width() || from.y >= seen.height()) continue;
+            const float there = texture.at(from.x, from.y) * strength.at(from.x, from.y) / strength.at(x, y);
+            if (there <= 0) continue;
+            const double difference =
+                std::clamp(double((ratio - there) * (ratio - there) - (ratio - known) * (ratio - known)), -1.0, 1.0);
+            sum += difference;
+            squares += difference * difference;
+        }
+    return squares > 0 ? sum / std::sqrt(kCorrelatedCells * squares) : 0;
+}
 
 // Follows the picture. A picture that is not found near its last place is searched for more widely,
 // but not with every camera picture, since that takes longer.
@@ -83,9 +127,13 @@ WallWatch::WallWatch(const std::vector<std::optional<WatchedOutput>>& outputs, g
         if (!watched) continue;
         const auto view = OutputView::of(watched->map, watched->projector, watched->gamma, step_);
         if (!view) continue;
-        outputs_.back() = std::make_unique<Output>(Output{
-            .view = *view, .cell = Image<glm::vec2>(coarse.x, coarse.y), .full = GreyImage(coarse.x, coarse.y), .now = {}});
+        outputs_.back() = std::make_unique<Output>(Output{.view = *view,
+                                                          .isSurveyed = watched->isSurveyed,
+                                                          .cell = Image<glm::vec2>(coarse.x, coarse.y),
+                                                          .full = GreyImage(coarse.x, coarse.y),
+                                                          .now = {}});
         Output& output = *outputs_.back();
+        output.texture = GreyImage(view->full().width(), view->full().height(), watched->isSurveyed ? 1.0f : 0.0f);
         const auto size = static_cast<float>(view->cellSize());
         for (int y = 0; y < coarse.y; ++y)
             for (int x = 0; x < coarse.x; ++x) {
@@ -162,11 +210,52 @@ std::vector<std::optional<OutputSight>> WallWatch::look(const RgbaImage& picture
         sights[i] =
             OutputSight{inPixels(found->expectedFromSeen, size), found->sigma * size, found->gain, found->agreement, found->used};
         if (scoreOf(found) < kGood) continue;
+        if (output.score == 0 && !output.isSurveyed) output.reference = found->expectedFromSeen;
+        sights[i]->surfaceStayed = output.lookAtSurface(onWall, *shown[i], mask, *found);
         output.now = found->expectedFromSeen;
         output.gain = output.gain == 0 ? found->gain : output.gain + kForgets * (found->gain - output.gain);
         output.score = output.score == 0 ? scoreOf(found) : output.score + kForgets * (scoreOf(found) - output.score);
     }
     return sights;
+}
+
+std::optional<CameraMovement> WallWatch::cameraMovement(const std::vector<const Homography*>& shownFromPlace) const {
+    constexpr int kEvery = 4;  // cells
+    std::vector<cv::Point2d> now, before;
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        if (!outputs_[i] || shownFromPlace[i] == nullptr) continue;
+        const OutputView& view = outputs_[i]->view;
+        const Image<glm::vec2>& camera = view.camera();
+        const double size = view.cellSize();
+        for (int y = 0; y < camera.height(); y += kEvery)
+            for (int x = 0; x < camera.width(); x += kEvery) {
+                if (view.full().at(x, y) <= 0) continue;
+                const glm::dvec2 from = (*shownFromPlace[i])((glm::dvec2(x, y) + 0.5) * size) / size - 0.5;
+                const glm::ivec2 corner(glm::floor(from));
+                if (corner.x < 0 || corner.y < 0 || corner.x + 1 >= camera.width() || corner.y + 1 >= camera.height()) continue;
+                const glm::vec2 share = glm::vec2(from - glm::dvec2(corner));
+                const glm::vec2 place = glm::mix(
+                    glm::mix(camera.at(corner.x, corner.y), camera.at(corner.x + 1, corner.y), share.x),
+                    glm::mix(camera.at(corner.x, corner.y + 1), camera.at(corner.x + 1, corner.y + 1), share.x), share.y);
+                if (place.x != place.x) continue;
+                now.emplace_back(camera.at(x, y).x, camera.at(x, y).y);
+                before.emplace_back(place.x, place.y);
+            }
+    }
+    constexpr std::size_t kLeastPlaces = 30;
+    if (now.size() < kLeastPlaces) return std::nullopt;
+    const cv::Mat found = cv::findHomography(now, before);
+    if (found.empty()) return std::nullopt;
+    std::vector<cv::Point2d> explained;
+    cv::perspectiveTransform(now, explained, found);
+    CameraMovement movement;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        const cv::Point2d by = now[i] - before[i], off = explained[i] - before[i];
+        movement.px += by.dot(by);
+        movement.missed += off.dot(off);
+    }
+    const auto count = static_cast<double>(now.size());
+    return CameraMovement{std::sqrt(movement.px / count), std::sqrt(movement.missed / count)};
 }
 
 }  // namespace fantascope::vision

@@ -14,6 +14,7 @@ namespace fantascope::vision {
 // An output that the camera watches.
 struct WatchedOutput {
     ProjectorMap map;         // which of its pixels lights each camera pixel, when all stands as it should
+    bool isSurveyed = false;  // `map` was measured, so its light shows the surface's texture too
     glm::ivec2 projector{0};  // its pixels
     double gamma = 2.2;       // light = stored ^ gamma
 };
@@ -27,6 +28,16 @@ struct OutputSight {
     double gain = 0;       // contrast on the wall / what full light is said to give
     double agreement = 0;  // correlation with the prediction where they agree at all, -1..1
     double used = 0;       // share of the pixels with content that agree
+    // Whether the surface stayed where it was in the camera's picture: it did if the projector
+    // moved, and moved with the picture if the camera did. In standard deviations; positive: the
+    // surface stayed; 0: it has no texture, or nothing moved.
+    double surfaceStayed = 0;
+};
+
+// A movement of the camera that explains how the pictures moved.
+struct CameraMovement {
+    double px = 0;      // rms movement of what the camera sees, its pixels
+    double missed = 0;  // rms of what such a movement does not explain, its pixels
 };
 
 // Watches the outputs on the wall while the show runs. It predicts what the camera sees from what
@@ -48,6 +59,9 @@ public:
     // was visible when the picture was exposed; null: unknown. The result is by output; nothing:
     // the picture says nothing about this output, because it is dark, hidden or without content.
     std::vector<std::optional<OutputSight>> look(const RgbaImage& picture, const std::vector<const GreyImage*>& shown);
+    // The movement of the camera that best explains movements of pictures, as OutputSight has them;
+    // null: an output that says nothing. Nothing: too few places are seen.
+    std::optional<CameraMovement> cameraMovement(const std::vector<const Homography*>& shownFromPlace) const;
 
 private:
     struct Output;

@@ -19,7 +19,8 @@ RgbaImage leaves(glm::ivec2 size, int count, std::uint64_t seed) {
         const double x = rng.uniform() * size.x, y = rng.uniform() * size.y, turn = rng.uniform() * 3.14,
                      length = (0.015 + 0.02 * rng.uniform()) * size.x, width = length * 0.4;
         for (int row = std::max(0, static_cast<int>(y - length)); row < std::min<double>(size.y, y + length); ++row)
-            for (int column = std::max(0, static_cast<int>(x - length)); column < std::min<double>(size.x, x + length); ++column) {
+            for (int column = std::max(0, static_cast<int>(x - length)); column < std::min<double>(size.x, x + length);
+                 ++column) {
                 const double u = (column - x) * std::cos(turn) + (row - y) * std::sin(turn),
                              v = (row - y) * std::cos(turn) - (column - x) * std::sin(turn);
                 if (u * u / (length * length) + v * v / (width * width) < 1) picture.at(column, row) = {255, 255, 255, 255};
@@ -47,7 +48,8 @@ ProjectorMap mapOf(const ProjectedWall& wall) {
 // Turns a projector about its own axes (degrees) and moves it (metres).
 CameraModel bumped(CameraModel projector, glm::dvec3 turn, glm::dvec3 move) {
     projector.pose.position += projector.pose.worldFromLocal * move;
-    projector.pose.worldFromLocal = projector.pose.worldFromLocal * rotationXyz({radians(turn.x), radians(turn.y), radians(turn.z)});
+    projector.pose.worldFromLocal =
+        projector.pose.worldFromLocal * rotationXyz({radians(turn.x), radians(turn.y), radians(turn.z)});
     return projector;
 }
 
@@ -71,7 +73,7 @@ TEST(WallWatch, finds_how_far_a_projector_was_turned) {
         ProjectedWall wall = slantedWall();
         wall.reflectance = bricks;
         wall.blur = 1;
-        const WatchedOutput watched{mapOf(wall), wall.projector.size, wall.gamma};
+        const WatchedOutput watched{mapOf(wall), true, wall.projector.size, wall.gamma};
         WallWatch watch({watched}, wall.camera.size, {});
         ASSERT_TRUE(watch.watches(0));
         ProjectedWall now = wall;
@@ -92,8 +94,9 @@ TEST(WallWatch, finds_how_far_a_projector_was_turned) {
                 continue;
             }
             std::printf("%g: moved %.2f error %.3f sigma %.3f gain %.3f agree %.3f used %.3f\n", degrees,
-                        rmsMovement(sights[0]->shownFromPlace, wall.projector.size), errorOf(sights[0]->shownFromPlace, wall, now),
-                        sights[0]->sigma, sights[0]->gain, sights[0]->agreement, sights[0]->used);
+                        rmsMovement(sights[0]->shownFromPlace, wall.projector.size),
+                        errorOf(sights[0]->shownFromPlace, wall, now), sights[0]->sigma, sights[0]->gain, sights[0]->agreement,
+                        sights[0]->used);
         }
     }
 }

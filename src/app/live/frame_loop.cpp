@@ -12,6 +12,19 @@
 #include <utility>
 
 namespace fantascope::app {
+namespace {
+
+// The warp of a picture that is shifted; as it is if a shift would fold it.
+Warp shifted(const Projection& projection, const show::PictureShift& shift) {
+    const auto corners = rectangleCorners(projection.size.x, projection.size.y);
+    auto moved = corners;
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += glm::dvec2(shift[i]);
+    const auto map = Homography::fromCorners(corners, moved);
+    const auto warp = map ? Warp::of(projection.warp.shape().moved(*map)) : Result<Warp>(projection.warp);
+    return warp ? *warp : projection.warp;
+}
+
+}  // namespace
 
 FrameLoop::FrameLoop(const show::Site& site, const show::InputLog& inputs, render::PictureSources sources,
                      std::filesystem::path assets, Devices& devices, Clock& clock)
@@ -225,18 +238,25 @@ Result<void> FrameLoop::prepare() {
     return Error("output '" + faulted->site.name + "': " + faults_[static_cast<std::size_t>(faulted - outputs_.data())]);
 }
 
-void FrameLoop::followSettings(Output& output) {
-    if (!output.settings->update() && !output.fresh) return;
-    output.fresh = false;
-    if (!output.settings->value()) return;  // the site file's settings hold
-    const OutputSettings& wanted = *output.settings->value();
+// The settings that hold: those from setting up, else the site file's. While an output is set up
+// its picture is not shifted, because the technician decides where it stands.
+void FrameLoop::followSettings(Output& output, const show::PictureShift& shift) {
+    const bool isNew = output.settings->update() || output.fresh;
+    const std::shared_ptr<const OutputSettings>& set = output.settings->value();
+    const show::PictureShift now = set && set->overlay ? show::PictureShift{} : shift;
+    if (!isNew && now == output.shift) return;
+    const bool asMade = std::exchange(output.fresh, false) && !set && now == show::PictureShift{};
+    output.shift = now;
+    if (asMade) return;
+    OutputSettings wanted = set ? *set : OutputSettings{output.site.projection, output.blend, nullptr, nullptr};
+    if (now != show::PictureShift{}) wanted.projection.warp = shifted(wanted.projection, now);
     const auto followed = [&]() -> Result<void> {
         // Only a renderer that was made for a mesh draws a mesh exactly.
         if (wanted.projection.warp.bends() && !output.bends)
             TRY(makeRenderer(output, wanted.projection, wanted.blend));
         else
             TRY(output.renderer->follow(wanted.projection, wanted.blend));
-        return output.renderer->setUp(wanted.overlay.get(), wanted.card.get());
+        return isNew ? output.renderer->setUp(wanted.overlay.get(), wanted.card.get()) : Result<void>();
     }();
     tell(unfollowed_, output, followed ? "" : "it keeps its previous settings: " + followed.error().message());
 }
@@ -247,15 +267,16 @@ void FrameLoop::spend(Output& output, FramePart part, Time time) {
     spent_[index] += time;
 }
 
-void FrameLoop::draw(Output& output, const show::OutputState& state, const Wind& wind, Time showTime) {
+void FrameLoop::draw(std::size_t number, Time showTime) {
+    Output& output = outputs_[number];
     output.drawn = false;
     output.spent = {};
     if (!output.running) return;  // its status says why, and it comes back by itself
     inHand(output);
     const Time began = clock_.now();
     if (!ready(output, began)) return;
-    followSettings(output);
-    output.renderer->draw(state, wind, showTime, output.display.framebuffer());
+    followSettings(output, state_.shifts[number]);
+    output.renderer->draw(state_.outputs[number], state_.winds[number], showTime, output.display.framebuffer());
     if (output.tap) output.tap->capture(output.display.framebuffer(), showTime);
     const Time uploading = output.renderer->uploading();
     spend(output, FramePart::Upload, uploading);
@@ -366,8 +387,7 @@ void FrameLoop::step() {
 
     Time oldestInput = Time::max();
     replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput = std::min(oldestInput, input.at); });
-    for (std::size_t i = 0; i < outputs_.size(); ++i)
-        alone(outputs_[i], [&] { draw(outputs_[i], state_.outputs[i], state_.winds[i], showTime); });
+    for (std::size_t i = 0; i < outputs_.size(); ++i) alone(outputs_[i], [&] { draw(i, showTime); });
     for (Output& output : outputs_) alone(output, [&] { finish(output); });
 
     // The leader waits for its refresh; the others show their frames with it.

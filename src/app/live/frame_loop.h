@@ -119,6 +119,7 @@ private:
         std::unique_ptr<render::OutputRenderer> renderer{};  // made as soon as the display has a context
         std::unique_ptr<render::FrameTap> tap{};             // null: nobody reads the frames
         int context = 0;                                     // the display's context that renderer and tap belong to
+        show::PictureShift shift{};                          // of the warp that the renderer has
         bool fresh = false;                                  // the renderer has only the site file's settings
         bool faulted = false;                                // the last attempt failed
         Time retryAt{}, pause{};                             // when the next attempt is due; the back-off
@@ -154,8 +155,8 @@ private:
     bool becomesCurrent(Output& output) noexcept;
     void forget(Output& output);
     void inHand(const Output& output);
-    void followSettings(Output& output);
-    void draw(Output& output, const show::OutputState& state, const Wind& wind, Time showTime);
+    void followSettings(Output& output, const show::PictureShift& shift);
+    void draw(std::size_t output, Time showTime);
     void finish(Output& output);
     using Presenting = std::function<Result<Shown>(DisplaySink&)>;
     void show(Output& output, const Presenting& present);

@@ -236,6 +236,7 @@ Result<Programme> readProgramme(const RunOptions& options) {
         TRY(readPictures(programme.show, {options.asFastAsPossible ? Pace::Exact : Pace::Live, programme.camera, isWatched}));
     programme.sources = std::move(pictures.sources);
     programme.comparisons = TRY(compareWith(pictures.guides, programme.site));
+    programme.watched = TRY(watchedOutputsOf(programme.site));
     return programme;
 }
 

@@ -31,6 +31,8 @@ struct Programme {
     render::PictureSources sources;               // in the order of Show::sources
     std::shared_ptr<render::PictureFeed> camera;  // the pictures of camera sources; null if the site has no camera
     std::vector<Watch::Comparisons> comparisons;  // [output]
+    std::vector<std::optional<vision::WatchedOutput>>
+        watched;  // [output]; nothing: it cannot be watched, or the site does not want it
 };
 
 // Reads a pattern with its movement, ready to be drawn. Error: as pattern::readPattern.

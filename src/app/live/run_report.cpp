@@ -106,6 +106,13 @@ Report jsonOf(const RunReport& report) {
         json["z_camera"][output] = Report::array();
         for (const auto& [time, z] : series) json["z_camera"][output].push_back({seconds(time), z});
     }
+    json["watch"] = Report::object();
+    for (const auto& [output, series] : report.watch) {
+        json["watch"][output] = Report::array();
+        for (const DriftReport& drift : series)
+            json["watch"][output].push_back(
+                {{"at", seconds(drift.at)}, {"drift_px", drift.drift}, {"sigma_px", drift.sigma}, {"moved_px", drift.corrected}});
+    }
     return json;
 }
 

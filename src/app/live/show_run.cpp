@@ -71,6 +71,8 @@ public:
                         [](render::FrameTap& tap) { return &tap.addNewest(std::numeric_limits<double>::infinity()); })),
           recorder_(recorderOf(recording)),
           recordingIsOpen_(recording != nullptr),
+          watched_(readers(std::ranges::any_of(programme.watched, [](const auto& output) { return output.has_value(); }),
+                           [](render::FrameTap& tap) { return &tap.addNewest(0); })),
           pictured_(readers(attended_, [](render::FrameTap& tap) { return &tap.addNewest(0); })),
           prepared_(frames_.prepare()),
           showClock_(frames_.refreshFrom(clock.now() + kStartUp)),
@@ -79,6 +81,9 @@ public:
           hand_(programme.show, inputs_, programme.site, openSite.devices, showClock_, events_),
           watch_(programme.show, namesOf(programme.site.outputs), programme.comparisons, openSite.devices.camera.get(),
                  programme.camera.get(), showClock_, recording),
+          driftWatch_(watched_.empty() ? nullptr
+                                       : std::make_unique<DriftWatch>(programme.site, programme.watched, GreyImage(), watched_,
+                                                                      inputs_, events_, showClock_)),
           settingUp_(programme.site, frames_, openSite.devices, showClock_, events_),
           keys_(inputs_, events_, showClock_, std::move(terminal_), scheduleOf(options, programme),
                 QuitKey(options.backends == Backends::AsDeclared), keyActions()),
@@ -90,6 +95,7 @@ public:
         if (!options.asFastAsPossible) frames_.makeRenderersAside();
         if (recorder_) recorder_->begin(showClock_.runStart());
         frames_.publishStateTo(watch_.shown());
+        if (driftWatch_) watch_.alsoWatch(*driftWatch_, [this] { return settingUp_.on(); });
         hand_.edit = [this](show::Button button, bool pressed) { settingUp_.button(button, pressed); };
         hand_.editing = [this] { return settingUp_.on(); };
         if (!pictured_.empty())
@@ -212,6 +218,9 @@ public:
         report.yardstickTicks = yardstick_.ticks();
         report.yardstickLate = yardstick_.late();
         report.zCamera = watch_.series();
+        if (driftWatch_)
+            for (std::size_t i = 0; i < programme_.site.outputs.size(); ++i)
+                report.watch[programme_.site.outputs[i].name] = driftWatch_->series()[i];
         for (const show::Source& source : programme_.show.sources)
             if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources.find(source.id)->picture)) {
                 const std::string& name = source.name;
@@ -349,6 +358,7 @@ private:
     std::vector<render::NewestFrame*> wall_;      // what simulated projectors throw; empty if they are real
     std::unique_ptr<FrameRecorder> recorder_;     // null: nothing is recorded
     std::atomic<bool> recordingIsOpen_;           // its files are not finished yet
+    std::vector<render::NewestFrame*> watched_;   // empty unless the camera watches where the pictures stand
     std::vector<render::NewestFrame*> pictured_;  // empty unless somebody at the terminal can press keys
     Result<void> prepared_;
     const show::ShowClock showClock_;  // starts with a refresh, after everything slow
@@ -356,6 +366,7 @@ private:
     Lighting lighting_;
     Hand hand_;
     Watch watch_;
+    std::unique_ptr<DriftWatch> driftWatch_;  // null: nothing is watched
     SettingUp settingUp_;
     OperatorKeys keys_;
     RunView view_;  // belongs to the progress part

@@ -35,9 +35,10 @@ const vision::GuideComparison* Watch::comparisonOf(std::size_t output) const {
     return comparison;
 }
 
-void Watch::tick(Time) {
+void Watch::tick(Time moment) {
     if (camera_ == nullptr) return;
     shown_.update();
+    if (drifts_ != nullptr) drifts_->tick(moment);
     const auto frame = camera_->newest();
     if (!frame) return;
     if (pictures_ != nullptr) pictures_->publish({frame, &frame->image});
@@ -50,6 +51,7 @@ void Watch::tick(Time) {
             scores_[output] = *z;
         }
     }
+    if (drifts_ != nullptr) drifts_->see(*frame, shown_.value(), isSettingUp_(), moment);
     keepForCue(shown_.value().cue, frame, showTime);
 }
 

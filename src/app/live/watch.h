@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/live/recording.h"
+#include "app/watch/drift_watch.h"
 
 #include "render/source/picture_feed.h"
 #include "show/show.h"
@@ -12,9 +13,11 @@
 #include "core/latest_value.h"
 
 #include <atomic>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fantascope::app {
@@ -32,6 +35,13 @@ public:
     // `pictures`.
     Watch(const show::Show& show, std::vector<std::string> outputs, std::vector<Comparisons> comparisons, CameraSource* camera,
           render::PictureFeed* pictures, const show::ShowClock& showClock, Recording* recording);
+
+    // Also watches where the pictures stand. `drifts` outlives this. `isSettingUp`: whether a
+    // technician moves them now; thread-safe.
+    void alsoWatch(DriftWatch& drifts, std::function<bool()> isSettingUp) {
+        drifts_ = &drifts;
+        isSettingUp_ = std::move(isSettingUp);
+    }
 
     // Hz; how often the camera is polled for a new frame.
     static constexpr double kRate = 50;
@@ -60,6 +70,8 @@ private:
     render::PictureFeed* pictures_;
     const show::ShowClock showClock_;
     Recording* recording_;
+    DriftWatch* drifts_ = nullptr;
+    std::function<bool()> isSettingUp_;
     LatestValue<show::ShowState> shown_;
     std::vector<std::atomic<double>> scores_;
     Seen last_;

@@ -152,4 +152,15 @@ Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site,
     return std::optional(view);
 }
 
+Result<std::vector<std::optional<vision::WatchedOutput>>> watchedOutputsOf(const show::Site& site) {
+    constexpr double kUsualGamma = 2.2;
+    std::vector<std::optional<vision::WatchedOutput>> watched(site.outputs.size());
+    if (!site.camera || site.corrections.geometry.mode == show::Corrections::Mode::Off) return watched;
+    for (std::size_t i = 0; i < site.outputs.size(); ++i)
+        if (const auto view = TRY(nominalViewOf(site, i, 1, Fit::Stretch)))
+            watched[i] = vision::WatchedOutput{vision::nominalMap(*view), false, site.outputs[i].size(),
+                                               site.outputs[i].projection.light.gamma.value_or(kUsualGamma)};
+    return watched;
+}
+
 }  // namespace fantascope::app

@@ -7,6 +7,7 @@
 #include "render/canvas/blend_map.h"
 #include "show/site/site.h"
 #include "vision/guide_comparison.h"
+#include "vision/wall_watch.h"
 
 #include "core/fit.h"
 #include "core/result.h"
@@ -39,5 +40,9 @@ double canvasAspectOf(const show::Site& site, const std::string& canvas);
 // camera are: then the output is not scored.
 Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site, std::size_t output, double pictureAspect,
                                                          Fit fit);
+
+// The outputs that the camera can watch, by output: those of which the site says where projector,
+// surface and camera are. None if the site wants no correction of geometry, not even advice.
+Result<std::vector<std::optional<vision::WatchedOutput>>> watchedOutputsOf(const show::Site& site);
 
 }  // namespace fantascope::app

@@ -1,0 +1,134 @@
+#include "app/watch/drift_watch.h"
+
+#include "vision/registration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+using vision::Drift;
+using vision::Moved;
+
+constexpr Time kLeastStep = std::chrono::milliseconds(90);  // between pictures that are looked at
+constexpr Time kSure = std::chrono::milliseconds(700);      // a movement must be seen for so long
+constexpr Time kRefines = std::chrono::seconds(4);          // after a correction, small ones may follow
+constexpr double kRefinement = 0.25;                        // pixels: a smaller one is not worth it
+constexpr double kSlowestCamera = 2;                        // seconds between pictures, from which on nothing is predicted
+
+double rmsOf(const show::PictureShift& shift, glm::ivec2 size) {
+    const auto corners = rectangleCorners(size.x, size.y);
+    auto moved = corners;
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += glm::dvec2(shift[i]);
+    const auto map = Homography::fromCorners(corners, moved);
+    return map ? vision::rmsMovement(*map, size) : 0;
+}
+
+std::vector<ShownLight::Output> watchedOf(const show::Site& site, const vision::WallWatch& wall,
+                                          const std::vector<render::NewestFrame*>& frames) {
+    std::vector<ShownLight::Output> outputs;
+    for (std::size_t i = 0; i < site.outputs.size(); ++i)
+        outputs.push_back({wall.watches(i) ? frames[i] : nullptr, site.outputs[i].refreshRate});
+    return outputs;
+}
+
+}  // namespace
+
+DriftWatch::DriftWatch(const show::Site& site, const std::vector<std::optional<vision::WatchedOutput>>& outputs,
+                       const GreyImage& dark, const std::vector<render::NewestFrame*>& frames, show::InputLog& inputs,
+                       show::EventLog& events, const show::ShowClock& showClock)
+    : site_(site),
+      inputs_(inputs),
+      events_(events),
+      showClock_(showClock),
+      wall_(outputs, site.nominalCamera->size, dark),
+      light_(watchedOf(site, wall_, frames), wall_, showClock),
+      settled_(site.outputs.size()),
+      settledAt_(site.outputs.size(), Time::min() / 2),
+      series_(site.outputs.size()) {
+    for (std::size_t i = 0; i < site.outputs.size(); ++i)
+        tracks_.emplace_back(site.outputs[i].size(), outputs[i] && outputs[i]->isSurveyed);
+}
+
+void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, bool isSettingUp, Time now) {
+    const glm::ivec2 size = site_.nominalCamera->size;
+    if (frame.image.width() != size.x || frame.image.height() != size.y) return;
+    const auto pictures = static_cast<Time::rep>(frame.sequence - sequence_);
+    if (exposed_ != Time::min() && pictures > 0 && seconds(frame.exposed - exposed_) < kSlowestCamera)
+        light_.exposed(frame.exposed, (frame.exposed - exposed_) / pictures);
+    exposed_ = frame.exposed;
+    sequence_ = frame.sequence;
+    if (std::exchange(wasSettingUp_, isSettingUp) || isSettingUp) {
+        for (vision::DriftTrack& track : tracks_) track.forget();
+        std::ranges::fill(settled_, std::nullopt);
+        return;
+    }
+    if (looked_ != Time::min() && frame.exposed - looked_ < kLeastStep) return;
+    looked_ = frame.exposed;
+    std::vector<const GreyImage*> lights;
+    for (std::size_t i = 0; i < tracks_.size(); ++i) lights.push_back(wall_.watches(i) ? light_.at(i, frame.exposed) : nullptr);
+    const auto sights = wall_.look(frame.image, lights);
+    for (std::size_t i = 0; i < tracks_.size(); ++i) tracks_[i].add(frame.exposed, sights[i]);
+    decide(showClock_.showTime(now));
+    note(shown, showClock_.showTime(frame.exposed));
+}
+
+void DriftWatch::decide(Time showTime) {
+    if (cameraMoved_) return;
+    std::vector<std::optional<Drift>> since(tracks_.size());  // since all was right
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+        if (!tracks_[i].now()) continue;
+        since[i] = tracks_[i].now();
+        if (!settled_[i]) settled_[i] = Homography();
+        since[i]->moved = since[i]->moved * settled_[i]->inverse();
+        since[i]->px = vision::rmsMovement(since[i]->moved, site_.outputs[i].size());
+    }
+    const Moved moved = vision::whatMoved(wall_, since);
+    if (moved != moved_) movedSince_ = showTime;
+    moved_ = moved;
+    const bool isLasting = showTime - movedSince_ >= kSure;
+    if (moved == Moved::Camera && isLasting) {
+        cameraMoved_ = true;
+        events_.append({showTime, show::event::CameraMoved{}});
+        return;
+    }
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+        if (!since[i]) continue;
+        const bool moves = moved == Moved::Projectors && isLasting && since[i]->isSure();
+        const bool refines =
+            showTime - settledAt_[i] < kRefines && since[i]->px > kRefinement && since[i]->px > 3 * since[i]->sigma;
+        if (!moves && !refines) continue;
+        settled_[i] = tracks_[i].now()->moved;
+        if (moves) {
+            settledAt_[i] = showTime;
+            events_.append({showTime, show::event::PictureMoved{site_.outputs[i].name, since[i]->px}});
+        }
+        correct(i, *tracks_[i].now(), showTime);
+    }
+}
+
+void DriftWatch::correct(std::size_t output, const Drift& drift, Time showTime) {
+    if (site_.corrections.geometry.mode != show::Corrections::Mode::Automatic) return;
+    const glm::ivec2 size = site_.outputs[output].size();
+    const auto corners = rectangleCorners(size.x, size.y);
+    show::Input input{.at = showTime,
+                      .kind = show::Input::Kind::Correct,
+                      .source = show::Input::Source::Camera,
+                      .which = static_cast<int>(output)};
+    for (std::size_t i = 0; i < corners.size(); ++i) input.shift[i] = glm::vec2(drift.moved(corners[i]) - corners[i]);
+    inputs_.submit(input);
+}
+
+void DriftWatch::note(const show::ShowState& shown, Time showTime) {
+    if (showTime - noted_ < std::chrono::seconds(1) && noted_ != Time::min()) return;
+    noted_ = showTime;
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+        if (!tracks_[i].now()) continue;
+        const double corrected = i < shown.shifts.size() ? rmsOf(shown.shifts[i], site_.outputs[i].size()) : 0;
+        series_[i].push_back({showTime, tracks_[i].now()->px, tracks_[i].now()->sigma, corrected});
+    }
+}
+
+}  // namespace fantascope::app

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "app/watch/shown_light.h"
+
+#include "show/event.h"
+#include "show/input_log.h"
+#include "show/show_clock.h"
+#include "show/show_state.h"
+#include "show/site/site.h"
+#include "vision/drift_track.h"
+#include "vision/wall_watch.h"
+#include "vision/what_moved.h"
+
+#include "device/camera_source.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fantascope::app {
+
+// What was known of an output's place at a moment.
+struct DriftReport {
+    Time at{};             // show time
+    double drift = 0;      // how far the picture has moved on the wall without corrections, rms, projector pixels
+    double sigma = 0;      // standard deviation of that
+    double corrected = 0;  // how far the picture is moved against it
+};
+
+// Watches where the outputs' pictures stand on the wall, and brings them back if the site says so.
+// A correction is an input like a press of GO: it is bounded, logged, and taken back by one key.
+// Once the camera itself has moved nothing is corrected until the site is calibrated again.
+//
+// Since the prediction already contains the shift that is shown, the measured drift does not depend
+// on the corrections: there is no loop that could swing, whatever the camera's latency.
+// Thread: bound to the vision thread; the results once it has ended.
+class DriftWatch {
+public:
+    // All arguments by reference or pointer outlive this, except `showClock`. `outputs`: by output;
+    // nothing: it cannot be watched. `frames`: by output, made with rate 0; null: it is not
+    // watched.
+    DriftWatch(const show::Site& site, const std::vector<std::optional<vision::WatchedOutput>>& outputs, const GreyImage& dark,
+               const std::vector<render::NewestFrame*>& frames, show::InputLog& inputs, show::EventLog& events,
+               const show::ShowClock& showClock);
+
+    void tick(Time now) { light_.tick(now); }
+    // Takes a picture of the camera. `shown`: the state that is shown. `isSettingUp`: a technician
+    // moves the pictures; where they stand afterwards is where they belong.
+    void see(const CameraFrame& frame, const show::ShowState& shown, bool isSettingUp, Time now);
+
+    // By output, one a second.
+    const std::vector<std::vector<DriftReport>>& series() const { return series_; }
+
+private:
+    void decide(Time showTime);
+    void correct(std::size_t output, const vision::Drift& drift, Time showTime);
+    void note(const show::ShowState& shown, Time showTime);
+
+    const show::Site& site_;
+    show::InputLog& inputs_;
+    show::EventLog& events_;
+    const show::ShowClock showClock_;
+    vision::WallWatch wall_;
+    ShownLight light_;
+    Time exposed_ = Time::min(), looked_ = Time::min();
+    std::uint64_t sequence_ = 0;
+    std::vector<vision::DriftTrack> tracks_;
+    std::vector<std::optional<Homography>> settled_;  // by output: where the picture stood when all was right
+    std::vector<Time> settledAt_;                     // show time
+    vision::Moved moved_ = vision::Moved::Nothing;    // what seems to have moved
+    Time movedSince_{};                               // show time
+    bool cameraMoved_ = false, wasSettingUp_ = false;
+    std::vector<std::vector<DriftReport>> series_;
+    Time noted_ = Time::min();
+};
+
+}  // namespace fantascope::app

@@ -1,0 +1,61 @@
+#include "app/watch/shown_light.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace fantascope::app {
+namespace {
+
+constexpr std::size_t kKept = 24;                           // frames: more than a camera's latency lets wait
+constexpr Time kLeastStep = std::chrono::milliseconds(95);  // between the pictures that are looked at
+constexpr Time kAhead = std::chrono::milliseconds(80);      // a frame is drawn so long before it is visible
+constexpr double kTolerance = 0.5;                          // of a refresh period, for the inaccuracy of both moments
+
+Time periodOf(double rate) { return fromSeconds(1 / rate); }
+
+}  // namespace
+
+ShownLight::ShownLight(std::vector<Output> outputs, const vision::WallWatch& wall, const show::ShowClock& showClock)
+    : wall_(wall), showClock_(showClock) {
+    for (const Output& output : outputs) outputs_.push_back({output, {}});
+}
+
+void ShownLight::exposed(Time at, Time period) {
+    exposed_ = at;
+    period_ = period;
+}
+
+void ShownLight::tick(Time now) {
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        Kept& kept = outputs_[i];
+        if (kept.output.frames == nullptr) continue;
+        const render::ShownFrame* const frame = kept.output.frames->next(now);
+        if (frame == nullptr) continue;
+        if (kept.frames.size() >= kKept) kept.frames.pop_front();
+        kept.frames.push_back({frame->shown.at, wall_.lightOf(i, frame->image)});
+    }
+    // The frames of one exposure are drawn before those of the next are asked for.
+    if (period_ <= Time{} || now + kAhead < askedFor_ + period_ / 2) return;
+    const Time soonest = std::max(now + kAhead, askedFor_ + kLeastStep);
+    const auto steps = soonest > exposed_ ? (soonest - exposed_ + period_ - Time(1)) / period_ : 0;
+    askedFor_ = exposed_ + steps * period_;
+    for (const Kept& kept : outputs_)
+        if (kept.output.frames != nullptr)
+            kept.output.frames->ask(showClock_.showTime(askedFor_ - periodOf(kept.output.refreshRate) + Time(1)));
+}
+
+const GreyImage* ShownLight::at(std::size_t output, Time moment) const {
+    const Kept& kept = outputs_[output];
+    const Time period = periodOf(kept.output.refreshRate), tolerance = fromSeconds(kTolerance * seconds(period));
+    const GreyImage* nearest = nullptr;
+    Time least = period / 2 + tolerance;
+    for (const Frame& frame : kept.frames) {
+        const Time off = frame.visible + period / 2 - moment, distance = off < Time{} ? -off : off;
+        if (distance > least) continue;
+        least = distance;
+        nearest = &frame.light;
+    }
+    return nearest;
+}
+
+}  // namespace fantascope::app

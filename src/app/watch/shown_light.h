@@ -1,0 +1,51 @@
+#pragma once
+
+#include "render/frame_tap.h"
+#include "show/show_clock.h"
+#include "vision/wall_watch.h"
+
+#include "core/clock.h"
+#include "media/image.h"
+
+#include <cstddef>
+#include <deque>
+#include <vector>
+
+namespace fantascope::app {
+
+// The light that the projectors gave at the moments when the camera exposed its pictures. It asks
+// the outputs for their frames of these moments only, because copying frames is expensive.
+// Thread: bound to the vision thread.
+class ShownLight {
+public:
+    struct Output {
+        render::NewestFrame* frames = nullptr;  // made with rate 0; null: this output is not watched
+        double refreshRate = 60;                // Hz
+    };
+    // All arguments by reference or pointer outlive this, except `showClock`.
+    ShownLight(std::vector<Output> outputs, const vision::WallWatch& wall, const show::ShowClock& showClock);
+
+    // Notes when a picture was exposed. Later pictures are expected at the same steps.
+    void exposed(Time at, Time period);
+    // Takes the frames that have come, and asks for the next ones.
+    void tick(Time now);
+    // The light of the frame that was visible at `moment`, by cells; null: it is not known.
+    const GreyImage* at(std::size_t output, Time moment) const;
+
+private:
+    struct Frame {
+        Time visible{};
+        GreyImage light;
+    };
+    struct Kept {
+        Output output;
+        std::deque<Frame> frames;  // oldest first
+    };
+    std::vector<Kept> outputs_;
+    const vision::WallWatch& wall_;
+    const show::ShowClock showClock_;
+    Time exposed_{}, period_{};  // of the newest picture; the period is 0 until it is known
+    Time askedFor_{};            // the exposure that the frames were asked for last
+};
+
+}  // namespace fantascope::app

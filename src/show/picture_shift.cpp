@@ -1,0 +1,41 @@
+#include "show/picture_shift.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <iterator>
+
+namespace fantascope::show {
+
+float farthestOf(const PictureShift& shift) {
+    float farthest = 0;
+    for (const glm::vec2 corner : shift) farthest = std::max(farthest, glm::length(corner));
+    return farthest;
+}
+
+void ShiftCourses::want(std::size_t output, const PictureShift& shift, Time at, double speed) {
+    if (steps_.size() <= output) steps_.resize(output + 1);
+    const PictureShift from = this->at(output, at);
+    PictureShift way;
+    for (std::size_t i = 0; i < way.size(); ++i) way[i] = shift[i] - from[i];
+    steps_[output].push_back({at, fromSeconds(farthestOf(way) / speed), from, shift});
+}
+
+void ShiftCourses::takeBack(Time at, double speed) {
+    for (std::size_t output = 0; output < steps_.size(); ++output) want(output, {}, at, speed);
+}
+
+PictureShift ShiftCourses::at(std::size_t output, Time time) const {
+    if (output >= steps_.size()) return {};
+    const auto next = std::ranges::upper_bound(steps_[output], time, {}, &Step::at);
+    if (next == steps_[output].begin()) return {};
+    const Step& step = *std::prev(next);
+    if (time - step.at >= step.length) return step.to;
+    const auto share = static_cast<float>(seconds(time - step.at) / seconds(step.length));
+    PictureShift shift;
+    for (std::size_t i = 0; i < shift.size(); ++i) shift[i] = glm::mix(step.from[i], step.to[i], share);
+    return shift;
+}
+
+}  // namespace fantascope::show

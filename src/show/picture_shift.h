@@ -1,0 +1,40 @@
+#pragma once
+
+#include "core/clock.h"
+
+#include <glm/vec2.hpp>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace fantascope::show {
+
+// How an output's picture is moved on its projector, to follow a projector that has moved: by how
+// much the corners of the projector's whole picture are, in its pixels, clockwise from the top
+// left. All zero: as the site file says.
+using PictureShift = std::array<glm::vec2, 4>;
+
+// How far the corner that moves farthest does, pixels.
+float farthestOf(const PictureShift& shift);
+
+// The shifts of all outputs in time. Each moves from where it is to where it is wanted at a
+// constant speed, so nobody sees it jump. A pure function of time and of the calls so far. Thread:
+// const functions are reentrant.
+class ShiftCourses {
+public:
+    // `speed`: of the fastest corner, pixels per second.
+    void want(std::size_t output, const PictureShift& shift, Time at, double speed);
+    // Takes all shifts back.
+    void takeBack(Time at, double speed);
+    PictureShift at(std::size_t output, Time time) const;
+
+private:
+    struct Step {
+        Time at{}, length{};
+        PictureShift from{}, to{};
+    };
+    std::vector<std::vector<Step>> steps_;  // by output, by time
+};
+
+}  // namespace fantascope::show
