@@ -11,6 +11,7 @@ constexpr Time kWindow = std::chrono::seconds(1);
 constexpr std::size_t kLeastSights = 5;
 constexpr double kGoodSight = 0.5;  // agreement x share of the content
 constexpr double kSharpSight = 2;   // standard deviation, pixels
+constexpr int kReferences = 200;    // estimates: twenty seconds
 constexpr double kMostSpread = 3;   // of the sights about their median, pixels: more is no agreement
 
 double medianOf(std::vector<double> values) {
@@ -33,9 +34,9 @@ void DriftTrack::add(Time at, const std::optional<OutputSight>& sight) {
         place.isGood = true;
         place.sigma = sight->sigma;
         place.surfaceStayed = sight->surfaceStayed;
-        const auto corners = rectangleCorners(projector_.x, projector_.y);
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            const glm::dvec2 now = sight->shownFromPlace(corners[i]);
+        const auto from = corners();
+        for (std::size_t i = 0; i < from.size(); ++i) {
+            const glm::dvec2 now = sight->shownFromPlace(from[i]);
             place.corners[2 * i] = now.x;
             place.corners[2 * i + 1] = now.y;
         }
@@ -43,14 +44,49 @@ void DriftTrack::add(Time at, const std::optional<OutputSight>& sight) {
     while (places_.front().at < at - kWindow) places_.pop_front();
     now_ = estimate();
     if (isSurveyed_ || !now_) return;
-    if (!reference_) reference_ = now_->moved;
-    now_->moved = now_->moved * reference_->inverse();
-    now_->px = rmsMovement(now_->moved, projector_);
+    const Homography stands = now_->moved;
+    if (references_ == 0) average(stands);
+    const auto compare = [&] {
+        now_->moved = stands * mapTo(reference_).inverse();
+        now_->px = rmsMovement(now_->moved, low_, high_);
+    };
+    compare();
+    if (references_ >= kReferences || now_->isSure()) return;
+    average(stands);
+    compare();
+}
+
+std::array<glm::dvec2, 4> DriftTrack::corners() const {
+    return {low_, glm::dvec2(high_.x, low_.y), high_, glm::dvec2(low_.x, high_.y)};
+}
+
+Drift DriftTrack::since(const Drift& drift, const Homography& moved) const {
+    Drift result = drift;
+    result.moved = drift.moved * moved.inverse();
+    result.px = rmsMovement(result.moved, low_, high_);
+    return result;
+}
+
+// The map that takes the rectangle's corners there.
+Homography DriftTrack::mapTo(const std::array<glm::dvec2, 4>& target) const {
+    const auto map = Homography::fromCorners(corners(), target);
+    return map ? *map : Homography();
+}
+
+// Averages the reference's corners, each sight by how sharp it is.
+void DriftTrack::average(const Homography& place) {
+    const double weight = 1 / (now_->sigma * now_->sigma);
+    weights_ += weight;
+    ++references_;
+    const auto from = corners();
+    for (std::size_t i = 0; i < from.size(); ++i) reference_[i] += (place(from[i]) - reference_[i]) * (weight / weights_);
 }
 
 void DriftTrack::forget() {
     places_.clear();
-    reference_.reset();
+    references_ = 0;
+    weights_ = 0;
+    reference_ = {};
     now_.reset();
     isSurveyed_ = false;
 }
@@ -71,7 +107,7 @@ std::optional<Drift> DriftTrack::estimate() const {
         spread += deviation * deviation / 4;  // two coordinates of a point, four points
     }
     if (std::sqrt(spread) > kMostSpread) return std::nullopt;
-    const auto map = Homography::fromCorners(rectangleCorners(projector_.x, projector_.y), cornersOf(middle));
+    const auto map = Homography::fromCorners(corners(), cornersOf(middle));
     if (!map) return std::nullopt;
     Drift drift;
     double sigma = 0;
@@ -81,7 +117,7 @@ std::optional<Drift> DriftTrack::estimate() const {
     }
     drift.sigma = std::sqrt(sigma * sigma + 1.57 * spread / static_cast<double>(good.size()));
     drift.moved = *map;
-    drift.px = rmsMovement(drift.moved, projector_);
+    drift.px = rmsMovement(drift.moved, low_, high_);
     return drift;
 }
 

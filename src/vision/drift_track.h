@@ -21,7 +21,7 @@ struct Drift {
     double surfaceStayed = 0;  // mean of OutputSight::surfaceStayed
 
     // Whether a person could see it, and chance does not explain it.
-    bool isSure() const { return px > 0.6 && px > 4 * sigma; }
+    bool isSure() const { return px > 0.6 && px > 3 * sigma; }
 };
 
 // Follows an output's picture through many sights. A single sight may be wrong, for example because
@@ -29,12 +29,15 @@ struct Drift {
 class DriftTrack {
 public:
     // `isSurveyed`: sights tell the movement since the calibration. Otherwise they tell it against
-    // a plan, which nobody measures to the pixel, and the first second becomes the reference.
-    // `projector`: its pixels.
-    DriftTrack(glm::ivec2 projector, bool isSurveyed) : projector_(projector), isSurveyed_(isSurveyed) {}
+    // a plan, which nobody measures to the pixel, and what is seen in the first twenty seconds
+    // becomes the reference.
+    // `low`, `high`: the rectangle of the projector's pixels that the picture is in.
+    DriftTrack(glm::dvec2 low, glm::dvec2 high, bool isSurveyed) : low_(low), high_(high), isSurveyed_(isSurveyed) {}
 
     // Takes what a camera picture says; nothing: it says nothing about this output.
     void add(Time at, const std::optional<OutputSight>& sight);
+    // The drift since the picture stood where `moved` says.
+    Drift since(const Drift& drift, const Homography& moved) const;
     // Nothing: too few good sights in the last second, or they do not agree.
     const std::optional<Drift>& now() const { return now_; }
     // Begins again: where the picture is next counts as where it belongs.
@@ -44,15 +47,20 @@ private:
     struct Place {
         Time at{};
         bool isGood = false;
-        std::array<double, 8> corners{};  // where the projector's corners' places are lit now, x and y in turn
+        std::array<double, 8> corners{};  // where the places of the rectangle's corners are lit now, x and y in turn
         double sigma = 0, surfaceStayed = 0;
     };
     std::optional<Drift> estimate() const;
+    std::array<glm::dvec2, 4> corners() const;
+    Homography mapTo(const std::array<glm::dvec2, 4>& target) const;
+    void average(const Homography& place);
 
-    glm::ivec2 projector_;
+    glm::dvec2 low_, high_;
     bool isSurveyed_;
-    std::deque<Place> places_;  // of the last second
-    std::optional<Homography> reference_;
+    std::deque<Place> places_;               // of the last second
+    std::array<glm::dvec2, 4> reference_{};  // where the places of the rectangle's corners were lit
+    double weights_ = 0;
+    int references_ = 0;  // how many estimates are averaged in it
     std::optional<Drift> now_;
 };
 

@@ -3,9 +3,11 @@
 #include "core/check.h"
 
 #include <Eigen/Dense>
+#include <glm/common.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -17,7 +19,7 @@ constexpr int kNeighbourhood = 13;      // side of a pixel's neighbourhood, pixe
 constexpr double kFarthest = 0.1;       // of the wide search, in picture widths
 constexpr double kBiweight = 4.685;     // 95 % efficient for Gaussian residuals
 constexpr double kStill = 0.005;        // pixels: a smaller step ends the iteration
-constexpr double kCorrelated = 4;       // so many neighbouring residuals are as good as one, because pictures are blurred
+constexpr double kCorrelated = 2;       // so many neighbouring residuals are as good as one, because pictures are blurred
 constexpr double kContent = 0.3;        // a pixel has content if it differs so much, in rms of the expected picture
 constexpr double kLeastContent = 1e-4;  // rms of the expected picture, below which there is nothing to register
 
@@ -121,6 +123,14 @@ public:
         for (int i = count; i < kProjective; ++i) normal(i, i) = 1;
     }
 
+    // The rectangle that has all the content, in halves of the width from the picture's middle.
+    std::array<glm::dvec2, 2> contentBox() const {
+        cv::Mat content = cv::abs(expected_) > kContent * content_;
+        const cv::Rect box = cv::boundingRect(content);
+        const double half = size_.width / 2.0;
+        const glm::dvec2 middle(half, size_.height / 2.0);
+        return {(glm::dvec2(box.x, box.y) - middle) / half, (glm::dvec2(box.x + box.width, box.y + box.height) - middle) / half};
+    }
     // Variance of the residuals of the pixels that agree.
     double variance() const { return variance_; }
 
@@ -183,13 +193,14 @@ Homography moved(const Homography& map, const Step& step, cv::Size size) {
     return map * Homography(fromHalves * small * glm::inverse(fromHalves));
 }
 
-// rms over the picture of the movement's standard deviation.
-double sigmaOf(const Normal& normal, double variance) {
+// rms over a part of the picture of the movement's standard deviation.
+double sigmaOf(const Normal& normal, double variance, const std::array<glm::dvec2, 2>& part) {
     const Normal covariance = kCorrelated * variance * normal.inverse();
     double sum = 0;
     constexpr int kPlaces = 5;
     for (int i = 0; i < kPlaces * kPlaces; ++i) {
-        const double u = 2.0 * (i % kPlaces) / (kPlaces - 1) - 1, v = (2.0 * (i / kPlaces) / (kPlaces - 1) - 1) * 9 / 16;
+        const glm::dvec2 at = glm::mix(part[0], part[1], glm::dvec2(i % kPlaces, i / kPlaces) / (kPlaces - 1.0));
+        const double u = at.x, v = at.y;
         Eigen::Matrix<double, 2, kProjective> by;
         by << 1, 0, u, -v, u, v, u * u, u * v, 0, 1, v, u, -v, u, u * v, v * v;
         sum += (by * covariance * by.transpose()).trace() / (kPlaces * kPlaces);
@@ -266,16 +277,16 @@ std::optional<Registration> registerPictures(const GreyImage& seen, const GreyIm
     Step right;
     found.equations(kProjective, normal, right);
     normal.diagonal().array() += 1e-12;
-    const double sigma = sigmaOf(normal, found.variance());
+    const double sigma = sigmaOf(normal, found.variance(), found.contentBox());
     if (!std::isfinite(sigma)) return std::nullopt;
     return Registration{map, sigma, found.gain(), found.agreement(), found.used()};
 }
 
-double rmsMovement(const Homography& map, glm::dvec2 size) {
+double rmsMovement(const Homography& map, glm::dvec2 low, glm::dvec2 high) {
     double sum = 0;
     constexpr int kPlaces = 9;
     for (int i = 0; i < kPlaces * kPlaces; ++i) {
-        const glm::dvec2 at = glm::dvec2(i % kPlaces, i / kPlaces) / (kPlaces - 1.0) * size;
+        const glm::dvec2 at = glm::mix(low, high, glm::dvec2(i % kPlaces, i / kPlaces) / (kPlaces - 1.0));
         const glm::dvec2 by = map(at) - at;
         sum += (by.x * by.x + by.y * by.y) / (kPlaces * kPlaces);
     }

@@ -10,7 +10,7 @@ namespace fantascope::vision {
 // How a seen picture lies on an expected one.
 struct Registration {
     Homography expectedFromSeen;  // pixels: `seen` at q shows what is expected at expectedFromSeen(q)
-    double sigma = 0;             // standard deviation of expectedFromSeen, rms over the picture, pixels
+    double sigma = 0;             // standard deviation of expectedFromSeen, rms where there is content, pixels
     double gain = 0;              // contrast of what is seen / contrast of what is expected
     double agreement = 0;         // correlation of the two pictures where they agree at all, -1..1
     double used = 0;              // share of the pixels with content that agree
@@ -31,7 +31,7 @@ enum class SearchRange {
 std::optional<Registration> registerPictures(const GreyImage& seen, const GreyImage& expected, const GreyImage& mask,
                                              const Homography& start, SearchRange range);
 
-// rms over the points of a picture of how far a map moves them, pixels. `size`: of the picture.
-double rmsMovement(const Homography& map, glm::dvec2 size);
+// rms over the points of a rectangle of how far a map moves them, pixels.
+double rmsMovement(const Homography& map, glm::dvec2 low, glm::dvec2 high);
 
 }  // namespace fantascope::vision

@@ -1,5 +1,7 @@
 #include "vision/wall_watch.h"
 
+#include "vision/surface_texture.h"
+
 #include "core/check.h"
 
 #include <glm/common.hpp>
@@ -11,14 +13,12 @@
 namespace fantascope::vision {
 namespace {
 
-constexpr int kWidth = 400;             // camera pixels across that are enough
-constexpr float kSaturated = 0.98f;     // linear light of a channel, from which on it says nothing
-constexpr double kGood = 0.5;           // agreement x share of the content: a picture that is found
-constexpr double kLost = 0.7;           // of the usual agreement: the picture may have moved far
-constexpr double kCorrelatedCells = 4;  // so many neighbouring cells say as much as one
-constexpr float kWellLit = 0.5f;        // light of a place whose texture can be seen
-constexpr double kSettled = 0.3;        // cells: a picture that has moved by less has not moved
-constexpr double kForgets = 0.1;        // weight of a new picture in what is usual
+constexpr int kWidth = 640;          // camera pixels across that are enough
+constexpr float kSaturated = 0.98f;  // linear light of a channel, from which on it says nothing
+constexpr double kGood = 0.5;        // agreement x share of the content: a picture that is found
+constexpr double kLost = 0.7;        // of the usual agreement: the picture may have moved far
+constexpr double kSettled = 0.3;     // cells: a picture that has moved by less has not moved
+constexpr double kForgets = 0.1;     // weight of a new picture in what is usual
 
 // Bilinear between the middles of pixels; at the edge as the edge.
 float valueAt(const GreyImage& image, glm::vec2 at) {
@@ -44,11 +44,12 @@ double scoreOf(const std::optional<Registration>& found) {
 struct WallWatch::Output {
     OutputView view;
     bool isSurveyed;
-    Image<glm::vec2> cell;   // by coarse camera pixel: the place in cells that lights it; NaN: none
-    GreyImage full;          // by coarse camera pixel: its full light
-    Homography now;          // in cells
-    Homography reference{};  // in cells: `now` when the texture was learned
-    GreyImage texture{};     // by cell: how much brighter the surface is than its full light says; 0: unknown
+    Image<glm::vec2> cell;  // by coarse camera pixel: the place in cells that lights it; NaN: none
+    GreyImage full;         // by coarse camera pixel: its full light
+    Homography now;         // in cells
+    SurfaceTexture surface;
+    Homography learnedAt{};  // in cells: `now` when the surface was learned
+    int unfound = 0;         // pictures before the first one that was found
     double gain = 0;         // as usual; 0: unknown
     double score = 0;        // as usual
     int sinceWide = 99;      // pictures since the last wide search
@@ -60,48 +61,12 @@ struct WallWatch::Output {
                 if (full.at(x, y) <= 0) continue;
                 const glm::dvec2 at = now(glm::dvec2(cell.at(x, y)));
                 if (at.x < 0 || at.y < 0 || at.x > light.width() || at.y > light.height()) continue;
-                seen.at(x, y) += static_cast<float>(gain) * full.at(x, y) * valueAt(light, glm::vec2(at));
+                seen.at(x, y) += static_cast<float>(gain * surface.level()) * full.at(x, y) * valueAt(light, glm::vec2(at));
             }
     }
     std::optional<Registration> find(const GreyImage& seen, const GreyImage& light, const GreyImage& mask);
-    double lookAtSurface(const GreyImage& seen, const GreyImage& light, const GreyImage& mask, const Registration& found);
+    std::optional<OutputSight> look(const GreyImage& seen, const GreyImage& light, const GreyImage& mask);
 };
-
-// Compares the surface's texture, where it is well lit, with what it was there before, and with
-// what it was where the picture came from; learns it while nothing moves. Returns
-// OutputSight::surfaceStayed.
-double WallWatch::Output::lookAtSurface(const GreyImage& seen, const GreyImage& light, const GreyImage& mask,
-                                        const Registration& found) {
-    const Homography moved = reference.inverse() * found.expectedFromSeen;
-    const bool settled = rmsMovement(moved, {seen.width(), seen.height()}) < kSettled;
-    const GreyImage& strength = view.full();
-    double sum = 0, squares = 0;
-    for (int y = 0; y < seen.height(); ++y)
-        for (int x = 0; x < seen.width(); ++x) {
-            if (mask.at(x, y) <= 0) continue;
-            const glm::dvec2 middle(x + 0.5, y + 0.5);
-            const glm::ivec2 at(glm::floor(found.expectedFromSeen(middle)));
-            if (at.x < 1 || at.y < 1 || at.x + 2 > light.width() || at.y + 2 > light.height()) continue;
-            float least = 1;
-            for (int i = 0; i < 9; ++i) least = std::min(least, light.at(at.x + i % 3 - 1, at.y + i / 3 - 1));
-            if (least < kWellLit) continue;
-            const float ratio = seen.at(x, y) / static_cast<float>(found.gain) / light.at(at.x, at.y);
-            float& known = texture.at(x, y);
-            if (settled) {
-                known = known > 0 ? known + static_cast<float>(kForgets) * (ratio - known) : ratio;
-                continue;
-            }
-            const glm::ivec2 from(glm::floor(moved(middle)));
-            if (known <= 0 || from.x < 0 || from.y < 0 || from.x >= seen.width() || from.y >= seen.height()) continue;
-            const float there = texture.at(from.x, from.y) * strength.at(from.x, from.y) / strength.at(x, y);
-            if (there <= 0) continue;
-            const double difference =
-                std::clamp(double((ratio - there) * (ratio - there) - (ratio - known) * (ratio - known)), -1.0, 1.0);
-            sum += difference;
-            squares += difference * difference;
-        }
-    return squares > 0 ? sum / std::sqrt(kCorrelatedCells * squares) : 0;
-}
 
 // Follows the picture. A picture that is not found near its last place is searched for more widely,
 // but not with every camera picture, since that takes longer.
@@ -118,6 +83,32 @@ std::optional<Registration> WallWatch::Output::find(const GreyImage& seen, const
     return found;
 }
 
+// The surface is learned where the plan says the picture is, until the picture itself is found.
+std::optional<OutputSight> WallWatch::Output::look(const GreyImage& seen, const GreyImage& light, const GreyImage& mask) {
+    constexpr int kLearnsUnfound = 30;  // pictures
+    const auto found = find(surface.shareOf(seen), light, mask);
+    if (!found || scoreOf(found) < kGood) {
+        if (score == 0 && ++unfound <= kLearnsUnfound) surface.learn(seen, light, mask, now);
+        if (!found || scoreOf(found) <= 0) return std::nullopt;
+    }
+    const double size = view.cellSize();
+    OutputSight sight{inPixels(found->expectedFromSeen, size), found->sigma * size, found->gain, found->agreement, found->used};
+    if (scoreOf(found) < kGood) return sight;
+    now = found->expectedFromSeen;
+    if (score == 0 && !isSurveyed) {
+        learnedAt = now;
+        surface.forget();
+    }
+    const Homography moved = learnedAt.inverse() * now;
+    if (rmsMovement(moved, {0, 0}, {seen.width(), seen.height()}) > kSettled)
+        sight.surfaceStayed = surface.stayed(seen, light, mask, now, moved, found->gain);
+    surface.learn(seen, light, mask, now);
+    const auto usual = [](double& value, double newest) { value = value == 0 ? newest : value + kForgets * (newest - value); };
+    usual(gain, found->gain);
+    usual(score, scoreOf(found));
+    return sight;
+}
+
 WallWatch::WallWatch(const std::vector<std::optional<WatchedOutput>>& outputs, glm::ivec2 camera, const GreyImage& dark)
     : camera_(camera), step_(std::max(1, static_cast<int>(std::lround(camera.x / static_cast<double>(kWidth))))) {
     const glm::ivec2 coarse = camera / step_;
@@ -131,9 +122,9 @@ WallWatch::WallWatch(const std::vector<std::optional<WatchedOutput>>& outputs, g
                                                           .isSurveyed = watched->isSurveyed,
                                                           .cell = Image<glm::vec2>(coarse.x, coarse.y),
                                                           .full = GreyImage(coarse.x, coarse.y),
-                                                          .now = {}});
+                                                          .now = {},
+                                                          .surface = SurfaceTexture(view->full(), watched->isSurveyed)});
         Output& output = *outputs_.back();
-        output.texture = GreyImage(view->full().width(), view->full().height(), watched->isSurveyed ? 1.0f : 0.0f);
         const auto size = static_cast<float>(view->cellSize());
         for (int y = 0; y < coarse.y; ++y)
             for (int x = 0; x < coarse.x; ++x) {
@@ -201,20 +192,10 @@ std::vector<std::optional<OutputSight>> WallWatch::look(const RgbaImage& picture
                 const int column = std::clamp(static_cast<int>(at.x), 0, seen.width() - 1),
                           row = std::clamp(static_cast<int>(at.y), 0, seen.height() - 1);
                 if (seen.at(column, row) < 0) continue;
-                onWall.at(x, y) = valueAt(rest, at) / full.at(x, y);
+                onWall.at(x, y) = valueAt(rest, at);
                 mask.at(x, y) = 1;
             }
-        const auto found = output.find(onWall, *shown[i], mask);
-        if (!found || scoreOf(found) <= 0) continue;
-        const double size = output.view.cellSize();
-        sights[i] =
-            OutputSight{inPixels(found->expectedFromSeen, size), found->sigma * size, found->gain, found->agreement, found->used};
-        if (scoreOf(found) < kGood) continue;
-        if (output.score == 0 && !output.isSurveyed) output.reference = found->expectedFromSeen;
-        sights[i]->surfaceStayed = output.lookAtSurface(onWall, *shown[i], mask, *found);
-        output.now = found->expectedFromSeen;
-        output.gain = output.gain == 0 ? found->gain : output.gain + kForgets * (found->gain - output.gain);
-        output.score = output.score == 0 ? scoreOf(found) : output.score + kForgets * (scoreOf(found) - output.score);
+        sights[i] = output.look(onWall, *shown[i], mask);
     }
     return sights;
 }

@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kSureOfSurface = 3;  // standard deviations
 constexpr double kStill = 0.3;        // of the largest drift: an output that moved so little did not move with the others
+constexpr double kSharp = 0.15;       // and how well its place must be known for that
 constexpr double kExplained = 0.15;   // of the camera's movement, besides:
 constexpr double kMeasured = 0.2;     // camera pixels: what a movement of the camera may leave unexplained
 
@@ -24,14 +25,16 @@ Moved whatMoved(const WallWatch& wall, const std::vector<std::optional<Drift>>& 
     if (!anySure) return Moved::Nothing;
     std::vector<const Homography*> movements;
     std::size_t watched = 0;
-    bool anyStill = false;
+    bool anyStill = false, allMoved = true;
     for (const std::optional<Drift>& drift : drifts) {
         movements.push_back(drift ? &drift->moved : nullptr);
         if (!drift) continue;
         ++watched;
-        anyStill = anyStill || drift->px + 2 * drift->sigma < kStill * largest;
+        anyStill = anyStill || (drift->px < kStill * largest && drift->sigma < kSharp * largest);
+        allMoved = allMoved && drift->isSure();
     }
     if (anyStill) return Moved::Projectors;
+    if (!allMoved) return Moved::Unclear;
     if (watched > 1) {
         const auto camera = wall.cameraMovement(movements);
         if (!camera || camera->missed > kExplained * camera->px + kMeasured) return Moved::Projectors;

@@ -94,7 +94,7 @@ TEST(WallWatch, finds_how_far_a_projector_was_turned) {
                 continue;
             }
             std::printf("%g: moved %.2f error %.3f sigma %.3f gain %.3f agree %.3f used %.3f\n", degrees,
-                        rmsMovement(sights[0]->shownFromPlace, wall.projector.size),
+                        rmsMovement(sights[0]->shownFromPlace, {0, 0}, wall.projector.size),
                         errorOf(sights[0]->shownFromPlace, wall, now), sights[0]->sigma, sights[0]->gain, sights[0]->agreement,
                         sights[0]->used);
         }

@@ -109,9 +109,13 @@ Report jsonOf(const RunReport& report) {
     json["watch"] = Report::object();
     for (const auto& [output, series] : report.watch) {
         json["watch"][output] = Report::array();
-        for (const DriftReport& drift : series)
-            json["watch"][output].push_back(
-                {{"at", seconds(drift.at)}, {"drift_px", drift.drift}, {"sigma_px", drift.sigma}, {"moved_px", drift.corrected}});
+        for (const DriftReport& drift : series) {
+            Report entry = {
+                {"at", seconds(drift.at)}, {"drift_px", drift.drift}, {"sigma_px", drift.sigma}, {"moved_px", drift.corrected}};
+            if (drift.corrected > 0)
+                for (const glm::vec2 corner : drift.shift) entry["moved_corners"].push_back({corner.x, corner.y});
+            json["watch"][output].push_back(std::move(entry));
+        }
     }
     return json;
 }

@@ -2,6 +2,8 @@
 
 #include "vision/registration.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -18,12 +20,23 @@ constexpr Time kRefines = std::chrono::seconds(4);          // after a correctio
 constexpr double kRefinement = 0.25;                        // pixels: a smaller one is not worth it
 constexpr double kSlowestCamera = 2;                        // seconds between pictures, from which on nothing is predicted
 
-double rmsOf(const show::PictureShift& shift, glm::ivec2 size) {
-    const auto corners = rectangleCorners(size.x, size.y);
+// The rectangle of a projector's pixels that its picture is in.
+std::pair<glm::dvec2, glm::dvec2> litBy(const Projection& projection) {
+    glm::dvec2 low(projection.size), high(0);
+    for (const glm::dvec2 corner : projection.warp.shape().corners) {
+        low = glm::min(low, corner);
+        high = glm::max(high, corner);
+    }
+    return {glm::max(low, glm::dvec2(0)), glm::min(high, glm::dvec2(projection.size))};
+}
+
+double rmsOf(const show::PictureShift& shift, const Projection& projection) {
+    const auto corners = rectangleCorners(projection.size.x, projection.size.y);
     auto moved = corners;
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += glm::dvec2(shift[i]);
     const auto map = Homography::fromCorners(corners, moved);
-    return map ? vision::rmsMovement(*map, size) : 0;
+    const auto [low, high] = litBy(projection);
+    return map ? vision::rmsMovement(*map, low, high) : 0;
 }
 
 std::vector<ShownLight::Output> watchedOf(const show::Site& site, const vision::WallWatch& wall,
@@ -48,8 +61,10 @@ DriftWatch::DriftWatch(const show::Site& site, const std::vector<std::optional<v
       settled_(site.outputs.size()),
       settledAt_(site.outputs.size(), Time::min() / 2),
       series_(site.outputs.size()) {
-    for (std::size_t i = 0; i < site.outputs.size(); ++i)
-        tracks_.emplace_back(site.outputs[i].size(), outputs[i] && outputs[i]->isSurveyed);
+    for (std::size_t i = 0; i < site.outputs.size(); ++i) {
+        const auto [low, high] = litBy(site.outputs[i].projection);
+        tracks_.emplace_back(low, high, outputs[i] && outputs[i]->isSurveyed);
+    }
 }
 
 void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, bool isSettingUp, Time now) {
@@ -66,9 +81,10 @@ void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, boo
         return;
     }
     if (looked_ != Time::min() && frame.exposed - looked_ < kLeastStep) return;
-    looked_ = frame.exposed;
     std::vector<const GreyImage*> lights;
     for (std::size_t i = 0; i < tracks_.size(); ++i) lights.push_back(wall_.watches(i) ? light_.at(i, frame.exposed) : nullptr);
+    if (std::ranges::all_of(lights, [](const GreyImage* light) { return light == nullptr; })) return;
+    looked_ = frame.exposed;
     const auto sights = wall_.look(frame.image, lights);
     for (std::size_t i = 0; i < tracks_.size(); ++i) tracks_[i].add(frame.exposed, sights[i]);
     decide(showClock_.showTime(now));
@@ -80,10 +96,8 @@ void DriftWatch::decide(Time showTime) {
     std::vector<std::optional<Drift>> since(tracks_.size());  // since all was right
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
         if (!tracks_[i].now()) continue;
-        since[i] = tracks_[i].now();
         if (!settled_[i]) settled_[i] = Homography();
-        since[i]->moved = since[i]->moved * settled_[i]->inverse();
-        since[i]->px = vision::rmsMovement(since[i]->moved, site_.outputs[i].size());
+        since[i] = tracks_[i].since(*tracks_[i].now(), *settled_[i]);
     }
     const Moved moved = vision::whatMoved(wall_, since);
     if (moved != moved_) movedSince_ = showTime;
@@ -126,8 +140,9 @@ void DriftWatch::note(const show::ShowState& shown, Time showTime) {
     noted_ = showTime;
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
         if (!tracks_[i].now()) continue;
-        const double corrected = i < shown.shifts.size() ? rmsOf(shown.shifts[i], site_.outputs[i].size()) : 0;
-        series_[i].push_back({showTime, tracks_[i].now()->px, tracks_[i].now()->sigma, corrected});
+        const show::PictureShift shift = i < shown.shifts.size() ? shown.shifts[i] : show::PictureShift{};
+        series_[i].push_back(
+            {showTime, tracks_[i].now()->px, tracks_[i].now()->sigma, rmsOf(shift, site_.outputs[i].projection), shift});
     }
 }
 

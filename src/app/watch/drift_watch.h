@@ -26,6 +26,7 @@ struct DriftReport {
     double drift = 0;      // how far the picture has moved on the wall without corrections, rms, projector pixels
     double sigma = 0;      // standard deviation of that
     double corrected = 0;  // how far the picture is moved against it
+    show::PictureShift shift{};
 };
 
 // Watches where the outputs' pictures stand on the wall, and brings them back if the site says so.
