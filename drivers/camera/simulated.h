@@ -16,6 +16,7 @@ public:
 
     DeviceStatus status() const override { return plug_.status(); }
     std::shared_ptr<const CameraFrame> newest() override { return plug_.world().takeFromCamera(); }
+    CameraDescription description() const override { return {.card = "simulated", .serial = {}, .format = {}, .lacks = {}}; }
 
 private:
     explicit SimulatedCamera(site::Plug plug) : plug_(std::move(plug)) {}

@@ -1,5 +1,7 @@
 #include "drivers/camera/v4l2.h"
 
+#include "drivers/common/usb_identity.h"
+
 #include "core/log.h"
 
 #include <fmt/format.h>
@@ -8,6 +10,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <limits>
+#include <string_view>
+#include <system_error>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -32,6 +36,14 @@ Time kernelEpoch(const Clock& clock) {
         epoch = before + least / 2 - kernel;
     }
     return epoch;
+}
+
+// The USB serial number of a camera, by its file or a link to it; empty if it has none.
+std::string serialOf(const std::filesystem::path& file) {
+    std::error_code failed;
+    const std::filesystem::path real = std::filesystem::canonical(file, failed);
+    const auto plugged = usbFileOf("video4linux", (failed ? file : real).filename().string());
+    return plugged ? plugged->usb.serial : "";
 }
 
 const char* nameOf(VideoNode::Control control) {
@@ -106,6 +118,11 @@ std::shared_ptr<const CameraFrame> V4l2Camera::newest() {
     return std::exchange(newest_, nullptr);
 }
 
+CameraDescription V4l2Camera::description() const {
+    const std::lock_guard lock(mutex_);
+    return description_;
+}
+
 V4l2Camera::Tally V4l2Camera::tally() const {
     const std::lock_guard lock(mutex_);
     return tally_;
@@ -142,7 +159,7 @@ Outage V4l2Camera::runOnce(Service& service) {
     life.exposure = life.node.lockedExposure();
     life.epoch = kernelEpoch(clock_);
     if (const int error = life.node.start(); error != 0) return whyNotUsed(life.file, "starting its stream", error);
-    logFormat(life, shortcomings);
+    describe(life, shortcomings);
     if (!silent_) service.setRunning();
     Outage outage = stream(service, life);
     forget();
@@ -197,12 +214,18 @@ std::string V4l2Camera::applyControls(VideoNode& node) const {
     return shortcomings;
 }
 
-// Logs the camera and the granted format, once until they change.
-void V4l2Camera::logFormat(const Life& life, const std::string& shortcomings) {
+// Notes and logs the camera and the granted format, the latter once until they change.
+void V4l2Camera::describe(const Life& life, const std::string& shortcomings) {
     const FrameFormat& format = life.grant.format;
-    std::string words = fmt::format("{} '{}': {} {} x {}", life.file.string(), life.node.card(), nameOf(format.coding),
-                                    format.size.x, format.size.y);
-    words += life.grant.rate > 0 ? fmt::format(" at {:.4g} Hz", life.grant.rate) : " at an unknown rate";
+    CameraDescription description{.card = life.node.card(), .serial = serialOf(life.file), .format = {}, .lacks = {}};
+    description.format = fmt::format("{} {} x {}", nameOf(format.coding), format.size.x, format.size.y);
+    description.format += life.grant.rate > 0 ? fmt::format(" at {:.4g} Hz", life.grant.rate) : " at an unknown rate";
+    if (!shortcomings.empty()) description.lacks = shortcomings.substr(std::string_view("; ").size());
+    std::string words = fmt::format("{} '{}': {}", life.file.string(), life.node.card(), description.format);
+    {
+        const std::lock_guard lock(mutex_);
+        description_ = std::move(description);
+    }
     const bool asAsked = format.size == options_.size && isRate(life.grant.rate, options_.rate) &&
                          format.coding == options_.coding.value_or(format.coding);
     if (!asAsked)

@@ -26,6 +26,7 @@ public:
 
     DeviceStatus status() const override { return service_.status(); }
     std::shared_ptr<const CameraFrame> newest() override;
+    CameraDescription description() const override;
 
     // Frames since the opening. Thread: any.
     struct Tally {
@@ -50,7 +51,7 @@ private:
     Outage runOnce(Service& service);
     std::optional<Outage> negotiate(Life& life) const;
     std::string applyControls(VideoNode& node) const;
-    void logFormat(const Life& life, const std::string& shortcomings);
+    void describe(const Life& life, const std::string& shortcomings);
     Outage stream(Service& service, Life& life);
     int take(Life& life);
     bool show(Service& service, Life& life);
@@ -68,6 +69,7 @@ private:
 
     mutable std::mutex mutex_;
     std::shared_ptr<const CameraFrame> newest_;
+    CameraDescription description_;
     Tally tally_;
 
     Service service_;

@@ -7,8 +7,18 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 namespace fantascope {
+
+// What a camera says of itself. An empty field: it does not say.
+struct CameraDescription {
+    std::string card;    // its driver's name for it: "HD Webcam C525"
+    std::string serial;  // its USB serial number; cheap cameras have none, or all the same
+    std::string format;  // what it gives: "MJPG 1280 x 720 at 30 Hz"
+    std::string lacks;   // what it cannot do of what the site file asks: "exposure cannot be set"
+    friend bool operator==(const CameraDescription&, const CameraDescription&) = default;
+};
 
 struct CameraFrame {
     RgbaImage image;             // stored values, as the camera gives them; alpha 255
@@ -23,6 +33,8 @@ public:
     // dropped, so `sequence` and `exposed` only rise. A frame stays valid while it is held.
     // Loss: null until new frames arrive.
     virtual std::shared_ptr<const CameraFrame> newest() = 0;
+    // The camera as it was last found; all empty before that. Thread: any.
+    virtual CameraDescription description() const = 0;
 };
 
 }  // namespace fantascope

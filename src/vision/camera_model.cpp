@@ -1,6 +1,7 @@
 #include "vision/camera_model.h"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -57,17 +58,20 @@ std::optional<glm::dvec3> Plane::hitBy(const Ray& ray) const {
     return ray.origin + ray.direction * (height / towards);
 }
 
-Result<CameraModel> CameraModel::fromFieldOfView(const Pose& pose, glm::ivec2 size, double fieldOfView, double k1, double k2) {
-    const glm::dvec2 centre = glm::dvec2(size) / 2.0;
-    const double focal = centre.x / std::tan(fieldOfView / 2);
-    const double fold = foldRadius(k1, k2), corner = glm::length(centre) / focal;
+Result<CameraModel> CameraModel::fromFieldOfView(const Pose& pose, glm::ivec2 size, double fieldOfView, double k1, double k2,
+                                                 std::optional<glm::dvec2> centre) {
+    const glm::dvec2 middle = glm::dvec2(size) / 2.0, axis = centre.value_or(middle);
+    const double focal = middle.x / std::tan(fieldOfView / 2);
+    const double fold = foldRadius(k1, k2), corner = glm::length(middle + glm::abs(axis - middle)) / focal;
     if (std::isfinite(fold) && distorted(fold, k1, k2).radius <= corner)
         return Error(fmt::format(
             "distortion k1 = {}, k2 = {} folds the picture over at {:.0f} % of the way to its corners; calibrate again, "
             "or give a smaller field of view",
             k1, k2, 100 * distorted(fold, k1, k2).radius / corner));
-    return CameraModel{pose, size, focal, centre, k1, k2};
+    return CameraModel{pose, size, focal, axis, k1, k2};
 }
+
+double CameraModel::fieldOfView() const { return 2 * std::atan(size.x / 2.0 / focal); }
 
 CameraModel CameraModel::fromThrowRatio(const Pose& pose, glm::ivec2 size, double throwRatio, glm::dvec2 lensShift) {
     const glm::dvec2 pixels = size;

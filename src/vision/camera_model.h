@@ -38,12 +38,15 @@ struct CameraModel {
     glm::dvec2 centre{320, 180};  // where the axis meets the picture, in pixels
     double k1 = 0, k2 = 0;        // a point at r focal lengths from the axis appears at r (1 + k1 r^2 + k2 r^4)
 
-    // A camera with `fieldOfView` radians across the picture's middle row, without distortion. 0 <
-    // fieldOfView < pi.
+    // A camera with `fieldOfView` radians across the picture's middle row, without distortion and
+    // with its axis in the picture's middle. 0 < fieldOfView < pi. `centre`: where the axis meets
+    // the picture, pixels; nothing: in its middle.
     // Error: the distortion folds the picture over inside its corners, so that one pixel would see
     // two directions.
     static Result<CameraModel> fromFieldOfView(const Pose& pose, glm::ivec2 size, double fieldOfView, double k1 = 0,
-                                               double k2 = 0);
+                                               double k2 = 0, std::optional<glm::dvec2> centre = {});
+    // The field of view that fromFieldOfView() was given, radians.
+    double fieldOfView() const;
     // A projector: throwRatio = distance / picture width, > 0; the lens shift moves the picture
     // right and up, in picture widths and heights.
     static CameraModel fromThrowRatio(const Pose& pose, glm::ivec2 size, double throwRatio, glm::dvec2 lensShift);

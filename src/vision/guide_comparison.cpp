@@ -62,12 +62,8 @@ std::vector<Cell> cellsInSight(const NominalView& view, glm::ivec2 grid) {
 }
 
 // The linear light of a stored frame, bilinear between pixel centres.
-glm::dvec3 linearAt(const RgbaImage& frame, glm::vec2 pixel) {
-    const std::array<float, 256>& linear = linearOfBytes();
-    const auto at = [&](int x, int y) {
-        const Rgba8& stored = frame.at(std::clamp(x, 0, frame.width() - 1), std::clamp(y, 0, frame.height() - 1));
-        return glm::vec3(linear[stored.r], linear[stored.g], linear[stored.b]);
-    };
+glm::dvec3 linearAt(const CameraLight& light, const RgbaImage& frame, glm::vec2 pixel) {
+    const auto at = [&](int x, int y) { return light.at(frame, x, y); };
     const glm::vec2 corner = glm::floor(pixel - 0.5f), share = pixel - 0.5f - corner;
     const int x = static_cast<int>(corner.x), y = static_cast<int>(corner.y);
     return glm::mix(glm::mix(at(x, y), at(x + 1, y), share.x), glm::mix(at(x, y + 1), at(x + 1, y + 1), share.x), share.y);
@@ -105,6 +101,7 @@ Exposure exposureOf(std::vector<float> seen, std::vector<float> wanted) {
 
 struct GuideComparison::Tables {
     glm::ivec2 frameSize;
+    CameraLight light;
     glm::ivec2 grid;   // cells across and down the canvas
     double shown = 1;  // the share of the canvas that the output shows
     std::vector<Cell> cells;
@@ -128,6 +125,7 @@ GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wante
     FANTASCOPE_CHECK(!wanted.empty(), "a guide must not be empty");
     auto tables = std::make_shared<Tables>();
     tables->frameSize = view.camera.size;
+    tables->light = view.light;
     tables->grid = {std::max(1, static_cast<int>(std::lround(kRows * view.canvasAspect))), kRows};
     const CanvasPart part = view.warp.shown();
     tables->shown = (part.high.x - part.low.x) * (part.high.y - part.low.y);
@@ -171,7 +169,7 @@ std::optional<double> GuideComparison::compare(const RgbaImage& frame) const {
     std::array<std::vector<float>, 3> light;
     for (const Cell& cell : tables.cells) {
         glm::dvec3 sum(0);
-        for (const glm::vec2 place : cell.places) sum += linearAt(frame, place);
+        for (const glm::vec2 place : cell.places) sum += linearAt(tables_->light, frame, place);
         for (int c = 0; c < 3; ++c)
             light[static_cast<std::size_t>(c)].push_back(static_cast<float>(sum[c] / (kPlaces * kPlaces)));
     }

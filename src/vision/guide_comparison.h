@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vision/camera_light.h"
 #include "vision/camera_model.h"
 
 #include "core/warp.h"
@@ -14,6 +15,7 @@ namespace fantascope::vision {
 // measured and wrote down.
 struct NominalView {
     CameraModel camera;
+    CameraLight light = {};
     CameraModel projector;
     double canvasAspect = 16.0 / 9;  // width / height
     Warp warp = Warp::straight({1, 1});

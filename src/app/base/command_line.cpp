@@ -133,5 +133,6 @@ template Option Command::add(const std::string&, std::optional<double>&, const s
 template Option Command::add(const std::string&, std::vector<std::string>&, const std::string&);
 template Option Command::add(const std::string&, std::vector<std::filesystem::path>&, const std::string&);
 template Option Command::add(const std::string&, std::vector<double>&, const std::string&);
+template Option Command::add(const std::string&, std::vector<int>&, const std::string&);
 
 }  // namespace fantascope::app

@@ -1,13 +1,11 @@
 #include "app/calibrate/calibration.h"
 
-#include "app/site/site_file.h"
 #include "app/site/site_models.h"
 
 #include "show/site/projection_changes.h"
 #include "vision/largest_place.h"
 
 #include "core/config/config_edit.h"
-#include "core/file.h"
 
 #include <fmt/format.h>
 
@@ -112,21 +110,6 @@ Result<void> writeWarps(const show::Site& site, std::vector<OutputCalibration>& 
     TRY(document.save());
     for (OutputCalibration& calibration : calibrations) calibration.written = calibration.isGood();
     return {};
-}
-
-Result<std::filesystem::path> undoWrite(const std::filesystem::path& file) {
-    std::error_code ignored;
-    const std::filesystem::path site = std::filesystem::is_directory(file, ignored) ? file / "site.yaml" : file;
-    std::filesystem::path previous = site;
-    previous += ".previous";
-    if (!std::filesystem::exists(previous, ignored))
-        return Error(fmt::format("{}: there is nothing to go back to; the program keeps this file when it writes {}",
-                                 previous.string(), site.string()));
-    TRY(readSite(previous));
-    const std::string before = TRY(readFile(previous)), now = TRY(readFile(site));
-    TRY(writeFile(site, before, site));
-    TRY(writeFile(previous, now, site));
-    return site;
 }
 
 }  // namespace fantascope::app

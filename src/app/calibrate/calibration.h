@@ -9,7 +9,6 @@
 #include "core/result.h"
 
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,9 +40,5 @@ Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show
 // Writes the good warps into the site file, and keeps the version before as FILE.previous. Error:
 // the file cannot be changed; it stays as it was.
 Result<void> writeWarps(const show::Site& site, std::vector<OutputCalibration>& calibrations);
-
-// Swaps a site file with its FILE.previous. `file` may be a folder. Returns the site file. Error:
-// there is no FILE.previous, or it is no site; both stay as they were.
-Result<std::filesystem::path> undoWrite(const std::filesystem::path& file);
 
 }  // namespace fantascope::app

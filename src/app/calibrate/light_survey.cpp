@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -38,20 +37,9 @@ constexpr int kMostFrames = 4;
 constexpr double kSmallestGamma = 1, kLargestGamma = 4, kUsualGamma = 2.2;
 constexpr double kDimmestGrey = 0.01;  // of the full light
 
-// Adds the mean of a stored picture's channels as linear light; 1 where a channel is saturated,
-// because then the mean says nothing.
-void addLight(const RgbaImage& stored, GreyImage& sum) {
-    const std::array<float, 256>& linear = linearOfBytes();
-    for (std::size_t i = 0; i < sum.pixels().size(); ++i) {
-        const Rgba8& pixel = stored.pixels()[i];
-        const bool saturated = std::max({pixel.r, pixel.g, pixel.b}) == 255;
-        sum.pixels()[i] += saturated ? 1 : (linear[pixel.r] + linear[pixel.g] + linear[pixel.b]) / 3;
-    }
-}
-
-GreyImage lightOf(const RgbaImage& stored) {
+GreyImage lightOf(const vision::CameraLight& camera, const RgbaImage& stored) {
     GreyImage light(stored.width(), stored.height());
-    addLight(stored, light);
+    camera.addTo(light, stored);
     return light;
 }
 
@@ -147,7 +135,7 @@ Result<bool> LightSurvey::measureDelay(std::size_t output) {
         std::shared_ptr<const CameraFrame> last;
         TRY(stepUntil(rig_.now() + kLongestDelay + 2 * period_, [&](const CalibrationRig::Seen& seen) { last = seen.frame; }));
         if (!last) return Error("the camera stopped; look at its cable");
-        return lightOf(last->image);
+        return lightOf(light_, last->image);
     };
     const GreyImage full = TRY(stillOf(true)), dark = TRY(stillOf(false));
     const std::vector<std::size_t> pixels = brightest(full, dark);
@@ -167,7 +155,7 @@ Result<bool> LightSurvey::measureDelay(std::size_t output) {
         // Each change at another moment of the camera's period.
         TRY(stepUntil(shown + kLongestDelay + period_ * edge / kEdges, [&](const CalibrationRig::Seen& seen) {
             if (found) return;
-            const double share = (meanOver(pixels, lightOf(seen.frame->image)) - unlit) / (lit - unlit);
+            const double share = (meanOver(pixels, lightOf(light_, seen.frame->image)) - unlit) / (lit - unlit);
             if ((share > 0.5) != lights) {
                 before = seen.frame->exposed;
                 return;
@@ -212,7 +200,7 @@ Result<std::vector<LightSurvey::Taken>> LightSurvey::take(std::size_t output, st
         Taken& one = taken[static_cast<std::size_t>(*shown)];
         const RgbaImage& image = seen.frame->image;
         if (one.light.empty()) one.light = GreyImage(image.width(), image.height());
-        addLight(image, one.light);
+        light_.addTo(one.light, image);
         ++one.frames;
     };
     for (std::size_t i = 0; i < count; ++i) {

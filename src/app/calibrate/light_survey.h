@@ -2,7 +2,9 @@
 
 #include "app/calibrate/calibration_rig.h"
 #include "app/calibrate/picture_schedule.h"
+#include "app/site/site_models.h"
 
+#include "vision/camera_light.h"
 #include "vision/structured_light.h"
 
 #include "core/clock.h"
@@ -25,8 +27,9 @@ public:
         std::function<bool()> goesOn;                               // false: end with what there is
         std::function<void(double done, const std::string&)> tell;  // share of the current output, and what is done
     };
-    // The rig outlives the survey.
-    LightSurvey(CalibrationRig& rig, const show::Site& site, Hooks hooks) : rig_(rig), site_(site), hooks_(std::move(hooks)) {}
+    // The rig outlives the survey. The site has a camera.
+    LightSurvey(CalibrationRig& rig, const show::Site& site, Hooks hooks)
+        : rig_(rig), site_(site), hooks_(std::move(hooks)), light_(cameraLightOf(site)) {}
 
     // What one output's survey found.
     struct Output {
@@ -68,6 +71,7 @@ private:
     CalibrationRig& rig_;
     const show::Site& site_;
     const Hooks hooks_;
+    const vision::CameraLight light_;
     Time period_{};  // of the camera
     PictureSchedule::Delay delay_;
     Time arrival_{};  // the longest from an exposure to its arrival

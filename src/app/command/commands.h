@@ -39,6 +39,9 @@ void addPlotCommand(Program& program);
 void addCheckCommand(Program& program);
 // `calibrate SITE [OUTPUT..]`: the outputs' warps, found with the camera.
 void addCalibrateCommand(Program& program);
+// `lens SITE`: the lens of the site's camera, found with a printed board; `lens --board` makes
+// that.
+void addLensCommand(Program& program);
 // `fantascope devices`: lists devices that it finds, reports the state of a site's devices, or
 // tries one of them.
 void addDevicesCommand(Program& program);

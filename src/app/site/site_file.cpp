@@ -4,6 +4,12 @@
 #include "drivers/registry.h"
 #include "drivers/site/simulation.h"
 
+#include "core/file.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
 namespace fantascope::app {
 namespace {
 
@@ -54,6 +60,21 @@ Result<show::Site> readSite(const std::filesystem::path& fileOrFolder) {
     Drivers drivers;
     show::Site site = TRY(show::readSite(isFolder ? fileOrFolder / "site.yaml" : fileOrFolder, &drivers));
     for (show::Output& output : site.outputs) output.projection.canvasAspect = canvasAspectOf(site, output.canvas);
+    return site;
+}
+
+Result<std::filesystem::path> undoWrite(const std::filesystem::path& file) {
+    std::error_code ignored;
+    const std::filesystem::path site = std::filesystem::is_directory(file, ignored) ? file / "site.yaml" : file;
+    std::filesystem::path previous = site;
+    previous += ".previous";
+    if (!std::filesystem::exists(previous, ignored))
+        return Error(fmt::format("{}: there is nothing to go back to; the program keeps this file when it writes {}",
+                                 previous.string(), site.string()));
+    TRY(readSite(previous));
+    const std::string before = TRY(readFile(previous)), now = TRY(readFile(site));
+    TRY(writeFile(site, before, site));
+    TRY(writeFile(previous, now, site));
     return site;
 }
 

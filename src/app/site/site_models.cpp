@@ -78,8 +78,12 @@ Result<std::size_t> outputNamed(const show::Site& site, const std::string& name)
 
 Result<vision::CameraModel> cameraOf(const show::Site& site) {
     const show::NominalCamera& camera = *site.nominalCamera;
-    return vision::CameraModel::fromFieldOfView(camera.pose, camera.size, camera.fieldOfView, camera.k1, camera.k2)
+    return vision::CameraModel::fromFieldOfView(camera.pose, camera.size, camera.fieldOfView, camera.k1, camera.k2, camera.centre)
         .in(site.file.string() + ": camera");
+}
+
+vision::CameraLight cameraLightOf(const show::Site& site) {
+    return {site.nominalCamera->response, site.nominalCamera->hotPixels};
 }
 
 std::shared_ptr<const render::BlendMap> blendOf(const show::Site& site, std::size_t output) {
@@ -143,6 +147,7 @@ Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site,
     if (!from.projector || !from.surface || !site.nominalCamera) return std::optional<vision::NominalView>();
     vision::NominalView view;
     view.camera = TRY(cameraOf(site));
+    view.light = cameraLightOf(site);
     view.projector = projectorOf(from);
     view.canvasAspect = pictureAspect;
     view.warp = from.projection.warp;

@@ -6,6 +6,7 @@
 
 #include "render/canvas/blend_map.h"
 #include "show/site/site.h"
+#include "vision/camera_light.h"
 #include "vision/guide_comparison.h"
 #include "vision/wall_watch.h"
 
@@ -19,6 +20,8 @@ Result<std::size_t> outputNamed(const show::Site& site, const std::string& name)
 
 // The site's camera, as the site file says. The site has one. Error: its lens cannot be.
 Result<vision::CameraModel> cameraOf(const show::Site& site);
+// How the site's camera stores light. The site has one.
+vision::CameraLight cameraLightOf(const show::Site& site);
 
 // The share of the light that an output gives to each pixel, where outputs of a canvas overlap;
 // null if it gives all of it.

@@ -49,8 +49,12 @@ struct NominalProjector {
 struct NominalCamera {
     Pose pose;
     glm::ivec2 size{640, 360};
-    double fieldOfView = 1;  // horizontal, radians
-    double k1 = 0, k2 = 0;   // radial distortion (Brown 1966)
+    double fieldOfView = 1;             // horizontal, radians
+    double k1 = 0, k2 = 0;              // radial distortion (Brown 1966)
+    std::optional<glm::dvec2> centre;   // where the axis meets the picture, pixels; nothing: in its middle
+    std::string lensOf;                 // the camera that the lens was measured on; empty: unknown
+    std::vector<double> response;       // linear light of stored values, evenly from 0 to 255; empty: sRGB
+    std::vector<glm::ivec2> hotPixels;  // that show light in the dark
 };
 
 struct Output {

@@ -1,12 +1,6 @@
 #include "show/site/site_fields.h"
 
 namespace fantascope::show {
-namespace {
-
-constexpr int kMostPixels = 16384;  // along one side of a picture: a usual limit of graphics cards
-
-}  // namespace
-
 Result<std::string> readName(const ConfigNode& node) {
     const std::string name = TRY(node.text());
     if (name.starts_with('.') || name.find('/') != std::string::npos)
@@ -23,6 +17,23 @@ Result<DeviceConfig> readDevice(const ConfigNode& node) {
 Result<glm::ivec2> readSize(const ConfigNode& node) {
     const auto sides = TRY(node.items(2, 2));
     return glm::ivec2(TRY(sides[0].integer(1, kMostPixels)), TRY(sides[1].integer(1, kMostPixels)));
+}
+
+Result<glm::ivec2> readWholePixel(const ConfigNode& node) {
+    const auto place = TRY(node.items(2, 2));
+    return glm::ivec2(TRY(place[0].integer(0, kMostPixels - 1)), TRY(place[1].integer(0, kMostPixels - 1)));
+}
+
+Result<std::vector<double>> readResponse(const ConfigNode& node) {
+    std::vector<double> response;
+    for (const ConfigNode& item : TRY(node.items(2, 256))) {
+        response.push_back(TRY(item.number(0, 1)));
+        if (response.size() > 1 && response.back() < response[response.size() - 2])
+            return item.error("the light of a higher stored value is smaller; the numbers must rise");
+    }
+    if (response.front() != 0 || response.back() != 1)
+        return node.error("the numbers must rise from 0, the light of black, to 1, that of full white");
+    return response;
 }
 
 void Aim::declare(ConfigFields& fields) {

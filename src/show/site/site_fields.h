@@ -64,8 +64,15 @@ private:
     std::vector<std::pair<ConfigNode, Result<void>>> said_;
 };
 
+constexpr int kMostPixels = 16384;  // along one side of a picture: a usual limit of graphics cards
 // Reads a size: pixels across and down.
 Result<glm::ivec2> readSize(const ConfigNode& node);
+// Reads a pixel's column and row.
+Result<glm::ivec2> readWholePixel(const ConfigNode& node);
+
+constexpr std::size_t kMostHotPixels = 1000;  // more is no list of single pixels
+// Reads a camera's response: 2 .. 256 numbers that rise from 0 to 1.
+Result<std::vector<double>> readResponse(const ConfigNode& node);
 
 // The keys that say where a projector or a camera stands, and where it looks. Call pose() after the
 // fields are finished.

@@ -229,6 +229,12 @@ private:
             aim.declare(keys);
             keys.optional().number("k1", camera.k1, -1, 1);
             keys.optional().number("k2", camera.k2, -1, 1);
+            keys.optional().read("centre", camera.centre, [](const ConfigNode& value) -> Result<std::optional<glm::dvec2>> {
+                return std::optional(TRY(value.vector2(-kMostPixels, 2 * kMostPixels, "px")));
+            });
+            keys.optional().text("lens_of", camera.lensOf);
+            keys.optional().read("response", camera.response, readResponse);
+            keys.optional().list("hot_pixels", camera.hotPixels, readWholePixel, 0, kMostHotPixels);
             TRY(keys.finish());
             camera.pose = TRY(aim.pose(node));
             site_.nominalCamera = camera;
