@@ -16,7 +16,9 @@ public:
 
     DeviceStatus status() const override { return plug_.status(); }
     std::shared_ptr<const CameraFrame> newest() override { return plug_.world().takeFromCamera(); }
-    CameraDescription description() const override { return {.card = "simulated", .serial = {}, .format = {}, .lacks = {}}; }
+    CameraDescription description() const override {
+        return {.card = "simulated", .serial = {}, .format = {}, .lacks = {}, .exposure = {}};
+    }
 
 private:
     explicit SimulatedCamera(site::Plug plug) : plug_(std::move(plug)) {}

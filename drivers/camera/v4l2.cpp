@@ -217,9 +217,11 @@ std::string V4l2Camera::applyControls(VideoNode& node) const {
 // Notes and logs the camera and the granted format, the latter once until they change.
 void V4l2Camera::describe(const Life& life, const std::string& shortcomings) {
     const FrameFormat& format = life.grant.format;
-    CameraDescription description{.card = life.node.card(), .serial = serialOf(life.file), .format = {}, .lacks = {}};
+    CameraDescription description{
+        .card = life.node.card(), .serial = serialOf(life.file), .format = {}, .lacks = {}, .exposure = {}};
     description.format = fmt::format("{} {} x {}", nameOf(format.coding), format.size.x, format.size.y);
     description.format += life.grant.rate > 0 ? fmt::format(" at {:.4g} Hz", life.grant.rate) : " at an unknown rate";
+    description.exposure = life.exposure.value_or(Time::zero());
     if (!shortcomings.empty()) description.lacks = shortcomings.substr(std::string_view("; ").size());
     std::string words = fmt::format("{} '{}': {}", life.file.string(), life.node.card(), description.format);
     {

@@ -17,6 +17,7 @@ struct CameraDescription {
     std::string serial;  // its USB serial number; cheap cameras have none, or all the same
     std::string format;  // what it gives: "MJPG 1280 x 720 at 30 Hz"
     std::string lacks;   // what it cannot do of what the site file asks: "exposure cannot be set"
+    Time exposure{};     // the length of an exposure, if it is locked and known; 0: it is not
     friend bool operator==(const CameraDescription&, const CameraDescription&) = default;
 };
 

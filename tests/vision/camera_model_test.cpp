@@ -113,5 +113,16 @@ TEST(RectifyingCorners, put_the_canvas_on_the_quadrilateral) {
     EXPECT_THAT(rectifyingCorners(projector, tooFar).error().message(), HasSubstr("corner 1 lies outside"));
 }
 
+TEST(CameraModel, has_its_axis_where_the_centre_is_said_to_be) {
+    const glm::dvec2 centre(250, 120);
+    const CameraModel camera = *CameraModel::fromFieldOfView(Pose(), {480, 270}, 60 * kDegree, -0.1, 0, centre);
+    EXPECT_EQ(camera.pixelFromWorld({0, 0, 3}), centre);
+    EXPECT_NEAR(camera.fieldOfView(), 60 * kDegree, 1e-12);
+    EXPECT_NEAR(camera.focal, 240 / std::tan(30 * kDegree), 1e-9);
+    // The corner that is farther away folds first.
+    EXPECT_TRUE(CameraModel::fromFieldOfView(Pose(), {480, 270}, 60 * kDegree, -0.32));
+    EXPECT_FALSE(CameraModel::fromFieldOfView(Pose(), {480, 270}, 60 * kDegree, -0.32, 0, glm::dvec2(300, 135)));
+}
+
 }  // namespace
 }  // namespace fantascope::vision

@@ -52,6 +52,7 @@ public:
     Time now() const { return clock_->now(); }
     // Why the camera, or an output, cannot be used now; empty: it can.
     std::string cameraTrouble() const;
+    CameraDescription camera() const { return open_->devices.camera->description(); }
     std::string outputTrouble(std::size_t output) const;
 
 private:

@@ -7,8 +7,11 @@
 #include "app/calibrate/light_survey.h"
 #include "app/calibrate/wanted_file.h"
 #include "app/command/commands.h"
+#include "app/lens/lens_file.h"
 #include "app/site/site_file.h"
 #include "app/site/site_models.h"
+
+#include "core/text.h"
 
 #include <fmt/format.h>
 
@@ -130,6 +133,8 @@ Result<void> run(const Options& options) {
     const bool anyGood = std::ranges::any_of(calibrations, &OutputCalibration::isGood);
     if (options.write && anyGood) TRY(writeWarps(site, calibrations));
     if (!options.report.empty()) TRY(writeReport(options.report, reportOf(site, calibrations, took, survey.latency())));
+    if (const std::string mismatch = lensMismatch(site, rig->camera()); !options.simulate && !mismatch.empty())
+        fmt::print("note: {}\n", printableLines(mismatch));
     std::string troubles;
     for (const OutputCalibration& calibration : calibrations) {
         fmt::print("{}\n", sentenceOf(site, calibration));

@@ -4,6 +4,7 @@
 #include "app/base/silhouette_file.h"
 #include "app/calibrate/wanted_file.h"
 #include "app/command/commands.h"
+#include "app/lens/lens_file.h"
 #include "app/live/programme.h"
 #include "app/site/site_file.h"
 
@@ -222,6 +223,11 @@ Result<Finding> checkWanted(const fs::path& path, const std::optional<show::Site
     return Finding{fmt::format("wanted places, {}", counted(wanted.size(), "output")), {}};
 }
 
+Result<Finding> checkLens(const fs::path& path, const std::optional<show::Site>&) {
+    const KeptLens lens = TRY(readLens(path));
+    return Finding{fmt::format("lens of {}, {} x {} pixels", lens.camera(), lens.size.x, lens.size.y), {}};
+}
+
 // The drawing of a motion or of hints: NAME.png for NAME.motion.yaml. If it is missing, an
 // all-white one stands in, so that everything else can be checked.
 struct Drawing {
@@ -345,7 +351,7 @@ constexpr std::pair<std::string_view, Check> kKinds[] = {{"show", checkShow},   
                                                          {"motion", checkMotion},   {"sequence", checkSequence},
                                                          {"cast", checkCast},       {"stage", checkStage},
                                                          {"hints", checkHints},     {"pose-weights", checkWeights},
-                                                         {"wanted", checkWanted}};
+                                                         {"wanted", checkWanted},   {"lens", checkLens}};
 
 Result<Finding> checkYaml(const fs::path& path, const std::optional<show::Site>& site) {
     std::vector<std::string> names;

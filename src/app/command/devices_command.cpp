@@ -1,6 +1,7 @@
 #include "app/base/interrupt.h"
 #include "app/command/commands.h"
 #include "app/command/device_trial.h"
+#include "app/lens/lens_file.h"
 #include "app/site/devices.h"
 #include "app/site/relay_guard.h"
 #include "app/site/site_claims.h"
@@ -51,6 +52,19 @@ std::string lineOf(const DeviceStatus& status) {
     for (const std::string& words : {status.detail, status.trouble})
         if (!words.empty()) line += ": " + words;
     return printableLines(line);
+}
+
+// More lines about the site's camera: what it gives, what it cannot do of what the site file asks,
+// and whether the lens is its own.
+std::string moreOf(const show::Site& site, const CameraDescription& camera) {
+    std::string lines;
+    const auto add = [&](const std::string& words) {
+        if (!words.empty()) lines += fmt::format("\n{:15} {}", "", printableLines(words));
+    };
+    if (!camera.format.empty()) add(fmt::format("{}: {}", identityOf(camera), camera.format));
+    if (!camera.lacks.empty()) add("of the site file's settings, " + camera.lacks);
+    add(lensMismatch(site, camera));
+    return lines;
 }
 
 // The outputs' projectors, by their identity.
@@ -116,6 +130,7 @@ public:
     std::map<std::string, std::string> lines() const {
         std::map<std::string, std::string> lines = lines_;
         for (const DeviceStatus& status : devices_.statuses()) lines[status.name] = lineOf(status);
+        if (devices_.camera) lines["camera"] += moreOf(site_, devices_.camera->description());
         return lines;
     }
     // In the site's order.

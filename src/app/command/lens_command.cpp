@@ -7,10 +7,12 @@
 #include "app/lens/lens_camera.h"
 #include "app/lens/lens_file.h"
 #include "app/lens/lens_result.h"
+#include "app/lens/light_measurement.h"
 #include "app/lens/recorded_views.h"
 #include "app/lens/simulated_hand.h"
 #include "app/site/site_file.h"
 
+#include "core/config/config_edit.h"
 #include "core/file.h"
 #include "core/text.h"
 
@@ -32,7 +34,7 @@ struct Options {
     Paper paper = Paper::A4;
     std::vector<int> size;
     std::uint64_t seed = 1;
-    bool simulate = false, kept = false, write = false, undo = false;
+    bool simulate = false, kept = false, light = false, write = false, undo = false;
 };
 
 void declare(Command& command, Options& options) {
@@ -46,6 +48,8 @@ void declare(Command& command, Options& options) {
         .add("--pictures", options.pictures, "Read recorded pictures of the board, PNG or JPEG, from this folder, not the camera")
         .excludes(board);
     command.addFlag("--kept", options.kept, "Measure nothing: take the lens that is kept for the site's camera");
+    command.addFlag("--light", options.light,
+                    "Measure how the camera stores light instead: a dark frame with covered lens, then exposures of known times");
     command.addFlag("--simulate", options.simulate, "A simulated person shows the board to the simulated site's camera");
     command.addFlag("--write", options.write,
                     "Write a good lens into the site file, which is kept as FILE.previous, and keep it for this camera");
@@ -202,6 +206,54 @@ Result<void> takeKept(const Options& options, const show::Site& site) {
     return {};
 }
 
+// The site's camera with its exposure locked, units of 100 us, or as the site file says.
+Result<std::unique_ptr<LensCamera>> openExposed(const show::Site& site, std::optional<int> exposure, Clock& clock,
+                                                const Interrupt& interrupt) {
+    if (!exposure) return openCamera(site, clock, interrupt);
+    ConfigDocument document = TRY(ConfigDocument::parse(site.text, site.file));
+    TRY(document.set({"camera", "device", "exposure"}, static_cast<double>(*exposure)));
+    const show::Site exposed = TRY(show::parseSite(document.text(), site.file));
+    return openCamera(exposed, clock, interrupt);
+}
+
+// The exposure that the site file asks for, units of 100 us, or a usual one.
+int exposureOf(const show::Site& site) {
+    constexpr int kUsual = 100, kMost = 1'000'000;
+    const auto keys = site.camera->options.entries();
+    for (const auto& [key, value] : keys ? *keys : std::vector<std::pair<std::string, ConfigNode>>())
+        if (const auto exposure = value.integer(1, kMost); key == "exposure" && exposure) return static_cast<int>(*exposure);
+    return kUsual;
+}
+
+Result<void> measureLight(const Options& options, const show::Site& site) {
+    if (options.simulate) return Error("the simulated camera stores sRGB, there is nothing to measure; leave out --light");
+    SteadyClock clock;
+    const Interrupt interrupt;
+    Progress progress("light", clock, std::cerr, standardErrorIsTerminal());
+    LightMeasurement measurement(
+        [&](std::optional<int> exposure) { return openExposed(site, exposure, clock, interrupt); }, clock,
+        {[&] { return !interrupt.requested(); }, [&](double done, const std::string& doing) { progress.update(done, doing); }});
+    const LightResult light = TRY(measurement.measure(exposureOf(site)));
+    fmt::print("{}\n{}\n", printableLines(identityOf(light.camera)), light.sentence());
+    Report report;
+    report["camera"] = identityOf(light.camera);
+    report["dark"] = light.dark;
+    report["hot_pixels"] = light.light.hotPixels.size();
+    report["exposures"] = light.exposures;
+    report["rms"] = light.rms;
+    report["response"] = light.light.response;
+    if (!light.trouble.empty()) report["trouble"] = light.trouble;
+    report["written"] = options.write;
+    if (!options.report.empty()) TRY(writeReport(options.report, report));
+    if (!options.write) return {};
+    KeptLens kept;
+    kept.card = light.camera.card;
+    kept.serial = light.camera.serial;
+    kept.size = site.nominalCamera->size;
+    kept.light = light.light;
+    return write(site, kept);
+}
+
 Result<void> run(const Options& options) {
     if (!options.board.empty()) return makeBoard(options);
     std::optional<show::Site> site;
@@ -217,6 +269,7 @@ Result<void> run(const Options& options) {
         if (!site->camera)
             return Error(fmt::format("{}: there is no camera; add one (docs/site-format.md)", site->file.string()));
         if (options.kept) return takeKept(options, *site);
+        if (options.light) return measureLight(options, *site);
     }
     const Measured measured = TRY(options.pictures.empty() ? fromCamera(options, *site) : fromPictures(options, site));
     const LensResult& lens = measured.lens;

@@ -85,7 +85,9 @@ KeptLens KeptLens::of(const LensResult& result, const CameraDescription& camera)
             lens.k1,     lens.k2,       result.fit.rms, result.views,       {}};
 }
 
-std::string KeptLens::camera() const { return identityOf({.card = card, .serial = serial, .format = {}, .lacks = {}}); }
+std::string KeptLens::camera() const {
+    return identityOf({.card = card, .serial = serial, .format = {}, .lacks = {}, .exposure = {}});
+}
 
 std::string identityOf(const CameraDescription& camera) {
     return camera.card + (camera.serial.empty() ? "" : ", serial " + camera.serial);

@@ -11,9 +11,9 @@
 
 #include <fmt/format.h>
 #include <glm/mat3x3.hpp>
-#include <stdlib.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <numbers>
 #include <optional>
@@ -108,7 +108,9 @@ public:
     DeviceStatus status() const override {
         return {.name = "camera", .driver = "simulated", .state = DeviceState::Running, .detail = trouble_};
     }
-    CameraDescription description() const override { return {.card = "simulated", .serial = {}, .format = {}, .lacks = {}}; }
+    CameraDescription description() const override {
+        return {.card = "simulated", .serial = {}, .format = {}, .lacks = {}, .exposure = {}};
+    }
 
 private:
     static constexpr Time kPeriod = 100ms;

@@ -18,6 +18,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Pair;
 using testing::StartsWith;
 
@@ -67,6 +68,24 @@ std::string refusal(const std::string& text) {
     return site ? "accepted" : folder.relative(site.error().message());
 }
 std::string refusalAfter(std::string_view what, std::string_view by) { return refusal(replaced(std::string(kSite), what, by)); }
+
+TEST(Site, reads_a_measured_lens_and_light_and_has_usual_ones_without) {
+    const ScratchFolder folder;
+    const auto plain = readSite(folder.file("site.yaml", kSite));
+    EXPECT_FALSE(plain->nominalCamera->centre);
+    EXPECT_THAT(plain->nominalCamera->response, IsEmpty());
+    const std::string more =
+        "  k1: -0.05\n  centre: [321.5, 170]\n  lens_of: C525\n  response: [0, 0.2, 1]\n  hot_pixels: [[4, 5]]";
+    const auto site = readSite(folder.file("site.yaml", replaced(std::string(kSite), "  k1: -0.05", more)));
+    ASSERT_TRUE(site) << site.error().message();
+    EXPECT_EQ(site->nominalCamera->centre, glm::dvec2(321.5, 170));
+    EXPECT_EQ(site->nominalCamera->lensOf, "C525");
+    EXPECT_THAT(site->nominalCamera->response, ElementsAre(0, 0.2, 1));
+    EXPECT_THAT(site->nominalCamera->hotPixels, ElementsAre(glm::ivec2(4, 5)));
+    EXPECT_THAT(refusalAfter("  k1: -0.05", "  k1: -0.05\n  response: [0, 0.3, 0.2, 1]"),
+                HasSubstr("response[2]: the light of a higher"));
+    EXPECT_THAT(refusalAfter("  k1: -0.05", "  k1: -0.05\n  response: [0.1, 1]"), HasSubstr("must rise from 0"));
+}
 
 TEST(Site, reads_everything_that_the_file_says) {
     const ScratchFolder folder;
