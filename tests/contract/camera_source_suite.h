@@ -40,6 +40,16 @@ inline Suite<CameraSourceRig> cameraSourceSuite() {
     return joined<CameraSourceRig>(lifeClauses<CameraSourceRig>(serves),
                                    {
                                        {"a frame comes once, with what was seen", serves},
+                                       {"it says what it is, and still does when it is lost",
+                                        [serves](CameraSourceRig& rig) -> std::string {
+                                            if (auto wrong = serves(rig); !wrong.empty()) return wrong;
+                                            const CameraDescription before = rig.port().description();
+                                            CONTRACT_REQUIRE(!before.card.empty(), "a camera that works has no name");
+                                            rig.unplug();
+                                            rig.letTimePass();
+                                            CONTRACT_REQUIRE(rig.port().description() == before, "it forgot what it was");
+                                            return "";
+                                        }},
                                        {"without a new frame there is none",
                                         [](CameraSourceRig& rig) -> std::string {
                                             CONTRACT_REQUIRE(rig.port().newest() == nullptr, "a frame before the first exposure");

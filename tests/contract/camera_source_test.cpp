@@ -36,8 +36,14 @@ TEST(CameraSourceContract, is_kept_by_the_simulated_camera) {
     EXPECT_THAT(violations(cameraSourceSuite(), [] { return std::make_unique<SimulatedCameraRig>(); }), IsEmpty());
 }
 
-class RepeatsItsLastFrame : public Between<CameraSource> {
+class BetweenCamera : public Between<CameraSource> {
+public:
     using Between::Between;
+    CameraDescription description() const override { return good_->description(); }
+};
+
+class RepeatsItsLastFrame : public BetweenCamera {
+    using BetweenCamera::BetweenCamera;
     std::shared_ptr<const CameraFrame> newest() override {
         if (auto frame = good_->newest()) last_ = std::move(frame);
         return running() ? last_ : nullptr;
@@ -51,8 +57,8 @@ TEST(CameraSourceContract, finds_a_camera_that_gives_a_frame_again) {
         ElementsAre("without a new frame there is none", "of several frames the newest comes, and none of the older ones later"));
 }
 
-class GivesAStaleBufferAtItsReturn : public Between<CameraSource> {
-    using Between::Between;
+class GivesAStaleBufferAtItsReturn : public BetweenCamera {
+    using BetweenCamera::BetweenCamera;
     std::shared_ptr<const CameraFrame> newest() override {
         const int losses = good_->status().losses;
         if (running() && std::exchange(seen_, losses) != losses)
@@ -66,8 +72,8 @@ TEST(CameraSourceContract, finds_a_camera_that_comes_back_with_an_old_picture) {
                 testing::Contains("a lost camera gives nothing, and after its return nothing from before"));
 }
 
-class ReusesOneBuffer : public Between<CameraSource> {
-    using Between::Between;
+class ReusesOneBuffer : public BetweenCamera {
+    using BetweenCamera::BetweenCamera;
     std::shared_ptr<const CameraFrame> newest() override {
         const auto frame = good_->newest();
         if (!frame) return nullptr;
@@ -80,8 +86,8 @@ TEST(CameraSourceContract, finds_a_camera_that_overwrites_a_frame_in_use) {
     EXPECT_THAT(brokenBy<ReusesOneBuffer>(), testing::Contains("a frame that is held stays as it was while others come"));
 }
 
-class GivesTheTimeOfTaking : public Between<CameraSource> {
-    using Between::Between;
+class GivesTheTimeOfTaking : public BetweenCamera {
+    using BetweenCamera::BetweenCamera;
     std::shared_ptr<const CameraFrame> newest() override {
         const auto frame = good_->newest();
         if (!frame) return nullptr;
@@ -96,8 +102,8 @@ TEST(CameraSourceContract, finds_a_camera_that_takes_the_arrival_for_the_exposur
                 ElementsAre("a frame tells when it was exposed, and both its time and its count rise"));
 }
 
-class CountsAnewAfterALoss : public Between<CameraSource> {
-    using Between::Between;
+class CountsAnewAfterALoss : public BetweenCamera {
+    using BetweenCamera::BetweenCamera;
     std::shared_ptr<const CameraFrame> newest() override {
         const auto frame = good_->newest();
         if (!frame) return nullptr;
@@ -114,8 +120,8 @@ TEST(CameraSourceContract, finds_a_camera_that_counts_anew_after_a_loss) {
     EXPECT_THAT(brokenBy<CountsAnewAfterALoss>(), ElementsAre("its count and its times go on rising after a loss"));
 }
 
-class LeavesAlphaOpen : public Between<CameraSource> {
-    using Between::Between;
+class LeavesAlphaOpen : public BetweenCamera {
+    using BetweenCamera::BetweenCamera;
     std::shared_ptr<const CameraFrame> newest() override {
         const auto frame = good_->newest();
         if (!frame) return nullptr;
@@ -126,6 +132,16 @@ class LeavesAlphaOpen : public Between<CameraSource> {
 };
 TEST(CameraSourceContract, finds_a_camera_whose_frames_are_transparent) {
     EXPECT_THAT(brokenBy<LeavesAlphaOpen>(), testing::Contains("a frame comes once, with what was seen"));
+}
+
+class ForgetsWhatItIs : public BetweenCamera {
+    using BetweenCamera::BetweenCamera;
+    std::shared_ptr<const CameraFrame> newest() override { return good_->newest(); }
+    CameraDescription description() const override { return running() ? good_->description() : CameraDescription(); }
+};
+// A lens is kept by what the camera says of itself.
+TEST(CameraSourceContract, finds_a_camera_that_forgets_what_it_is) {
+    EXPECT_THAT(brokenBy<ForgetsWhatItIs>(), ElementsAre("it says what it is, and still does when it is lost"));
 }
 
 }  // namespace

@@ -299,6 +299,30 @@ TEST_F(V4l2Cameras, that_cannot_be_locked_run_all_the_same) {
     MockCamera& mock = plugIn({});
     stream(mock, "exposure: 200\nfocus: auto\n");
     EXPECT_NE(seenOf(mock, {.bytes = yuyv(100)}), nullptr);
+    const CameraDescription description = camera_->description();
+    EXPECT_EQ(description.lacks, "exposure cannot be set; focus cannot be automatic");
+    EXPECT_EQ(description.exposure, Time::zero());
+}
+
+// A lens is kept by these.
+TEST_F(V4l2Cameras, say_what_they_are_and_what_they_do_not_do) {
+    open();
+    EXPECT_EQ(camera_->description(), CameraDescription()) << "none is there";
+    MockCamera& mock = plugIn(
+        {.card = "HD Webcam C525",
+         .serial = "4F2A",
+         .controls = {
+             {V4L2_CID_EXPOSURE_AUTO, {0, 3, 3}}, {V4L2_CID_EXPOSURE_ABSOLUTE, {1, 10000, 156}}, {V4L2_CID_GAIN, {0, 255, 64}}}});
+    stream(mock, "exposure: 200\ngain: 300\n");
+    const CameraDescription description = camera_->description();
+    EXPECT_EQ(description.card, "HD Webcam C525");
+    EXPECT_EQ(description.serial, "4F2A");
+    EXPECT_EQ(description.format, "YUYV 64 x 48 at 30 Hz");
+    EXPECT_EQ(description.lacks, "gain 255 instead of 300");
+    EXPECT_EQ(description.exposure, std::chrono::milliseconds(20));
+    mock.unplug();
+    ASSERT_TRUE(comesTo(DeviceState::Absent));
+    EXPECT_EQ(camera_->description(), description) << "as it was last found";
 }
 
 // --- When it was exposed

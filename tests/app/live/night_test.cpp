@@ -112,6 +112,7 @@ public:
         work();
         return good_->newest();
     }
+    CameraDescription description() const override { return good_->description(); }
 };
 
 // The simulated default site, with outputs of few pixels: the recording of a minute would take the
