@@ -126,7 +126,8 @@ public:
         simulated_->begin(Time{});
         for (std::size_t i = 0; i < 2; ++i)
             comparisons_.emplace_back(
-                vision::NominalView{*nominal.camera, nominal.outputs[i].projector, kAspect, site_.outputs[i].projection.warp, {}},
+                vision::NominalView{
+                    *nominal.camera, {}, nominal.outputs[i].projector, kAspect, site_.outputs[i].projection.warp, {}},
                 guides_[i]);
     }
 
