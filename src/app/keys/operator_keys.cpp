@@ -41,6 +41,9 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
             return takeOver({.at = showTime, .kind = Kind::Back, .source = source});
         case RunKey::Action::Blackout:
             return takeOver({.at = showTime, .kind = Kind::Blackout, .source = source});
+        case RunKey::Action::Corrections:
+            inputs_.submit({.at = showTime, .kind = Kind::Corrections, .source = source});
+            return;
         case RunKey::Action::Pictures:
             return actions_.takePictures();
         case RunKey::Action::Quit:

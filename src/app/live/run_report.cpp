@@ -17,6 +17,26 @@ Report jsonOf(const Durations& durations) {
             {"max", durations.maxMs()}};
 }
 
+void addWatch(Report& json, const RunReport& report) {
+    json["watch"] = Report::object();
+    for (const auto& [output, series] : report.watch) {
+        json["watch"][output] = Report::array();
+        for (const DriftReport& drift : series) {
+            Report entry = {
+                {"at", seconds(drift.at)}, {"drift_px", drift.drift}, {"sigma_px", drift.sigma}, {"moved_px", drift.corrected}};
+            if (drift.corrected > 0)
+                for (const glm::vec2 corner : drift.shift) entry["moved_corners"].push_back({corner.x, corner.y});
+            json["watch"][output].push_back(std::move(entry));
+        }
+    }
+    json["causes"] = Report::array();
+    for (const CauseReport& cause : report.causes)
+        json["causes"].push_back({{"output", cause.output},
+                                  {"from", seconds(cause.from)},
+                                  {"to", seconds(cause.to.value_or(report.length))},
+                                  {"cause", cause.cause}});
+}
+
 }  // namespace
 
 std::optional<FramePart> causeOfDelay(const PartTimes& spent, Time period) {
@@ -106,17 +126,7 @@ Report jsonOf(const RunReport& report) {
         json["z_camera"][output] = Report::array();
         for (const auto& [time, z] : series) json["z_camera"][output].push_back({seconds(time), z});
     }
-    json["watch"] = Report::object();
-    for (const auto& [output, series] : report.watch) {
-        json["watch"][output] = Report::array();
-        for (const DriftReport& drift : series) {
-            Report entry = {
-                {"at", seconds(drift.at)}, {"drift_px", drift.drift}, {"sigma_px", drift.sigma}, {"moved_px", drift.corrected}};
-            if (drift.corrected > 0)
-                for (const glm::vec2 corner : drift.shift) entry["moved_corners"].push_back({corner.x, corner.y});
-            json["watch"][output].push_back(std::move(entry));
-        }
-    }
+    addWatch(json, report);
     return json;
 }
 

@@ -88,6 +88,7 @@ struct RunReport {
     std::vector<CueReport> cues;
     std::vector<FaultReport> faults;
     std::map<std::string, std::vector<std::pair<Time, double>>> zCamera;      // per output
+    std::vector<CauseReport> causes;                                          // why the wall is not as it should be
     std::map<std::string, std::vector<DriftReport>> watch;                    // per output
     std::map<std::string, std::int64_t> lateVideoFrames, damagedVideoFrames;  // per source that is a video
     std::map<std::string, std::int64_t> lostFrames;                           // per output, of a recording that was not finished

@@ -218,6 +218,7 @@ public:
         report.yardstickTicks = yardstick_.ticks();
         report.yardstickLate = yardstick_.late();
         report.zCamera = watch_.series();
+        if (driftWatch_) report.causes = driftWatch_->causes();
         if (driftWatch_)
             for (std::size_t i = 0; i < programme_.site.outputs.size(); ++i)
                 report.watch[programme_.site.outputs[i].name] = driftWatch_->series()[i];

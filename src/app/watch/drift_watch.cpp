@@ -18,6 +18,7 @@ constexpr Time kLeastStep = std::chrono::milliseconds(90);  // between pictures 
 constexpr Time kSure = std::chrono::milliseconds(700);      // a movement must be seen for so long
 constexpr Time kRefines = std::chrono::seconds(4);          // after a correction, small ones may follow
 constexpr double kRefinement = 0.25;                        // pixels: a smaller one is not worth it
+constexpr double kInPlace = 0.6;                            // pixels: nobody sees less
 constexpr double kSlowestCamera = 2;                        // seconds between pictures, from which on nothing is predicted
 
 // The rectangle of a projector's pixels that its picture is in.
@@ -30,13 +31,24 @@ std::pair<glm::dvec2, glm::dvec2> litBy(const Projection& projection) {
     return {glm::max(low, glm::dvec2(0)), glm::min(high, glm::dvec2(projection.size))};
 }
 
-double rmsOf(const show::PictureShift& shift, const Projection& projection) {
+Homography mapOf(const show::PictureShift& shift, const Projection& projection) {
     const auto corners = rectangleCorners(projection.size.x, projection.size.y);
     auto moved = corners;
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += glm::dvec2(shift[i]);
     const auto map = Homography::fromCorners(corners, moved);
+    return map ? *map : Homography();
+}
+
+double rmsOf(const show::PictureShift& shift, const Projection& projection) {
     const auto [low, high] = litBy(projection);
-    return map ? vision::rmsMovement(*map, low, high) : 0;
+    return vision::rmsMovement(mapOf(shift, projection), low, high);
+}
+
+// How far a shifted picture is from its place.
+double missOf(const Drift& drift, const show::PictureShift& shift, const Projection& projection) {
+    const auto map = mapOf(shift, projection);
+    const auto [low, high] = litBy(projection);
+    return vision::rmsMovement(map.inverse() * drift.moved, low, high);
 }
 
 std::vector<ShownLight::Output> watchedOf(const show::Site& site, const vision::WallWatch& wall,
@@ -60,7 +72,8 @@ DriftWatch::DriftWatch(const show::Site& site, const std::vector<std::optional<v
       light_(watchedOf(site, wall_, frames), wall_, showClock),
       settled_(site.outputs.size()),
       settledAt_(site.outputs.size(), Time::min() / 2),
-      series_(site.outputs.size()) {
+      series_(site.outputs.size()),
+      misplaced_(site.outputs.size()) {
     for (std::size_t i = 0; i < site.outputs.size(); ++i) {
         const auto [low, high] = litBy(site.outputs[i].projection);
         tracks_.emplace_back(low, high, outputs[i] && outputs[i]->isSurveyed);
@@ -106,6 +119,7 @@ void DriftWatch::decide(Time showTime) {
     if (moved == Moved::Camera && isLasting) {
         cameraMoved_ = true;
         events_.append({showTime, show::event::CameraMoved{}});
+        causes_.push_back({"", movedSince_, {}, "camera moved"});
         return;
     }
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -118,6 +132,10 @@ void DriftWatch::decide(Time showTime) {
         if (moves) {
             settledAt_[i] = showTime;
             events_.append({showTime, show::event::PictureMoved{site_.outputs[i].name, since[i]->px}});
+            if (!misplaced_[i]) {
+                misplaced_[i] = causes_.size();
+                causes_.push_back({site_.outputs[i].name, movedSince_, {}, "out of place"});
+            }
         }
         correct(i, *tracks_[i].now(), showTime);
     }
@@ -143,6 +161,8 @@ void DriftWatch::note(const show::ShowState& shown, Time showTime) {
         const show::PictureShift shift = i < shown.shifts.size() ? shown.shifts[i] : show::PictureShift{};
         series_[i].push_back(
             {showTime, tracks_[i].now()->px, tracks_[i].now()->sigma, rmsOf(shift, site_.outputs[i].projection), shift});
+        const double left = missOf(*tracks_[i].now(), shift, site_.outputs[i].projection);
+        if (misplaced_[i] && left < kInPlace) causes_[*std::exchange(misplaced_[i], std::nullopt)].to = showTime;
     }
 }
 

@@ -29,6 +29,14 @@ struct DriftReport {
     show::PictureShift shift{};
 };
 
+// Why the wall was not as it should be.
+struct CauseReport {
+    std::string output;        // empty: all of them
+    Time from{};               // show time
+    std::optional<Time> to{};  // none: until the end
+    std::string cause;
+};
+
 // Watches where the outputs' pictures stand on the wall, and brings them back if the site says so.
 // A correction is an input like a press of GO: it is bounded, logged, and taken back by one key.
 // Once the camera itself has moved nothing is corrected until the site is calibrated again.
@@ -52,6 +60,8 @@ public:
 
     // By output, one a second.
     const std::vector<std::vector<DriftReport>>& series() const { return series_; }
+    // In the order in which they were noticed.
+    const std::vector<CauseReport>& causes() const { return causes_; }
 
 private:
     void decide(Time showTime);
@@ -74,6 +84,8 @@ private:
     bool cameraMoved_ = false, wasSettingUp_ = false;
     std::vector<std::vector<DriftReport>> series_;
     Time noted_ = Time::min();
+    std::vector<CauseReport> causes_;
+    std::vector<std::optional<std::size_t>> misplaced_;  // by output: its open entry of `causes_`
 };
 
 }  // namespace fantascope::app
