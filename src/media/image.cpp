@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -182,7 +183,31 @@ void rowOf(const cv::Mat& picture, int y, cv::Mat& row) {
     picture.row(y).convertTo(row, CV_32F, depth == CV_8U ? 1.0 / 255 : depth == CV_16U ? 1.0 / 65535 : 1.0);
 }
 
-std::uint8_t toByte(float value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f)); }
+// 0..1 as a stored value of the type, rounded to the nearest.
+template <class Stored>
+Stored toStored(float value) {
+    constexpr float kMost = std::numeric_limits<Stored>::max();
+    return static_cast<Stored>(std::lround(std::clamp(value, 0.0f, 1.0f) * kMost));
+}
+
+template <class Pixel>
+Result<Image<Pixel>> readColours(const fs::path& path) {
+    using Stored = decltype(Pixel::r);
+    const cv::Mat picture = TRY(decode(path));
+    Image<Pixel> image(picture.cols, picture.rows);
+    const int channels = picture.channels();
+    cv::Mat row;
+    for (int y = 0; y < picture.rows; ++y) {
+        rowOf(picture, y, row);
+        const float* pixel = row.ptr<float>();
+        for (int x = 0; x < picture.cols; ++x, pixel += channels) {
+            const auto channel = [&](int index) { return toStored<Stored>(pixel[channels == 1 ? 0 : index]); };
+            image.at(x, y) = {channel(2), channel(1), channel(0),
+                              channels == 4 ? channel(3) : std::numeric_limits<Stored>::max()};
+        }
+    }
+    return image;
+}
 
 // `effort`: 1 is fast, 9 small.
 Result<void> encode(const fs::path& path, const cv::Mat& picture, int effort) {
@@ -242,21 +267,8 @@ Result<GreyImage> readGrey(const fs::path& path) {
     return image;
 }
 
-Result<RgbaImage> readRgba(const fs::path& path) {
-    const cv::Mat picture = TRY(decode(path));
-    RgbaImage image(picture.cols, picture.rows);
-    const int channels = picture.channels();
-    cv::Mat row;
-    for (int y = 0; y < picture.rows; ++y) {
-        rowOf(picture, y, row);
-        const float* pixel = row.ptr<float>();
-        for (int x = 0; x < picture.cols; ++x, pixel += channels) {
-            const auto channel = [&](int index) { return toByte(pixel[channels == 1 ? 0 : index]); };
-            image.at(x, y) = {channel(2), channel(1), channel(0), channels == 4 ? toByte(pixel[3]) : std::uint8_t{255}};
-        }
-    }
-    return image;
-}
+Result<RgbaImage> readRgba(const fs::path& path) { return readColours<Rgba8>(path); }
+Result<Rgba16Image> readRgba16(const fs::path& path) { return readColours<Rgba16>(path); }
 
 Result<glm::ivec2> pictureSize(const fs::path& path) {
     constexpr std::size_t kHead = 1 << 20;  // bytes; more than a camera writes before the size
@@ -269,7 +281,7 @@ Result<glm::ivec2> pictureSize(const fs::path& path) {
 
 Result<void> writePng(const fs::path& path, const GreyImage& image) {
     Image<std::uint8_t> bytes(image.width(), image.height());
-    std::transform(image.pixels().begin(), image.pixels().end(), bytes.pixels().begin(), toByte);
+    std::transform(image.pixels().begin(), image.pixels().end(), bytes.pixels().begin(), toStored<std::uint8_t>);
     return encode(path, {bytes.height(), bytes.width(), CV_8UC1, bytes.pixels().data()}, 6);
 }
 

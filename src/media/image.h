@@ -73,6 +73,7 @@ const std::array<float, 256>& linearOfBytes();
 // more than 2^26 pixels.
 Result<GreyImage> readGrey(const std::filesystem::path& path);
 Result<RgbaImage> readRgba(const std::filesystem::path& path);
+Result<Rgba16Image> readRgba16(const std::filesystem::path& path);
 // Width and height of a picture, from its header only, so that a picture that is too large is
 // refused without decoding. Error: names the file: missing, or no such picture.
 Result<glm::ivec2> pictureSize(const std::filesystem::path& path);

@@ -115,7 +115,7 @@ const std::vector<Row> kTable = {
 
     {"app/base", {"core", "media", "theatre/energy"}, {"nlohmann-json"}, {"libav", "OpenCV", "POSIX"}},
     {"app/base/command_line", {"core"}, {}, {"CLI11"}},
-    {"app/site", {"app/base", "core", "device", "drivers", "render/canvas", "show", "vision"}, {}, {"POSIX"}},
+    {"app/site", {"app/base", "core", "device", "drivers", "media", "render/canvas", "show", "vision"}, {}, {"POSIX"}},
     {"app/keys", {"app/base", "core", "media", "device", "show"}, {}, {}},
     {"app/watch", {"core", "device", "media", "render", "show", "vision"}, {}, {}},
     {"app/live",

@@ -100,6 +100,9 @@ TEST_F(ImageTest, sixteen_bits_keep_their_steps) {
     EXPECT_EQ(rgba(bytes).at(0, 0), (Rgba8{4, 4, 4, 255}));
     EXPECT_EQ(rgba(encoded(".png", cv::Mat(1, 1, CV_16UC4, cv::Scalar(0, 65535, 257 * 7, 257 * 9)))).at(0, 0),
               (Rgba8{7, 255, 0, 9}));
+    const Rgba16Image fine(2, 1, Rgba16{1000, 2001, 65535, 40000});
+    ASSERT_TRUE(writePng(folder_ / "fine.png", fine));
+    EXPECT_EQ(readRgba16(folder_ / "fine.png").value(), fine);
 }
 
 // A guide on a transparent background: what was not drawn is black, because no light falls there.

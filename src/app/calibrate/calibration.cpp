@@ -1,6 +1,7 @@
 #include "app/calibrate/calibration.h"
 
 #include "app/site/site_models.h"
+#include "app/site/survey_file.h"
 
 #include "show/site/projection_changes.h"
 #include "vision/largest_place.h"
@@ -22,7 +23,7 @@ using Corners = std::array<glm::dvec2, 4>;
 // The largest upright place of a canvas. Error: not all of its outputs were measured, or it finds
 // no place in their light.
 Result<Corners> largestPlaceOf(const show::Site& site, const std::string& canvas, const vision::CameraModel& camera,
-                               const std::map<std::size_t, LightSurvey::Output>& surveys) {
+                               const std::map<std::size_t, const LightSurvey::Output*>& surveys) {
     std::vector<vision::LitPart> parts;
     const std::vector<std::size_t> outputs = site.outputsOn(canvas);
     for (const std::size_t output : outputs) {
@@ -32,7 +33,7 @@ Result<Corners> largestPlaceOf(const show::Site& site, const std::string& canvas
                 fmt::format("it shares the canvas '{}' with '{}', which was not measured; calibrate both, or say with "
                             "--wanted where the canvas is to stand",
                             canvas, site.outputs[output].name));
-        parts.push_back({site.outputs[output].projection.warp.shape().part, &survey->second.map});
+        parts.push_back({site.outputs[output].projection.warp.shape().part, &survey->second->map});
     }
     const show::Output& first = site.outputs[outputs[0]];
     const double known = first.projection.canvasAspect;
@@ -64,6 +65,22 @@ void fit(OutputCalibration& calibration, const LightSurvey::Output& survey, cons
             fitted->rms, kGoodRms);
 }
 
+// What is kept of the good calibrations. `text`: of the site file with their warps, which are
+// compared as they will be read.
+Result<std::map<std::string, OutputSurvey>> surveyOf(const show::Site& site, const std::vector<OutputCalibration>& calibrations,
+                                                     Time latency, const std::string& text) {
+    const show::Site written = TRY(show::parseSite(text, site.file));
+    std::map<std::string, OutputSurvey> surveys;
+    for (const OutputCalibration& calibration : calibrations) {
+        if (!calibration.isGood()) continue;
+        const std::string& name = site.outputs[calibration.output].name;
+        const show::Output& output = written.outputs[TRY(outputNamed(written, name))];
+        const LightSurvey::Output& seen = *calibration.survey;
+        surveys[name] = {seen.map, seen.dark, output.size(), seen.gamma, latency, output.projection.warp.shape()};
+    }
+    return surveys;
+}
+
 }  // namespace
 
 Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show::Site& site,
@@ -71,7 +88,8 @@ Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show
     const vision::CameraModel camera = TRY(cameraOf(site));
     TRY(survey.begin(outputs));
     std::vector<OutputCalibration> calibrations;
-    std::map<std::size_t, LightSurvey::Output> surveys;
+    std::map<std::size_t, const LightSurvey::Output*> surveys;
+    calibrations.reserve(outputs.size());  // surveys points into it
     for (const std::size_t output : outputs) {
         OutputCalibration& calibration = calibrations.emplace_back();
         calibration.output = output;
@@ -80,9 +98,8 @@ Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show
             calibration.trouble = found.error().message();
             continue;
         }
-        calibration.gamma = found->gamma;
-        calibration.repeated = found->repeated;
-        surveys[output] = std::move(*found);
+        calibration.survey = std::move(*found);
+        surveys[output] = &*calibration.survey;
     }
     std::map<std::string, Result<Corners>> places;
     for (OutputCalibration& calibration : calibrations) {
@@ -92,13 +109,13 @@ Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show
         const auto given = wanted.find(output.name);
         if (given == wanted.end() && !places.contains(output.canvas))
             places.emplace(output.canvas, largestPlaceOf(site, output.canvas, camera, surveys));
-        fit(calibration, found->second, camera, given != wanted.end() ? Result<Corners>(given->second) : places.at(output.canvas),
-            output.projection.warp.shape());
+        fit(calibration, *found->second, camera,
+            given != wanted.end() ? Result<Corners>(given->second) : places.at(output.canvas), output.projection.warp.shape());
     }
     return calibrations;
 }
 
-Result<void> writeWarps(const show::Site& site, std::vector<OutputCalibration>& calibrations) {
+Result<void> writeCalibration(const show::Site& site, std::vector<OutputCalibration>& calibrations, Time latency) {
     ConfigDocument document = TRY(ConfigDocument::load(site.file));
     for (const OutputCalibration& calibration : calibrations) {
         if (!calibration.isGood()) continue;
@@ -107,6 +124,9 @@ Result<void> writeWarps(const show::Site& site, std::vector<OutputCalibration>& 
         now.warp = TRY(Warp::of(calibration.fit->shape));
         TRY(applyChanges(document, site, show::projectionChanges(then, now, calibration.output)));
     }
+    // The survey comes first: whichever file is written last, the survey has a record for the warps
+    // that stand in the site file.
+    TRY(writeSurvey(site.file, TRY(surveyOf(site, calibrations, latency, document.text()))));
     TRY(document.save());
     for (OutputCalibration& calibration : calibrations) calibration.written = calibration.isGood();
     return {};

@@ -20,8 +20,7 @@ struct OutputCalibration {
     std::size_t output = 0;
     std::string trouble;  // why it has no fit, or why the fit is not good enough; empty: it is good
     std::optional<vision::WarpFit> fit;
-    double gamma = 0;  // 0: not measured
-    int repeated = 0;  // pictures that were shown again
+    std::optional<LightSurvey::Output> survey;  // none: not measured
     bool written = false;
 
     bool isGood() const { return fit && trouble.empty(); }
@@ -37,8 +36,9 @@ constexpr double kGoodRms = 1.0;
 Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show::Site& site,
                                                  const std::vector<std::size_t>& outputs, const WantedCorners& wanted);
 
-// Writes the good warps into the site file, and keeps the version before as FILE.previous. Error:
-// the file cannot be changed; it stays as it was.
-Result<void> writeWarps(const show::Site& site, std::vector<OutputCalibration>& calibrations);
+// Writes the good warps into the site file, keeps the version before as FILE.previous, and keeps
+// what was seen as the site's survey (survey_file.h). `latency`: from a picture's light to its
+// arrival from the camera. Error: a file cannot be changed; the site file stays as it was.
+Result<void> writeCalibration(const show::Site& site, std::vector<OutputCalibration>& calibrations, Time latency);
 
 }  // namespace fantascope::app

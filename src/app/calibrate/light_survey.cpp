@@ -307,6 +307,7 @@ Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
     LightDecoder decoder = decoderOf(light.period());
     found.repeated = TRY(decode(output, light, found.gamma, decoder));
     found.map = decoder.map();
+    found.dark = decoder.dark();
     return found;
 }
 

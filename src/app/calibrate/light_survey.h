@@ -34,6 +34,7 @@ public:
     // What one output's survey found.
     struct Output {
         vision::ProjectorMap map;
+        GreyImage dark;      // by camera pixel: linear light while every output is dark
         double gamma = 2.2;  // of the projector: light = stored ^ gamma
         int repeated = 0;    // pictures that were shown again because something moved
     };

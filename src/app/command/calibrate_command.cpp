@@ -38,8 +38,9 @@ void declare(Command& command, Options& options) {
     command.add(
         "--wanted", options.wanted,
         "Where the canvases are to stand in the camera's picture (docs/calibrating.md); default: the largest upright place");
-    command.addFlag("--write", options.write,
-                    "Write the new warps into the site file; the file as it was is kept as FILE.previous");
+    command.addFlag(
+        "--write", options.write,
+        "Write the new warps into the site file, and what was seen beside it; the file as it was is kept as FILE.previous");
     command.addFlag("--undo", options.undo,
                     "Measure nothing: go back to the site file as it was; once more, and it is the new one");
     command.add("--report", options.report, "Write the figures to this JSON file (docs/report.md)");
@@ -64,14 +65,15 @@ Report reportOf(const show::Site& site, const std::vector<OutputCalibration>& ca
     report["seconds"] = seconds(took);
     report["latency_ms"] = 1000 * seconds(latency);
     int repeated = 0;
-    for (const OutputCalibration& calibration : calibrations) repeated += calibration.repeated;
+    for (const OutputCalibration& calibration : calibrations)
+        if (calibration.survey) repeated += calibration.survey->repeated;
     report["repeated_frames"] = repeated;
     report["outputs"] = Report::object();
     for (const OutputCalibration& calibration : calibrations) {
         Report& output = report["outputs"][site.outputs[calibration.output].name];
         output["written"] = calibration.written;
         if (!calibration.trouble.empty()) output["trouble"] = calibration.trouble;
-        if (calibration.gamma > 0) output["gamma"] = calibration.gamma;
+        if (calibration.survey) output["gamma"] = calibration.survey->gamma;
         if (!calibration.fit) continue;
         const vision::WarpFit& fit = *calibration.fit;
         output["rms_px"] = fit.rms;
@@ -131,7 +133,7 @@ Result<void> run(const Options& options) {
     std::vector<OutputCalibration> calibrations = TRY(calibrate(survey, site, outputs, wanted));
     const Time took = rig->now() - began;
     const bool anyGood = std::ranges::any_of(calibrations, &OutputCalibration::isGood);
-    if (options.write && anyGood) TRY(writeWarps(site, calibrations));
+    if (options.write && anyGood) TRY(writeCalibration(site, calibrations, survey.latency()));
     if (!options.report.empty()) TRY(writeReport(options.report, reportOf(site, calibrations, took, survey.latency())));
     if (const std::string mismatch = lensMismatch(site, rig->camera()); !options.simulate && !mismatch.empty())
         fmt::print("note: {}\n", printableLines(mismatch));

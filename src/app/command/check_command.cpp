@@ -7,6 +7,7 @@
 #include "app/lens/lens_file.h"
 #include "app/live/programme.h"
 #include "app/site/site_file.h"
+#include "app/site/survey_file.h"
 
 #include "pattern/search/pattern_settings.h"
 #include "pattern/shape/elemental_shape.h"
@@ -193,6 +194,8 @@ Result<Finding> checkSite(const fs::path& path, const std::optional<show::Site>&
                                 counted(site.fixtures.size(), "fixture"), counted(site.relays.size(), "relay"),
                                 site.camera ? ", camera" : "")};
     noteSimulated(site, finding.oddities);
+    std::error_code ignored;
+    if (const fs::path survey = surveyFileOf(site.file); fs::exists(survey, ignored)) finding.names.push_back(survey);
     return finding;
 }
 
@@ -226,6 +229,10 @@ Result<Finding> checkWanted(const fs::path& path, const std::optional<show::Site
 Result<Finding> checkLens(const fs::path& path, const std::optional<show::Site>&) {
     const KeptLens lens = TRY(readLens(path));
     return Finding{fmt::format("lens of {}, {} x {} pixels", lens.camera(), lens.size.x, lens.size.y), {}};
+}
+
+Result<Finding> checkSurveyFile(const fs::path& path, const std::optional<show::Site>&) {
+    return Finding{fmt::format("survey, {}", counted(TRY(checkSurvey(path)).size(), "output")), {}};
 }
 
 // The drawing of a motion or of hints: NAME.png for NAME.motion.yaml. If it is missing, an
@@ -351,7 +358,8 @@ constexpr std::pair<std::string_view, Check> kKinds[] = {{"show", checkShow},   
                                                          {"motion", checkMotion},   {"sequence", checkSequence},
                                                          {"cast", checkCast},       {"stage", checkStage},
                                                          {"hints", checkHints},     {"pose-weights", checkWeights},
-                                                         {"wanted", checkWanted},   {"lens", checkLens}};
+                                                         {"wanted", checkWanted},   {"lens", checkLens},
+                                                         {"survey", checkSurveyFile}};
 
 Result<Finding> checkYaml(const fs::path& path, const std::optional<show::Site>& site) {
     std::vector<std::string> names;

@@ -3,6 +3,7 @@
 
 #include "app/site/site_file.h"
 #include "app/site/site_models.h"
+#include "app/site/survey_file.h"
 
 #include "vision/camera_model.h"
 
@@ -182,12 +183,37 @@ TEST_F(CalibrateCommand, goes_back_to_what_was_and_forth_again) {
     EXPECT_EQ(text("site.yaml"), now);
 }
 
+// What the camera saw lies beside the site file, and goes back with it.
+TEST_F(CalibrateCommand, keeps_what_it_saw) {
+    makeSite();
+    want({-2, 0.5}, {2, 2.5});
+    ASSERT_THAT(run({"--wanted", "wanted.yaml", "--write"}), exits(0));
+    const Survey both = **readSurvey(site());
+    ASSERT_THAT(both.unfit, testing::IsEmpty());
+    for (const show::Output& output : site().outputs) {
+        const OutputSurvey& seen = both.outputs.at(output.name);
+        EXPECT_EQ(seen.projector, output.size());
+        EXPECT_NEAR(seen.gamma, report()["outputs"][output.name]["gamma"].get<double>(), 1e-9);
+        EXPECT_GT(seen.map.known, 2000u);
+        EXPECT_NEAR(1000 * seconds(seen.latency), report()["latency_ms"].get<double>(), 1e-3);
+        EXPECT_GT(seen.dark.at(160, 120), 0) << "the night is not black";
+    }
+    want({-1.9, 0.6}, {1.9, 2.5});
+    ASSERT_THAT(run({"left", "--wanted", "wanted.yaml", "--write", "--seed", "2"}), exits(0));
+    const Survey again = **readSurvey(site());
+    EXPECT_EQ(again.outputs.at("right").map.light, both.outputs.at("right").map.light);
+    EXPECT_NE(again.outputs.at("left").map.light, both.outputs.at("left").map.light);
+    ASSERT_THAT(run({"--undo"}), exits(0));
+    EXPECT_EQ((*readSurvey(site()))->outputs.at("left").map.light, both.outputs.at("left").map.light);
+}
+
 TEST_F(CalibrateCommand, writes_nothing_unless_asked) {
     makeSite();
     want({-2, 0.5}, {2, 2.5});
     const std::string before = text("site.yaml");
     ASSERT_THAT(run({"right", "--wanted", "wanted.yaml"}), exits(0));
     EXPECT_EQ(text("site.yaml"), before);
+    EXPECT_FALSE(*readSurvey(site()));
     EXPECT_EQ(report()["outputs"].size(), 1u);
     EXPECT_EQ(report()["outputs"]["right"]["written"], false);
 }
