@@ -29,6 +29,10 @@ layout(location = 10) uniform vec3 cubeFrom[2];  // place in the texture = store
 #ifdef BLEND
 layout(binding = 7) uniform sampler2D blendMap;  // light * x + y
 #endif
+#ifdef GAIN
+layout(binding = 8) uniform sampler2D gainMap;   // what is left of the light where the surface would be brighter than elsewhere
+layout(location = 13) uniform float gainShare;  // how far that is faded in, 0..1
+#endif
 #ifdef ENCODE
 layout(location = 12) uniform float gamma;  // 0: the sRGB function
 #endif
@@ -66,6 +70,9 @@ void main() {
 #endif
 #ifdef CUBE
     light = linearFromSrgb(texture(cube, srgbFromLinear(clamp(light, 0.0, 1.0)) * cubeFrom[0] + cubeFrom[1]).rgb);
+#endif
+#ifdef GAIN
+    light = clamp(light, 0.0, 1.0) * mix(1.0, texelFetch(gainMap, pixel, 0).x, gainShare);
 #endif
 #ifdef BLEND
     // Cut before it is shared: what a projector alone cannot show two of them must not.

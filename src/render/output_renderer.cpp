@@ -23,7 +23,7 @@ Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& op
                        Stopwatch(options.clock)};
     tools.bend.follow(place);
     std::unique_ptr<OutputRenderer> renderer(new OutputRenderer(std::move(tools)));
-    renderer->composer_ = TRY(gpu::Composer::create(place.size, options.samples, renderer->tools_.programs));
+    renderer->composer_ = TRY(gpu::Composer::create(place.size, options.samples, renderer->tools_.programs, options.gain.get()));
     renderer->tools_.samples = renderer->composer_->samples();
     renderer->size_ = place.size;
     renderer->overlay_ = TRY(gpu::Overlay::create(place.size, renderer->tools_.programs));
@@ -59,6 +59,7 @@ Result<void> OutputRenderer::warmUp(unsigned framebuffer) {
 
 void OutputRenderer::draw(const show::OutputState& state, const Wind& wind, Time time, unsigned framebuffer) {
     tools_.uploads.reset();
+    composer_->correctLight(card_ ? 0 : lightShare_);
     composer_->begin();
     if (card_) {
         card_->paint(Moment{}, composer_->nextPicture());

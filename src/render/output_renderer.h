@@ -40,6 +40,7 @@ public:
         int samples = 4;                          // per pixel; llvmpipe and every GPU support 4
         std::filesystem::path shaders;            // the folder of the shader files
         const Clock* clock = nullptr;             // times uploads; null: they are not timed
+        std::shared_ptr<const GreyImage> gain{};  // the light correction, by projector pixel, linear; null: none
     };
     // Error: a shader does not compile (names its file and gives the compiler's log), or more
     // pixels or samples than OpenGL allows here.
@@ -55,6 +56,8 @@ public:
     // colours multiplied by alpha; null: none. Both are copied. Error: a shader does not compile,
     // or more pixels than OpenGL allows here.
     Result<void> setUp(const RgbaImage* overlay, const RgbaImage* card);
+    // How far the light correction is faded in from now on, 0..1. A card is shown without it.
+    void correctLight(float share) { lightShare_ = share; }
     // Draws every source once and every combination of layers, so that nothing is compiled during
     // the show. Error: OpenGL has no memory left.
     Result<void> warmUp(unsigned framebuffer);
@@ -77,6 +80,7 @@ private:
     std::optional<gpu::Composer> composer_;
     show::BySource<Shown> sources_;
     glm::ivec2 size_{0};
+    float lightShare_ = 1;
     std::optional<gpu::Overlay> overlay_;
     std::unique_ptr<DrawnSource> card_;  // null: the show
 };

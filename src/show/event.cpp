@@ -42,6 +42,15 @@ struct Teller {
     std::string operator()(const event::CameraMoved&) const {
         return "the camera has moved: nothing is corrected any more; calibrate again after the show";
     }
+    std::string operator()(const event::LightCorrected& light) const {
+        if (!light.trouble.empty()) return fmt::format("the light of '{}' is not evened out: {}", light.canvas, light.trouble);
+        const std::string figures =
+            fmt::format("{:.0f} % of its light {} left; {:.0f} % of its places stay darker and {:.0f} % brighter than the others",
+                        100 * light.kept, light.applied ? "is" : "would be", 100 * light.tooDark, 100 * light.tooBright);
+        if (light.applied) return fmt::format("the light of '{}' is evened out: {}", light.canvas, figures);
+        return fmt::format("the light of '{}' could be evened out (corrections: light: {{mode: automatic}} in the site file): {}",
+                           light.canvas, figures);
+    }
     std::string operator()(const event::SettingUpBegan&) const {
         return "setting up the outputs: the picture lists the keys, e ends it";
     }

@@ -64,6 +64,14 @@ struct PictureMoved {
 };
 // The camera sees that it has moved itself.
 struct CameraMoved {};
+// What the light correction does with a canvas, or would do.
+struct LightCorrected {
+    std::string canvas;
+    double kept = 1;                    // share of a white canvas's light that is left
+    double tooDark = 0, tooBright = 0;  // shares of its places that stay darker, brighter than the others
+    bool applied = false;               // false: advice
+    std::string trouble;                // why there is none; empty: there is one
+};
 struct SettingUpBegan {};
 struct SettingUpEnded {
     bool saved = false;
@@ -75,9 +83,9 @@ struct SiteNotSaved {
     std::string why;
 };
 
-using What =
-    std::variant<InputDecided, CueEntered, BlackoutChanged, ScheduleEnded, QuitAsked, FaultBegan, FaultEnded, SendersChanged,
-                 PictureTaken, PictureMissed, PictureMoved, CameraMoved, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+using What = std::variant<InputDecided, CueEntered, BlackoutChanged, ScheduleEnded, QuitAsked, FaultBegan, FaultEnded,
+                          SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, SettingUpBegan,
+                          SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace fantascope::vision {
 namespace {
@@ -99,16 +100,22 @@ Exposure exposureOf(std::vector<float> seen, std::vector<float> wanted) {
 
 }  // namespace
 
+// What is wanted of the cells in sight, and how it is found in what is seen.
+struct Measure {
+    std::vector<float> gain;       // how strongly a cell is lit that is wanted white
+    std::vector<float> wanted;     // low-passed
+    Eigen::MatrixXf background;    // cells x terms
+    Eigen::MatrixXf backgroundOf;  // terms x cells: how much of each term is in the low-passed light
+};
+
 struct GuideComparison::Tables {
     glm::ivec2 frameSize;
     CameraLight light;
     glm::ivec2 grid;   // cells across and down the canvas
     double shown = 1;  // the share of the canvas that the output shows
     std::vector<Cell> cells;
-    GreyImage weights;             // sum of the low-pass over the cells in sight
-    std::vector<float> wanted;     // low-passed, of the cells in sight
-    Eigen::MatrixXf background;    // cells x terms
-    Eigen::MatrixXf backgroundOf;  // terms x cells: how much of each term is in the low-passed light
+    GreyImage weights;  // sum of the low-pass over the cells in sight
+    Measure z, tone;
 
     // A Gaussian over the cells in sight, as if there were no others.
     std::vector<float> lowPassed(const std::vector<float>& values) const {
@@ -119,10 +126,61 @@ struct GuideComparison::Tables {
         for (const Cell& cell : cells) result.push_back(canvas.at(cell.column, cell.row) / weights.at(cell.column, cell.row));
         return result;
     }
+
+    // `fallsOff`: cells that the projector lights less are to be darker.
+    Measure measureOf(const GreyImage& wanted, bool fallsOff) const {
+        const GreyImage guide = resized(wanted, grid.x, grid.y);
+        Measure measure;
+        std::vector<float> values;
+        for (const Cell& cell : cells) {
+            values.push_back(guide.at(cell.column, cell.row));
+            measure.gain.push_back(fallsOff ? static_cast<float>(cell.gain) : 1);
+        }
+        measure.wanted = lowPassed(values);
+        // Least squares of the low-passed light on the low-passed guide and a smooth background:
+        // the first column keeps the picture out of the background.
+        const auto count = static_cast<int>(cells.size());
+        Eigen::MatrixXd terms(count, 1 + kBackgroundTerms);
+        for (int i = 0; i < count; ++i) {
+            const auto index = static_cast<std::size_t>(i);
+            const glm::dvec2 at = 2.0 * glm::dvec2(cells[index].column, cells[index].row) / glm::dvec2(grid) - 1.0;
+            terms.row(i) << measure.wanted[index] * (fallsOff ? cells[index].gain : 1), 1, at.x, at.y, at.x * at.x, at.x * at.y,
+                at.y * at.y;
+        }
+        Eigen::MatrixXd normal = terms.transpose() * terms;
+        normal.diagonal().tail(kBackgroundTerms).array() += kBackgroundCost * count;
+        const Eigen::MatrixXd solved = normal.completeOrthogonalDecomposition().solve(terms.transpose());
+        measure.background = terms.rightCols(kBackgroundTerms).cast<float>();
+        measure.backgroundOf = solved.bottomRows(kBackgroundTerms).cast<float>();
+        return measure;
+    }
+
+    // The mean difference; nothing if there is no picture. `light`: of every cell, by channel.
+    std::optional<double> difference(const Measure& measure, std::array<std::vector<float>, 3> light) const {
+        // Minus the light of sky and lamps: per channel, because that light has a colour.
+        const auto count = static_cast<int>(cells.size());
+        for (std::vector<float>& channel : light) {
+            const std::vector<float> smooth = lowPassed(channel);
+            const Eigen::VectorXf share = measure.backgroundOf * Eigen::Map<const Eigen::VectorXf>(smooth.data(), count);
+            Eigen::Map<Eigen::VectorXf>(channel.data(), count) -= measure.background * share;
+        }
+        // A pixel's value is its brightest channel, so that shapes of any colour count alike.
+        std::vector<float> seen;
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            seen.push_back(std::max({light[0][i], light[1][i], light[2][i]}) / measure.gain[i]);
+        seen = lowPassed(seen);
+
+        const Exposure exposure = exposureOf(seen, measure.wanted);
+        if (exposure.span < kFlat || exposure.scale <= 0) return std::nullopt;
+        double difference = 0;
+        for (std::size_t i = 0; i < seen.size(); ++i)
+            difference += std::abs(std::clamp(exposure.scale * seen[i] + exposure.lift, 0.0, 1.0) - measure.wanted[i]);
+        return difference / count;
+    }
 };
 
-GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wanted) {
-    FANTASCOPE_CHECK(!wanted.empty(), "a guide must not be empty");
+GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wanted, const GreyImage& light) {
+    FANTASCOPE_CHECK(!wanted.empty() && !light.empty(), "a guide must not be empty");
     auto tables = std::make_shared<Tables>();
     tables->frameSize = view.camera.size;
     tables->light = view.light;
@@ -130,67 +188,33 @@ GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wante
     const CanvasPart part = view.warp.shown();
     tables->shown = (part.high.x - part.low.x) * (part.high.y - part.low.y);
     tables->cells = cellsInSight(view, tables->grid);
-    const auto count = static_cast<int>(tables->cells.size());
     tables_ = tables;
-    if (count == 0) return;
+    if (tables->cells.empty()) return;
 
     GreyImage inSight(tables->grid.x, tables->grid.y);
     for (const Cell& cell : tables->cells) inSight.at(cell.column, cell.row) = 1;
     tables->weights = blurred(inSight, kBlur * kRows);
-    const GreyImage guide = resized(wanted, tables->grid.x, tables->grid.y);
-    std::vector<float> values;
-    for (const Cell& cell : tables->cells) values.push_back(guide.at(cell.column, cell.row));
-    tables->wanted = tables->lowPassed(values);
-
-    // Least squares of the low-passed light on the low-passed guide and a smooth background: the
-    // first column keeps the picture out of the background.
-    Eigen::MatrixXd terms(count, 1 + kBackgroundTerms);
-    for (int i = 0; i < count; ++i) {
-        const Cell& cell = tables->cells[static_cast<std::size_t>(i)];
-        const glm::dvec2 at = 2.0 * glm::dvec2(cell.column, cell.row) / glm::dvec2(tables->grid) - 1.0;
-        terms.row(i) << tables->wanted[static_cast<std::size_t>(i)] * cell.gain, 1, at.x, at.y, at.x * at.x, at.x * at.y,
-            at.y * at.y;
-    }
-    Eigen::MatrixXd normal = terms.transpose() * terms;
-    normal.diagonal().tail(kBackgroundTerms).array() += kBackgroundCost * count;
-    const Eigen::MatrixXd solved = normal.completeOrthogonalDecomposition().solve(terms.transpose());
-    tables->background = terms.rightCols(kBackgroundTerms).cast<float>();
-    tables->backgroundOf = solved.bottomRows(kBackgroundTerms).cast<float>();
+    tables->z = tables->measureOf(wanted, !view.isEvenedOut);
+    tables->tone = tables->measureOf(light, false);
 }
 
-std::optional<double> GuideComparison::compare(const RgbaImage& frame) const {
+std::optional<Likeness> GuideComparison::compare(const RgbaImage& frame) const {
     const Tables& tables = *tables_;
     if (frame.width() != tables.frameSize.x || frame.height() != tables.frameSize.y) return std::nullopt;
-    const auto count = static_cast<int>(tables.cells.size());
+    const auto count = static_cast<double>(tables.cells.size());
     if (count < kMostlySeen * tables.shown * tables.grid.x * tables.grid.y) return std::nullopt;
 
-    // The light on every cell, minus that of sky and lamps: per channel, because that light has a
-    // colour.
-    std::array<std::vector<float>, 3> light;
+    std::array<std::vector<float>, 3> light;  // on every cell
     for (const Cell& cell : tables.cells) {
         glm::dvec3 sum(0);
         for (const glm::vec2 place : cell.places) sum += linearAt(tables_->light, frame, place);
         for (int c = 0; c < 3; ++c)
             light[static_cast<std::size_t>(c)].push_back(static_cast<float>(sum[c] / (kPlaces * kPlaces)));
     }
-    for (std::vector<float>& channel : light) {
-        const std::vector<float> smooth = tables.lowPassed(channel);
-        const Eigen::VectorXf share = tables.backgroundOf * Eigen::Map<const Eigen::VectorXf>(smooth.data(), count);
-        Eigen::Map<Eigen::VectorXf>(channel.data(), count) -= tables.background * share;
-    }
-    // A pixel's value is its brightest channel, so that shapes of any colour count alike, divided
-    // by the projector's own fall-off.
-    std::vector<float> seen;
-    for (std::size_t i = 0; i < tables.cells.size(); ++i)
-        seen.push_back(std::max({light[0][i], light[1][i], light[2][i]}) / static_cast<float>(tables.cells[i].gain));
-    seen = tables.lowPassed(seen);
-
-    const Exposure exposure = exposureOf(seen, tables.wanted);
-    if (exposure.span < kFlat || exposure.scale <= 0) return std::nullopt;
-    double difference = 0;
-    for (std::size_t i = 0; i < seen.size(); ++i)
-        difference += std::abs(std::clamp(exposure.scale * seen[i] + exposure.lift, 0.0, 1.0) - tables.wanted[i]);
-    return difference / count;
+    const auto z = tables.difference(tables.z, light);
+    const auto tone = tables.difference(tables.tone, std::move(light));
+    if (!z) return std::nullopt;
+    return Likeness{*z, tone};
 }
 
 }  // namespace fantascope::vision

@@ -20,25 +20,41 @@ struct NominalView {
     double canvasAspect = 16.0 / 9;  // width / height
     Warp warp = Warp::straight({1, 1});
     Plane surface;  // the surface of the picture
+    // The light correction evens out the projector's fall-off too, so it is no reason to be darker.
+    bool isEvenedOut = false;
+};
+
+// How far a picture on the wall differs from what was wanted; each in [0, 1], 0 is the guide
+// itself.
+struct Likeness {
+    double z = 1;                // z_camera
+    std::optional<double> tone;  // tone_camera; nothing: the frame is too flat in linear light
+    friend bool operator==(const Likeness&, const Likeness&) = default;
 };
 
 // z_camera: how far the picture on the wall, as the camera sees it, differs from the guide drawing;
 // 0 is the guide itself. It is the camera's counterpart of the pattern's goal function (Ji et al.
 // 2015, section 4.1), low-passed because the camera is coarse and the shapes are white or black
-// where the guide is grey.
+// where the guide is grey. The projector's own fall-off counts as intended, unless it is evened
+// out.
+//
+// tone_camera: the same in linear light, whatever the pattern was compared in, and of the light as
+// it is: the wanted light at every place is the guide times one constant, and fall-off counts as a
+// fault.
 class GuideComparison {
 public:
     // `wanted`: the wanted light at every place of the canvas, 0..1, in the space in which the
     // pattern was compared: the guide's stored values for the paper's method, its linear light for
-    // a method that compares light. Not empty; stretched over the canvas.
-    GuideComparison(const NominalView& view, const GreyImage& wanted);
+    // a method that compares light. `light`: the same in linear light. Neither is empty; both are
+    // stretched over the canvas.
+    GuideComparison(const NominalView& view, const GreyImage& wanted, const GreyImage& light);
 
-    // z in [0, 1] of one camera frame (stored sRGB values). Nothing if the frame shows no picture
-    // to compare: it is not of camera.size, too dark or too flat, or the camera does not see most
-    // of the output. The caller must know whether the show displays the guide at this moment: any
-    // other picture scores badly. Exposure, fades, the colour of the shapes and smooth light of
-    // other lamps hardly matter; the picture's place does. Thread: reentrant.
-    std::optional<double> compare(const RgbaImage& frame) const;
+    // Of one camera frame (stored sRGB values). Nothing if the frame shows no picture to compare:
+    // it is not of camera.size, too dark or too flat, or the camera does not see most of the
+    // output. The caller must know whether the show displays the guide at this moment: any other
+    // picture scores badly. Exposure, fades, the colour of the shapes and smooth light of other
+    // lamps hardly matter; the picture's place does. Thread: reentrant.
+    std::optional<Likeness> compare(const RgbaImage& frame) const;
 
 private:
     struct Tables;

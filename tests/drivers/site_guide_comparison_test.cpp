@@ -128,7 +128,7 @@ public:
             comparisons_.emplace_back(
                 vision::NominalView{
                     *nominal.camera, {}, nominal.outputs[i].projector, kAspect, site_.outputs[i].projection.warp, {}},
-                guides_[i]);
+                guides_[i], guides_[i]);
     }
 
     struct Scores {
@@ -142,7 +142,11 @@ public:
         simulated_->advanceTo(clock_.now());
         clock_.advanceTo(fromSeconds(time + 0.06));
         const auto frame = world_.takeFromCamera();
-        return {comparisons_[0].compare(frame->image), comparisons_[1].compare(frame->image)};
+        const auto z = [&](std::size_t output) -> std::optional<double> {
+            const auto seen = comparisons_[output].compare(frame->image);
+            return seen ? std::optional(seen->z) : std::nullopt;
+        };
+        return {z(0), z(1)};
     }
     void setLamps(bool sculpture, bool roads) {
         std::array<std::uint8_t, kDmxSlots> slots{};

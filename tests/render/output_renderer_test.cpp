@@ -203,6 +203,35 @@ TEST(OutputRenderer, adds_layers_as_linear_light) {
 }
 
 // Example failure: the last frame's picture stays when all layers have gone.
+// Example failure: the factors are upside down, or dim the black that the blend adds.
+TEST(OutputRenderer, dims_by_the_light_correction_as_far_as_it_is_faded_in) {
+    auto gain = std::make_shared<GreyImage>(kSize.x, kSize.y);
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x)
+            gain->at(x, y) = 0.3f + 0.35f * static_cast<float>(x) / kSize.x + 0.35f * static_cast<float>(y) / kSize.y;
+    auto blend = std::make_shared<BlendMap>(kSize.x, kSize.y, glm::vec2(0.8f, 0.05f));
+    const Projection projection = projectionTo(kSize, upright(kSize));
+    const std::vector<PictureSource> white = {SolidSource{glm::vec3(1)}};
+    DrawnOutput plain(projection, white), corrected(projection, white, nullptr, "headless", gain),
+        blended(projection, white, blend, "headless", gain);
+    for (const float share : {0.0f, 0.4f, 1.0f}) {
+        corrected.renderer().correctLight(share);
+        blended.renderer().correctLight(share);
+        const RgbaImage alone = corrected.frame({{0, 1}}), beside = blended.frame({{0, 1}});
+        if (share == 0) EXPECT_EQ(alone, plain.frame({{0, 1}}));
+        for (int y = 0; y < kSize.y; y += 7)
+            for (int x = 0; x < kSize.x; x += 7) {
+                const float factor = 1 - share * (1 - gain->at(x, y));
+                ASSERT_NEAR(alone.at(x, y).g, 255 * srgbFromLinear(factor), 1) << x << ", " << y << ", " << share;
+                ASSERT_NEAR(beside.at(x, y).g, 255 * srgbFromLinear(factor * 0.8f + 0.05f), 1) << x << ", " << y << ", " << share;
+            }
+    }
+    const RgbaImage card(kSize.x, kSize.y, Rgba8{255, 255, 255, 255});
+    ASSERT_TRUE(corrected.sink().makeCurrent());
+    ASSERT_TRUE(corrected.renderer().setUp(nullptr, &card));
+    EXPECT_EQ(corrected.frame({{0, 1}}).at(0, 0).g, 255) << "a card is for judging the projector itself";
+}
+
 TEST(OutputRenderer, is_black_without_layers) {
     DrawnOutput output({64, 36}, upright({64, 36}), {SolidSource{}});
     ASSERT_EQ(output.frame({{0, 1}}).at(5, 5), (Rgba8{255, 255, 255, 255}));

@@ -116,14 +116,15 @@ Projection projectionTo(glm::ivec2 size, const std::array<glm::dvec2, 4>& corner
 }
 
 DrawnOutput::DrawnOutput(const Projection& projection, const std::vector<PictureSource>& sources,
-                         std::shared_ptr<const BlendMap> blend, const std::string& driver) {
+                         std::shared_ptr<const BlendMap> blend, const std::string& driver,
+                         std::shared_ptr<const GreyImage> gain) {
     const glm::ivec2 size = projection.size;
     const ConfigNode options = valueOf(ConfigNode::parse("driver: " + driver, "site.yaml"));
     sink_ = valueOf(drivers::openDisplay(options, {"output", size, 30}, {clock_}));
     const Result<void> current = sink_->makeCurrent();
     FANTASCOPE_CHECK(current.has_value(), current.error().message());
-    renderer_ =
-        valueOf(OutputRenderer::create({projection, std::move(blend), 4, shaderFolder()}, PictureSources::numbered(sources)));
+    renderer_ = valueOf(OutputRenderer::create({projection, std::move(blend), 4, shaderFolder(), nullptr, std::move(gain)},
+                                               PictureSources::numbered(sources)));
     tap_ = std::make_unique<FrameTap>(0, size);
     newest_ = &tap_->addNewest(std::numeric_limits<double>::infinity());
 }

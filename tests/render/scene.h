@@ -42,7 +42,8 @@ Projection projectionTo(glm::ivec2 size, const std::array<glm::dvec2, 4>& corner
 class DrawnOutput {
 public:
     DrawnOutput(const Projection& projection, const std::vector<PictureSource>& sources,
-                std::shared_ptr<const BlendMap> blend = nullptr, const std::string& driver = "headless");
+                std::shared_ptr<const BlendMap> blend = nullptr, const std::string& driver = "headless",
+                std::shared_ptr<const GreyImage> gain = nullptr);
     DrawnOutput(glm::ivec2 size, const std::array<glm::dvec2, 4>& corners, const std::vector<PictureSource>& sources,
                 const std::string& driver = "headless")
         : DrawnOutput(projectionTo(size, corners), sources, nullptr, driver) {}

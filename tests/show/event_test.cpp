@@ -47,6 +47,14 @@ TEST(Events, say_one_sentence_each) {
     EXPECT_EQ(said(event::SendersChanged{1, {"", "FOH"}}), "universe 1 is now sent by the show and 'FOH'");
     EXPECT_EQ(said(event::PictureTaken{"pictures/a.png"}), "picture: pictures/a.png");
     EXPECT_EQ(said(event::PictureMissed{"'left' shows nothing"}), "no picture: 'left' shows nothing");
+    EXPECT_EQ(said(event::LightCorrected{"wall", 0.46, 0.081, 0.02, true, ""}),
+              "the light of 'wall' is evened out: 46 % of its light is left; 8 % of its places stay darker and 2 % brighter than "
+              "the others");
+    EXPECT_EQ(said(event::LightCorrected{"wall", 0.46, 0.081, 0.02, false, ""}),
+              "the light of 'wall' could be evened out (corrections: light: {mode: automatic} in the site file): 46 % of its "
+              "light would be left; 8 % of its places stay darker and 2 % brighter than the others");
+    EXPECT_EQ(said(event::LightCorrected{"wall", 1, 0, 0, true, "it was not surveyed"}),
+              "the light of 'wall' is not evened out: it was not surveyed");
     EXPECT_EQ(said(event::SettingUpBegan{}), "setting up the outputs: the picture lists the keys, e ends it");
     EXPECT_EQ(said(event::SettingUpEnded{true}), "the outputs are set up");
     EXPECT_EQ(said(event::SettingUpEnded{false}), "the outputs are set up but not written to the file: e, then w");

@@ -96,7 +96,7 @@ RgbaImage photographed(const GreyImage& picture, const Photograph& how) {
 }
 
 double score(const GreyImage& guide, const RgbaImage& frame) {
-    return GuideComparison(nominalView(), guide).compare(frame).value_or(NAN);
+    return GuideComparison(nominalView(), guide, guide).compare(frame).value_or(Likeness{NAN, NAN}).z;
 }
 
 TEST(GuideComparison, is_near_zero_for_the_guide_itself_and_far_from_it_for_other_pictures) {
@@ -147,7 +147,7 @@ TEST(GuideComparison, keeps_a_guide_that_is_a_mere_gradient) {
 }
 
 TEST(GuideComparison, has_no_value_where_there_is_nothing_to_compare) {
-    const GuideComparison comparison(nominalView(), spiral());
+    const GuideComparison comparison(nominalView(), spiral(), spiral());
     const GreyImage black(320, 180);
     EXPECT_FALSE(comparison.compare(photographed(black, {.ambient = glm::dvec3(0), .noise = 0.01}))) << "the dark";
     EXPECT_FALSE(
@@ -156,14 +156,41 @@ TEST(GuideComparison, has_no_value_where_there_is_nothing_to_compare) {
 
     NominalView turnedAway = nominalView();
     turnedAway.camera.pose = Pose::lookingAt({0.3, 1.6, 5}, {0.3, 1.6, 9}).value();
-    EXPECT_FALSE(GuideComparison(turnedAway, spiral()).compare(photographed(spiral(), {}))) << "a camera that looks elsewhere";
-    EXPECT_FALSE(GuideComparison(nominalView(), black).compare(photographed(spiral(), {}))) << "a guide without a drawing";
+    EXPECT_FALSE(GuideComparison(turnedAway, spiral(), spiral()).compare(photographed(spiral(), {})))
+        << "a camera that looks elsewhere";
+    EXPECT_FALSE(GuideComparison(nominalView(), black, black).compare(photographed(spiral(), {}))) << "a guide without a drawing";
+}
+
+// The tone takes the light as it is. Example failure: the projector's fall-off, or what the guide
+// stores instead of light, is taken for what was wanted.
+TEST(GuideComparison, its_tone_is_that_of_the_light_as_it_is) {
+    const GreyImage guide = spiral();
+    GreyImage stored = guide, corrected = guide;
+    for (float& value : stored.pixels()) value = srgbFromLinear(value);
+    const NominalView view = nominalView();
+    for (int y = 0; y < 180; ++y)
+        for (int x = 0; x < 320; ++x) {
+            const auto point = view.surface.hitBy(
+                view.projector.rayThrough(view.warp.projectorFromCanvas((glm::dvec2(x, y) + 0.5) / glm::dvec2(320, 180))));
+            corrected.at(x, y) *= static_cast<float>(0.5 / falloff(view.projector, *point));
+        }
+    const GuideComparison comparison(view, stored, guide);
+    NominalView evened = view;
+    evened.isEvenedOut = true;
+    const auto plain = *comparison.compare(photographed(guide, {})), level = *comparison.compare(photographed(corrected, {}));
+    EXPECT_LT(*level.tone, 0.01) << "the light is the guide's everywhere";
+    EXPECT_GT(*plain.tone, 1.5 * *level.tone) << "it falls off";
+    EXPECT_GT(level.z, 2 * *level.tone) << "z compares what the guide stores";
+    const GuideComparison forgiving(view, guide, guide), strict(evened, guide, guide);
+    EXPECT_LT(forgiving.compare(photographed(guide, {}))->z, strict.compare(photographed(guide, {}))->z);
+    EXPECT_LT(strict.compare(photographed(corrected, {}))->z, forgiving.compare(photographed(corrected, {}))->z);
+    EXPECT_EQ(strict.compare(photographed(corrected, {}))->z, strict.compare(photographed(corrected, {}))->tone);
 }
 
 // Only the stored pictures matter, whatever their source: a night's frames, kept as PNG, give the
 // same scores again.
 TEST(GuideComparison, gives_a_stored_sequence_the_same_scores) {
-    const GuideComparison comparison(nominalView(), spiral());
+    const GuideComparison comparison(nominalView(), spiral(), spiral());
     const auto file = std::filesystem::path(testing::TempDir()) / "guide_comparison_frame.png";
     for (const double degrees : {0.0, 0.7, 0.0}) {
         const RgbaImage frame = photographed(spiral(), {.noise = 0.02, .turned = degrees});

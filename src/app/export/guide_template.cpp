@@ -38,9 +38,9 @@ struct Sample {
     glm::vec3 point{0}, normal{0}, reflectance{0};
 };
 
-class Survey {
+class CanvasSight {
 public:
-    Survey(const CanvasView& view, glm::ivec2 size)
+    CanvasSight(const CanvasView& view, glm::ivec2 size)
         : view_(view), scene_(view.objects), size_(size), part_(view.warp.shape().part) {}
 
     Sample at(glm::dvec2 pixel) const {
@@ -115,7 +115,7 @@ bool hatched(glm::dvec2 pixel, bool rising, double scale) {
 
 class Painter {
 public:
-    Painter(const Survey& survey, double grid) : survey_(survey), grid_(grid), scale_(std::max(1.0, survey.size().y / 1080.0)) {}
+    Painter(const CanvasSight& sight, double grid) : sight_(sight), grid_(grid), scale_(std::max(1.0, sight.size().y / 1080.0)) {}
 
     // Paints the rows from `first` on.
     void paint(int first, GuideTemplate& out) const {
@@ -126,7 +126,7 @@ public:
             return glm::dvec2((x - kReach + 0.5) / kSide, first + (y - kReach + 0.5) / kSide);
         };
         for (int y = 0; y < down; ++y)
-            for (int x = 0; x < across; ++x) samples.at(x, y) = survey_.at(placeOf(x, y));
+            for (int x = 0; x < across; ++x) samples.at(x, y) = sight_.at(placeOf(x, y));
         for (int y = 0; y < rows; ++y)
             for (int x = 0; x < out.picture.width(); ++x) {
                 glm::vec3 sum(0);
@@ -137,7 +137,7 @@ public:
                 const glm::vec3 mean = 255.0f * glm::clamp(sum / static_cast<float>(kSide * kSide), 0.0f, 1.0f) + 0.5f;
                 out.picture.at(x, first + y) = {static_cast<std::uint8_t>(mean.r), static_cast<std::uint8_t>(mean.g),
                                                 static_cast<std::uint8_t>(mean.b), 255};
-                const Sample middle = survey_.at({x + 0.5, first + y + 0.5});
+                const Sample middle = sight_.at({x + 0.5, first + y + 0.5});
                 out.meets.at(x, first + y) = middle.meets;
                 out.object.at(x, first + y) = middle.object;
             }
@@ -155,7 +155,7 @@ private:
         }
         if (sample.meets == Meets::Nothing) return hatched(pixel, false, scale_) ? 2.5f * kNothing : kNothing;
 
-        const glm::vec3 towards = glm::normalize(glm::vec3(survey_.view().projector.pose.position) - sample.point);
+        const glm::vec3 towards = glm::normalize(glm::vec3(sight_.view().projector.pose.position) - sample.point);
         glm::vec3 colour = shaded(sample, towards);
         if (sample.inTheWay && hatched(pixel, true, scale_)) colour = glm::mix(colour, kInTheWay, 0.6f);
         for (const Sample* near : {&samples.at(x - 1, y), &samples.at(x + 1, y), &samples.at(x, y - 1), &samples.at(x, y + 1)})
@@ -168,7 +168,7 @@ private:
         return colour;
     }
 
-    const Survey& survey_;
+    const CanvasSight& sight_;
     const double grid_, scale_;  // metres; scale of marks, by the picture's size
 };
 
@@ -215,14 +215,14 @@ private:
 };
 
 // Labels each grid line on the surface with its coordinate at the picture's lower and left borders.
-void labelGrid(const Survey& survey, double grid, Lettering& lettering) {
-    const glm::ivec2 size = survey.size();
+void labelGrid(const CanvasSight& sight, double grid, Lettering& lettering) {
+    const glm::ivec2 size = sight.size();
     const double inset = 14 * lettering.unit();
     const auto walk = [&](glm::dvec2 from, glm::dvec2 step, int count, double room) {
         double free = 0;
-        Sample before = survey.at(from);
+        Sample before = sight.at(from);
         for (int i = 1; i < count; ++i) {
-            const Sample here = survey.at(from + step * static_cast<double>(i));
+            const Sample here = sight.at(from + step * static_cast<double>(i));
             for (int axis = 0; axis < 3; ++axis) {
                 const auto line = lineBetween(before, here, axis, grid);
                 if (!line || here.meets != Meets::Surface || i < free) continue;
@@ -239,15 +239,15 @@ void labelGrid(const Survey& survey, double grid, Lettering& lettering) {
 }
 
 // Draws the world's axes as arrows as long as a grid cell.
-void drawAxes(const Survey& survey, double grid, Lettering& lettering) {
-    const glm::dvec2 middle = glm::dvec2(survey.size()) / 2.0;
-    const Sample sample = survey.at(middle);
+void drawAxes(const CanvasSight& sight, double grid, Lettering& lettering) {
+    const glm::dvec2 middle = glm::dvec2(sight.size()) / 2.0;
+    const Sample sample = sight.at(middle);
     if (sample.object < 0) return;
     constexpr std::array<std::string_view, 3> kNames{"x", "y up", "z"};
     for (int axis = 0; axis < 3; ++axis) {
         glm::dvec3 tip = sample.point;
         tip[axis] += grid;
-        const auto pixel = survey.pixelOf(tip);
+        const auto pixel = sight.pixelOf(tip);
         if (!pixel || glm::distance(*pixel, middle) < 12 * lettering.unit()) continue;
         const auto index = static_cast<std::size_t>(axis);
         lettering.arrow(middle, *pixel, kAxes[index]);
@@ -282,14 +282,14 @@ void labelObjects(const GuideTemplate& drawn, const std::vector<site::SceneObjec
 GuideTemplate drawGuideTemplate(const CanvasView& view, glm::ivec2 size, double grid, int threads) {
     FANTASCOPE_CHECK(size.x > 0 && size.y > 0 && grid > 0, "the picture has pixels and a grid");
     GuideTemplate drawn{RgbaImage(size.x, size.y), Image<Meets>(size.x, size.y), Image<std::int32_t>(size.x, size.y)};
-    const Survey survey(view, size);
-    const Painter painter(survey, grid);
+    const CanvasSight sight(view, size);
+    const Painter painter(sight, grid);
     parallelFor((size.y + kBand - 1) / kBand, threads, [&](int band) { painter.paint(band * kBand, drawn); });
 
     Lettering lettering(drawn.picture);
-    labelGrid(survey, grid, lettering);
+    labelGrid(sight, grid, lettering);
     labelObjects(drawn, view.objects, lettering);
-    drawAxes(survey, grid, lettering);
+    drawAxes(sight, grid, lettering);
     const auto metres = view.sizeOnSurface();
     const std::string title = metres ? fmt::format("{}  {:.2f} x {:.2f} m  grid {:g} m", view.name, metres->x, metres->y, grid)
                                      : fmt::format("{}  grid {:g} m", view.name, grid);

@@ -27,14 +27,15 @@ Warp shifted(const Projection& projection, const show::PictureShift& shift) {
 }  // namespace
 
 FrameLoop::FrameLoop(const show::Site& site, const show::InputLog& inputs, render::PictureSources sources,
-                     std::filesystem::path assets, Devices& devices, Clock& clock)
+                     std::filesystem::path assets, Devices& devices, Clock& clock,
+                     const std::vector<std::shared_ptr<const GreyImage>>& gains)
     : sources_(std::move(sources)),
       assets_(std::move(assets)),
       clock_(clock),
       replica_(inputs),
       framesShownOn_(site.outputs.size()) {
     for (std::size_t i = 0; i < site.outputs.size(); ++i) {
-        outputs_.push_back({site.outputs[i], *devices.displays[i], blendOf(site, i)});
+        outputs_.push_back({site.outputs[i], *devices.displays[i], blendOf(site, i), i < gains.size() ? gains[i] : nullptr});
         outputs_.back().report.name = site.outputs[i].name;
     }
     faults_.resize(outputs_.size());
@@ -153,7 +154,7 @@ FrameLoop::Output* FrameLoop::leader() {
 Result<void> FrameLoop::makeRenderer(Output& output, const Projection& projection,
                                      const std::shared_ptr<const render::BlendMap>& blend) {
     const render::OutputRenderer::Options options{
-        .projection = projection, .blend = blend, .shaders = assets_ / "shaders", .clock = &clock_};
+        .projection = projection, .blend = blend, .shaders = assets_ / "shaders", .clock = &clock_, .gain = output.gain};
     auto renderer = TRY(render::OutputRenderer::create(options, sources_));
     TRY(renderer->warmUp(output.display.framebuffer()));
     renderer->draw({}, Wind{}, Time{}, output.display.framebuffer());
@@ -276,6 +277,7 @@ void FrameLoop::draw(std::size_t number, Time showTime) {
     const Time began = clock_.now();
     if (!ready(output, began)) return;
     followSettings(output, state_.shifts[number]);
+    output.renderer->correctLight(lightShare_);
     output.renderer->draw(state_.outputs[number], state_.winds[number], showTime, output.display.framebuffer());
     if (output.tap) output.tap->capture(output.display.framebuffer(), showTime);
     const Time uploading = output.renderer->uploading();
@@ -384,6 +386,7 @@ void FrameLoop::step() {
     const Time due = newest_ = nextDue();
     hangsFrom_ = (due + kHangs).count();
     const Time showTime = showClock_.showTime(due);
+    lightShare_ = static_cast<float>(std::clamp(seconds(showClock_.runTime(due)) / seconds(kLightFade), 0.0, 1.0));
 
     Time oldestInput = Time::max();
     replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput = std::min(oldestInput, input.at); });

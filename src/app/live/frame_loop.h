@@ -49,9 +49,13 @@ public:
     // After so long without a frame the loop counts as hanging in a display.
     static constexpr Time kHangs = std::chrono::seconds(5);
 
-    // All arguments by reference outlive the loop. `assets`: the folder of the shaders.
+    // All arguments by reference outlive the loop. `assets`: the folder of the shaders. `gains`:
+    // the light correction of each output, which is faded in from the run's start; null, or absent:
+    // none.
     FrameLoop(const show::Site& site, const show::InputLog& inputs, render::PictureSources sources, std::filesystem::path assets,
-              Devices& devices, Clock& clock);
+              Devices& devices, Clock& clock, const std::vector<std::shared_ptr<const GreyImage>>& gains = {});
+    // How long the light correction takes to fade in.
+    static constexpr Time kLightFade = std::chrono::seconds(5);
     ~FrameLoop();
 
     // The tap for the frames that `output` shows. Add readers before the first frame, best before
@@ -114,6 +118,7 @@ private:
         const show::Output& site;
         DisplaySink& display;
         std::shared_ptr<const render::BlendMap> blend;  // by the site file
+        std::shared_ptr<const GreyImage> gain;          // the light correction; null: none
         std::unique_ptr<LatestValue<std::shared_ptr<const OutputSettings>>> settings =
             std::make_unique<LatestValue<std::shared_ptr<const OutputSettings>>>();
         std::unique_ptr<render::OutputRenderer> renderer{};  // made as soon as the display has a context
@@ -172,7 +177,8 @@ private:
     std::filesystem::path assets_;
     Clock& clock_;
     show::ShowClock showClock_;
-    Time newest_{};  // the moment of the newest frame
+    Time newest_{};         // the moment of the newest frame
+    float lightShare_ = 0;  // how far the light correction is faded in with it
     PlaybackReplica replica_;
     show::ShowState state_;
     std::vector<Output> outputs_;

@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 struct Pictures {
     struct Guide {
         GreyImage drawing;  // as in the search for the pattern (comparedGuide)
+        GreyImage light;    // the same in linear light
         double aspect = 1;  // width / height of the source's picture
         Fit fit = Fit::Contain;
     };
@@ -49,7 +50,9 @@ struct Reading {
 Result<Pictures::Guide> readGuide(const pattern::ShapePattern& pattern, const fs::path& file) {
     auto drawing = readGrey(pattern.guide);
     if (!drawing) return namedIn(file, pattern.guide, drawing.error());
-    return Pictures::Guide{comparedGuide(std::move(*drawing), pattern.guideTransfer, pattern.compare), pattern.aspect()};
+    GreyImage light = comparedGuide(*drawing, pattern.guideTransfer, pattern::CompareSpace::Light);
+    return Pictures::Guide{comparedGuide(std::move(*drawing), pattern.guideTransfer, pattern.compare), std::move(light),
+                           pattern.aspect()};
 }
 
 Result<Picture> readPicture(const show::PatternSource& source, const Reading& reading) {
@@ -81,7 +84,10 @@ Result<Picture> readPicture(const show::FoliageSource& source, const Reading& re
         if (layer.filter) shadow.filter.picture = TRY(readFilter(*layer.filter));
         if (reading.isWatched && !guide) {
             guide = TRY(readGuide(*shadow.leaves.pattern, layer.pattern));
-            if (!layer.holes) guide->drawing = inverted(std::move(guide->drawing));
+            if (!layer.holes) {
+                guide->drawing = inverted(std::move(guide->drawing));
+                guide->light = inverted(std::move(guide->light));
+            }
         }
         const double aspect = (foliage.layers.empty() ? shadow : foliage.layers[0]).leaves.pattern->aspect();
         if (std::abs(shadow.leaves.pattern->aspect() - aspect) > 1e-6)
@@ -168,8 +174,10 @@ Result<Picture> readPicture(const show::ShadowSource& source, const Reading&) {
     shadow.to = given.metresAt({given.width(), 0});
     std::optional<Pictures::Guide> guide;
     // On a white screen, a shadow that does not move looks like the negative of its drawing.
-    if (cast->actors.front().poses.size() == 1)
-        guide = Pictures::Guide{inverted(std::move(drawing)), static_cast<double>(given.width()) / given.height()};
+    if (cast->actors.front().poses.size() == 1) {
+        drawing = inverted(std::move(drawing));
+        guide = Pictures::Guide{drawing, drawing, static_cast<double>(given.width()) / given.height()};
+    }
     return Picture{std::move(shadow), std::move(guide)};
 }
 
@@ -194,13 +202,17 @@ Result<Pictures> readPictures(const show::Show& show, const Reading& reading) {
 }
 
 Result<std::vector<Watch::Comparisons>> compareWith(const show::BySource<std::optional<Pictures::Guide>>& guides,
-                                                    const show::Site& site) {
+                                                    const show::Site& site, const std::vector<LightCorrection>& light) {
+    const auto gains = gainsToApply(site, light);
     std::vector<Watch::Comparisons> comparisons(site.outputs.size());
     for (std::size_t output = 0; output < site.outputs.size(); ++output)
         for (const auto& [source, guide] : guides) {
             std::optional<vision::NominalView> view;
             if (guide) view = TRY(nominalViewOf(site, output, guide->aspect, guide->fit));
-            if (view) comparisons[output].add(source, std::make_shared<const vision::GuideComparison>(*view, guide->drawing));
+            if (view) view->isEvenedOut = gains[output] != nullptr;
+            if (view)
+                comparisons[output].add(source,
+                                        std::make_shared<const vision::GuideComparison>(*view, guide->drawing, guide->light));
         }
     return comparisons;
 }
@@ -235,7 +247,8 @@ Result<Programme> readProgramme(const RunOptions& options) {
     Pictures pictures =
         TRY(readPictures(programme.show, {options.asFastAsPossible ? Pace::Exact : Pace::Live, programme.camera, isWatched}));
     programme.sources = std::move(pictures.sources);
-    programme.comparisons = TRY(compareWith(pictures.guides, programme.site));
+    programme.light = lightCorrectionsOf(programme.site);
+    programme.comparisons = TRY(compareWith(pictures.guides, programme.site, programme.light));
     programme.watched = TRY(watchedOutputsOf(programme.site));
     return programme;
 }

@@ -2,6 +2,7 @@
 
 #include "app/live/show_run.h"
 #include "app/live/watch.h"
+#include "app/site/light_correction.h"
 
 #include "render/source/picture_source.h"
 #include "show/playback.h"
@@ -32,7 +33,8 @@ struct Programme {
     std::shared_ptr<render::PictureFeed> camera;  // the pictures of camera sources; null if the site has no camera
     std::vector<Watch::Comparisons> comparisons;  // [output]
     std::vector<std::optional<vision::WatchedOutput>>
-        watched;  // [output]; nothing: it cannot be watched, or the site does not want it
+        watched;                         // [output]; nothing: it cannot be watched, or the site does not want it
+    std::vector<LightCorrection> light;  // of the canvases; applied if the site file says so
 };
 
 // Reads a pattern with its movement, ready to be drawn. Error: as pattern::readPattern.

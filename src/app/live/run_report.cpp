@@ -37,6 +37,28 @@ void addWatch(Report& json, const RunReport& report) {
                                   {"cause", cause.cause}});
 }
 
+Report jsonOf(const std::map<std::string, std::vector<std::pair<Time, double>>>& byOutput) {
+    Report json = Report::object();
+    for (const auto& [output, series] : byOutput) {
+        json[output] = Report::array();
+        for (const auto& [time, value] : series) json[output].push_back({seconds(time), value});
+    }
+    return json;
+}
+
+Report jsonOf(const std::vector<show::event::LightCorrected>& light) {
+    Report json = Report::object();
+    for (const show::event::LightCorrected& one : light) {
+        Report& canvas = json[one.canvas];
+        canvas["applied"] = one.applied && one.trouble.empty();
+        if (one.trouble.empty())
+            canvas.update({{"kept", one.kept}, {"too_dark", one.tooDark}, {"too_bright", one.tooBright}});
+        else
+            canvas["trouble"] = one.trouble;
+    }
+    return json;
+}
+
 }  // namespace
 
 std::optional<FramePart> causeOfDelay(const PartTimes& spent, Time period) {
@@ -64,6 +86,14 @@ std::vector<CueReport> cuesOf(const show::EventLog& events) {
         if (const auto* const entered = std::get_if<show::event::CueEntered>(&event->what))
             cues.push_back({entered->name, event->at});
     return cues;
+}
+
+std::vector<show::event::LightCorrected> lightOf(const show::EventLog& events) {
+    std::vector<show::event::LightCorrected> light;
+    show::EventLog::Reader reader = events.reader();
+    while (const show::Event* const event = reader.next())
+        if (const auto* const corrected = std::get_if<show::event::LightCorrected>(&event->what)) light.push_back(*corrected);
+    return light;
 }
 
 std::string sentenceOf(const std::vector<UnsafeBank>& unsafe) {
@@ -121,11 +151,9 @@ Report jsonOf(const RunReport& report) {
         if (fault.until) entry["until"] = seconds(*fault.until);
         json["faults"].push_back(std::move(entry));
     }
-    json["z_camera"] = Report::object();
-    for (const auto& [output, series] : report.zCamera) {
-        json["z_camera"][output] = Report::array();
-        for (const auto& [time, z] : series) json["z_camera"][output].push_back({seconds(time), z});
-    }
+    json["light_correction"] = jsonOf(report.light);
+    json["z_camera"] = jsonOf(report.zCamera);
+    json["tone_camera"] = jsonOf(report.toneCamera);
     addWatch(json, report);
     return json;
 }

@@ -53,6 +53,8 @@ struct CueReport {
 
 // The cues in the order in which they were entered.
 std::vector<CueReport> cuesOf(const show::EventLog& events);
+// What was told of the light correction.
+std::vector<show::event::LightCorrected> lightOf(const show::EventLog& events);
 
 struct FaultReport {
     Time at{};
@@ -87,11 +89,12 @@ struct RunReport {
                  yardstickLate = 0;  // of an empty thread at the first output's rate: what the machine itself misses
     std::vector<CueReport> cues;
     std::vector<FaultReport> faults;
-    std::map<std::string, std::vector<std::pair<Time, double>>> zCamera;      // per output
-    std::vector<CauseReport> causes;                                          // why the wall is not as it should be
-    std::map<std::string, std::vector<DriftReport>> watch;                    // per output
-    std::map<std::string, std::int64_t> lateVideoFrames, damagedVideoFrames;  // per source that is a video
-    std::map<std::string, std::int64_t> lostFrames;                           // per output, of a recording that was not finished
+    std::vector<show::event::LightCorrected> light;  // what the light correction did, or would have done
+    std::map<std::string, std::vector<std::pair<Time, double>>> zCamera, toneCamera;  // per output
+    std::vector<CauseReport> causes;                                                  // why the wall is not as it should be
+    std::map<std::string, std::vector<DriftReport>> watch;                            // per output
+    std::map<std::string, std::int64_t> lateVideoFrames, damagedVideoFrames;          // per source that is a video
+    std::map<std::string, std::int64_t> lostFrames;  // per output, of a recording that was not finished
     std::vector<UnsafeBank> unsafe;
     std::string stopReason;
     std::string hung;  // why the program did not wait for the render thread; empty: the thread ended in order

@@ -64,7 +64,8 @@ public:
           supervisor_(supervisor),
           faults_(events_),
           inputs_(programme.cues),
-          frames_(programme.site, inputs_, programme.sources, assets, openSite.devices, clock),
+          frames_(programme.site, inputs_, programme.sources, assets, openSite.devices, clock,
+                  gainsToApply(programme.site, programme.light)),
           terminal_(options.asFastAsPossible ? nullptr : std::make_unique<TerminalKeys>()),
           attended_(terminal_ && terminal_->listens()),
           wall_(readers(openSite.simulation != nullptr,
@@ -92,6 +93,8 @@ public:
           lights_(programme.site, openSite.devices, lighting_, faults_, clock, guard) {
         faults_.begin(showClock_);
         frames_.begin(showClock_);
+        for (const auto& news : lightNewsOf(programme.site, programme.light))
+            events_.append({showClock_.showTime(showClock_.runStart()), news});
         if (!options.asFastAsPossible) frames_.makeRenderersAside();
         if (recorder_) recorder_->begin(showClock_.runStart());
         frames_.publishStateTo(watch_.shown());
@@ -218,6 +221,7 @@ public:
         report.yardstickTicks = yardstick_.ticks();
         report.yardstickLate = yardstick_.late();
         report.zCamera = watch_.series();
+        report.toneCamera = watch_.tones();
         if (driftWatch_) report.causes = driftWatch_->causes();
         if (driftWatch_)
             for (std::size_t i = 0; i < programme_.site.outputs.size(); ++i)
@@ -258,6 +262,7 @@ private:
         report.lateFrames = frames_.framesLate();
         report.dmxInterval = lighting_.dmxInterval();
         report.cues = cuesOf(events_);
+        report.light = lightOf(events_);
         report.faults = faults_.faults();
         report.unsafe = lights_.unsafe();
         return report;

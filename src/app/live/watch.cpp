@@ -17,7 +17,7 @@ Watch::Watch(const show::Show& show, std::vector<std::string> outputs, std::vect
       recording_(recording),
       scores_(outputs_.size()) {
     for (std::atomic<double>& score : scores_) score = -1;
-    for (const std::string& output : outputs_) series_[output];
+    for (const std::string& output : outputs_) series_[output], tones_[output];
 }
 
 const vision::GuideComparison* Watch::comparisonOf(std::size_t output) const {
@@ -46,9 +46,10 @@ void Watch::tick(Time moment) {
     for (std::size_t output = 0; output < outputs_.size(); ++output) {
         const vision::GuideComparison* comparison = comparisonOf(output);
         if (comparison == nullptr) continue;
-        if (const auto z = comparison->compare(frame->image)) {
-            series_[outputs_[output]].emplace_back(showTime, *z);
-            scores_[output] = *z;
+        if (const auto seen = comparison->compare(frame->image)) {
+            series_[outputs_[output]].emplace_back(showTime, seen->z);
+            if (seen->tone) tones_[outputs_[output]].emplace_back(showTime, *seen->tone);
+            scores_[output] = seen->z;
         }
     }
     if (drifts_ != nullptr) drifts_->see(*frame, shown_.value(), isSettingUp_(), moment);

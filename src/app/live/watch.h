@@ -51,8 +51,10 @@ public:
 
     // The newest score of each output, for the status line; negative: none yet. Thread-safe.
     std::vector<double> newestScores() const;
-    // z_camera by output. Call it once the part has ended.
-    const std::map<std::string, std::vector<std::pair<Time, double>>>& series() const { return series_; }
+    // z_camera and tone_camera by output. Call these once the part has ended.
+    using Series = std::map<std::string, std::vector<std::pair<Time, double>>>;
+    const Series& series() const { return series_; }
+    const Series& tones() const { return tones_; }
 
 private:
     struct Seen {
@@ -75,7 +77,7 @@ private:
     LatestValue<show::ShowState> shown_;
     std::vector<std::atomic<double>> scores_;
     Seen last_;
-    std::map<std::string, std::vector<std::pair<Time, double>>> series_;
+    Series series_, tones_;
 };
 
 }  // namespace fantascope::app

@@ -29,7 +29,7 @@ struct OutputSurvey {
 };
 
 // What the calibrations of a site learnt. It lies beside the site file: `site.survey/survey.yaml`
-// for `site.yaml`, and pictures (docs/site-format.md).
+// for `site.yaml`, and pictures (docs/survey-format.md).
 //
 // Of each output the file keeps two records, each with the warp that was found with it. The record
 // with the site's own warp counts. So site and survey belong together whichever of them was written

@@ -13,12 +13,23 @@ Result<Corrections::Geometry> readGeometry(const ConfigNode& node) {
     return geometry;
 }
 
+Result<Corrections::Light> readLight(const ConfigNode& node) {
+    Corrections::Light light;
+    ConfigFields fields(node);
+    fields.optional().choice("mode", light.mode, {"off", "advise", "automatic"});
+    fields.optional().number("least", light.least, 0.05, 1);
+    fields.optional().number("clipped", light.clipped, 0, 0.5);
+    TRY(fields.finish());
+    return light;
+}
+
 }  // namespace
 
 Result<Corrections> readCorrections(const ConfigNode& node) {
     Corrections corrections;
     ConfigFields fields(node);
     fields.optional().read("geometry", corrections.geometry, readGeometry);
+    fields.optional().read("light", corrections.light, readLight);
     TRY(fields.finish());
     return corrections;
 }

@@ -19,6 +19,12 @@ struct Corrections {
         double farthest = 60;  // how far any point of the picture may be moved, projector pixels
         double speed = 6;      // of the fastest point of the picture, projector pixels per second
     } geometry;
+    // Light that the surface and the projectors' fall-off make uneven.
+    struct Light {
+        Mode mode = Mode::Advise;
+        double least = 0.3;    // the least that is left of a place's light, 0.05 .. 1
+        double clipped = 0.1;  // share of the places that may stay darker than the others, 0 .. 0.5
+    } light;
 };
 
 // Reads the section. Error: place, key, advice.

@@ -16,8 +16,8 @@ constexpr GLfloat kBlack[] = {0, 0, 0, 1};
 
 // Uniform locations of assets/shaders/compose.frag. An array's is that of its first element; the
 // others follow.
-constexpr GLint kBlend = 0, kTurn = 4, kWeight = 8, kTint = 9, kCubeFrom = 10, kGamma = 12;
-constexpr GLuint kRoots = 0, kCarriedSum = 4, kCarriedPicture = 5, kCube = 6, kBlendMap = 7;
+constexpr GLint kBlend = 0, kTurn = 4, kWeight = 8, kTint = 9, kCubeFrom = 10, kGamma = 12, kGainShare = 13;
+constexpr GLuint kRoots = 0, kCarriedSum = 4, kCarriedPicture = 5, kCube = 6, kBlendMap = 7, kGainMap = 8;
 
 // The factors of a blend mode: what the picture below loses by the layer's coverage and by its
 // light, and what the layer adds.
@@ -43,10 +43,12 @@ void filterBetween(GLuint texture) {
 
 }  // namespace
 
-Result<Composer> Composer::create(glm::ivec2 size, int samples, ProgramCache& programs) {
+Result<Composer> Composer::create(glm::ivec2 size, int samples, ProgramCache& programs, const GreyImage* gain) {
     static_assert(kTogether == 2);
     LayerPicture first = TRY(LayerPicture::create(size, samples)), second = TRY(LayerPicture::create(size, samples));
-    return Composer(size, {std::move(first), std::move(second)}, programs);
+    Composer composer(size, {std::move(first), std::move(second)}, programs);
+    if (gain != nullptr) composer.uploadGain(*gain);
+    return composer;
 }
 
 Composer::Carried::Carried(glm::ivec2 size) {
@@ -69,6 +71,7 @@ Result<unsigned> Composer::programFor(std::size_t layers, bool carries, End end)
         define(true, "FINISH");
         define(finishing_.tint, "TINT");
         define(finishing_.cube, "CUBE");
+        define(finishing_.gain, "GAIN");
         define(finishing_.blend, "BLEND");
         define(finishing_.encode, "ENCODE");
         define(finishing_.dither, "DITHER");
@@ -101,10 +104,23 @@ void Composer::uploadBlendMap() {
         glTextureSubImage2D(texture, 0, 0, size_.y - 1 - y, size_.x, 1, GL_RG, GL_FLOAT, blend.row(y).data());
 }
 
+void Composer::uploadGain(const GreyImage& gain) {
+    FANTASCOPE_CHECK(glm::ivec2(gain.width(), gain.height()) == size_, "the light correction has the projector's size");
+    const GLuint texture = gainMap_.emplace().name();
+    glTextureStorage2D(texture, 1, GL_R16F, size_.x, size_.y);
+    // OpenGL's row 0 is at the bottom.
+    for (int y = 0; y < size_.y; ++y)
+        glTextureSubImage2D(texture, 0, 0, size_.y - 1 - y, size_.x, 1, GL_RED, GL_FLOAT, gain.row(y).data());
+}
+
 Result<void> Composer::follow(const ProjectorLight& light, const std::shared_ptr<const BlendMap>& blend) {
     tint_ = light.white * light.brightness;
     gamma_ = static_cast<float>(light.gamma.value_or(0));
-    finishing_ = {tint_ != glm::vec3(1), light.cube != nullptr, blend != nullptr, light.dither || light.gamma.has_value(),
+    finishing_ = {tint_ != glm::vec3(1),
+                  light.cube != nullptr,
+                  gainMap_.has_value(),
+                  blend != nullptr,
+                  light.dither || light.gamma.has_value(),
                   light.dither};
     // Uploading is expensive, and a technician who moves a corner changes neither.
     if (std::exchange(uploadedCube_, light.cube) != light.cube) uploadCube();
@@ -177,6 +193,10 @@ void Composer::pass(End end, unsigned framebuffer) {
         if (finishing_.cube) {
             glUniform3fv(kCubeFrom, 2, glm::value_ptr(cubeFrom_[0]));
             glBindTextureUnit(kCube, cube_->name());
+        }
+        if (finishing_.gain) {
+            glUniform1f(kGainShare, gainShare_);
+            glBindTextureUnit(kGainMap, gainMap_->name());
         }
         if (finishing_.blend) glBindTextureUnit(kBlendMap, blendMap_->name());
         if (finishing_.encode) glUniform1f(kGamma, gamma_);

@@ -7,6 +7,7 @@
 #include "show/show_state.h"
 
 #include "core/result.h"
+#include "media/image.h"
 #include "media/projection.h"
 
 #include <glm/vec2.hpp>
@@ -21,8 +22,8 @@
 namespace fantascope::render::gpu {
 
 // Composes painted layers into the picture for one projector. Samples are averaged in linear light,
-// and layers blend in their order. The result then passes the projector's colours, the blend with
-// its neighbours, its gamma and the dither, once per pixel.
+// and layers blend in their order. The result then passes the projector's colours, the light
+// correction, the blend with its neighbours, its gamma and the dither, once per pixel.
 //
 // For each frame call: begin(); for each layer from the bottom up, paint nextPicture() and lay()
 // it; endPicture() after the last layer of each picture; finish().
@@ -32,14 +33,18 @@ public:
     // The maximum number of layers per pass. A crossfade has two.
     static constexpr std::size_t kTogether = 2;
 
-    // `size`: pixels of the projector. `samples`: minimum per pixel. `programs` outlives it. Error:
-    // more pixels or samples than OpenGL allows here.
-    static Result<Composer> create(glm::ivec2 size, int samples, ProgramCache& programs);
+    // `size`: pixels of the projector. `samples`: minimum per pixel. `programs` outlives it.
+    // `gain`: the light correction, a factor of linear light for each pixel of the projector; null:
+    // none. Error: more pixels or samples than OpenGL allows here.
+    static Result<Composer> create(glm::ivec2 size, int samples, ProgramCache& programs, const GreyImage* gain = nullptr);
 
     int samples() const { return pictures_[0].samples(); }
     // Sets the projector's colours and its share of the light beside its neighbours (null: all of
     // it). Compiles programs that were not needed before. Error: a shader does not compile.
     Result<void> follow(const ProjectorLight& light, const std::shared_ptr<const BlendMap>& blend);
+
+    // How far the light correction is faded in from now on, 0..1.
+    void correctLight(float share) { gainShare_ = share; }
 
     void begin();
     // The picture into which the next layer is to be painted.
@@ -66,7 +71,7 @@ private:
         Framebuffer framebuffer;
     };
     struct Finishing {  // the steps after the sum that are needed
-        bool tint = false, cube = false, blend = false, encode = false, dither = false;
+        bool tint = false, cube = false, gain = false, blend = false, encode = false, dither = false;
     };
     enum class End { Carry, Finish };
 
@@ -76,6 +81,7 @@ private:
     void pass(End end, unsigned framebuffer);
     void uploadCube();
     void uploadBlendMap();
+    void uploadGain(const GreyImage& gain);
 
     glm::ivec2 size_;
     std::array<LayerPicture, kTogether> pictures_;
@@ -86,6 +92,8 @@ private:
     glm::vec3 tint_{1};
     std::array<glm::vec3, 2> cubeFrom_{};
     float gamma_ = 0;
+    float gainShare_ = 1;
+    std::optional<Texture> gainMap_;
     // What has been uploaded; null: nothing.
     std::shared_ptr<const ColourCube> uploadedCube_;
     std::optional<Texture3> cube_;
