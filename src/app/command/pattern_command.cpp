@@ -4,6 +4,7 @@
 #include "app/base/progress.h"
 #include "app/base/report.h"
 #include "app/command/commands.h"
+#include "app/command/pattern_surface.h"
 #include "drivers/display/picture_window.h"
 
 #include "pattern/search/measure.h"
@@ -43,7 +44,8 @@ struct Options {
     fs::path guide, output;
     std::vector<std::string> shapes;
     std::optional<fs::path> settings, image, report, start;
-    std::vector<double> region;  // left, top, right, bottom; or empty
+    std::optional<std::string> surface;  // SITE:OUTPUT
+    std::vector<double> region;          // left, top, right, bottom; or empty
     std::optional<std::uint32_t> instances;
     std::optional<double> seconds, targetZ;
     std::optional<int> iterations;
@@ -86,6 +88,11 @@ void declare(Command& command, Options& options) {
         .delimiter(',')
         .expected(4)
         .needs(start);
+    command
+        .add("--surface", options.surface,
+             "The pattern is to read as the drawing on what this output's light falls on, as 'calibrate SITE --write' saw it; "
+             "refined method only")
+        .typeName("SITE:OUTPUT");
     command.add("--image", options.image, "Also write the pattern, white on black and in the guide's size, as PNG");
     command.addFlag("--shadows", options.shadows,
                     "The shapes are dark and cover what is dark in the drawing, like leaves in a show's foliage");
@@ -312,6 +319,10 @@ Result<Task> prepare(const Options& options) {
     task.settings = TRY(readSettings(options));
     std::optional<ShapePattern> start;
     if (options.start) start = TRY(startingPattern(options, task.guide));
+    if (options.surface && options.method == PatternSearch::Method::Paper)
+        return Error("--surface: only the refined method heeds a surface; leave --method out");
+    if (options.surface && options.shadows)
+        return Error("--surface: shapes that are dark give no light; leave --shadows or --surface out");
     TRY(task.settings.search.check());
     task.limit = timeLimit(options, task.settings);
     std::vector<pattern::ShapeSettings> shapes = TRY(chosenShapes(options, task.settings, start));
@@ -339,6 +350,11 @@ Result<Task> prepare(const Options& options) {
     if (options.shadows || options.invert)  // as in the file that it is written to
         for (float& value : task.guide.pixels()) value = std::round(value * 255) / 255;
     task.compared = comparedGuide(task.guide, transfer, space);
+    if (options.surface) {
+        if (space != pattern::CompareSpace::Light)
+            return Error("--surface: only light can be compared on a surface; write 'compare: light' in the settings");
+        task.settings.search.surface = TRY(readPatternSurface(*options.surface, task.compared));
+    }
     return task;
 }
 
@@ -363,16 +379,26 @@ Result<void> run(const Options& options) {
     PatternSearch::Found found =
         search(task.compared, std::move(task.pattern), task.settings.search, task.limit, options.threads, clock, window.get());
     const Time took = clock.now();
-    if (task.settings.fitMotion) found.pattern.motion = fittedMotion(found.pattern, task.compared, options.threads);
+    if (task.settings.fitMotion)
+        found.pattern.motion = fittedMotion(found.pattern, task.compared, options.threads, task.settings.search.surface.get());
     TRY(writeFound(options, task, found.pattern));
 
     const pattern::PatternQuality quality = measure(found.pattern, task.compared);
     const pattern::PatternQuality light =
         measure(found.pattern, comparedGuide(task.guide, found.pattern.guideTransfer, pattern::CompareSpace::Light));
     const pattern::LoopQuality loop = pattern::LoopMeasure(found.pattern, task.compared, options.threads).in({}, kLoopMoments);
-    if (options.report) TRY(writeReport(*options.report, reportOf(options.method, found, quality, light, loop, took)));
-    fmt::print("{}: {}, {} instances, tone {:.4f}, moving tone {:.4f}\n", options.output.string(), found.summary.brief(),
-               found.pattern.instances.size(), quality.tone, loop.tone);
+    Report report = reportOf(options.method, found, quality, light, loop, took);
+    std::string onSurface;
+    if (const GreyImage* surface = task.settings.search.surface.get()) {
+        const pattern::PatternQuality seen = measure(found.pattern, task.compared, surface);
+        const double moving =
+            pattern::LoopMeasure(found.pattern, task.compared, options.threads, surface).in({}, kLoopMoments).tone;
+        report.update({{"z_surface", seen.z}, {"tone_surface", seen.tone}, {"loop_tone_surface", moving}});
+        onSurface = fmt::format("; on the surface z {:.4f}, tone {:.4f}, moving tone {:.4f}", seen.z, seen.tone, moving);
+    }
+    if (options.report) TRY(writeReport(*options.report, report));
+    fmt::print("{}: {}, {} instances, tone {:.4f}, moving tone {:.4f}{}\n", options.output.string(), found.summary.brief(),
+               found.pattern.instances.size(), quality.tone, loop.tone, onSurface);
     return {};
 }
 

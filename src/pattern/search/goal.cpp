@@ -1,10 +1,18 @@
 #include "pattern/search/goal.h"
 
+#include "core/check.h"
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace fantascope::pattern {
-Goal::Goal(const GreyImage& guide) : width_(guide.width()), height_(guide.height()) {
+Goal::Goal(const GreyImage& guide, const GreyImage* surface) : width_(guide.width()), height_(guide.height()) {
+    if (surface != nullptr) {
+        FANTASCOPE_CHECK(surface->width() == width_ && surface->height() == height_, "guide and surface have one resolution");
+        surface_ = *surface;
+        for (float& light : surface_.pixels()) light = std::clamp(light, 0.0f, kMostLight);
+    }
     const std::size_t columns = static_cast<std::size_t>(width_) + 1;
     sums_.assign(columns * (static_cast<std::size_t>(height_) + 1), 0);
     whiteCosts_.assign(columns * static_cast<std::size_t>(height_), 0);
@@ -16,7 +24,8 @@ Goal::Goal(const GreyImage& guide) : width_(guide.width()), height_(guide.height
             const auto value = static_cast<std::int32_t>(std::lround(guide.at(x, y) * kWhite));
             rowSum += value;
             above[columns + static_cast<std::size_t>(x) + 1] = above[x + 1] + rowSum;
-            costs[x + 1] = costs[x] + kWhite - 2 * value;  // |I - 1| - |I - 0|
+            const auto white = static_cast<std::int32_t>(std::lround(light(x, y) * kWhite));
+            costs[x + 1] = costs[x] + std::abs(white - value) - value;  // |I - light| - |I - 0|
         }
     }
 }
@@ -34,9 +43,18 @@ double Goal::mean() const {
     return static_cast<double>(guideSum(all)) / (static_cast<double>(kWhite) * static_cast<double>(all.area()));
 }
 
+double Goal::wantedCoverage() const {
+    if (isEven()) return mean();
+    double sum = 0;
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x)
+            if (const double wanted = value(x, y); wanted > 0) sum += std::min(1.0, wanted / std::max(light(x, y), 1e-6));
+    return sum / (double(width_) * height_);
+}
+
 double Goal::bound() const {
     const std::size_t columns = static_cast<std::size_t>(width_) + 1;
-    std::int64_t gain = 0;  // of covering exactly the pixels lighter than 0.5
+    std::int64_t gain = 0;  // of covering exactly the pixels that are better lit
     for (int y = 0; y < height_; ++y) {
         const std::int32_t* costs = whiteCosts_.data() + static_cast<std::size_t>(y) * columns;
         for (int x = 0; x < width_; ++x) gain += std::min(0, costs[x + 1] - costs[x]);
@@ -56,6 +74,7 @@ double Goal::z(const Coverage& pattern) const {
 }
 
 double Goal::differenceIndex(const PixelRectangle& cell, const Coverage& pattern) const {
+    FANTASCOPE_CHECK(isEven(), "difference indices are those of an even surface");
     const std::int64_t difference = guideSum(cell) - kWhite * pattern.count(cell);
     return static_cast<double>(difference) / (static_cast<double>(kWhite) * static_cast<double>(cell.area()));
 }

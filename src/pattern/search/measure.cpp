@@ -34,6 +34,12 @@ Coverage coverageAtRest(const ShapePattern& pattern, const std::vector<Silhouett
 // The standard deviation of the tone's Gaussian, in pixels.
 double toneSigma(const ShapePattern& pattern) { return pattern.height / 36.0; }
 
+// A pattern's picture on a surface; empty: evenly white.
+GreyImage seenOn(const GreyImage& surface, GreyImage picture) {
+    for (std::size_t i = 0; i < surface.pixels().size(); ++i) picture.pixels()[i] *= surface.pixels()[i];
+    return picture;
+}
+
 double meanDifference(const GreyImage& a, const GreyImage& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.pixels().size(); ++i) sum += std::abs(double(a.pixels()[i]) - b.pixels()[i]);
@@ -113,15 +119,16 @@ std::vector<VertexMoments> verticesOf(const ShapePattern& pattern) {
 
 }  // namespace
 
-PatternQuality measure(const ShapePattern& pattern, const GreyImage& guide) {
+PatternQuality measure(const ShapePattern& pattern, const GreyImage& guide, const GreyImage* surface) {
     const GreyImage compared = resized(guide, pattern.width, pattern.height);
     const std::vector<Silhouette> silhouettes = silhouettesOf(pattern);
     const Coverage coverage = coverageAtRest(pattern, silhouettes, pattern.width, pattern.height);
-    const Goal goal(compared);
+    const GreyImage light = surface != nullptr ? resized(*surface, pattern.width, pattern.height) : GreyImage();
+    const Goal goal(compared, surface != nullptr ? &light : nullptr);
     const double sigma = toneSigma(pattern);
     return {.z = goal.z(coverage),
             .zBound = goal.bound(),
-            .tone = meanDifference(blurred(compared, sigma), blurred(coverage.picture(), sigma)),
+            .tone = meanDifference(blurred(compared, sigma), blurred(seenOn(light, coverage.picture()), sigma)),
             .overlap = overlapOf(pattern, silhouettes)};
 }
 
@@ -129,7 +136,8 @@ struct LoopMeasure::Parts {
     const ShapePattern& pattern;
     GreyImage guide;  // in the pattern's resolution
     int threads;
-    Goal goal = Goal(guide);
+    GreyImage surface;  // in the pattern's resolution; empty: evenly white
+    Goal goal = Goal(guide, surface.empty() ? nullptr : &surface);
     ToneOfMany toneOf = ToneOfMany(guide, toneSigma(pattern));
     std::vector<Silhouette> silhouettes = silhouettesOf(pattern);
     std::vector<VertexMoments> vertices = verticesOf(pattern);
@@ -149,8 +157,9 @@ struct LoopMeasure::Parts {
     }
 };
 
-LoopMeasure::LoopMeasure(const ShapePattern& pattern, const GreyImage& guide, int threads)
-    : parts_(new Parts{pattern, resized(guide, pattern.width, pattern.height), threads}) {}
+LoopMeasure::LoopMeasure(const ShapePattern& pattern, const GreyImage& guide, int threads, const GreyImage* surface)
+    : parts_(new Parts{pattern, resized(guide, pattern.width, pattern.height), threads,
+                       surface != nullptr ? resized(*surface, pattern.width, pattern.height) : GreyImage()}) {}
 
 LoopMeasure::~LoopMeasure() = default;
 
@@ -169,8 +178,8 @@ LoopQuality LoopMeasure::in(const Wind& wind, int moments) const {
         Coverage coverage(pattern.width, pattern.height);
         for (std::size_t i = 0; i < poses.size(); ++i) coverage.add(parts_->silhouettes[pattern.instances[i].shape], poses[i]);
         parts_->motion.posesAt(time, groupsAtRest, poses);
-        seen[static_cast<std::size_t>(moment)] = {parts_->goal.z(coverage), parts_->toneOf(coverage.picture()),
-                                                  parts_->squares(poses)};
+        seen[static_cast<std::size_t>(moment)] = {
+            parts_->goal.z(coverage), parts_->toneOf(seenOn(parts_->surface, coverage.picture())), parts_->squares(poses)};
     });
 
     LoopQuality mean{0, 0, 0};

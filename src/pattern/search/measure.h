@@ -18,8 +18,9 @@ struct PatternQuality {
     double overlap = 0;  // share of the covered pixels that more than one instance covers
 };
 
-// `guide`: compared values, in any resolution; it is resampled to the pattern's.
-PatternQuality measure(const ShapePattern& pattern, const GreyImage& guide);
+// `guide`: compared values, in any resolution; it is resampled to the pattern's. `surface`: what
+// the pattern is seen on, as PatternSearch::Options has it; null: evenly white.
+PatternQuality measure(const ShapePattern& pattern, const GreyImage& guide, const GreyImage* surface = nullptr);
 
 // The same of the animated loop, which is what an audience sees.
 struct LoopQuality {
@@ -35,8 +36,8 @@ struct LoopQuality {
 class LoopMeasure {
 public:
     // Computes the pattern's movement. `pattern` must outlive it. The result does not depend on
-    // `threads`.
-    LoopMeasure(const ShapePattern& pattern, const GreyImage& guide, int threads);
+    // `threads`. `surface`: as measure() has it.
+    LoopMeasure(const ShapePattern& pattern, const GreyImage& guide, int threads, const GreyImage* surface = nullptr);
     ~LoopMeasure();
 
     // Measures `moments` moments, evenly spaced over one period, in a constant wind.

@@ -62,12 +62,12 @@ struct Fit {
     bool isGood;  // local movement alone keeps the tone
 };
 
-Fit fit(const ShapePattern& pattern, const Mix& mix, const GreyImage& guide, int threads) {
+Fit fit(const ShapePattern& pattern, const Mix& mix, const GreyImage& guide, int threads, const GreyImage* surface) {
     // The movement is linear in its ranges and in the wind's strength, so one LoopMeasure serves
     // all trials.
     ShapePattern whole = pattern;
     whole.motion = motionOf(pattern, mix, 1, 1);
-    const LoopMeasure loop(whole, guide, threads);
+    const LoopMeasure loop(whole, guide, threads, surface);
     const double atRest = loop.in({.strength = 0}, 1).tone;
     const double local = kDisplacement / loop.in({}, kMoments).localDisplacement;
     const auto good = [&](double groups) {
@@ -79,10 +79,10 @@ Fit fit(const ShapePattern& pattern, const Mix& mix, const GreyImage& guide, int
 
 }  // namespace
 
-MotionSettings fittedMotion(const ShapePattern& pattern, const GreyImage& guide, int threads) {
+MotionSettings fittedMotion(const ShapePattern& pattern, const GreyImage& guide, int threads, const GreyImage* surface) {
     if (pattern.instances.empty()) return motionOf(pattern, kLively, 1, 1);
-    const Fit lively = fit(pattern, kLively, guide, threads);
-    return lively.isGood ? lively.motion : fit(pattern, kTurning, guide, threads).motion;
+    const Fit lively = fit(pattern, kLively, guide, threads, surface);
+    return lively.isGood ? lively.motion : fit(pattern, kTurning, guide, threads, surface).motion;
 }
 
 }  // namespace fantascope::pattern

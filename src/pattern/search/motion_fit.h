@@ -11,8 +11,8 @@ namespace fantascope::pattern {
 // The groups' range is the largest, up to one mean size, that keeps the mean tone over the loop
 // within .009 of the tone at rest. If local movement alone exceeds that, it is composed mainly of
 // turns; if it still does, the groups stand still. All other settings stay. The results are
-// rounded, to be easy to read. `guide`: compared values, in any resolution. The result does not
-// depend on `threads`. Thread: reentrant.
-MotionSettings fittedMotion(const ShapePattern& pattern, const GreyImage& guide, int threads);
+// rounded, to be easy to read. `guide`: compared values, in any resolution. `surface`: as measure()
+// has it. The result does not depend on `threads`. Thread: reentrant.
+MotionSettings fittedMotion(const ShapePattern& pattern, const GreyImage& guide, int threads, const GreyImage* surface = nullptr);
 
 }  // namespace fantascope::pattern

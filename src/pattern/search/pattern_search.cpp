@@ -93,6 +93,8 @@ Result<void> PatternSearch::Options::check() const {
         return Error("region: must be the top left corner, then the bottom right one, in canvas heights");
     if (region && method == Method::Paper)
         return Error("region: only the refined method keeps to a region; the paper's method changes the whole pattern");
+    if (surface && method == Method::Paper)
+        return Error("surface: only the refined method heeds a surface; the paper's method takes it for evenly white");
     return {};
 }
 

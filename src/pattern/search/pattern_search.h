@@ -47,6 +47,11 @@ struct PatternSearch {
         double targetZ = 0;                                // z_0: stop once z is below it, 0..1
         int iterations = std::numeric_limits<int>::max();  // stop after so many, >= 0
 
+        // What the pattern is seen on: the light that a white shape gives at each place of the
+        // canvas, as a share of the light that stands for the guide's white; any resolution. Null:
+        // 1 everywhere. The refined method only.
+        std::shared_ptr<const GreyImage> surface;
+
         // The resolution of the comparison: the guide is resampled to so many rows of pixels,
         // unless it has fewer. 16 .. 4096.
         int rows = 720;

@@ -115,7 +115,7 @@ private:
     // Places as many instances as together are as large as the guide's white, each where light is
     // lacking.
     void start() {
-        const double light = space_.goal().mean() * space_.pixels().x * space_.pixels().y;
+        const double light = space_.goal().wantedCoverage() * space_.pixels().x * space_.pixels().y;
         const auto wanted = std::min(maxInstances_, static_cast<std::size_t>(std::ceil(light / typicalArea_)));
         for (std::size_t count = 0; count < wanted; ++count) {
             if (count % std::max<std::size_t>(1, wanted / kLooks) == 0) score_.findDarkPlaces();

@@ -58,8 +58,23 @@ RunningScore::RunningScore(const SearchSpace& space)
       blocks_((width_ + block_ - 1) / block_, (height_ + block_ - 1) / block_),
       counts_(wordAt((width_ - 1) / PixelMask::kBits + 1, 0)),
       sum_(space.goal().allBlack()) {
+    measureSurface();
     measureGuide();
     measureDetail();
+}
+
+// Fills lights_.
+void RunningScore::measureSurface() {
+    const Goal& goal = space_.goal();
+    if (goal.isEven()) return;
+    for (int row = 0; row < height_; row += block_)
+        for (int column = 0; column < width_; column += block_) {
+            const int bottom = std::min(row + block_, height_), right = std::min(column + block_, width_);
+            double sum = 0;
+            for (int y = row; y < bottom; ++y)
+                for (int x = column; x < right; ++x) sum += goal.light(x, y);
+            lights_.push_back(static_cast<std::int32_t>(std::lround(kLightSteps * sum / ((bottom - row) * (right - column)))));
+        }
 }
 
 // Fills lack_ and each scale's `lack` for a black picture.
@@ -77,8 +92,9 @@ void RunningScore::measureGuide() {
     }
     for (int y = 0; y < blocks_.y; ++y)
         for (int x = 0; x < blocks_.x; ++x)
-            lack_.push_back(space_.goal().guideSum(
-                {{x * block_, y * block_}, {std::min((x + 1) * block_, width_), std::min((y + 1) * block_, height_)}}));
+            lack_.push_back(kLightSteps *
+                            space_.goal().guideSum({{x * block_, y * block_},
+                                                    {std::min((x + 1) * block_, width_), std::min((y + 1) * block_, height_)}}));
     for (std::size_t s = 0; s < kScales; ++s) {
         Scale& scale = scales_[s];
         const int side = blocksBetweenNodes(block_, height_) << s;
@@ -90,7 +106,8 @@ void RunningScore::measureGuide() {
         std::size_t block = 0;
         for (int y = 0; y < blocks_.y; ++y)
             for (int x = 0; x < blocks_.x; ++x)
-                scale.change[scale.at(scale.nodeOf({x, y}))] -= static_cast<double>(lack_[block++]) / Goal::kWhite;
+                scale.change[scale.at(scale.nodeOf({x, y}))] -=
+                    static_cast<double>(lack_[block++]) / (kLightSteps * Goal::kWhite);
         Box all;
         all.add({0, 0}), all.add(scale.nodes - 1);
         spreadChange(scale, all);
@@ -115,11 +132,12 @@ void RunningScore::measureDetail() {
     scale.lack = lack;
 
     const auto pullAt = [&](int x, int y) {
-        const double value = goal.value(x, y), cost = 1 - 2 * value;
+        const double value = goal.value(x, y), light = goal.light(x, y);
+        const auto costOf = [light](double wanted) { return wanted <= light ? light - 2 * wanted : -light; };
         const double grey = std::min(value, 1 - value) / kBinary;
         const double binary = grey > 4 ? 0 : std::exp(-grey * grey);
         const std::size_t node = scale.at(scale.nodeOf(glm::ivec2(x, y) / block_));
-        const double mean = 1 - 2 * lack[node] / scale.spread[node];
+        const double cost = costOf(value), mean = costOf(lack[node] / scale.spread[node]);
         const double pull = binary * cost + kEdges * (1 - binary) * (cost - mean);
         return static_cast<int>(std::lround(kPull * std::clamp(pull, -1.0, 1.0)));
     };
@@ -132,7 +150,8 @@ void RunningScore::measureDetail() {
             for (int i = 0; i < count; ++i) {
                 if (goal.value(first + i, y) > kWhite) white |= std::uint64_t{1} << i;
                 pulls[at(i)] = pullAt(first + i, y);
-                same = same && pulls[at(i)] == pulls[0] && goal.value(first + i, y) == goal.value(first, y);
+                same =
+                    same && pulls[at(i)] == pulls[0] && goal.cost(y, first + i, first + i + 1) == goal.cost(y, first, first + 1);
             }
             const auto cost = static_cast<std::int32_t>(goal.cost(y, first, first + 1));
             words_.push_back(
@@ -168,7 +187,8 @@ void RunningScore::noteBlocks(int column, int row, std::uint64_t covered, std::u
          ++x, covered >>= block_, freed >>= block_) {
         const std::int32_t pixels = count(covered) - count(freed);
         if (pixels == 0) continue;
-        blockChanges_.push_back({{x, row}, pixels, part});
+        const std::int32_t light = lights_.empty() ? kLightSteps : lights_[at(row * blocks_.x + x)];
+        blockChanges_.push_back({{x, row}, pixels * light, part});
     }
 }
 
@@ -227,7 +247,7 @@ double RunningScore::propose(const PixelMask& out, const PixelMask& in, double l
     }
     const PatternSearch::Options::Refined& weights = space_.options().refined;
     const double others = weights.zWeight * static_cast<double>(change_.detail) / kPull + weights.overlapWeight * overlapChange();
-    // Covering or freeing a pixel changes the tone by one pixel at most.
+    // Covering or freeing a pixel changes the tone by its light at most.
     Scale& finest = scales_[0];
     gather(finest);
     double pixels = 0;
@@ -256,7 +276,7 @@ void RunningScore::gather(Scale& scale) {
     scale.spread.clear();
     for (const BlockChange& change : blockChanges_) {
         const glm::ivec2 node = scale.nodeOf(change.block);
-        scale.change[scale.at(node)] += change.pixels;
+        scale.change[scale.at(node)] += double(change.light) / kLightSteps;
         scale.touched[at(change.part)].add(node);
     }
 }
@@ -356,7 +376,7 @@ void RunningScore::accept(const PixelMask& out, const PixelMask& in) {
     });
     coveredWhite_ += change_.coveredWhite, severalWhite_ += change_.severalWhite;
     for (const BlockChange& change : blockChanges_)
-        lack_[at(change.block.y * blocks_.x + change.block.x)] -= std::int64_t{Goal::kWhite} * change.pixels;
+        lack_[at(change.block.y * blocks_.x + change.block.x)] -= std::int64_t{Goal::kWhite} * change.light;
     for (Scale& scale : scales_) {
         const double* change = scale.spread.data();
         for (const Box& box : scale.touched) {
@@ -386,7 +406,8 @@ void RunningScore::findDarkPlaces() {
     for (int y = 0; y < blocks_.y; ++y)
         for (int x = 0; x < blocks_.x; ++x, ++block) {
             const bool counts = !region_ || region_->contains((glm::dvec2(x, y) + 0.5) * double(block_) / double(height_));
-            if (counts && finest.lack[finest.at(finest.nodeOf({x, y}))] > 0) sum += std::max<std::int64_t>(0, lack_[block]);
+            if (counts && finest.lack[finest.at(finest.nodeOf({x, y}))] > 0)
+                sum += std::max<std::int64_t>(0, lack_[block]) / kLightSteps;
             darkness_.push_back(sum);
         }
 }

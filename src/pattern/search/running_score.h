@@ -30,6 +30,9 @@ namespace fantascope::pattern {
 //   overlap  The number of pixels that several instances cover. Where the guide is white, only the
 //            part above a given share of all covered pixels counts.
 //
+// On a surface that is not evenly white, I' is what is seen: a covered pixel gives the surface's
+// light there. The tone takes that light as even over a block of a few pixels.
+//
 // Thread: thread-bound.
 class RunningScore {
 public:
@@ -69,8 +72,8 @@ private:
     static int blockFor(int height);
     struct BlockChange {
         glm::ivec2 block;
-        std::int32_t pixels;
-        std::int32_t part;  // 0 or 1: masks far from each other are spread separately
+        std::int32_t light;  // of the pixels that are covered more, in 1 / kLightSteps
+        std::int32_t part;   // 0 or 1: masks far from each other are spread separately
     };
     // What a move changes, but for the blocks.
     struct Change {
@@ -101,13 +104,14 @@ private:
             return static_cast<std::size_t>(node.y) * static_cast<std::size_t>(nodes.x) + static_cast<std::size_t>(node.x);
         }
         std::vector<double> lack;    // per node: the Gaussian mean of I - I', in Goal's units * kKernelSum^2
-        std::vector<double> change;  // per node: pixels that the current move covers more; zero between moves
+        std::vector<double> change;  // per node: the light that the current move adds, in white pixels; zero between moves
         std::array<Box, 2> touched;  // the nodes with changes, by part
         std::vector<double> spread;  // the changes of `lack` by the current move, box by box
     };
     std::size_t wordAt(int column, int y) const {
         return static_cast<std::size_t>(column) * static_cast<std::size_t>(height_) + static_cast<std::size_t>(y);
     }
+    void measureSurface();
     void measureGuide();
     void measureDetail();
     std::int64_t pullOf(const Word& word, std::uint64_t pixels) const;
@@ -131,7 +135,11 @@ private:
     // bit counts.
     static constexpr int kPull = 63, kOffset = 64, kPullPlanes = 7;
     std::vector<std::array<std::uint64_t, kPullPlanes>> pulls_;
-    std::vector<std::int64_t> lack_;  // per block: sum I - I', in Goal's units
+    std::vector<std::int64_t> lack_;  // per block: sum I - I', in Goal's units / kLightSteps
+    // Per block: the light of one covered pixel, in 1 / kLightSteps; empty: 1 everywhere. A power
+    // of two, so that sums stay exact.
+    static constexpr int kLightSteps = 32;
+    std::vector<std::int32_t> lights_;
     std::array<Scale, kScales> scales_;
     // One axis of the Gaussians' kernel at the nodes around, and how far it reaches either way.
     static constexpr int kReach = 3;

@@ -42,13 +42,19 @@ double typicalSide(const Silhouette& shape, glm::dvec2 tilt, glm::dvec2 turn, Rn
 double rounded(double value, double steps) { return std::round(value * steps) / steps; }
 double roundedAngle(double angle) { return radians(rounded(angle * 180 / std::numbers::pi, 1e4)); }
 
+Goal goalOf(const GreyImage& guide, const GreyImage* surface) {
+    if (surface == nullptr) return Goal(guide);
+    const GreyImage inItsSize = resized(*surface, guide.width(), guide.height());
+    return Goal(guide, &inItsSize);
+}
+
 }  // namespace
 
 SearchSpace::SearchSpace(const GreyImage& guide, std::span<const ElementalShape> shapes, std::uint64_t seed,
                          const Options& options)
     : options_(options),
       seed_(seed),
-      goal_(guide),
+      goal_(goalOf(guide, options.surface.get())),
       pixels_(guide.width(), guide.height()),
       aspect_(double(pixels_.x) / pixels_.y) {
     const auto own = [&](std::size_t index) { return index < options.shapes.size() ? options.shapes[index] : Options::Shape(); };
@@ -84,7 +90,7 @@ void SearchSpace::setSizes() {
 
 // The sizes if none are given, see Sizes.
 glm::dvec2 SearchSpace::fittingSizes() const {
-    const double light = goal_.mean() * aspect_;
+    const double light = goal_.wantedCoverage() * aspect_;
     const auto [fill, spread] = sizesFor(options_.method);
     const double middle =
         std::clamp(std::sqrt(fill * light / options_.instances) / meanSide_, kSmallestMiddle / pixels_.y, kLargestMiddle);

@@ -35,6 +35,22 @@ TEST(Goal, is_the_mean_difference_of_guide_and_pattern) {
 // By hand: covering exactly 1, .6 and .8 leaves 0, .2, .4, 0, .4, .4, 0, .2.
 TEST(Goal, bound_is_the_cost_of_the_guide_cut_at_a_half) { EXPECT_NEAR(Goal(smallGuide()).bound(), 1.6 / 8, kExact); }
 
+// On a surface that gives white half, all, none and twice of its light. By hand, row by row: |1 -
+// .5|, |.2 - 1|, .6, 0; .4, .4, 0, .8.
+TEST(Goal, on_a_surface_is_that_of_what_is_seen) {
+    GreyImage surface(4, 2);
+    const float light[] = {0.5f, 1, 0, 2, 0.5f, 1, 0, 2};
+    std::copy(std::begin(light), std::end(light), surface.pixels().begin());
+    const Goal goal(smallGuide(), &surface);
+    EXPECT_NEAR(goal.z(leftOfTheUpperRow()), 3.5 / 8, 1e-5);
+    EXPECT_NEAR(goal.z(Coverage(4, 2)), 3.4 / 8, kExact) << "black is black everywhere";
+    EXPECT_NEAR(goal.mean(), 3.4 / 8, kExact);
+    // Covering pays where the light is: 1 by .5, .4 by .4 - .1 at half light; nothing else does.
+    EXPECT_NEAR(goal.bound(), (3.4 - 0.5 - 0.3 - 0) / 8, 1e-5);
+    // 1 and .6 cannot be reached, and are covered whole; .2, .4 / .5, .4, .8 / 2.
+    EXPECT_NEAR(goal.wantedCoverage(), (1 + 0.2 + 1 + 0.8 + 0.4 + 0.4) / 8, 1e-5);
+}
+
 TEST(Goal, is_one_for_the_negative_and_zero_for_the_drawing_itself) {
     Coverage everything(70, 50);
     const TriangleMesh square{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};

@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
+#include <utility>
 
 namespace fantascope::pattern {
 namespace {
@@ -27,6 +29,15 @@ GreyImage bars(int width = 150, int height = 90) {
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) guide.at(x, y) = x % 60 >= 20 && x % 60 < 50 ? 1.0f : 0.0f;
     return guide;
+}
+
+// Light from a fifth to one and a half, of another size than any guide.
+std::shared_ptr<const GreyImage> stains() {
+    GreyImage surface(90, 54);
+    for (int y = 0; y < surface.height(); ++y)
+        for (int x = 0; x < surface.width(); ++x)
+            surface.at(x, y) = 0.85f + 0.65f * std::sin(0.11f * static_cast<float>(x)) * std::cos(0.09f * static_cast<float>(y));
+    return std::make_shared<const GreyImage>(std::move(surface));
 }
 
 PatternSearch::Options refined(int iterations) {
@@ -72,8 +83,9 @@ TEST(LayerCounts, counts_what_comes_and_goes) {
 // The changes of z, tone and overlap with their weights add up to the same, whatever moves led to a
 // pattern. Example failure: a rejected move leaves a trace, or a block that lies in two words is
 // counted twice.
-TEST(RunningScore, changes_add_up_whatever_the_way) {
+void changesAddUp(std::shared_ptr<const GreyImage> surface) {
     PatternSearch::Options options = refined(1);
+    options.surface = std::move(surface);
     options.refined.zWeight = 0.7, options.refined.toneWeight = 1.3, options.refined.overlapWeight = 0.4,
     options.refined.overlapFree = 0.3;
     const GreyImage guide = ramp();
@@ -113,11 +125,14 @@ TEST(RunningScore, changes_add_up_whatever_the_way) {
     EXPECT_NEAR(onTheWay, atOnce, 1e-6 * guide.width() * guide.height());
     EXPECT_EQ(moved.z(), fresh.z());
 }
+TEST(RunningScore, changes_add_up_whatever_the_way) { changesAddUp(nullptr); }
+TEST(RunningScore, changes_add_up_on_a_surface_too) { changesAddUp(stains()); }
 
 // Tone is the mean difference after two Gaussian blurs. Example failure: means over cells instead,
 // or a Gaussian of another width.
-TEST(RunningScore, tone_is_the_difference_behind_two_gaussians) {
+void toneIsBehindTwoGaussians(std::shared_ptr<const GreyImage> surface) {
     PatternSearch::Options options = refined(1);
+    options.surface = surface;
     options.refined.zWeight = 0, options.refined.toneWeight = 1, options.refined.overlapWeight = 0;
     constexpr int kWidth = 540, kHeight = 360;
     const GreyImage guide = ramp(kWidth, kHeight);
@@ -137,8 +152,12 @@ TEST(RunningScore, tone_is_the_difference_behind_two_gaussians) {
         score.accept({}, mask);
         coverage.add(space.silhouette(0), pose);
     }
-    const GreyImage drawn = coverage.picture();
+    GreyImage drawn = coverage.picture();
     EXPECT_THAT(score.picture().pixels(), testing::ElementsAreArray(drawn.pixels()));
+    if (surface) {
+        const GreyImage light = resized(*surface, kWidth, kHeight);
+        for (std::size_t i = 0; i < drawn.pixels().size(); ++i) drawn.pixels()[i] *= light.pixels()[i];
+    }
     // The change from a black picture to this one. Everything is far from the picture's edges,
     // where a blur depends on the border.
     double expected = 0;
@@ -150,6 +169,8 @@ TEST(RunningScore, tone_is_the_difference_behind_two_gaussians) {
     }
     EXPECT_NEAR(change, expected, 0.03 * std::abs(expected));
 }
+TEST(RunningScore, tone_is_the_difference_behind_two_gaussians) { toneIsBehindTwoGaussians(nullptr); }
+TEST(RunningScore, tone_on_a_surface_is_that_of_what_is_seen) { toneIsBehindTwoGaussians(stains()); }
 
 // The running sum is exact. Example failure: a pixel under two instances is freed when one of them
 // goes.
@@ -164,6 +185,28 @@ TEST(RefinedMethod, after_many_moves_z_is_that_of_a_fresh_drawing) {
     const auto million = search(ramp(), refined(1000));
     EXPECT_EQ(million.summary.evaluations, 1'000'000);
     EXPECT_EQ(measure(million.pattern, ramp()).z, million.summary.z);
+}
+
+TEST(RefinedMethod, on_a_surface_z_is_that_of_a_fresh_drawing_too) {
+    PatternSearch::Options options = refined(60);
+    options.surface = stains();
+    for (const GreyImage& guide : {ramp(), bars(), ramp(64, 33)}) {
+        const auto found = search(guide, options);
+        EXPECT_EQ(measure(found.pattern, guide, options.surface.get()).z, found.summary.z);
+    }
+}
+
+// Example failure: the search knows the surface, and covers dark places no more than bright ones.
+TEST(RefinedMethod, reads_as_the_drawing_on_the_surface_that_it_knows) {
+    GreyImage grey(300, 180, 0.35f);
+    PatternSearch::Options options = refined(400);
+    options.instances = 300;
+    const auto onPlain = search(grey, options).pattern;
+    options.surface = stains();
+    const auto onStains = search(grey, options).pattern;
+    const auto tone = [&](const ShapePattern& pattern) { return measure(pattern, grey, options.surface.get()).tone; };
+    EXPECT_LT(tone(onStains), 0.6 * tone(onPlain));
+    EXPECT_GT(measure(onStains, grey).tone, measure(onPlain, grey).tone) << "on plain white it reads as stains";
 }
 
 TEST(RefinedMethod, reads_as_the_drawing_better_than_it_began_and_than_the_papers_method) {
