@@ -100,6 +100,14 @@ Exposure exposureOf(std::vector<float> seen, std::vector<float> wanted) {
 
 }  // namespace
 
+// The same without a lift, from the mean values: whatever is brighter or darker than its part of
+// the picture's light shows, even in a picture that is nearly the same everywhere.
+double constantOf(const std::vector<float>& seen, const std::vector<float>& wanted) {
+    double sumSeen = 0, sumWanted = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i) sumSeen += seen[i], sumWanted += wanted[i];
+    return sumSeen > 0 ? sumWanted / sumSeen : 0;
+}
+
 // What is wanted of the cells in sight, and how it is found in what is seen.
 struct Measure {
     std::vector<float> gain;       // how strongly a cell is lit that is wanted white
@@ -155,8 +163,8 @@ struct GuideComparison::Tables {
         return measure;
     }
 
-    // The mean difference; nothing if there is no picture. `light`: of every cell, by channel.
-    std::optional<double> difference(const Measure& measure, std::array<std::vector<float>, 3> light) const {
+    // The picture's light, low-passed. `light`: of every cell, by channel.
+    std::vector<float> seenBy(const Measure& measure, std::array<std::vector<float>, 3> light) const {
         // Minus the light of sky and lamps: per channel, because that light has a colour.
         const auto count = static_cast<int>(cells.size());
         for (std::vector<float>& channel : light) {
@@ -168,14 +176,24 @@ struct GuideComparison::Tables {
         std::vector<float> seen;
         for (std::size_t i = 0; i < cells.size(); ++i)
             seen.push_back(std::max({light[0][i], light[1][i], light[2][i]}) / measure.gain[i]);
-        seen = lowPassed(seen);
+        return lowPassed(seen);
+    }
 
-        const Exposure exposure = exposureOf(seen, measure.wanted);
+    // z; nothing if there is no picture.
+    std::optional<double> zOf(const std::vector<float>& seen) const {
+        const Exposure exposure = exposureOf(seen, z.wanted);
         if (exposure.span < kFlat || exposure.scale <= 0) return std::nullopt;
         double difference = 0;
         for (std::size_t i = 0; i < seen.size(); ++i)
-            difference += std::abs(std::clamp(exposure.scale * seen[i] + exposure.lift, 0.0, 1.0) - measure.wanted[i]);
-        return difference / count;
+            difference += std::abs(std::clamp(exposure.scale * seen[i] + exposure.lift, 0.0, 1.0) - z.wanted[i]);
+        return difference / static_cast<double>(seen.size());
+    }
+    std::optional<double> toneOf(const std::vector<float>& seen) const {
+        const double constant = constantOf(seen, tone.wanted);
+        if (constant <= 0) return std::nullopt;
+        double difference = 0;
+        for (std::size_t i = 0; i < seen.size(); ++i) difference += std::abs(constant * seen[i] - tone.wanted[i]);
+        return std::min(1.0, difference / static_cast<double>(seen.size()));
     }
 };
 
@@ -211,10 +229,9 @@ std::optional<Likeness> GuideComparison::compare(const RgbaImage& frame) const {
         for (int c = 0; c < 3; ++c)
             light[static_cast<std::size_t>(c)].push_back(static_cast<float>(sum[c] / (kPlaces * kPlaces)));
     }
-    const auto z = tables.difference(tables.z, light);
-    const auto tone = tables.difference(tables.tone, std::move(light));
+    const auto z = tables.zOf(tables.seenBy(tables.z, light));
     if (!z) return std::nullopt;
-    return Likeness{*z, tone};
+    return Likeness{*z, tables.toneOf(tables.seenBy(tables.tone, std::move(light)))};
 }
 
 }  // namespace fantascope::vision

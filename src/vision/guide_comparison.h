@@ -28,7 +28,7 @@ struct NominalView {
 // itself.
 struct Likeness {
     double z = 1;                // z_camera
-    std::optional<double> tone;  // tone_camera; nothing: the frame is too flat in linear light
+    std::optional<double> tone;  // tone_camera; nothing: no light is left that is the picture's
     friend bool operator==(const Likeness&, const Likeness&) = default;
 };
 
@@ -39,8 +39,9 @@ struct Likeness {
 // out.
 //
 // tone_camera: the same in linear light, whatever the pattern was compared in, and of the light as
-// it is: the wanted light at every place is the guide times one constant, and fall-off counts as a
-// fault.
+// it is: the wanted light at every place is the guide times one constant, without a lift, and
+// fall-off counts as a fault. Of a guide with little contrast, z_camera takes stains for contrast;
+// tone_camera does not.
 class GuideComparison {
 public:
     // `wanted`: the wanted light at every place of the canvas, 0..1, in the space in which the

@@ -218,7 +218,9 @@ TEST(OutputRenderer, dims_by_the_light_correction_as_far_as_it_is_faded_in) {
         corrected.renderer().correctLight(share);
         blended.renderer().correctLight(share);
         const RgbaImage alone = corrected.frame({{0, 1}}), beside = blended.frame({{0, 1}});
-        if (share == 0) EXPECT_EQ(alone, plain.frame({{0, 1}}));
+        if (share == 0) {
+            EXPECT_EQ(alone, plain.frame({{0, 1}}));
+        }
         for (int y = 0; y < kSize.y; y += 7)
             for (int x = 0; x < kSize.x; x += 7) {
                 const float factor = 1 - share * (1 - gain->at(x, y));

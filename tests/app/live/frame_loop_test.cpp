@@ -372,6 +372,34 @@ TEST(FrameLoopWind, each_output_sways_in_its_own) {
     EXPECT_GT(changes[1], 20);
 }
 
+// Example failure: the light jumps, or it fades by the show's time and not by the run's.
+TEST(FrameLoopLight, its_correction_fades_in_from_the_runs_start) {
+    RunningShow run;
+    const auto sources = render::PictureSources::numbered({run.show.sources.size(), render::SolidSource{glm::vec3(1)}});
+    const glm::ivec2 size = run.site.outputs[0].size();
+    const auto gain = std::make_shared<const GreyImage>(size.x, size.y, 0.25f);
+    FrameLoop loop(run.site, run.inputs, sources, sourceFolder() + "/assets", run.devices, run.clock, {gain, nullptr});
+    const std::array<render::FrameReader*, 2> readers{&loop.tap(0).addQueue(), &loop.tap(1).addQueue()};
+    ASSERT_TRUE(loop.prepare());
+    run.inputs.submit({1h, show::Input::Kind::Jump, run.jumpTo("Both").cue});  // it is there when the run begins
+    loop.begin(show::ShowClock(run.clock.now(), 2h));
+    // The brightest light of an output, frame by frame.
+    std::array<std::vector<float>, 2> light;
+    for (Time until = run.clock.now() + FrameLoop::kLightFade + 500ms; run.clock.now() < until;) {
+        loop.step();
+        for (std::size_t output = 0; output < 2; ++output)
+            while (const render::ShownFrame* const shown = readers[output]->next(Time::max())) {
+                std::uint8_t most = 0;
+                for (const Rgba8 pixel : shown->image.pixels()) most = std::max(most, pixel.g);
+                light[output].push_back(linearFromSrgb(static_cast<float>(most) / 255));
+            }
+    }
+    EXPECT_GT(light[0].front(), 0.98);
+    EXPECT_NEAR(light[0].back(), 0.25, 0.01);
+    for (std::size_t i = 1; i < light[0].size(); ++i) ASSERT_LT(light[0][i - 1] - light[0][i], 0.02) << i;
+    EXPECT_EQ(light[1].front(), light[1].back());
+}
+
 // Somebody sets a mesh while the show runs, and no renderer can be made for it: what was on the
 // wall stays there.
 TEST(FrameLoop, keeps_its_renderer_where_a_new_one_cannot_be_made) {
