@@ -199,7 +199,7 @@ TEST_F(CalibrateCommand, keeps_what_it_saw) {
         EXPECT_GT(seen.dark.at(160, 120), 0) << "the night is not black";
     }
     EXPECT_THAT(runProgram({"check", "site.yaml"}, folder_ / ".").out,
-                HasSubstr("ok ./site.survey/survey.yaml: survey, 2 outputs"));
+                HasSubstr("ok site.survey/survey.yaml: survey, 2 outputs"));
     want({-1.9, 0.6}, {1.9, 2.5});
     ASSERT_THAT(run({"left", "--wanted", "wanted.yaml", "--write", "--seed", "2"}), exits(0));
     const Survey again = **readSurvey(site());
