@@ -251,6 +251,26 @@ TEST_F(PatternCommand, copies_a_gltf_only_if_it_is_whole) {
         << "where it is it has all it needs";
 }
 
+// A surface that cannot be heeded is refused before the search. What one does is tested with a
+// calibrated site.
+TEST_F(PatternCommand, refuses_a_surface_that_it_cannot_heed) {
+    const std::string site = sourceFolder() + "/config/simulated/site.yaml";
+    const auto refusal = [&](const std::string& surface, Arguments more = {}) {
+        more.insert(more.end(), {"--iterations", "1", "--surface", surface});
+        const Outcome outcome = find(more);
+        EXPECT_THAT(outcome, exits(1));
+        EXPECT_THAT(written(), IsEmpty());
+        return outcome.errors;
+    };
+    EXPECT_THAT(refusal(site + ":left", {"--method", "paper"}), HasSubstr("leave --method out"));
+    EXPECT_THAT(refusal(site + ":left", {"--shadows"}), HasSubstr("leave --shadows or --surface out"));
+    EXPECT_THAT(refusal("left"), HasSubstr("write SITE:OUTPUT"));
+    EXPECT_THAT(refusal(site + ":lft"), HasSubstr("did you mean 'left'?"));
+    EXPECT_THAT(refusal(site + ":left"), HasSubstr("there is no survey of the site"));
+    folder_.file("stored.pattern-settings.yaml", "fantascope: pattern-settings\nversion: 1\ncompare: stored\n");
+    EXPECT_THAT(refusal(site + ":left", {"--settings", "stored.pattern-settings.yaml"}), HasSubstr("write 'compare: light'"));
+}
+
 // The world refuses: one message, status 1, and nothing is written.
 TEST_F(PatternCommand, bad_input_is_refused_with_one_message_and_leaves_nothing) {
     const auto refusal = [&](const std::string& guide, const Arguments& more = {}) {
