@@ -13,12 +13,12 @@
 namespace fantascope::vision {
 namespace {
 
-constexpr int kWidth = 640;          // camera pixels across that are enough
-constexpr float kSaturated = 0.98f;  // linear light of a channel, from which on it says nothing
-constexpr double kGood = 0.5;        // agreement x share of the content: a picture that is found
-constexpr double kLost = 0.7;        // of the usual agreement: the picture may have moved far
-constexpr double kSettled = 0.3;     // cells: a picture that has moved by less has not moved
-constexpr double kForgets = 0.1;     // weight of a new picture in what is usual
+constexpr int kWidth = 640;       // camera pixels across that are enough
+constexpr float kSaturated = 1;   // linear light that says nothing
+constexpr double kGood = 0.5;     // agreement x share of the content: a picture that is found
+constexpr double kLost = 0.7;     // of the usual agreement: the picture may have moved far
+constexpr double kSettled = 0.3;  // cells: a picture that has moved by less has not moved
+constexpr double kForgets = 0.1;  // weight of a new picture in what is usual
 
 // Bilinear between the middles of pixels; at the edge as the edge.
 float valueAt(const GreyImage& image, glm::vec2 at) {
@@ -109,10 +109,12 @@ std::optional<OutputSight> WallWatch::Output::look(const GreyImage& seen, const 
     return sight;
 }
 
-WallWatch::WallWatch(const std::vector<std::optional<WatchedOutput>>& outputs, glm::ivec2 camera, const GreyImage& dark)
-    : camera_(camera), step_(std::max(1, static_cast<int>(std::lround(camera.x / static_cast<double>(kWidth))))) {
+WallWatch::WallWatch(const std::vector<std::optional<WatchedOutput>>& outputs, glm::ivec2 camera, const CameraLight& light)
+    : camera_(camera), step_(std::max(1, static_cast<int>(std::lround(camera.x / static_cast<double>(kWidth))))), light_(light) {
     const glm::ivec2 coarse = camera / step_;
-    dark_ = dark.empty() ? GreyImage(coarse.x, coarse.y) : resized(dark, coarse.x, coarse.y);
+    dark_ = GreyImage(coarse.x, coarse.y);
+    for (const std::optional<WatchedOutput>& watched : outputs)
+        if (watched && !watched->dark.empty()) dark_ = resized(watched->dark, coarse.x, coarse.y);
     for (const std::optional<WatchedOutput>& watched : outputs) {
         outputs_.push_back(nullptr);
         if (!watched) continue;
@@ -145,19 +147,18 @@ GreyImage WallWatch::lightOf(std::size_t output, const RgbaImage& frame) const {
 
 // By coarse camera pixels; negative where a pixel is saturated.
 GreyImage WallWatch::lightSeen(const RgbaImage& picture) const {
-    const std::array<float, 256>& linear = linearOfBytes();
+    GreyImage fine(camera_.x, camera_.y);
+    light_.addTo(fine, picture);
     GreyImage light(camera_.x / step_, camera_.y / step_);
-    const float share = 1 / static_cast<float>(3 * step_ * step_);
     for (int y = 0; y < light.height(); ++y)
         for (int x = 0; x < light.width(); ++x) {
             float sum = 0, most = 0;
             for (int row = y * step_; row < (y + 1) * step_; ++row)
                 for (int column = x * step_; column < (x + 1) * step_; ++column) {
-                    const Rgba8& pixel = picture.at(column, row);
-                    sum += linear[pixel.r] + linear[pixel.g] + linear[pixel.b];
-                    most = std::max(most, linear[std::max({pixel.r, pixel.g, pixel.b})]);
+                    sum += fine.at(column, row);
+                    most = std::max(most, fine.at(column, row));
                 }
-            light.at(x, y) = most >= kSaturated ? -1 : sum * share;
+            light.at(x, y) = most >= kSaturated ? -1 : sum / static_cast<float>(step_ * step_);
         }
     return light;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vision/camera_light.h"
 #include "vision/output_view.h"
 #include "vision/registration.h"
 
@@ -17,6 +18,7 @@ struct WatchedOutput {
     bool isSurveyed = false;  // `map` was measured, so its light shows the surface's texture too
     glm::ivec2 projector{0};  // its pixels
     double gamma = 2.2;       // light = stored ^ gamma
+    GreyImage dark{};         // by camera pixel: linear light while all outputs are dark; empty: unknown
 };
 
 // What one camera picture says of one output.
@@ -46,8 +48,8 @@ struct CameraMovement {
 class WallWatch {
 public:
     // `outputs`: nothing for an output that cannot be watched. `camera`: pixels of its picture.
-    // `dark`: the linear light that it sees when all outputs are black; empty: unknown.
-    WallWatch(const std::vector<std::optional<WatchedOutput>>& outputs, glm::ivec2 camera, const GreyImage& dark);
+    // `light`: how it stores light.
+    WallWatch(const std::vector<std::optional<WatchedOutput>>& outputs, glm::ivec2 camera, const CameraLight& light = {});
     ~WallWatch();
     WallWatch(const WallWatch&) = delete;
     WallWatch& operator=(const WallWatch&) = delete;
@@ -69,6 +71,7 @@ private:
 
     glm::ivec2 camera_;
     int step_;  // camera pixels that count as one
+    CameraLight light_;
     GreyImage dark_;
     std::vector<std::unique_ptr<Output>> outputs_;
 };

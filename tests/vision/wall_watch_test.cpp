@@ -74,7 +74,7 @@ TEST(WallWatch, finds_how_far_a_projector_was_turned) {
         wall.reflectance = bricks;
         wall.blur = 1;
         const WatchedOutput watched{mapOf(wall), true, wall.projector.size, wall.gamma};
-        WallWatch watch({watched}, wall.camera.size, {});
+        WallWatch watch({watched}, wall.camera.size);
         ASSERT_TRUE(watch.watches(0));
         ProjectedWall now = wall;
         now.projector = bumped(wall.projector, {degrees * 0.5, degrees, degrees * 0.7}, {0, 0, 0});

@@ -82,9 +82,10 @@ public:
           hand_(programme.show, inputs_, programme.site, openSite.devices, showClock_, events_),
           watch_(programme.show, namesOf(programme.site.outputs), programme.comparisons, openSite.devices.camera.get(),
                  programme.camera.get(), showClock_, recording),
-          driftWatch_(watched_.empty() ? nullptr
-                                       : std::make_unique<DriftWatch>(programme.site, programme.watched, GreyImage(), watched_,
-                                                                      inputs_, events_, showClock_)),
+          driftWatch_(watched_.empty()
+                          ? nullptr
+                          : std::make_unique<DriftWatch>(programme.site, programme.watched, cameraLightOf(programme.site),
+                                                         watched_, inputs_, events_, showClock_)),
           settingUp_(programme.site, frames_, openSite.devices, showClock_, events_),
           keys_(inputs_, events_, showClock_, std::move(terminal_), scheduleOf(options, programme),
                 QuitKey(options.backends == Backends::AsDeclared), keyActions()),
@@ -222,10 +223,7 @@ public:
         report.yardstickLate = yardstick_.late();
         report.zCamera = watch_.series();
         report.toneCamera = watch_.tones();
-        if (driftWatch_) report.causes = driftWatch_->causes();
-        if (driftWatch_)
-            for (std::size_t i = 0; i < programme_.site.outputs.size(); ++i)
-                report.watch[programme_.site.outputs[i].name] = driftWatch_->series()[i];
+        if (driftWatch_) report.causes = driftWatch_->causes(), report.watch = driftWatch_->series();
         for (const show::Source& source : programme_.show.sources)
             if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources.find(source.id)->picture)) {
                 const std::string& name = source.name;

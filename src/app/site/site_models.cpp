@@ -1,6 +1,7 @@
 #include "app/site/site_models.h"
 
 #include "app/site/canvas_view.h"
+#include "app/site/survey_file.h"
 
 #include "core/config/config.h"
 #include "core/parallel.h"
@@ -161,10 +162,17 @@ Result<std::vector<std::optional<vision::WatchedOutput>>> watchedOutputsOf(const
     constexpr double kUsualGamma = 2.2;
     std::vector<std::optional<vision::WatchedOutput>> watched(site.outputs.size());
     if (!site.camera || site.corrections.geometry.mode == show::Corrections::Mode::Off) return watched;
-    for (std::size_t i = 0; i < site.outputs.size(); ++i)
-        if (const auto view = TRY(nominalViewOf(site, i, 1, Fit::Stretch)))
-            watched[i] = vision::WatchedOutput{vision::nominalMap(*view), false, site.outputs[i].size(),
-                                               site.outputs[i].projection.light.gamma.value_or(kUsualGamma)};
+    const std::optional<Survey> survey = TRY(readSurvey(site));
+    for (std::size_t i = 0; i < site.outputs.size(); ++i) {
+        const show::Output& output = site.outputs[i];
+        if (survey && survey->outputs.contains(output.name)) {
+            const OutputSurvey& seen = survey->outputs.at(output.name);
+            watched[i] = vision::WatchedOutput{seen.map, true, seen.projector, seen.gamma, seen.dark};
+        } else if (const auto view = TRY(nominalViewOf(site, i, 1, Fit::Stretch))) {
+            watched[i] = vision::WatchedOutput{
+                vision::nominalMap(*view), false, output.size(), output.projection.light.gamma.value_or(kUsualGamma), {}};
+        }
+    }
     return watched;
 }
 

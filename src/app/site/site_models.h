@@ -44,8 +44,9 @@ double canvasAspectOf(const show::Site& site, const std::string& canvas);
 Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site, std::size_t output, double pictureAspect,
                                                          Fit fit);
 
-// The outputs that the camera can watch, by output: those of which the site says where projector,
-// surface and camera are. None if the site wants no correction of geometry, not even advice.
+// The outputs that the camera can watch, by output: those that were surveyed, or of which the site
+// says where projector, surface and camera are. None if the site wants no correction of geometry,
+// not even advice.
 Result<std::vector<std::optional<vision::WatchedOutput>>> watchedOutputsOf(const show::Site& site);
 
 }  // namespace fantascope::app

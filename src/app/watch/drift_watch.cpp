@@ -62,17 +62,16 @@ std::vector<ShownLight::Output> watchedOf(const show::Site& site, const vision::
 }  // namespace
 
 DriftWatch::DriftWatch(const show::Site& site, const std::vector<std::optional<vision::WatchedOutput>>& outputs,
-                       const GreyImage& dark, const std::vector<render::NewestFrame*>& frames, show::InputLog& inputs,
+                       const vision::CameraLight& light, const std::vector<render::NewestFrame*>& frames, show::InputLog& inputs,
                        show::EventLog& events, const show::ShowClock& showClock)
     : site_(site),
       inputs_(inputs),
       events_(events),
       showClock_(showClock),
-      wall_(outputs, site.nominalCamera->size, dark),
+      wall_(outputs, site.nominalCamera->size, light),
       light_(watchedOf(site, wall_, frames), wall_, showClock),
       settled_(site.outputs.size()),
       settledAt_(site.outputs.size(), Time::min() / 2),
-      series_(site.outputs.size()),
       misplaced_(site.outputs.size()) {
     for (std::size_t i = 0; i < site.outputs.size(); ++i) {
         const auto [low, high] = litBy(site.outputs[i].projection);
@@ -159,7 +158,7 @@ void DriftWatch::note(const show::ShowState& shown, Time showTime) {
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
         if (!tracks_[i].now()) continue;
         const show::PictureShift shift = i < shown.shifts.size() ? shown.shifts[i] : show::PictureShift{};
-        series_[i].push_back(
+        series_[site_.outputs[i].name].push_back(
             {showTime, tracks_[i].now()->px, tracks_[i].now()->sigma, rmsOf(shift, site_.outputs[i].projection), shift});
         const double left = missOf(*tracks_[i].now(), shift, site_.outputs[i].projection);
         if (misplaced_[i] && left < kInPlace) causes_[*std::exchange(misplaced_[i], std::nullopt)].to = showTime;

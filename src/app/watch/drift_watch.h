@@ -14,6 +14,7 @@
 #include "device/camera_source.h"
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,11 +48,11 @@ struct CauseReport {
 class DriftWatch {
 public:
     // All arguments by reference or pointer outlive this, except `showClock`. `outputs`: by output;
-    // nothing: it cannot be watched. `frames`: by output, made with rate 0; null: it is not
-    // watched.
-    DriftWatch(const show::Site& site, const std::vector<std::optional<vision::WatchedOutput>>& outputs, const GreyImage& dark,
-               const std::vector<render::NewestFrame*>& frames, show::InputLog& inputs, show::EventLog& events,
-               const show::ShowClock& showClock);
+    // nothing: it cannot be watched. `light`: how the camera stores light. `frames`: by output,
+    // made with rate 0; null: it is not watched.
+    DriftWatch(const show::Site& site, const std::vector<std::optional<vision::WatchedOutput>>& outputs,
+               const vision::CameraLight& light, const std::vector<render::NewestFrame*>& frames, show::InputLog& inputs,
+               show::EventLog& events, const show::ShowClock& showClock);
 
     void tick(Time now) { light_.tick(now); }
     // Takes a picture of the camera. `shown`: the state that is shown. `isSettingUp`: a technician
@@ -59,7 +60,7 @@ public:
     void see(const CameraFrame& frame, const show::ShowState& shown, bool isSettingUp, Time now);
 
     // By output, one a second.
-    const std::vector<std::vector<DriftReport>>& series() const { return series_; }
+    const std::map<std::string, std::vector<DriftReport>>& series() const { return series_; }
     // In the order in which they were noticed.
     const std::vector<CauseReport>& causes() const { return causes_; }
 
@@ -82,7 +83,7 @@ private:
     vision::Moved moved_ = vision::Moved::Nothing;    // what seems to have moved
     Time movedSince_{};                               // show time
     bool cameraMoved_ = false, wasSettingUp_ = false;
-    std::vector<std::vector<DriftReport>> series_;
+    std::map<std::string, std::vector<DriftReport>> series_;
     Time noted_ = Time::min();
     std::vector<CauseReport> causes_;
     std::vector<std::optional<std::size_t>> misplaced_;  // by output: its open entry of `causes_`
