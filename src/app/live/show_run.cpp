@@ -72,8 +72,7 @@ public:
                         [](render::FrameTap& tap) { return &tap.addNewest(std::numeric_limits<double>::infinity()); })),
           recorder_(recorderOf(recording)),
           recordingIsOpen_(recording != nullptr),
-          watched_(readers(std::ranges::any_of(programme.watched, [](const auto& output) { return output.has_value(); }),
-                           [](render::FrameTap& tap) { return &tap.addNewest(0); })),
+          watched_(readers(!programme.watched.empty(), [](render::FrameTap& tap) { return &tap.addNewest(0); })),
           pictured_(readers(attended_, [](render::FrameTap& tap) { return &tap.addNewest(0); })),
           prepared_(frames_.prepare()),
           showClock_(frames_.refreshFrom(clock.now() + kStartUp)),
@@ -82,10 +81,6 @@ public:
           hand_(programme.show, inputs_, programme.site, openSite.devices, showClock_, events_),
           watch_(programme.show, namesOf(programme.site.outputs), programme.comparisons, openSite.devices.camera.get(),
                  programme.camera.get(), showClock_, recording),
-          driftWatch_(watched_.empty()
-                          ? nullptr
-                          : std::make_unique<DriftWatch>(programme.site, programme.watched, cameraLightOf(programme.site),
-                                                         watched_, inputs_, events_, showClock_)),
           settingUp_(programme.site, frames_, openSite.devices, showClock_, events_),
           keys_(inputs_, events_, showClock_, std::move(terminal_), scheduleOf(options, programme),
                 QuitKey(options.backends == Backends::AsDeclared), keyActions()),
@@ -99,7 +94,10 @@ public:
         if (!options.asFastAsPossible) frames_.makeRenderersAside();
         if (recorder_) recorder_->begin(showClock_.runStart());
         frames_.publishStateTo(watch_.shown());
-        if (driftWatch_) watch_.alsoWatch(*driftWatch_, [this] { return settingUp_.on(); });
+        if (!watched_.empty())
+            watch_.alsoWatch(driftWatch_.emplace(programme.site, programme.watched, cameraLightOf(programme.site), watched_,
+                                                 inputs_, events_, showClock_),
+                             [this] { return settingUp_.on(); });
         hand_.edit = [this](show::Button button, bool pressed) { settingUp_.button(button, pressed); };
         hand_.editing = [this] { return settingUp_.on(); };
         if (!pictured_.empty())
@@ -370,7 +368,7 @@ private:
     Lighting lighting_;
     Hand hand_;
     Watch watch_;
-    std::unique_ptr<DriftWatch> driftWatch_;  // null: nothing is watched
+    std::optional<DriftWatch> driftWatch_;
     SettingUp settingUp_;
     OperatorKeys keys_;
     RunView view_;  // belongs to the progress part
@@ -381,12 +379,6 @@ private:
     Yardstick yardstick_;
     RunLights lights_;  // last, so that its threads end before the other members are destroyed
 };
-
-// A guard, if the site's relays are real; otherwise null.
-Result<std::unique_ptr<RelayGuard>> guardOf(const RunOptions& options, const show::Site& site, const SiteClaims& claims) {
-    if (options.backends != Backends::AsDeclared || site.relayBanks.empty()) return std::unique_ptr<RelayGuard>();
-    return RelayGuard::start(site, claims.files());
-}
 
 }  // namespace
 
@@ -401,7 +393,9 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
     Clock& clock = options.asFastAsPossible ? static_cast<Clock&>(steppedClock) : steadyClock;
     SiteClaims claims;  // a simulated site needs none
     if (options.backends == Backends::AsDeclared) claims = TRY(SiteClaims::take(programme.site, interrupt));
-    const std::unique_ptr<RelayGuard> guard = TRY(guardOf(options, programme.site, claims));
+    std::unique_ptr<RelayGuard> guard;  // null: the site's relays are simulated, or there are none
+    if (options.backends == Backends::AsDeclared && !programme.site.relayBanks.empty())
+        guard = TRY(RelayGuard::start(programme.site, claims.files()));
     Supervisor supervisor(interrupt, guard.get());
     supervisor.step("opening the devices: look at the X server");
     if (!options.asFastAsPossible) setThreadRank(Rank::Render);  // before the displays start threads, which inherit it

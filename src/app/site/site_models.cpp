@@ -161,7 +161,8 @@ Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site,
 Result<std::vector<std::optional<vision::WatchedOutput>>> watchedOutputsOf(const show::Site& site) {
     constexpr double kUsualGamma = 2.2;
     std::vector<std::optional<vision::WatchedOutput>> watched(site.outputs.size());
-    if (!site.camera || site.corrections.geometry.mode == show::Corrections::Mode::Off) return watched;
+    if (!site.camera || site.corrections.geometry.mode == show::Corrections::Mode::Off)
+        return std::vector<std::optional<vision::WatchedOutput>>();
     const std::optional<Survey> survey = TRY(readSurvey(site));
     for (std::size_t i = 0; i < site.outputs.size(); ++i) {
         const show::Output& output = site.outputs[i];
@@ -173,6 +174,7 @@ Result<std::vector<std::optional<vision::WatchedOutput>>> watchedOutputsOf(const
                 vision::nominalMap(*view), false, output.size(), output.projection.light.gamma.value_or(kUsualGamma), {}};
         }
     }
+    if (std::ranges::none_of(watched, [](const auto& output) { return output.has_value(); })) watched.clear();
     return watched;
 }
 
