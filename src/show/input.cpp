@@ -89,7 +89,7 @@ Result<Input> inputOf(std::string_view line) {
     constexpr std::size_t kWords = 5;
     Input input;
     const std::size_t wanted = kWords + (words.size() > 1 && words[1] == "correct" ? 2 * input.shift.size() : 0);
-    if (words.size() != wanted) return Error(fmt::format("such an input has {} words, here are {}", wanted, words.size()));
+    if (words.size() != wanted) return Error(fmt::format("an input has {} words, here are {}", wanted, words.size()));
     input.at = Time(TRY(numberOf<Time::rep>(words[0])));
     input.kind = TRY(choiceOf<Input::Kind>(words[1], kKinds));
     (input.kind == Input::Kind::Revise ? input.revision : input.cue) = TRY(numberOf<int>(words[2]));

@@ -9,10 +9,12 @@ namespace {
 
 constexpr Time kWindow = std::chrono::seconds(1);
 constexpr std::size_t kLeastSights = 5;
-constexpr double kGoodSight = 0.5;  // agreement x share of the content
-constexpr double kSharpSight = 2;   // standard deviation, pixels
-constexpr int kReferences = 200;    // estimates: twenty seconds
-constexpr double kMostSpread = 3;   // of the sights about their median, pixels: more is no agreement
+constexpr double kGoodSight = 0.5;        // agreement x share of the content
+constexpr double kSharpSight = 2;         // standard deviation, pixels
+constexpr int kLearning = 20;             // estimates of the reference, before which nothing is said
+constexpr double kUnknownSurface = 0.25;  // pixels: what a surface that was not measured may pretend
+constexpr int kReferences = 200;          // estimates: twenty seconds
+constexpr double kMostSpread = 3;         // of the sights about their median, pixels: more is no agreement
 
 double medianOf(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -51,9 +53,11 @@ void DriftTrack::add(Time at, const std::optional<OutputSight>& sight) {
         now_->px = rmsMovement(now_->moved, low_, high_);
     };
     compare();
-    if (references_ >= kReferences || now_->isSure()) return;
-    average(stands);
-    compare();
+    if (references_ < kReferences && !now_->isSure()) {
+        average(stands);
+        compare();
+    }
+    if (references_ < kLearning) now_.reset();
 }
 
 std::array<glm::dvec2, 4> DriftTrack::corners() const {
@@ -115,6 +119,7 @@ std::optional<Drift> DriftTrack::estimate() const {
         sigma += place->sigma / static_cast<double>(good.size());
         drift.surfaceStayed += place->surfaceStayed / static_cast<double>(good.size());
     }
+    if (!isSurveyed_) sigma = std::hypot(sigma, kUnknownSurface);
     drift.sigma = std::sqrt(sigma * sigma + 1.57 * spread / static_cast<double>(good.size()));
     drift.moved = *map;
     drift.px = rmsMovement(drift.moved, low_, high_);

@@ -16,6 +16,7 @@ constexpr int kTrusted = 10;            // after so many, a picture that differs
 constexpr float kDiffersMuch = 0.4f;    // such as one with somebody in front
 constexpr int kFilledEvery = 5;         // pictures
 constexpr double kNeighbourhood = 3;    // cells: standard deviation of what a guess is made from
+constexpr double kSmooth = 12;          // cells: standard deviation of what is smoother than any texture
 constexpr float kDarkest = 0.1f;        // of the mean: dark joints only amplify noise
 constexpr double kCorrelatedCells = 4;  // so many neighbouring cells say as much as one
 
@@ -28,11 +29,23 @@ std::optional<float> wellLit(const GreyImage& light, glm::dvec2 at) {
     return light.at(cell.x, cell.y);
 }
 
+// What is smooth in an image; places that are 0 do not count.
+GreyImage smoothed(const GreyImage& image) {
+    GreyImage weight(image.width(), image.height());
+    for (std::size_t i = 0; i < image.pixels().size(); ++i) weight.pixels()[i] = image.pixels()[i] > 0 ? 1.0f : 0.0f;
+    GreyImage smooth = blurred(image, kSmooth);
+    weight = blurred(weight, kSmooth);
+    for (std::size_t i = 0; i < image.pixels().size(); ++i)
+        smooth.pixels()[i] = image.pixels()[i] > 0 ? smooth.pixels()[i] / weight.pixels()[i] : 0;
+    return smooth;
+}
+
 }  // namespace
 
 SurfaceTexture::SurfaceTexture(const GreyImage& full, bool isMeasured)
     : full_(full), isMeasured_(isMeasured), known_(full.width(), full.height()), count_(full.width(), full.height()) {
     if (isMeasured_) known_ = full_;
+    fallOff_ = isMeasured_ ? smoothed(full_) : full_;
     forget();
 }
 
@@ -110,8 +123,8 @@ double SurfaceTexture::stayed(const GreyImage& seen, const GreyImage& light, con
             const auto lit = wellLit(light, shownFromPlace(middle));
             if (!lit) continue;
             // All relative to the fall-off there.
-            const double now = seen.at(x, y) / (gain * *lit * full_.at(x, y)), here = known_.at(x, y) / full_.at(x, y),
-                         there = known_.at(from.x, from.y) / full_.at(from.x, from.y);
+            const double now = seen.at(x, y) / (gain * *lit * fallOff_.at(x, y)), here = known_.at(x, y) / fallOff_.at(x, y),
+                         there = known_.at(from.x, from.y) / fallOff_.at(from.x, from.y);
             const double difference =
                 std::clamp((now - there) * (now - there) - (now - here) * (now - here), -here * here, here * here);
             sum += difference;

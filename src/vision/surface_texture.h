@@ -33,7 +33,8 @@ public:
 private:
     void fill();
 
-    GreyImage full_;  // as given
+    GreyImage full_;     // as given
+    GreyImage fallOff_;  // what is smooth in it: the projector's own
     bool isMeasured_;
     GreyImage known_;            // by cell: what was learned; 0: nothing yet
     Image<std::uint8_t> count_;  // by cell: from how many pictures

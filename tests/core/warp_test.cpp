@@ -121,6 +121,25 @@ TEST(Warp, joins_smooth_patches_without_a_kink) {
     EXPECT_GT(kinkOf(Between::Straight), 20);
 }
 
+// Example failure: the mesh keeps its offsets, which were made for the corners before.
+TEST(Warp, follows_a_projector_that_has_moved) {
+    WarpShape shape;
+    shape.corners = {glm::dvec2(30, 20), {600, 40}, {580, 330}, {50, 300}};
+    shape.mesh.points = {5, 4};
+    for (int i = 0; i < 20; ++i) shape.mesh.offsets.emplace_back(3 * std::sin(i), 4 * std::cos(2 * i));
+    const Homography map =
+        *Homography::fromCorners(rectangleCorners(640, 360), {glm::dvec2(4, -3), {651, 2}, {645, 372}, {-6, 355}});
+    const Warp before = *Warp::of(shape), after = *Warp::of(shape.moved(map));
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 5; ++x) {
+            const glm::dvec2 canvas(x / 4.0, y / 3.0);
+            EXPECT_LT(glm::distance(after.projectorFromCanvas(canvas), map(before.projectorFromCanvas(canvas))), 1e-9);
+        }
+    // Between the mesh's points a smooth patch is not exact, but nearly so.
+    const glm::dvec2 between(0.3, 0.6);
+    EXPECT_LT(glm::distance(after.projectorFromCanvas(between), map(before.projectorFromCanvas(between))), 0.05);
+}
+
 TEST(Warp, finds_the_canvas_point_of_every_pixel) {
     for (const Between between : {Between::Smooth, Between::Straight}) {
         const Warp warp = Warp::of({.part = {{0.25, 0}, {1, 0.8}},

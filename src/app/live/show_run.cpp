@@ -393,9 +393,8 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
     Clock& clock = options.asFastAsPossible ? static_cast<Clock&>(steppedClock) : steadyClock;
     SiteClaims claims;  // a simulated site needs none
     if (options.backends == Backends::AsDeclared) claims = TRY(SiteClaims::take(programme.site, interrupt));
-    std::unique_ptr<RelayGuard> guard;  // null: the site's relays are simulated, or there are none
-    if (options.backends == Backends::AsDeclared && !programme.site.relayBanks.empty())
-        guard = TRY(RelayGuard::start(programme.site, claims.files()));
+    const bool hasRelays = options.backends == Backends::AsDeclared && !programme.site.relayBanks.empty();
+    const auto guard = hasRelays ? TRY(RelayGuard::start(programme.site, claims.files())) : nullptr;
     Supervisor supervisor(interrupt, guard.get());
     supervisor.step("opening the devices: look at the X server");
     if (!options.asFastAsPossible) setThreadRank(Rank::Render);  // before the displays start threads, which inherit it
@@ -407,7 +406,6 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
             outputs.push_back({output.name, output.size(), output.refreshRate});
         recording = TRY(Recording::open(options.recordTo, std::move(outputs)));
     }
-
     supervisor.step("preparing the pictures: look at the graphics card");
     ShowRun run(options, programme, *openSite, recording.get(), clock, assets, supervisor, guard.get());
     if (guard) guard->arm();

@@ -45,8 +45,8 @@ Result<std::optional<vision::NominalView>> nominalViewOf(const show::Site& site,
                                                          Fit fit);
 
 // The outputs that the camera can watch, by output: those that were surveyed, or of which the site
-// says where projector, surface and camera are. None if the site wants no correction of geometry,
-// not even advice.
+// says where projector, surface and camera are. Empty if there are none, or if the site wants no
+// correction of geometry, not even advice.
 Result<std::vector<std::optional<vision::WatchedOutput>>> watchedOutputsOf(const show::Site& site);
 
 }  // namespace fantascope::app
