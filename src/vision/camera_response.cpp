@@ -16,7 +16,7 @@ constexpr double kStep = 255.0 / (kKnots - 1);
 // Values beside these tell nothing: noise, and saturation that has begun.
 constexpr double kAboveDark = 6, kBelowWhite = 5;
 constexpr double kSmooth = 0.05;  // weight of the second differences beside one sample
-constexpr int kRounds = 6;       // for the dark light, which is not proportional to the time
+constexpr int kRounds = 6;        // for the dark light, which is not proportional to the time
 constexpr std::size_t kFewestKnots = 10, kFewestPixels = 20;
 
 double srgb(double stored) { return linearFromSrgb(static_cast<float>(stored / 255)); }

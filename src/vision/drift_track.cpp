@@ -13,6 +13,7 @@ constexpr double kGoodSight = 0.5;        // agreement x share of the content
 constexpr double kSharpSight = 2;         // standard deviation, pixels
 constexpr int kLearning = 20;             // estimates of the reference, before which nothing is said
 constexpr double kUnknownSurface = 0.25;  // pixels: what a surface that was not measured may pretend
+constexpr double kErrorOfComparison = 1;  // pixels
 constexpr int kReferences = 200;          // estimates: twenty seconds
 constexpr double kMostSpread = 3;         // of the sights about their median, pixels: more is no agreement
 
@@ -45,7 +46,10 @@ void DriftTrack::add(Time at, const std::optional<OutputSight>& sight) {
     }
     while (places_.front().at < at - kWindow) places_.pop_front();
     now_ = estimate();
-    if (isSurveyed_ || !now_) return;
+    if (!now_) return;
+    // Against a survey, only what is too small to be told from an error of the comparison itself
+    // becomes the reference.
+    if (isSurveyed_ && references_ == 0 && now_->px > kErrorOfComparison) return;
     const Homography stands = now_->moved;
     if (references_ == 0) average(stands);
     const auto compare = [&] {
@@ -57,7 +61,7 @@ void DriftTrack::add(Time at, const std::optional<OutputSight>& sight) {
         average(stands);
         compare();
     }
-    if (references_ < kLearning) now_.reset();
+    if (!isSurveyed_ && references_ < kLearning) now_.reset();
 }
 
 std::array<glm::dvec2, 4> DriftTrack::corners() const {

@@ -28,9 +28,9 @@ struct Drift {
 // somebody stands in the picture, so the median of the last second counts. Thread: thread-bound.
 class DriftTrack {
 public:
-    // `isSurveyed`: sights tell the movement since the calibration. Otherwise they tell it against
-    // a plan, which nobody measures to the pixel, and what is seen in the first twenty seconds
-    // becomes the reference.
+    // `isSurveyed`: sights tell the movement since the calibration, to about a pixel. Otherwise
+    // they tell it against a plan, which nobody measures to the pixel, and what is seen in the
+    // first twenty seconds becomes the reference.
     // `low`, `high`: the rectangle of the projector's pixels that the picture is in.
     DriftTrack(glm::dvec2 low, glm::dvec2 high, bool isSurveyed) : low_(low), high_(high), isSurveyed_(isSurveyed) {}
 

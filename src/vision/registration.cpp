@@ -193,9 +193,41 @@ Homography moved(const Homography& map, const Step& step, cv::Size size) {
     return map * Homography(fromHalves * small * glm::inverse(fromHalves));
 }
 
-// rms over a part of the picture of the movement's standard deviation.
-double sigmaOf(const Normal& normal, double variance, const std::array<glm::dvec2, 2>& part) {
-    const Normal covariance = kCorrelated * variance * normal.inverse();
+// The movements of a map, to first order: the inverse of moved().
+Step movementsOf(const Homography& map, cv::Size size) {
+    const double half = size.width / 2.0;
+    const glm::dmat3 fromHalves(half, 0, 0, 0, half, 0, half, size.height / 2.0, 1);
+    glm::dmat3 small = glm::inverse(fromHalves) * map.matrix() * fromHalves;
+    small /= small[2][2];
+    Step step;
+    step << small[2][0], small[2][1], (small[0][0] + small[1][1] - 2) / 2, (small[0][1] - small[1][0]) / 2,
+        (small[0][0] - small[1][1]) / 2, (small[0][1] + small[1][0]) / 2, -small[0][2], -small[1][2];
+    return half * step;
+}
+
+// What is known before anything is seen. A projector that is pushed mostly turns: the picture
+// shifts, and turns about its middle, and a shift brings a little keystone along. Other movements
+// are small, and a picture with content in its middle alone must not pretend them.
+struct Prior {
+    static constexpr double kKeystone = 0.11;  // of a shift: (half the picture's width / its distance)^2 at a throw ratio of 1.5
+    Normal precision = Normal::Zero();
+    Step towards = Step::Zero();  // precision x what is missing
+
+    Prior(const Homography& map, cv::Size size, double perPixel) {
+        const Step now = movementsOf(map, size);
+        const double shift = std::hypot(now[0], now[1]), deviation = 0.2 * perPixel + 0.03 * shift;
+        Eigen::Matrix<double, 5, kProjective> rest = Eigen::Matrix<double, 5, kProjective>::Zero();
+        rest(0, 2) = rest(1, 4) = rest(2, 5) = rest(3, 6) = rest(4, 7) = 1;
+        rest(3, 0) = rest(4, 1) = -kKeystone;
+        precision = rest.transpose() * rest / (deviation * deviation);
+        towards = -precision * now;
+    }
+};
+
+// rms over a part of the picture of the movement's standard deviation. `information`: the inverse
+// of its covariance.
+double sigmaOf(const Normal& information, const std::array<glm::dvec2, 2>& part) {
+    const Normal covariance = information.inverse();
     double sum = 0;
     constexpr int kPlaces = 5;
     for (int i = 0; i < kPlaces * kPlaces; ++i) {
@@ -209,16 +241,22 @@ double sigmaOf(const Normal& normal, double variance, const std::array<glm::dvec
 }
 
 // Improves the map on one level.
-Homography refined(const Level& level, Homography map, int count, int steps) {
+// `perPixel`: pixels of this level along one of the finest.
+Homography refined(const Level& level, Homography map, int count, int steps, double perPixel) {
     for (int i = 0; i < steps; ++i) {
         const Comparison comparison(level, map);
         if (comparison.content() < kLeastContent) return map;
         Normal normal;
         Step right;
         comparison.equations(count, normal, right);
-        // A little damping: what the content does not determine stays as it is.
-        normal.diagonal().head(count).array() *= 1.001;
-        normal.diagonal().head(count).array() += 1e-3 * normal(0, 0) + 1e-12;
+        if (comparison.variance() <= 0) return map;
+        const double noise = kCorrelated * comparison.variance();
+        normal.topLeftCorner(count, count) /= noise;
+        right /= noise;
+        const Prior prior(map, level.seen.size(), perPixel);
+        normal.topLeftCorner(count, count) += prior.precision.topLeftCorner(count, count);
+        right.head(count) += prior.towards.head(count);
+        normal.diagonal().head(count).array() += 1e-3;  // a shift without any content stays as it is
         const Step step = normal.ldlt().solve(right);
         if (!step.allFinite() || step.norm() > level.seen.cols) return map;
         map = moved(map, step, level.seen.size());
@@ -264,9 +302,10 @@ std::optional<Registration> registerPictures(const GreyImage& seen, const GreyIm
                  static_cast<double>(sizeOf(coarsest).height) / seen.height());
     for (int level = coarsest; level >= 0; --level) {
         const Level& now = levels[static_cast<std::size_t>(level)];
-        if (range == SearchRange::Wide && level == coarsest) map = refined(now, shifted(now, map), kShift, 5);
-        if (level > 1) map = refined(now, map, kSimilarity, 6);
-        if (level <= 1) map = refined(now, map, kProjective, level == 0 ? 6 : 10);
+        const double perPixel = static_cast<double>(sizeOf(level).width) / seen.width();
+        if (range == SearchRange::Wide && level == coarsest) map = refined(now, shifted(now, map), kShift, 5, perPixel);
+        if (level > 1) map = refined(now, map, kSimilarity, 6, perPixel);
+        if (level <= 1) map = refined(now, map, kProjective, level == 0 ? 6 : 10, perPixel);
         if (level > 0)
             map = scaled(map, static_cast<double>(sizeOf(level - 1).width) / sizeOf(level).width,
                          static_cast<double>(sizeOf(level - 1).height) / sizeOf(level).height);
@@ -276,8 +315,10 @@ std::optional<Registration> registerPictures(const GreyImage& seen, const GreyIm
     Normal normal;
     Step right;
     found.equations(kProjective, normal, right);
-    normal.diagonal().array() += 1e-12;
-    const double sigma = sigmaOf(normal, found.variance(), found.contentBox());
+    if (found.variance() <= 0) return std::nullopt;
+    normal /= kCorrelated * found.variance();
+    normal += Prior(map, levels[0].seen.size(), 1).precision;
+    const double sigma = sigmaOf(normal, found.contentBox());
     if (!std::isfinite(sigma)) return std::nullopt;
     return Registration{map, sigma, found.gain(), found.agreement(), found.used()};
 }
