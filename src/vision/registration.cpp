@@ -215,7 +215,7 @@ struct Prior {
 
     Prior(const Homography& map, cv::Size size, double perPixel) {
         const Step now = movementsOf(map, size);
-        const double shift = std::hypot(now[0], now[1]), deviation = 0.2 * perPixel + 0.03 * shift;
+        const double shift = std::hypot(now[0], now[1]), deviation = 0.1 * perPixel + 0.03 * shift;
         Eigen::Matrix<double, 5, kProjective> rest = Eigen::Matrix<double, 5, kProjective>::Zero();
         rest(0, 2) = rest(1, 4) = rest(2, 5) = rest(3, 6) = rest(4, 7) = 1;
         rest(3, 0) = rest(4, 1) = -kKeystone;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 namespace fantascope {
 namespace {
@@ -156,6 +157,61 @@ TEST(Rehearsal, the_cameras_score_rises_while_a_projector_is_bumped_and_only_for
     EXPECT_NEAR(after, before, 0.3 * (bumped - before)) << before << " " << bumped << " " << after;
     const double still = meanScore(right, 4.5, 6), alsoStill = meanScore(right, 6.5, 12);
     EXPECT_NEAR(alsoStill, still, 0.2 * (bumped - before)) << still << " " << alsoStill;
+}
+
+// The default site whose geometry is corrected as `mode` says, with further lines in its simulation
+// section.
+fs::path correctedSite(const ScratchFolder& folder, const std::string& mode, const std::string& lines) {
+    const fs::path site = siteWith(folder, lines);
+    std::string text = contentsOf(site / "site.yaml");
+    replace(text, "\nsimulation:", "\ncorrections: {geometry: {mode: " + mode + "}}\n\nsimulation:");
+    std::ofstream(site / "site.yaml") << text;
+    return site;
+}
+
+json watchedRehearsal(const ScratchFolder& folder, const fs::path& site, const std::string& seconds) {
+    const Outcome outcome = runProgram({"rehearse", "--as-fast-as-possible", "--report", "report.json", "--seconds", seconds,
+                                        "--by-hand", "--from", "Full", "--site", site.string()},
+                                       folder.path());
+    EXPECT_THAT(outcome, exits(0));
+    return json::parse(contentsOf(folder / "report.json"));
+}
+
+// Example failures: the picture of the output that was not pushed moves, too; the picture jumps;
+// the correction is added to what was corrected already.
+TEST(Rehearsal, the_picture_of_a_pushed_projector_is_moved_back_while_the_show_runs) {
+    const ScratchFolder folder;
+    const fs::path site =
+        correctedSite(folder, "automatic", "  faults:\n    - {at: 7, kind: bump, output: left, turn: [0.2, 0.5, 0.3]}\n");
+    const json report = watchedRehearsal(folder, site, "15");
+    const json &left = report["watch"]["left"], &right = report["watch"]["right"];
+    ASSERT_FALSE(left.empty() || right.empty()) << report["watch"];
+    const double drift = left.back()["drift_px"], moved = left.back()["moved_px"];
+    EXPECT_GT(drift, 5);
+    EXPECT_NEAR(moved, drift, 1);
+    for (const json& seen : right) EXPECT_EQ(seen["moved_px"], 0.0) << seen;
+    for (const json& seen : left)
+        if (seen["at"] < 7) {
+            EXPECT_EQ(seen["moved_px"], 0.0) << seen;
+        }
+    ASSERT_EQ(report["causes"].size(), 1u) << report["causes"];
+    EXPECT_EQ(report["causes"][0]["cause"], "out of place");
+    EXPECT_EQ(report["causes"][0]["output"], "left");
+    EXPECT_LT(report["causes"][0]["to"], 15);
+}
+
+TEST(Rehearsal, advice_moves_nothing_and_neither_does_a_pushed_camera) {
+    for (const auto& [mode, fault, cause] :
+         {std::tuple("advise", "kind: bump, output: left, turn: [0.2, 0.5, 0.3]", "out of place"),
+          std::tuple("automatic", "kind: camera_bump, turn: [0.3, 0.8, 0.2]", "camera moved")}) {
+        const ScratchFolder folder;
+        const json report =
+            watchedRehearsal(folder, correctedSite(folder, mode, std::string("  faults:\n    - {at: 6, ") + fault + "}\n"), "10");
+        for (const json& output : report["watch"])
+            for (const json& seen : output) EXPECT_EQ(seen["moved_px"], 0.0) << seen;
+        ASSERT_EQ(report["causes"].size(), 1u) << report["causes"];
+        EXPECT_EQ(report["causes"][0]["cause"], cause);
+    }
 }
 
 TEST(Rehearsal, an_unplugged_projector_goes_dark_and_comes_back_while_the_other_plays_on) {
