@@ -33,6 +33,14 @@ layout(binding = 7) uniform sampler2D blendMap;  // light * x + y
 layout(binding = 8) uniform sampler2D gainMap;   // what is left of the light where the surface would be brighter than elsewhere
 layout(location = 13) uniform float gainShare;  // how far that is faded in, 0..1
 #endif
+#if defined(GAIN) || defined(BLEND)
+layout(location = 14) uniform mat3 onMaps;  // from a pixel to its place in these maps, 0..1; all 0: the maps lie pixel on pixel
+vec4 mapped(sampler2D map, ivec2 pixel) {
+    if (onMaps[2].z == 0.0) return texelFetch(map, pixel, 0);
+    vec3 at = onMaps * vec3(gl_FragCoord.xy, 1.0);
+    return texture(map, at.xy / at.z);
+}
+#endif
 #ifdef ENCODE
 layout(location = 12) uniform float gamma;  // 0: the sRGB function
 #endif
@@ -72,11 +80,11 @@ void main() {
     light = linearFromSrgb(texture(cube, srgbFromLinear(clamp(light, 0.0, 1.0)) * cubeFrom[0] + cubeFrom[1]).rgb);
 #endif
 #ifdef GAIN
-    light = clamp(light, 0.0, 1.0) * mix(1.0, texelFetch(gainMap, pixel, 0).x, gainShare);
+    light = clamp(light, 0.0, 1.0) * mix(1.0, mapped(gainMap, pixel).x, gainShare);
 #endif
 #ifdef BLEND
     // Cut before it is shared: what a projector alone cannot show two of them must not.
-    vec2 share = texelFetch(blendMap, pixel, 0).xy;
+    vec2 share = mapped(blendMap, pixel).xy;
     light = clamp(light, 0.0, 1.0) * share.x + share.y;
 #endif
 #ifdef ENCODE

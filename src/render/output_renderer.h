@@ -8,6 +8,7 @@
 #include "show/show_state.h"
 
 #include "core/clock.h"
+#include "core/geometry.h"
 #include "core/result.h"
 #include "core/wind.h"
 #include "media/image.h"
@@ -58,6 +59,8 @@ public:
     Result<void> setUp(const RgbaImage* overlay, const RgbaImage* card);
     // How far the light correction is faded in from now on, 0..1. A card is shown without it.
     void correctLight(float share) { lightShare_ = share; }
+    // As Composer::moveMaps: for a warp that follows a projector that has moved.
+    void moveMaps(const std::optional<Homography>& moved) { composer_->moveMaps(moved); }
     // Draws every source once and every combination of layers, so that nothing is compiled during
     // the show. Error: OpenGL has no memory left.
     Result<void> warmUp(unsigned framebuffer);

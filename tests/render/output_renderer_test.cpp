@@ -202,7 +202,6 @@ TEST(OutputRenderer, adds_layers_as_linear_light) {
     EXPECT_EQ(grey({{2, 0}}), 0);
 }
 
-// Example failure: the last frame's picture stays when all layers have gone.
 // Example failure: the factors are upside down, or dim the black that the blend adds.
 TEST(OutputRenderer, dims_by_the_light_correction_as_far_as_it_is_faded_in) {
     auto gain = std::make_shared<GreyImage>(kSize.x, kSize.y);
@@ -234,6 +233,36 @@ TEST(OutputRenderer, dims_by_the_light_correction_as_far_as_it_is_faded_in) {
     EXPECT_EQ(corrected.frame({{0, 1}}).at(0, 0).g, 255) << "a card is for judging the projector itself";
 }
 
+// Blend and light correction belong to places on the wall. Example failures: they move the other
+// way, or upside down; they stay moved.
+TEST(OutputRenderer, moves_its_maps_with_a_shifted_picture) {
+    auto gain = std::make_shared<GreyImage>(kSize.x, kSize.y);
+    auto blend = std::make_shared<BlendMap>(kSize.x, kSize.y);
+    const auto gainAt = [](glm::dvec2 at) { return 0.3 + 0.35 * at.x / kSize.x + 0.35 * at.y / kSize.y; };
+    const auto blendAt = [](glm::dvec2 at) { return 0.9 - 0.4 * at.x / kSize.x + 0.1 * at.y / kSize.y; };
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x) {
+            gain->at(x, y) = static_cast<float>(gainAt({x + 0.5, y + 0.5}));
+            blend->at(x, y) = {static_cast<float>(blendAt({x + 0.5, y + 0.5})), 0.02f};
+        }
+    DrawnOutput output(projectionTo(kSize, upright(kSize)), {SolidSource{glm::vec3(1)}}, blend, "headless", gain);
+    const RgbaImage before = output.frame({{0, 1}});
+    const Homography moved =
+        *Homography::fromCorners(rectangleCorners(kSize.x, kSize.y),
+                                 {glm::dvec2(9, -6), {kSize.x + 12, 4}, {kSize.x - 7, kSize.y + 8}, {-5, kSize.y - 3}});
+    output.renderer().moveMaps(moved);
+    const RgbaImage after = output.frame({{0, 1}});
+    for (int y = 20; y < kSize.y - 20; y += 7)
+        for (int x = 20; x < kSize.x - 20; x += 7) {
+            const glm::dvec2 from = moved.inverse()({x + 0.5, y + 0.5});
+            ASSERT_NEAR(after.at(x, y).g, 255 * srgbFromLinear(static_cast<float>(gainAt(from) * blendAt(from) + 0.02)), 1)
+                << x << ", " << y;
+        }
+    output.renderer().moveMaps(std::nullopt);
+    EXPECT_EQ(output.frame({{0, 1}}), before);
+}
+
+// Example failure: the last frame's picture stays when all layers have gone.
 TEST(OutputRenderer, is_black_without_layers) {
     DrawnOutput output({64, 36}, upright({64, 36}), {SolidSource{}});
     ASSERT_EQ(output.frame({{0, 1}}).at(5, 5), (Rgba8{255, 255, 255, 255}));

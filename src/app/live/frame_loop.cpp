@@ -14,14 +14,15 @@
 namespace fantascope::app {
 namespace {
 
-// The warp of a picture that is shifted; as it is if a shift would fold it.
-Warp shifted(const Projection& projection, const show::PictureShift& shift) {
+// The map of a projector's pixels that a shift makes; nothing: none, or one that would fold the
+// picture.
+std::optional<Homography> mapOf(const show::PictureShift& shift, const Projection& projection) {
+    if (shift == show::PictureShift{}) return std::nullopt;
     const auto corners = rectangleCorners(projection.size.x, projection.size.y);
     auto moved = corners;
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += glm::dvec2(shift[i]);
     const auto map = Homography::fromCorners(corners, moved);
-    const auto warp = map ? Warp::of(projection.warp.shape().moved(*map)) : Result<Warp>(projection.warp);
-    return warp ? *warp : projection.warp;
+    return map && Warp::of(projection.warp.shape().moved(*map)) ? std::optional(*map) : std::nullopt;
 }
 
 }  // namespace
@@ -250,13 +251,15 @@ void FrameLoop::followSettings(Output& output, const show::PictureShift& shift) 
     output.shift = now;
     if (asMade) return;
     OutputSettings wanted = set ? *set : OutputSettings{output.site.projection, output.blend, nullptr, nullptr};
-    if (now != show::PictureShift{}) wanted.projection.warp = shifted(wanted.projection, now);
+    const std::optional<Homography> moved = mapOf(now, wanted.projection);
+    if (moved) wanted.projection.warp = *Warp::of(wanted.projection.warp.shape().moved(*moved));
     const auto followed = [&]() -> Result<void> {
         // Only a renderer that was made for a mesh draws a mesh exactly.
         if (wanted.projection.warp.bends() && !output.bends)
             TRY(makeRenderer(output, wanted.projection, wanted.blend));
         else
             TRY(output.renderer->follow(wanted.projection, wanted.blend));
+        output.renderer->moveMaps(moved);
         return isNew ? output.renderer->setUp(wanted.overlay.get(), wanted.card.get()) : Result<void>();
     }();
     tell(unfollowed_, output, followed ? "" : "it keeps its previous settings: " + followed.error().message());

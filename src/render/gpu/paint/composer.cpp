@@ -16,7 +16,7 @@ constexpr GLfloat kBlack[] = {0, 0, 0, 1};
 
 // Uniform locations of assets/shaders/compose.frag. An array's is that of its first element; the
 // others follow.
-constexpr GLint kBlend = 0, kTurn = 4, kWeight = 8, kTint = 9, kCubeFrom = 10, kGamma = 12, kGainShare = 13;
+constexpr GLint kBlend = 0, kTurn = 4, kWeight = 8, kTint = 9, kCubeFrom = 10, kGamma = 12, kGainShare = 13, kOnMaps = 14;
 constexpr GLuint kRoots = 0, kCarriedSum = 4, kCarriedPicture = 5, kCube = 6, kBlendMap = 7, kGainMap = 8;
 
 // The factors of a blend mode: what the picture below loses by the layer's coverage and by its
@@ -79,6 +79,15 @@ Result<unsigned> Composer::programFor(std::size_t layers, bool carries, End end)
     return programs_->drawing("compose.vert", "compose.frag", definitions);
 }
 
+void Composer::moveMaps(const std::optional<Homography>& moved) {
+    onMaps_ = glm::mat3(0.0f);
+    if (!moved) return;
+    const glm::dvec2 size(size_);
+    // OpenGL's row 0 is at the bottom, of the picture and of the maps.
+    const glm::dmat3 upright(1, 0, 0, 0, -1, 0, 0, size.y, 1), share(1 / size.x, 0, 0, 0, -1 / size.y, 0, 0, 1, 1);
+    onMaps_ = share * moved->inverse().matrix() * upright;
+}
+
 void Composer::uploadCube() {
     cube_.reset();
     if (!uploadedCube_) return;
@@ -102,6 +111,7 @@ void Composer::uploadBlendMap() {
     // OpenGL's row 0 is at the bottom.
     for (int y = 0; y < size_.y; ++y)
         glTextureSubImage2D(texture, 0, 0, size_.y - 1 - y, size_.x, 1, GL_RG, GL_FLOAT, blend.row(y).data());
+    filterBetween(texture);
 }
 
 void Composer::uploadGain(const GreyImage& gain) {
@@ -111,6 +121,7 @@ void Composer::uploadGain(const GreyImage& gain) {
     // OpenGL's row 0 is at the bottom.
     for (int y = 0; y < size_.y; ++y)
         glTextureSubImage2D(texture, 0, 0, size_.y - 1 - y, size_.x, 1, GL_RED, GL_FLOAT, gain.row(y).data());
+    filterBetween(texture);
 }
 
 Result<void> Composer::follow(const ProjectorLight& light, const std::shared_ptr<const BlendMap>& blend) {
@@ -198,6 +209,7 @@ void Composer::pass(End end, unsigned framebuffer) {
             glUniform1f(kGainShare, gainShare_);
             glBindTextureUnit(kGainMap, gainMap_->name());
         }
+        if (finishing_.gain || finishing_.blend) glUniformMatrix3fv(kOnMaps, 1, GL_FALSE, glm::value_ptr(onMaps_));
         if (finishing_.blend) glBindTextureUnit(kBlendMap, blendMap_->name());
         if (finishing_.encode) glUniform1f(kGamma, gamma_);
     }

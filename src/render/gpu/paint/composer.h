@@ -6,10 +6,12 @@
 #include "render/gpu/program_cache.h"
 #include "show/show_state.h"
 
+#include "core/geometry.h"
 #include "core/result.h"
 #include "media/image.h"
 #include "media/projection.h"
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -45,6 +47,9 @@ public:
 
     // How far the light correction is faded in from now on, 0..1.
     void correctLight(float share) { gainShare_ = share; }
+    // Blend map and light correction belong to places on the wall. `moved`: where the projector
+    // pixels that lit these places are now; nothing: where they were.
+    void moveMaps(const std::optional<Homography>& moved);
 
     void begin();
     // The picture into which the next layer is to be painted.
@@ -93,6 +98,7 @@ private:
     std::array<glm::vec3, 2> cubeFrom_{};
     float gamma_ = 0;
     float gainShare_ = 1;
+    glm::mat3 onMaps_{0.0f};
     std::optional<Texture> gainMap_;
     // What has been uploaded; null: nothing.
     std::shared_ptr<const ColourCube> uploadedCube_;
