@@ -142,8 +142,8 @@ Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revis
             if (const Outcome outcome = correct(input, *now.list, at); outcome != Outcome::Taken) return outcome;
             break;
         case Input::Kind::Corrections:
-            correctionsOff_ = !correctionsOff_;
-            if (correctionsOff_) shifts_.takeBack(at, now.list->shiftSpeed);
+            corrections_.push_back(at);
+            if (!correctsAt(at)) shifts_.takeBack(at, now.list->shiftSpeed);
             break;
     }
     taken_.push_back(at);
@@ -152,7 +152,7 @@ Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revis
 
 Outcome Playback::correct(const Input& input, const CueList& list, Time at) {
     if (input.which < 0 || static_cast<std::size_t>(input.which) >= list.dark.outputs.size()) return Outcome::NoSuchOutput;
-    if (correctionsOff_) return Outcome::CorrectionsOff;
+    if (!correctsAt(at)) return Outcome::CorrectionsOff;
     if (farthestOf(input.shift) > list.farthestShift) return Outcome::TooFar;
     shifts_.want(static_cast<std::size_t>(input.which), input.shift, at, list.shiftSpeed);
     return Outcome::Taken;
@@ -283,6 +283,7 @@ void Playback::stateAt(Time time, ShowState& out) const {
                    [&](const OutputCourse& output) { return output.wind.at(time, lull); });
     out.shifts.resize(entry.outputs.size());
     for (std::size_t output = 0; output < out.shifts.size(); ++output) out.shifts[output] = shifts_.at(output, time);
+    out.corrects = correctsAt(time);
     const Shutter* shutter = lastBy(time, shutters_);
     out.blackout = shutter && shutter->dark;
     if (const float light = lightAt(time); light < 1) dim(out, light);
@@ -315,6 +316,10 @@ void Playback::lookAt(Time time, Look& out) const {
     out.levels.resize(entry.levels.size());
     std::ranges::transform(entry.levels, out.levels.begin(), [&](const Course& level) { return level.valueAt(time); });
     out.relays = entry.relays;
+}
+
+bool Playback::correctsAt(Time time) const {
+    return (std::upper_bound(corrections_.begin(), corrections_.end(), time) - corrections_.begin()) % 2 == 0;
 }
 
 // The factor that a blackout applies to pictures and levels. It moves at a constant rate, so that a

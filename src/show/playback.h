@@ -124,6 +124,7 @@ private:
     static OutputCourse courseOf(const OutputState& from, const OutputState& to, Time at, Time fade);
     void lookAt(Time time, Look& out) const;
     float lightAt(Time time) const;
+    bool correctsAt(Time time) const;
 
     Gusts gusts_;                 // of the first list's seed; a revision does not change them
     std::set<SourceId> sources_;  // of all looks: at most so many layers add their light on one output
@@ -133,9 +134,9 @@ private:
     std::vector<Entry> entries_;     // by time, future ones last; the first one is the dark before any cue
     std::vector<Shutter> shutters_;  // by time
     ShiftCourses shifts_;
-    bool correctionsOff_ = false;
-    std::vector<Time> taken_;    // when each input took effect
-    Time newest_ = Time::min();  // the latest time of all inputs, including ignored ones
+    std::vector<Time> corrections_;  // when corrections were forbidden and allowed, in turn
+    std::vector<Time> taken_;        // when each input took effect
+    Time newest_ = Time::min();      // the latest time of all inputs, including ignored ones
 };
 
 }  // namespace fantascope::show

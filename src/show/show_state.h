@@ -58,6 +58,7 @@ struct Look {
 struct ShowState : Look {
     std::vector<Wind> winds;           // one for each of Site::outputs
     std::vector<PictureShift> shifts;  // one for each of Site::outputs
+    bool corrects = true;              // corrections are allowed
     Time time{};                       // show time
     int cue = -1;                      // index into Show::cues of the current cue; -1 before the first
     bool blackout = false;             // pictures and fixtures are held dark

@@ -73,7 +73,6 @@ float medianOf(std::vector<float>& values) {
 // One level's comparison under a map: details of both pictures, and the weight of every pixel.
 class Comparison {
 public:
-    // `seen`: the level's details are made once for all maps, except near the mask's edge.
     Comparison(const Level& level, const Homography& map) : size_(level.seen.size()) {
         cv::Mat x(size_, CV_32F), y(size_, CV_32F), inside(size_, CV_32F);
         for (int row = 0; row < size_.height; ++row) {

@@ -39,6 +39,12 @@ PictureShift shiftAt(const Playback& playback, std::size_t output, Time time) {
     return state.shifts[output];
 }
 
+bool allowedAt(const Playback& playback, Time time) {
+    ShowState state;
+    playback.stateAt(time, state);
+    return state.corrects;
+}
+
 TEST(Corrections, move_a_picture_at_the_speed_of_its_fastest_corner) {
     Playback playback = twoOutputs();
     PictureShift shift = all(0, 0);
@@ -92,8 +98,12 @@ TEST(Corrections, are_taken_back_by_one_press_and_allowed_by_the_next) {
     EXPECT_EQ(shiftAt(playback, 0, 12s), all(0, 0));
     EXPECT_EQ(shiftAt(playback, 1, 12s), all(0, 0));
     EXPECT_EQ(playback.apply(correct(20s, 0, all(8, 0))), Outcome::CorrectionsOff);
+    EXPECT_TRUE(allowedAt(playback, 9s));
+    EXPECT_FALSE(allowedAt(playback, 10s));
     EXPECT_EQ(playback.apply({.at = 30s, .kind = Input::Kind::Corrections}), Outcome::Taken);
     EXPECT_EQ(playback.apply(correct(40s, 0, all(8, 0))), Outcome::Taken);
+    EXPECT_FALSE(allowedAt(playback, 29s));
+    EXPECT_TRUE(allowedAt(playback, 30s));
     EXPECT_EQ(shiftAt(playback, 0, 1min), all(8, 0));
 }
 

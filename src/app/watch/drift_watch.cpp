@@ -87,11 +87,9 @@ void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, boo
         light_.exposed(frame.exposed, (frame.exposed - exposed_) / pictures);
     exposed_ = frame.exposed;
     sequence_ = frame.sequence;
-    if (std::exchange(wasSettingUp_, isSettingUp) || isSettingUp) {
-        for (vision::DriftTrack& track : tracks_) track.forget();
-        std::ranges::fill(settled_, std::nullopt);
-        return;
-    }
+    const bool wasSettingUp = std::exchange(wasSettingUp_, isSettingUp);
+    if (isSettingUp && !wasSettingUp) endShifts(shown, showClock_.showTime(now));
+    if (isSettingUp || wasSettingUp) return beginAgain();
     if (looked_ != Time::min() && frame.exposed - looked_ < kLeastStep) return;
     std::vector<const GreyImage*> lights;
     for (std::size_t i = 0; i < tracks_.size(); ++i) lights.push_back(wall_.watches(i) ? light_.at(i, frame.exposed) : nullptr);
@@ -99,8 +97,23 @@ void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, boo
     looked_ = frame.exposed;
     const auto sights = wall_.look(frame.image, lights);
     for (std::size_t i = 0; i < tracks_.size(); ++i) tracks_[i].add(frame.exposed, sights[i]);
+    // Corrections that were taken back come again once they are allowed again.
+    if (shown.corrects && !std::exchange(corrects_, shown.corrects) && !cameraMoved_)
+        for (std::size_t i = 0; i < tracks_.size(); ++i)
+            if (settled_[i]) correct(i, *settled_[i], showClock_.showTime(now));
+    corrects_ = shown.corrects;
     decide(showClock_.showTime(now));
     note(shown, showClock_.showTime(frame.exposed));
+}
+
+// A technician decides where the pictures stand: shifts end, and nothing that was seen counts.
+void DriftWatch::endShifts(const show::ShowState& shown, Time showTime) {
+    for (std::size_t i = 0; i < shown.shifts.size(); ++i)
+        if (show::farthestOf(shown.shifts[i]) > 0) correct(i, Homography(), showTime);
+}
+void DriftWatch::beginAgain() {
+    for (vision::DriftTrack& track : tracks_) track.forget();
+    std::ranges::fill(settled_, std::nullopt);
 }
 
 void DriftWatch::decide(Time showTime) {
@@ -136,19 +149,19 @@ void DriftWatch::decide(Time showTime) {
                 causes_.push_back({site_.outputs[i].name, movedSince_, {}, "out of place"});
             }
         }
-        correct(i, *tracks_[i].now(), showTime);
+        correct(i, tracks_[i].now()->moved, showTime);
     }
 }
 
-void DriftWatch::correct(std::size_t output, const Drift& drift, Time showTime) {
-    if (site_.corrections.geometry.mode != show::Corrections::Mode::Automatic) return;
+void DriftWatch::correct(std::size_t output, const Homography& moved, Time showTime) {
+    if (site_.corrections.geometry.mode != show::Corrections::Mode::Automatic || !corrects_) return;
     const glm::ivec2 size = site_.outputs[output].size();
     const auto corners = rectangleCorners(size.x, size.y);
     show::Input input{.at = showTime,
                       .kind = show::Input::Kind::Correct,
                       .source = show::Input::Source::Camera,
                       .which = static_cast<int>(output)};
-    for (std::size_t i = 0; i < corners.size(); ++i) input.shift[i] = glm::vec2(drift.moved(corners[i]) - corners[i]);
+    for (std::size_t i = 0; i < corners.size(); ++i) input.shift[i] = glm::vec2(moved(corners[i]) - corners[i]);
     inputs_.submit(input);
 }
 

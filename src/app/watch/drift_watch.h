@@ -65,8 +65,10 @@ public:
     const std::vector<CauseReport>& causes() const { return causes_; }
 
 private:
+    void endShifts(const show::ShowState& shown, Time showTime);
+    void beginAgain();
     void decide(Time showTime);
-    void correct(std::size_t output, const vision::Drift& drift, Time showTime);
+    void correct(std::size_t output, const Homography& moved, Time showTime);
     void note(const show::ShowState& shown, Time showTime);
 
     const show::Site& site_;
@@ -82,7 +84,7 @@ private:
     std::vector<Time> settledAt_;                     // show time
     vision::Moved moved_ = vision::Moved::Nothing;    // what seems to have moved
     Time movedSince_{};                               // show time
-    bool cameraMoved_ = false, wasSettingUp_ = false;
+    bool cameraMoved_ = false, wasSettingUp_ = false, corrects_ = true;
     std::map<std::string, std::vector<DriftReport>> series_;
     Time noted_ = Time::min();
     std::vector<CauseReport> causes_;
