@@ -7,14 +7,14 @@
 namespace fantascope::vision {
 namespace {
 
-constexpr Time kWindow = std::chrono::seconds(1);
-constexpr std::size_t kLeastSights = 5;
+constexpr Time kWindow = std::chrono::milliseconds(1200);
+constexpr std::size_t kLeastSights = 4;
 constexpr double kGoodSight = 0.5;        // agreement x share of the content
 constexpr double kSharpSight = 2;         // standard deviation, pixels
-constexpr int kLearning = 20;             // estimates of the reference, before which nothing is said
+constexpr int kLearning = 10;             // estimates of the reference, before which nothing is said
 constexpr double kUnknownSurface = 0.25;  // pixels: what a surface that was not measured may pretend
 constexpr double kErrorOfComparison = 1;  // pixels
-constexpr int kReferences = 200;          // estimates: twenty seconds
+constexpr int kReferences = 100;          // estimates: twenty seconds
 constexpr double kMostSpread = 3;         // of the sights about their median, pixels: more is no agreement
 
 double medianOf(std::vector<double> values) {

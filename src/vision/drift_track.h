@@ -25,7 +25,8 @@ struct Drift {
 };
 
 // Follows an output's picture through many sights. A single sight may be wrong, for example because
-// somebody stands in the picture, so the median of the last second counts. Thread: thread-bound.
+// somebody stands in the picture, so the median of the last 1.2 seconds counts. Thread:
+// thread-bound.
 class DriftTrack {
 public:
     // `isSurveyed`: sights tell the movement since the calibration, to about a pixel. Otherwise
@@ -38,7 +39,7 @@ public:
     void add(Time at, const std::optional<OutputSight>& sight);
     // The drift since the picture stood where `moved` says.
     Drift since(const Drift& drift, const Homography& moved) const;
-    // Nothing: too few good sights in the last second, or they do not agree.
+    // Nothing: too few good sights of late, or they do not agree.
     const std::optional<Drift>& now() const { return now_; }
     // Begins again: where the picture is next counts as where it belongs.
     void forget();
@@ -57,7 +58,7 @@ private:
 
     glm::dvec2 low_, high_;
     bool isSurveyed_;
-    std::deque<Place> places_;               // of the last second
+    std::deque<Place> places_;               // of the last 1.2 seconds
     std::array<glm::dvec2, 4> reference_{};  // where the places of the rectangle's corners were lit
     double weights_ = 0;
     int references_ = 0;  // how many estimates are averaged in it

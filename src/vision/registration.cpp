@@ -18,8 +18,10 @@ constexpr int kCoarsest = 24;           // least number of pixels across and dow
 constexpr int kNeighbourhood = 13;      // side of a pixel's neighbourhood, pixels of the level
 constexpr double kFarthest = 0.1;       // of the wide search, in picture widths
 constexpr double kBiweight = 4.685;     // 95 % efficient for Gaussian residuals
+constexpr int kNearSteps = 2;           // a picture that is followed moves little from one sight to the next
 constexpr double kStill = 0.005;        // pixels: a smaller step ends the iteration
 constexpr double kCorrelated = 2;       // so many neighbouring residuals are as good as one, because pictures are blurred
+constexpr double kFlatPixel = 0.1;      // slope, in rms of the expected picture
 constexpr double kContent = 0.3;        // a pixel has content if it differs so much, in rms of the expected picture
 constexpr double kLeastContent = 1e-4;  // rms of the expected picture, below which there is nothing to register
 
@@ -101,13 +103,15 @@ public:
     void equations(int count, Normal& normal, Step& right) const {
         normal.setZero();
         right.setZero();
-        const double half = size_.width / 2.0;
+        const double half = size_.width / 2.0,
+                     flat = kFlatPixel * gain_ * content_;  // such pixels are many, and say next to nothing
         for (int row = 1; row + 1 < size_.height; ++row) {
             const auto *up = expected_.ptr<float>(row - 1), *here = expected_.ptr<float>(row),
                        *down = expected_.ptr<float>(row + 1), *seen = seen_.ptr<float>(row), *weight = weight_.ptr<float>(row);
             for (int column = 1; column + 1 < size_.width; ++column) {
                 if (weight[column] <= 0) continue;
                 const double gx = gain_ * (here[column + 1] - here[column - 1]) / 2, gy = gain_ * (down[column] - up[column]) / 2;
+                if (std::abs(gx) + std::abs(gy) < flat) continue;
                 const double u = (column + 0.5 - half) / half, v = (row + 0.5 - size_.height / 2.0) / half;
                 Step slope;
                 slope << gx, gy, gx * u + gy * v, gy * u - gx * v, gx * u - gy * v, gx * v + gy * u, (gx * u + gy * v) * u,
@@ -138,7 +142,7 @@ private:
     void weigh() {
         content_ = std::sqrt(cv::mean(expected_.mul(expected_))[0]);
         weight_ = mask_.clone();
-        for (int turn = 0; turn < 3; ++turn) {
+        for (int turn = 0; turn < 2; ++turn) {
             const double power = weight_.dot(expected_.mul(expected_));
             gain_ = power > 0 ? weight_.dot(seen_.mul(expected_)) / power : 0;
             reweigh();
@@ -304,7 +308,8 @@ std::optional<Registration> registerPictures(const GreyImage& seen, const GreyIm
         const double perPixel = static_cast<double>(sizeOf(level).width) / seen.width();
         if (range == SearchRange::Wide && level == coarsest) map = refined(now, shifted(now, map), kShift, 5, perPixel);
         if (level > 1) map = refined(now, map, kSimilarity, 6, perPixel);
-        if (level <= 1) map = refined(now, map, kProjective, level == 0 ? 6 : 10, perPixel);
+        if (level <= 1)
+            map = refined(now, map, kProjective, level > 0 ? 10 : range == SearchRange::Wide ? 6 : kNearSteps, perPixel);
         if (level > 0)
             map = scaled(map, static_cast<double>(sizeOf(level - 1).width) / sizeOf(level).width,
                          static_cast<double>(sizeOf(level - 1).height) / sizeOf(level).height);

@@ -71,7 +71,7 @@ struct WallWatch::Output {
 // Follows the picture. A picture that is not found near its last place is searched for more widely,
 // but not with every camera picture, since that takes longer.
 std::optional<Registration> WallWatch::Output::find(const GreyImage& seen, const GreyImage& light, const GreyImage& mask) {
-    constexpr int kWideEvery = 5;
+    constexpr int kWideEvery = 3;
     std::optional<Registration> found = registerPictures(seen, light, mask, now, SearchRange::Near);
     if (++sinceWide >= kWideEvery && scoreOf(found) < std::max(kGood, kLost * score)) {
         sinceWide = 0;

@@ -111,7 +111,7 @@ TEST(WallWatch, finds_how_far_a_projector_has_moved) {
         now.projector = bumped(wall.projector, {degrees * 0.5, degrees, degrees * 0.7}, {0.02 * degrees, 0, 0.03 * degrees});
         Rng rng(3);
         std::optional<OutputSight> sight;
-        for (std::uint64_t picture = 0; picture < 3; ++picture)
+        for (std::uint64_t picture = 0; picture < 6; ++picture)
             sight = lookAt(watch, now, leaves(wall.projector.size, 160, 7 + picture), rng);
         ASSERT_TRUE(sight) << degrees;
         const double error = errorOf(sight->shownFromPlace, wall, now);

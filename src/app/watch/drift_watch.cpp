@@ -14,12 +14,12 @@ namespace {
 using vision::Drift;
 using vision::Moved;
 
-constexpr Time kLeastStep = std::chrono::milliseconds(90);  // between pictures that are looked at
-constexpr Time kSure = std::chrono::milliseconds(700);      // a movement must be seen for so long
-constexpr Time kRefines = std::chrono::seconds(4);          // after a correction, small ones may follow
-constexpr double kRefinement = 0.25;                        // pixels: a smaller one is not worth it
-constexpr double kInPlace = 0.6;                            // pixels: nobody sees less
-constexpr double kSlowestCamera = 2;                        // seconds between pictures, from which on nothing is predicted
+constexpr Time kLeastStep = std::chrono::milliseconds(190);  // between pictures that are looked at
+constexpr Time kSure = std::chrono::milliseconds(700);       // a movement must be seen for so long
+constexpr Time kRefines = std::chrono::seconds(4);           // after a correction, small ones may follow
+constexpr double kRefinement = 0.25;                         // pixels: a smaller one is not worth it
+constexpr double kInPlace = 0.6;                             // pixels: nobody sees less
+constexpr double kSlowestCamera = 2;                         // seconds between pictures, from which on nothing is predicted
 
 // The rectangle of a projector's pixels that its picture is in.
 std::pair<glm::dvec2, glm::dvec2> litBy(const Projection& projection) {

@@ -6,10 +6,10 @@
 namespace fantascope::app {
 namespace {
 
-constexpr std::size_t kKept = 24;                           // frames: more than a camera's latency lets wait
-constexpr Time kLeastStep = std::chrono::milliseconds(95);  // between the pictures that are looked at
-constexpr Time kAhead = std::chrono::milliseconds(80);      // a frame is drawn so long before it is visible
-constexpr double kTolerance = 0.5;                          // of a refresh period, for the inaccuracy of both moments
+constexpr std::size_t kKept = 24;                            // frames: more than a camera's latency lets wait
+constexpr Time kLeastStep = std::chrono::milliseconds(195);  // between the pictures that are looked at
+constexpr Time kAhead = std::chrono::milliseconds(80);       // a frame is drawn so long before it is visible
+constexpr double kTolerance = 0.5;                           // of a refresh period, for the inaccuracy of both moments
 
 Time periodOf(double rate) { return fromSeconds(1 / rate); }
 
