@@ -83,14 +83,14 @@ void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, boo
     const glm::ivec2 size = site_.nominalCamera->size;
     if (frame.image.width() != size.x || frame.image.height() != size.y) return;
     const auto pictures = static_cast<Time::rep>(frame.sequence - sequence_);
-    if (exposed_ != Time::min() && pictures > 0 && seconds(frame.exposed - exposed_) < kSlowestCamera)
-        light_.exposed(frame.exposed, (frame.exposed - exposed_) / pictures);
+    if (exposed_ && pictures > 0 && seconds(frame.exposed - *exposed_) < kSlowestCamera)
+        light_.exposed(frame.exposed, (frame.exposed - *exposed_) / pictures);
     exposed_ = frame.exposed;
     sequence_ = frame.sequence;
     const bool wasSettingUp = std::exchange(wasSettingUp_, isSettingUp);
     if (isSettingUp && !wasSettingUp) endShifts(shown, showClock_.showTime(now));
     if (isSettingUp || wasSettingUp) return beginAgain();
-    if (looked_ != Time::min() && frame.exposed - looked_ < kLeastStep) return;
+    if (looked_ && frame.exposed - *looked_ < kLeastStep) return;
     std::vector<const GreyImage*> lights;
     for (std::size_t i = 0; i < tracks_.size(); ++i) lights.push_back(wall_.watches(i) ? light_.at(i, frame.exposed) : nullptr);
     if (std::ranges::all_of(lights, [](const GreyImage* light) { return light == nullptr; })) return;
@@ -166,7 +166,7 @@ void DriftWatch::correct(std::size_t output, const Homography& moved, Time showT
 }
 
 void DriftWatch::note(const show::ShowState& shown, Time showTime) {
-    if (showTime - noted_ < std::chrono::seconds(1) && noted_ != Time::min()) return;
+    if (noted_ && showTime - *noted_ < std::chrono::seconds(1)) return;
     noted_ = showTime;
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
         if (!tracks_[i].now()) continue;

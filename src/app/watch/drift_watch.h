@@ -77,7 +77,7 @@ private:
     const show::ShowClock showClock_;
     vision::WallWatch wall_;
     ShownLight light_;
-    Time exposed_ = Time::min(), looked_ = Time::min();
+    std::optional<Time> exposed_, looked_;  // the exposure of the newest picture, and of the one that was looked at last
     std::uint64_t sequence_ = 0;
     std::vector<vision::DriftTrack> tracks_;
     std::vector<std::optional<Homography>> settled_;  // by output: where the picture stood when all was right
@@ -86,7 +86,7 @@ private:
     Time movedSince_{};                               // show time
     bool cameraMoved_ = false, wasSettingUp_ = false, corrects_ = true;
     std::map<std::string, std::vector<DriftReport>> series_;
-    Time noted_ = Time::min();
+    std::optional<Time> noted_;  // show time of the newest entries of `series_`
     std::vector<CauseReport> causes_;
     std::vector<std::optional<std::size_t>> misplaced_;  // by output: its open entry of `causes_`
 };
