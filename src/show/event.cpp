@@ -42,6 +42,10 @@ struct Teller {
     std::string operator()(const event::CameraMoved&) const {
         return "the camera has moved: nothing is corrected any more; calibrate again after the show";
     }
+    std::string operator()(const event::MovementUnclear&) const {
+        return "a projector or the camera has moved; the camera's view does not tell which, so nothing is corrected: look at "
+               "both";
+    }
     std::string operator()(const event::LightCorrected& light) const {
         if (!light.trouble.empty()) return fmt::format("the light of '{}' is not evened out: {}", light.canvas, light.trouble);
         const std::string figures =

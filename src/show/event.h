@@ -64,6 +64,8 @@ struct PictureMoved {
 };
 // The camera sees that it has moved itself.
 struct CameraMoved {};
+// The camera sees a movement, but not whether it or a projector has moved.
+struct MovementUnclear {};
 // What the light correction does with a canvas, or would do.
 struct LightCorrected {
     std::string canvas;
@@ -84,8 +86,8 @@ struct SiteNotSaved {
 };
 
 using What = std::variant<InputDecided, CueEntered, BlackoutChanged, ScheduleEnded, QuitAsked, FaultBegan, FaultEnded,
-                          SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, SettingUpBegan,
-                          SettingUpEnded, SiteSaved, SiteNotSaved>;
+                          SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear,
+                          SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

@@ -8,6 +8,21 @@
 
 namespace fantascope::show {
 
+std::optional<Homography> mapOf(const PictureShift& shift, glm::ivec2 size) {
+    const auto corners = rectangleCorners(size.x, size.y);
+    auto moved = corners;
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += glm::dvec2(shift[i]);
+    const auto map = Homography::fromCorners(corners, moved);
+    return map ? std::optional(*map) : std::nullopt;
+}
+
+PictureShift shiftOf(const Homography& map, glm::ivec2 size) {
+    const auto corners = rectangleCorners(size.x, size.y);
+    PictureShift shift;
+    for (std::size_t i = 0; i < shift.size(); ++i) shift[i] = glm::vec2(map(corners[i]) - corners[i]);
+    return shift;
+}
+
 float farthestOf(const PictureShift& shift) {
     float farthest = 0;
     for (const glm::vec2 corner : shift) farthest = std::max(farthest, glm::length(corner));

@@ -1,11 +1,13 @@
 #pragma once
 
 #include "core/clock.h"
+#include "core/geometry.h"
 
 #include <glm/vec2.hpp>
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace fantascope::show {
@@ -15,6 +17,11 @@ namespace fantascope::show {
 // left. All zero: as the site file says.
 using PictureShift = std::array<glm::vec2, 4>;
 
+// The map of the pixels of a projector with `size` pixels that a shift makes; nothing: it would
+// fold the picture.
+std::optional<Homography> mapOf(const PictureShift& shift, glm::ivec2 size);
+// The shift that makes a map.
+PictureShift shiftOf(const Homography& map, glm::ivec2 size);
 // How far the corner that moves farthest does, pixels.
 float farthestOf(const PictureShift& shift);
 

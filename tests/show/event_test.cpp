@@ -47,6 +47,9 @@ TEST(Events, say_one_sentence_each) {
     EXPECT_EQ(said(event::SendersChanged{1, {"", "FOH"}}), "universe 1 is now sent by the show and 'FOH'");
     EXPECT_EQ(said(event::PictureTaken{"pictures/a.png"}), "picture: pictures/a.png");
     EXPECT_EQ(said(event::PictureMissed{"'left' shows nothing"}), "no picture: 'left' shows nothing");
+    EXPECT_EQ(said(event::PictureMoved{"left", 20.96}), "the picture of 'left' has moved by 21.0 px on the wall");
+    EXPECT_THAT(said(event::CameraMoved{}), testing::HasSubstr("calibrate again"));
+    EXPECT_THAT(said(event::MovementUnclear{}), testing::HasSubstr("look at both"));
     EXPECT_EQ(said(event::LightCorrected{"wall", 0.46, 0.081, 0.02, true, ""}),
               "the light of 'wall' is evened out: 46 % of its light is left; 8 % of its places stay darker and 2 % brighter than "
               "the others");

@@ -107,6 +107,16 @@ TEST(Corrections, are_taken_back_by_one_press_and_allowed_by_the_next) {
     EXPECT_EQ(shiftAt(playback, 0, 1min), all(8, 0));
 }
 
+TEST(Corrections, are_maps_of_the_projectors_pixels) {
+    const PictureShift shift = {glm::vec2(3, -2), {-4, 1}, {2, 5}, {-1, -6}};
+    const auto map = mapOf(shift, {640, 360});
+    ASSERT_TRUE(map);
+    EXPECT_LT(glm::distance((*map)({640, 0}), glm::dvec2(636, 1)), 1e-9);
+    const PictureShift again = shiftOf(*map, {640, 360});
+    for (std::size_t i = 0; i < shift.size(); ++i) EXPECT_LT(glm::distance(again[i], shift[i]), 1e-4f) << i;
+    EXPECT_FALSE(mapOf({glm::vec2(700, 400), {}, {}, {}}, {640, 360})) << "it would fold the picture";
+}
+
 TEST(Corrections, are_lines_of_a_journal) {
     Input input = correct(12500ms, 1, all(1.5f, -0.1f));
     input.shift[3] = {1e-7f, 1234.5678f};

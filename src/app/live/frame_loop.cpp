@@ -14,15 +14,11 @@
 namespace fantascope::app {
 namespace {
 
-// The map of a projector's pixels that a shift makes; nothing: none, or one that would fold the
-// picture.
-std::optional<Homography> mapOf(const show::PictureShift& shift, const Projection& projection) {
+// The movement of a picture by a shift; nothing: it does not move, or it would fold.
+std::optional<Homography> movementOf(const show::PictureShift& shift, const Projection& projection) {
     if (shift == show::PictureShift{}) return std::nullopt;
-    const auto corners = rectangleCorners(projection.size.x, projection.size.y);
-    auto moved = corners;
-    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += glm::dvec2(shift[i]);
-    const auto map = Homography::fromCorners(corners, moved);
-    return map && Warp::of(projection.warp.shape().moved(*map)) ? std::optional(*map) : std::nullopt;
+    const auto map = show::mapOf(shift, projection.size);
+    return map && Warp::of(projection.warp.shape().moved(*map)) ? map : std::nullopt;
 }
 
 }  // namespace
@@ -251,7 +247,7 @@ void FrameLoop::followSettings(Output& output, const show::PictureShift& shift) 
     output.shift = now;
     if (asMade) return;
     OutputSettings wanted = set ? *set : OutputSettings{output.site.projection, output.blend, nullptr, nullptr};
-    const std::optional<Homography> moved = mapOf(now, wanted.projection);
+    const std::optional<Homography> moved = movementOf(now, wanted.projection);
     if (moved) wanted.projection.warp = *Warp::of(wanted.projection.warp.shape().moved(*moved));
     const auto followed = [&]() -> Result<void> {
         // Only a renderer that was made for a mesh draws a mesh exactly.

@@ -31,24 +31,16 @@ std::pair<glm::dvec2, glm::dvec2> litBy(const Projection& projection) {
     return {glm::max(low, glm::dvec2(0)), glm::min(high, glm::dvec2(projection.size))};
 }
 
-Homography mapOf(const show::PictureShift& shift, const Projection& projection) {
-    const auto corners = rectangleCorners(projection.size.x, projection.size.y);
-    auto moved = corners;
-    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += glm::dvec2(shift[i]);
-    const auto map = Homography::fromCorners(corners, moved);
-    return map ? *map : Homography();
-}
-
 double rmsOf(const show::PictureShift& shift, const Projection& projection) {
     const auto [low, high] = litBy(projection);
-    return vision::rmsMovement(mapOf(shift, projection), low, high);
+    return vision::rmsMovement(show::mapOf(shift, projection.size).value_or(Homography()), low, high);
 }
 
 // How far a shifted picture is from its place.
 double missOf(const Drift& drift, const show::PictureShift& shift, const Projection& projection) {
-    const auto map = mapOf(shift, projection);
+    const Homography shown = show::mapOf(shift, projection.size).value_or(Homography());
     const auto [low, high] = litBy(projection);
-    return vision::rmsMovement(map.inverse() * drift.moved, low, high);
+    return vision::rmsMovement(shown.inverse() * drift.moved, low, high);
 }
 
 std::vector<ShownLight::Output> watchedOf(const show::Site& site, const vision::WallWatch& wall,
@@ -128,6 +120,9 @@ void DriftWatch::decide(Time showTime) {
     if (moved != moved_) movedSince_ = showTime;
     moved_ = moved;
     const bool isLasting = showTime - movedSince_ >= kSure;
+    if (moved != Moved::Unclear) isUnclear_ = false;
+    if (moved == Moved::Unclear && isLasting && !std::exchange(isUnclear_, true))
+        events_.append({showTime, show::event::MovementUnclear{}});
     if (moved == Moved::Camera && isLasting) {
         cameraMoved_ = true;
         events_.append({showTime, show::event::CameraMoved{}});
@@ -155,14 +150,11 @@ void DriftWatch::decide(Time showTime) {
 
 void DriftWatch::correct(std::size_t output, const Homography& moved, Time showTime) {
     if (site_.corrections.geometry.mode != show::Corrections::Mode::Automatic || !corrects_) return;
-    const glm::ivec2 size = site_.outputs[output].size();
-    const auto corners = rectangleCorners(size.x, size.y);
-    show::Input input{.at = showTime,
-                      .kind = show::Input::Kind::Correct,
-                      .source = show::Input::Source::Camera,
-                      .which = static_cast<int>(output)};
-    for (std::size_t i = 0; i < corners.size(); ++i) input.shift[i] = glm::vec2(moved(corners[i]) - corners[i]);
-    inputs_.submit(input);
+    inputs_.submit({.at = showTime,
+                    .kind = show::Input::Kind::Correct,
+                    .source = show::Input::Source::Camera,
+                    .which = static_cast<int>(output),
+                    .shift = show::shiftOf(moved, site_.outputs[output].size())});
 }
 
 void DriftWatch::note(const show::ShowState& shown, Time showTime) {

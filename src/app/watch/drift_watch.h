@@ -84,6 +84,7 @@ private:
     std::vector<Time> settledAt_;                     // show time
     vision::Moved moved_ = vision::Moved::Nothing;    // what seems to have moved
     Time movedSince_{};                               // show time
+    bool isUnclear_ = false;                          // and the operator knows that it cannot be told
     bool cameraMoved_ = false, wasSettingUp_ = false, corrects_ = true;
     std::map<std::string, std::vector<DriftReport>> series_;
     std::optional<Time> noted_;  // show time of the newest entries of `series_`
