@@ -159,6 +159,37 @@ TEST(WallWatch, is_not_deceived_by_people_and_smooth_light) {
     EXPECT_LT(errorOf(sight->shownFromPlace, wall, now), 0.5);
 }
 
+// Example failure: the neighbour's light counts as part of the picture, or is subtracted where it
+// was before.
+TEST(WallWatch, sees_each_of_two_pictures_that_overlap) {
+    std::array<ProjectedWall, 2> plan{brickWall(), brickWall()};
+    for (ProjectedWall& wall : plan) wall.strength = 0.4;
+    plan[1].projector = bumped(plan[1].projector, {0, 3, 0});
+    plan[1].ambient = 0;
+    WallWatch watch({watchedOn(plan[0]), watchedOn(plan[1])}, plan[0].camera.size);
+    std::array<ProjectedWall, 2> now = plan;
+    now[0].projector = bumped(plan[0].projector, {0.1, 0.3, 0.2});
+    now[1].projector = bumped(plan[1].projector, {-0.2, 0.2, -0.3});
+    Rng rng(11);
+    std::vector<std::optional<OutputSight>> sights;
+    for (std::uint64_t picture = 0; picture < 6; ++picture) {
+        GreyImage seen;
+        std::array<GreyImage, 2> light;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const RgbaImage shown = leaves(plan[i].projector.size, 120, 100 + 10 * i + picture);
+            const GreyImage alone = now[i].seen(shown, rng);
+            light[i] = watch.lightOf(i, shown);
+            if (seen.empty()) seen = GreyImage(alone.width(), alone.height());
+            for (std::size_t p = 0; p < seen.pixels().size(); ++p) seen.pixels()[p] += alone.pixels()[p];
+        }
+        sights = watch.look(storedOf(seen), {&light[0], &light[1]});
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+        ASSERT_TRUE(sights[i]) << i;
+        EXPECT_LT(errorOf(sights[i]->shownFromPlace, plan[i], now[i]), 0.5) << i;
+    }
+}
+
 TEST(WallWatch, says_nothing_of_a_picture_without_content) {
     ProjectedWall wall = brickWall();
     WallWatch watch({watchedOn(wall)}, wall.camera.size);
