@@ -13,6 +13,10 @@ std::string durationText(Time time) {
     return fmt::format("{} min {:02} s", tenths / 600, tenths % 600 / 10);
 }
 
+std::string causeOf(const auto& cause) {
+    return cause.output.empty() ? cause.cause : fmt::format("{}: {}", cause.output, cause.cause);
+}
+
 struct Teller {
     std::string operator()(const event::InputDecided& decided) const {
         return decided.input.outcome == Outcome::Taken ? "" : std::string(nameOf(decided.input.outcome));
@@ -46,6 +50,8 @@ struct Teller {
         return "a projector or the camera has moved; the camera's view does not tell which, so nothing is corrected: look at "
                "both";
     }
+    std::string operator()(const event::CauseBegan& began) const { return causeOf(began) + ": " + began.advice; }
+    std::string operator()(const event::CauseEnded& ended) const { return causeOf(ended) + ": over"; }
     std::string operator()(const event::LightCorrected& light) const {
         if (!light.trouble.empty()) return fmt::format("the light of '{}' is not evened out: {}", light.canvas, light.trouble);
         const std::string figures =

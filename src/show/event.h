@@ -66,6 +66,15 @@ struct PictureMoved {
 struct CameraMoved {};
 // The camera sees a movement, but not whether it or a projector has moved.
 struct MovementUnclear {};
+// The camera sees why the wall is not as it should be, or why it cannot tell.
+struct CauseBegan {
+    std::string output;  // empty: all of them
+    std::string cause;   // as in the report
+    std::string advice;  // what is seen, and what to do
+};
+struct CauseEnded {
+    std::string output, cause;
+};
 // What the light correction does with a canvas, or would do.
 struct LightCorrected {
     std::string canvas;
@@ -87,7 +96,7 @@ struct SiteNotSaved {
 
 using What = std::variant<InputDecided, CueEntered, BlackoutChanged, ScheduleEnded, QuitAsked, FaultBegan, FaultEnded,
                           SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear,
-                          SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+                          CauseBegan, CauseEnded, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

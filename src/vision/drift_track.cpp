@@ -1,5 +1,7 @@
 #include "vision/drift_track.h"
 
+#include "core/median.h"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -16,12 +18,6 @@ constexpr double kUnknownSurface = 0.25;  // pixels: what a surface that was not
 constexpr double kErrorOfComparison = 1;  // pixels
 constexpr int kReferences = 100;          // estimates: twenty seconds
 constexpr double kMostSpread = 3;         // of the sights about their median, pixels: more is no agreement
-
-double medianOf(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 std::array<glm::dvec2, 4> cornersOf(const std::array<double, 8>& flat) {
     return {glm::dvec2(flat[0], flat[1]), glm::dvec2(flat[2], flat[3]), glm::dvec2(flat[4], flat[5]),

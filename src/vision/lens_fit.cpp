@@ -1,6 +1,7 @@
 #include "vision/lens_fit.h"
 
 #include "core/geometry.h"
+#include "core/median.h"
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
@@ -112,12 +113,6 @@ void measure(std::vector<Points>& all, const Solution& solution) {
         }
         points.rms = std::sqrt(sum / static_cast<double>(drawn.size()));
     }
-}
-
-double medianOf(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
 }
 
 // Leaves out the views and the corners that lie far off. False: there are none.

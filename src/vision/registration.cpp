@@ -1,6 +1,7 @@
 #include "vision/registration.h"
 
 #include "core/check.h"
+#include "core/median.h"
 
 #include <Eigen/Dense>
 #include <glm/common.hpp>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace fantascope::vision {
@@ -64,12 +66,6 @@ cv::Mat detailOf(const cv::Mat& image, const cv::Mat& mask) {
     cv::divide(sum, weight, sum);
     cv::Mat detail = image - sum.mul(mask);
     return detail;
-}
-
-float medianOf(std::vector<float>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 // One level's comparison under a map: details of both pictures, and the weight of every pixel.
@@ -169,7 +165,7 @@ private:
             return;
         }
         const double withContent = static_cast<double>(spread.size());
-        const auto cut = static_cast<float>(kBiweight * 1.4826 * std::max(medianOf(spread), 1e-6f));
+        const auto cut = static_cast<float>(kBiweight * 1.4826 * std::max(medianOf(std::move(spread)), 1e-6f));
         for (int row = 0; row < size_.height; ++row)
             for (int column = 0; column < size_.width; ++column) {
                 const float share = residual.at<float>(row, column) / cut, left = std::max(0.0f, 1 - share * share);

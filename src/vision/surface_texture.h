@@ -15,6 +15,8 @@ public:
     // `full`: by cell, as measured, or the projector's own fall-off; 0: the camera does not see it.
     SurfaceTexture(const GreyImage& full, bool isMeasured);
 
+    // By cell: the light at full light, as far as it is known; 0: the camera does not see it.
+    const GreyImage& full() const { return filled_; }
     // What is seen of each cell as a share of its full light.
     GreyImage shareOf(const GreyImage& seen) const;
     // How much brighter the surface is, as a mean, than `full` says.

@@ -13,12 +13,13 @@
 namespace fantascope::vision {
 namespace {
 
-constexpr int kWidth = 640;       // camera pixels across that are enough
-constexpr float kSaturated = 1;   // linear light that says nothing
-constexpr double kGood = 0.5;     // agreement x share of the content: a picture that is found
-constexpr double kLost = 0.7;     // of the usual agreement: the picture may have moved far
-constexpr double kSettled = 0.3;  // cells: a picture that has moved by less has not moved
-constexpr double kForgets = 0.1;  // weight of a new picture in what is usual
+constexpr int kWidth = 640;             // camera pixels across that are enough
+constexpr float kSaturated = 1;         // linear light that says nothing
+constexpr double kGood = 0.5;           // agreement x share of the content: a picture that is found
+constexpr double kLost = 0.7;           // of the usual agreement: the picture may have moved far
+constexpr double kSettled = 0.3;        // cells: a picture that has moved by less has not moved
+constexpr double kErrorOfModel = 0.09;  // cells: what is wrong in the prediction may pretend so much
+constexpr double kForgets = 0.1;        // weight of a new picture in what is usual
 
 // Bilinear between the middles of pixels; at the edge as the edge.
 float valueAt(const GreyImage& image, glm::vec2 at) {
@@ -41,6 +42,12 @@ double scoreOf(const std::optional<Registration>& found) {
 
 }  // namespace
 
+// An output's part of a camera picture, by cells.
+struct WallWatch::Seen {
+    GreyImage light;  // that the camera gets, without all other light that is known
+    GreyImage mask;   // 1 where it is valid
+};
+
 struct WallWatch::Output {
     OutputView view;
     bool isSurveyed;
@@ -53,6 +60,13 @@ struct WallWatch::Output {
     double gain = 0;         // as usual; 0: unknown
     double score = 0;        // as usual
     int sinceWide = 99;      // pictures since the last wide search
+    LightMeter meter{};
+    GreyImage alone{};  // by cell: 1 where no other output gives light
+    int looks = 0;      // pictures in which it was found
+    // The picture that was looked at last; empty: it says nothing of this output.
+    Seen seen{};
+    GreyImage light{};
+    bool isFound = false;
 
     // What the camera gets of this output, by coarse camera pixels.
     void addTo(GreyImage& seen, const GreyImage& light) const {
@@ -66,6 +80,7 @@ struct WallWatch::Output {
     }
     std::optional<Registration> find(const GreyImage& seen, const GreyImage& light, const GreyImage& mask);
     std::optional<OutputSight> look(const GreyImage& seen, const GreyImage& light, const GreyImage& mask);
+    std::optional<OutputLight> measure();
 };
 
 // Follows the picture. A picture that is not found near its last place is searched for more widely,
@@ -86,15 +101,19 @@ std::optional<Registration> WallWatch::Output::find(const GreyImage& seen, const
 // The surface is learned where the plan says the picture is, until the picture itself is found.
 std::optional<OutputSight> WallWatch::Output::look(const GreyImage& seen, const GreyImage& light, const GreyImage& mask) {
     constexpr int kLearnsUnfound = 30;  // pictures
+    isFound = false;
     const auto found = find(surface.shareOf(seen), light, mask);
     if (!found || scoreOf(found) < kGood) {
         if (score == 0 && ++unfound <= kLearnsUnfound) surface.learn(seen, light, mask, now);
         if (!found || scoreOf(found) <= 0) return std::nullopt;
     }
     const double size = view.cellSize();
-    OutputSight sight{inPixels(found->expectedFromSeen, size), found->sigma * size, found->gain, found->agreement, found->used};
+    OutputSight sight{inPixels(found->expectedFromSeen, size), std::hypot(found->sigma, kErrorOfModel) * size, found->gain,
+                      found->agreement, found->used};
     if (scoreOf(found) < kGood) return sight;
     now = found->expectedFromSeen;
+    isFound = true;
+    ++looks;
     if (score == 0 && !isSurveyed) {
         learnedAt = now;
         surface.forget();
@@ -137,6 +156,8 @@ WallWatch::WallWatch(const std::vector<std::optional<WatchedOutput>>& outputs, g
                 output.full.at(x, y) = watched->map.light.at(x * step_ + middle, y * step_ + middle);
             }
     }
+    findAlone();
+    findSurroundings();
 }
 
 WallWatch::~WallWatch() = default;
@@ -163,42 +184,127 @@ GreyImage WallWatch::lightSeen(const RgbaImage& picture) const {
     return light;
 }
 
+WallWatch::Seen WallWatch::seenOf(std::size_t output, const GreyImage& light, const std::vector<GreyImage>& predicted) const {
+    GreyImage rest = light;  // without all other light that is known
+    for (std::size_t p = 0; p < rest.pixels().size(); ++p) {
+        if (light.pixels()[p] < 0) continue;
+        float& left = rest.pixels()[p];
+        left -= dark_.pixels()[p];
+        for (std::size_t other = 0; other < outputs_.size(); ++other)
+            if (other != output && !predicted[other].empty()) left -= predicted[other].pixels()[p];
+    }
+    const OutputView& view = outputs_[output]->view;
+    const GreyImage& full = view.full();
+    Seen seen{GreyImage(full.width(), full.height()), GreyImage(full.width(), full.height())};
+    for (int y = 0; y < full.height(); ++y)
+        for (int x = 0; x < full.width(); ++x) {
+            if (full.at(x, y) <= 0) continue;
+            const glm::vec2 at = view.camera().at(x, y) / static_cast<float>(step_);
+            const int column = std::clamp(static_cast<int>(at.x), 0, light.width() - 1),
+                      row = std::clamp(static_cast<int>(at.y), 0, light.height() - 1);
+            if (light.at(column, row) < 0) continue;
+            seen.light.at(x, y) = valueAt(rest, at);
+            seen.mask.at(x, y) = 1;
+        }
+    return seen;
+}
+
 std::vector<std::optional<OutputSight>> WallWatch::look(const RgbaImage& picture, const std::vector<const GreyImage*>& shown) {
     FANTASCOPE_CHECK(picture.width() == camera_.x && picture.height() == camera_.y, "the camera's pictures have one size");
-    const GreyImage seen = lightSeen(picture);
+    seen_ = lightSeen(picture);
+    const GreyImage& light = seen_;
     std::vector<GreyImage> predicted(outputs_.size());
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         if (!outputs_[i] || shown[i] == nullptr) continue;
-        predicted[i] = GreyImage(seen.width(), seen.height());
+        predicted[i] = GreyImage(light.width(), light.height());
         outputs_[i]->addTo(predicted[i], *shown[i]);
     }
     std::vector<std::optional<OutputSight>> sights(outputs_.size());
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
-        if (!outputs_[i] || shown[i] == nullptr) continue;
+        if (!outputs_[i]) continue;
         Output& output = *outputs_[i];
-        GreyImage rest = seen;  // without all other light that is known
-        for (std::size_t p = 0; p < rest.pixels().size(); ++p) {
-            if (seen.pixels()[p] < 0) continue;
-            float& left = rest.pixels()[p];
-            left -= dark_.pixels()[p];
-            for (std::size_t other = 0; other < outputs_.size(); ++other)
-                if (other != i && !predicted[other].empty()) left -= predicted[other].pixels()[p];
-        }
-        const GreyImage& full = output.view.full();
-        GreyImage onWall(full.width(), full.height()), mask(full.width(), full.height());
+        output.light = shown[i] != nullptr ? *shown[i] : GreyImage();
+        if (shown[i] == nullptr) continue;
+        output.seen = seenOf(i, light, predicted);
+        sights[i] = output.look(output.seen.light, output.light, output.seen.mask);
+    }
+    return sights;
+}
+
+// The cells of each output that no other output lights. An output that has few of them is measured
+// everywhere.
+void WallWatch::findAlone() {
+    constexpr float kHardly = 0.1f;
+    constexpr double kFew = 0.3;
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        if (!outputs_[i]) continue;
+        const OutputView& view = outputs_[i]->view;
+        const GreyImage& full = view.full();
+        GreyImage& alone = outputs_[i]->alone;
+        alone = GreyImage(full.width(), full.height());
+        std::size_t lit = 0, count = 0;
         for (int y = 0; y < full.height(); ++y)
             for (int x = 0; x < full.width(); ++x) {
                 if (full.at(x, y) <= 0) continue;
-                const glm::vec2 at = output.view.camera().at(x, y) / static_cast<float>(step_);
-                const int column = std::clamp(static_cast<int>(at.x), 0, seen.width() - 1),
-                          row = std::clamp(static_cast<int>(at.y), 0, seen.height() - 1);
-                if (seen.at(column, row) < 0) continue;
-                onWall.at(x, y) = valueAt(rest, at);
-                mask.at(x, y) = 1;
+                ++lit;
+                const glm::ivec2 at(view.camera().at(x, y) / static_cast<float>(step_));
+                float others = 0;
+                for (std::size_t other = 0; other < outputs_.size(); ++other)
+                    if (other != i && outputs_[other])
+                        others += outputs_[other]->full.at(std::min(at.x, outputs_[other]->full.width() - 1),
+                                                           std::min(at.y, outputs_[other]->full.height() - 1));
+                if (others > kHardly * full.at(x, y)) continue;
+                alone.at(x, y) = 1;
+                ++count;
             }
-        sights[i] = output.look(onWall, *shown[i], mask);
+        if (static_cast<double>(count) < kFew * static_cast<double>(lit)) std::ranges::fill(alone.pixels(), 1.0f);
     }
-    return sights;
+}
+
+// Where no output gives light.
+void WallWatch::findSurroundings() {
+    GreyImage mask(dark_.width(), dark_.height(), 1);
+    for (const auto& output : outputs_)
+        for (std::size_t p = 0; output && p < mask.pixels().size(); ++p)
+            if (output->full.pixels()[p] > 0) mask.pixels()[p] = 0;
+    surroundings_.emplace(mask);
+}
+
+std::optional<OutputLight> WallWatch::Output::measure() {
+    constexpr int kLearnsSurface = 50;  // pictures
+    if (light.empty() || score == 0 || (!isSurveyed && looks < kLearnsSurface)) return std::nullopt;
+    GreyImage full = surface.full();
+    for (std::size_t p = 0; p < full.pixels().size(); ++p) full.pixels()[p] *= alone.pixels()[p];
+    return meter.measure({seen.light, full, light, seen.mask, now}, isFound);
+}
+
+WallLight WallWatch::measureLight() {
+    WallLight light;
+    for (const auto& output : outputs_) light.outputs.push_back(output ? output->measure() : std::nullopt);
+    light.isSettling = surroundings_->isLearning();
+    light.surroundings = surroundings_->measure(seen_);
+    return light;
+}
+
+bool WallWatch::isUpsideDown() const {
+    GreyImage turned = seen_;
+    std::ranges::reverse(turned.pixels());
+    const std::vector<GreyImage> nothing(outputs_.size());
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        if (!outputs_[i] || outputs_[i]->light.empty() || outputs_[i]->isFound) continue;
+        const Output& output = *outputs_[i];
+        const Seen seen = seenOf(i, turned, nothing);
+        const auto found =
+            registerPictures(output.surface.shareOf(seen.light), output.light, seen.mask, output.now, SearchRange::Near);
+        if (scoreOf(found) > kGood) return true;
+    }
+    return false;
+}
+
+void WallWatch::lampsChange() {
+    surroundings_->lampsChange();
+    for (const auto& output : outputs_)
+        if (output) output->meter.lampsChange();
 }
 
 std::optional<CameraMovement> WallWatch::cameraMovement(const std::vector<const Homography*>& shownFromPlace) const {

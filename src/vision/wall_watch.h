@@ -1,8 +1,10 @@
 #pragma once
 
 #include "vision/camera_light.h"
+#include "vision/light_meter.h"
 #include "vision/output_view.h"
 #include "vision/registration.h"
+#include "vision/surroundings.h"
 
 #include "media/image.h"
 
@@ -36,6 +38,13 @@ struct OutputSight {
     double surfaceStayed = 0;
 };
 
+// What one camera picture says of the light.
+struct WallLight {
+    std::vector<std::optional<OutputLight>> outputs;  // nothing: the picture says nothing of it, or it is not known what is usual
+    std::optional<SurroundingsLight> surroundings;    // nothing: there are none, or it is not known what is usual
+    bool isSettling = false;                          // it will be known soon what is usual around the pictures
+};
+
 // A movement of the camera that explains how the pictures moved.
 struct CameraMovement {
     double px = 0;      // rms movement of what the camera sees, its pixels
@@ -61,18 +70,32 @@ public:
     // was visible when the picture was exposed; null: unknown. The result is by output; nothing:
     // the picture says nothing about this output, because it is dark, hidden or without content.
     std::vector<std::optional<OutputSight>> look(const RgbaImage& picture, const std::vector<const GreyImage*>& shown);
+    // Measures the light in the picture that was looked at last, which takes about as long as ten
+    // looks.
+    WallLight measureLight();
+    // Whether the picture that was looked at last is upside down: turned, it shows an output that
+    // it does not show as it is.
+    bool isUpsideDown() const;
+    // Other lamps change, so their light is no fault.
+    void lampsChange();
     // The movement of the camera that best explains movements of pictures, as OutputSight has them;
     // null: an output that says nothing. Nothing: too few places are seen.
     std::optional<CameraMovement> cameraMovement(const std::vector<const Homography*>& shownFromPlace) const;
 
 private:
     struct Output;
+    struct Seen;
     GreyImage lightSeen(const RgbaImage& picture) const;
+    Seen seenOf(std::size_t output, const GreyImage& light, const std::vector<GreyImage>& predicted) const;
+    void findAlone();
+    void findSurroundings();
 
     glm::ivec2 camera_;
     int step_;  // camera pixels that count as one
     CameraLight light_;
     GreyImage dark_;
+    GreyImage seen_;  // the picture that was looked at last, by coarse pixels
+    std::optional<Surroundings> surroundings_;
     std::vector<std::unique_ptr<Output>> outputs_;
 };
 

@@ -72,7 +72,8 @@ public:
                         [](render::FrameTap& tap) { return &tap.addNewest(std::numeric_limits<double>::infinity()); })),
           recorder_(recorderOf(recording)),
           recordingIsOpen_(recording != nullptr),
-          watched_(readers(!programme.watched.empty(), [](render::FrameTap& tap) { return &tap.addNewest(0); })),
+          watched_(
+              readers(!programme.watched.empty(), [](render::FrameTap& tap) { return ShownLight::framesOf(tap.addNewest(0)); })),
           pictured_(readers(attended_, [](render::FrameTap& tap) { return &tap.addNewest(0); })),
           prepared_(frames_.prepare()),
           showClock_(frames_.refreshFrom(clock.now() + kStartUp)),
@@ -360,7 +361,7 @@ private:
     std::vector<render::NewestFrame*> wall_;      // what simulated projectors throw; empty if they are real
     std::unique_ptr<FrameRecorder> recorder_;     // null: nothing is recorded
     std::atomic<bool> recordingIsOpen_;           // its files are not finished yet
-    std::vector<render::NewestFrame*> watched_;   // empty unless the camera watches where the pictures stand
+    std::vector<ShownLight::Frames> watched_;     // empty unless the camera watches where the pictures stand
     std::vector<render::NewestFrame*> pictured_;  // empty unless somebody at the terminal can press keys
     Result<void> prepared_;
     const show::ShowClock showClock_;  // starts with a refresh, after everything slow

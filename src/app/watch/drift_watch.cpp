@@ -19,7 +19,8 @@ constexpr Time kSure = std::chrono::milliseconds(700);       // a movement must 
 constexpr Time kRefines = std::chrono::seconds(4);           // after a correction, small ones may follow
 constexpr double kRefinement = 0.25;                         // pixels: a smaller one is not worth it
 constexpr double kInPlace = 0.6;                             // pixels: nobody sees less
-constexpr double kSlowestCamera = 2;                         // seconds between pictures, from which on nothing is predicted
+const std::string kOutOfPlace = "out of place";
+constexpr double kSlowestCamera = 2;  // seconds between pictures, from which on nothing is predicted
 
 // The rectangle of a projector's pixels that its picture is in.
 std::pair<glm::dvec2, glm::dvec2> litBy(const Projection& projection) {
@@ -44,17 +45,17 @@ double missOf(const Drift& drift, const show::PictureShift& shift, const Project
 }
 
 std::vector<ShownLight::Output> watchedOf(const show::Site& site, const vision::WallWatch& wall,
-                                          const std::vector<render::NewestFrame*>& frames) {
+                                          const std::vector<ShownLight::Frames>& frames) {
     std::vector<ShownLight::Output> outputs;
     for (std::size_t i = 0; i < site.outputs.size(); ++i)
-        outputs.push_back({wall.watches(i) ? frames[i] : nullptr, site.outputs[i].refreshRate});
+        outputs.push_back({wall.watches(i) ? frames[i] : ShownLight::Frames(), site.outputs[i].refreshRate});
     return outputs;
 }
 
 }  // namespace
 
 DriftWatch::DriftWatch(const show::Site& site, const std::vector<std::optional<vision::WatchedOutput>>& outputs,
-                       const vision::CameraLight& light, const std::vector<render::NewestFrame*>& frames, show::InputLog& inputs,
+                       const vision::CameraLight& light, const std::vector<ShownLight::Frames>& frames, show::InputLog& inputs,
                        show::EventLog& events, const show::ShowClock& showClock)
     : site_(site),
       inputs_(inputs),
@@ -64,16 +65,21 @@ DriftWatch::DriftWatch(const show::Site& site, const std::vector<std::optional<v
       light_(watchedOf(site, wall_, frames), wall_, showClock),
       settled_(site.outputs.size()),
       settledAt_(site.outputs.size(), Time::min() / 2),
-      misplaced_(site.outputs.size()) {
+      causeWatch_(site, wall_, causes_, events) {
     for (std::size_t i = 0; i < site.outputs.size(); ++i) {
         const auto [low, high] = litBy(site.outputs[i].projection);
         tracks_.emplace_back(low, high, outputs[i] && outputs[i]->isSurveyed);
     }
 }
 
+void DriftWatch::tick(Time now) {
+    light_.tick(now);
+    if (arrived_) causeWatch_.wait(showClock_.showTime(*arrived_), showClock_.showTime(now));
+}
+
 void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, bool isSettingUp, Time now) {
-    const glm::ivec2 size = site_.nominalCamera->size;
-    if (frame.image.width() != size.x || frame.image.height() != size.y) return;
+    arrived_ = now;
+    if (!causeWatch_.isUsable(frame.image, showClock_.showTime(frame.exposed))) return;
     const auto pictures = static_cast<Time::rep>(frame.sequence - sequence_);
     if (exposed_ && pictures > 0 && seconds(frame.exposed - *exposed_) < kSlowestCamera)
         light_.exposed(frame.exposed, (frame.exposed - *exposed_) / pictures);
@@ -94,6 +100,7 @@ void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, boo
         for (std::size_t i = 0; i < tracks_.size(); ++i)
             if (settled_[i]) correct(i, *settled_[i], showClock_.showTime(now));
     corrects_ = shown.corrects;
+    if (!cameraMoved_) causeWatch_.measure(shown, showClock_.showTime(frame.exposed));
     decide(showClock_.showTime(now));
     note(shown, showClock_.showTime(frame.exposed));
 }
@@ -126,12 +133,12 @@ void DriftWatch::decide(Time showTime) {
     if (moved == Moved::Camera && isLasting) {
         cameraMoved_ = true;
         events_.append({showTime, show::event::CameraMoved{}});
-        causes_.push_back({"", movedSince_, {}, "camera moved"});
+        causes_.begin("", "camera moved", movedSince_);
         return;
     }
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
         if (!since[i]) continue;
-        const bool moves = moved == Moved::Projectors && isLasting && since[i]->isSure();
+        const bool moves = moved == Moved::Projectors && isLasting && since[i]->isSure() && !causeWatch_.isHidden(i);
         const bool refines =
             showTime - settledAt_[i] < kRefines && since[i]->px > kRefinement && since[i]->px > 3 * since[i]->sigma;
         if (!moves && !refines) continue;
@@ -139,10 +146,7 @@ void DriftWatch::decide(Time showTime) {
         if (moves) {
             settledAt_[i] = showTime;
             events_.append({showTime, show::event::PictureMoved{site_.outputs[i].name, since[i]->px}});
-            if (!misplaced_[i]) {
-                misplaced_[i] = causes_.size();
-                causes_.push_back({site_.outputs[i].name, movedSince_, {}, "out of place"});
-            }
+            causes_.begin(site_.outputs[i].name, kOutOfPlace, movedSince_);
         }
         correct(i, tracks_[i].now()->moved, showTime);
     }
@@ -166,7 +170,7 @@ void DriftWatch::note(const show::ShowState& shown, Time showTime) {
         series_[site_.outputs[i].name].push_back(
             {showTime, tracks_[i].now()->px, tracks_[i].now()->sigma, rmsOf(shift, site_.outputs[i].projection), shift});
         const double left = missOf(*tracks_[i].now(), shift, site_.outputs[i].projection);
-        if (misplaced_[i] && left < kInPlace) causes_[*std::exchange(misplaced_[i], std::nullopt)].to = showTime;
+        if (left < kInPlace) causes_.end(site_.outputs[i].name, kOutOfPlace, showTime);
     }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "app/watch/cause_log.h"
+#include "app/watch/cause_watch.h"
 #include "app/watch/shown_light.h"
 
 #include "show/event.h"
@@ -30,14 +32,6 @@ struct DriftReport {
     show::PictureShift shift{};
 };
 
-// Why the wall was not as it should be.
-struct CauseReport {
-    std::string output;        // empty: all of them
-    Time from{};               // show time
-    std::optional<Time> to{};  // none: until the end
-    std::string cause;
-};
-
 // Watches where the outputs' pictures stand on the wall, and brings them back if the site says so.
 // A correction is an input like a press of GO: it is bounded, logged, and taken back by one key.
 // Once the camera itself has moved nothing is corrected until the site is calibrated again.
@@ -48,13 +42,12 @@ struct CauseReport {
 class DriftWatch {
 public:
     // All arguments by reference or pointer outlive this, except `showClock`. `outputs`: by output;
-    // nothing: it cannot be watched. `light`: how the camera stores light. `frames`: by output,
-    // made with rate 0; null: it is not watched.
+    // nothing: it cannot be watched. `light`: how the camera stores light. `frames`: by output.
     DriftWatch(const show::Site& site, const std::vector<std::optional<vision::WatchedOutput>>& outputs,
-               const vision::CameraLight& light, const std::vector<render::NewestFrame*>& frames, show::InputLog& inputs,
+               const vision::CameraLight& light, const std::vector<ShownLight::Frames>& frames, show::InputLog& inputs,
                show::EventLog& events, const show::ShowClock& showClock);
 
-    void tick(Time now) { light_.tick(now); }
+    void tick(Time now);
     // Takes a picture of the camera. `shown`: the state that is shown. `isSettingUp`: a technician
     // moves the pictures; where they stand afterwards is where they belong.
     void see(const CameraFrame& frame, const show::ShowState& shown, bool isSettingUp, Time now);
@@ -62,7 +55,7 @@ public:
     // By output, one a second.
     const std::map<std::string, std::vector<DriftReport>>& series() const { return series_; }
     // In the order in which they were noticed.
-    const std::vector<CauseReport>& causes() const { return causes_; }
+    const std::vector<CauseReport>& causes() const { return causes_.all(); }
 
 private:
     void endShifts(const show::ShowState& shown, Time showTime);
@@ -88,8 +81,9 @@ private:
     bool cameraMoved_ = false, wasSettingUp_ = false, corrects_ = true;
     std::map<std::string, std::vector<DriftReport>> series_;
     std::optional<Time> noted_;  // show time of the newest entries of `series_`
-    std::vector<CauseReport> causes_;
-    std::vector<std::optional<std::size_t>> misplaced_;  // by output: its open entry of `causes_`
+    CauseLog causes_;
+    CauseWatch causeWatch_;
+    std::optional<Time> arrived_;  // when the newest picture came
 };
 
 }  // namespace fantascope::app

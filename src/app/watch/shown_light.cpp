@@ -15,6 +15,10 @@ Time periodOf(double rate) { return fromSeconds(1 / rate); }
 
 }  // namespace
 
+ShownLight::Frames ShownLight::framesOf(render::NewestFrame& reader) {
+    return {[&reader](Time now) { return reader.next(now); }, [&reader](Time showTime) { reader.ask(showTime); }};
+}
+
 ShownLight::ShownLight(std::vector<Output> outputs, const vision::WallWatch& wall, const show::ShowClock& showClock)
     : wall_(wall), showClock_(showClock) {
     for (const Output& output : outputs) outputs_.push_back({output, {}});
@@ -28,8 +32,8 @@ void ShownLight::exposed(Time at, Time period) {
 void ShownLight::tick(Time now) {
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         Kept& kept = outputs_[i];
-        if (kept.output.frames == nullptr) continue;
-        const render::ShownFrame* const frame = kept.output.frames->next(now);
+        if (!kept.output.frames.next) continue;
+        const render::ShownFrame* const frame = kept.output.frames.next(now);
         if (frame == nullptr) continue;
         if (kept.frames.size() >= kKept) kept.frames.pop_front();
         kept.frames.push_back({frame->shown.at, wall_.lightOf(i, frame->image)});
@@ -40,8 +44,8 @@ void ShownLight::tick(Time now) {
     const auto steps = soonest > exposed_ ? (soonest - exposed_ + period_ - Time(1)) / period_ : 0;
     askedFor_ = exposed_ + steps * period_;
     for (const Kept& kept : outputs_)
-        if (kept.output.frames != nullptr)
-            kept.output.frames->ask(showClock_.showTime(askedFor_ - periodOf(kept.output.refreshRate) + Time(1)));
+        if (kept.output.frames.ask)
+            kept.output.frames.ask(showClock_.showTime(askedFor_ - periodOf(kept.output.refreshRate) + Time(1)));
 }
 
 const GreyImage* ShownLight::at(std::size_t output, Time moment) const {

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <vector>
 
 namespace fantascope::app {
@@ -18,10 +19,19 @@ namespace fantascope::app {
 // Thread: bound to the vision thread.
 class ShownLight {
 public:
-    struct Output {
-        render::NewestFrame* frames = nullptr;  // made with rate 0; null: this output is not watched
-        double refreshRate = 60;                // Hz
+    // Where an output's frames come from.
+    struct Frames {
+        // A frame that is or was visible at a moment, each once; null: there is none. Valid until
+        // the next call.
+        std::function<const render::ShownFrame*(Time now)> next{};
+        std::function<void(Time showTime)> ask{};  // requests the frame of a show time
     };
+    struct Output {
+        Frames frames{};          // empty: this output is not watched
+        double refreshRate = 60;  // Hz
+    };
+    // `reader` was made with rate 0.
+    static Frames framesOf(render::NewestFrame& reader);
     // All arguments by reference or pointer outlive this, except `showClock`.
     ShownLight(std::vector<Output> outputs, const vision::WallWatch& wall, const show::ShowClock& showClock);
 

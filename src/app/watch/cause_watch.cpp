@@ -1,0 +1,158 @@
+#include "app/watch/cause_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace fantascope::app {
+namespace {
+
+constexpr Time kStep = std::chrono::milliseconds(780);     // between measurements
+constexpr Time kUnseen = std::chrono::milliseconds(2500);  // a cause that was not seen for so long is over,
+constexpr Time kDoubted = std::chrono::milliseconds(900);  // and one that is not named yet is none
+constexpr Time kShort = std::chrono::milliseconds(900);
+constexpr Time kLong = std::chrono::milliseconds(1500);
+constexpr Time kLonger = std::chrono::milliseconds(3800);  // nobody who passes takes so long
+constexpr Time kGone = std::chrono::seconds(3);            // without a picture
+constexpr double kMostHidden = 0.2;                        // of a picture whose place is certain
+
+bool isUniform(const RgbaImage& picture) {
+    const Rgba8 first = picture.pixels()[0];
+    return std::ranges::all_of(picture.pixels(), [&](const Rgba8& pixel) {
+        return std::abs(pixel.r - first.r) <= 1 && std::abs(pixel.g - first.g) <= 1 && std::abs(pixel.b - first.b) <= 1;
+    });
+}
+
+double saturatedShare(const RgbaImage& picture) {
+    constexpr int kFull = 254;
+    const auto count = std::ranges::count_if(
+        picture.pixels(), [](const Rgba8& pixel) { return pixel.r >= kFull && pixel.g >= kFull && pixel.b >= kFull; });
+    return static_cast<double>(count) / static_cast<double>(picture.pixels().size());
+}
+
+}  // namespace
+
+CauseWatch::CauseWatch(const show::Site& site, vision::WallWatch& wall, CauseLog& causes, show::EventLog& events)
+    : site_(site), wall_(wall), causes_(causes), events_(events), hidden_(site.outputs.size()) {}
+
+bool CauseWatch::isUsable(const RgbaImage& picture, Time at) {
+    constexpr double kMostSaturated = 0.5;
+    const glm::ivec2 size = site_.nominalCamera->size;
+    bool isUsable = false;
+    if (picture.width() != size.x || picture.height() != size.y) {
+        suspect("",
+                {"camera of another size",
+                 fmt::format("it sends pictures of {} x {}, and the site file says {} x {}: set its 'size' and calibrate again",
+                             picture.width(), picture.height(), size.x, size.y),
+                 kShort},
+                true, at);
+    } else if (isUniform(picture)) {
+        suspect("", {"camera blind", "its picture is the same everywhere: take off its cap, and look at its exposure", kShort},
+                true, at);
+    } else if (picture == picture_) {
+        suspect("", {"camera frozen", "it sends the same picture again and again: plug it in anew", kLong}, true, at);
+    } else if (saturatedShare(picture) > kMostSaturated) {
+        suspect("", {"camera saturated", "more than half of its picture is white: set a shorter exposure", kShort}, true, at);
+    } else {
+        isUsable = true;
+    }
+    picture_ = picture;
+    endOthers(true, at);
+    return isUsable;
+}
+
+void CauseWatch::wait(Time last, Time now) {
+    if (now - last < kGone) return;
+    suspect("", {"camera gone", "it sends nothing: look at its plug", Time{}}, true, now);
+}
+
+void CauseWatch::measure(const show::ShowState& shown, Time at) {
+    if (measured_ && at - *measured_ < kStep) return;
+    measured_ = at;
+    if (shown.levels != lamps_.levels || shown.relays != lamps_.relays) {
+        wall_.lampsChange();
+        lamps_.levels = shown.levels;
+        lamps_.relays = shown.relays;
+    }
+    const vision::WallLight light = wall_.measureLight();
+    for (std::size_t i = 0; i < hidden_.size(); ++i)
+        if (light.outputs[i]) hidden_[i] = light.outputs[i]->explained < 1 - kMostHidden;
+    if (std::ranges::none_of(light.outputs, [](const auto& output) { return output.has_value(); })) return;
+    const auto named = vision::causesOf(light);
+    const bool isLost = std::ranges::any_of(named, [](const vision::NamedCause& cause) {
+        return cause.cause == vision::Cause::CameraElsewhere || cause.cause == vision::Cause::CameraBlind ||
+               cause.cause == vision::Cause::BlockedView || cause.cause == vision::Cause::WrongInput ||
+               cause.cause == vision::Cause::DeadOutput;
+    });
+    if (isLost && wall_.isUpsideDown()) {
+        suspect("", {"camera upside down", "its picture is turned by half a turn: turn it back", kLong}, false, at);
+    } else {
+        for (const vision::NamedCause& cause : named)
+            suspect(cause.output ? site_.outputs[*cause.output].name : "", wordsOf(cause), false, at);
+    }
+    if (!light.isSettling) endOthers(false, at);  // else they cannot be told
+}
+
+void CauseWatch::suspect(const std::string& output, const Words& words, bool ofPicture, Time at) {
+    const auto [found, isNew] = suspicions_.try_emplace({output, words.cause}, Suspicion{at, at, ofPicture});
+    Suspicion& suspicion = found->second;
+    suspicion.last = at;
+    suspicion.ofPicture = ofPicture;
+    if (at - suspicion.since < words.lasts || causes_.isOpen(output, words.cause)) return;
+    causes_.begin(output, words.cause, suspicion.since);
+    events_.append({at, show::event::CauseBegan{output, words.cause, words.advice}});
+}
+
+void CauseWatch::endOthers(bool ofPicture, Time at) {
+    for (auto it = suspicions_.begin(); it != suspicions_.end();) {
+        const auto& [name, suspicion] = *it;
+        const bool isNamed = causes_.isOpen(name.first, name.second);
+        if (suspicion.ofPicture != ofPicture || at - suspicion.last < (isNamed ? kUnseen : kDoubted)) {
+            ++it;
+            continue;
+        }
+        if (isNamed) {
+            causes_.end(name.first, name.second, suspicion.last);
+            events_.append({at, show::event::CauseEnded{name.first, name.second}});
+        }
+        it = suspicions_.erase(it);
+    }
+}
+
+CauseWatch::Words CauseWatch::wordsOf(const vision::NamedCause& named) const {
+    const double percent = 100 * named.figure;
+    switch (named.cause) {
+        case vision::Cause::OutOfFocus:
+            return {"out of focus", fmt::format("it is blurred by about {:.0f} camera pixels: focus its lens", named.figure),
+                    kLong};
+        case vision::Cause::DimLamp:
+            return {"dim projector lamp",
+                    fmt::format("it gives {:.0f} % of its usual light: look at its lamp and its power mode", percent), kLong};
+        case vision::Cause::DeadOutput:
+            return {"dead output", "its picture is not on the wall: look at its power, its shutter and its cable", kLong};
+        case vision::Cause::WrongInput:
+            return {"wrong input", "something else is on the wall: look at its menu and its input", kLong};
+        case vision::Cause::BlockedView:
+            return {"blocked view", fmt::format("{:.0f} % of the picture is hidden: look for what stands before it", percent),
+                    kShort};
+        case vision::Cause::Fog:
+            return {"fog", fmt::format("{:.0f} % of the usual light is left", percent), kLong};
+        case vision::Cause::AmbientLight:
+            return {"ambient light", fmt::format("other light on the wall is {:.0f} % of full light: find its lamp", percent),
+                    kLonger};
+        case vision::Cause::CameraDirty:
+            return {"camera dirty", "its picture is hazy or not sharp: clean and focus its lens", kLong};
+        case vision::Cause::CameraBlind:
+            return {"camera blind", "it sees no picture: look whether something covers it, and whether the projectors have power",
+                    kLong};
+        case vision::Cause::CameraExposure:
+            return {"camera exposure", fmt::format("everything is {:.0f} % as bright as usual: lock its exposure", percent),
+                    kLong};
+        case vision::Cause::CameraElsewhere:
+            return {"camera moved", "no picture is where it belongs: look where the camera points, and calibrate again", kLong};
+    }
+    return {};
+}
+
+}  // namespace fantascope::app

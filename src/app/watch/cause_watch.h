@@ -1,0 +1,67 @@
+#pragma once
+
+#include "app/watch/cause_log.h"
+
+#include "show/event.h"
+#include "show/show_state.h"
+#include "show/site/site.h"
+#include "vision/wall_causes.h"
+#include "vision/wall_watch.h"
+
+#include "core/clock.h"
+#include "media/image.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fantascope::app {
+
+// Names why the wall, or the camera's picture of it, is not as it should be. A cause is named once
+// it has lasted, so that people who pass name none, and ends once it is not seen any more. What is
+// usual is what the camera sees in the first seconds. Thread: thread-bound.
+class CauseWatch {
+public:
+    // All arguments outlive this.
+    CauseWatch(const show::Site& site, vision::WallWatch& wall, CauseLog& causes, show::EventLog& events);
+
+    // Looks at a picture of the camera as such. False: it says nothing of the wall. Times are show
+    // time.
+    bool isUsable(const RgbaImage& picture, Time at);
+    // The camera has sent nothing since `last`.
+    void wait(Time last, Time now);
+    // Measures the light in the picture that the wall's watch has looked at last; not more often
+    // than is useful. `shown`: the state at that moment.
+    void measure(const show::ShowState& shown, Time at);
+    // Whether something hides a part of an output's picture, so that its place is not certain.
+    bool isHidden(std::size_t output) const { return hidden_[output]; }
+
+private:
+    using Name = std::pair<std::string, std::string>;  // output, cause
+    struct Suspicion {
+        Time since{}, last{};
+        bool ofPicture = false;  // told by a picture as such, not by what it shows of the wall
+    };
+    struct Words {
+        std::string cause;   // as in the report
+        std::string advice;  // what is seen, and what to do
+        Time lasts{};        // a cause is named once it has lasted so long
+    };
+    void suspect(const std::string& output, const Words& words, bool ofPicture, Time at);
+    void endOthers(bool ofPicture, Time at);
+    Words wordsOf(const vision::NamedCause& named) const;
+
+    const show::Site& site_;
+    vision::WallWatch& wall_;
+    CauseLog& causes_;
+    show::EventLog& events_;
+    std::map<Name, Suspicion> suspicions_;
+    std::vector<bool> hidden_;
+    std::optional<Time> measured_;
+    show::ShowState lamps_;  // its levels and relays, at the last measurement
+    RgbaImage picture_;      // the last one
+};
+
+}  // namespace fantascope::app

@@ -1,0 +1,317 @@
+#include "vision/light_meter.h"
+
+#include <glm/common.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace fantascope::vision {
+namespace {
+
+constexpr int kSide = 16;                  // of a block, cells
+constexpr int kWhole = kSide * kSide / 2;  // cells of a block that counts
+constexpr std::size_t kLeastBlocks = 12;   // that tell something
+constexpr int kLearning = 6;               // pictures, from which the usual picture is known
+constexpr int kLearningLight = 3;          // pictures, from which the usual other light is known
+constexpr int kLasting = 5;                // measurements: nobody who passes hides a block for so long
+constexpr double kTells = 0.05;            // a block tells something if its light varies so much, as a share of full light
+constexpr double kUnexplained = 0.3;       // of the picture's variance: what is left of a block that is explained
+constexpr double kOutlier = 0.5;           // and from which on it has no weight
+constexpr double kThere = 0.6;             // a picture is there if it leaves less than this share of what no picture leaves
+constexpr double kPartThere = 0.1;         // or if so much of it is as usual
+constexpr double kCameraBlurs = 0.8;       // and the camera blurs, if that leaves less than this share
+constexpr std::array<double, 9> kBlurs{0, 0.5, 0.8, 1.2, 1.8, 2.7, 4, 6, 9};  // cells
+
+// A part of the picture: the light that is seen, and the picture's light as it is expected.
+struct Block {
+    int cells = 0;
+    double seen = 0, shown = 0, full = 0;                // means
+    double seenSeen = 0, seenShown = 0, shownShown = 0;  // variances and covariance
+    // What a contrast leaves of the variance.
+    double left(double contrast) const {
+        return std::max(0.0, seenSeen - 2 * contrast * seenShown + contrast * contrast * shownShown);
+    }
+};
+using Blocks = std::vector<Block>;
+
+cv::Mat viewOf(const GreyImage& image) {
+    return {image.height(), image.width(), CV_32F, const_cast<float*>(image.pixels().data())};
+}
+
+cv::Mat blurredBy(const cv::Mat& image, double sigma) {
+    if (sigma <= 0) return image;
+    cv::Mat soft;
+    cv::GaussianBlur(image, soft, {}, sigma, sigma, cv::BORDER_REPLICATE);
+    return soft;
+}
+
+// The frame's light where the cells are.
+cv::Mat shownAt(const GreyImage& light, const Homography& shownFromPlace) {
+    cv::Mat x(light.height(), light.width(), CV_32F), y(light.height(), light.width(), CV_32F), shown;
+    for (int row = 0; row < x.rows; ++row)
+        for (int column = 0; column < x.cols; ++column) {
+            const glm::dvec2 at = shownFromPlace({column + 0.5, row + 0.5});
+            x.at<float>(row, column) = static_cast<float>(at.x - 0.5);
+            y.at<float>(row, column) = static_cast<float>(at.y - 0.5);
+        }
+    cv::remap(viewOf(light), shown, x, y, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+    return shown;
+}
+
+// `lit`: the picture's light on the surface, as the camera gets it.
+Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, int left, int top) {
+    Block block;
+    for (int y = top; y < std::min(top + kSide, lit.rows); ++y)
+        for (int x = left; x < std::min(left + kSide, lit.cols); ++x) {
+            const double full = sight.surface.at(x, y), seen = sight.seen.at(x, y), shown = lit.at<float>(y, x);
+            if (full <= 0 || sight.mask.at(x, y) <= 0) continue;
+            ++block.cells;
+            block.seen += seen;
+            block.shown += shown;
+            block.full += full;
+            block.seenSeen += seen * seen;
+            block.seenShown += seen * shown;
+            block.shownShown += shown * shown;
+        }
+    const double count = std::max(1, block.cells);
+    for (double* sum : {&block.seen, &block.shown, &block.full, &block.seenSeen, &block.seenShown, &block.shownShown})
+        *sum /= count;
+    block.seenSeen -= block.seen * block.seen;
+    block.seenShown -= block.seen * block.shown;
+    block.shownShown -= block.shown * block.shown;
+    return block;
+}
+
+Blocks blocksOf(const LightMeter::Sight& sight, const cv::Mat& lit) {
+    Blocks blocks;
+    for (int top = 0; top < lit.rows; top += kSide)
+        for (int left = 0; left < lit.cols; left += kSide) blocks.push_back(blockOf(sight, lit, left, top));
+    return blocks;
+}
+
+// How a contrast explains blocks.
+struct Fit {
+    double contrast = 0;
+    double loss = std::numeric_limits<double>::max();  // mean over the blocks, 0..1
+};
+
+// Compares contrasts on the blocks that tell something.
+class Telling {
+public:
+    // `scale`: by block: the variance of its picture on the wall at the usual contrast; 0: it tells
+    // nothing.
+    Telling(std::vector<double> scale, double usual) : scale_(std::move(scale)), usual_(usual) {
+        for (std::size_t i = 0; i < scale_.size(); ++i)
+            if (scale_[i] > 0) which_.push_back(i);
+    }
+    const std::vector<std::size_t>& which() const { return which_; }
+
+    // What a contrast leaves of a block, as a share of the picture's variance: the usual one, or a
+    // stronger one if the contrast is.
+    double shareLeft(const Blocks& blocks, std::size_t i, double contrast) const {
+        const double stronger = std::max(1.0, contrast / usual_);
+        return blocks[i].left(contrast) / (scale_[i] * stronger * stronger);
+    }
+    double lossOf(const Blocks& blocks, double contrast) const {
+        double sum = 0;
+        for (const std::size_t i : which_) sum += std::min(1.0, shareLeft(blocks, i, contrast) / kOutlier);
+        return sum / static_cast<double>(which_.size());
+    }
+    double shareExplained(const Blocks& blocks, double contrast) const {
+        const auto count =
+            std::ranges::count_if(which_, [&](std::size_t i) { return shareLeft(blocks, i, contrast) < kUnexplained; });
+        return static_cast<double>(count) / static_cast<double>(which_.size());
+    }
+    // The contrast that explains most blocks. It is found from two guesses (Tukey's biweight).
+    Fit best(const Blocks& blocks) const {
+        Fit best;
+        for (const double guess : {usual_, contrastOf(blocks, [](std::size_t) { return 1.0; })}) {
+            double contrast = guess;
+            for (int turn = 0; turn < 5; ++turn)
+                contrast = contrastOf(blocks, [&](std::size_t i) {
+                    const double keep = std::max(0.0, 1 - shareLeft(blocks, i, contrast) / kOutlier);
+                    return keep * keep;
+                });
+            const double loss = lossOf(blocks, contrast);
+            if (loss < best.loss) best = {contrast, loss};
+        }
+        return best;
+    }
+    // Least squares.
+    double contrastOf(const Blocks& blocks, const auto& weightOf) const {
+        double both = 0, shown = 0;
+        for (const std::size_t i : which_) {
+            const double weight = weightOf(i) / scale_[i];
+            both += weight * blocks[i].seenShown;
+            shown += weight * blocks[i].shownShown;
+        }
+        return shown > 0 ? std::max(0.0, both / shown) : 0;
+    }
+
+private:
+    std::vector<double> scale_;
+    double usual_;
+    std::vector<std::size_t> which_;
+};
+
+// The other light on most of the picture, as a share of full light.
+double otherLightOf(const Blocks& blocks, double contrast) {
+    std::vector<double> shares;
+    for (const Block& block : blocks)
+        if (block.cells >= kWhole) shares.push_back((block.seen - contrast * block.shown) / block.full);
+    if (shares.empty()) return 0;
+    const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
+    std::nth_element(shares.begin(), middle, shares.end());
+    return *middle;
+}
+
+// The share of the picture's bright places that the camera cannot tell.
+double saturatedShare(const LightMeter::Sight& sight, const cv::Mat& shown) {
+    constexpr float kBright = 0.5f;
+    int bright = 0, saturated = 0;
+    for (int y = 0; y < shown.rows; ++y)
+        for (int x = 0; x < shown.cols; ++x) {
+            if (sight.surface.at(x, y) <= 0 || shown.at<float>(y, x) < kBright) continue;
+            ++bright;
+            saturated += sight.mask.at(x, y) <= 0 ? 1 : 0;
+        }
+    return bright > 0 ? static_cast<double>(saturated) / bright : 0;
+}
+
+std::size_t nearestBlur(double blur) {
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < kBlurs.size(); ++i)
+        if (std::abs(kBlurs[i] - blur) < std::abs(kBlurs[nearest] - blur)) nearest = i;
+    return nearest;
+}
+
+// The blur about kBlurs[best] at which a parabola through the losses is least, and the contrast
+// there.
+struct Between {
+    double blur = 0, contrast = 0;
+};
+Between leastBetween(const std::array<Fit, kBlurs.size()>& fits, std::size_t best) {
+    if (best == 0 || best + 1 == kBlurs.size()) return {kBlurs[best], fits[best].contrast};
+    const double before = fits[best - 1].loss, here = fits[best].loss, after = fits[best + 1].loss,
+                 bend = before - 2 * here + after;
+    const double step = bend > 0 ? std::clamp((before - after) / (2 * bend), -0.5, 0.5) : 0;
+    const std::size_t towards = step > 0 ? best + 1 : best - 1;
+    return {std::lerp(kBlurs[best], kBlurs[towards], std::abs(step)),
+            std::lerp(fits[best].contrast, fits[towards].contrast, std::abs(step))};
+}
+
+}  // namespace
+
+void LightMeter::lampsChange() {
+    if (other_.pictures >= kLearningLight) other_.kept = other_.now;
+    other_.pictures = 0;
+}
+
+// What a sight shows at every blur, and which blur and contrast explain it.
+struct LightMeter::Comparison {
+    cv::Mat shown;  // the frame's light
+    std::array<Blocks, kBlurs.size()> blocks{};
+    Telling telling;
+    std::size_t usualBlur = 0, bestBlur = 0;  // indices into kBlurs
+    double contrast = 0, blur = 0;            // contrast 0: the picture is not there
+    double explaining = 0;                    // the contrast at the best of kBlurs
+    double loss = 1;
+    double otherLight = 0;
+
+    bool isUsual(std::size_t block, const Usual& usual) const {
+        return telling.shareLeft(blocks[usualBlur], block, usual.contrast) < mostLeft(block, usual);
+    }
+    bool isExplained(std::size_t block, const Usual& usual) const {
+        return telling.shareLeft(blocks[bestBlur], block, explaining) < mostLeft(block, usual);
+    }
+
+private:
+    static double mostLeft(std::size_t block, const Usual& usual) { return std::max(kUnexplained, 3 * usual.unexplained[block]); }
+};
+
+LightMeter::Comparison LightMeter::compare(const Sight& sight) const {
+    Comparison now{.shown = shownAt(sight.light, sight.shownFromPlace), .telling = Telling({}, 1)};
+    const cv::Mat surface = viewOf(sight.surface);
+    for (std::size_t i = 0; i < kBlurs.size(); ++i) now.blocks[i] = blocksOf(sight, blurredBy(now.shown, kBlurs[i]).mul(surface));
+    now.usualBlur = now.bestBlur = nearestBlur(usual_.blur);
+    std::vector<double> scale(now.blocks[0].size(), 0);
+    for (std::size_t i = 0; i < scale.size(); ++i) {
+        const Block& sharp = now.blocks[0][i];
+        const bool isStrange = usual_.pictures >= kLearning && usual_.unexplained[i] >= kUnexplained;
+        if (sharp.cells >= kWhole && sharp.shownShown > kTells * kTells * sharp.full * sharp.full && !isStrange)
+            scale[i] = now.blocks[now.usualBlur][i].shownShown;
+    }
+    double usual = usual_.contrast;
+    if (usual_.pictures == 0) usual = Telling(scale, 1).contrastOf(now.blocks[0], [](std::size_t) { return 1.0; });
+    for (double& variance : scale) variance *= usual * usual;
+    now.telling = Telling(std::move(scale), usual);
+    if (now.telling.which().size() < kLeastBlocks) return now;
+
+    std::array<Fit, kBlurs.size()> fits;
+    for (std::size_t i = 0; i < kBlurs.size(); ++i) fits[i] = now.telling.best(now.blocks[i]);
+    now.bestBlur = static_cast<std::size_t>(std::ranges::min_element(fits, {}, &Fit::loss) - fits.begin());
+    now.loss = fits[now.bestBlur].loss;
+    const Between between = leastBetween(fits, now.bestBlur);
+    now.blur = between.blur;
+    const bool isThere = now.loss < kThere * now.telling.lossOf(now.blocks[now.bestBlur], 0) ||
+                         now.telling.shareExplained(now.blocks[now.usualBlur], usual) > kPartThere;
+    now.contrast = isThere ? between.contrast : 0;
+    now.explaining = isThere ? fits[now.bestBlur].contrast : 0;
+    now.otherLight = otherLightOf(now.blocks[now.bestBlur], now.contrast);
+    return now;
+}
+
+void LightMeter::learn(const Comparison& now) {
+    if (other_.pictures < kLearningLight) other_.usual += (now.otherLight - other_.kept - other_.usual) / ++other_.pictures;
+    if (usual_.pictures >= kLearning || now.contrast <= 0) return;
+    const double share = 1.0 / ++usual_.pictures;  // so that the usual is the mean
+    usual_.contrast += share * (now.contrast - usual_.contrast);
+    usual_.blur += share * (now.blur - usual_.blur);
+    for (const std::size_t i : now.telling.which()) {
+        double& unexplained = usual_.unexplained[i];
+        const double left = now.telling.shareLeft(now.blocks[now.bestBlur], i, now.explaining);
+        unexplained = unexplained < 0 ? left : unexplained + share * (left - unexplained);
+    }
+}
+
+OutputLight LightMeter::describe(const Comparison& now, const Sight& sight) {
+    OutputLight light;
+    light.contrast = now.contrast / usual_.contrast;
+    light.saturated = saturatedShare(sight, now.shown);
+    light.otherLight = other_.pictures >= kLearningLight ? other_.now : other_.kept;
+    if (now.contrast > 0 && now.blur > usual_.blur) {
+        light.blur = std::sqrt(now.blur * now.blur - usual_.blur * usual_.blur);
+        const Blocks byCamera = blocksOf(sight, blurredBy(now.shown.mul(viewOf(sight.surface)), kBlurs[now.bestBlur]));
+        light.isCameraBlurred = now.telling.best(byCamera).loss < kCameraBlurs * now.loss;
+    }
+    double asUsual = 0, explained = 0, hidden = 0;
+    for (const std::size_t i : now.telling.which()) {
+        const bool isUsual = now.isUsual(i, usual_);
+        off_[i] = isUsual ? 0 : off_[i] + 1;
+        asUsual += isUsual ? 1 : 0;
+        explained += now.isExplained(i, usual_) ? 1 : 0;
+        hidden += off_[i] >= kLasting ? 1 : 0;
+    }
+    const double count = static_cast<double>(now.telling.which().size());
+    light.asUsual = asUsual / count;
+    light.explained = explained / count;
+    light.hidden = hidden / count;
+    return light;
+}
+
+std::optional<OutputLight> LightMeter::measure(const Sight& sight, bool isFound) {
+    const Comparison now = compare(sight);
+    if (now.telling.which().size() < kLeastBlocks) return std::nullopt;
+    const bool isKnown = usual_.pictures >= kLearning;
+    usual_.unexplained.resize(now.blocks[0].size(), -1);
+    off_.resize(now.blocks[0].size());
+    if (isFound) learn(now);
+    other_.now = now.otherLight - other_.usual;
+    return isKnown ? std::optional(describe(now, sight)) : std::nullopt;
+}
+
+}  // namespace fantascope::vision

@@ -1,0 +1,80 @@
+#include "vision/surroundings.h"
+
+#include "core/median.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fantascope::vision {
+namespace {
+
+constexpr int kPatch = 16;  // side of a patch, camera pixels
+constexpr std::size_t kLeastPatches = 8;
+constexpr double kDarkest = 1e-5;  // linear light
+constexpr int kUsualAfter = 2;     // pictures
+
+// The mean light of every patch of which most counts; negative: it does not count.
+std::vector<double> patchesOf(const GreyImage& seen, const GreyImage& mask) {
+    std::vector<double> patches;
+    for (int top = 0; top + kPatch <= seen.height(); top += kPatch)
+        for (int left = 0; left + kPatch <= seen.width(); left += kPatch) {
+            double sum = 0;
+            int count = 0;
+            for (int y = top; y < top + kPatch; ++y)
+                for (int x = left; x < left + kPatch; ++x)
+                    if (mask.at(x, y) > 0) sum += seen.at(x, y) < 0 ? 1 : seen.at(x, y), ++count;
+            patches.push_back(count == kPatch * kPatch ? sum / count : -1);
+        }
+    return patches;
+}
+
+}  // namespace
+
+bool Surroundings::isLearning() const { return pictures_ < kUsualAfter; }
+
+std::optional<SurroundingsLight> Surroundings::measure(const GreyImage& seen) {
+    const std::vector<double> now = patchesOf(seen, mask_);
+    if (pictures_ == 0) usual_ = now;
+    if (pictures_ < kUsualAfter) {
+        const double share = 1.0 / ++pictures_;
+        for (std::size_t i = 0; i < now.size(); ++i) usual_[i] += share * (now[i] - usual_[i]);
+        return std::nullopt;
+    }
+    std::vector<std::pair<double, double>> patches;  // usual, now
+    for (std::size_t i = 0; i < now.size(); ++i)
+        if (usual_[i] >= 0) patches.emplace_back(usual_[i], now[i]);
+    if (patches.size() < kLeastPatches) return std::nullopt;
+    // A straight line through most patches: now = gain x usual + veil. Patches that somebody hides,
+    // or a headlight lights, count less and less.
+    std::vector<double> ratios, differences;
+    for (const auto& [x, y] : patches) ratios.push_back(y / std::max(x, kDarkest)), differences.push_back(y - x);
+    const auto missOf = [&](const SurroundingsLight& guess) {
+        std::vector<double> left;
+        for (const auto& [x, y] : patches) left.push_back(std::abs(y - guess.gain * x - guess.veil));
+        return medianOf(left);
+    };
+    const SurroundingsLight changed{medianOf(ratios), 0}, veiled{1, medianOf(differences)};
+    SurroundingsLight light = missOf(changed) <= missOf(veiled) ? changed : veiled;
+    for (int turn = 0; turn < 5; ++turn) {
+        const double cut = 4.685 * 1.4826 * std::max(missOf(light), kDarkest);
+        double count = 0, x = 0, y = 0, xx = 0, xy = 0;
+        for (const auto& [usual, seen] : patches) {
+            const double share = (seen - light.gain * usual - light.veil) / cut, keep = std::max(0.0, 1 - share * share),
+                         weight = keep * keep;
+            count += weight;
+            x += weight * usual;
+            y += weight * seen;
+            xx += weight * usual * usual;
+            xy += weight * usual * seen;
+        }
+        const double mean = x / count, level = y / count;
+        // Where all patches are alike, a line says nothing, and the gain explains all.
+        const double spread = xx / count - mean * mean, flat = 0.001 * mean * mean + 1e-10;
+        light.gain = (xy / count - mean * level + flat * level / std::max(mean, kDarkest)) / (spread + flat);
+        light.veil = level - light.gain * mean;
+    }
+    return light;
+}
+
+}  // namespace fantascope::vision

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "media/image.h"
+
+#include <optional>
+#include <vector>
+
+namespace fantascope::vision {
+
+// What is seen around the pictures, compared with what is usual there.
+struct SurroundingsLight {
+    double gain = 1;  // of the light that is usual
+    double veil = 0;  // light that is added everywhere, linear
+};
+
+// Measures the light of all that the outputs do not light: sky, ground, walls beside the pictures.
+// It tells what lies before the camera from what lies on the wall. Thread: thread-bound.
+class Surroundings {
+public:
+    // `mask`: by camera pixel, 1 where no output gives light.
+    explicit Surroundings(const GreyImage& mask) : mask_(mask) {}
+
+    // `seen`: by camera pixel, linear light; negative where it is saturated. Nothing: there is too
+    // little to see around the pictures, or what is usual is not known yet.
+    std::optional<SurroundingsLight> measure(const GreyImage& seen);
+    bool isLearning() const;
+    // Other lamps change: what is seen from now on becomes usual.
+    void lampsChange() { pictures_ = 0; }
+
+private:
+    GreyImage mask_;
+    std::vector<double> usual_;  // by block; negative: it does not count
+    int pictures_ = 0;           // from which they were learned
+};
+
+}  // namespace fantascope::vision

@@ -1,0 +1,128 @@
+#include "vision/wall_causes.h"
+
+#include <algorithm>
+
+namespace fantascope::vision {
+namespace {
+
+constexpr double kNoPicture = 0.12;  // of the usual contrast: less is none
+constexpr double kWeak = 0.85, kStrong = 1.25;
+constexpr double kSaturated = 0.3;   // of the bright places
+constexpr double kBlurred = 0.9;     // cells
+constexpr double kAll = 0.85;        // of the picture: so much is as good as all of it
+constexpr double kSome = 0.1;        // and so little is hardly anything
+constexpr double kHidden = 0.08;     // of the picture: more is worth a look
+constexpr double kFlatLight = 0.08;  // of full light: what shines without a picture is some other source's
+constexpr double kAmbient = 0.012;   // of full light
+constexpr double kLitFog = 0.01;     // of full light, that fog adds for the light that it takes
+constexpr double kLighter = 1.15;    // times the surroundings' usual light
+constexpr double kVeil = 0.002;      // linear camera light
+
+// How one output's picture looks.
+enum class Look { Usual, Blurred, Weak, Strong, Dark, Foreign, Hidden, Passing };
+
+Look lookOf(const OutputLight& light) {
+    const bool isExplained = light.explained >= kAll;
+    if (light.saturated > kSaturated) return Look::Strong;
+    if (light.contrast < kNoPicture && isExplained) return light.otherLight < kFlatLight ? Look::Dark : Look::Foreign;
+    if (light.contrast > kStrong && light.asUsual < 0.5) return Look::Strong;
+    if (!isExplained && light.asUsual < kSome) return Look::Foreign;
+    if (light.hidden > kHidden && light.explained < 1 - kHidden) return Look::Hidden;
+    if (!isExplained) return Look::Passing;
+    if (light.blur > kBlurred) return Look::Blurred;
+    return light.contrast < kWeak ? Look::Weak : light.contrast > kStrong ? Look::Strong : Look::Usual;
+}
+
+// The outputs that were measured, and how they look.
+struct Looks {
+    const WallLight& light;
+    std::vector<std::size_t> outputs;
+    std::vector<Look> looks;
+
+    explicit Looks(const WallLight& measured) : light(measured) {
+        for (std::size_t i = 0; i < light.outputs.size(); ++i)
+            if (light.outputs[i]) outputs.push_back(i), looks.push_back(lookOf(*light.outputs[i]));
+    }
+    const OutputLight& of(std::size_t k) const { return *light.outputs[outputs[k]]; }
+    std::size_t count(Look look) const { return static_cast<std::size_t>(std::ranges::count(looks, look)); }
+    bool all(Look look) const { return !looks.empty() && count(look) == looks.size(); }
+    double mean(double OutputLight::*figure) const {
+        double sum = 0;
+        for (std::size_t k = 0; k < outputs.size(); ++k) sum += of(k).*figure;
+        return sum / static_cast<double>(outputs.size());
+    }
+    // A cause for each output that looks so.
+    void each(Look look, Cause cause, auto figure, std::vector<NamedCause>& causes) const {
+        for (std::size_t k = 0; k < outputs.size(); ++k)
+            if (looks[k] == look) causes.push_back({cause, outputs[k], figure(of(k))});
+    }
+};
+
+// All pictures are weak.
+void addWeak(const Looks& looks, std::vector<NamedCause>& causes) {
+    const double contrast = looks.mean(&OutputLight::contrast), lost = 1 - contrast;
+    const auto& around = looks.light.surroundings;
+    if (looks.looks.size() == 1 && looks.light.isSettling) return;  // it cannot be told yet
+    const bool isLighter = looks.mean(&OutputLight::otherLight) > kLitFog * lost || (around && around->veil > kVeil);
+    if (around && !isLighter && around->gain < 1 - 0.6 * lost)
+        causes.push_back({Cause::CameraExposure, {}, contrast});
+    else if (looks.looks.size() > 1 || isLighter)
+        causes.push_back({Cause::Fog, {}, contrast});
+    else
+        causes.push_back({Cause::DimLamp, looks.outputs[0], contrast});
+}
+
+void addBlurred(const Looks& looks, std::vector<NamedCause>& causes) {
+    std::size_t byCamera = 0;
+    for (std::size_t k = 0; k < looks.outputs.size(); ++k) byCamera += looks.of(k).isCameraBlurred ? 1 : 0;
+    if (looks.all(Look::Blurred) && (looks.looks.size() > 1 || byCamera > 0))
+        causes.push_back({Cause::CameraDirty, {}, looks.mean(&OutputLight::blur)});
+    else
+        looks.each(
+            Look::Blurred, Cause::OutOfFocus, [](const OutputLight& light) { return light.blur; }, causes);
+}
+
+// Other light lies over all pictures.
+void addOtherLight(const Looks& looks, std::vector<NamedCause>& causes) {
+    for (std::size_t k = 0; k < looks.outputs.size(); ++k)
+        if (looks.of(k).otherLight < kAmbient) return;
+    const auto& around = looks.light.surroundings;
+    const double other = looks.mean(&OutputLight::otherLight);
+    const bool isHaze = around && around->gain < kLighter && around->veil > kVeil;
+    causes.push_back({isHaze ? Cause::CameraDirty : Cause::AmbientLight, {}, other});
+}
+
+}  // namespace
+
+std::vector<NamedCause> causesOf(const WallLight& light) {
+    const Looks looks(light);
+    std::vector<NamedCause> causes;
+    if (looks.looks.empty()) return causes;
+    const auto& around = light.surroundings;
+    const bool isOne = looks.looks.size() == 1;
+    if (const std::size_t hidden = looks.count(Look::Hidden); hidden > 0) {
+        looks.each(
+            Look::Hidden, Cause::BlockedView, [](const OutputLight& of) { return of.hidden; }, causes);
+        if (hidden > 1) causes = {{Cause::BlockedView, {}, looks.mean(&OutputLight::hidden)}};
+        return causes;
+    }
+    if (looks.all(Look::Dark) && (!isOne || (around && around->gain < 0.3))) return {{Cause::CameraBlind, {}, 0}};
+    if (looks.all(Look::Foreign) && !isOne) return {{Cause::CameraElsewhere, {}, 0}};
+    // What passes before one picture, or comes to stay, may be all that is before another.
+    if (looks.count(Look::Passing) > 0) return causes;
+    looks.each(
+        Look::Dark, Cause::DeadOutput, [](const OutputLight& of) { return of.contrast; }, causes);
+    looks.each(
+        Look::Foreign, Cause::WrongInput, [](const OutputLight& of) { return of.contrast; }, causes);
+    if (looks.all(Look::Strong)) return {{Cause::CameraExposure, {}, looks.mean(&OutputLight::contrast)}};
+    if (looks.all(Look::Weak))
+        addWeak(looks, causes);
+    else
+        looks.each(
+            Look::Weak, Cause::DimLamp, [](const OutputLight& of) { return of.contrast; }, causes);
+    addBlurred(looks, causes);
+    if (looks.all(Look::Usual)) addOtherLight(looks, causes);
+    return causes;
+}
+
+}  // namespace fantascope::vision

@@ -1,0 +1,51 @@
+#pragma once
+// A night at a site that a seed draws: projectors and a camera before a textured wall, a show of
+// moving leaves, lamps that change with the cues, people who walk by, and one fault.
+
+#include "app/watch/drift_watch.h"
+
+#include "show/site/site.h"
+
+#include "core/random.h"
+
+#include <glm/vec2.hpp>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace fantascope::app {
+
+struct NightOptions {
+    std::uint64_t seed = 1;
+    std::string fault;                  // a kind of drawnFaults(), drawn; empty: none
+    std::vector<std::string> script{};  // faults as in a site file, with the output NAME for the first output
+    int outputs = 0;                    // 0: drawn
+    glm::ivec2 camera{640, 360};        // pixels
+    double faultAt = 14;                // seconds; it happens within the length of a cue after that
+    double length = 34;                 // seconds
+    bool isSurveyed = true;             // the site was calibrated
+    double latency = 0.1;               // of the camera, seconds
+    std::string geometry = "advise";    // the mode of `corrections`
+};
+
+// A kind of fault, and what it should be called.
+struct DrawnFault {
+    std::string kind;
+    std::string cause;  // as in the report
+    bool ofOutput = false;
+};
+const std::vector<DrawnFault>& drawnFaults();
+
+struct NightResult {
+    std::vector<std::string> outputs;
+    std::string output;  // that the fault concerns; empty: all
+    std::string drawn;   // the fault as it was drawn, for people
+    std::vector<CauseReport> causes;
+    std::map<std::string, std::vector<DriftReport>> drifts;
+};
+
+// Plays a night in simulation, as fast as possible.
+NightResult playNight(const NightOptions& options);
+
+}  // namespace fantascope::app

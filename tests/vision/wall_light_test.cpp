@@ -1,0 +1,199 @@
+// How strong and sharp a picture on the wall is, and what other light there is, while a show runs.
+
+#include "vision/wall_watch.h"
+#include "vision/watched_wall.h"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+
+namespace fantascope::vision {
+namespace {
+
+// A brick wall, a show of leaves on it, and the watch.
+struct Night {
+    ProjectedWall wall = brickWall();
+    WallWatch watch{{watchedOn(wall)}, wall.camera.size};
+    Rng rng{21};
+    std::uint64_t pictures = 0;
+
+    // Measures one picture. `defocus`: of the projector, its pixels. `disturb` changes what the
+    // camera sees.
+    WallLight measure(double defocus = 0, const std::function<void(GreyImage&)>& disturb = {}) {
+        const RgbaImage shown = leaves(wall.projector.size, 160, 300 + ++pictures);
+        GreyImage seen = wall.seen(defocus > 0 ? blurredFrame(shown, defocus) : shown, rng);
+        if (disturb) disturb(seen);
+        const GreyImage light = watch.lightOf(0, shown);
+        watch.look(storedOf(seen), {&light});
+        return watch.measureLight();
+    }
+    OutputLight output(double defocus = 0, const std::function<void(GreyImage&)>& disturb = {}) {
+        const WallLight light = measure(defocus, disturb);
+        EXPECT_TRUE(light.outputs[0]);
+        return light.outputs[0].value_or(OutputLight{});
+    }
+    // Until it is known what is usual.
+    void begin() {
+        for (int i = 0; i < 8; ++i) measure();
+    }
+    RgbaImage blurredFrame(const RgbaImage& frame, double sigma) const {
+        GreyImage light(frame.width(), frame.height());
+        for (std::size_t i = 0; i < light.pixels().size(); ++i)
+            light.pixels()[i] = static_cast<float>(std::pow(frame.pixels()[i].r / 255.0, wall.gamma));
+        light = blurred(light, sigma);
+        RgbaImage soft(frame.width(), frame.height());
+        for (std::size_t i = 0; i < light.pixels().size(); ++i) {
+            const auto stored = static_cast<std::uint8_t>(std::lround(255 * std::pow(light.pixels()[i], 1 / wall.gamma)));
+            soft.pixels()[i] = {stored, stored, stored, 255};
+        }
+        return soft;
+    }
+};
+
+TEST(WallLight, is_as_usual_while_nothing_changes) {
+    Night night;
+    EXPECT_FALSE(night.measure().outputs[0]) << "it is not known yet what is usual";
+    night.begin();
+    for (int i = 0; i < 4; ++i) {
+        const OutputLight light = night.output();
+        EXPECT_NEAR(light.contrast, 1, 0.05);
+        EXPECT_LT(light.blur, 0.4);
+        EXPECT_NEAR(light.otherLight, 0, 0.005);
+        EXPECT_GT(light.asUsual, 0.95);
+        EXPECT_LT(light.hidden, 0.02);
+    }
+}
+
+TEST(WallLight, tells_how_strong_the_picture_is) {
+    Night night;
+    night.begin();
+    for (const double share : {0.8, 0.5, 0.2}) {
+        night.wall.strength = share * brickWall().strength;
+        const OutputLight light = night.output();
+        EXPECT_NEAR(light.contrast, share, 0.04);
+        EXPECT_LT(light.blur, 0.5) << share;
+        EXPECT_GT(light.explained, 0.95);
+    }
+    night.wall.strength = 0;
+    EXPECT_LT(night.output().contrast, 0.05);
+    EXPECT_LT(night.output().asUsual, 0.05);
+    EXPECT_GT(night.output().explained, 0.95) << "nothing is there, and nothing else";
+}
+
+// The camera has 480 pixels for about 700 of the projector.
+TEST(WallLight, tells_how_sharp_the_picture_is) {
+    Night night;
+    night.begin();
+    double before = 0;
+    for (const double defocus : {4.0, 7.0, 11.0}) {
+        const OutputLight light = night.output(defocus);
+        EXPECT_GT(light.blur, before + 1) << defocus;
+        EXPECT_NEAR(light.contrast, 1, 0.25) << defocus;
+        EXPECT_FALSE(light.isCameraBlurred) << defocus;
+        before = light.blur;
+    }
+}
+
+TEST(WallLight, sees_by_the_surface_whether_the_camera_blurs) {
+    Night night;
+    night.begin();
+    night.wall.blur = 3;
+    const OutputLight light = night.output();
+    EXPECT_GT(light.blur, 1.5);
+    EXPECT_TRUE(light.isCameraBlurred);
+}
+
+TEST(WallLight, tells_other_light_and_forgets_that_of_known_lamps) {
+    Night night;
+    night.begin();
+    const double before = night.wall.ambient;
+    night.wall.ambient = before + 0.04 * night.wall.strength;
+    EXPECT_NEAR(night.output().otherLight, 0.04, 0.008);
+    EXPECT_NEAR(night.output().contrast, 1, 0.05);
+    // A lamp of the show: what was there before it stays told.
+    night.watch.lampsChange();
+    night.wall.ambient = before + 0.10 * night.wall.strength;
+    for (int i = 0; i < 4; ++i) EXPECT_NEAR(night.output().otherLight, 0.04, 0.01);
+    night.wall.ambient = before + 0.06 * night.wall.strength;
+    EXPECT_NEAR(night.output().otherLight, 0, 0.01);
+}
+
+// Example failure: whoever passes counts as hiding the picture, or what hangs there does not.
+TEST(WallLight, tells_what_hides_a_part_for_long) {
+    Night night;
+    night.begin();
+    const auto cover = [](int left) {
+        return [left](GreyImage& seen) {
+            for (int y = 0; y < seen.height(); ++y)
+                for (int x = left; x < std::min(left + 90, seen.width()); ++x) seen.at(x, y) = 0.01f;
+        };
+    };
+    for (int i = 0; i < 8; ++i) {
+        const OutputLight light = night.output(0, cover(60 * i));
+        EXPECT_LT(light.hidden, 0.02) << "somebody passes";
+    }
+    OutputLight light;
+    for (int i = 0; i < 8; ++i) light = night.output(0, cover(200));
+    EXPECT_GT(light.hidden, 0.1);
+    EXPECT_LT(light.hidden, 0.5);
+    EXPECT_NEAR(light.contrast, 1, 0.08);
+    EXPECT_NEAR(light.asUsual, 1 - light.hidden, 0.1);
+}
+
+TEST(WallLight, tells_another_picture_from_none) {
+    Night night;
+    night.begin();
+    const RgbaImage other = leaves(night.wall.projector.size, 160, 999);
+    const OutputLight light = [&] {
+        const RgbaImage shown = leaves(night.wall.projector.size, 160, 500);
+        const GreyImage expected = night.watch.lightOf(0, shown);
+        night.watch.look(storedOf(night.wall.seen(other, night.rng)), {&expected});
+        return night.watch.measureLight().outputs[0].value_or(OutputLight{});
+    }();
+    EXPECT_LT(light.contrast, 0.2);
+    EXPECT_LT(light.explained, 0.6);
+}
+
+TEST(WallLight, sees_that_the_picture_is_upside_down) {
+    Night night;
+    night.begin();
+    EXPECT_FALSE(night.watch.isUpsideDown());
+    night.measure(0, [](GreyImage& seen) { std::ranges::reverse(seen.pixels()); });
+    EXPECT_TRUE(night.watch.isUpsideDown());
+    night.measure(0, [](GreyImage& seen) { std::ranges::fill(seen.pixels(), 0.01f); });
+    EXPECT_FALSE(night.watch.isUpsideDown());
+}
+
+TEST(Surroundings, tell_a_veil_from_a_change_of_all_light) {
+    GreyImage mask(320, 160, 1), usual(320, 160);
+    for (int y = 0; y < usual.height(); ++y)
+        for (int x = 0; x < usual.width(); ++x) {
+            usual.at(x, y) = 0.01f + 0.02f * static_cast<float>(x) / 320;
+            if (x < 100) mask.at(x, y) = 0;
+        }
+    const auto after = [&](const std::function<float(float)>& change) {
+        Surroundings surroundings(mask);
+        while (surroundings.isLearning()) EXPECT_FALSE(surroundings.measure(usual));
+        GreyImage now = usual;
+        for (int y = 0; y < now.height(); ++y)
+            for (int x = 0; x < now.width(); ++x) {
+                now.at(x, y) = change(now.at(x, y));
+                if (x < 100) now.at(x, y) = 1;                // a picture
+                if (x > 150 && x < 200) now.at(x, y) = 0.3f;  // a headlight
+            }
+        return *surroundings.measure(now);
+    };
+    const SurroundingsLight same = after([](float light) { return light; }),
+                            brighter = after([](float light) { return 3 * light; }),
+                            hazy = after([](float light) { return light + 0.02f; });
+    EXPECT_NEAR(same.gain, 1, 0.01);
+    EXPECT_NEAR(same.veil, 0, 0.0002);
+    EXPECT_NEAR(brighter.gain, 3, 0.05);
+    EXPECT_NEAR(brighter.veil, 0, 0.002);
+    EXPECT_NEAR(hazy.gain, 1, 0.05);
+    EXPECT_NEAR(hazy.veil, 0.02, 0.002);
+    EXPECT_FALSE(Surroundings(GreyImage(320, 160, 0)).measure(usual));
+}
+
+}  // namespace
+}  // namespace fantascope::vision
