@@ -53,18 +53,38 @@ Axis axisAround(std::span<const double> values, std::string label) {
     return {low < 0 ? low - room : 0, high > 0 ? high + room : 0, std::move(label)};
 }
 
+std::vector<glm::dvec2> thinned(std::span<const glm::dvec2> points, double from, double to, int columns) {
+    const auto columnOf = [&](glm::dvec2 point) { return std::floor((point.x - from) / (to - from) * columns); };
+    const auto lower = [](glm::dvec2 a, glm::dvec2 b) { return a.y < b.y; };
+    std::vector<glm::dvec2> kept;
+    for (std::size_t first = 0, end = 0; first < points.size(); first = end) {
+        while (end < points.size() && columnOf(points[end]) == columnOf(points[first])) ++end;
+        const auto column = points.subspan(first, end - first);
+        const auto [lowest, highest] = std::minmax_element(column.begin(), column.end(), lower);
+        const auto [one, other] = std::minmax(lowest, highest);
+        auto last = column.end();
+        for (const auto point : {column.begin(), one, other, column.end() - 1})
+            if (point != last) kept.push_back(*point), last = point;
+    }
+    return kept;
+}
+
 Chart::Chart(Page& page, glm::dvec2 topLeft, glm::dvec2 bottomRight, Axis x, Axis y)
     : page_(page), topLeft_(topLeft), bottomRight_(bottomRight), x_(std::move(x)), y_(std::move(y)) {
     const glm::dvec2 size = bottomRight - topLeft;
-    for (const double tick : ticks(x_, std::max(2, static_cast<int>(size.x / 80)))) {
+    const auto ticksOf = [](const Axis& axis, double points) {
+        return axis.marks == Axis::Marks::None ? std::vector<double>() : ticks(axis, std::max(2, static_cast<int>(points)));
+    };
+    for (const double tick : ticksOf(x_, size.x / 80)) {
         const double at = topLeft.x + along(x_, tick) * size.x;
         page.line({at, topLeft.y}, {at, bottomRight.y}, kGrid);
-        page.text(fmt::format("{:.4g}", tick), {at, bottomRight.y + kText}, kText, Anchor::Middle);
+        if (x_.marks == Axis::Marks::Numbers)
+            page.text(fmt::format("{:.4g}", tick), {at, bottomRight.y + kText}, kText, Anchor::Middle);
     }
-    for (const double tick : ticks(y_, std::max(2, static_cast<int>(size.y / 40)))) {
+    for (const double tick : ticksOf(y_, size.y / 40)) {
         const double at = bottomRight.y - along(y_, tick) * size.y;
         page.line({topLeft.x, at}, {bottomRight.x, at}, kGrid);
-        page.text(labelOf(y_, tick), {topLeft.x - 6, at}, kText, Anchor::Right);
+        if (y_.marks == Axis::Marks::Numbers) page.text(labelOf(y_, tick), {topLeft.x - 6, at}, kText, Anchor::Right);
     }
     page.frame(topLeft, bottomRight, kFrame);
     page.text(x_.label, {(topLeft.x + bottomRight.x) / 2, bottomRight.y + 2.4 * kText}, kText, Anchor::Middle);
@@ -88,6 +108,27 @@ void Chart::discs(std::span<const glm::dvec2> points, double radius, glm::dvec3 
     page_.clip(topLeft_, bottomRight_);
     for (const glm::dvec2 point : points) page_.disc(onPage(point), radius, colour);
     page_.endClip();
+}
+
+void Chart::box(glm::dvec2 low, glm::dvec2 high, glm::dvec3 colour) {
+    const glm::dvec2 a = onPage(low), b = onPage(high);
+    page_.clip(topLeft_, bottomRight_);
+    page_.box({a.x, b.y}, {b.x, a.y}, colour);
+    page_.endClip();
+}
+
+void Chart::area(std::span<const glm::dvec2> outline, glm::dvec3 colour, double opacity) {
+    std::vector<glm::dvec2> placed;
+    for (const glm::dvec2 point : outline) placed.push_back(onPage(point));
+    page_.clip(topLeft_, bottomRight_);
+    page_.area(placed, colour, opacity);
+    page_.endClip();
+}
+
+void Chart::note(std::string_view text, glm::dvec2 at) {
+    const glm::dvec2 begin = onPage(at) + glm::dvec2(kText / 2, 0);
+    page_.cover(begin - glm::dvec2(2, 0.7 * kText), begin + glm::dvec2(page_.textWidth(text, kText) + 2, 0.7 * kText), 0.9);
+    page_.text(text, begin, kText, Anchor::Left);
 }
 
 void Chart::title(std::string_view text) { page_.text(text, {topLeft_.x, topLeft_.y - kText}, kText + 2, Anchor::Left); }

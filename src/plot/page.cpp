@@ -1,12 +1,14 @@
 #include "plot/page.h"
 
 #include "core/file.h"
+#include "core/text.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <numbers>
 #include <vector>
@@ -96,6 +98,14 @@ void Page::box(glm::dvec2 topLeft, glm::dvec2 bottomRight, glm::dvec3 colour) {
     cairo_fill(context);
 }
 
+void Page::area(std::span<const glm::dvec2> outline, glm::dvec3 colour, double opacity) {
+    cairo_t* const context = cairo_->context.get();
+    cairo_set_source_rgba(context, colour.r, colour.g, colour.b, opacity);
+    cairo_new_path(context);
+    for (const glm::dvec2 point : outline) cairo_line_to(context, point.x, point.y);
+    cairo_fill(context);
+}
+
 void Page::picture(const RgbaImage& picture, glm::dvec2 topLeft, glm::dvec2 bottomRight) {
     const CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, picture.width(), picture.height()));
     cairo_surface_flush(surface.get());
@@ -139,6 +149,18 @@ double Page::textWidth(std::string_view text, double size) const {
     cairo_set_font_size(cairo_->context.get(), size);
     cairo_text_extents(cairo_->context.get(), std::string(text).c_str(), &extents);
     return extents.x_advance;
+}
+
+std::string Page::shortened(std::string_view text, double size, double width) const {
+    if (textWidth(text, size) <= width) return std::string(text);
+    std::string kept;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t length = std::max<std::size_t>(1, utf8Length(text, at));
+        const std::string more = kept + std::string(text.substr(at, length));
+        if (textWidth(more + "...", size) > width) break;
+        kept = more, at += length;
+    }
+    return kept + "...";
 }
 
 void Page::text(std::string_view text, glm::dvec2 at, double size, Anchor anchor, bool upwards) {

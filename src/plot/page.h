@@ -40,6 +40,8 @@ public:
     void frame(glm::dvec2 topLeft, glm::dvec2 bottomRight, const Stroke& stroke);
     void disc(glm::dvec2 centre, double radius, glm::dvec3 colour);
     void box(glm::dvec2 topLeft, glm::dvec2 bottomRight, glm::dvec3 colour);
+    // Fills a polygon.
+    void area(std::span<const glm::dvec2> outline, glm::dvec3 colour, double opacity);
     void picture(const RgbaImage& picture, glm::dvec2 topLeft, glm::dvec2 bottomRight);
     void cover(glm::dvec2 topLeft, glm::dvec2 bottomRight, double opacity);  // with white
     // Draws everything that is on another page.
@@ -48,6 +50,8 @@ public:
     // upwards.
     void text(std::string_view text, glm::dvec2 at, double size, Anchor anchor, bool upwards = false);
     double textWidth(std::string_view text, double size) const;  // points
+    // The text, or as much of its beginning as is no wider than `width`, with "..." at its end.
+    std::string shortened(std::string_view text, double size, double width) const;
 
     // Clips everything drawn until endClip() to the rectangle.
     void clip(glm::dvec2 topLeft, glm::dvec2 bottomRight);

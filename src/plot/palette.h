@@ -7,9 +7,9 @@
 
 namespace fantascope::plot {
 
-// An actor's colour in all pictures, sRGB 0..1. Colours repeat after the eighth. After Okabe & Ito
-// 2008, whose colours colour-blind people can distinguish; brown replaces black, which is used for
-// shadow and outline.
+// An actor's colour in all pictures, and an output's in the figure of a night; sRGB 0..1. Colours
+// repeat after the eighth. After Okabe & Ito 2008, whose colours colour-blind people can
+// distinguish; brown replaces black, which is used for shadow and outline.
 inline glm::dvec3 actorColour(std::size_t actor) {
     constexpr std::array<std::array<int, 3>, 8> kColours{{{230, 159, 0},
                                                           {86, 180, 233},

@@ -1,5 +1,6 @@
 #include "app/base/report.h"
 #include "app/command/commands.h"
+#include "app/command/night_report.h"
 #include "app/export/cast_scene.h"
 
 #include "pattern/shape/shape_pattern.h"
@@ -24,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Subject { Pattern, Report, Cast };
-enum class Figure { Difference, Trajectories, Spectrum, Search, Cast, Stage, Side, Shadow, Actors };
+enum class Subject { Pattern, Search, Night, Cast };
+enum class Figure { Difference, Trajectories, Spectrum, Search, Night, Cast, Stage, Side, Shadow, Actors };
 
 struct Entry {
     std::string_view name;
@@ -36,17 +37,54 @@ struct Entry {
 constexpr Entry kFigures[] = {{"difference", Figure::Difference, Subject::Pattern},
                               {"trajectories", Figure::Trajectories, Subject::Pattern},
                               {"spectrum", Figure::Spectrum, Subject::Pattern},
-                              {"search", Figure::Search, Subject::Report},
+                              {"search", Figure::Search, Subject::Search},
+                              {"night", Figure::Night, Subject::Night},
                               {"cast", Figure::Cast, Subject::Cast},
                               {"stage", Figure::Stage, Subject::Cast},
                               {"side", Figure::Side, Subject::Cast},
                               {"shadow", Figure::Shadow, Subject::Cast},
                               {"actors", Figure::Actors, Subject::Cast}};
 
-Subject subjectOf(const fs::path& input) {
-    return input.extension() == ".json"                        ? Subject::Report
-           : input.filename().string().ends_with(".cast.yaml") ? Subject::Cast
-                                                               : Subject::Pattern;
+// What it is, and which command makes it.
+struct SubjectName {
+    std::string_view what, made;
+};
+SubjectName nameOf(Subject subject) {
+    switch (subject) {
+        case Subject::Search:
+            return {"the report of a search", "'fantascope pattern' with --report FILE.json"};
+        case Subject::Night:
+            return {"the report of a run", "'fantascope run' or 'fantascope rehearse' with --report FILE.json"};
+        case Subject::Cast:
+            return {"a cast, *.cast.yaml", "'fantascope pose'"};
+        default:
+            return {"a pattern, *.pattern.yaml", "'fantascope pattern'"};
+    }
+}
+
+std::string figuresOf(Subject subject) {
+    std::string names;
+    for (const Entry& entry : kFigures)
+        if (entry.of == subject) names += fmt::format("{}{}", names.empty() ? "" : ", ", entry.name);
+    return names;
+}
+
+// A file to draw. `report`: what a *.json holds.
+struct Input {
+    fs::path file;
+    Subject subject;
+    Report report;
+};
+
+Result<Input> readInput(const fs::path& file) {
+    if (file.filename().string().ends_with(".cast.yaml")) return Input{file, Subject::Cast, {}};
+    if (file.extension() != ".json") return Input{file, Subject::Pattern, {}};
+    Report report = parseJson(TRY(readFile(file)));
+    const bool isSearch = report.is_object() && report.contains("history");
+    if (!isSearch && !isNight(report))
+        return Error(fmt::format("{}: plot draws reports of searches ({}) and of runs ({}), and this is neither", file.string(),
+                                 nameOf(Subject::Search).made, nameOf(Subject::Night).made));
+    return Input{file, isSearch ? Subject::Search : Subject::Night, std::move(report)};
 }
 
 struct Options {
@@ -60,34 +98,45 @@ std::string onlyPlot(const std::string& file) {
 }
 
 void declare(Command& command, Options& options) {
-    command.add("INPUT", options.input, "A pattern, *.pattern.yaml, the report of its search, *.json, or a cast, *.cast.yaml")
+    command
+        .add("INPUT", options.input,
+             "A pattern, *.pattern.yaml; the report of its search or of a run, *.json; or a cast, *.cast.yaml")
         .required();
     addOutOption(command, options.output, "The picture to write, PNG or SVG").required().check({onlyPlot, "PNG|SVG"});
     std::vector<std::pair<std::string, Figure>> figures;
     for (const Entry& entry : kFigures) figures.emplace_back(entry.name, entry.figure);
     command.addChoice<Figure>(
         "--figure", options.figure, figures,
-        "For a pattern: difference (from its guide, the default), trajectories or spectrum (of its movement). For a report: "
-        "search (z over the iterations). For a cast: cast (stage, shadow and actors, the default), stage (from behind the "
+        "For a pattern: difference (from its guide, the default), trajectories or spectrum (of its movement). For the report of "
+        "a search: search (z over the iterations). For the report of a run: night (the camera's scores over the time, and what "
+        "went wrong). For a cast: cast (stage, shadow and actors, the default), stage (from behind the "
         "lamp), side (from the side), shadow (by actor) or actors (each actor's shadow)");
     command.add("--frame", options.frame, "For a cast that moves: the frame, counted from 0").showDefault();
 }
 
-Result<plot::SearchHistory> readHistory(const fs::path& file) {
-    const Report report = parseJson(TRY(readFile(file)));
+Error damaged(const Input& input) {
+    const auto [what, made] = nameOf(input.subject);
+    return Error(fmt::format("{}: is damaged, or is not {}; make one by {}", input.file.string(), what, made));
+}
+
+Result<plot::SearchHistory> historyOf(const Input& input) {
     try {
-        const auto& history = report.at("history");
-        const plot::SearchHistory read{.method = report.at("method"),
+        const auto& history = input.report.at("history");
+        const plot::SearchHistory read{.method = input.report.at("method"),
                                        .zMin = history.at("z_min"),
                                        .zMax = history.at("z_max"),
                                        .accepted = history.at("accepted"),
-                                       .zBound = report.at("z_bound")};
+                                       .zBound = input.report.at("z_bound")};
         if (read.zMin.size() == read.zMax.size() && read.zMin.size() == read.accepted.size()) return read;
     } catch (const nlohmann::json::exception&) {  // a key is missing or has another type
     }
-    return Error(
-        fmt::format("{}: is not a report of a search; make one with 'fantascope pattern GUIDE -o P.pattern.yaml --report {}'",
-                    file.string(), file.filename().string()));
+    return damaged(input);
+}
+
+Result<plot::Page> drawNight(const Input& input) {
+    const auto night = nightOf(input.report);
+    if (!night) return damaged(input);
+    return plot::nightFigure(*night);
 }
 
 Result<plot::Page> drawPattern(const fs::path& file, Figure figure) {
@@ -113,19 +162,19 @@ Result<plot::Page> drawCast(const fs::path& file, std::size_t frame, Figure figu
 }
 
 Result<plot::Page> draw(const Options& options) {
-    const Subject subject = subjectOf(options.input);
-    const auto ofSubject = [&](const Entry& entry) { return entry.of == subject; };
+    const Input input = TRY(readInput(options.input));
+    const auto ofSubject = [&](const Entry& entry) { return entry.of == input.subject; };
     const Figure figure = options.figure.value_or(std::find_if(std::begin(kFigures), std::end(kFigures), ofSubject)->figure);
     const Entry& entry =
         *std::find_if(std::begin(kFigures), std::end(kFigures), [&](const Entry& e) { return e.figure == figure; });
-    if (entry.of != subject)
-        return Error(fmt::format("{}: --figure {} needs {}", options.input.string(), entry.name,
-                                 entry.of == Subject::Pattern  ? "a pattern, *.pattern.yaml"
-                                 : entry.of == Subject::Report ? "the report of a search, *.json"
-                                                               : "a cast, *.cast.yaml"));
-    if (subject == Subject::Report) return plot::searchFigure(TRY(readHistory(options.input)));
-    if (subject == Subject::Cast) return drawCast(options.input, options.frame, figure);
-    return drawPattern(options.input, figure);
+    if (entry.of != input.subject)
+        return Error(fmt::format("{}: is {}, whose figures are: {}; --figure {} needs {}, made by {}", input.file.string(),
+                                 nameOf(input.subject).what, figuresOf(input.subject), entry.name, nameOf(entry.of).what,
+                                 nameOf(entry.of).made));
+    if (input.subject == Subject::Search) return plot::searchFigure(TRY(historyOf(input)));
+    if (input.subject == Subject::Night) return drawNight(input);
+    if (input.subject == Subject::Cast) return drawCast(input.file, options.frame, figure);
+    return drawPattern(input.file, figure);
 }
 
 Result<void> run(const Options& options) {
@@ -136,7 +185,7 @@ Result<void> run(const Options& options) {
 }  // namespace
 
 void addPlotCommand(Program& program) {
-    addCommand<Options>(program, "plot", "Draw a pattern, its search, its movement, or a cast as a figure", declare, run);
+    addCommand<Options>(program, "plot", "Draw a pattern, its search, its movement, a run, or a cast as a figure", declare, run);
 }
 
 }  // namespace fantascope::app

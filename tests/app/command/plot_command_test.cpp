@@ -5,6 +5,7 @@
 #include "program.h"
 #include "scratch_folder.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace fantascope {
@@ -73,13 +74,44 @@ TEST_F(PlotCommand, draws_a_cast) {
     EXPECT_THAT(run({"plot", "p.pattern.yaml", "--figure", "stage", "-o", "x.png"}).errors, HasSubstr("needs a cast"));
 }
 
+TEST_F(PlotCommand, draws_the_report_of_a_run) {
+    const std::string cues = R"("seconds": 10, "frames": 300, "late_frames": 0, "cues": [{"name": "Full", "entered": 1}])";
+    const std::string scores = R"("z_camera": {"left": [[1, 0.1], [2, null], [3, 0.1]]}, "tone_camera": {"left": []})";
+    const std::string watch = R"("watch": {"left": [{"at": 1, "drift_px": null, "sigma_px": null, "moved_px": 0},
+                                                    {"at": 2, "drift_px": 3, "sigma_px": null, "moved_px": 0}]})";
+    const std::string causes = R"("causes": [{"output": "left", "from": 2, "to": null, "cause": "out of place"}])";
+    const std::string faults = R"("faults": [{"at": 3, "what": "unplugged", "device": "camera"}])";
+    EXPECT_TRUE(writeFile(folder_ / "r.json", fmt::format("{{{}, {}, {}, {}, {}}}", cues, scores, watch, causes, faults)));
+    EXPECT_TRUE(writeFile(folder_ / "blind.json", fmt::format("{{{}, {}}}", cues, faults)));
+    EXPECT_THAT(run({"plot", "r.json", "-o", "r.png"}), exits(0));
+    EXPECT_THAT(run({"plot", "r.json", "--figure", "night", "-o", "night.png"}), exits(0));
+    EXPECT_THAT(run({"plot", "blind.json", "-o", "blind.png"}), exits(0));
+    EXPECT_EQ(readFile(folder_ / "r.png").value(), readFile(folder_ / "night.png").value());
+    const auto height = [&](const std::string& picture) { return readRgba(folder_ / picture).value().height(); };
+    EXPECT_GT(height("r.png"), height("blind.png") + 300) << "z and drift, but no tone";
+
+    EXPECT_THAT(
+        run({"plot", "r.json", "--figure", "search", "-o", "x.png"}).errors,
+        HasSubstr("r.json: is the report of a run, whose figures are: night; --figure search needs the report of a search, "
+                  "made by 'fantascope pattern' with --report"));
+    EXPECT_THAT(run({"plot", "p.json", "--figure", "night", "-o", "x.png"}).errors,
+                HasSubstr("--figure night needs the report of a run"));
+    EXPECT_TRUE(writeFile(folder_ / "damaged.json", R"({"cues": [], "faults": [{"at": "late", "what": "unplugged"}]})"));
+    EXPECT_THAT(run({"plot", "damaged.json", "-o", "x.png"}).errors,
+                HasSubstr("damaged.json: is damaged, or is not the report of a run"));
+}
+
 TEST_F(PlotCommand, says_what_it_cannot_draw) {
-    EXPECT_TRUE(writeFile(folder_ / "other.json", "{\"history\": 3}"));
+    EXPECT_TRUE(writeFile(folder_ / "damaged.json", "{\"history\": 3}"));
+    EXPECT_THAT(run({"plot", "damaged.json", "-o", "x.png"}).errors,
+                HasSubstr("damaged.json: is damaged, or is not the report of a search"));
+    EXPECT_TRUE(writeFile(folder_ / "other.json", "{\"rms_px\": 3}"));
     EXPECT_TRUE(writeFile(folder_ / "broken.json", "{"));
     for (const char* file : {"other.json", "broken.json"}) {
         const Outcome refused = run({"plot", file, "-o", "x.png"});
         EXPECT_THAT(refused, exits(1));
-        EXPECT_THAT(refused.errors, HasSubstr(std::string(file) + ": is not a report of a search"));
+        EXPECT_THAT(refused.errors,
+                    HasSubstr(std::string(file) + ": plot draws reports of searches ('fantascope pattern' with --report"));
     }
     EXPECT_THAT(run({"plot", "p.json", "--figure", "spectrum", "-o", "x.png"}).errors, HasSubstr("needs a pattern"));
     EXPECT_THAT(run({"plot", "p.pattern.yaml", "--figure", "search", "-o", "x.png"}).errors, HasSubstr("needs the report"));
