@@ -163,7 +163,10 @@ Result<void> Recording::finish() {
         }
         for (TableFile* const table : {&framesTable_, &dmx_, &relays_}) note(table->finish());
         std::vector<LabelledPicture> pictures;
-        for (const auto& [index, labelled] : cues_) pictures.push_back({labelled.first, labelled.second});
+        for (const auto& [index, labelled] : cues_) {
+            note(writePng(target_ / fmt::format("camera-{}.png", index + 1), labelled.second));
+            pictures.push_back({labelled.first, labelled.second});
+        }
         if (!pictures.empty()) note(writePng(target_ / "contact-sheet.png", contactSheet(pictures)));
     }
     if (!refusals.empty()) return Error(refusals);

@@ -31,7 +31,8 @@ namespace fantascope::app {
 //   frames.csv         refresh, show time, output and the hash of each recorded frame's pixels
 //   dmx.csv            show time, universe and slots of each frame sent to the fixtures
 //   relays.csv         show time, bank and states of each write to relays
-//   contact-sheet.png  the site as the camera saw it at the end of each cue
+//   camera-N.png       the site as the camera saw it at the end of cue N
+//   contact-sheet.png  the same of all cues, with their names
 // The videos end with the show. dmx.csv and relays.csv also hold the fade to the end levels and the
 // safe states. If the target is a file that ends in .mp4, the recording is one video with the
 // outputs side by side.
@@ -63,7 +64,8 @@ public:
     // Writes the tables' lines since the last call. Only this call and finish() wait for the disk
     // with tables. Errors: why a table ends here, once for each table.
     std::vector<Error> writeTables();
-    // Takes a camera picture of a cue. The last picture of each cue goes onto the contact sheet.
+    // Takes a camera picture of a cue, counted from 0. finish() writes the last picture of each
+    // cue.
     void cue(int index, const std::string& label, const RgbaImage& picture);
 
     // Finishes all files. Error: what could not be written; the rest is complete.

@@ -75,6 +75,7 @@ TEST_F(RecordingTest, leaves_a_video_an_output_the_traces_and_the_contact_sheet)
     const auto sheet = readRgba(folder_ / "contact-sheet.png");
     ASSERT_TRUE(sheet);
     EXPECT_EQ(sheet->at(20, 20), (Rgba8{200, 100, 50, 255}));
+    EXPECT_EQ(readRgba(folder_ / "camera-2.png").value(), RgbaImage(32, 18, {200, 100, 50, 255}));
     for (const auto& entry : fs::directory_iterator(folder_)) EXPECT_NE(entry.path().extension(), ".part") << entry.path();
 }
 
