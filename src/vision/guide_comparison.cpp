@@ -116,6 +116,15 @@ struct Measure {
     Eigen::MatrixXf backgroundOf;  // terms x cells: how much of each term is in the low-passed light
 };
 
+// Linear light of every cell, by channel.
+using CellLight = std::array<std::vector<float>, 3>;
+
+// How what is seen compares with what is wanted: 1 is white.
+struct Comparison {
+    Exposure exposure;
+    std::vector<double> difference;  // of every cell: seen - wanted
+};
+
 struct GuideComparison::Tables {
     glm::ivec2 frameSize;
     CameraLight light;
@@ -163,30 +172,53 @@ struct GuideComparison::Tables {
         return measure;
     }
 
-    // The picture's light, low-passed. `light`: of every cell, by channel.
-    std::vector<float> seenBy(const Measure& measure, std::array<std::vector<float>, 3> light) const {
-        // Minus the light of sky and lamps: per channel, because that light has a colour.
-        const auto count = static_cast<int>(cells.size());
-        for (std::vector<float>& channel : light) {
-            const std::vector<float> smooth = lowPassed(channel);
-            const Eigen::VectorXf share = measure.backgroundOf * Eigen::Map<const Eigen::VectorXf>(smooth.data(), count);
-            Eigen::Map<Eigen::VectorXf>(channel.data(), count) -= measure.background * share;
+    // The light of every cell; nothing if the frame cannot be compared.
+    std::optional<CellLight> lightOf(const RgbaImage& frame) const {
+        if (frame.width() != frameSize.x || frame.height() != frameSize.y) return std::nullopt;
+        if (static_cast<double>(cells.size()) < kMostlySeen * shown * grid.x * grid.y) return std::nullopt;
+        CellLight result;
+        for (const Cell& cell : cells) {
+            glm::dvec3 sum(0);
+            for (const glm::vec2 place : cell.places) sum += linearAt(light, frame, place);
+            for (int c = 0; c < 3; ++c)
+                result[static_cast<std::size_t>(c)].push_back(static_cast<float>(sum[c] / (kPlaces * kPlaces)));
         }
+        return result;
+    }
+
+    // The light of sky and lamps: per channel, because that light has a colour.
+    CellLight backgroundIn(const CellLight& seen, const Measure& measure) const {
+        const auto count = static_cast<int>(cells.size());
+        CellLight result;
+        for (std::size_t c = 0; c < seen.size(); ++c) {
+            const std::vector<float> smooth = lowPassed(seen[c]);
+            const Eigen::VectorXf share = measure.backgroundOf * Eigen::Map<const Eigen::VectorXf>(smooth.data(), count);
+            result[c].resize(seen[c].size());
+            Eigen::Map<Eigen::VectorXf>(result[c].data(), count) = measure.background * share;
+        }
+        return result;
+    }
+
+    // The picture's light, low-passed.
+    std::vector<float> seenBy(const Measure& measure, const CellLight& cellLight) const {
+        const CellLight background = backgroundIn(cellLight, measure);
         // A pixel's value is its brightest channel, so that shapes of any colour count alike.
         std::vector<float> seen;
         for (std::size_t i = 0; i < cells.size(); ++i)
-            seen.push_back(std::max({light[0][i], light[1][i], light[2][i]}) / measure.gain[i]);
+            seen.push_back(std::max({cellLight[0][i] - background[0][i], cellLight[1][i] - background[1][i],
+                                     cellLight[2][i] - background[2][i]}) /
+                           measure.gain[i]);
         return lowPassed(seen);
     }
 
-    // z; nothing if there is no picture.
-    std::optional<double> zOf(const std::vector<float>& seen) const {
-        const Exposure exposure = exposureOf(seen, z.wanted);
+    // Nothing if there is no picture.
+    std::optional<Comparison> compared(const std::vector<float>& seen) const {
+        Comparison result{exposureOf(seen, z.wanted), {}};
+        const Exposure& exposure = result.exposure;
         if (exposure.span < kFlat || exposure.scale <= 0) return std::nullopt;
-        double difference = 0;
         for (std::size_t i = 0; i < seen.size(); ++i)
-            difference += std::abs(std::clamp(exposure.scale * seen[i] + exposure.lift, 0.0, 1.0) - z.wanted[i]);
-        return difference / static_cast<double>(seen.size());
+            result.difference.push_back(std::clamp(exposure.scale * seen[i] + exposure.lift, 0.0, 1.0) - z.wanted[i]);
+        return result;
     }
     std::optional<double> toneOf(const std::vector<float>& seen) const {
         const double constant = constantOf(seen, tone.wanted);
@@ -218,20 +250,40 @@ GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wante
 
 std::optional<Likeness> GuideComparison::compare(const RgbaImage& frame) const {
     const Tables& tables = *tables_;
-    if (frame.width() != tables.frameSize.x || frame.height() != tables.frameSize.y) return std::nullopt;
-    const auto count = static_cast<double>(tables.cells.size());
-    if (count < kMostlySeen * tables.shown * tables.grid.x * tables.grid.y) return std::nullopt;
+    const auto light = tables.lightOf(frame);
+    if (!light) return std::nullopt;
+    const auto compared = tables.compared(tables.seenBy(tables.z, *light));
+    if (!compared) return std::nullopt;
+    double z = 0;
+    for (const double difference : compared->difference) z += std::abs(difference);
+    return Likeness{z / static_cast<double>(compared->difference.size()), tables.toneOf(tables.seenBy(tables.tone, *light))};
+}
 
-    std::array<std::vector<float>, 3> light;  // on every cell
-    for (const Cell& cell : tables.cells) {
-        glm::dvec3 sum(0);
-        for (const glm::vec2 place : cell.places) sum += linearAt(tables_->light, frame, place);
-        for (int c = 0; c < 3; ++c)
-            light[static_cast<std::size_t>(c)].push_back(static_cast<float>(sum[c] / (kPlaces * kPlaces)));
+std::optional<ComparedPictures> GuideComparison::pictures(const RgbaImage& frame) const {
+    const Tables& tables = *tables_;
+    const auto light = tables.lightOf(frame);
+    if (!light) return std::nullopt;
+    const auto compared = tables.compared(tables.seenBy(tables.z, *light));
+    if (!compared) return std::nullopt;
+    const CellLight background = tables.backgroundIn(*light, tables.z);
+    const glm::ivec2 grid = tables.grid;
+    const GreyImage none(grid.x, grid.y);
+    ComparedPictures pictures{none, GreyImage(kPlaces * grid.x, kPlaces * grid.y), none, none};
+    for (std::size_t i = 0; i < tables.cells.size(); ++i) {
+        const Cell& cell = tables.cells[i];
+        const float gain = tables.z.gain[i];
+        pictures.wanted.at(cell.column, cell.row) = tables.z.wanted[i] * gain;
+        pictures.difference.at(cell.column, cell.row) = static_cast<float>(compared->difference[i]);
+        pictures.inSight.at(cell.column, cell.row) = 1;
+        for (int place = 0; place < kPlaces * kPlaces; ++place) {
+            const glm::dvec3 here = linearAt(tables.light, frame, cell.places[static_cast<std::size_t>(place)]);
+            const double brightest = std::max({here.r - background[0][i], here.g - background[1][i], here.b - background[2][i]});
+            const double fitted = compared->exposure.scale * brightest / gain + compared->exposure.lift;
+            pictures.seen.at(kPlaces * cell.column + place % kPlaces, kPlaces * cell.row + place / kPlaces) =
+                static_cast<float>(std::clamp(fitted, 0.0, 1.0) * gain);
+        }
     }
-    const auto z = tables.zOf(tables.seenBy(tables.z, light));
-    if (!z) return std::nullopt;
-    return Likeness{*z, tables.toneOf(tables.seenBy(tables.tone, std::move(light)))};
+    return pictures;
 }
 
 }  // namespace fantascope::vision

@@ -32,6 +32,15 @@ struct Likeness {
     friend bool operator==(const Likeness&, const Likeness&) = default;
 };
 
+// What is compared for z_camera, as pictures of the canvas. A cell is a 72nd of its height. Values
+// are 0 where the camera does not see the output.
+struct ComparedPictures {
+    GreyImage wanted;      // by cell: blurred, and darker where the projector's fall-off is intended
+    GreyImage seen;        // the same of the camera's picture with its exposure fitted; not blurred, and 3 x 3 values a cell
+    GreyImage difference;  // by cell: seen - wanted, both blurred and without the fall-off, -1..1; z is the mean of its magnitude
+    GreyImage inSight;     // by cell: 1 where the camera sees the output, else 0
+};
+
 // z_camera: how far the picture on the wall, as the camera sees it, differs from the guide drawing;
 // 0 is the guide itself. It is the camera's counterpart of the pattern's goal function (Ji et al.
 // 2015, section 4.1), low-passed because the camera is coarse and the shapes are white or black
@@ -56,6 +65,8 @@ public:
     // picture scores badly. Exposure, fades, the colour of the shapes and smooth light of other
     // lamps hardly matter; the picture's place does. Thread: reentrant.
     std::optional<Likeness> compare(const RgbaImage& frame) const;
+    // The same comparison as pictures; nothing where compare() has nothing. Thread: reentrant.
+    std::optional<ComparedPictures> pictures(const RgbaImage& frame) const;
 
 private:
     struct Tables;

@@ -199,6 +199,72 @@ TEST(GuideComparison, its_tone_is_that_of_the_light_as_it_is) {
     EXPECT_GT(*stains.tone, 2 * stains.z) << "which z takes for exposure";
 }
 
+// The mean of some values over the cells that the camera sees.
+template <class Of>
+double meanInSight(const ComparedPictures& pictures, Of of) {
+    double sum = 0, count = 0;
+    for (int y = 0; y < pictures.inSight.height(); ++y)
+        for (int x = 0; x < pictures.inSight.width(); ++x)
+            if (pictures.inSight.at(x, y) > 0) sum += of(x, y), ++count;
+    return sum / count;
+}
+
+TEST(GuideComparison, its_pictures_are_those_that_make_its_z) {
+    const GuideComparison comparison(nominalView(), spiral(), spiral());
+    for (const double degrees : {0.0, 1.0}) {
+        const RgbaImage frame = photographed(spiral(), {.ambientAcross = {0.3, 0.15, 0.05}, .turned = degrees});
+        const auto pictures = comparison.pictures(frame);
+        ASSERT_TRUE(pictures);
+        const auto magnitude = [&](int x, int y) { return std::abs(pictures->difference.at(x, y)); };
+        EXPECT_NEAR(meanInSight(*pictures, magnitude), comparison.compare(frame)->z, 1e-6);
+        ASSERT_EQ(pictures->seen.width(), 3 * pictures->wanted.width());
+        ASSERT_EQ(pictures->seen.height(), 3 * pictures->wanted.height());
+        const GreyImage seen = resized(pictures->seen, pictures->wanted.width(), pictures->wanted.height());
+        const auto fromWanted = [&](int x, int y) { return std::abs(seen.at(x, y) - pictures->wanted.at(x, y)); };
+        // The spiral's arms are narrower than the blur of what is wanted.
+        EXPECT_LT(meanInSight(*pictures, fromWanted), 0.15);
+    }
+    EXPECT_FALSE(comparison.pictures(RgbaImage(320, 180))) << "the dark";
+    EXPECT_FALSE(comparison.pictures(RgbaImage(32, 18))) << "a picture of another camera";
+}
+
+// Left and right, bright and dark must not be exchanged.
+TEST(GuideComparison, its_pictures_show_where_light_is_missing_and_where_it_is_too_much) {
+    GreyImage guide(320, 180), shown(320, 180);
+    for (int y = 0; y < 180; ++y)
+        for (int x = 0; x < 320; ++x) {
+            guide.at(x, y) = (x / 40 + y / 60) % 2 == 0 ? 1 : 0;
+            shown.at(x, y) = x < 40 && y < 60 ? 0 : x >= 280 && y < 60 ? 1 : guide.at(x, y);
+        }
+    const auto pictures = GuideComparison(nominalView(), guide, guide).pictures(photographed(shown, {}));
+    ASSERT_TRUE(pictures);
+    const int width = pictures->difference.width();
+    EXPECT_LT(pictures->difference.at(width / 16, 12), -0.5) << "missing at the upper left";
+    EXPECT_GT(pictures->difference.at(width * 15 / 16, 12), 0.5) << "too much at the upper right";
+    EXPECT_NEAR(pictures->difference.at(width * 9 / 16, 36), 0, 0.15);
+    EXPECT_GT(pictures->wanted.at(width / 16, 12), 0.4);
+    EXPECT_LT(pictures->seen.at(3 * width / 16, 36), 0.3f);
+    EXPECT_GT(pictures->seen.at(3 * width * 15 / 16, 36), 0.5f);
+}
+
+TEST(GuideComparison, its_pictures_leave_out_what_the_camera_does_not_see) {
+    NominalView view = nominalView();
+    view.camera.pose = Pose::lookingAt({0.3, 1.6, 5}, {1.5, 1.2, 0}).value();
+    const GuideComparison comparison(view, spiral(), spiral());
+    const auto pictures = comparison.pictures(photographed(spiral(), {}));
+    ASSERT_TRUE(pictures);
+    const auto cells = pictures->inSight.pixels();
+    const auto hidden = std::count(cells.begin(), cells.end(), 0.0f);
+    EXPECT_GT(hidden, 0);
+    EXPECT_LT(hidden, static_cast<std::ptrdiff_t>(cells.size()) / 2);
+    for (int y = 0; y < pictures->inSight.height(); ++y)
+        for (int x = 0; x < pictures->inSight.width(); ++x)
+            if (pictures->inSight.at(x, y) == 0) {
+                EXPECT_EQ(pictures->wanted.at(x, y), 0) << x << ", " << y;
+                EXPECT_EQ(pictures->seen.at(3 * x + 1, 3 * y + 1), 0) << x << ", " << y;
+            }
+}
+
 // Only the stored pictures matter, whatever their source: a night's frames, kept as PNG, give the
 // same scores again.
 TEST(GuideComparison, gives_a_stored_sequence_the_same_scores) {
