@@ -2,6 +2,7 @@
 #include "pattern/search/silhouette.h"
 
 #include "plot/figures.h"
+#include "plot/palette.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -16,20 +17,6 @@ namespace {
 constexpr double kCell = 2;                    // side of a cell, in sides of a square with a shape's area
 constexpr std::size_t kMaxInstanceCells = 50;  // more would hide the picture
 constexpr double kText = 13;                   // points
-
-// A colour scale from red through white to blue, dark at both ends; sRGB. -1 <= difference <= 1.
-glm::dvec3 diverging(double difference) {
-    constexpr std::array<glm::dvec3, 3> kPattern{{{1, 1, 1}, {0.94, 0.42, 0.32}, {0.55, 0, 0.12}}},
-        kGuide{{{1, 1, 1}, {0.35, 0.6, 0.87}, {0.03, 0.19, 0.5}}};
-    const auto& colours = difference < 0 ? kPattern : kGuide;
-    const double at = 2 * std::abs(difference);
-    return at < 1 ? glm::mix(colours[0], colours[1], at) : glm::mix(colours[1], colours[2], at - 1);
-}
-
-Rgba8 stored(glm::dvec3 colour) {
-    const auto byte = [](double value) { return static_cast<std::uint8_t>(std::lround(255 * value)); };
-    return {byte(colour.r), byte(colour.g), byte(colour.b), 255};
-}
 
 // Per instance: the side of a square with its area on the canvas, in canvas heights.
 std::vector<double> sidesOf(const pattern::ShapePattern& pattern) {

@@ -1,8 +1,12 @@
 #pragma once
 
+#include "media/image.h"
+
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace fantascope::plot {
@@ -21,6 +25,21 @@ inline glm::dvec3 actorColour(std::size_t actor) {
                                                           {118, 84, 60}}};
     const auto& [r, g, b] = kColours[actor % kColours.size()];
     return glm::dvec3(r, g, b) / 255.0;
+}
+
+// A colour scale from red through white to blue, dark at both ends; sRGB. -1 <= difference <= 1.
+inline glm::dvec3 diverging(double difference) {
+    constexpr std::array<glm::dvec3, 3> kBelow{{{1, 1, 1}, {0.94, 0.42, 0.32}, {0.55, 0, 0.12}}},
+        kAbove{{{1, 1, 1}, {0.35, 0.6, 0.87}, {0.03, 0.19, 0.5}}};
+    const auto& colours = difference < 0 ? kBelow : kAbove;
+    const double at = 2 * std::abs(difference);
+    return at < 1 ? glm::mix(colours[0], colours[1], at) : glm::mix(colours[1], colours[2], at - 1);
+}
+
+// A colour as a picture stores it.
+inline Rgba8 stored(glm::dvec3 colour) {
+    const auto byte = [](double value) { return static_cast<std::uint8_t>(std::lround(255 * value)); };
+    return {byte(colour.r), byte(colour.g), byte(colour.b), 255};
 }
 
 }  // namespace fantascope::plot

@@ -84,6 +84,21 @@ TEST(Rehearsal, the_key_s_takes_a_picture_of_every_output_while_the_show_runs) {
     EXPECT_THAT(outputs, testing::UnorderedElementsAre("-left.png", "-right.png"));
 }
 
+// Draws the report and a camera picture of a rehearsal. In cue 5, Full, the left output shows its
+// pattern alone.
+void expectFigures(const ScratchFolder& folder) {
+    EXPECT_THAT(runProgram({"plot", "report.json", "-o", "night.png"}, folder.path()), exits(0));
+    EXPECT_GT(readRgba(folder / "night.png").value().height(), 600) << "z, tone and drift";
+    std::vector<std::string> wall = {"plot", "rehearsal/camera-5.png", "--site", (kSource / "config/simulated").string()};
+    wall.insert(wall.end(), {"--guide", (kSource / "shows/light-movement/left.pattern.yaml").string(), "-o", "wall.png"});
+    wall.insert(wall.end(), {"--output", "left"});
+    EXPECT_THAT(runProgram(wall, folder.path()), exits(0));
+    const int one = readRgba(folder / "wall.png").value().height();
+    wall.insert(wall.end(), {"--before", "rehearsal/camera-4.png"});
+    EXPECT_THAT(runProgram(wall, folder.path()), exits(0));
+    EXPECT_GT(readRgba(folder / "wall.png").value().height(), one + 200);
+}
+
 TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
     const ScratchFolder folder;
     const Outcome outcome = rehearse(folder.path(), {"--seconds", "30"});
@@ -105,6 +120,7 @@ TEST(Rehearsal, reaches_every_cue_and_leaves_everything_to_look_at) {
     const std::string relays = contentsOf(folder / "rehearsal/relays.csv");
     EXPECT_THAT(relays, testing::MatchesRegex("show_time_s,bank,states\n[0-9.]+,road,11\n[0-9.]+,road,00\n[0-9.]+,road,11\n"));
     EXPECT_THAT(contentsOf(folder / "rehearsal/dmx.csv"), HasSubstr(",1,255\n"));
+    expectFigures(folder);
 }
 
 // The operator's word is only worth something if a rehearsal can be repeated. Example failure: a

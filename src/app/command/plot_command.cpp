@@ -1,6 +1,7 @@
 #include "app/base/report.h"
 #include "app/command/commands.h"
 #include "app/command/night_report.h"
+#include "app/command/wall_sight.h"
 #include "app/export/cast_scene.h"
 
 #include "pattern/shape/shape_pattern.h"
@@ -25,8 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Subject { Pattern, Search, Night, Cast };
-enum class Figure { Difference, Trajectories, Spectrum, Search, Night, Cast, Stage, Side, Shadow, Actors };
+enum class Subject { Pattern, Search, Night, Sight, Cast };
+enum class Figure { Difference, Trajectories, Spectrum, Search, Night, Wall, Cast, Stage, Side, Shadow, Actors };
 
 struct Entry {
     std::string_view name;
@@ -39,6 +40,7 @@ constexpr Entry kFigures[] = {{"difference", Figure::Difference, Subject::Patter
                               {"spectrum", Figure::Spectrum, Subject::Pattern},
                               {"search", Figure::Search, Subject::Search},
                               {"night", Figure::Night, Subject::Night},
+                              {"wall", Figure::Wall, Subject::Sight},
                               {"cast", Figure::Cast, Subject::Cast},
                               {"stage", Figure::Stage, Subject::Cast},
                               {"side", Figure::Side, Subject::Cast},
@@ -55,6 +57,9 @@ SubjectName nameOf(Subject subject) {
             return {"the report of a search", "'fantascope pattern' with --report FILE.json"};
         case Subject::Night:
             return {"the report of a run", "'fantascope run' or 'fantascope rehearse' with --report FILE.json"};
+        case Subject::Sight:
+            return {"a picture of the site's camera, *.png or *.jpg",
+                    "'fantascope run' or 'fantascope rehearse' with --record FOLDER"};
         case Subject::Cast:
             return {"a cast, *.cast.yaml", "'fantascope pose'"};
         default:
@@ -78,6 +83,8 @@ struct Input {
 
 Result<Input> readInput(const fs::path& file) {
     if (file.filename().string().ends_with(".cast.yaml")) return Input{file, Subject::Cast, {}};
+    for (const char* picture : {".png", ".jpg", ".jpeg"})
+        if (file.extension() == picture) return Input{file, Subject::Sight, {}};
     if (file.extension() != ".json") return Input{file, Subject::Pattern, {}};
     Report report = parseJson(TRY(readFile(file)));
     const bool isSearch = report.is_object() && report.contains("history");
@@ -91,6 +98,7 @@ struct Options {
     fs::path input, output;
     std::optional<Figure> figure;
     std::size_t frame = 0;
+    WallRequest wall;
 };
 
 std::string onlyPlot(const std::string& file) {
@@ -100,8 +108,10 @@ std::string onlyPlot(const std::string& file) {
 void declare(Command& command, Options& options) {
     command
         .add("INPUT", options.input,
-             "A pattern, *.pattern.yaml; the report of its search or of a run, *.json; or a cast, *.cast.yaml")
+             "A pattern, *.pattern.yaml; the report of its search or of a run, *.json; a camera's picture of the site, *.png; or "
+             "a cast, *.cast.yaml")
         .required();
+    addProjectorOption(command, options.wall.output, "For a camera's picture: the output to compare");
     addOutOption(command, options.output, "The picture to write, PNG or SVG").required().check({onlyPlot, "PNG|SVG"});
     std::vector<std::pair<std::string, Figure>> figures;
     for (const Entry& entry : kFigures) figures.emplace_back(entry.name, entry.figure);
@@ -109,9 +119,14 @@ void declare(Command& command, Options& options) {
         "--figure", options.figure, figures,
         "For a pattern: difference (from its guide, the default), trajectories or spectrum (of its movement). For the report of "
         "a search: search (z over the iterations). For the report of a run: night (the camera's scores over the time, and what "
-        "went wrong). For a cast: cast (stage, shadow and actors, the default), stage (from behind the "
+        "went wrong). For a camera's picture: wall (what is wanted on the wall, what is seen, and the difference). For a cast: "
+        "cast (stage, shadow and actors, the default), stage (from behind the "
         "lamp), side (from the side), shadow (by actor) or actors (each actor's shadow)");
     command.add("--frame", options.frame, "For a cast that moves: the frame, counted from 0").showDefault();
+    command.add("--site", options.wall.site, "For a camera's picture: the site on which it was taken");
+    command.add("--guide", options.wall.guide,
+                "For a camera's picture: what the output was showing, a *.pattern.yaml or a drawing");
+    command.add("--before", options.wall.before, "For a camera's picture: another one of the same site, drawn above it");
 }
 
 Error damaged(const Input& input) {
@@ -171,8 +186,12 @@ Result<plot::Page> draw(const Options& options) {
         return Error(fmt::format("{}: is {}, whose figures are: {}; --figure {} needs {}, made by {}", input.file.string(),
                                  nameOf(input.subject).what, figuresOf(input.subject), entry.name, nameOf(entry.of).what,
                                  nameOf(entry.of).made));
+    if (input.subject != Subject::Sight && options.wall != WallRequest())
+        return Error(fmt::format("{}: is {}; --site, --output, --guide and --before are for {}", input.file.string(),
+                                 nameOf(input.subject).what, nameOf(Subject::Sight).what));
     if (input.subject == Subject::Search) return plot::searchFigure(TRY(historyOf(input)));
     if (input.subject == Subject::Night) return drawNight(input);
+    if (input.subject == Subject::Sight) return drawWall(input.file, options.wall);
     if (input.subject == Subject::Cast) return drawCast(input.file, options.frame, figure);
     return drawPattern(input.file, figure);
 }

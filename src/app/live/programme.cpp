@@ -25,19 +25,13 @@ namespace fs = std::filesystem;
 
 // The pictures of a show's sources, and for each source its guide, if it has one.
 struct Pictures {
-    struct Guide {
-        GreyImage drawing;  // as in the search for the pattern (comparedGuide)
-        GreyImage light;    // the same in linear light
-        double aspect = 1;  // width / height of the source's picture
-        Fit fit = Fit::Contain;
-    };
     render::PictureSources sources;
     show::BySource<std::optional<Guide>> guides;
 };
 
 struct Picture {
     render::PictureSource source;
-    std::optional<Pictures::Guide> guide;
+    std::optional<Guide> guide;
 };
 
 // The options for reading sources.
@@ -47,17 +41,9 @@ struct Reading {
     bool isWatched = false;                              // the camera's pictures are compared with the guides
 };
 
-Result<Pictures::Guide> readGuide(const pattern::ShapePattern& pattern, const fs::path& file) {
-    auto drawing = readGrey(pattern.guide);
-    if (!drawing) return namedIn(file, pattern.guide, drawing.error());
-    GreyImage light = comparedGuide(*drawing, pattern.guideTransfer, pattern::CompareSpace::Light);
-    return Pictures::Guide{comparedGuide(std::move(*drawing), pattern.guideTransfer, pattern.compare), std::move(light),
-                           pattern.aspect()};
-}
-
 Result<Picture> readPicture(const show::PatternSource& source, const Reading& reading) {
     render::PatternSource pattern = TRY(readPatternSource(source.file));
-    std::optional<Pictures::Guide> guide;
+    std::optional<Guide> guide;
     if (reading.isWatched) guide = TRY(readGuide(*pattern.pattern, source.file));
     return Picture{std::move(pattern), std::move(guide)};
 }
@@ -75,7 +61,7 @@ Result<std::shared_ptr<const GreyImage>> readFilter(const fs::path& file) {
 
 Result<Picture> readPicture(const show::FoliageSource& source, const Reading& reading) {
     render::FoliageSource foliage{source.light, source.shadow, {}};
-    std::optional<Pictures::Guide> guide;
+    std::optional<Guide> guide;
     for (const show::FoliageSource::Layer& layer : source.layers) {
         render::ShadowLayer shadow;
         shadow.leaves = TRY(readPatternSource(layer.pattern));
@@ -172,11 +158,11 @@ Result<Picture> readPicture(const show::ShadowSource& source, const Reading&) {
     const theatre::ScreenFrame& given = target->given;
     shadow.from = given.metresAt({0, given.height()});
     shadow.to = given.metresAt({given.width(), 0});
-    std::optional<Pictures::Guide> guide;
+    std::optional<Guide> guide;
     // On a white screen, a shadow that does not move looks like the negative of its drawing.
     if (cast->actors.front().poses.size() == 1) {
         drawing = inverted(std::move(drawing));
-        guide = Pictures::Guide{drawing, drawing, static_cast<double>(given.width()) / given.height()};
+        guide = Guide{drawing, drawing, static_cast<double>(given.width()) / given.height()};
     }
     return Picture{std::move(shadow), std::move(guide)};
 }
@@ -201,23 +187,35 @@ Result<Pictures> readPictures(const show::Show& show, const Reading& reading) {
     return pictures;
 }
 
-Result<std::vector<Watch::Comparisons>> compareWith(const show::BySource<std::optional<Pictures::Guide>>& guides,
-                                                    const show::Site& site, const std::vector<LightCorrection>& light) {
+Result<std::vector<Watch::Comparisons>> compareWith(const show::BySource<std::optional<Guide>>& guides, const show::Site& site,
+                                                    const std::vector<LightCorrection>& light) {
     const auto gains = gainsToApply(site, light);
     std::vector<Watch::Comparisons> comparisons(site.outputs.size());
     for (std::size_t output = 0; output < site.outputs.size(); ++output)
         for (const auto& [source, guide] : guides) {
-            std::optional<vision::NominalView> view;
-            if (guide) view = TRY(nominalViewOf(site, output, guide->aspect, guide->fit));
-            if (view) view->isEvenedOut = gains[output] != nullptr;
-            if (view)
-                comparisons[output].add(source,
-                                        std::make_shared<const vision::GuideComparison>(*view, guide->drawing, guide->light));
+            if (!guide) continue;
+            if (auto comparison = TRY(comparisonWith(*guide, site, output, gains[output] != nullptr)))
+                comparisons[output].add(source, std::make_shared<const vision::GuideComparison>(std::move(*comparison)));
         }
     return comparisons;
 }
 
 }  // namespace
+
+Result<Guide> readGuide(const pattern::ShapePattern& pattern, const fs::path& file) {
+    auto drawing = readGrey(pattern.guide);
+    if (!drawing) return namedIn(file, pattern.guide, drawing.error());
+    GreyImage light = comparedGuide(*drawing, pattern.guideTransfer, pattern::CompareSpace::Light);
+    return Guide{comparedGuide(std::move(*drawing), pattern.guideTransfer, pattern.compare), std::move(light), pattern.aspect()};
+}
+
+Result<std::optional<vision::GuideComparison>> comparisonWith(const Guide& guide, const show::Site& site, std::size_t output,
+                                                              bool isEvenedOut) {
+    auto view = TRY(nominalViewOf(site, output, guide.aspect, guide.fit));
+    if (!view) return std::optional<vision::GuideComparison>();
+    view->isEvenedOut = isEvenedOut;
+    return std::optional(vision::GuideComparison(*view, guide.drawing, guide.light));
+}
 
 Result<render::PatternSource> readPatternSource(const fs::path& file) {
     auto pattern = std::make_shared<const pattern::ShapePattern>(TRY(pattern::readPattern(file)));

@@ -4,11 +4,15 @@
 #include "app/live/watch.h"
 #include "app/site/light_correction.h"
 
+#include "pattern/shape/shape_pattern.h"
 #include "render/source/picture_source.h"
 #include "show/playback.h"
 #include "show/revision.h"
+#include "vision/guide_comparison.h"
 
+#include "core/fit.h"
 #include "core/result.h"
+#include "media/image.h"
 
 #include <filesystem>
 #include <memory>
@@ -36,6 +40,22 @@ struct Programme {
         watched;                         // [output]; nothing: it cannot be watched, or the site does not want it
     std::vector<LightCorrection> light;  // of the canvases; applied if the site file says so
 };
+
+// What the light of a source's picture is to be.
+struct Guide {
+    GreyImage drawing;  // as in the search for the pattern (comparedGuide)
+    GreyImage light;    // the same in linear light
+    double aspect = 1;  // width / height of the source's picture
+    Fit fit = Fit::Contain;
+};
+// `file`: of the pattern. Error: its drawing cannot be read.
+Result<Guide> readGuide(const pattern::ShapePattern& pattern, const std::filesystem::path& file);
+
+// How the camera's pictures of an output compare with a guide. `isEvenedOut`: the site's light
+// correction is applied to the output. Nothing if the site does not say where projector, surface
+// and camera are.
+Result<std::optional<vision::GuideComparison>> comparisonWith(const Guide& guide, const show::Site& site, std::size_t output,
+                                                              bool isEvenedOut);
 
 // Reads a pattern with its movement, ready to be drawn. Error: as pattern::readPattern.
 Result<render::PatternSource> readPatternSource(const std::filesystem::path& file);

@@ -4,6 +4,7 @@
 #include "media/image.h"
 #include "program.h"
 #include "scratch_folder.h"
+#include "source_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -99,6 +100,30 @@ TEST_F(PlotCommand, draws_the_report_of_a_run) {
     EXPECT_TRUE(writeFile(folder_ / "damaged.json", R"({"cues": [], "faults": [{"at": "late", "what": "unplugged"}]})"));
     EXPECT_THAT(run({"plot", "damaged.json", "-o", "x.png"}).errors,
                 HasSubstr("damaged.json: is damaged, or is not the report of a run"));
+}
+
+// What the figure shows is for GuideComparison's and WallFigure's tests; tests/e2e draws a
+// rehearsal.
+TEST_F(PlotCommand, says_what_it_needs_to_compare_a_camera_picture) {
+    const std::string site = sourceFolder() + "/config/simulated";
+    EXPECT_TRUE(writePng(folder_ / "dark.png", RgbaImage(480, 270)));
+    EXPECT_TRUE(writePng(folder_ / "small.png", RgbaImage(48, 27)));
+    const auto refusal = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), "plot");
+        more.insert(more.end(), {"-o", "x.png"});
+        return run(more).errors;
+    };
+    EXPECT_THAT(refusal({"dark.png"}), HasSubstr("--site SITE --output NAME --guide"));
+    EXPECT_THAT(refusal({"dark.png", "--site", site, "--output", "left", "--guide", "p.pattern.yaml"}),
+                HasSubstr("dark.png: shows nothing of 'left' that could be compared"));
+    EXPECT_THAT(refusal({"dark.png", "--site", site, "--output", "left", "--guide", "guide.png"}),
+                HasSubstr("dark.png: shows nothing"));
+    EXPECT_THAT(refusal({"small.png", "--site", site, "--output", "left", "--guide", "guide.png"}),
+                HasSubstr("small.png: has 48 x 27 pixels, but the camera of"));
+    EXPECT_THAT(refusal({"dark.png", "--site", site, "--output", "lefd", "--guide", "guide.png"}),
+                HasSubstr("did you mean 'left'"));
+    EXPECT_THAT(refusal({"p.json", "--site", site}), HasSubstr("--before are for a picture of the site's camera"));
+    EXPECT_THAT(refusal({"p.json", "--figure", "wall"}), HasSubstr("--figure wall needs a picture of the site's camera"));
 }
 
 TEST_F(PlotCommand, says_what_it_cannot_draw) {
