@@ -9,6 +9,7 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -21,6 +22,25 @@ namespace {
 
 Error notRead(const fs::path& path, int reason) {
     return Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(reason)));
+}
+
+Error notWritten(const fs::path& path, int reason) {
+    return Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(reason)));
+}
+
+// The file that a path names, links followed, which a new one may replace. Error: as
+// NewFile::open()'s.
+Result<fs::path> targetOf(const fs::path& path) {
+    fs::path target = path;
+    std::error_code failure, ignored;
+    if (fs::is_symlink(path, ignored)) target = fs::canonical(path, failure);
+    if (failure) return notWritten(path, failure.value());  // a dangling link
+    struct stat standing = {};
+    if (::stat(target.c_str(), &standing) != 0) return target;
+    if (!S_ISREG(standing.st_mode) && !S_ISDIR(standing.st_mode))
+        return Error(fmt::format("{}: cannot be written: it is a device or a pipe, a file is needed", path.string()));
+    if ((standing.st_mode & 0222) == 0 || ::access(target.c_str(), W_OK) != 0) return notWritten(path, EACCES);
+    return target;
 }
 
 Result<void> checkKind(const fs::path& path, const struct stat& found) {
@@ -82,20 +102,10 @@ Result<void> checkRegular(const fs::path& path) {
 }
 
 Result<NewFile> NewFile::open(const fs::path& path) {
-    NewFile file(path, path);
     std::error_code failure;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
-    if (failure) return file.refused(failure.value());
-
-    std::error_code ignored;
-    if (fs::is_symlink(path, ignored)) file.target_ = fs::canonical(path, failure);
-    if (failure) return file.refused(failure.value());  // a dangling link
-    struct stat standing = {};
-    if (::stat(file.target_.c_str(), &standing) == 0) {
-        if (!S_ISREG(standing.st_mode) && !S_ISDIR(standing.st_mode))
-            return Error(fmt::format("{}: cannot be written: it is a device or a pipe, a file is needed", path.string()));
-        if ((standing.st_mode & 0222) == 0 || ::access(file.target_.c_str(), W_OK) != 0) return file.refused(EACCES);
-    }
+    if (failure) return notWritten(path, failure.value());
+    NewFile file(path, TRY(targetOf(path)));
 
     const fs::path folder = file.target_.has_parent_path() ? file.target_.parent_path() : ".";
     // Giving a nameless file its name needs /proc.
@@ -121,9 +131,7 @@ NewFile::~NewFile() {
     if (!aside_.empty()) ::unlink(aside_.c_str());
 }
 
-Error NewFile::refused(int reason) const {
-    return Error(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(reason)));
-}
+Error NewFile::refused(int reason) const { return notWritten(path_, reason); }
 
 Result<void> NewFile::write(std::string_view bytes) {
     while (!bytes.empty()) {
@@ -175,6 +183,15 @@ Result<void> writeFile(const fs::path& path, std::string_view bytes, const fs::p
     NewFile file = TRY(NewFile::open(path));
     TRY(file.write(bytes));
     return file.finish(like);
+}
+
+Result<void> exchangeFiles(const fs::path& a, const fs::path& b) {
+    const fs::path one = TRY(targetOf(a)), other = TRY(targetOf(b));
+    if (::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0) return {};
+    if (errno != EINVAL && errno != ENOSYS && errno != EXDEV) return notWritten(a, errno);
+    const std::string ones = TRY(readFile(a, kMaxFileBytes)), others = TRY(readFile(b, kMaxFileBytes));
+    TRY(writeFile(a, others));
+    return writeFile(b, ones);
 }
 
 Result<std::string> relativeTo(const std::filesystem::path& file, const std::filesystem::path& path) {

@@ -61,6 +61,11 @@ private:
 // Writes a whole NewFile.
 Result<void> writeFile(const std::filesystem::path& path, std::string_view bytes, const std::filesystem::path& like = {});
 
+// Swaps two files: whenever the program ends, each has its old bytes or each has its new ones. Only
+// where the file system cannot swap (NFS, FAT) an end in the middle leaves the same bytes in both.
+// Follows links. Error: names the file and the reason; both stay as they were.
+Result<void> exchangeFiles(const std::filesystem::path& a, const std::filesystem::path& b);
+
 // `path` in the form that `file` can name wherever it lies: relative to the file's folder, with
 // slashes. Purely by name: a link in the folder counts under its own name. Error: it lies outside
 // the folder.

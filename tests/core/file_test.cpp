@@ -108,6 +108,39 @@ TEST(File, a_file_that_is_kept_from_being_written_is_not_replaced) {
 
 // As on a full disk: some bytes are already in the temporary file. Example failure: the
 // half-written file stays, or replaces the old one.
+TEST(File, two_files_are_swapped_through_links) {
+    const ScratchFolder folder;
+    folder.file("a", "one");
+    folder.file("b", "other");
+    std::filesystem::create_symlink("a", folder / "link");
+    ASSERT_TRUE(exchangeFiles(folder / "link", folder / "b"));
+    EXPECT_EQ(*readFile(folder / "a"), "other");
+    EXPECT_EQ(*readFile(folder / "b"), "one");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+}
+
+// Another file system, so they cannot be swapped in one step.
+TEST(File, two_files_of_two_file_systems_are_swapped_too) {
+    const ScratchFolder folder;
+    const std::filesystem::path far = "/dev/shm/fantascope-" + std::to_string(::getpid());
+    ASSERT_TRUE(writeFile(far, "far"));
+    std::filesystem::create_symlink(far, folder / "link");
+    ASSERT_TRUE(exchangeFiles(folder.file("near", "near"), folder / "link"));
+    EXPECT_EQ(*readFile(folder / "near"), "far");
+    EXPECT_EQ(*readFile(far), "near");
+    std::filesystem::remove(far);
+}
+
+TEST(File, a_file_that_is_kept_from_being_written_is_not_swapped) {
+    const ScratchFolder folder;
+    std::filesystem::permissions(folder.file("a", "one"), std::filesystem::perms::owner_read);
+    EXPECT_EQ(exchangeFiles(folder.file("b", "other"), folder / "a").error().message(),
+              (folder / "a").string() + ": cannot be written: Permission denied");
+    EXPECT_FALSE(exchangeFiles(folder / "b", folder / "none"));
+    EXPECT_EQ(*readFile(folder / "a") + *readFile(folder / "b"), "oneother");
+    EXPECT_THAT(folder.names(), ElementsAre("a", "b"));
+}
+
 TEST(File, a_write_that_fails_half_way_leaves_the_old_bytes) {
     const ScratchFolder folder;
     folder.file("a", "old");

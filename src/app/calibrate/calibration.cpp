@@ -126,7 +126,7 @@ Result<void> writeCalibration(const show::Site& site, std::vector<OutputCalibrat
     }
     // The survey comes first: whichever file is written last, the survey has a record for the warps
     // that stand in the site file.
-    TRY(writeSurvey(site.file, TRY(surveyOf(site, calibrations, latency, document.text()))));
+    TRY(writeSurvey(site, TRY(surveyOf(site, calibrations, latency, document.text()))));
     TRY(document.save());
     for (OutputCalibration& calibration : calibrations) calibration.written = calibration.isGood();
     return {};

@@ -72,9 +72,7 @@ Result<std::filesystem::path> undoWrite(const std::filesystem::path& file) {
         return Error(fmt::format("{}: there is nothing to go back to; the program keeps this file when it writes {}",
                                  previous.string(), site.string()));
     TRY(readSite(previous));
-    const std::string before = TRY(readFile(previous)), now = TRY(readFile(site));
-    TRY(writeFile(site, before, site));
-    TRY(writeFile(previous, now, site));
+    TRY(exchangeFiles(site, previous));
     return site;
 }
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <regex>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kVersion = 1;
-// Of an output: the newest, and the one before it, which `calibrate --undo` brings back.
+// Of an output: the newest, and that of the site before, which `calibrate --undo` brings back.
 constexpr std::size_t kKept = 2;
 constexpr double kMaxPixel = 32768;
 constexpr int kMaxSide = 16384;
@@ -135,7 +136,6 @@ Result<Record> readRecord(const ConfigNode& node) {
     return record;
 }
 
-// The newest record of an output comes first.
 Result<std::vector<Record>> readRecords(const fs::path& file) {
     std::vector<Record> records;
     ConfigFields fields(TRY(ConfigNode::load(file)));
@@ -191,7 +191,7 @@ std::string textOf(const WarpShape& warp) {
 
 std::string textOf(const std::vector<Record>& records) {
     std::string text =
-        "# Written by fantascope calibrate. Of each output: what the camera saw of its light, the newest first.\n"
+        "# Written by fantascope calibrate. Of each output: what the camera saw of its light.\n"
         "fantascope: survey\nversion: 1\noutputs:\n";
     for (const Record& record : records) {
         const OutputSurvey& survey = record.survey;
@@ -212,6 +212,22 @@ Record recordOf(const std::string& output, const OutputSurvey& survey, int numbe
             {survey.map.at.width(), survey.map.at.height()},
             survey,
             number};
+}
+
+// Removes pictures that no record names any more, and what a program left that was ended while it
+// wrote.
+void removeUnnamed(const fs::path& folder, const std::vector<Record>& records) {
+    std::set<fs::path> named;
+    for (const Record& record : records) named.insert({record.map.filename(), record.dark.filename()});
+    static const std::regex ours(R"(.+\.[0-9]+(\.dark)?\.png(\..+)?|survey\.yaml\..+)");
+    std::error_code ignored;
+    std::vector<fs::path> unnamed;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+        const fs::path name = entry.path().filename();
+        if (!named.contains(name) && std::regex_match(name.string(), ours) && entry.is_regular_file(ignored))
+            unnamed.push_back(entry.path());
+    }
+    for (const fs::path& file : unnamed) fs::remove(file, ignored);
 }
 
 }  // namespace
@@ -237,12 +253,18 @@ Result<std::optional<Survey>> readSurvey(const show::Site& site) {
     return std::optional(std::move(survey));
 }
 
-Result<void> writeSurvey(const fs::path& site, const std::map<std::string, OutputSurvey>& measured) {
-    const fs::path file = surveyFileOf(site), folder = file.parent_path();
-    const std::vector<Record> before = [&] {
+Result<void> writeSurvey(const show::Site& site, const std::map<std::string, OutputSurvey>& measured) {
+    const fs::path file = surveyFileOf(site.file), folder = file.parent_path();
+    std::vector<Record> before = [&] {
         auto read = readRecords(file);
         return read ? std::move(*read) : std::vector<Record>();
     }();
+    // The site as it stands becomes the one before. Its records may not be the newest: after a way
+    // back, or if the program ended between survey and site.
+    std::ranges::stable_partition(before, [&](const Record& record) {
+        const auto output = std::ranges::find(site.outputs, record.output, &show::Output::name);
+        return output != site.outputs.end() && whyUnfit(record, *output, site).empty();
+    });
     int number = 0;
     for (const Record& record : before) number = std::max(number, record.number);
     ++number;
@@ -252,16 +274,11 @@ Result<void> writeSurvey(const fs::path& site, const std::map<std::string, Outpu
         TRY(writePng(records.back().map, pictureOf(survey.map, survey.projector)));
         TRY(writePng(records.back().dark, pictureOf(survey.dark)));
     }
-    std::vector<Record> dropped;
-    for (const Record& record : before) {
-        const auto same = std::ranges::count(records, record.output, &Record::output);
-        (static_cast<std::size_t>(same) < kKept ? records : dropped).push_back(record);
-    }
+    for (const Record& record : before)
+        if (static_cast<std::size_t>(std::ranges::count(records, record.output, &Record::output)) < kKept)
+            records.push_back(record);
     TRY(writeFile(file, textOf(records)));
-    // Nothing names these any more.
-    std::error_code ignored;
-    for (const Record& record : dropped)
-        for (const fs::path& picture : {record.map, record.dark}) fs::remove(picture, ignored);
+    removeUnnamed(folder, records);
     return {};
 }
 

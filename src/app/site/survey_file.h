@@ -45,10 +45,11 @@ std::filesystem::path surveyFileOf(const std::filesystem::path& site);
 // be read: file, place, what to do.
 Result<std::optional<Survey>> readSurvey(const show::Site& site);
 
-// Keeps what was measured of some outputs beside what is known of the others. A reader, or a
-// program that starts after a power cut, finds the survey as it was or the new one. A survey that
-// cannot be read is replaced. Error: names the file and the reason; the survey is as it was.
-Result<void> writeSurvey(const std::filesystem::path& site, const std::map<std::string, OutputSurvey>& measured);
+// Keeps what was measured of some outputs beside what is known of the others, and beside what fits
+// the site as it stands. A reader, or a program that starts after a power cut, finds the survey as
+// it was or the new one. A survey that cannot be read is replaced. Error: names the file and the
+// reason; the survey is as it was.
+Result<void> writeSurvey(const show::Site& site, const std::map<std::string, OutputSurvey>& measured);
 
 // Reads a survey file with all its pictures. Returns the names of its outputs. Error: as
 // readSurvey().

@@ -69,7 +69,7 @@ protected:
     void keep(const show::Site& site, bool both = true) {
         std::map<std::string, OutputSurvey> surveys{{"left", surveyOf(site, 0)}};
         if (both) surveys["right"] = surveyOf(site, 1);
-        ASSERT_TRUE(writeSurvey(site.file, surveys));
+        ASSERT_TRUE(writeSurvey(site, surveys));
     }
     // The light of a white canvas along a row through its middle.
     static std::vector<double> lightAcross(const show::Site& site, const std::vector<LightCorrection>& corrections) {

@@ -85,7 +85,7 @@ TEST_F(SurveyFile, reads_back_what_was_written) {
                                  ", part: [0.125, 0, 1, 1], flip: horizontal, turn: 180, mesh: {points: [2, 2], offsets: [[1, "
                                  "2], [0.1, 0], [0, -3.25], [0, 0]]}");
     const OutputSurvey written = survey(bent, "left", 0.4f);
-    ASSERT_TRUE(writeSurvey(bent.file, {{"left", written}}));
+    ASSERT_TRUE(writeSurvey(bent, {{"left", written}}));
     const auto read = readSurvey(bent);
     ASSERT_TRUE(read) << read.error().message();
     ASSERT_TRUE(*read && (*read)->outputs.contains("left")) << (*read)->unfit.at("left");
@@ -114,7 +114,7 @@ TEST_F(SurveyFile, is_nothing_where_none_was_made) {
 }
 
 TEST_F(SurveyFile, of_another_picture_is_told_and_not_used) {
-    ASSERT_TRUE(writeSurvey(site().file, {{"left", survey(site(), "left", 0.4f)}, {"right", survey(site(), "right", 0.5f)}}));
+    ASSERT_TRUE(writeSurvey(site(), {{"left", survey(site(), "left", 0.4f)}, {"right", survey(site(), "right", 0.5f)}}));
     const Survey moved = **readSurvey(site(kMoved));
     EXPECT_THAT(moved.unfit.at("left"), HasSubstr("its picture was moved since it was surveyed; calibrate it again"));
     EXPECT_FALSE(moved.outputs.contains("left"));
@@ -127,9 +127,9 @@ TEST_F(SurveyFile, of_another_picture_is_told_and_not_used) {
 // Whatever was written last when the power went: site and survey belong together.
 TEST_F(SurveyFile, goes_with_the_site_file_forth_and_back) {
     const show::Site before = site(kWhole);
-    ASSERT_TRUE(writeSurvey(before.file, {{"left", survey(before, "left", 0.4f)}, {"right", survey(before, "right", 0.5f)}}));
+    ASSERT_TRUE(writeSurvey(before, {{"left", survey(before, "left", 0.4f)}, {"right", survey(before, "right", 0.5f)}}));
     const show::Site after = site(kMoved);
-    ASSERT_TRUE(writeSurvey(after.file, {{"left", survey(after, "left", 0.45f)}}));
+    ASSERT_TRUE(writeSurvey(after, {{"left", survey(after, "left", 0.45f)}}));
     const Survey newest = **readSurvey(after), old = **readSurvey(before);
     EXPECT_NEAR(shadeOf(newest, "left") - shadeOf(old, "left"), 0.05, 1e-3);
     EXPECT_THAT(newest.unfit, IsEmpty());
@@ -138,16 +138,38 @@ TEST_F(SurveyFile, goes_with_the_site_file_forth_and_back) {
 }
 
 TEST_F(SurveyFile, keeps_no_pictures_that_nothing_names) {
-    for (const float shade : {0.4f, 0.45f, 0.5f})
-        ASSERT_TRUE(writeSurvey(site().file, {{"left", survey(site(), "left", shade)}}));
+    for (const float shade : {0.4f, 0.45f, 0.5f}) ASSERT_TRUE(writeSurvey(site(), {{"left", survey(site(), "left", shade)}}));
     EXPECT_THAT(names(), ElementsAre("left.2.dark.png", "left.2.png", "left.3.dark.png", "left.3.png", "survey.yaml"));
 }
 
+// After a way back, or after a program that was killed before it wrote the site: the newest record
+// is not that of the site as it stands.
+TEST_F(SurveyFile, keeps_the_record_of_the_site_as_it_stands) {
+    const show::Site standing = site(kWhole);
+    ASSERT_TRUE(writeSurvey(standing, {{"left", survey(standing, "left", 0.4f)}}));
+    const show::Site undone = site(kMoved);
+    ASSERT_TRUE(writeSurvey(standing, {{"left", survey(undone, "left", 0.45f)}}));
+    const show::Site next = site("[[0, 0], [1800, 0], [1920, 1080], [0, 1080]]");
+    ASSERT_TRUE(writeSurvey(standing, {{"left", survey(next, "left", 0.5f)}}));
+    EXPECT_NEAR(shadeOf(**readSurvey(next), "left"), 0.5, 0.02);
+    ASSERT_TRUE((*readSurvey(standing))->outputs.contains("left"));
+    EXPECT_NEAR(shadeOf(**readSurvey(standing), "left"), 0.4, 0.02);
+}
+
+// As a program that is killed while it writes leaves them. What is not ours stays.
+TEST_F(SurveyFile, sweeps_up_what_was_left_half_done) {
+    for (const char* name :
+         {"left.7.png", "left.7.dark.png", "survey.yaml.123-0", "left.2.png.123-0", "notes.png", "notes.2.txt"})
+        folder_.file(fs::path("site.survey") / name, "half");
+    ASSERT_TRUE(writeSurvey(site(), {{"left", survey(site(), "left", 0.4f)}}));
+    EXPECT_THAT(names(), ElementsAre("left.1.dark.png", "left.1.png", "notes.2.txt", "notes.png", "survey.yaml"));
+}
+
 TEST_F(SurveyFile, stays_whole_if_it_cannot_be_written) {
-    ASSERT_TRUE(writeSurvey(site().file, {{"left", survey(site(), "left", 0.4f)}, {"right", survey(site(), "right", 0.5f)}}));
+    ASSERT_TRUE(writeSurvey(site(), {{"left", survey(site(), "left", 0.4f)}, {"right", survey(site(), "right", 0.5f)}}));
     const std::string before = readFile(surveyFileOf(site().file)).value();
     fs::create_directories(folder_ / "site.survey" / "right.2.png" / "full");  // stands where a picture is to be
-    EXPECT_FALSE(writeSurvey(site().file, {{"left", survey(site(), "left", 0.45f)}, {"right", survey(site(), "right", 0.45f)}}));
+    EXPECT_FALSE(writeSurvey(site(), {{"left", survey(site(), "left", 0.45f)}, {"right", survey(site(), "right", 0.45f)}}));
     EXPECT_EQ(readFile(surveyFileOf(site().file)).value(), before);
     const auto read = readSurvey(site());
     ASSERT_TRUE(read);
@@ -155,7 +177,7 @@ TEST_F(SurveyFile, stays_whole_if_it_cannot_be_written) {
 }
 
 TEST_F(SurveyFile, says_which_picture_is_missing) {
-    ASSERT_TRUE(writeSurvey(site().file, {{"left", survey(site(), "left", 0.4f)}}));
+    ASSERT_TRUE(writeSurvey(site(), {{"left", survey(site(), "left", 0.4f)}}));
     EXPECT_THAT(checkSurvey(surveyFileOf(site().file)).value(), ElementsAre("left"));
     fs::remove(folder_ / "site.survey" / "left.1.png");
     const auto read = readSurvey(site());
