@@ -1,5 +1,6 @@
 #include "app/calibrate/calibration.h"
 
+#include "app/calibrate/plan_check.h"
 #include "app/site/site_models.h"
 #include "app/site/survey_file.h"
 
@@ -65,6 +66,23 @@ void fit(OutputCalibration& calibration, const LightSurvey::Output& survey, cons
             fitted->rms, kGoodRms);
 }
 
+// Whether the camera is the right way up. It sees the wall consistently if it is not, so that only
+// what the site file says can tell; where the place was given by hand, it does not matter.
+Result<void> checkUpright(OutputCalibration& calibration, const show::Site& site, const LightSurvey::Output& survey) {
+    const auto upsideDown = TRY(isUpsideDown(site, calibration.output, survey.map));
+    if (upsideDown == true)
+        return Error(
+            "the camera sees its picture upside down, against what the site file says of projector and camera; turn the "
+            "camera the right way up, or write 'turn: 180' if the projector hangs upside down, and calibrate again. "
+            "--wanted says where a picture is to stand whichever way up they are");
+    const WarpShape& before = site.outputs[calibration.output].projection.warp.shape();
+    if (!upsideDown && calibration.fit && isHalfTurned(calibration.fit->shape, before))
+        calibration.note =
+            "turned by half a turn from before; if it stands upside down on the wall, turn the camera the right way up, and "
+            "calibrate again";
+    return {};
+}
+
 // What is kept of the good calibrations. `text`: of the site file with their warps, which are
 // compared as they will be read.
 Result<std::map<std::string, OutputSurvey>> surveyOf(const show::Site& site, const std::vector<OutputCalibration>& calibrations,
@@ -111,6 +129,9 @@ Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show
             places.emplace(output.canvas, largestPlaceOf(site, output.canvas, camera, surveys));
         fit(calibration, *found->second, camera,
             given != wanted.end() ? Result<Corners>(given->second) : places.at(output.canvas), output.projection.warp.shape());
+        if (given != wanted.end()) continue;
+        if (const auto upright = checkUpright(calibration, site, *found->second); !upright)
+            calibration.trouble = upright.error().message();
     }
     return calibrations;
 }

@@ -19,6 +19,7 @@ namespace fantascope::app {
 struct OutputCalibration {
     std::size_t output = 0;
     std::string trouble;  // why it has no fit, or why the fit is not good enough; empty: it is good
+    std::string note;     // what a person should look at although it is good; may be empty
     std::optional<vision::WarpFit> fit;
     std::optional<LightSurvey::Output> survey;  // none: not measured
     bool written = false;

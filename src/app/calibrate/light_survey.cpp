@@ -31,6 +31,8 @@ constexpr double kStubborn = 0.7;
 constexpr int kSmallestSide = 32;        // of an output, projector pixels
 constexpr std::size_t kFewestLit = 400;  // camera pixels
 constexpr double kSaturatedShare = 0.2;
+// Of the lit pixels, the fewest that must be decoded.
+constexpr double kFewestKnown = 0.1;
 // The contrast at which one frame a picture is enough, and the most frames.
 constexpr double kClearContrast = 25;
 constexpr int kMostFrames = 4;
@@ -66,12 +68,17 @@ double meanOver(const std::vector<std::size_t>& pixels, const GreyImage& light) 
 
 // Error: the camera sees too little of the output's light, or too much.
 Result<void> canBeMeasured(const LightDecoder& sight) {
+    const auto dark = sight.dark().pixels();
+    if (2 * std::ranges::count_if(dark, [](float light) { return light >= 1; }) > std::ssize(dark))
+        return Error(std::string(kWhite));
     if (static_cast<double>(sight.saturated()) > kSaturatedShare * static_cast<double>(sight.lit() + sight.saturated()))
         return Error("the camera is saturated by its light; lower the camera's exposure or gain");
     if (sight.lit() < kFewestLit)
-        return Error(fmt::format(
-            "the camera sees its light on {} pixels, {} are needed; turn the camera or the projector, or raise the exposure",
-            sight.lit(), kFewestLit));
+        return Error(
+            fmt::format("the camera sees its light on {} pixels, {} are needed; see that the projector is on, turn it or the "
+                        "camera, or raise "
+                        "the camera's exposure",
+                        sight.lit(), kFewestLit));
     return {};
 }
 
@@ -86,7 +93,18 @@ void LightSurvey::step(const Use& use) {
     const auto seen = rig_.step();
     if (!seen) return;
     const RgbaImage& image = seen->frame->image;
-    if (glm::ivec2(image.width(), image.height()) == site_.nominalCamera->size) use(*seen);
+    if (glm::ivec2(image.width(), image.height()) != site_.nominalCamera->size) return;
+    sight_.see(seen->frame);
+    use(*seen);
+}
+
+Error LightSurvey::stopped() const {
+    const std::string trouble = rig_.cameraTrouble();
+    return Error("the camera stopped: " +
+                 (trouble.empty()
+                      ? "there are no pictures of its size any more; look at its cable, and close other programs that "
+                        "use it"
+                      : trouble));
 }
 
 Result<void> LightSurvey::stepUntil(Time until, const Use& use) {
@@ -134,7 +152,7 @@ Result<bool> LightSurvey::measureDelay(std::size_t output) {
         rig_.show(output, lit ? white : nullptr);
         std::shared_ptr<const CameraFrame> last;
         TRY(stepUntil(rig_.now() + kLongestDelay + 2 * period_, [&](const CalibrationRig::Seen& seen) { last = seen.frame; }));
-        if (!last) return Error("the camera stopped; look at its cable");
+        if (!last) return stopped();
         return lightOf(light_, last->image);
     };
     const GreyImage full = TRY(stillOf(true)), dark = TRY(stillOf(false));
@@ -150,6 +168,7 @@ Result<bool> LightSurvey::measureDelay(std::size_t output) {
         rig_.show(output, lights ? white : nullptr);
         std::optional<Time> before;
         bool found = false;
+        sight_.clear();
         step([&](const CalibrationRig::Seen& seen) { before = seen.frame->exposed; });
         const Time shown = rig_.now();
         // Each change at another moment of the camera's period.
@@ -165,9 +184,12 @@ Result<bool> LightSurvey::measureDelay(std::size_t output) {
             latest = std::min(latest, seen.frame->exposed - shown);
             arrivals.push_back(seen.arrived - seen.frame->exposed);
         }));
+        if (!found && !rig_.cameraTrouble().empty()) return stopped();
+        if (!found && sight_.repeatsOne()) return Error(sight_.trouble());
+        if (!found)
+            return Error(
+                fmt::format("the camera is slower than {} s; choose another size or format for it", seconds(kLongestDelay)));
     }
-    if (arrivals.size() < kEdges)
-        return Error(fmt::format("the camera is slower than {} s; choose another size or format for it", seconds(kLongestDelay)));
     if (soonest == Time::min()) soonest = latest - period_;
     if (soonest > latest) std::swap(soonest, latest);  // the delay is not the same every time
     const Time margin = period_ / 4;
@@ -187,16 +209,22 @@ Result<void> LightSurvey::begin(const std::vector<std::size_t>& outputs) {
         rig_.show(output, nullptr);
         if (seen) return {};
     }
-    return Error("the camera sees no light of the outputs; turn it towards the picture, open its lens, or raise its exposure");
+    const std::string trouble = sight_.trouble();
+    return Error(trouble.empty() ? "the camera sees no light of the outputs; see that the projectors are on, turn the camera "
+                                   "towards their light, or raise its exposure"
+                                 : trouble);
 }
 
 Result<std::vector<LightSurvey::Taken>> LightSurvey::take(std::size_t output, std::size_t count,
                                                           const std::function<Picture(std::size_t)>& picture, int frames) {
+    sight_.clear();
     std::vector<Taken> taken(count);
     PictureSchedule schedule(delay_, period_);
+    FrozenCamera frozen;
     const auto use = [&](const CalibrationRig::Seen& seen) {
         const auto shown = schedule.pictureOf(seen.frame->exposed);
         if (!shown || *shown < 0) return;
+        frozen.see(seen.frame, *shown);
         Taken& one = taken[static_cast<std::size_t>(*shown)];
         const RgbaImage& image = seen.frame->image;
         if (one.light.empty()) one.light = GreyImage(image.width(), image.height());
@@ -216,9 +244,10 @@ Result<std::vector<LightSurvey::Taken>> LightSurvey::take(std::size_t output, st
     TRY(stepUntil(rig_.now() + delay_.latest + arrival_ + 2 * period_, use));
     for (Taken& one : taken)
         for (float& value : one.light.pixels()) value /= static_cast<float>(one.frames);
-    if (std::ranges::all_of(taken, [](const Taken& one) { return one.frames == 0; })) {
-        const std::string trouble = rig_.cameraTrouble();
-        return Error("the camera gave no pictures of its size" + (trouble.empty() ? "; look at its cable" : ": " + trouble));
+    if (std::ranges::all_of(taken, [](const Taken& one) { return one.frames == 0; })) return stopped();
+    if (frozen.wasFrozen()) {
+        const std::string trouble = sight_.trouble();
+        return Error(trouble.empty() ? std::string(kFrozen) : trouble);
     }
     done_ += share_;
     return taken;
@@ -298,7 +327,9 @@ Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
         return decoder;
     };
     const LightDecoder sight = decoderOf(2);
-    TRY(canBeMeasured(sight));
+    // Black pictures alone: the camera looks elsewhere, on a dark night.
+    const std::string blind = sight_.isBlack() && !sight_.repeatsOne() ? "" : sight_.trouble();
+    if (const auto can = canBeMeasured(sight); !can) return blind.empty() ? can.error() : Error(blind);
 
     share_ = 0.15, doing_ = "measuring its greys";
     Output found;
@@ -308,6 +339,13 @@ Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
     found.repeated = TRY(decode(output, light, found.gamma, decoder));
     found.map = decoder.map();
     found.dark = decoder.dark();
+    if (static_cast<double>(found.map.known) < kFewestKnown * static_cast<double>(found.map.lit)) {
+        const std::string trouble = sight_.trouble();
+        return Error(trouble.empty() ? fmt::format("only {} of the {} camera pixels that it lights could be measured; see that "
+                                                   "nothing moves or flickers, and calibrate again",
+                                                   found.map.known, found.map.lit)
+                                     : trouble);
+    }
     return found;
 }
 

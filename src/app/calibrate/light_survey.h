@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/calibrate/calibration_rig.h"
+#include "app/calibrate/camera_sight.h"
 #include "app/calibrate/picture_schedule.h"
 #include "app/site/site_models.h"
 
@@ -41,7 +42,8 @@ public:
     // Waits for the camera, and measures how long a picture takes to be seen, on the first of
     // `outputs` that it sees. Error: the camera gives no pictures, or sees none of the outputs.
     Result<void> begin(const std::vector<std::size_t>& outputs);
-    // Error: the camera does not see the output, is saturated, or was lost; the survey was ended.
+    // Error: the camera does not see the output, sees nothing at all, is saturated, or was lost;
+    // the survey was ended.
     Result<Output> survey(std::size_t output);
 
     // From a picture's light to its arrival here.
@@ -62,6 +64,8 @@ private:
     // the site file says.
     void step(const Use& use);
     Result<void> stepUntil(Time until, const Use& use);
+    // That the camera stopped, why, and what to do.
+    Error stopped() const;
     // Shows `count` pictures one after the other for `frames` camera frames each; a picture that
     // was missed has no frames. `picture` makes each when it is due.
     Result<std::vector<Taken>> take(std::size_t output, std::size_t count, const std::function<Picture(std::size_t)>& picture,
@@ -73,6 +77,7 @@ private:
     const show::Site& site_;
     const Hooks hooks_;
     const vision::CameraLight light_;
+    CameraSight sight_;
     Time period_{};  // of the camera
     PictureSchedule::Delay delay_;
     Time arrival_{};  // the longest from an exposure to its arrival

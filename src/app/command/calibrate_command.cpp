@@ -73,6 +73,7 @@ Report reportOf(const show::Site& site, const std::vector<OutputCalibration>& ca
         Report& output = report["outputs"][site.outputs[calibration.output].name];
         output["written"] = calibration.written;
         if (!calibration.trouble.empty()) output["trouble"] = calibration.trouble;
+        if (!calibration.note.empty()) output["note"] = calibration.note;
         if (calibration.survey) output["gamma"] = calibration.survey->gamma;
         if (!calibration.fit) continue;
         const vision::WarpFit& fit = *calibration.fit;
@@ -100,6 +101,7 @@ std::string sentenceOf(const show::Site& site, const OutputCalibration& calibrat
     if (fit.leftOut > 0.02) words += fmt::format("; {:.0f} % of the place lies on something else", 100 * fit.leftOut);
     if (!calibration.trouble.empty()) words += fmt::format("; not good enough: {}", calibration.trouble);
     if (calibration.written) words += "; written";
+    if (!calibration.note.empty()) words += "; note: " + calibration.note;
     return words;
 }
 

@@ -18,6 +18,9 @@ using vision::PictureTrouble;
 constexpr double kStill = 0.002, kElsewhere = 0.05;
 // A view is thrown away only where so many tell that it does not fit.
 constexpr std::size_t kFewestToJudge = 6;
+// A camera that works never gives the same bytes so often, because of its noise.
+constexpr int kFrozenFrames = 10;
+constexpr const char* kFrozenAdvice = "the camera repeats one picture: unplug it, and plug it in again";
 
 // The mean distance of the corners that both show, in picture widths; infinite: they show too few
 // in common.
@@ -45,10 +48,18 @@ void Missed::count(PictureTrouble trouble) {
 std::string Missed::why() const {
     if (2 * black > pictures) return "the pictures are black; light the board, take the cap off the lens, or raise the exposure";
     if (2 * saturated > pictures) return "the pictures are white; lower the exposure or the gain, or take light off the board";
+    if (frozen) return "the camera repeats one picture again and again; unplug it, and plug it in again";
     return "no board was found; print one with 'fantascope lens --board', and show it flat, sharp and with its white margin";
 }
 
+bool BoardWatch::isFrozen(const RgbaImage& frame) {
+    same_ = std::ranges::equal(frame.pixels(), last_.pixels()) ? same_ + 1 : 0;
+    last_ = frame;
+    return same_ >= kFrozenFrames;
+}
+
 bool BoardWatch::look(const RgbaImage& frame) {
+    missed_.frozen = isFrozen(frame);
     auto view = vision::findBoard(frame);
     if (!view) {
         const PictureTrouble trouble = vision::troubleOf(frame);
@@ -56,6 +67,7 @@ bool BoardWatch::look(const RgbaImage& frame) {
         before_.reset();
         advice_ = trouble == PictureTrouble::Black       ? "the picture is black: light the board, or raise the exposure"
                   : trouble == PictureTrouble::Saturated ? "the picture is white: lower the exposure or the gain"
+                  : missed_.frozen                       ? kFrozenAdvice
                                                          : "show the board to the camera";
         return false;
     }
@@ -63,7 +75,7 @@ bool BoardWatch::look(const RgbaImage& frame) {
     before_ = *view;
     if (!still || !elsewhere) {
         const std::string step = needs_.sentence();
-        advice_ = !elsewhere && !step.empty() ? step : "hold the board still";
+        advice_ = missed_.frozen ? kFrozenAdvice : !elsewhere && !step.empty() ? step : "hold the board still";
         return false;
     }
     views_.push_back(std::move(*view));

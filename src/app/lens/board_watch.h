@@ -14,6 +14,7 @@ namespace fantascope::app {
 // How many pictures showed what, where no board was found in them.
 struct Missed {
     int pictures = 0, black = 0, saturated = 0;
+    bool frozen = false;  // the camera went on with one picture to the end
 
     void count(vision::PictureTrouble trouble);
     // Why no board was found, and what to do: "the pictures are black; light the board, ...".
@@ -40,6 +41,7 @@ public:
     const Missed& missed() const { return missed_; }
 
 private:
+    bool isFrozen(const RgbaImage& frame);
     bool isStill(const vision::BoardView& view) const;
     bool isNew(const vision::BoardView& view) const;
     void fit();
@@ -50,6 +52,8 @@ private:
     std::optional<vision::BoardView> before_;  // in the last frame
     std::string advice_ = "show the board to the camera";
     Missed missed_;
+    RgbaImage last_;
+    int same_ = 0;  // frames that were the last one again
     int thrownAway_ = 0;
 };
 

@@ -243,7 +243,7 @@ TEST_F(CalibrateCommand, tells_troubles_apart) {
     makeSite(150, "  faults: [{kind: unplug, device: camera, at: 0}]\n");
     EXPECT_THAT(run({}), refuses(AllOf(HasSubstr("the camera gave 0 pictures"), HasSubstr("plug it in"))));
     makeSite(150, "  faults: [{kind: freeze, device: camera, at: 0}]\n");
-    EXPECT_THAT(run({}), refuses(HasSubstr("the camera sees no light of the outputs")));
+    EXPECT_THAT(run({}), refuses(HasSubstr("the camera repeats one picture")));
     makeSite(150, "  faults: [{kind: unplug, device: camera, at: 14}]\n");
     EXPECT_THAT(run({"--write"}), refuses(HasSubstr("not calibrated")));
     makeSite(150, "  faults: [{kind: unplug, device: right, at: 0}]\n");

@@ -12,6 +12,7 @@ namespace fantascope::app {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using vision::BoardCamera;
 using vision::BoardPose;
 using vision::CameraModel;
@@ -76,6 +77,23 @@ TEST_F(Watched, throws_a_view_away_that_does_not_fit) {
     EXPECT_EQ(watch_.views().size(), before);
     hold(poses[8]);
     EXPECT_EQ(watch_.views().size(), before + 1);
+}
+
+// Whether the board is on the picture or not.
+TEST_F(Watched, says_that_the_camera_is_frozen) {
+    const RgbaImage board = frame({{0, 0, 14}, {20, 0, 0}});
+    for (int i = 0; i < 10; ++i) {
+        watch_.look(board);
+        EXPECT_THAT(watch_.advice(), Not(HasSubstr("repeats"))) << i;
+    }
+    watch_.look(board);
+    EXPECT_THAT(watch_.advice(), HasSubstr("the camera repeats one picture: unplug it"));
+    hold({{1, 0, 14}, {20, 0, 0}});
+    EXPECT_THAT(watch_.advice(), Not(HasSubstr("repeats")));
+
+    BoardWatch empty;
+    for (int i = 0; i < 12; ++i) empty.look(RgbaImage(480, 360, {90, 90, 90, 255}));
+    EXPECT_THAT(lensOf({}, empty.missed()).error().message(), HasSubstr("repeats one picture"));
 }
 
 TEST_F(Watched, says_what_is_wrong_with_a_picture) {
