@@ -94,6 +94,7 @@ void LightSurvey::step(const Use& use) {
     if (!seen) return;
     const RgbaImage& image = seen->frame->image;
     if (glm::ivec2(image.width(), image.height()) != site_.nominalCamera->size) return;
+    heard_ = seen->arrived;
     sight_.see(seen->frame);
     use(*seen);
 }
@@ -184,7 +185,9 @@ Result<bool> LightSurvey::measureDelay(std::size_t output) {
             latest = std::min(latest, seen.frame->exposed - shown);
             arrivals.push_back(seen.arrived - seen.frame->exposed);
         }));
-        if (!found && !rig_.cameraTrouble().empty()) return stopped();
+        // Its driver needs seconds to be sure that it has fallen silent.
+        constexpr int kSilent = 4;  // periods
+        if (!found && rig_.now() - heard_ > kSilent * period_) return stopped();
         if (!found && sight_.repeatsOne()) return Error(sight_.trouble());
         if (!found)
             return Error(

@@ -78,6 +78,7 @@ private:
     const Hooks hooks_;
     const vision::CameraLight light_;
     CameraSight sight_;
+    Time heard_{};   // when the newest frame came
     Time period_{};  // of the camera
     PictureSchedule::Delay delay_;
     Time arrival_{};  // the longest from an exposure to its arrival
