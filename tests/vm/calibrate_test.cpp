@@ -213,10 +213,10 @@ TEST_F(ScreenCamera, is_calibrated_and_watches_the_show) {
     for (const json& entry : watched) EXPECT_LT(entry["drift_px"].get<double>(), 6 * entry["sigma_px"].get<double>()) << entry;
 }
 
-TEST_F(ScreenCamera, that_dies_among_the_stripes_is_told) {
+TEST_F(ScreenCamera, that_dies_while_it_measures_is_told) {
     RunningProgram calibration({"calibrate", ".", "--write", "--report", "c.json"}, folder_.path());
     while (const auto line = calibration.line())
-        if (line->find("structured light") != std::string::npos) break;
+        if (line->find("looking for its light") != std::string::npos) break;
     stop();
     while (calibration.line()) continue;
     EXPECT_EQ(calibration.stop(), 1);
