@@ -99,6 +99,11 @@ void LightSurvey::step(const Use& use) {
     use(*seen);
 }
 
+bool LightSurvey::isSilent() const {
+    constexpr int kPeriods = 4;
+    return rig_.now() - heard_ > kPeriods * period_;
+}
+
 Error LightSurvey::stopped() const {
     const std::string trouble = rig_.cameraTrouble();
     return Error("the camera stopped: " +
@@ -185,9 +190,7 @@ Result<bool> LightSurvey::measureDelay(std::size_t output) {
             latest = std::min(latest, seen.frame->exposed - shown);
             arrivals.push_back(seen.arrived - seen.frame->exposed);
         }));
-        // Its driver needs seconds to be sure that it has fallen silent.
-        constexpr int kSilent = 4;  // periods
-        if (!found && rig_.now() - heard_ > kSilent * period_) return stopped();
+        if (!found && isSilent()) return stopped();
         if (!found && sight_.repeatsOne()) return Error(sight_.trouble());
         if (!found)
             return Error(
@@ -330,9 +333,12 @@ Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
         return decoder;
     };
     const LightDecoder sight = decoderOf(2);
-    // Black pictures alone: the camera looks elsewhere, on a dark night.
-    const std::string blind = sight_.isBlack() && !sight_.repeatsOne() ? "" : sight_.trouble();
-    if (const auto can = canBeMeasured(sight); !can) return blind.empty() ? can.error() : Error(blind);
+    if (const auto can = canBeMeasured(sight); !can) {
+        if (isSilent()) return stopped();
+        // Black pictures alone: the camera looks elsewhere, on a dark night.
+        const std::string blind = sight_.isBlack() && !sight_.repeatsOne() ? "" : sight_.trouble();
+        return blind.empty() ? can.error() : Error(blind);
+    }
 
     share_ = 0.15, doing_ = "measuring its greys";
     Output found;
@@ -343,6 +349,7 @@ Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
     found.map = decoder.map();
     found.dark = decoder.dark();
     if (static_cast<double>(found.map.known) < kFewestKnown * static_cast<double>(found.map.lit)) {
+        if (isSilent()) return stopped();
         const std::string trouble = sight_.trouble();
         return Error(trouble.empty() ? fmt::format("only {} of the {} camera pixels that it lights could be measured; see that "
                                                    "nothing moves or flickers, and calibrate again",

@@ -64,6 +64,8 @@ private:
     // the site file says.
     void step(const Use& use);
     Result<void> stepUntil(Time until, const Use& use);
+    // Whether no frame has come for a while. The camera's driver needs seconds to be sure of that.
+    bool isSilent() const;
     // That the camera stopped, why, and what to do.
     Error stopped() const;
     // Shows `count` pictures one after the other for `frames` camera frames each; a picture that
