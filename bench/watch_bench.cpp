@@ -1,64 +1,104 @@
-// Measures what the watch of the wall makes of drawn nights in simulation: faults named, and
-// nothing named where nothing is wrong.
+// Measures what the watch of the wall makes of nights in simulation that a seed draws: which faults
+// it names, whether it names or moves anything where nothing is wrong, and how it brings pictures
+// back.
 
 #include "app/watch/drawn_night.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 
 namespace fantascope::app {
 namespace {
 
+std::string wordsOf(const std::vector<CauseReport>& causes) {
+    std::string words;
+    for (const CauseReport& cause : causes) {
+        words += fmt::format(" {}{}{} {:.1f}-", cause.output, cause.output.empty() ? "" : ": ", cause.cause, seconds(cause.from));
+        words += cause.to ? fmt::format("{:.1f};", seconds(*cause.to)) : ";";
+    }
+    return words;
+}
+
+// One fault a night. Right: its cause is named, for the right output, and nothing else is.
 void playFaults(NightOptions options, const std::string& kind, std::uint64_t first, std::uint64_t last) {
-    std::map<std::string, std::pair<int, int>> counts;  // by kind: named, drawn
+    std::map<std::string, std::pair<int, int>> counts;  // by kind: right, drawn
     for (options.seed = first; options.seed <= last; ++options.seed) {
-        const DrawnFault& fault = drawnFaults()[options.seed % drawnFaults().size()];
-        if (!kind.empty() && fault.kind != kind) continue;
+        const auto isIt = [&](const DrawnFault& fault) { return fault.kind == kind; };
+        const DrawnFault& fault =
+            kind.empty() ? drawnFaults()[options.seed % drawnFaults().size()] : *std::ranges::find_if(drawnFaults(), isIt);
         options.fault = fault.kind;
         const NightResult night = playNight(options);
-        bool isNamed = false;
-        std::string said;
-        for (const CauseReport& cause : night.causes) {
-            isNamed = isNamed || (cause.cause == fault.cause && (!fault.ofOutput || cause.output == night.output));
-            said +=
-                fmt::format(" {}{}{} {:.1f}", cause.output, cause.output.empty() ? "" : ": ", cause.cause, seconds(cause.from));
-            said += cause.to ? fmt::format("-{:.1f};", seconds(*cause.to)) : ";";
-        }
+        const bool isNamed = std::ranges::any_of(night.causes, [&](const CauseReport& cause) {
+            return cause.cause == fault.cause && (!fault.ofOutput || cause.output == night.output);
+        });
         const bool isRight = isNamed && night.causes.size() == 1;
-        auto& [named, drawn] = counts[fault.kind];
-        named += isRight ? 1 : 0;
-        ++drawn;
-        fmt::print("{} {:4} {} |{}\n", isRight ? "right" : isNamed ? "more " : "WRONG", options.seed, night.drawn, said);
+        for (auto* count : {&counts[fault.kind], &counts["all"]}) {
+            count->first += isRight ? 1 : 0;
+            ++count->second;
+        }
+        fmt::print("{} {:4} {} |{}\n", isRight ? "right" : isNamed ? "more " : "WRONG", options.seed, night.drawn, wordsOf(night.causes));
         std::fflush(stdout);
     }
-    int allNamed = 0, all = 0;
-    for (const auto& [name, count] : counts) {
-        fmt::print("{:12} {} of {}\n", name, count.first, count.second);
-        allNamed += count.first;
-        all += count.second;
+    for (const auto& [name, count] : counts) fmt::print("{:12} {} of {}\n", name, count.first, count.second);
+}
+
+// Nights without a fault. Right: nothing is named, and nothing moves.
+void playQuiet(NightOptions options, std::uint64_t first, std::uint64_t last) {
+    for (options.seed = first; options.seed <= last; ++options.seed) {
+        const NightResult night = playNight(options);
+        double farthest = 0;
+        for (const auto& [output, moved] : night.farthest) farthest = std::max(farthest, moved);
+        fmt::print("{:4} {} outputs, {:.0f} s: moved by {:.2f} px at most |{}\n", options.seed, night.outputs.size(), options.length, farthest,
+                   wordsOf(night.causes));
+        std::fflush(stdout);
     }
-    fmt::print("all          {} of {}\n", allNamed, all);
+}
+
+// Projectors that are pushed, and brought back.
+void playDrift(NightOptions options, std::uint64_t first, std::uint64_t last) {
+    options.fault = "bump";
+    for (options.seed = first; options.seed <= last; ++options.seed) {
+        const NightResult night = playNight(options);
+        double moved = 0, at = 0, found = -1, after15 = 0, most = 0, others = 0;
+        for (const Placed& placed : night.placed) {
+            if (moved == 0 && placed.moved > 0) at = seconds(placed.at);
+            moved = std::max(moved, placed.moved);
+            if (found < 0 && moved > 0 && placed.shifted > 0) found = seconds(placed.at) - at;
+            most = std::max(most, placed.shifted);
+            if (moved > 0 && seconds(placed.at) <= at + 15) after15 = placed.missed;
+        }
+        for (const auto& [output, far] : night.farthest) others = output == night.output ? others : std::max(others, far);
+        fmt::print("{:4} {}: {:5.2f} px, corrected after {:.1f} s, {:.2f} px rms after 15 s, at most {:.0f} % of it; others moved {:.2f} |{}\n",
+                   options.seed, night.output, moved, found, after15, 100 * most / moved, others, wordsOf(night.causes));
+        std::fflush(stdout);
+    }
 }
 
 }  // namespace
 }  // namespace fantascope::app
 
 int main(int argc, char** argv) {
-    CLI::App app("Measures the watch of the wall");
+    CLI::App app("Measures the watch of the wall on drawn nights");
     fantascope::app::NightOptions options;
     std::uint64_t first = 1, last = 14;
-    std::string kind;
+    std::string what = "faults", kind;
     bool isPlan = false;
+    app.add_option("what", what, "faults, quiet or drift")->check(CLI::IsMember({"faults", "quiet", "drift"}));
     app.add_option("--first", first, "first seed");
     app.add_option("--last", last, "last seed");
-    app.add_option("--kind", kind, "only faults of this kind");
-    app.add_option("--length", options.length, "seconds");
-    app.add_option("--at", options.faultAt, "when the fault happens at the earliest, seconds");
-    app.add_flag("--plan", isPlan, "the site was not calibrated");
+    app.add_option("--kind", kind, "only faults of this kind, as in a site file (default: each in turn)");
+    app.add_option("--length", options.length, "seconds of a night");
+    app.add_option("--latency", options.latency, "of the camera, seconds");
+    app.add_flag("--plan", isPlan, "the sites were not calibrated");
+    app.add_flag("--busy", options.isBusy, "headlights pass, and thin fog comes and goes");
     CLI11_PARSE(app, argc, argv);
     options.isSurveyed = !isPlan;
-    fantascope::app::playFaults(options, kind, first, last);
+    if (what != "faults") options.geometry = "automatic";
+    if (what == "faults") fantascope::app::playFaults(options, kind, first, last);
+    if (what == "quiet") fantascope::app::playQuiet(options, first, last);
+    if (what == "drift") fantascope::app::playDrift(options, first, last);
 }

@@ -48,9 +48,4 @@ struct BoardView {
 constexpr std::size_t kFewestCorners = 8;
 std::optional<BoardView> findBoard(const RgbaImage& picture);
 
-// Why a picture cannot show the board.
-enum class PictureTrouble { None, Black, Saturated };
-// None: it may show it.
-PictureTrouble troubleOf(const RgbaImage& picture);
-
 }  // namespace fantascope::vision

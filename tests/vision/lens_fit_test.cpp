@@ -4,6 +4,8 @@
 
 #include "vision/lens_fit.h"
 
+#include "vision/picture_trouble.h"
+
 #include "board_pictures.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "app/calibrate/camera_sight.h"
 
-#include "vision/lens_board.h"
+#include "vision/picture_trouble.h"
 
 #include <algorithm>
 
@@ -22,8 +22,8 @@ std::string CameraSight::trouble() const {
                    "the camera's pictures are black; take the cap off its lens, turn it towards the light, or raise its "
                    "exposure") +
                (repeatsOne() ? ". If that does not help, unplug it, and plug it in again" : "");
-    if (white_ == pictures_) return std::string(kWhite);
-    return repeatsOne() ? std::string(kFrozen) : "";
+    if (white_ == pictures_) return std::string(kCameraWhite);
+    return repeatsOne() ? std::string(kCameraFrozen) : "";
 }
 
 void FrozenCamera::see(const std::shared_ptr<const CameraFrame>& frame, std::int64_t shown) {

@@ -51,8 +51,8 @@ private:
 };
 
 // That the camera is saturated or frozen, and what to do.
-inline constexpr std::string_view kWhite =
+inline constexpr std::string_view kCameraWhite =
     "the camera's pictures are white, even while the outputs are dark; lower its exposure or gain, or wait until it is darker";
-inline constexpr std::string_view kFrozen = "the camera repeats one picture again and again; unplug it, and plug it in again";
+inline constexpr std::string_view kCameraFrozen = "the camera repeats one picture again and again; unplug it, and plug it in again";
 
 }  // namespace fantascope::app

@@ -70,7 +70,7 @@ double meanOver(const std::vector<std::size_t>& pixels, const GreyImage& light) 
 Result<void> canBeMeasured(const LightDecoder& sight) {
     const auto dark = sight.dark().pixels();
     if (2 * std::ranges::count_if(dark, [](float light) { return light >= 1; }) > std::ssize(dark))
-        return Error(std::string(kWhite));
+        return Error(std::string(kCameraWhite));
     if (static_cast<double>(sight.saturated()) > kSaturatedShare * static_cast<double>(sight.lit() + sight.saturated()))
         return Error("the camera is saturated by its light; lower the camera's exposure or gain");
     if (sight.lit() < kFewestLit)
@@ -253,7 +253,7 @@ Result<std::vector<LightSurvey::Taken>> LightSurvey::take(std::size_t output, st
     if (std::ranges::all_of(taken, [](const Taken& one) { return one.frames == 0; })) return stopped();
     if (frozen.wasFrozen()) {
         const std::string trouble = sight_.trouble();
-        return Error(trouble.empty() ? std::string(kFrozen) : trouble);
+        return Error(trouble.empty() ? std::string(kCameraFrozen) : trouble);
     }
     done_ += share_;
     return taken;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vision/lens_fit.h"
+#include "vision/picture_trouble.h"
 
 #include "media/image.h"
 

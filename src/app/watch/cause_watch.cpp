@@ -1,9 +1,12 @@
 #include "app/watch/cause_watch.h"
 
+#include "vision/picture_trouble.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace fantascope::app {
 namespace {
@@ -24,11 +27,12 @@ bool isUniform(const RgbaImage& picture) {
     });
 }
 
-double saturatedShare(const RgbaImage& picture) {
-    constexpr int kFull = 254;
-    const auto count = std::ranges::count_if(
-        picture.pixels(), [](const Rgba8& pixel) { return pixel.r >= kFull && pixel.g >= kFull && pixel.b >= kFull; });
-    return static_cast<double>(count) / static_cast<double>(picture.pixels().size());
+// Enough of a picture to know it again.
+std::vector<Rgba8> sampled(const RgbaImage& picture) {
+    constexpr std::size_t kEvery = 13;
+    std::vector<Rgba8> pixels;
+    for (std::size_t i = 0; i < picture.pixels().size(); i += kEvery) pixels.push_back(picture.pixels()[i]);
+    return pixels;
 }
 
 }  // namespace
@@ -37,9 +41,9 @@ CauseWatch::CauseWatch(const show::Site& site, vision::WallWatch& wall, CauseLog
     : site_(site), wall_(wall), causes_(causes), events_(events), hidden_(site.outputs.size()) {}
 
 bool CauseWatch::isUsable(const RgbaImage& picture, Time at) {
-    constexpr double kMostSaturated = 0.5;
     const glm::ivec2 size = site_.nominalCamera->size;
     bool isUsable = false;
+    std::vector<Rgba8> pixels = sampled(picture);
     if (picture.width() != size.x || picture.height() != size.y) {
         suspect("",
                 {"camera of another size",
@@ -50,14 +54,14 @@ bool CauseWatch::isUsable(const RgbaImage& picture, Time at) {
     } else if (isUniform(picture)) {
         suspect("", {"camera blind", "its picture is the same everywhere: take off its cap, and look at its exposure", kShort},
                 true, at);
-    } else if (picture == picture_) {
+    } else if (pixels == picture_) {
         suspect("", {"camera frozen", "it sends the same picture again and again: plug it in anew", kLong}, true, at);
-    } else if (saturatedShare(picture) > kMostSaturated) {
+    } else if (vision::troubleOf(picture) == vision::PictureTrouble::Saturated) {
         suspect("", {"camera saturated", "more than half of its picture is white: set a shorter exposure", kShort}, true, at);
     } else {
         isUsable = true;
     }
-    picture_ = picture;
+    picture_ = std::move(pixels);
     endOthers(true, at);
     return isUsable;
 }

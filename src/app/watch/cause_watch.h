@@ -61,7 +61,7 @@ private:
     std::vector<bool> hidden_;
     std::optional<Time> measured_;
     show::ShowState lamps_;  // its levels and relays, at the last measurement
-    RgbaImage picture_;      // the last one
+    std::vector<Rgba8> picture_;  // some pixels of the last one
 };
 
 }  // namespace fantascope::app

@@ -1,5 +1,6 @@
 #include "drawn_night.h"
 
+#include "app/live/playback_replica.h"
 #include "app/site/site_file.h"
 #include "app/site/site_models.h"
 #include "drivers/site/simulated_site.h"
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 namespace fantascope::app {
 namespace {
@@ -145,6 +147,8 @@ public:
 
     std::vector<std::string> names;
     std::string faulty, fault;
+    glm::dvec3 turn{0.0};  // of the bump, radians
+    double faultAt = 0;
 
     std::string site() {
         const int drawn = 1 + static_cast<int>(in(0.5, 2.99)), outputs = options_.outputs > 0 ? options_.outputs : drawn;
@@ -197,9 +201,13 @@ public:
         for (int i = 0; i < walkers; ++i)
             text += fmt::format("    - {{name: w{}, path: [[-9, {:.2f}], [9, {:.2f}]], speed: {:.2f}, at: {:.1f}, loop: true}}\n",
                                 i, in(1, 5), in(1, 5), in(0.7, 1.6), in(0, 10));
+        if (options_.isBusy)
+            text += "  headlights:\n" + headlight(6) + headlight(in(25, 35)) + headlight(in(50, 70));
         drawFault();
         std::vector<std::string> faults = options_.script;
         if (!fault.empty()) faults.push_back(fault);
+        for (double at = in(20, 60); options_.isBusy && at < options_.length; at += in(60, 180))
+            faults.push_back(fmt::format("kind: fog, at: {:.1f}, until: {:.1f}, rise: 8, density: {:.4f}", at, at + in(20, 40), in(0.003, 0.03)));
         if (!faults.empty()) text += "  faults:\n";
         for (std::string& line : faults) {
             if (const auto at = line.find("NAME"); at != std::string::npos) line.replace(at, 4, names[0]);
@@ -209,6 +217,11 @@ public:
     }
 
 private:
+    // A car's lamp that passes again and again.
+    std::string headlight(double at) {
+        return fmt::format("    - {{path: [[-25, {:.1f}], [25, {:.1f}]], speed: {:.1f}, at: {:.1f}, every: {:.0f}, beam_angle: 20, field_angle: 45}}\n",
+                           in(6, 14), in(6, 14), in(6, 14), at, in(30, 90));
+    }
     double ambient_ = 1;
     std::string rectangle() {
         const double width = in(0.25, 0.6), height = in(0.35, 0.8), left = in(0.1, 0.9 - width), top = in(0.05, 0.95 - height);
@@ -217,7 +230,8 @@ private:
     void drawFault() {
         const std::string& kind = options_.fault;
         if (kind.empty()) return;
-        const std::string when = fmt::format("at: {:.1f}", in(options_.faultAt, options_.faultAt + Leaves::kCue));
+        faultAt = std::round(10 * in(options_.faultAt, options_.faultAt + Leaves::kCue)) / 10;
+        const std::string when = fmt::format("at: {:.1f}", faultAt);
         const std::string output = names[static_cast<std::size_t>(in(0, 0.999 * static_cast<double>(names.size())))];
         const auto ofOutput = [&](const std::string& keys) {
             faulty = output;
@@ -239,7 +253,7 @@ private:
         }
         if (kind == "fog") ofAll(fmt::format("density: {:.3f}, rise: {:.1f}", logIn(0.012, 0.08), in(0, 4)));
         if (kind == "ambient") ofAll(fmt::format("level: {:.1f}, rise: {:.1f}", 1 + logIn(5, 80) / ambient_, in(0, 4)));
-        if (kind == "camera_bump") ofAll(turn(1.2));
+        if (kind == "camera_bump") ofAll(drawTurn());
         if (kind == "cover") ofAll(fmt::format("rectangle: {}", rectangle()));
         if (kind == "dirt") ofAll(fmt::format("blur: {:.1f}, veil: {:.2f}", logIn(2, 7), in(0, 0.6)));
         if (kind == "blind") ofAll(fmt::format("level: {}", in(0, 1) < 0.5 ? 0 : 1));
@@ -303,75 +317,172 @@ void survey(const show::Site& site, std::vector<std::optional<vision::WatchedOut
     }
 }
 
+// A picture that is moved on its projector.
+RgbaImage shifted(const RgbaImage& picture, const show::PictureShift& shift) {
+    const auto map = show::mapOf(shift, {picture.width(), picture.height()});
+    if (show::farthestOf(shift) <= 0 || !map) return picture;
+    const Homography back = map->inverse();
+    RgbaImage moved(picture.width(), picture.height());
+    for (int y = 0; y < picture.height(); ++y)
+        for (int x = 0; x < picture.width(); ++x) {
+            const glm::dvec2 from = back({x + 0.5, y + 0.5}) - 0.5;
+            const glm::ivec2 corner(glm::floor(from));
+            const glm::dvec2 share = from - glm::dvec2(corner);
+            if (corner.x < 0 || corner.y < 0 || corner.x + 1 >= picture.width() || corner.y + 1 >= picture.height()) continue;
+            const auto light = [&](int dx, int dy) { return static_cast<double>(picture.at(corner.x + dx, corner.y + dy).r); };
+            const auto value = static_cast<std::uint8_t>(std::lround(std::lerp(
+                std::lerp(light(0, 0), light(1, 0), share.x), std::lerp(light(0, 1), light(1, 1), share.x), share.y)));
+            moved.at(x, y) = {value, value, value, 255};
+        }
+    return moved;
+}
+
+// How a bump moves a projector's picture on the wall, and what a shift leaves of it.
+class BumpedOutput {
+public:
+    BumpedOutput(const show::Output& output, const vision::CameraModel& projector, glm::dvec3 turn) : size_(output.size()) {
+        vision::CameraModel bumped = projector;
+        bumped.pose.worldFromLocal = projector.pose.worldFromLocal * rotationXyz(turn);
+        constexpr int kPlaces = 9;
+        for (int i = 0; i < kPlaces * kPlaces; ++i) {
+            const glm::dvec2 at = glm::dvec2(i % kPlaces, i / kPlaces) / (kPlaces - 1.0) * glm::dvec2(size_);
+            const vision::Ray ray = projector.rayThrough(at);
+            const glm::dvec3 wall = ray.origin - ray.direction * (ray.origin.z / ray.direction.z);
+            if (const auto now = bumped.pixelFromWorld(wall)) places_.emplace_back(at, *now);
+        }
+    }
+    Placed placed(Time at, const show::PictureShift& shift, bool isBumped) const {
+        const Homography map = show::mapOf(shift, size_).value_or(Homography());
+        Placed placed{at};
+        for (const auto& [from, bumped] : places_) {
+            const glm::dvec2 to = isBumped ? bumped : from, shown = map(from);
+            placed.moved += glm::dot(to - from, to - from);
+            placed.missed += glm::dot(shown - to, shown - to);
+            placed.shifted += glm::dot(shown - from, shown - from);
+        }
+        for (double* sum : {&placed.moved, &placed.missed, &placed.shifted}) *sum = std::sqrt(*sum / static_cast<double>(places_.size()));
+        return placed;
+    }
+
+private:
+    glm::ivec2 size_;
+    std::vector<std::pair<glm::dvec2, glm::dvec2>> places_;  // before and after
+};
+
+show::CueList cuesOf(const show::Site& site) {
+    show::CueList cues;
+    cues.dark.outputs.resize(site.outputs.size());
+    cues.dark.levels.resize(site.channelCount());
+    cues.farthestShift = site.corrections.geometry.farthest;
+    cues.shiftSpeed = site.corrections.geometry.speed;
+    return cues;
+}
+
+// A site, its show, and the watch of it.
+class Night {
+public:
+    Night(const NightOptions& options, const show::Site& site)
+        : options_(options),
+          site_(site),
+          open_(site, options.seed),
+          inputs_(cuesOf(site)),
+          playback_(inputs_),
+          frames_(site.outputs.size()),
+          isNew_(site.outputs.size(), 0) {
+        auto watched = must(watchedOutputsOf(site));
+        if (options.isSurveyed) survey(site, watched);
+        std::vector<ShownLight::Frames> sources;
+        for (std::size_t i = 0; i < site.outputs.size(); ++i) {
+            leaves_.emplace_back(options.seed * 10 + i, site.outputs[i].size());
+            sources.push_back({[this, i](Time) { return std::exchange(isNew_[i], 0) != 0 ? &frames_[i] : nullptr; }, [](Time) {}});
+        }
+        watch_.emplace(site, watched, cameraLightOf(site), sources, inputs_, events_, show::ShowClock());
+    }
+
+    // One picture of the camera.
+    void step(std::int64_t number) {
+        const Time exposed = tickTime(number, kCameraRate), frameTime = fromSeconds(1 / 30.0);
+        open_.clock.advanceTo(exposed);
+        playback_.stateAt(exposed, state_);
+        for (std::size_t i = 0; i < frames_.size(); ++i) {
+            frames_[i] = {i, exposed, {number, exposed - frameTime / 2, exposed, {}},
+                          shifted(leaves_[i].at(seconds(exposed)), state_.shifts[i])};
+            isNew_[i] = 1;
+            open_.world.setFrame(site_.outputs[i].name, std::make_shared<const RgbaImage>(frames_[i].image));
+        }
+        std::array<std::uint8_t, kDmxSlots> slots{};
+        slots[0] = Leaves::lampAt(seconds(exposed), options_.seed);
+        open_.world.setSlots(1, slots);
+        state_.levels[0] = static_cast<float>(slots[0]) / 255;
+        open_.simulation->advanceTo(exposed);
+        watch_->tick(exposed);
+        // The last row is exposed a little later, and the picture arrives later still.
+        for (const double part : {0.3, 0.6, 0.95}) {
+            open_.clock.advanceTo(exposed + fromSeconds(part / kCameraRate));
+            open_.simulation->advanceTo(open_.clock.now());
+            if (const auto frame = open_.world.takeFromCamera()) watch_->see(*frame, state_, false, open_.clock.now());
+        }
+    }
+    const show::ShowState& state() const { return state_; }
+    const DriftWatch& watch() const { return *watch_; }
+
+private:
+    const NightOptions& options_;
+    const show::Site& site_;
+    Site open_;
+    show::InputLog inputs_;
+    show::EventLog events_;
+    PlaybackReplica playback_;
+    std::vector<Leaves> leaves_;
+    std::vector<render::ShownFrame> frames_;  // by output: the newest
+    std::vector<char> isNew_;                 // and whether it was taken
+    std::optional<DriftWatch> watch_;
+    show::ShowState state_;
+};
+
 }  // namespace
 
 const std::vector<DrawnFault>& drawnFaults() {
-    static const std::vector<DrawnFault> faults{
-        {"bump", "out of place", true},  {"defocus", "out of focus", true}, {"dim", "dim projector lamp", true},
-        {"unplug", "dead output", true}, {"input", "wrong input", true},    {"fog", "fog"},
-        {"ambient", "ambient light"},    {"cover", "blocked view"},         {"camera_bump", "camera moved"},
-        {"dirt", "camera dirty"},        {"blind", "camera blind"},         {"upside_down", "camera upside down"},
-        {"freeze", "camera frozen"},     {"exposure", "camera exposure"}};
+    static const std::vector<DrawnFault> faults{{"bump", "out of place", true},
+                                                {"defocus", "out of focus", true},
+                                                {"dim", "dim projector lamp", true},
+                                                {"unplug", "dead output", true},
+                                                {"input", "wrong input", true},
+                                                {"fog", "fog"},
+                                                {"ambient", "ambient light"},
+                                                {"cover", "blocked view"},
+                                                {"camera_bump", "camera moved"},
+                                                {"dirt", "camera dirty"},
+                                                {"blind", "camera blind"},
+                                                {"upside_down", "camera upside down"},
+                                                {"freeze", "camera frozen"},
+                                                {"exposure", "camera exposure"}};
     return faults;
 }
 
 NightResult playNight(const NightOptions& options) {
     const ScratchFolder folder;
     Draw draw(options, folder.path());
-    NightResult result;
     const std::filesystem::path file = folder.path() / "site.yaml";
-    const std::string text = draw.site();
-    if (const auto written = writeFile(file, text); !written) throw std::runtime_error(written.error().message());
+    if (const auto written = writeFile(file, draw.site()); !written) throw std::runtime_error(written.error().message());
     const show::Site site = must(readSite(file));
-    result.output = draw.faulty;
-    result.outputs = draw.names;
-    result.drawn = draw.fault;
-    auto watched = must(watchedOutputsOf(site));
-    if (options.isSurveyed) survey(site, watched);
-
-    Site open(site, options.seed);
-    const show::CueList cues;
-    show::InputLog inputs(cues);
-    show::EventLog events;
-    const std::size_t outputs = site.outputs.size();
-    std::vector<Leaves> leaves;
-    std::vector<render::ShownFrame> frames(outputs);
-    std::vector<char> isNew(outputs, 0);
-    std::vector<ShownLight::Frames> sources;
-    for (std::size_t i = 0; i < outputs; ++i) {
-        leaves.emplace_back(options.seed * 10 + i, site.outputs[i].size());
-        sources.push_back(
-            {[&frames, &isNew, i](Time) { return std::exchange(isNew[i], 0) != 0 ? &frames[i] : nullptr; }, [](Time) {}});
-    }
-    DriftWatch watch(site, watched, cameraLightOf(site), sources, inputs, events, show::ShowClock());
-    show::ShowState state;
-    state.shifts.resize(outputs);
-    state.levels.resize(1);
-    const Time frameTime = fromSeconds(1 / 30.0);
+    NightResult result{.outputs = draw.names, .output = draw.faulty, .drawn = draw.fault};
+    const auto faulty = static_cast<std::size_t>(std::ranges::find(draw.names, draw.faulty) - draw.names.begin());
+    std::optional<BumpedOutput> bumped;
+    if (options.fault == "bump")
+        bumped.emplace(site.outputs[faulty], must(simulationOf(site)).outputs[faulty].projector, draw.turn);
+    Night night(options, site);
     for (std::int64_t step = 0; seconds(tickTime(step, kCameraRate)) < options.length; ++step) {
-        const Time exposed = tickTime(step, kCameraRate);
-        const double time = seconds(exposed);
-        open.clock.advanceTo(exposed);
-        for (std::size_t i = 0; i < outputs; ++i) {
-            frames[i] = {i, exposed, {step, exposed - frameTime / 2, exposed, {}}, leaves[i].at(time)};
-            isNew[i] = 1;
-            open.world.setFrame(site.outputs[i].name, std::make_shared<const RgbaImage>(frames[i].image));
+        night.step(step);
+        const Time at = tickTime(step, kCameraRate);
+        for (std::size_t i = 0; i < site.outputs.size(); ++i) {
+            double& most = result.farthest[site.outputs[i].name];
+            most = std::max(most, static_cast<double>(show::farthestOf(night.state().shifts[i])));
         }
-        std::array<std::uint8_t, kDmxSlots> slots{};
-        slots[0] = Leaves::lampAt(time, options.seed);
-        open.world.setSlots(1, slots);
-        state.levels[0] = slots[0] / 255.0f;
-        open.simulation->advanceTo(exposed);
-        watch.tick(exposed);
-        // The last row is exposed a little later, and the picture arrives later still.
-        for (const double part : {0.3, 0.6, 0.95}) {
-            open.clock.advanceTo(exposed + fromSeconds(part / kCameraRate));
-            open.simulation->advanceTo(open.clock.now());
-            if (const auto frame = open.world.takeFromCamera()) watch.see(*frame, state, false, open.clock.now());
-        }
+        if (bumped) result.placed.push_back(bumped->placed(at, night.state().shifts[faulty], seconds(at) >= draw.faultAt));
     }
-    result.causes = watch.causes();
-    result.drifts = watch.series();
+    result.causes = night.watch().causes();
+    result.drifts = night.watch().series();
     return result;
 }
 

@@ -37,12 +37,22 @@ struct DrawnFault {
 };
 const std::vector<DrawnFault>& drawnFaults();
 
+// Where the picture of the output that a bump moves stood at a moment.
+struct Placed {
+    Time at{};
+    double moved = 0;    // how far the bump has moved it on the wall, rms, projector pixels
+    double missed = 0;   // how far it is from its place with what the corrections do
+    double shifted = 0;  // how far the corrections move it
+};
+
 struct NightResult {
     std::vector<std::string> outputs;
     std::string output;  // that the fault concerns; empty: all
     std::string drawn;   // the fault as it was drawn, for people
     std::vector<CauseReport> causes;
     std::map<std::string, std::vector<DriftReport>> drifts;
+    std::vector<Placed> placed;        // for the fault "bump"
+    std::map<std::string, double> farthest;  // by output: how far corrections moved a corner at most, projector pixels
 };
 
 // Plays a night in simulation, as fast as possible.

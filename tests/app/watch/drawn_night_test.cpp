@@ -50,5 +50,35 @@ TEST(DrawnNight, names_nothing_while_all_is_well) {
     EXPECT_FALSE(night.drifts.empty());
 }
 
+// The camera's delay is no part of the loop, because the prediction knows what was shown. Example
+// failure: it does not, and the correction goes too far by what was corrected meanwhile.
+TEST(DrawnNight, brings_a_picture_back_without_overshoot_however_late_the_camera_is) {
+    for (const double latency : {0.0, 0.25, 0.5}) {
+        NightOptions options;
+        options.seed = 5;
+        options.outputs = 2;
+        options.camera = {400, 225};
+        options.geometry = "automatic";
+        options.latency = latency;
+        options.fault = "bump";
+        options.faultAt = 4;
+        options.length = 24;
+        const NightResult night = playNight(options);
+        double moved = 0, most = 0;
+        for (const Placed& placed : night.placed) {
+            moved = std::max(moved, placed.moved);
+            most = std::max(most, placed.shifted);
+        }
+        ASSERT_GT(moved, 3) << "a test of nothing";
+        EXPECT_LT(most, 1.1 * moved) << latency;
+        EXPECT_LT(night.placed.back().missed, 1) << latency;
+        for (const auto& [output, far] : night.farthest) {
+            if (output != night.output) {
+                EXPECT_EQ(far, 0) << latency;
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace fantascope::app
