@@ -63,11 +63,12 @@ cv::Mat shownAt(const GreyImage& light, const Homography& shownFromPlace) {
 }
 
 // `lit`: the picture's light on the surface, as the camera gets it.
-Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, int left, int top) {
+// `other`: light on the surface that is known, as a share of full light; it is no part of what is seen.
+Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, double other, int left, int top) {
     Block block;
     for (int y = top; y < std::min(top + kSide, lit.rows); ++y)
         for (int x = left; x < std::min(left + kSide, lit.cols); ++x) {
-            const double full = sight.surface.at(x, y), seen = sight.seen.at(x, y), shown = lit.at<float>(y, x);
+            const double full = sight.surface.at(x, y), seen = sight.seen.at(x, y) - other * full, shown = lit.at<float>(y, x);
             if (full <= 0 || sight.mask.at(x, y) <= 0) continue;
             ++block.cells;
             block.seen += seen;
@@ -86,10 +87,10 @@ Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, int left, int 
     return block;
 }
 
-Blocks blocksOf(const LightMeter::Sight& sight, const cv::Mat& lit) {
+Blocks blocksOf(const LightMeter::Sight& sight, const cv::Mat& lit, double other) {
     Blocks blocks;
     for (int top = 0; top < lit.rows; top += kSide)
-        for (int left = 0; left < lit.cols; left += kSide) blocks.push_back(blockOf(sight, lit, left, top));
+        for (int left = 0; left < lit.cols; left += kSide) blocks.push_back(blockOf(sight, lit, other, left, top));
     return blocks;
 }
 
@@ -110,11 +111,10 @@ public:
     }
     const std::vector<std::size_t>& which() const { return which_; }
 
-    // What a contrast leaves of a block, as a share of the picture's variance: the usual one, or a
-    // stronger one if the contrast is.
+    // What a contrast leaves of a block's variance, as a share of what is usual there, or of what is
+    // seen if that is more.
     double shareLeft(const Blocks& blocks, std::size_t i, double contrast) const {
-        const double stronger = std::max(1.0, contrast / usual_);
-        return blocks[i].left(contrast) / (scale_[i] * stronger * stronger);
+        return blocks[i].left(contrast) / std::max(scale_[i], blocks[i].seenSeen);
     }
     double lossOf(const Blocks& blocks, double contrast) const {
         double sum = 0;
@@ -236,7 +236,7 @@ private:
 LightMeter::Comparison LightMeter::compare(const Sight& sight) const {
     Comparison now{.shown = shownAt(sight.light, sight.shownFromPlace), .telling = Telling({}, 1)};
     const cv::Mat surface = viewOf(sight.surface);
-    for (std::size_t i = 0; i < kBlurs.size(); ++i) now.blocks[i] = blocksOf(sight, blurredBy(now.shown, kBlurs[i]).mul(surface));
+    for (std::size_t i = 0; i < kBlurs.size(); ++i) now.blocks[i] = blocksOf(sight, blurredBy(now.shown, kBlurs[i]).mul(surface), other_.whole);
     now.usualBlur = now.bestBlur = nearestBlur(usual_.blur);
     std::vector<double> scale(now.blocks[0].size(), 0);
     for (std::size_t i = 0; i < scale.size(); ++i) {
@@ -261,7 +261,7 @@ LightMeter::Comparison LightMeter::compare(const Sight& sight) const {
                          now.telling.shareExplained(now.blocks[now.usualBlur], usual) > kPartThere;
     now.contrast = isThere ? between.contrast : 0;
     now.explaining = isThere ? fits[now.bestBlur].contrast : 0;
-    now.otherLight = otherLightOf(now.blocks[now.bestBlur], now.contrast);
+    now.otherLight = other_.whole + otherLightOf(now.blocks[now.bestBlur], now.contrast);
     return now;
 }
 
@@ -285,7 +285,7 @@ OutputLight LightMeter::describe(const Comparison& now, const Sight& sight) {
     light.otherLight = other_.pictures >= kLearningLight ? other_.now : other_.kept;
     if (now.contrast > 0 && now.blur > usual_.blur) {
         light.blur = std::sqrt(now.blur * now.blur - usual_.blur * usual_.blur);
-        const Blocks byCamera = blocksOf(sight, blurredBy(now.shown.mul(viewOf(sight.surface)), kBlurs[now.bestBlur]));
+        const Blocks byCamera = blocksOf(sight, blurredBy(now.shown.mul(viewOf(sight.surface)), kBlurs[now.bestBlur]), other_.whole);
         light.isCameraBlurred = now.telling.best(byCamera).loss < kCameraBlurs * now.loss;
     }
     double asUsual = 0, explained = 0, hidden = 0;
@@ -310,6 +310,7 @@ std::optional<OutputLight> LightMeter::measure(const Sight& sight, bool isFound)
     usual_.unexplained.resize(now.blocks[0].size(), -1);
     off_.resize(now.blocks[0].size());
     if (isFound) learn(now);
+    other_.whole = now.otherLight;
     other_.now = now.otherLight - other_.usual;
     return isKnown ? std::optional(describe(now, sight)) : std::nullopt;
 }

@@ -8,7 +8,8 @@ namespace {
 constexpr double kNoPicture = 0.12;  // of the usual contrast: less is none
 constexpr double kWeak = 0.85, kStrong = 1.25;
 constexpr double kSaturated = 0.3;   // of the bright places
-constexpr double kBlurred = 0.9;     // cells
+constexpr double kSaturatesSome = 0.05;
+constexpr double kBlurred = 0.65;     // cells
 constexpr double kAll = 0.85;        // of the picture: so much is as good as all of it
 constexpr double kSome = 0.1;        // and so little is hardly anything
 constexpr double kHidden = 0.08;     // of the picture: more is worth a look
@@ -26,6 +27,7 @@ Look lookOf(const OutputLight& light) {
     if (light.saturated > kSaturated) return Look::Strong;
     if (light.contrast < kNoPicture && isExplained) return light.otherLight < kFlatLight ? Look::Dark : Look::Foreign;
     if (light.contrast > kStrong && light.asUsual < 0.5) return Look::Strong;
+    if (light.saturated > kSaturatesSome) return Look::Passing;  // what is left of the picture says little
     if (!isExplained && light.asUsual < kSome) return Look::Foreign;
     if (light.hidden > kHidden && light.explained < 1 - kHidden) return Look::Hidden;
     if (!isExplained) return Look::Passing;
@@ -121,7 +123,7 @@ std::vector<NamedCause> causesOf(const WallLight& light) {
         looks.each(
             Look::Weak, Cause::DimLamp, [](const OutputLight& of) { return of.contrast; }, causes);
     addBlurred(looks, causes);
-    if (looks.all(Look::Usual)) addOtherLight(looks, causes);
+    if (looks.count(Look::Usual) + looks.count(Look::Passing) == looks.looks.size()) addOtherLight(looks, causes);
     return causes;
 }
 

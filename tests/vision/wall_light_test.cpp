@@ -84,13 +84,16 @@ TEST(WallLight, tells_how_strong_the_picture_is) {
 TEST(WallLight, tells_how_sharp_the_picture_is) {
     Night night;
     night.begin();
-    double before = 0;
+    double perPixel = 0;  // cells along a projector pixel
     for (const double defocus : {4.0, 7.0, 11.0}) {
         const OutputLight light = night.output(defocus);
-        EXPECT_GT(light.blur, before + 1) << defocus;
+        EXPECT_GT(light.blur, 1) << defocus;
+        if (perPixel > 0) {
+            EXPECT_NEAR(light.blur / defocus, perPixel, 0.15 * perPixel) << defocus;
+        }
+        perPixel = light.blur / defocus;
         EXPECT_NEAR(light.contrast, 1, 0.25) << defocus;
         EXPECT_FALSE(light.isCameraBlurred) << defocus;
-        before = light.blur;
     }
 }
 

@@ -18,6 +18,7 @@ constexpr Time kShort = std::chrono::milliseconds(900);
 constexpr Time kLong = std::chrono::milliseconds(1500);
 constexpr Time kLonger = std::chrono::milliseconds(3800);  // nobody who passes takes so long
 constexpr Time kGone = std::chrono::seconds(3);            // without a picture
+constexpr double kMostSaturated = 0.1;
 constexpr double kMostHidden = 0.2;                        // of a picture whose place is certain
 
 bool isUniform(const RgbaImage& picture) {
@@ -38,7 +39,7 @@ std::vector<Rgba8> sampled(const RgbaImage& picture) {
 }  // namespace
 
 CauseWatch::CauseWatch(const show::Site& site, vision::WallWatch& wall, CauseLog& causes, show::EventLog& events)
-    : site_(site), wall_(wall), causes_(causes), events_(events), hidden_(site.outputs.size()) {}
+    : site_(site), wall_(wall), causes_(causes), events_(events), hidden_(site.outputs.size()), saturated_(site.outputs.size()) {}
 
 bool CauseWatch::isUsable(const RgbaImage& picture, Time at) {
     const glm::ivec2 size = site_.nominalCamera->size;
@@ -81,7 +82,10 @@ void CauseWatch::measure(const show::ShowState& shown, Time at) {
     }
     const vision::WallLight light = wall_.measureLight();
     for (std::size_t i = 0; i < hidden_.size(); ++i)
-        if (light.outputs[i]) hidden_[i] = light.outputs[i]->explained < 1 - kMostHidden;
+        if (light.outputs[i]) {
+            hidden_[i] = light.outputs[i]->explained < 1 - kMostHidden;
+            saturated_[i] = light.outputs[i]->saturated > kMostSaturated;
+        }
     if (std::ranges::none_of(light.outputs, [](const auto& output) { return output.has_value(); })) return;
     const auto named = vision::causesOf(light);
     const bool isLost = std::ranges::any_of(named, [](const vision::NamedCause& cause) {

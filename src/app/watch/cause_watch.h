@@ -37,6 +37,8 @@ public:
     void measure(const show::ShowState& shown, Time at);
     // Whether something hides a part of an output's picture, so that its place is not certain.
     bool isHidden(std::size_t output) const { return hidden_[output]; }
+    // Whether the camera is saturated by an output's picture, so that its place is not known.
+    bool isSaturated(std::size_t output) const { return saturated_[output]; }
 
 private:
     using Name = std::pair<std::string, std::string>;  // output, cause
@@ -58,7 +60,7 @@ private:
     CauseLog& causes_;
     show::EventLog& events_;
     std::map<Name, Suspicion> suspicions_;
-    std::vector<bool> hidden_;
+    std::vector<bool> hidden_, saturated_;
     std::optional<Time> measured_;
     show::ShowState lamps_;  // its levels and relays, at the last measurement
     std::vector<Rgba8> picture_;  // some pixels of the last one

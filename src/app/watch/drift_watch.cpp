@@ -119,7 +119,7 @@ void DriftWatch::decide(Time showTime) {
     if (cameraMoved_) return;
     std::vector<std::optional<Drift>> since(tracks_.size());  // since all was right
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
-        if (!tracks_[i].now()) continue;
+        if (!tracks_[i].now() || causeWatch_.isSaturated(i)) continue;
         if (!settled_[i]) settled_[i] = Homography();
         since[i] = tracks_[i].since(*tracks_[i].now(), *settled_[i]);
     }

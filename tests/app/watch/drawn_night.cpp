@@ -240,10 +240,12 @@ private:
         const auto ofAll = [&](const std::string& keys) {
             fault = fmt::format("kind: {}, {}{}{}", kind, when, keys.empty() ? "" : ", ", keys);
         };
-        const auto turn = [&](double most) {
-            return fmt::format("turn: {}", listOf({in(-most, most), in(-most, most), in(-most, most)}));
+        const auto drawTurn = [&] {
+            const glm::dvec3 degrees = logIn(0.06, 2.2) * glm::normalize(glm::dvec3(in(-1, 1), in(-1, 1), in(-1, 1)));
+            turn = degrees * radians(1);
+            return fmt::format("turn: {}", listOf(degrees));
         };
-        if (kind == "bump") ofOutput(turn(1.2));
+        if (kind == "bump") ofOutput(drawTurn());
         if (kind == "defocus") ofOutput(fmt::format("blur: {:.2f}, rise: {:.1f}", logIn(3, 15), in(0, 3)));
         if (kind == "dim") ofOutput(fmt::format("level: {:.2f}, rise: {:.1f}", in(0.2, 0.75), in(0, 3)));
         if (kind == "input") ofOutput("picture: menu.png");
@@ -466,7 +468,10 @@ NightResult playNight(const NightOptions& options) {
     const std::filesystem::path file = folder.path() / "site.yaml";
     if (const auto written = writeFile(file, draw.site()); !written) throw std::runtime_error(written.error().message());
     const show::Site site = must(readSite(file));
-    NightResult result{.outputs = draw.names, .output = draw.faulty, .drawn = draw.fault};
+    NightResult result;
+    result.outputs = draw.names;
+    result.output = draw.faulty;
+    result.drawn = draw.fault;
     const auto faulty = static_cast<std::size_t>(std::ranges::find(draw.names, draw.faulty) - draw.names.begin());
     std::optional<BumpedOutput> bumped;
     if (options.fault == "bump")

@@ -18,6 +18,7 @@ namespace fantascope::app {
 
 struct NightOptions {
     std::uint64_t seed = 1;
+    bool isBusy = false;  // headlights pass, and thin fog comes and goes
     std::string fault;                  // a kind of drawnFaults(), drawn; empty: none
     std::vector<std::string> script{};  // faults as in a site file, with the output NAME for the first output
     int outputs = 0;                    // 0: drawn
