@@ -18,7 +18,8 @@ bool canBeLookedInto(glm::ivec2 cells) { return std::min(cells.x, cells.y) >= Pr
 
 }  // namespace
 
-ProjectedLight::ProjectedLight(glm::ivec2 size, double gamma, double blackLevel) : size_(size) {
+ProjectedLight::ProjectedLight(glm::ivec2 size, double gamma, double blackLevel, glm::vec3 white)
+    : size_(size), white_(white, 0) {
     for (std::size_t stored = 0; stored < lightOf_.size(); ++stored)
         lightOf_[stored] = static_cast<float>(blackLevel + (1 - blackLevel) * std::pow(static_cast<double>(stored) / 255, gamma));
     FANTASCOPE_CHECK(canBeLookedInto(size), "a frame is at least kMinSide pixels each way");
@@ -36,8 +37,9 @@ void ProjectedLight::show(std::shared_ptr<const RgbaImage> frame, double blur, d
     const RgbaImage& stored = fits ? *frame_ : stretched;
     std::transform(stored.pixels().begin(), stored.pixels().end(), levels_[0].pixels().begin(),
                    [&](Rgba8 pixel) { return glm::vec4(lightOf_[pixel.r], lightOf_[pixel.g], lightOf_[pixel.b], 0); });
-    if (level != 1)
-        for (glm::vec4& pixel : levels_[0].pixels()) pixel *= static_cast<float>(level);
+    const glm::vec4 factor = static_cast<float>(level) * white_;
+    if (factor != glm::vec4(1, 1, 1, 0))
+        for (glm::vec4& pixel : levels_[0].pixels()) pixel *= factor;
     blurLight(levels_[0], blur);
     for (std::size_t i = 1; i < levels_.size(); ++i) {
         const LightImage& fine = levels_[i - 1];

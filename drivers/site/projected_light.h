@@ -3,6 +3,7 @@
 #include "media/image.h"
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include <array>
@@ -20,9 +21,9 @@ class ProjectedLight {
 public:
     // The smallest frame: interpolation needs two pixels each way.
     static constexpr int kMinSide = 2;
-    // light = blackLevel + (1 - blackLevel) stored^gamma. blackLevel 0..1, gamma > 0, size >=
-    // kMinSide each way.
-    ProjectedLight(glm::ivec2 size, double gamma, double blackLevel);
+    // light = white (blackLevel + (1 - blackLevel) stored^gamma). blackLevel 0..1, gamma > 0,
+    // `white`: strengths of the primaries, size >= kMinSide each way.
+    ProjectedLight(glm::ivec2 size, double gamma, double blackLevel, glm::vec3 white = glm::vec3(1));
 
     // Sets a new frame, stretched to the projector's own pixels if its size differs; null is no
     // light at all. `blur`: sigma of a Gaussian, projector pixels. `level`: the share of its light
@@ -53,6 +54,7 @@ public:
 
 private:
     glm::ivec2 size_;
+    glm::vec4 white_;
     std::array<float, 256> lightOf_{};
     std::shared_ptr<const RgbaImage> frame_;
     double blur_ = 0, level_ = 1;

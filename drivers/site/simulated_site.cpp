@@ -73,7 +73,7 @@ struct SimulatedSite::Impl {
           sensor(simulation.camera.sensor, seed) {
         for (std::size_t i = 0; i < nominal.outputs.size(); ++i)
             light.emplace_back(nominal.outputs[i].projector.size, simulation.projectors[i].gamma,
-                               simulation.projectors[i].blackLevel);
+                               simulation.projectors[i].blackLevel, simulation.projectors[i].white);
         if (nominal.camera) {
             look();
             luminance = Image<glm::vec3>(nominal.camera->size.x, nominal.camera->size.y);

@@ -16,6 +16,7 @@ Result<SimulatedProjector> readProjector(const ConfigNode& node) {
     fields.optional().number("lumens", projector.lumens, 0, kMaxLight, "lm");
     fields.optional().number("black_level", projector.blackLevel, 0, 1);
     fields.optional().number("gamma", projector.gamma, 0.5, 5);
+    fields.optional().vector3("white", projector.white, 0, 1);
     TRY(fields.finish());
     return projector;
 }

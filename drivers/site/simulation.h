@@ -25,6 +25,7 @@ struct SimulatedProjector {
     double lumens = 3500;
     double blackLevel = 0.0005;  // share of full light that a black pixel lets through
     double gamma = 2.2;
+    glm::dvec3 white{1};  // strengths of the primaries
 };
 
 // A lamp and the index of its fixture or relay in the nominal site.

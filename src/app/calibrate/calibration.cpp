@@ -133,6 +133,11 @@ Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show
         if (const auto upright = checkUpright(calibration, site, *found->second); !upright)
             calibration.trouble = upright.error().message();
     }
+    std::vector<FittedOutput> fitted;
+    for (const OutputCalibration& calibration : calibrations)
+        if (calibration.isGood()) fitted.push_back({calibration.output, &*calibration.survey, calibration.fit->shape});
+    for (const auto& [output, light] : measuredLights(site, fitted))
+        std::ranges::find(calibrations, output, &OutputCalibration::output)->light = light;
     return calibrations;
 }
 
@@ -143,6 +148,7 @@ Result<void> writeCalibration(const show::Site& site, std::vector<OutputCalibrat
         const Projection& then = site.outputs[calibration.output].projection;
         Projection now = then;
         now.warp = TRY(Warp::of(calibration.fit->shape));
+        now.light = withMeasured(now.light, calibration.light);
         TRY(applyChanges(document, site, show::projectionChanges(then, now, calibration.output)));
     }
     // The survey comes first: whichever file is written last, the survey has a record for the warps

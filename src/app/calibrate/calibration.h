@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/calibrate/light_survey.h"
+#include "app/calibrate/output_light.h"
 #include "app/calibrate/wanted_file.h"
 
 #include "show/site/site.h"
@@ -22,6 +23,7 @@ struct OutputCalibration {
     std::string note;     // what a person should look at although it is good; may be empty
     std::optional<vision::WarpFit> fit;
     std::optional<LightSurvey::Output> survey;  // none: not measured
+    MeasuredLight light;
     bool written = false;
 
     bool isGood() const { return fit && trouble.empty(); }
@@ -30,16 +32,17 @@ struct OutputCalibration {
 // The worst residual, projector pixels, with which a calibration counts as good.
 constexpr double kGoodRms = 1.0;
 
-// Finds the warps of some outputs of a site. An output that fails does not stop the others.
-// `wanted`: where canvases are to stand; an output that is not in it gets the largest upright place
-// that its canvas's outputs light, for which all of these must be among `outputs`.
+// Finds the warps and the light of some outputs of a site. An output that fails does not stop the
+// others. `wanted`: where canvases are to stand; an output that is not in it gets the largest
+// upright place that its canvas's outputs light, for which all of these must be among `outputs`.
 // Error: the camera gives no pictures, or sees no output.
 Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show::Site& site,
                                                  const std::vector<std::size_t>& outputs, const WantedCorners& wanted);
 
-// Writes the good warps into the site file, keeps the version before as FILE.previous, and keeps
-// what was seen as the site's survey (survey_file.h). `latency`: from a picture's light to its
-// arrival from the camera. Error: a file cannot be changed; the site file stays as it was.
+// Writes the good warps with their light into the site file, keeps the version before as
+// FILE.previous, and keeps what was seen as the site's survey (survey_file.h). `latency`: from a
+// picture's light to its arrival from the camera. Error: a file cannot be changed; the site file
+// stays as it was.
 Result<void> writeCalibration(const show::Site& site, std::vector<OutputCalibration>& calibrations, Time latency);
 
 }  // namespace fantascope::app

@@ -20,7 +20,6 @@ constexpr int kFirstFrames = 12;
 constexpr Time kLongestDelay = std::chrono::milliseconds(800);
 constexpr int kEdges = 5;
 constexpr int kFulls = 3;
-constexpr std::size_t kGreys = 8;
 // A pair is shown again while more than this share of the lit pixels is undecided, so many times at
 // most.
 constexpr double kUndecided = 0.005;
@@ -36,8 +35,6 @@ constexpr double kFewestKnown = 0.1;
 // The contrast at which one frame a picture is enough, and the most frames.
 constexpr double kClearContrast = 25;
 constexpr int kMostFrames = 4;
-constexpr double kSmallestGamma = 1, kLargestGamma = 4, kUsualGamma = 2.2;
-constexpr double kDimmestGrey = 0.01;  // of the full light
 
 GreyImage lightOf(const vision::CameraLight& camera, const RgbaImage& stored) {
     GreyImage light(stored.width(), stored.height());
@@ -222,7 +219,8 @@ Result<void> LightSurvey::begin(const std::vector<std::size_t>& outputs) {
 }
 
 Result<std::vector<LightSurvey::Taken>> LightSurvey::take(std::size_t output, std::size_t count,
-                                                          const std::function<Picture(std::size_t)>& picture, int frames) {
+                                                          const std::function<Picture(std::size_t)>& picture, int frames,
+                                                          const std::function<void(std::size_t, const RgbaImage&)>& colours) {
     sight_.clear();
     std::vector<Taken> taken(count);
     PictureSchedule schedule(delay_, period_);
@@ -235,6 +233,7 @@ Result<std::vector<LightSurvey::Taken>> LightSurvey::take(std::size_t output, st
         const RgbaImage& image = seen.frame->image;
         if (one.light.empty()) one.light = GreyImage(image.width(), image.height());
         light_.addTo(one.light, image);
+        if (colours) colours(static_cast<std::size_t>(*shown), image);
         ++one.frames;
     };
     for (std::size_t i = 0; i < count; ++i) {
@@ -257,34 +256,6 @@ Result<std::vector<LightSurvey::Taken>> LightSurvey::take(std::size_t output, st
     }
     done_ += share_;
     return taken;
-}
-
-// The exponent with which the light of greys follows their stored values best.
-Result<double> LightSurvey::measureGamma(std::size_t output, const LightDecoder& decoder) {
-    const auto full = decoder.full().pixels(), dark = decoder.dark().pixels();
-    std::vector<std::size_t> pixels = decoder.litPixels();
-    // The brightest quarter: in dark pixels the noise is cut off at zero, and greys look darker.
-    const auto quarter = pixels.begin() + static_cast<std::ptrdiff_t>(pixels.size() / 4);
-    std::ranges::nth_element(pixels, quarter, [&](std::size_t a, std::size_t b) { return full[a] > full[b]; });
-    pixels.erase(quarter + 1, pixels.end());
-    const auto grey = [&](std::size_t i) { return plain(site_.outputs[output].size(), static_cast<double>(i + 1) / kGreys); };
-    const std::vector<Taken> taken = TRY(take(output, kGreys - 1, grey, 1));
-    // Least squares of the logarithms, weighted by the light: dark greys are mostly noise. The
-    // median of the pixels does not mind somebody before some of them.
-    double product = 0, square = 0;
-    for (std::size_t i = 0; i < taken.size(); ++i) {
-        if (taken[i].frames == 0) continue;
-        std::vector<double> lights;
-        for (const std::size_t pixel : pixels)
-            lights.push_back((taken[i].light.pixels()[pixel] - dark[pixel]) / (full[pixel] - dark[pixel]));
-        const auto middle = lights.begin() + static_cast<std::ptrdiff_t>(lights.size() / 2);
-        std::ranges::nth_element(lights, middle);
-        if (*middle < kDimmestGrey) continue;
-        const double stored = std::log((static_cast<double>(i) + 1) / kGreys);
-        product += *middle * *middle * stored * std::log(*middle);
-        square += *middle * *middle * stored * stored;
-    }
-    return std::clamp(square > 0 ? product / square : kUsualGamma, kSmallestGamma, kLargestGamma);
 }
 
 // Shows all pairs but the full one, and those again that were disturbed. Returns how many pictures
@@ -340,12 +311,12 @@ Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
         return blind.empty() ? can.error() : Error(blind);
     }
 
-    share_ = 0.15, doing_ = "measuring its greys";
+    share_ = 0.15, doing_ = "measuring its greys and colours";
     Output found;
-    found.gamma = TRY(measureGamma(output, sight));
+    TRY(measureResponse(output, sight, found));
     const StructuredLight light(projector, StructuredLight::periodFor(projector, static_cast<double>(sight.lit())));
     LightDecoder decoder = decoderOf(light.period());
-    found.repeated = TRY(decode(output, light, found.gamma, decoder));
+    found.repeated += TRY(decode(output, light, found.gamma, decoder));
     found.map = decoder.map();
     found.dark = decoder.dark();
     if (static_cast<double>(found.map.known) < kFewestKnown * static_cast<double>(found.map.lit)) {

@@ -6,6 +6,7 @@
 #include "app/site/site_models.h"
 
 #include "vision/camera_light.h"
+#include "vision/projector_response.h"
 #include "vision/structured_light.h"
 
 #include "core/clock.h"
@@ -35,9 +36,11 @@ public:
     // What one output's survey found.
     struct Output {
         vision::ProjectorMap map;
-        GreyImage dark;      // by camera pixel: linear light while every output is dark
-        double gamma = 2.2;  // of the projector: light = stored ^ gamma
-        int repeated = 0;    // pictures that were shown again because something moved
+        GreyImage dark;                               // by camera pixel: linear light while every output is dark
+        double gamma = 2.2;                           // of the projector: light = stored ^ gamma
+        bool gammaIsKnown = false;                    // else it is the usual one
+        std::vector<vision::PrimaryLight> primaries;  // empty if the output is alone on its canvas
+        int repeated = 0;                             // pictures that were shown again because something moved
     };
     // Waits for the camera, and measures how long a picture takes to be seen, on the first of
     // `outputs` that it sees. Error: the camera gives no pictures, or sees none of the outputs.
@@ -69,11 +72,12 @@ private:
     // That the camera stopped, why, and what to do.
     Error stopped() const;
     // Shows `count` pictures one after the other for `frames` camera frames each; a picture that
-    // was missed has no frames. `picture` makes each when it is due.
+    // was missed has no frames. `picture` makes each when it is due; `colours` gets each frame that
+    // counts.
     Result<std::vector<Taken>> take(std::size_t output, std::size_t count, const std::function<Picture(std::size_t)>& picture,
-                                    int frames);
+                                    int frames, const std::function<void(std::size_t, const RgbaImage&)>& colours = {});
     Result<int> decode(std::size_t output, const vision::StructuredLight& light, double gamma, vision::LightDecoder& decoder);
-    Result<double> measureGamma(std::size_t output, const vision::LightDecoder& decoder);
+    Result<void> measureResponse(std::size_t output, const vision::LightDecoder& sight, Output& found);
 
     CalibrationRig& rig_;
     const show::Site& site_;

@@ -38,9 +38,9 @@ void declare(Command& command, Options& options) {
     command.add(
         "--wanted", options.wanted,
         "Where the canvases are to stand in the camera's picture (docs/calibrating.md); default: the largest upright place");
-    command.addFlag(
-        "--write", options.write,
-        "Write the new warps into the site file, and what was seen beside it; the file as it was is kept as FILE.previous");
+    command.addFlag("--write", options.write,
+                    "Write the new warps and light settings into the site file, and what was seen beside it; the file as it was "
+                    "is kept as FILE.previous");
     command.addFlag("--undo", options.undo,
                     "Measure nothing: go back to the site file as it was; once more, and it is the new one");
     command.add("--report", options.report, "Write the figures to this JSON file (docs/report.md)");
@@ -75,6 +75,9 @@ Report reportOf(const show::Site& site, const std::vector<OutputCalibration>& ca
         if (!calibration.trouble.empty()) output["trouble"] = calibration.trouble;
         if (!calibration.note.empty()) output["note"] = calibration.note;
         if (calibration.survey) output["gamma"] = calibration.survey->gamma;
+        if (calibration.light.white)
+            output["white"] = {calibration.light.white->r, calibration.light.white->g, calibration.light.white->b};
+        if (!calibration.light.trouble.empty()) output["light_trouble"] = calibration.light.trouble;
         if (!calibration.fit) continue;
         const vision::WarpFit& fit = *calibration.fit;
         output["rms_px"] = fit.rms;
@@ -103,6 +106,13 @@ std::string sentenceOf(const show::Site& site, const OutputCalibration& calibrat
     if (calibration.written) words += "; written";
     if (!calibration.note.empty()) words += "; note: " + calibration.note;
     return words;
+}
+
+std::string lightSentenceOf(const show::Site& site, const OutputCalibration& calibration) {
+    std::string words = wordsOf(calibration.light);
+    if (!words.empty() && calibration.written) words += "; written";
+    if (!calibration.light.trouble.empty()) words += fmt::format("{}{}", words.empty() ? "" : "; ", calibration.light.trouble);
+    return fmt::format("{}: {}", site.outputs[calibration.output].name, words);
 }
 
 Result<void> run(const Options& options) {
@@ -142,6 +152,7 @@ Result<void> run(const Options& options) {
     std::string troubles;
     for (const OutputCalibration& calibration : calibrations) {
         fmt::print("{}\n", sentenceOf(site, calibration));
+        if (calibration.isGood()) fmt::print("{}\n", lightSentenceOf(site, calibration));
         if (!calibration.isGood())
             troubles += fmt::format("{}{}", troubles.empty() ? "" : ", ", site.outputs[calibration.output].name);
     }
@@ -152,7 +163,7 @@ Result<void> run(const Options& options) {
 }  // namespace
 
 void addCalibrateCommand(Program& program) {
-    addCommand<Options>(program, "calibrate", "Find the outputs' warps with the camera", declare, run);
+    addCommand<Options>(program, "calibrate", "Find the outputs' warps and light with the camera", declare, run);
 }
 
 }  // namespace fantascope::app
