@@ -15,10 +15,13 @@
 namespace fantascope::vision {
 namespace {
 
-constexpr double kLeastGamma = 1, kMostGamma = 4, kGammaStep = 0.001;
+constexpr int kLeastGamma = 1000, kMostGamma = 4000;  // thousandths
 constexpr std::size_t kFewestGreys = 5;
 constexpr double kStrayGrey = 0.03;  // of white's light: a grey that is farther from the curve does not count
-constexpr float kNearlySaturated = 0.95f;
+// A pixel is saturated at its end of the range, or if its neighbourhood is nearly there on average:
+// which of its pixels the noise cuts off is chance.
+constexpr float kSaturated = 0.999f, kNearlySaturated = 0.9f;
+constexpr int kNeighbourhood = 2;  // pixels on each side
 // A pixel is undecided where a picture differs by more from what the others say: as a share of the
 // full light, and as a multiple of the usual difference.
 constexpr float kMovedLight = 0.2f, kMovedUsual = 5;
@@ -34,6 +37,20 @@ double medianOf(std::vector<double> values) {
 
 float greyOf(const glm::vec3& light) { return (light.r + light.g + light.b) / 3; }
 
+float brightestOf(const glm::vec3& light) { return std::max({light.r, light.g, light.b}); }
+
+bool isSaturated(const Image<glm::vec3>& picture, std::size_t pixel) {
+    if (brightestOf(picture.pixels()[pixel]) >= kSaturated) return true;
+    const auto width = static_cast<std::size_t>(picture.width());
+    const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
+    glm::vec3 sum(0);
+    int count = 0;
+    for (int v = std::max(0, y - kNeighbourhood); v <= std::min(picture.height() - 1, y + kNeighbourhood); ++v)
+        for (int u = std::max(0, x - kNeighbourhood); u <= std::min(picture.width() - 1, x + kNeighbourhood); ++u, ++count)
+            sum += picture.at(u, v);
+    return brightestOf(sum) > kNearlySaturated * static_cast<float>(count);
+}
+
 // light = stored ^ gamma - excess (1 - stored ^ gamma), with the excess of the black's light.
 struct GreyCurve {
     double gamma = 0, excess = 0, error = std::numeric_limits<double>::infinity();
@@ -43,7 +60,8 @@ struct GreyCurve {
 
 GreyCurve curveThrough(const std::vector<GreyLight>& greys) {
     GreyCurve best;
-    for (double gamma = kLeastGamma; gamma < kMostGamma + kGammaStep / 2; gamma += kGammaStep) {
+    for (int thousandths = kLeastGamma; thousandths <= kMostGamma; ++thousandths) {
+        const double gamma = thousandths / 1000.0;
         double product = 0, square = 0;
         for (const GreyLight& grey : greys) {
             const double power = std::pow(grey.stored, gamma);
@@ -112,7 +130,7 @@ std::optional<double> fitGamma(std::vector<GreyLight> greys) {
         const auto off = [&](const GreyLight& grey) { return std::abs(grey.light - curve.at(grey.stored)); };
         const auto worst = std::ranges::max_element(greys, {}, off);
         if (off(*worst) <= kStrayGrey) {
-            const bool within = curve.gamma > kLeastGamma + kGammaStep && curve.gamma < kMostGamma - kGammaStep;
+            const bool within = curve.gamma > kLeastGamma / 1000.0 && curve.gamma < kMostGamma / 1000.0;
             return within ? std::optional(curve.gamma) : std::nullopt;
         }
         greys.erase(worst);
@@ -149,7 +167,7 @@ void PrimarySight::take(const Pictures& pictures) {
     for (Pixel& pixel : pixels_) {
         if (pixel.state != State::Undecided) continue;
         const glm::vec3 white = at(pixel, 4), black = at(pixel, 0);
-        if (std::max({white.r, white.g, white.b}) > kNearlySaturated) {
+        if (isSaturated(pictures[4], pixel.light.pixel)) {
             pixel.state = State::Saturated;
         } else if (errorOf(pixel) <= std::max(kMovedLight * (pixel.full - pixel.dark), usual)) {
             pixel.state = State::Known;

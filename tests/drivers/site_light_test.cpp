@@ -198,6 +198,16 @@ TEST(SiteLight, black_leaks_but_a_dark_projector_gives_nothing) {
     EXPECT_EQ(seen(view, {}, light).middle(), 0);
 }
 
+// The lamps and filters of two projectors are never of one colour.
+TEST(SiteLight, a_projectors_white_has_its_own_colour_and_so_has_its_black) {
+    ProjectedLight light({64, 64}, 2, 0.1, {1, 0.5f, 0.8f});
+    const auto place = ProjectedLight::placeOf({64, 64}, {20, 20}, 1);
+    light.show(plainFrame({64, 64}, 255));
+    EXPECT_EQ(glm::vec3(light.at(place)), glm::vec3(1, 0.5f, 0.8f));
+    light.show(plainFrame({64, 64}, 0));
+    EXPECT_EQ(glm::vec3(light.at(place)), 0.1f * glm::vec3(1, 0.5f, 0.8f));
+}
+
 // A real window may have another size than in the site file; the projector scales it.
 TEST(SiteLight, a_frame_of_another_size_fills_the_picture) {
     ProjectedLight light({64, 64}, 1, 0);

@@ -48,7 +48,9 @@ Result<std::vector<glm::dvec3>> whitesOf(const std::vector<std::size_t>& togethe
         primaries.push_back(onCanvas(*found));
     }
     auto whites = vision::matchedWhites(primaries);
-    if (!whites) return Error("its white is not matched: the camera sees too little of where its canvas's outputs overlap");
+    if (!whites)
+        return Error(
+            "its white is not matched: the camera sees too little of where its canvas's outputs overlap, or is saturated there");
     for (glm::dvec3& white : *whites)
         for (int channel = 0; channel < 3; ++channel) white[channel] = inSteps(white[channel], kWhiteGrain);
     return std::move(*whites);
