@@ -20,7 +20,7 @@ constexpr std::size_t kFewestGreys = 5;
 constexpr double kStrayGrey = 0.03;  // of white's light: a grey that is farther from the curve does not count
 // A pixel is saturated at its end of the range, or if its neighbourhood is nearly there on average:
 // which of its pixels the noise cuts off is chance.
-constexpr float kSaturated = 0.999f, kNearlySaturated = 0.9f;
+constexpr float kSaturated = 0.999f, kNearlySaturated = 0.95f;
 constexpr int kNeighbourhood = 2;  // pixels on each side
 // A pixel is undecided where a picture differs by more from what the others say: as a share of the
 // full light, and as a multiple of the usual difference.

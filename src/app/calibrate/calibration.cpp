@@ -1,5 +1,6 @@
 #include "app/calibrate/calibration.h"
 
+#include "app/calibrate/marked_place.h"
 #include "app/calibrate/plan_check.h"
 #include "app/site/site_models.h"
 #include "app/site/survey_file.h"
@@ -44,6 +45,15 @@ Result<Corners> largestPlaceOf(const show::Site& site, const std::string& canvas
     const auto place = vision::largestPlace(camera, parts, aspect, upright);
     if (!place) return Error("no place for its canvas is lit; its outputs' pictures must touch or overlap where their parts do");
     return *place;
+}
+
+// The place of a canvas by its markers, in the light of those of its outputs that were measured.
+Result<Corners> markedPlaceOf(const show::Site& site, const std::string& canvas,
+                              const std::map<std::size_t, const LightSurvey::Output*>& surveys) {
+    std::vector<const LightSurvey::Output*> light;
+    for (const std::size_t output : site.outputsOn(canvas))
+        if (const auto survey = surveys.find(output); survey != surveys.end()) light.push_back(survey->second);
+    return markedPlace(light);
 }
 
 // Fits one output's warp, and says in `trouble` why that is not good enough.
@@ -102,7 +112,7 @@ Result<std::map<std::string, OutputSurvey>> surveyOf(const show::Site& site, con
 }  // namespace
 
 Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show::Site& site,
-                                                 const std::vector<std::size_t>& outputs, const WantedCorners& wanted) {
+                                                 const std::vector<std::size_t>& outputs, const Wanted& wanted) {
     const vision::CameraModel camera = TRY(cameraOf(site));
     TRY(survey.begin(outputs));
     std::vector<OutputCalibration> calibrations;
@@ -124,12 +134,14 @@ Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show
         const auto found = surveys.find(calibration.output);
         if (found == surveys.end()) continue;
         const show::Output& output = site.outputs[calibration.output];
-        const auto given = wanted.find(output.name);
-        if (given == wanted.end() && !places.contains(output.canvas))
-            places.emplace(output.canvas, largestPlaceOf(site, output.canvas, camera, surveys));
+        const auto given = wanted.corners.find(output.name);
+        if (given == wanted.corners.end() && !places.contains(output.canvas))
+            places.emplace(output.canvas, wanted.markers ? markedPlaceOf(site, output.canvas, surveys)
+                                                         : largestPlaceOf(site, output.canvas, camera, surveys));
         fit(calibration, *found->second, camera,
-            given != wanted.end() ? Result<Corners>(given->second) : places.at(output.canvas), output.projection.warp.shape());
-        if (given != wanted.end()) continue;
+            given != wanted.corners.end() ? Result<Corners>(given->second) : places.at(output.canvas),
+            output.projection.warp.shape());
+        if (given != wanted.corners.end() || wanted.markers) continue;  // somebody has said which way up
         if (const auto upright = checkUpright(calibration, site, *found->second); !upright)
             calibration.trouble = upright.error().message();
     }

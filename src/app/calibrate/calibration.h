@@ -33,11 +33,12 @@ struct OutputCalibration {
 constexpr double kGoodRms = 1.0;
 
 // Finds the warps and the light of some outputs of a site. An output that fails does not stop the
-// others. `wanted`: where canvases are to stand; an output that is not in it gets the largest
-// upright place that its canvas's outputs light, for which all of these must be among `outputs`.
+// others. `wanted`: where canvases are to stand; without markers, an output that is not in it gets
+// the largest upright place that its canvas's outputs light, for which all of these must be among
+// `outputs`.
 // Error: the camera gives no pictures, or sees no output.
 Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show::Site& site,
-                                                 const std::vector<std::size_t>& outputs, const WantedCorners& wanted);
+                                                 const std::vector<std::size_t>& outputs, const Wanted& wanted);
 
 // Writes the good warps with their light into the site file, keeps the version before as
 // FILE.previous, and keeps what was seen as the site's survey (survey_file.h). `latency`: from a

@@ -327,6 +327,7 @@ Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
                                                    found.map.known, found.map.lit)
                                      : trouble);
     }
+    found.full = decoder.full();
     return found;
 }
 

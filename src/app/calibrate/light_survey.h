@@ -37,6 +37,7 @@ public:
     struct Output {
         vision::ProjectorMap map;
         GreyImage dark;                               // by camera pixel: linear light while every output is dark
+        GreyImage full;                               // the same while this output is white
         double gamma = 2.2;                           // of the projector: light = stored ^ gamma
         bool gammaIsKnown = false;                    // else it is the usual one
         std::vector<vision::PrimaryLight> primaries;  // empty if the output is alone on its canvas

@@ -5,6 +5,7 @@
 #include "app/calibrate/calibration.h"
 #include "app/calibrate/calibration_rig.h"
 #include "app/calibrate/light_survey.h"
+#include "app/calibrate/marker_sheet.h"
 #include "app/calibrate/wanted_file.h"
 #include "app/command/commands.h"
 #include "app/lens/lens_file.h"
@@ -26,18 +27,19 @@ namespace fs = std::filesystem;
 struct Options {
     fs::path site;
     std::vector<std::string> outputs;
-    fs::path wanted, report;
+    fs::path wanted, markers, report;
     std::uint64_t seed = 1;
     bool simulate = false, write = false, undo = false;
 };
 
 void declare(Command& command, Options& options) {
-    command.add("SITE", options.site, "A site's folder, or a site.yaml").required();
+    command.add("SITE", options.site, "A site's folder, or a site.yaml");
     command.add("OUTPUT", options.outputs, "The outputs to calibrate (default: all)");
     command.addFlag("--simulate", options.simulate, "Calibrate the simulated site");
-    command.add(
-        "--wanted", options.wanted,
-        "Where the canvases are to stand in the camera's picture (docs/calibrating.md); default: the largest upright place");
+    command.add("--wanted", options.wanted,
+                "Where the canvases are to stand in the camera's picture: a file (docs/calibrating.md), or 'markers': one canvas "
+                "between the printed corner markers; default: the largest upright place");
+    command.add("--markers", options.markers, "Measure nothing: make the four corner markers, PDF, SVG or PNG, from this name");
     command.addFlag("--write", options.write,
                     "Write the new warps and light settings into the site file, and what was seen beside it; the file as it was "
                     "is kept as FILE.previous");
@@ -115,7 +117,28 @@ std::string lightSentenceOf(const show::Site& site, const OutputCalibration& cal
     return fmt::format("{}: {}", site.outputs[calibration.output].name, words);
 }
 
+// Error: the wanted file cannot be read, or names other outputs; markers cannot say where several
+// canvases are to stand.
+Result<Wanted> wantedBy(const Options& options, const show::Site& site, const std::vector<std::size_t>& outputs) {
+    Wanted wanted;
+    wanted.markers = options.wanted == "markers";
+    if (wanted.markers) {
+        for (const std::size_t output : outputs)
+            if (site.outputs[output].canvas != site.outputs[outputs[0]].canvas)
+                return Error("markers show the corners of one canvas; name its outputs: fantascope calibrate SITE OUTPUT..");
+    } else if (!options.wanted.empty()) {
+        wanted.corners = TRY(readWanted(options.wanted));
+    }
+    for (const auto& [name, corners] : wanted.corners) TRY(outputNamed(site, name).in(options.wanted.string()));
+    return wanted;
+}
+
 Result<void> run(const Options& options) {
+    if (!options.markers.empty()) {
+        for (const fs::path& file : TRY(writeMarkerSheets(options.markers))) fmt::print("{}\n", file.string());
+        return {};
+    }
+    if (options.site.empty()) return Error("a site is needed, or --markers FILE; see fantascope calibrate --help");
     if (options.undo) {
         const fs::path file = TRY(undoWrite(options.site));
         fmt::print("{0} is again as it was; what it replaces is kept as {0}.previous\n", file.string());
@@ -123,10 +146,7 @@ Result<void> run(const Options& options) {
     }
     const show::Site site = TRY(readSite(options.site));
     const std::vector<std::size_t> outputs = TRY(chosen(site, options.outputs));
-    WantedCorners wanted;
-    if (!options.wanted.empty()) wanted = TRY(readWanted(options.wanted));
-    for (const auto& [name, corners] : wanted) TRY(outputNamed(site, name).in(options.wanted.string()));
-
+    const Wanted wanted = TRY(wantedBy(options, site, outputs));
     const fs::path assets = TRY(dataFolder()) / "assets";
     const CalibrationRig::Options rigOptions{options.simulate, options.seed, assets};
     std::unique_ptr<CalibrationRig> rig;
