@@ -16,18 +16,17 @@ namespace {
 using vision::CornerMarker;
 
 constexpr int kSheetWidth = 595, kSheetHeight = 842;  // points
-constexpr double kPointsOfMm = 72 / 25.4, kCellMm = 25;
+constexpr int kCell = 71;                             // points, 25 mm; whole ones, so that no seam shows between two cells
 
 plot::Page sheetOf(std::size_t marker) {
     plot::Page page(kSheetWidth, kSheetHeight);
-    const double cell = kCellMm * kPointsOfMm;
-    const glm::dvec2 low = (glm::dvec2(kSheetWidth, kSheetHeight) - CornerMarker::kCells * cell) / 2.0;
-    page.box(low, low + CornerMarker::kCells * cell, glm::dvec3(0));
+    const glm::dvec2 low = (glm::ivec2(kSheetWidth, kSheetHeight) - CornerMarker::kCells * kCell) / 2;
+    page.box(low, low + double(CornerMarker::kCells * kCell), glm::dvec3(0));
     const std::vector<bool> dark = CornerMarker::darkCells(marker);
     for (int y = 0; y < CornerMarker::kCells; ++y)
         for (int x = 0; x < CornerMarker::kCells; ++x)
             if (!dark[static_cast<std::size_t>(y * CornerMarker::kCells + x)])
-                page.box(low + cell * glm::dvec2(x, y), low + cell * glm::dvec2(x + 1, y + 1), glm::dvec3(1));
+                page.box(low + double(kCell) * glm::dvec2(x, y), low + double(kCell) * glm::dvec2(x + 1, y + 1), glm::dvec3(1));
     const glm::dvec2 below(kSheetWidth / 2.0, kSheetHeight - 0.5 * low.y);
     page.text(fmt::format("Fantascope corner marker: {}", CornerMarker::kNames[marker]), below - glm::dvec2(0, 12), 18,
               plot::Anchor::Middle);

@@ -39,7 +39,8 @@ void declare(Command& command, Options& options) {
     command.add("--wanted", options.wanted,
                 "Where the canvases are to stand in the camera's picture: a file (docs/calibrating.md), or 'markers': one canvas "
                 "between the printed corner markers; default: the largest upright place");
-    command.add("--markers", options.markers, "Measure nothing: make the four corner markers, PDF, SVG or PNG, from this name");
+    command.add("--markers", options.markers,
+                "Measure nothing: make the sheets of the four corner markers, PDF, SVG or PNG files named after this one");
     command.addFlag("--write", options.write,
                     "Write the new warps and light settings into the site file, and what was seen beside it; the file as it was "
                     "is kept as FILE.previous");
