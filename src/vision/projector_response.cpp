@@ -105,6 +105,7 @@ Strength strengthOver(const std::vector<PrimaryLight>& output, const std::vector
             ++(a->pixel < b->pixel ? a : b);
     if (shared.size() < kFewestShared) return {};
     std::vector<double> volumes;
+    volumes.reserve(shared.size());
     for (const auto& [a, b] : shared) volumes.push_back(std::min(apart(a->primaries), apart(b->primaries)));
     const bool colours = medianOf(volumes) > kApart;
     std::array<std::vector<double>, 3> logs;

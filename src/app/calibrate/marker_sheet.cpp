@@ -25,7 +25,7 @@ plot::Page sheetOf(std::size_t marker) {
     const std::vector<bool> dark = CornerMarker::darkCells(marker);
     for (int y = 0; y < CornerMarker::kCells; ++y)
         for (int x = 0; x < CornerMarker::kCells; ++x)
-            if (!dark[static_cast<std::size_t>(y * CornerMarker::kCells + x)])
+            if (!dark[static_cast<std::size_t>(y) * CornerMarker::kCells + static_cast<std::size_t>(x)])
                 page.box(low + double(kCell) * glm::dvec2(x, y), low + double(kCell) * glm::dvec2(x + 1, y + 1), glm::dvec3(1));
     const glm::dvec2 below(kSheetWidth / 2.0, kSheetHeight - 0.5 * low.y);
     page.text(fmt::format("Fantascope corner marker: {}", CornerMarker::kNames[marker]), below - glm::dvec2(0, 12), 18,

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace fantascope::app {
 namespace {
@@ -47,6 +51,7 @@ std::vector<std::size_t> pixelsForGreys(const vision::LightDecoder& sight) {
 double lightOfGrey(const GreyImage& grey, const vision::LightDecoder& sight, const std::vector<std::size_t>& pixels) {
     const auto full = sight.full().pixels(), dark = sight.dark().pixels();
     std::vector<double> lights;
+    lights.reserve(pixels.size());
     for (const std::size_t pixel : pixels)
         lights.push_back(double(grey.pixels()[pixel] - dark[pixel]) / double(full[pixel] - dark[pixel]));
     const auto middle = lights.begin() + static_cast<std::ptrdiff_t>(lights.size() / 2);
