@@ -40,7 +40,11 @@ void playFaults(NightOptions options, const std::string& kind, std::uint64_t fir
             count->first += isRight ? 1 : 0;
             ++count->second;
         }
-        fmt::print("{} {:4} {} |{}\n", isRight ? "right" : isNamed ? "more " : "WRONG", options.seed, night.drawn, wordsOf(night.causes));
+        fmt::print("{} {:4} {} |{}\n",
+                   isRight   ? "right"
+                   : isNamed ? "more "
+                             : "WRONG",
+                   options.seed, night.drawn, wordsOf(night.causes));
         std::fflush(stdout);
     }
     for (const auto& [name, count] : counts) fmt::print("{:12} {} of {}\n", name, count.first, count.second);
@@ -52,8 +56,8 @@ void playQuiet(NightOptions options, std::uint64_t first, std::uint64_t last) {
         const NightResult night = playNight(options);
         double farthest = 0;
         for (const auto& [output, moved] : night.farthest) farthest = std::max(farthest, moved);
-        fmt::print("{:4} {} outputs, {:.0f} s: moved by {:.2f} px at most |{}\n", options.seed, night.outputs.size(), options.length, farthest,
-                   wordsOf(night.causes));
+        fmt::print("{:4} {} outputs, {:.0f} s: moved by {:.2f} px at most |{}\n", options.seed, night.outputs.size(),
+                   options.length, farthest, wordsOf(night.causes));
         std::fflush(stdout);
     }
 }
@@ -72,8 +76,10 @@ void playDrift(NightOptions options, std::uint64_t first, std::uint64_t last) {
             if (moved > 0 && seconds(placed.at) <= at + 15) after15 = placed.missed;
         }
         for (const auto& [output, far] : night.farthest) others = output == night.output ? others : std::max(others, far);
-        fmt::print("{:4} {}: {:5.2f} px, corrected after {:.1f} s, {:.2f} px rms after 15 s, at most {:.0f} % of it; others moved {:.2f} |{}\n",
-                   options.seed, night.output, moved, found, after15, 100 * most / moved, others, wordsOf(night.causes));
+        fmt::print(
+            "{:4} {}: {:5.2f} px, corrected after {:.1f} s, {:.2f} px rms after 15 s, at most {:.0f} % of it; others moved "
+            "{:.2f} |{}\n",
+            options.seed, night.output, moved, found, after15, 100 * most / moved, others, wordsOf(night.causes));
         std::fflush(stdout);
     }
 }

@@ -63,7 +63,8 @@ cv::Mat shownAt(const GreyImage& light, const Homography& shownFromPlace) {
 }
 
 // `lit`: the picture's light on the surface, as the camera gets it.
-// `other`: light on the surface that is known, as a share of full light; it is no part of what is seen.
+// `other`: light on the surface that is known, as a share of full light; it is no part of what is
+// seen.
 Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, double other, int left, int top) {
     Block block;
     for (int y = top; y < std::min(top + kSide, lit.rows); ++y)
@@ -111,8 +112,8 @@ public:
     }
     const std::vector<std::size_t>& which() const { return which_; }
 
-    // What a contrast leaves of a block's variance, as a share of what is usual there, or of what is
-    // seen if that is more.
+    // What a contrast leaves of a block's variance, as a share of what is usual there, or of what
+    // is seen if that is more.
     double shareLeft(const Blocks& blocks, std::size_t i, double contrast) const {
         return blocks[i].left(contrast) / std::max(scale_[i], blocks[i].seenSeen);
     }
@@ -236,7 +237,8 @@ private:
 LightMeter::Comparison LightMeter::compare(const Sight& sight) const {
     Comparison now{.shown = shownAt(sight.light, sight.shownFromPlace), .telling = Telling({}, 1)};
     const cv::Mat surface = viewOf(sight.surface);
-    for (std::size_t i = 0; i < kBlurs.size(); ++i) now.blocks[i] = blocksOf(sight, blurredBy(now.shown, kBlurs[i]).mul(surface), other_.whole);
+    for (std::size_t i = 0; i < kBlurs.size(); ++i)
+        now.blocks[i] = blocksOf(sight, blurredBy(now.shown, kBlurs[i]).mul(surface), other_.whole);
     now.usualBlur = now.bestBlur = nearestBlur(usual_.blur);
     std::vector<double> scale(now.blocks[0].size(), 0);
     for (std::size_t i = 0; i < scale.size(); ++i) {
@@ -285,7 +287,8 @@ OutputLight LightMeter::describe(const Comparison& now, const Sight& sight) {
     light.otherLight = other_.pictures >= kLearningLight ? other_.now : other_.kept;
     if (now.contrast > 0 && now.blur > usual_.blur) {
         light.blur = std::sqrt(now.blur * now.blur - usual_.blur * usual_.blur);
-        const Blocks byCamera = blocksOf(sight, blurredBy(now.shown.mul(viewOf(sight.surface)), kBlurs[now.bestBlur]), other_.whole);
+        const Blocks byCamera =
+            blocksOf(sight, blurredBy(now.shown.mul(viewOf(sight.surface)), kBlurs[now.bestBlur]), other_.whole);
         light.isCameraBlurred = now.telling.best(byCamera).loss < kCameraBlurs * now.loss;
     }
     double asUsual = 0, explained = 0, hidden = 0;

@@ -54,10 +54,10 @@ private:
     std::vector<int> off_{};  // by block: how many measurements it has not looked as usual
     // Light that is not the picture's, as a share of full light.
     struct OtherLight {
-        int pictures = 0;  // from which the usual light was learned
+        int pictures = 0;           // from which the usual light was learned
         double whole = 0;           // at the last measurement
         double usual = 0, now = 0;  // now: beside the usual
-        double kept = 0;  // what was beside the usual before the lamps changed
+        double kept = 0;            // what was beside the usual before the lamps changed
     } other_;
 };
 

@@ -7,9 +7,9 @@ namespace {
 
 constexpr double kNoPicture = 0.12;  // of the usual contrast: less is none
 constexpr double kWeak = 0.85, kStrong = 1.25;
-constexpr double kSaturated = 0.3;   // of the bright places
+constexpr double kSaturated = 0.3;  // of the bright places
 constexpr double kSaturatesSome = 0.05;
-constexpr double kBlurred = 0.65;     // cells
+constexpr double kBlurred = 0.65;    // cells
 constexpr double kAll = 0.85;        // of the picture: so much is as good as all of it
 constexpr double kSome = 0.1;        // and so little is hardly anything
 constexpr double kHidden = 0.08;     // of the picture: more is worth a look

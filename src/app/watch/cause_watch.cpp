@@ -19,7 +19,7 @@ constexpr Time kLong = std::chrono::milliseconds(1500);
 constexpr Time kLonger = std::chrono::milliseconds(3800);  // nobody who passes takes so long
 constexpr Time kGone = std::chrono::seconds(3);            // without a picture
 constexpr double kMostSaturated = 0.1;
-constexpr double kMostHidden = 0.2;                        // of a picture whose place is certain
+constexpr double kMostHidden = 0.2;  // of a picture whose place is certain
 
 bool isUniform(const RgbaImage& picture) {
     const Rgba8 first = picture.pixels()[0];

@@ -62,7 +62,7 @@ private:
     std::map<Name, Suspicion> suspicions_;
     std::vector<bool> hidden_, saturated_;
     std::optional<Time> measured_;
-    show::ShowState lamps_;  // its levels and relays, at the last measurement
+    show::ShowState lamps_;       // its levels and relays, at the last measurement
     std::vector<Rgba8> picture_;  // some pixels of the last one
 };
 

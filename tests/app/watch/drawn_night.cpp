@@ -201,13 +201,13 @@ public:
         for (int i = 0; i < walkers; ++i)
             text += fmt::format("    - {{name: w{}, path: [[-9, {:.2f}], [9, {:.2f}]], speed: {:.2f}, at: {:.1f}, loop: true}}\n",
                                 i, in(1, 5), in(1, 5), in(0.7, 1.6), in(0, 10));
-        if (options_.isBusy)
-            text += "  headlights:\n" + headlight(6) + headlight(in(25, 35)) + headlight(in(50, 70));
+        if (options_.isBusy) text += "  headlights:\n" + headlight(6) + headlight(in(25, 35)) + headlight(in(50, 70));
         drawFault();
         std::vector<std::string> faults = options_.script;
         if (!fault.empty()) faults.push_back(fault);
         for (double at = in(20, 60); options_.isBusy && at < options_.length; at += in(60, 180))
-            faults.push_back(fmt::format("kind: fog, at: {:.1f}, until: {:.1f}, rise: 8, density: {:.4f}", at, at + in(20, 40), in(0.003, 0.03)));
+            faults.push_back(fmt::format("kind: fog, at: {:.1f}, until: {:.1f}, rise: 8, density: {:.4f}", at, at + in(20, 40),
+                                         in(0.003, 0.03)));
         if (!faults.empty()) text += "  faults:\n";
         for (std::string& line : faults) {
             if (const auto at = line.find("NAME"); at != std::string::npos) line.replace(at, 4, names[0]);
@@ -219,8 +219,10 @@ public:
 private:
     // A car's lamp that passes again and again.
     std::string headlight(double at) {
-        return fmt::format("    - {{path: [[-25, {:.1f}], [25, {:.1f}]], speed: {:.1f}, at: {:.1f}, every: {:.0f}, beam_angle: 20, field_angle: 45}}\n",
-                           in(6, 14), in(6, 14), in(6, 14), at, in(30, 90));
+        return fmt::format(
+            "    - {{path: [[-25, {:.1f}], [25, {:.1f}]], speed: {:.1f}, at: {:.1f}, every: {:.0f}, beam_angle: 20, field_angle: "
+            "45}}\n",
+            in(6, 14), in(6, 14), in(6, 14), at, in(30, 90));
     }
     double ambient_ = 1;
     std::string rectangle() {
@@ -332,8 +334,8 @@ RgbaImage shifted(const RgbaImage& picture, const show::PictureShift& shift) {
             const glm::dvec2 share = from - glm::dvec2(corner);
             if (corner.x < 0 || corner.y < 0 || corner.x + 1 >= picture.width() || corner.y + 1 >= picture.height()) continue;
             const auto light = [&](int dx, int dy) { return static_cast<double>(picture.at(corner.x + dx, corner.y + dy).r); };
-            const auto value = static_cast<std::uint8_t>(std::lround(std::lerp(
-                std::lerp(light(0, 0), light(1, 0), share.x), std::lerp(light(0, 1), light(1, 1), share.x), share.y)));
+            const auto value = static_cast<std::uint8_t>(std::lround(
+                std::lerp(std::lerp(light(0, 0), light(1, 0), share.x), std::lerp(light(0, 1), light(1, 1), share.x), share.y)));
             moved.at(x, y) = {value, value, value, 255};
         }
     return moved;
@@ -362,7 +364,8 @@ public:
             placed.missed += glm::dot(shown - to, shown - to);
             placed.shifted += glm::dot(shown - from, shown - from);
         }
-        for (double* sum : {&placed.moved, &placed.missed, &placed.shifted}) *sum = std::sqrt(*sum / static_cast<double>(places_.size()));
+        for (double* sum : {&placed.moved, &placed.missed, &placed.shifted})
+            *sum = std::sqrt(*sum / static_cast<double>(places_.size()));
         return placed;
     }
 
@@ -396,7 +399,8 @@ public:
         std::vector<ShownLight::Frames> sources;
         for (std::size_t i = 0; i < site.outputs.size(); ++i) {
             leaves_.emplace_back(options.seed * 10 + i, site.outputs[i].size());
-            sources.push_back({[this, i](Time) { return std::exchange(isNew_[i], 0) != 0 ? &frames_[i] : nullptr; }, [](Time) {}});
+            sources.push_back(
+                {[this, i](Time) { return std::exchange(isNew_[i], 0) != 0 ? &frames_[i] : nullptr; }, [](Time) {}});
         }
         watch_.emplace(site, watched, cameraLightOf(site), sources, inputs_, events_, show::ShowClock());
     }
@@ -407,7 +411,9 @@ public:
         open_.clock.advanceTo(exposed);
         playback_.stateAt(exposed, state_);
         for (std::size_t i = 0; i < frames_.size(); ++i) {
-            frames_[i] = {i, exposed, {number, exposed - frameTime / 2, exposed, {}},
+            frames_[i] = {i,
+                          exposed,
+                          {number, exposed - frameTime / 2, exposed, {}},
                           shifted(leaves_[i].at(seconds(exposed)), state_.shifts[i])};
             isNew_[i] = 1;
             open_.world.setFrame(site_.outputs[i].name, std::make_shared<const RgbaImage>(frames_[i].image));
@@ -445,20 +451,12 @@ private:
 }  // namespace
 
 const std::vector<DrawnFault>& drawnFaults() {
-    static const std::vector<DrawnFault> faults{{"bump", "out of place", true},
-                                                {"defocus", "out of focus", true},
-                                                {"dim", "dim projector lamp", true},
-                                                {"unplug", "dead output", true},
-                                                {"input", "wrong input", true},
-                                                {"fog", "fog"},
-                                                {"ambient", "ambient light"},
-                                                {"cover", "blocked view"},
-                                                {"camera_bump", "camera moved"},
-                                                {"dirt", "camera dirty"},
-                                                {"blind", "camera blind"},
-                                                {"upside_down", "camera upside down"},
-                                                {"freeze", "camera frozen"},
-                                                {"exposure", "camera exposure"}};
+    static const std::vector<DrawnFault> faults{
+        {"bump", "out of place", true},  {"defocus", "out of focus", true}, {"dim", "dim projector lamp", true},
+        {"unplug", "dead output", true}, {"input", "wrong input", true},    {"fog", "fog"},
+        {"ambient", "ambient light"},    {"cover", "blocked view"},         {"camera_bump", "camera moved"},
+        {"dirt", "camera dirty"},        {"blind", "camera blind"},         {"upside_down", "camera upside down"},
+        {"freeze", "camera frozen"},     {"exposure", "camera exposure"}};
     return faults;
 }
 

@@ -18,7 +18,7 @@ namespace fantascope::app {
 
 struct NightOptions {
     std::uint64_t seed = 1;
-    bool isBusy = false;  // headlights pass, and thin fog comes and goes
+    bool isBusy = false;                // headlights pass, and thin fog comes and goes
     std::string fault;                  // a kind of drawnFaults(), drawn; empty: none
     std::vector<std::string> script{};  // faults as in a site file, with the output NAME for the first output
     int outputs = 0;                    // 0: drawn
@@ -52,7 +52,7 @@ struct NightResult {
     std::string drawn;   // the fault as it was drawn, for people
     std::vector<CauseReport> causes;
     std::map<std::string, std::vector<DriftReport>> drifts;
-    std::vector<Placed> placed;        // for the fault "bump"
+    std::vector<Placed> placed;              // for the fault "bump"
     std::map<std::string, double> farthest;  // by output: how far corrections moved a corner at most, projector pixels
 };
 
