@@ -26,14 +26,22 @@ constexpr double kPartThere = 0.1;         // or if so much of it is as usual
 constexpr double kCameraBlurs = 0.8;       // and the camera blurs, if that leaves less than this share
 constexpr std::array<double, 9> kBlurs{0, 0.5, 0.8, 1.2, 1.8, 2.7, 4, 6, 9};  // cells
 
+// How strong the picture is on the wall, and how much other light shows the surface's texture, as a
+// share of full light.
+struct Strengths {
+    double contrast = 0, texture = 0;
+};
+
 // A part of the picture: the light that is seen, and the picture's light as it is expected.
 struct Block {
     int cells = 0;
     double seen = 0, shown = 0, full = 0;                // means
-    double seenSeen = 0, seenShown = 0, shownShown = 0;  // variances and covariance
-    // What a contrast leaves of the variance.
-    double left(double contrast) const {
-        return std::max(0.0, seenSeen - 2 * contrast * seenShown + contrast * contrast * shownShown);
+    double seenSeen = 0, seenShown = 0, shownShown = 0;  // variances and covariance,
+    double seenFull = 0, shownFull = 0, fullFull = 0;    // those with the surface's texture, too
+    // What is left of the variance.
+    double left(const Strengths& by) const {
+        return std::max(0.0, seenSeen - 2 * (by.contrast * seenShown + by.texture * seenFull) + by.contrast * by.contrast * shownShown +
+                                 2 * by.contrast * by.texture * shownFull + by.texture * by.texture * fullFull);
     }
 };
 using Blocks = std::vector<Block>;
@@ -63,13 +71,11 @@ cv::Mat shownAt(const GreyImage& light, const Homography& shownFromPlace) {
 }
 
 // `lit`: the picture's light on the surface, as the camera gets it.
-// `other`: light on the surface that is known, as a share of full light; it is no part of what is
-// seen.
-Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, double other, int left, int top) {
+Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, int left, int top) {
     Block block;
     for (int y = top; y < std::min(top + kSide, lit.rows); ++y)
         for (int x = left; x < std::min(left + kSide, lit.cols); ++x) {
-            const double full = sight.surface.at(x, y), seen = sight.seen.at(x, y) - other * full, shown = lit.at<float>(y, x);
+            const double full = sight.surface.at(x, y), seen = sight.seen.at(x, y), shown = lit.at<float>(y, x);
             if (full <= 0 || sight.mask.at(x, y) <= 0) continue;
             ++block.cells;
             block.seen += seen;
@@ -78,30 +84,37 @@ Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, double other, 
             block.seenSeen += seen * seen;
             block.seenShown += seen * shown;
             block.shownShown += shown * shown;
+            block.seenFull += seen * full;
+            block.shownFull += shown * full;
+            block.fullFull += full * full;
         }
     const double count = std::max(1, block.cells);
-    for (double* sum : {&block.seen, &block.shown, &block.full, &block.seenSeen, &block.seenShown, &block.shownShown})
+    for (double* sum : {&block.seen, &block.shown, &block.full, &block.seenSeen, &block.seenShown, &block.shownShown,
+                        &block.seenFull, &block.shownFull, &block.fullFull})
         *sum /= count;
     block.seenSeen -= block.seen * block.seen;
     block.seenShown -= block.seen * block.shown;
     block.shownShown -= block.shown * block.shown;
+    block.seenFull -= block.seen * block.full;
+    block.shownFull -= block.shown * block.full;
+    block.fullFull -= block.full * block.full;
     return block;
 }
 
-Blocks blocksOf(const LightMeter::Sight& sight, const cv::Mat& lit, double other) {
+Blocks blocksOf(const LightMeter::Sight& sight, const cv::Mat& lit) {
     Blocks blocks;
     for (int top = 0; top < lit.rows; top += kSide)
-        for (int left = 0; left < lit.cols; left += kSide) blocks.push_back(blockOf(sight, lit, other, left, top));
+        for (int left = 0; left < lit.cols; left += kSide) blocks.push_back(blockOf(sight, lit, left, top));
     return blocks;
 }
 
-// How a contrast explains blocks.
+// How well strengths explain blocks.
 struct Fit {
-    double contrast = 0;
+    Strengths by;
     double loss = std::numeric_limits<double>::max();  // mean over the blocks, 0..1
 };
 
-// Compares contrasts on the blocks that tell something.
+// Compares strengths on the blocks that tell something.
 class Telling {
 public:
     // `scale`: by block: the variance of its picture on the wall at the usual contrast; 0: it tells
@@ -114,46 +127,60 @@ public:
 
     // What a contrast leaves of a block's variance, as a share of what is usual there, or of what
     // is seen if that is more.
-    double shareLeft(const Blocks& blocks, std::size_t i, double contrast) const {
-        return blocks[i].left(contrast) / std::max(scale_[i], blocks[i].seenSeen);
+    double shareLeft(const Blocks& blocks, std::size_t i, const Strengths& by) const {
+        return blocks[i].left(by) / std::max(scale_[i], blocks[i].seenSeen);
     }
-    double lossOf(const Blocks& blocks, double contrast) const {
+    double lossOf(const Blocks& blocks, const Strengths& by) const {
         double sum = 0;
-        for (const std::size_t i : which_) sum += std::min(1.0, shareLeft(blocks, i, contrast) / kOutlier);
+        for (const std::size_t i : which_) sum += std::min(1.0, shareLeft(blocks, i, by) / kOutlier);
         return sum / static_cast<double>(which_.size());
     }
-    double shareExplained(const Blocks& blocks, double contrast) const {
+    double shareExplained(const Blocks& blocks, const Strengths& by) const {
         const auto count =
-            std::ranges::count_if(which_, [&](std::size_t i) { return shareLeft(blocks, i, contrast) < kUnexplained; });
+            std::ranges::count_if(which_, [&](std::size_t i) { return shareLeft(blocks, i, by) < kUnexplained; });
         return static_cast<double>(count) / static_cast<double>(which_.size());
     }
-    // The contrast that explains most blocks. It is found from two guesses (Tukey's biweight).
+    // The strengths that explain most blocks. They are found from two guesses (Tukey's biweight).
     Fit best(const Blocks& blocks) const {
         Fit best;
-        for (const double guess : {usual_, contrastOf(blocks, [](std::size_t) { return 1.0; })}) {
-            double contrast = guess;
+        for (const Strengths& guess : {Strengths{usual_, 0}, plain(blocks)}) {
+            Strengths by = guess;
             for (int turn = 0; turn < 5; ++turn)
-                contrast = contrastOf(blocks, [&](std::size_t i) {
-                    const double keep = std::max(0.0, 1 - shareLeft(blocks, i, contrast) / kOutlier);
+                by = strengthsOf(blocks, [&](std::size_t i) {
+                    const double keep = std::max(0.0, 1 - shareLeft(blocks, i, by) / kOutlier);
                     return keep * keep;
                 });
-            const double loss = lossOf(blocks, contrast);
-            if (loss < best.loss) best = {contrast, loss};
+            const double loss = lossOf(blocks, by);
+            if (loss < best.loss) best = {by, loss};
         }
         return best;
     }
-    // Least squares.
-    double contrastOf(const Blocks& blocks, const auto& weightOf) const {
-        double both = 0, shown = 0;
-        for (const std::size_t i : which_) {
-            const double weight = weightOf(i) / scale_[i];
-            both += weight * blocks[i].seenShown;
-            shown += weight * blocks[i].shownShown;
-        }
-        return shown > 0 ? std::max(0.0, both / shown) : 0;
+    // Those that explain all blocks together best.
+    Strengths plain(const Blocks& blocks) const {
+        return strengthsOf(blocks, [](std::size_t) { return 1.0; });
     }
 
 private:
+    // Least squares.
+    Strengths strengthsOf(const Blocks& blocks, const auto& weightOf) const {
+        constexpr double kFlat = 1e-3;  // (of full light) squared: a surface without texture tells no other light
+        double seenShown = 0, seenFull = 0, shownShown = 0, shownFull = 0, fullFull = 0;
+        for (const std::size_t i : which_) {
+            const Block& block = blocks[i];
+            const double weight = weightOf(i) / scale_[i];
+            seenShown += weight * block.seenShown;
+            seenFull += weight * block.seenFull;
+            shownShown += weight * block.shownShown;
+            shownFull += weight * block.shownFull;
+            fullFull += weight * (block.fullFull + kFlat * block.full * block.full);
+        }
+        const double determinant = shownShown * fullFull - shownFull * shownFull;
+        if (determinant <= 0) return {};
+        const Strengths by{(seenShown * fullFull - seenFull * shownFull) / determinant,
+                           (seenFull * shownShown - seenShown * shownFull) / determinant};
+        return by.contrast > 0 ? by : Strengths{0, seenFull / fullFull};
+    }
+
     std::vector<double> scale_;
     double usual_;
     std::vector<std::size_t> which_;
@@ -196,13 +223,13 @@ struct Between {
     double blur = 0, contrast = 0;
 };
 Between leastBetween(const std::array<Fit, kBlurs.size()>& fits, std::size_t best) {
-    if (best == 0 || best + 1 == kBlurs.size()) return {kBlurs[best], fits[best].contrast};
+    if (best == 0 || best + 1 == kBlurs.size()) return {kBlurs[best], fits[best].by.contrast};
     const double before = fits[best - 1].loss, here = fits[best].loss, after = fits[best + 1].loss,
                  bend = before - 2 * here + after;
     const double step = bend > 0 ? std::clamp((before - after) / (2 * bend), -0.5, 0.5) : 0;
     const std::size_t towards = step > 0 ? best + 1 : best - 1;
     return {std::lerp(kBlurs[best], kBlurs[towards], std::abs(step)),
-            std::lerp(fits[best].contrast, fits[towards].contrast, std::abs(step))};
+            std::lerp(fits[best].by.contrast, fits[towards].by.contrast, std::abs(step))};
 }
 
 }  // namespace
@@ -219,12 +246,12 @@ struct LightMeter::Comparison {
     Telling telling;
     std::size_t usualBlur = 0, bestBlur = 0;  // indices into kBlurs
     double contrast = 0, blur = 0;            // contrast 0: the picture is not there
-    double explaining = 0;                    // the contrast at the best of kBlurs
+    Strengths explaining{};                   // at the best of kBlurs
     double loss = 1;
     double otherLight = 0;
 
     bool isUsual(std::size_t block, const Usual& usual) const {
-        return telling.shareLeft(blocks[usualBlur], block, usual.contrast) < mostLeft(block, usual);
+        return telling.shareLeft(blocks[usualBlur], block, {usual.contrast, explaining.texture}) < mostLeft(block, usual);
     }
     bool isExplained(std::size_t block, const Usual& usual) const {
         return telling.shareLeft(blocks[bestBlur], block, explaining) < mostLeft(block, usual);
@@ -238,7 +265,7 @@ LightMeter::Comparison LightMeter::compare(const Sight& sight) const {
     Comparison now{.shown = shownAt(sight.light, sight.shownFromPlace), .telling = Telling({}, 1)};
     const cv::Mat surface = viewOf(sight.surface);
     for (std::size_t i = 0; i < kBlurs.size(); ++i)
-        now.blocks[i] = blocksOf(sight, blurredBy(now.shown, kBlurs[i]).mul(surface), other_.whole);
+        now.blocks[i] = blocksOf(sight, blurredBy(now.shown, kBlurs[i]).mul(surface));
     now.usualBlur = now.bestBlur = nearestBlur(usual_.blur);
     std::vector<double> scale(now.blocks[0].size(), 0);
     for (std::size_t i = 0; i < scale.size(); ++i) {
@@ -248,7 +275,7 @@ LightMeter::Comparison LightMeter::compare(const Sight& sight) const {
             scale[i] = now.blocks[now.usualBlur][i].shownShown;
     }
     double usual = usual_.contrast;
-    if (usual_.pictures == 0) usual = Telling(scale, 1).contrastOf(now.blocks[0], [](std::size_t) { return 1.0; });
+    if (usual_.pictures == 0) usual = Telling(scale, 1).plain(now.blocks[0]).contrast;
     for (double& variance : scale) variance *= usual * usual;
     now.telling = Telling(std::move(scale), usual);
     if (now.telling.which().size() < kLeastBlocks) return now;
@@ -259,11 +286,11 @@ LightMeter::Comparison LightMeter::compare(const Sight& sight) const {
     now.loss = fits[now.bestBlur].loss;
     const Between between = leastBetween(fits, now.bestBlur);
     now.blur = between.blur;
-    const bool isThere = now.loss < kThere * now.telling.lossOf(now.blocks[now.bestBlur], 0) ||
-                         now.telling.shareExplained(now.blocks[now.usualBlur], usual) > kPartThere;
+    const bool isThere = now.loss < kThere * now.telling.lossOf(now.blocks[now.bestBlur], {0, fits[now.bestBlur].by.texture}) ||
+                         now.telling.shareExplained(now.blocks[now.usualBlur], {usual, fits[now.bestBlur].by.texture}) > kPartThere;
     now.contrast = isThere ? between.contrast : 0;
-    now.explaining = isThere ? fits[now.bestBlur].contrast : 0;
-    now.otherLight = other_.whole + otherLightOf(now.blocks[now.bestBlur], now.contrast);
+    now.explaining = {isThere ? fits[now.bestBlur].by.contrast : 0, fits[now.bestBlur].by.texture};
+    now.otherLight = otherLightOf(now.blocks[now.bestBlur], now.contrast);
     return now;
 }
 
@@ -288,7 +315,7 @@ OutputLight LightMeter::describe(const Comparison& now, const Sight& sight) {
     if (now.contrast > 0 && now.blur > usual_.blur) {
         light.blur = std::sqrt(now.blur * now.blur - usual_.blur * usual_.blur);
         const Blocks byCamera =
-            blocksOf(sight, blurredBy(now.shown.mul(viewOf(sight.surface)), kBlurs[now.bestBlur]), other_.whole);
+            blocksOf(sight, blurredBy(now.shown.mul(viewOf(sight.surface)), kBlurs[now.bestBlur]));
         light.isCameraBlurred = now.telling.best(byCamera).loss < kCameraBlurs * now.loss;
     }
     double asUsual = 0, explained = 0, hidden = 0;
@@ -313,7 +340,6 @@ std::optional<OutputLight> LightMeter::measure(const Sight& sight, bool isFound)
     usual_.unexplained.resize(now.blocks[0].size(), -1);
     off_.resize(now.blocks[0].size());
     if (isFound) learn(now);
-    other_.whole = now.otherLight;
     other_.now = now.otherLight - other_.usual;
     return isKnown ? std::optional(describe(now, sight)) : std::nullopt;
 }

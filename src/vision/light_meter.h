@@ -55,7 +55,6 @@ private:
     // Light that is not the picture's, as a share of full light.
     struct OtherLight {
         int pictures = 0;           // from which the usual light was learned
-        double whole = 0;           // at the last measurement
         double usual = 0, now = 0;  // now: beside the usual
         double kept = 0;            // what was beside the usual before the lamps changed
     } other_;

@@ -111,17 +111,16 @@ std::vector<NamedCause> causesOf(const WallLight& light) {
     if (looks.all(Look::Dark) && (!isOne || (around && around->gain < 0.3))) return {{Cause::CameraBlind, {}, 0}};
     if (looks.all(Look::Foreign) && !isOne) return {{Cause::CameraElsewhere, {}, 0}};
     // What passes before one picture, or comes to stay, may be all that is before another.
-    if (looks.count(Look::Passing) > 0) return causes;
-    looks.each(
-        Look::Dark, Cause::DeadOutput, [](const OutputLight& of) { return of.contrast; }, causes);
-    looks.each(
-        Look::Foreign, Cause::WrongInput, [](const OutputLight& of) { return of.contrast; }, causes);
+    const auto contrastOf = [](const OutputLight& of) { return of.contrast; };
+    if (looks.count(Look::Passing) == 0) {
+        looks.each(Look::Dark, Cause::DeadOutput, contrastOf, causes);
+        looks.each(Look::Foreign, Cause::WrongInput, contrastOf, causes);
+    }
     if (looks.all(Look::Strong)) return {{Cause::CameraExposure, {}, looks.mean(&OutputLight::contrast)}};
     if (looks.all(Look::Weak))
         addWeak(looks, causes);
     else
-        looks.each(
-            Look::Weak, Cause::DimLamp, [](const OutputLight& of) { return of.contrast; }, causes);
+        looks.each(Look::Weak, Cause::DimLamp, contrastOf, causes);
     addBlurred(looks, causes);
     if (looks.count(Look::Usual) + looks.count(Look::Passing) == looks.looks.size()) addOtherLight(looks, causes);
     return causes;

@@ -52,6 +52,8 @@ TEST(WallCauses, of_one_output_leave_the_others_alone) {
     EXPECT_EQ(said({usual(), kDark, usual()}), one(Cause::DeadOutput, 1));
     EXPECT_EQ(said({kForeign, usual()}), one(Cause::WrongInput, 0));
     EXPECT_EQ(said({kHidden, usual()}), one(Cause::BlockedView, 0));
+    EXPECT_EQ(said({kBlurred, kPassing}), one(Cause::OutOfFocus, 0));
+    EXPECT_EQ(said({kPassing, kDim}), one(Cause::DimLamp, 1));
 }
 
 TEST(WallCauses, of_all_outputs_together_are_no_projector) {
