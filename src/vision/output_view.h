@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vision/guide_comparison.h"
+#include "vision/nominal_view.h"
 #include "vision/structured_light.h"
 
 #include "media/image.h"

@@ -3,7 +3,7 @@
 
 #include "drivers/default_site.h"
 
-#include "vision/guide_comparison.h"
+#include "vision/compare/guide_comparison.h"
 
 #include "core/file.h"
 #include "core/random.h"

@@ -76,6 +76,7 @@ const std::vector<Row> kTable = {
     {"media", {"core"}, {}, {"assimp", "CGAL", "FreeType", "librsvg", "OpenCV"}},
     {"device", {"core", "media"}, {}, {}},
     {"vision", {"core", "media"}, {"Eigen"}, {"OpenCV"}},
+    {"vision/compare", {"core", "media", "vision"}, {}, {"Eigen"}},
 
     {"pattern/shape", {"core", "media"}, {}, {}},
     {"pattern/motion", {"core", "pattern/shape"}, {}, {"FFTW"}},

@@ -1,7 +1,7 @@
 // Synthetic photographs of a wall, made without the simulated site: pixel by pixel through the
 // nominal geometry.
 
-#include "vision/guide_comparison.h"
+#include "vision/compare/guide_comparison.h"
 
 #include "core/random.h"
 

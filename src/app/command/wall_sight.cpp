@@ -6,7 +6,7 @@
 #include "app/site/site_models.h"
 
 #include "pattern/shape/shape_pattern.h"
-#include "vision/guide_comparison.h"
+#include "vision/compare/guide_comparison.h"
 
 #include "plot/wall_figure.h"
 

@@ -8,7 +8,7 @@
 #include "render/source/picture_source.h"
 #include "show/playback.h"
 #include "show/revision.h"
-#include "vision/guide_comparison.h"
+#include "vision/compare/guide_comparison.h"
 
 #include "core/fit.h"
 #include "core/result.h"

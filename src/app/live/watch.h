@@ -6,7 +6,7 @@
 #include "render/source/picture_feed.h"
 #include "show/show.h"
 #include "show/show_clock.h"
-#include "vision/guide_comparison.h"
+#include "vision/compare/guide_comparison.h"
 
 #include "device/camera_source.h"
 

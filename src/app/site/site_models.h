@@ -7,7 +7,7 @@
 #include "render/canvas/blend_map.h"
 #include "show/site/site.h"
 #include "vision/camera_light.h"
-#include "vision/guide_comparison.h"
+#include "vision/nominal_view.h"
 #include "vision/wall_watch.h"
 
 #include "core/fit.h"

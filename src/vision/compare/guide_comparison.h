@@ -1,28 +1,13 @@
 #pragma once
 
-#include "vision/camera_light.h"
-#include "vision/camera_model.h"
+#include "vision/nominal_view.h"
 
-#include "core/warp.h"
 #include "media/image.h"
 
 #include <memory>
 #include <optional>
 
 namespace fantascope::vision {
-
-// The site file's data about one output and the camera that watches it: only what a technician
-// measured and wrote down.
-struct NominalView {
-    CameraModel camera;
-    CameraLight light = {};
-    CameraModel projector;
-    double canvasAspect = 16.0 / 9;  // width / height
-    Warp warp = Warp::straight({1, 1});
-    Plane surface;  // the surface of the picture
-    // The light correction evens out the projector's fall-off too, so it is no reason to be darker.
-    bool isEvenedOut = false;
-};
 
 // How far a picture on the wall differs from what was wanted; each in [0, 1], 0 is the guide
 // itself.

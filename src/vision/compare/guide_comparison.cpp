@@ -1,11 +1,10 @@
-#include "vision/guide_comparison.h"
+#include "vision/compare/guide_comparison.h"
 
 #include "core/check.h"
 
 #include <Eigen/Dense>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <array>
@@ -27,48 +26,6 @@ constexpr double kOutliers = 0.02;        // share of the darkest and of the bri
 constexpr float kFlat = 0.02f;            // a smaller range, in linear light of full white, is noise and ambient light
 constexpr int kBackgroundTerms = 6;       // 1, x, y, x^2, xy, y^2
 constexpr double kBackgroundCost = 1e-3;  // just enough to assign ambiguous light to the picture
-
-// A cell of the canvas as the camera sees it: some places of it in camera pixels, and how strongly
-// the projector lights it there.
-struct Cell {
-    int column = 0, row = 0;
-    std::vector<glm::vec2> places;
-    double gain = 0;
-};
-
-// All cells that the camera sees completely, by rows; the strongest gain is 1.
-std::vector<Cell> cellsInSight(const NominalView& view, glm::ivec2 grid) {
-    const CanvasPart part = view.warp.shown();
-    std::vector<Cell> cells;
-    double strongest = 0;
-    for (int row = 0; row < grid.y; ++row)
-        for (int column = 0; column < grid.x; ++column) {
-            Cell cell{column, row, {}, 0};
-            for (int i = 0; i < kPlaces * kPlaces; ++i) {
-                const glm::dvec2 within((i % kPlaces + 0.5) / kPlaces, (i / kPlaces + 0.5) / kPlaces);
-                const glm::dvec2 canvas = (glm::dvec2(column, row) + within) / glm::dvec2(grid);
-                if (glm::any(glm::lessThan(canvas, part.low)) || glm::any(glm::greaterThan(canvas, part.high))) break;
-                const auto point = view.surface.hitBy(view.projector.rayThrough(view.warp.projectorFromCanvas(canvas)));
-                const auto pixel = point ? view.camera.pixelFromWorld(*point) : std::nullopt;
-                if (!pixel || !view.camera.inPicture(*pixel)) break;
-                cell.places.emplace_back(*pixel);
-                cell.gain += view.projector.pixelsPerArea(*point, view.surface.normal);
-            }
-            if (cell.places.size() < kPlaces * kPlaces) continue;
-            strongest = std::max(strongest, cell.gain);
-            cells.push_back(std::move(cell));
-        }
-    for (Cell& cell : cells) cell.gain /= strongest;
-    return cells;
-}
-
-// The linear light of a stored frame, bilinear between pixel centres.
-glm::dvec3 linearAt(const CameraLight& light, const RgbaImage& frame, glm::vec2 pixel) {
-    const auto at = [&](int x, int y) { return light.at(frame, x, y); };
-    const glm::vec2 corner = glm::floor(pixel - 0.5f), share = pixel - 0.5f - corner;
-    const int x = static_cast<int>(corner.x), y = static_cast<int>(corner.y);
-    return glm::mix(glm::mix(at(x, y), at(x + 1, y), share.x), glm::mix(at(x, y + 1), at(x + 1, y + 1), share.x), share.y);
-}
 
 // wanted = scale * seen + lift, estimated from quantiles.
 struct Exposure {
@@ -130,7 +87,7 @@ struct GuideComparison::Tables {
     CameraLight light;
     glm::ivec2 grid;   // cells across and down the canvas
     double shown = 1;  // the share of the canvas that the output shows
-    std::vector<Cell> cells;
+    std::vector<CanvasCell> cells;
     GreyImage weights;  // sum of the low-pass over the cells in sight
     Measure z, tone;
 
@@ -140,7 +97,8 @@ struct GuideComparison::Tables {
         for (std::size_t i = 0; i < cells.size(); ++i) canvas.at(cells[i].column, cells[i].row) = values[i];
         canvas = blurred(canvas, kBlur * kRows);
         std::vector<float> result;
-        for (const Cell& cell : cells) result.push_back(canvas.at(cell.column, cell.row) / weights.at(cell.column, cell.row));
+        for (const CanvasCell& cell : cells)
+            result.push_back(canvas.at(cell.column, cell.row) / weights.at(cell.column, cell.row));
         return result;
     }
 
@@ -149,7 +107,7 @@ struct GuideComparison::Tables {
         const GreyImage guide = resized(wanted, grid.x, grid.y);
         Measure measure;
         std::vector<float> values;
-        for (const Cell& cell : cells) {
+        for (const CanvasCell& cell : cells) {
             values.push_back(guide.at(cell.column, cell.row));
             measure.gain.push_back(fallsOff ? static_cast<float>(cell.gain) : 1);
         }
@@ -177,11 +135,9 @@ struct GuideComparison::Tables {
         if (frame.width() != frameSize.x || frame.height() != frameSize.y) return std::nullopt;
         if (static_cast<double>(cells.size()) < kMostlySeen * shown * grid.x * grid.y) return std::nullopt;
         CellLight result;
-        for (const Cell& cell : cells) {
-            glm::dvec3 sum(0);
-            for (const glm::vec2 place : cell.places) sum += linearAt(light, frame, place);
-            for (int c = 0; c < 3; ++c)
-                result[static_cast<std::size_t>(c)].push_back(static_cast<float>(sum[c] / (kPlaces * kPlaces)));
+        for (const CanvasCell& cell : cells) {
+            const glm::dvec3 mean = linearOf(light, frame, cell);
+            for (int c = 0; c < 3; ++c) result[static_cast<std::size_t>(c)].push_back(static_cast<float>(mean[c]));
         }
         return result;
     }
@@ -237,12 +193,12 @@ GuideComparison::GuideComparison(const NominalView& view, const GreyImage& wante
     tables->grid = {std::max(1, static_cast<int>(std::lround(kRows * view.canvasAspect))), kRows};
     const CanvasPart part = view.warp.shown();
     tables->shown = (part.high.x - part.low.x) * (part.high.y - part.low.y);
-    tables->cells = cellsInSight(view, tables->grid);
+    tables->cells = cellsInSight(view, tables->grid, kPlaces);
     tables_ = tables;
     if (tables->cells.empty()) return;
 
     GreyImage inSight(tables->grid.x, tables->grid.y);
-    for (const Cell& cell : tables->cells) inSight.at(cell.column, cell.row) = 1;
+    for (const CanvasCell& cell : tables->cells) inSight.at(cell.column, cell.row) = 1;
     tables->weights = blurred(inSight, kBlur * kRows);
     tables->z = tables->measureOf(wanted, !view.isEvenedOut);
     tables->tone = tables->measureOf(light, false);
@@ -270,7 +226,7 @@ std::optional<ComparedPictures> GuideComparison::pictures(const RgbaImage& frame
     const GreyImage none(grid.x, grid.y);
     ComparedPictures pictures{none, GreyImage(kPlaces * grid.x, kPlaces * grid.y), none, none};
     for (std::size_t i = 0; i < tables.cells.size(); ++i) {
-        const Cell& cell = tables.cells[i];
+        const CanvasCell& cell = tables.cells[i];
         const float gain = tables.z.gain[i];
         pictures.wanted.at(cell.column, cell.row) = tables.z.wanted[i] * gain;
         pictures.difference.at(cell.column, cell.row) = static_cast<float>(compared->difference[i]);
