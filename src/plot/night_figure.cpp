@@ -39,7 +39,7 @@ NightTime timeOf(const Night& night) {
     constexpr double kMinute = 60, kHour = 3600;
     double end = night.seconds;
     for (const Night::Output& output : night.outputs) {
-        for (const auto& series : {output.z, output.tone})
+        for (const auto& series : {output.z, output.tone, output.iou})
             if (!series.empty()) end = std::max(end, series.back().x);
         if (!output.sights.empty()) end = std::max(end, output.sights.back().at);
     }
@@ -253,6 +253,7 @@ Page nightFigure(const Night& night) {
     };
     add(scorePanel(night, time, "z of the camera: 0 is the guide drawing", "z", &Night::Output::z));
     add(scorePanel(night, time, "tone of the camera: 0 is the drawing's light", "tone", &Night::Output::tone));
+    add(scorePanel(night, time, "IoU of the camera: 1 is the shadow's target", "IoU", &Night::Output::iou));
     add(driftPanel(night, time));
     const bool isScored = !panels.empty();
     panels.push_back(stripPanel(Page(1, 1), rowsOf(night), time, isScored));

@@ -20,8 +20,8 @@ struct Night {
     };
     struct Output {
         std::string name;
-        std::vector<glm::dvec2> z{}, tone{};  // time, score; ordered by time
-        std::vector<Sight> sights{};          // ordered by time
+        std::vector<glm::dvec2> z{}, tone{}, iou{};  // time, score; ordered by time
+        std::vector<Sight> sights{};                 // ordered by time
     };
     // What kept the wall from being as it should be. Nothing in `to`: it lasted to the end.
     struct Cause {
@@ -49,9 +49,9 @@ struct Night {
     std::vector<Cue> cues{};
 };
 
-// Charts of z, tone and drift over the time, each with one line per output; below them a bar for
-// each cause and fault. Lines across all charts show when the cues were entered. A chart without
-// data is left out.
+// Charts of z, tone, IoU and drift over the time, each with one line per output; below them a bar
+// for each cause and fault. Lines across all charts show when the cues were entered. A chart
+// without data is left out.
 Page nightFigure(const Night& night);
 
 }  // namespace fantascope::plot

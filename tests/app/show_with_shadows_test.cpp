@@ -17,6 +17,8 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 namespace fantascope {
 namespace {
 
@@ -124,6 +126,24 @@ TEST_F(ShowWithShadows, says_what_cannot_be_played) {
     EXPECT_THAT(refusal("bar.cast.yaml"), HasSubstr("bar.png"));
 }
 
+// Without its picture nobody knows what the shadow is to be; the show plays all the same.
+TEST_F(ShowWithShadows, plays_on_without_a_score_if_the_target_is_missing) {
+    folder_.file("show.yaml",
+                 "fantascope: show\nversion: 1\ntitle: Test\n"
+                 "sources: {him: {shadow: {cast: bar.cast.yaml, picture: {x: [-2.56, 2.56], y: [-0.1, 2.78]}}}}\n"
+                 "looks: {a: {outputs: {left: [{source: him}]}}}\ncues: [{name: A, look: a, fade: 0}]\n");
+    const Arguments rehearsal = {"rehearse", ".",       "--seconds", "1", "--from", "A", "--as-fast-as-possible",
+                                 "--report", "run.json"};
+    const auto scores = [&] { return nlohmann::json::parse(readFile(folder_ / "run.json").value())["iou_camera"]["left"]; };
+    EXPECT_THAT(run(rehearsal), exits(0));
+    EXPECT_FALSE(scores().empty());
+    fs::remove(folder_ / "bar.png");
+    const Outcome blind = run(rehearsal);
+    EXPECT_THAT(blind, exits(0));
+    EXPECT_THAT(blind.errors, testing::AllOf(HasSubstr("the shadow of 'him' is not scored"), HasSubstr("bar.png")));
+    EXPECT_TRUE(scores().empty());
+}
+
 // The menagerie's casts as they lie in its folder: people can hold every frame, it reads as the
 // drawing, and nobody slides or leaps.
 TEST(Menagerie, is_played_by_people_who_can_do_it) {
@@ -147,6 +167,49 @@ TEST(Menagerie, is_played_by_people_who_can_do_it) {
         EXPECT_GE(mean, 0.92) << name;
     }
     EXPECT_THAT(runProgram({"check", folder.string(), "--site", sourceFolder() + "/config/simulated"}, folder), exits(0));
+}
+
+double meanIou(const nlohmann::json& series, double from, double to) {
+    double sum = 0;
+    int count = 0;
+    for (const nlohmann::json& entry : series)
+        if (const double at = entry[0]; at >= from && at < to) sum += entry[1].get<double>(), ++count;
+    EXPECT_GT(count, 5) << from << " .. " << to;
+    return sum / std::max(1, count);
+}
+
+// On the default site, with a sky, a lamp on the sculpture and a camera whose pixels are 3 cm on
+// the wall.
+TEST(Menagerie, is_scored_by_the_camera_as_its_search_scored_it) {
+    const ScratchFolder folder;
+    const fs::path shows = sourceFolder() + "/shows/menagerie";
+    fs::copy(sourceFolder() + "/config/simulated", folder / "site", fs::copy_options::recursive);
+    std::string site = readFile(folder / "site" / "site.yaml").value();
+    const std::string section = "\nsimulation:\n";
+    site.replace(site.find(section), section.size(),
+                 "\ncorrections: {geometry: {mode: advise}}" + section +
+                     "  faults: [{kind: bump, output: left, at: 6, turn: [0, 1, 0]}]\n");
+    ASSERT_TRUE(writeFile(folder / "site" / "site.yaml", site));
+    ASSERT_THAT(runProgram({"rehearse", shows.string(), "--site", (folder / "site").string(), "--from", "Rabbit", "--by-hand",
+                            "--seconds", "8", "--as-fast-as-possible", "--report", "run.json"},
+                           folder / "."),
+                exits(0));
+    const nlohmann::json report = nlohmann::json::parse(readFile(folder / "run.json").value());
+    const nlohmann::json& series = report["iou_camera"]["left"];
+    EXPECT_TRUE(report["iou_camera"]["right"].empty()) << "a pattern is no shadow";
+
+    // From 3 to 6 s, the rabbit's 16 frames are played more than once.
+    const fs::path file = shows / "rabbit.cast.yaml";
+    const std::size_t frames = theatre::readCast(file).value().actors[0].poses.size();
+    double searched = 0;
+    for (std::size_t frame = 0; frame < frames; ++frame) {
+        const auto scene = app::readCastScene(file, frame);
+        ASSERT_TRUE(scene) << scene.error().message();
+        searched += theatre::PoseSearch::measure(scene->problem, scene->dofs).iou / static_cast<double>(frames);
+    }
+    const double before = meanIou(series, 3, 6), bumped = meanIou(series, 6.5, 8);
+    EXPECT_NEAR(before, searched, 0.06);
+    EXPECT_LT(bumped, before - 0.15);
 }
 
 }  // namespace

@@ -52,12 +52,13 @@ std::vector<plot::Night::Output> outputsOf(const Report& report, const std::vect
     };
     for (const auto& [name, series] : valueOf(report, "z_camera").items()) outputNamed(name).z = scoresOf(series);
     for (const auto& [name, series] : valueOf(report, "tone_camera").items()) outputNamed(name).tone = scoresOf(series);
+    for (const auto& [name, series] : valueOf(report, "iou_camera").items()) outputNamed(name).iou = scoresOf(series);
     for (const auto& [name, series] : valueOf(report, "watch").items()) outputNamed(name).sights = sightsOf(series);
     for (const plot::Night::Cause& cause : causes)
         if (!cause.output.empty()) outputNamed(cause.output);
     std::erase_if(outputs, [&](const plot::Night::Output& output) {
         const auto concerns = [&](const plot::Night::Cause& cause) { return cause.output == output.name; };
-        return output.z.empty() && output.tone.empty() && output.sights.empty() &&
+        return output.z.empty() && output.tone.empty() && output.iou.empty() && output.sights.empty() &&
                std::none_of(causes.begin(), causes.end(), concerns);
     });
     return outputs;

@@ -7,12 +7,15 @@
 #include "render/source/penumbra.h"
 #include "theatre/energy/pose_problem.h"
 #include "theatre/motion/moving_cast.h"
+#include "theatre/motion/wanted_shadow.h"
 #include "theatre/stage/cast.h"
 
 #include "core/config/naming.h"
+#include "core/log.h"
 #include "media/image.h"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -195,9 +198,48 @@ Result<std::vector<Watch::Comparisons>> compareWith(const show::BySource<std::op
         for (const auto& [source, guide] : guides) {
             if (!guide) continue;
             if (auto comparison = TRY(comparisonWith(*guide, site, output, gains[output] != nullptr)))
-                comparisons[output].add(source, std::make_shared<const vision::GuideComparison>(std::move(*comparison)));
+                comparisons[output].guides.add(source, std::make_shared<const vision::GuideComparison>(std::move(*comparison)));
         }
     return comparisons;
+}
+
+// By how much a place that the target wants dark loses light: that of the lamps at the beam's
+// light, or of all lamps if none is there. 0: there is no one such loss, because each actor's
+// shadow has a colour of its own.
+glm::dvec3 lostLight(const render::ShadowSource& source) {
+    constexpr double kThere = 0.01;  // metres
+    glm::dvec3 there(0), all(0);
+    for (const render::ShadowSource::Lamp& lamp : source.lamps) {
+        if (!lamp.actors.empty()) return glm::dvec3(0);
+        const glm::dvec3 lost = lamp.light - lamp.shadow;
+        all += lost;
+        if (glm::distance(lamp.place, source.cast->stage.beams[source.beam].light) < kThere) there += lost;
+    }
+    return there != glm::dvec3(0) ? there : all;
+}
+
+// Adds a shadow's comparison to each output that the camera can watch. A target that cannot be read
+// is no reason to keep the show from running.
+Result<void> compareShadow(const show::Source& source, const render::PictureSource& picture, const show::Site& site,
+                           const std::vector<LightCorrection>& light, std::vector<Watch::Comparisons>& comparisons) {
+    const auto& shadow = std::get<render::ShadowSource>(picture.picture);
+    const glm::dvec3 lost = lostLight(shadow);
+    if (lost == glm::dvec3(0)) return {};
+    auto wanted = theatre::wantedShadow(*shadow.cast, shadow.beam, shadow.from, shadow.to, vision::ShadowComparison::kRows);
+    if (!wanted) {
+        log::warning("app", fmt::format("the shadow of '{}' is not scored: {}", source.name, wanted.error().message()));
+        return {};
+    }
+    const auto shared = std::make_shared<const theatre::WantedShadow>(std::move(*wanted));
+    const auto gains = gainsToApply(site, light);
+    for (std::size_t output = 0; output < site.outputs.size(); ++output) {
+        auto view = TRY(nominalViewOf(site, output, *render::aspectOf(picture), picture.fit));
+        if (!view) continue;
+        view->isEvenedOut = gains[output] != nullptr;
+        comparisons[output].shadows.add(
+            source.id, {shadow, shared, std::make_shared<const vision::ShadowComparison>(*view, lost, shared->counted)});
+    }
+    return {};
 }
 
 }  // namespace
@@ -247,6 +289,10 @@ Result<Programme> readProgramme(const RunOptions& options) {
     programme.sources = std::move(pictures.sources);
     programme.light = lightCorrectionsOf(programme.site);
     programme.comparisons = TRY(compareWith(pictures.guides, programme.site, programme.light));
+    for (const show::Source& source : programme.show.sources)
+        if (const auto* const picture = programme.sources.find(source.id);
+            isWatched && std::holds_alternative<render::ShadowSource>(picture->picture))
+            TRY(compareShadow(source, *picture, programme.site, programme.light, programme.comparisons));
     programme.watched = TRY(watchedOutputsOf(programme.site));
     return programme;
 }

@@ -154,6 +154,7 @@ Report jsonOf(const RunReport& report) {
     json["light_correction"] = jsonOf(report.light);
     json["z_camera"] = jsonOf(report.zCamera);
     json["tone_camera"] = jsonOf(report.toneCamera);
+    json["iou_camera"] = jsonOf(report.iouCamera);
     addWatch(json, report);
     return json;
 }

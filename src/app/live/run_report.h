@@ -90,11 +90,11 @@ struct RunReport {
     std::vector<CueReport> cues;
     std::vector<FaultReport> faults;
     std::vector<show::event::LightCorrected> light;  // what the light correction did, or would have done
-    std::map<std::string, std::vector<std::pair<Time, double>>> zCamera, toneCamera;  // per output
-    std::vector<CauseReport> causes;                                                  // why the wall is not as it should be
-    std::map<std::string, std::vector<DriftReport>> watch;                            // per output
-    std::map<std::string, std::int64_t> lateVideoFrames, damagedVideoFrames;          // per source that is a video
-    std::map<std::string, std::int64_t> lostFrames;  // per output, of a recording that was not finished
+    std::map<std::string, std::vector<std::pair<Time, double>>> zCamera, toneCamera, iouCamera;  // per output
+    std::vector<CauseReport> causes;                                          // why the wall is not as it should be
+    std::map<std::string, std::vector<DriftReport>> watch;                    // per output
+    std::map<std::string, std::int64_t> lateVideoFrames, damagedVideoFrames;  // per source that is a video
+    std::map<std::string, std::int64_t> lostFrames;                           // per output, of a recording that was not finished
     std::vector<UnsafeBank> unsafe;
     std::string stopReason;
     std::string hung;  // why the program did not wait for the render thread; empty: the thread ended in order

@@ -222,6 +222,7 @@ public:
         report.yardstickLate = yardstick_.late();
         report.zCamera = watch_.series();
         report.toneCamera = watch_.tones();
+        report.iouCamera = watch_.ious();
         if (driftWatch_) report.causes = driftWatch_->causes(), report.watch = driftWatch_->series();
         for (const show::Source& source : programme_.show.sources)
             if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources.find(source.id)->picture)) {

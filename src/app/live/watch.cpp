@@ -17,22 +17,38 @@ Watch::Watch(const show::Show& show, std::vector<std::string> outputs, std::vect
       recording_(recording),
       scores_(outputs_.size()) {
     for (std::atomic<double>& score : scores_) score = -1;
-    for (const std::string& output : outputs_) series_[output], tones_[output];
+    for (const std::string& output : outputs_) series_[output], tones_[output], ious_[output];
 }
 
-const vision::GuideComparison* Watch::comparisonOf(std::size_t output) const {
+// The layer whose picture an output shows alone; null if there is none.
+const show::LayerState* Watch::comparedLayer(std::size_t output) const {
     // A crossfade of two sources is not compared with either guide. Nor is a picture that is nearly
     // dark, because the camera cannot distinguish it from the night.
     constexpr float kAlone = 0.05f, kBright = 0.5f;
     if (shown_.value().blackout || output >= shown_.value().outputs.size()) return nullptr;
-    const vision::GuideComparison* comparison = nullptr;
+    const show::LayerState* alone = nullptr;
     for (const show::LayerState& layer : shown_.value().outputs[output].layers) {
         if (layer.opacity < kAlone) continue;
-        if (comparison != nullptr || layer.opacity < kBright) return nullptr;
-        const auto* const found = comparisons_[output].find(layer.source);
-        comparison = found != nullptr ? found->get() : nullptr;
+        if (alone != nullptr || layer.opacity < kBright) return nullptr;
+        alone = &layer;
     }
-    return comparison;
+    return alone;
+}
+
+void Watch::score(std::size_t output, const CameraFrame& frame, Time showTime) {
+    const show::LayerState* const layer = comparedLayer(output);
+    if (layer == nullptr) return;
+    const std::string& name = outputs_[output];
+    if (const auto* const guide = comparisons_[output].guides.find(layer->source))
+        if (const auto seen = (*guide)->compare(frame.image)) {
+            series_[name].emplace_back(showTime, seen->z);
+            if (seen->tone) tones_[name].emplace_back(showTime, *seen->tone);
+            scores_[output] = seen->z;
+        }
+    const ShadowScore* const shadow = comparisons_[output].shadows.find(layer->source);
+    if (shadow == nullptr || showTime < layer->begun) return;
+    const GreyImage& wanted = shadow->wanted->at(render::frameAt(shadow->source, showTime - layer->begun));
+    if (const auto iou = shadow->comparison->compare(frame.image, wanted)) ious_[name].emplace_back(showTime, *iou);
 }
 
 void Watch::tick(Time moment) {
@@ -43,15 +59,7 @@ void Watch::tick(Time moment) {
     if (!frame) return;
     if (pictures_ != nullptr) pictures_->publish({frame, &frame->image});
     const Time showTime = showClock_.showTime(frame->exposed);
-    for (std::size_t output = 0; output < outputs_.size(); ++output) {
-        const vision::GuideComparison* comparison = comparisonOf(output);
-        if (comparison == nullptr) continue;
-        if (const auto seen = comparison->compare(frame->image)) {
-            series_[outputs_[output]].emplace_back(showTime, seen->z);
-            if (seen->tone) tones_[outputs_[output]].emplace_back(showTime, *seen->tone);
-            scores_[output] = seen->z;
-        }
-    }
+    for (std::size_t output = 0; output < outputs_.size(); ++output) score(output, *frame, showTime);
     if (drifts_ != nullptr) drifts_->see(*frame, shown_.value(), isSettingUp_(), moment);
     keepForCue(shown_.value().cue, frame, showTime);
 }

@@ -4,9 +4,12 @@
 #include "app/watch/drift_watch.h"
 
 #include "render/source/picture_feed.h"
+#include "render/source/picture_source.h"
 #include "show/show.h"
 #include "show/show_clock.h"
+#include "theatre/motion/wanted_shadow.h"
 #include "vision/compare/guide_comparison.h"
+#include "vision/compare/shadow_comparison.h"
 
 #include "device/camera_source.h"
 
@@ -23,12 +26,23 @@
 namespace fantascope::app {
 
 // Watches the site through its camera. It scores each output's picture on the wall against the
-// guide of the source that is on it, and keeps the camera's last picture of each cue. It knows the
-// show state, the camera's frames and the nominal site, but not what really happens at the site.
+// guide of the source that is on it, or its shadow against the silhouette, and keeps the camera's
+// last picture of each cue. It knows the show state, the camera's frames and the nominal site, but
+// not what really happens at the site.
 class Watch {
 public:
-    // The comparisons of an output, for each source of the show that has a guide.
-    using Comparisons = show::BySource<std::shared_ptr<const vision::GuideComparison>>;
+    // How the shadow of a source on an output is compared.
+    struct ShadowScore {
+        render::ShadowSource source;
+        std::shared_ptr<const theatre::WantedShadow> wanted;
+        std::shared_ptr<const vision::ShadowComparison> comparison;
+    };
+    // The comparisons of an output: for each source of the show that has a guide, and for each
+    // shadow whose target is known.
+    struct Comparisons {
+        show::BySource<std::shared_ptr<const vision::GuideComparison>> guides;
+        show::BySource<ShadowScore> shadows;
+    };
 
     // All arguments by reference or pointer outlive this, except `showClock`. `camera`, `pictures`
     // and `recording` may be null. `comparisons`: by output. The camera's pictures are passed on to
@@ -51,10 +65,11 @@ public:
 
     // The newest score of each output, for the status line; negative: none yet. Thread-safe.
     std::vector<double> newestScores() const;
-    // z_camera and tone_camera by output. Call these once the part has ended.
+    // z_camera, tone_camera and iou_camera by output. Call these once the part has ended.
     using Series = std::map<std::string, std::vector<std::pair<Time, double>>>;
     const Series& series() const { return series_; }
     const Series& tones() const { return tones_; }
+    const Series& ious() const { return ious_; }
 
 private:
     struct Seen {
@@ -62,7 +77,8 @@ private:
         std::shared_ptr<const CameraFrame> frame;
         Time showTime{};
     };
-    const vision::GuideComparison* comparisonOf(std::size_t output) const;
+    const show::LayerState* comparedLayer(std::size_t output) const;
+    void score(std::size_t output, const CameraFrame& frame, Time showTime);
     void keepForCue(int cue, std::shared_ptr<const CameraFrame> frame, Time showTime);
 
     const show::Show& show_;
@@ -77,7 +93,7 @@ private:
     LatestValue<show::ShowState> shown_;
     std::vector<std::atomic<double>> scores_;
     Seen last_;
-    Series series_, tones_;
+    Series series_, tones_, ious_;
 };
 
 }  // namespace fantascope::app

@@ -87,9 +87,13 @@ TEST_F(PlotCommand, draws_the_report_of_a_run) {
     EXPECT_THAT(run({"plot", "r.json", "-o", "r.png"}), exits(0));
     EXPECT_THAT(run({"plot", "r.json", "--figure", "night", "-o", "night.png"}), exits(0));
     EXPECT_THAT(run({"plot", "blind.json", "-o", "blind.png"}), exits(0));
+    const std::string shadows = R"("iou_camera": {"left": [[1, 0.9], [2, 0.8]], "right": []})";
+    EXPECT_TRUE(writeFile(folder_ / "shadows.json", fmt::format("{{{}, {}, {}}}", cues, faults, shadows)));
+    EXPECT_THAT(run({"plot", "shadows.json", "-o", "shadows.png"}), exits(0));
     EXPECT_EQ(readFile(folder_ / "r.png").value(), readFile(folder_ / "night.png").value());
     const auto height = [&](const std::string& picture) { return readRgba(folder_ / picture).value().height(); };
     EXPECT_GT(height("r.png"), height("blind.png") + 300) << "z and drift, but no tone";
+    EXPECT_GT(height("shadows.png"), height("blind.png") + 150) << "the IoU alone";
 
     EXPECT_THAT(
         run({"plot", "r.json", "--figure", "search", "-o", "x.png"}).errors,
