@@ -77,6 +77,7 @@ const std::vector<Row> kTable = {
     {"device", {"core", "media"}, {}, {}},
     {"vision", {"core", "media"}, {"Eigen"}, {"OpenCV"}},
     {"vision/compare", {"core", "media", "vision"}, {}, {"Eigen"}},
+    {"vision/watch", {"core", "media", "vision"}, {}, {"Eigen", "OpenCV"}},
 
     {"pattern/shape", {"core", "media"}, {}, {}},
     {"pattern/motion", {"core", "pattern/shape"}, {}, {"FFTW"}},

@@ -1,6 +1,6 @@
 // What is said of the wall's light, by what was measured of it.
 
-#include "vision/wall_causes.h"
+#include "vision/watch/wall_causes.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 // How strong and sharp a picture on the wall is, and what other light there is, while a show runs.
 
-#include "vision/wall_watch.h"
+#include "vision/watch/wall_watch.h"
 #include "vision/watched_wall.h"
 
 #include <gmock/gmock.h>

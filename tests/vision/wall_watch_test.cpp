@@ -1,10 +1,10 @@
 // Pictures of a show on a wall, as a camera sees them: where they stand, and what has moved.
 
-#include "vision/wall_watch.h"
+#include "vision/watch/wall_watch.h"
 
-#include "vision/drift_track.h"
+#include "vision/watch/drift_track.h"
 #include "vision/watched_wall.h"
-#include "vision/what_moved.h"
+#include "vision/watch/what_moved.h"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 // A wall that is watched while a show runs on it.
 
 #include "vision/projected_wall.h"
-#include "vision/wall_watch.h"
+#include "vision/watch/wall_watch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "app/site/site_models.h"
 
-#include "vision/output_view.h"
+#include "vision/watch/output_view.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>

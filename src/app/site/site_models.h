@@ -8,7 +8,7 @@
 #include "show/site/site.h"
 #include "vision/camera_light.h"
 #include "vision/nominal_view.h"
-#include "vision/wall_watch.h"
+#include "vision/watch/wall_watch.h"
 
 #include "core/fit.h"
 #include "core/result.h"

@@ -5,8 +5,8 @@
 #include "show/event.h"
 #include "show/show_state.h"
 #include "show/site/site.h"
-#include "vision/wall_causes.h"
-#include "vision/wall_watch.h"
+#include "vision/watch/wall_causes.h"
+#include "vision/watch/wall_watch.h"
 
 #include "core/clock.h"
 #include "media/image.h"

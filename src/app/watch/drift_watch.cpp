@@ -1,6 +1,6 @@
 #include "app/watch/drift_watch.h"
 
-#include "vision/registration.h"
+#include "vision/watch/registration.h"
 
 #include <glm/common.hpp>
 

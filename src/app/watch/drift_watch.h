@@ -9,9 +9,9 @@
 #include "show/show_clock.h"
 #include "show/show_state.h"
 #include "show/site/site.h"
-#include "vision/drift_track.h"
-#include "vision/wall_watch.h"
-#include "vision/what_moved.h"
+#include "vision/watch/drift_track.h"
+#include "vision/watch/wall_watch.h"
+#include "vision/watch/what_moved.h"
 
 #include "device/camera_source.h"
 

@@ -2,7 +2,7 @@
 
 #include "render/frame_tap.h"
 #include "show/show_clock.h"
-#include "vision/wall_watch.h"
+#include "vision/watch/wall_watch.h"
 
 #include "core/clock.h"
 #include "media/image.h"

@@ -1,4 +1,4 @@
-#include "vision/output_view.h"
+#include "vision/watch/output_view.h"
 
 #include "core/check.h"
 

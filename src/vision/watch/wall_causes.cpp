@@ -1,4 +1,4 @@
-#include "vision/wall_causes.h"
+#include "vision/watch/wall_causes.h"
 
 #include <algorithm>
 

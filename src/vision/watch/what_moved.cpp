@@ -1,4 +1,4 @@
-#include "vision/what_moved.h"
+#include "vision/watch/what_moved.h"
 
 #include <algorithm>
 

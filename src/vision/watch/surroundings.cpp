@@ -1,4 +1,4 @@
-#include "vision/surroundings.h"
+#include "vision/watch/surroundings.h"
 
 #include "core/median.h"
 

@@ -1,4 +1,4 @@
-#include "vision/drift_track.h"
+#include "vision/watch/drift_track.h"
 
 #include "core/median.h"
 

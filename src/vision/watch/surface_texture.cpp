@@ -1,4 +1,4 @@
-#include "vision/surface_texture.h"
+#include "vision/watch/surface_texture.h"
 
 #include <glm/common.hpp>
 #include <glm/vec2.hpp>
@@ -15,7 +15,7 @@ constexpr int kPictures = 100;          // a cell is known from so many pictures
 constexpr int kTrusted = 10;            // after so many, a picture that differs much is not believed,
 constexpr float kDiffersMuch = 0.4f;    // such as one with somebody in front
 constexpr int kFilledEvery = 5;         // pictures
-constexpr double kNeighbourhood = 3;    // cells: standard deviation of what a guess is made from
+constexpr double kNearCells = 3;    // cells: standard deviation of what a guess is made from
 constexpr double kSmooth = 12;          // cells: standard deviation of what is smoother than any texture
 constexpr float kDarkest = 0.1f;        // of the mean: dark joints only amplify noise
 constexpr double kCorrelatedCells = 4;  // so many neighbouring cells say as much as one
@@ -73,8 +73,8 @@ void SurfaceTexture::fill() {
     level_ = count > 0 ? sum / count : 1;
     const auto mean = static_cast<float>(level_);
     if (!isMeasured_) {
-        ratio = blurred(ratio, kNeighbourhood);
-        weight = blurred(weight, kNeighbourhood);
+        ratio = blurred(ratio, kNearCells);
+        weight = blurred(weight, kNearCells);
     }
     filled_ = full_;
     for (std::size_t i = 0; i < full_.pixels().size(); ++i) {

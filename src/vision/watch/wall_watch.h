@@ -1,10 +1,10 @@
 #pragma once
 
 #include "vision/camera_light.h"
-#include "vision/light_meter.h"
-#include "vision/output_view.h"
-#include "vision/registration.h"
-#include "vision/surroundings.h"
+#include "vision/watch/light_meter.h"
+#include "vision/watch/output_view.h"
+#include "vision/watch/registration.h"
+#include "vision/watch/surroundings.h"
 
 #include "media/image.h"
 

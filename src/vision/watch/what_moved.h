@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vision/drift_track.h"
-#include "vision/wall_watch.h"
+#include "vision/watch/drift_track.h"
+#include "vision/watch/wall_watch.h"
 
 #include <optional>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vision/wall_watch.h"
+#include "vision/watch/wall_watch.h"
 
 #include <cstddef>
 #include <optional>

@@ -1,6 +1,6 @@
-#include "vision/wall_watch.h"
+#include "vision/watch/wall_watch.h"
 
-#include "vision/surface_texture.h"
+#include "vision/watch/surface_texture.h"
 
 #include "core/check.h"
 

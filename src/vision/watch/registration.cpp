@@ -1,4 +1,4 @@
-#include "vision/registration.h"
+#include "vision/watch/registration.h"
 
 #include "core/check.h"
 #include "core/median.h"

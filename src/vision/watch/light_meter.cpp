@@ -1,4 +1,4 @@
-#include "vision/light_meter.h"
+#include "vision/watch/light_meter.h"
 
 #include <glm/common.hpp>
 #include <opencv2/imgproc.hpp>
