@@ -297,14 +297,16 @@ void survey(const show::Site& site, std::vector<std::optional<vision::WatchedOut
                                                             Rgba8{stored, stored, stored, 255}));
         }
         constexpr int kPictures = 3;
-        for (int i = 0; i < kPictures; ++i) {
+        for (int step = 0, pictures = 0; pictures < kPictures; ++step) {
             // The last row is exposed a little later, and the picture arrives later still.
             for (const double part : {0.0, 0.3, 0.95}) {
-                open.clock.advanceTo(fromSeconds((i + part) / kCameraRate));
+                open.clock.advanceTo(fromSeconds((step + part) / kCameraRate));
                 open.simulation->advanceTo(open.clock.now());
             }
-            const auto frame = open.world.takeFromCamera();
-            light.addTo(sum, frame->image);
+            if (const auto frame = open.world.takeFromCamera()) {
+                light.addTo(sum, frame->image);
+                ++pictures;
+            }
         }
         for (float& value : sum.pixels()) value /= kPictures;
         return sum;

@@ -62,7 +62,7 @@ TEST(DrawnNight, brings_a_picture_back_without_overshoot_however_late_the_camera
         options.latency = latency;
         options.fault = "bump";
         options.faultAt = 4;
-        options.length = 24;
+        options.length = 20;
         const NightResult night = playNight(options);
         double moved = 0, most = 0;
         for (const Placed& placed : night.placed) {
