@@ -102,6 +102,9 @@ int main(int argc, char** argv) {
     app.add_flag("--plan", isPlan, "the sites were not calibrated");
     app.add_flag("--busy", options.isBusy, "headlights pass, and thin fog comes and goes");
     CLI11_PARSE(app, argc, argv);
+    if (const auto& all = fantascope::app::drawnFaults();
+        !kind.empty() && std::ranges::find(all, kind, &fantascope::app::DrawnFault::kind) == all.end())
+        return fmt::print(stderr, "watch_bench: there are no faults of the kind '{}'\n", kind), 1;
     options.isSurveyed = !isPlan;
     if (what != "faults") options.geometry = "automatic";
     if (what == "faults") fantascope::app::playFaults(options, kind, first, last);

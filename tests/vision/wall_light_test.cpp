@@ -198,5 +198,24 @@ TEST(Surroundings, tell_a_veil_from_a_change_of_all_light) {
     EXPECT_FALSE(Surroundings(GreyImage(320, 160, 0)).measure(usual));
 }
 
+// Example failure: once a lamp of the show has changed, a camera that was too dark before counts as
+// usual.
+TEST(Surroundings, keep_what_was_amiss_before_the_lamps_changed) {
+    const auto pictureOf = [](float factor, float lamp) {
+        GreyImage picture(320, 160);
+        for (int y = 0; y < picture.height(); ++y)
+            for (int x = 0; x < picture.width(); ++x)
+                picture.at(x, y) = factor * (0.01f + 0.02f * static_cast<float>(x) / 320 + lamp * static_cast<float>(y) / 160);
+        return picture;
+    };
+    Surroundings surroundings(GreyImage(320, 160, 1));
+    while (surroundings.isLearning()) surroundings.measure(pictureOf(1, 0));
+    EXPECT_NEAR(surroundings.measure(pictureOf(0.5f, 0))->gain, 0.5, 0.01);
+    surroundings.lampsChange();
+    while (surroundings.isLearning()) EXPECT_FALSE(surroundings.measure(pictureOf(0.5f, 0.02f)));
+    EXPECT_NEAR(surroundings.measure(pictureOf(0.5f, 0.02f))->gain, 0.5, 0.02);
+    EXPECT_NEAR(surroundings.measure(pictureOf(1, 0.02f))->gain, 1, 0.02);
+}
+
 }  // namespace
 }  // namespace fantascope::vision

@@ -18,8 +18,9 @@ constexpr Time kShort = std::chrono::milliseconds(900);
 constexpr Time kLong = std::chrono::milliseconds(1500);
 constexpr Time kLonger = std::chrono::milliseconds(3800);  // nobody who passes takes so long
 constexpr Time kGone = std::chrono::seconds(3);            // without a picture
-constexpr double kMostSaturated = 0.1;
-constexpr double kMostHidden = 0.2;  // of a picture whose place is certain
+constexpr double kMostSaturated = 0.1;                     // of a picture whose place is certain; and hidden of it:
+constexpr double kMostHidden = 0.2;
+constexpr int kBlack = 40;  // a stored value
 
 bool isUniform(const RgbaImage& picture) {
     const Rgba8 first = picture.pixels()[0];
@@ -41,7 +42,7 @@ std::vector<Rgba8> sampled(const RgbaImage& picture) {
 CauseWatch::CauseWatch(const show::Site& site, vision::WallWatch& wall, CauseLog& causes, show::EventLog& events)
     : site_(site), wall_(wall), causes_(causes), events_(events), hidden_(site.outputs.size()), saturated_(site.outputs.size()) {}
 
-bool CauseWatch::isUsable(const RgbaImage& picture, Time at) {
+bool CauseWatch::isUsable(const RgbaImage& picture, bool isLit, Time at) {
     const glm::ivec2 size = site_.nominalCamera->size;
     bool isUsable = false;
     std::vector<Rgba8> pixels = sampled(picture);
@@ -53,10 +54,14 @@ bool CauseWatch::isUsable(const RgbaImage& picture, Time at) {
                  kShort},
                 true, at);
     } else if (isUniform(picture)) {
-        suspect("", {"camera blind", "its picture is the same everywhere: take off its cap, and look at its exposure", kShort},
-                true, at);
+        if (isLit || picture.pixels()[0].g > kBlack)
+            suspect("",
+                    {"camera blind", "its picture is the same everywhere: take off its cap, and look at its exposure", kShort},
+                    true, at);
     } else if (pixels == picture_) {
-        suspect("", {"camera frozen", "it sends the same picture again and again: plug it in anew", kLong}, true, at);
+        if (isLit)
+            suspect("", {"camera frozen", "it repeats one picture again and again: unplug it, and plug it in again", kLong}, true,
+                    at);
     } else if (vision::troubleOf(picture) == vision::PictureTrouble::Saturated) {
         suspect("", {"camera saturated", "more than half of its picture is white: set a shorter exposure", kShort}, true, at);
     } else {
@@ -67,9 +72,15 @@ bool CauseWatch::isUsable(const RgbaImage& picture, Time at) {
     return isUsable;
 }
 
-void CauseWatch::wait(Time last, Time now) {
-    if (now - last < kGone) return;
+void CauseWatch::wait(Time last, Time period, Time now) {
+    if (now - last < std::max(kGone, 3 * period)) return;
     suspect("", {"camera gone", "it sends nothing: look at its plug", Time{}}, true, now);
+}
+
+void CauseWatch::endWall(Time at) {
+    for (const auto& [name, suspicion] : suspicions_)
+        if (!suspicion.ofPicture) causes_.end(name.first, name.second, at);
+    std::erase_if(suspicions_, [](const auto& each) { return !each.second.ofPicture; });
 }
 
 void CauseWatch::measure(const show::ShowState& shown, Time at) {

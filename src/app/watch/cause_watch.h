@@ -27,11 +27,13 @@ public:
     // All arguments outlive this.
     CauseWatch(const show::Site& site, vision::WallWatch& wall, CauseLog& causes, show::EventLog& events);
 
-    // Looks at a picture of the camera as such. False: it says nothing of the wall. Times are show
-    // time.
-    bool isUsable(const RgbaImage& picture, Time at);
-    // The camera has sent nothing since `last`.
-    void wait(Time last, Time now);
+    // Looks at a picture of the camera as such. False: it says nothing of the wall. `isLit`: the
+    // outputs show light; pictures of a dark wall may be black, and all alike. Times are show time.
+    bool isUsable(const RgbaImage& picture, bool isLit, Time at);
+    // The camera has sent nothing since `last`. `period`: of its pictures, as far as it is known.
+    void wait(Time last, Time period, Time now);
+    // Nothing more can be said of the wall.
+    void endWall(Time at);
     // Measures the light in the picture that the wall's watch has looked at last; not more often
     // than is useful. `shown`: the state at that moment.
     void measure(const show::ShowState& shown, Time at);

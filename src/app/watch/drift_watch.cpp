@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace fantascope::app {
@@ -35,6 +36,14 @@ std::pair<glm::dvec2, glm::dvec2> litBy(const Projection& projection) {
 double rmsOf(const show::PictureShift& shift, const Projection& projection) {
     const auto [low, high] = litBy(projection);
     return vision::rmsMovement(show::mapOf(shift, projection.size).value_or(Homography()), low, high);
+}
+
+// Whether a frame shows light enough to be seen on the wall.
+bool isLit(const GreyImage* light) {
+    constexpr double kLit = 0.005;  // of full light
+    if (light == nullptr) return false;
+    return std::accumulate(light->pixels().begin(), light->pixels().end(), 0.0) >
+           kLit * static_cast<double>(light->pixels().size());
 }
 
 // How far a shifted picture is from its place.
@@ -74,15 +83,14 @@ DriftWatch::DriftWatch(const show::Site& site, const std::vector<std::optional<v
 
 void DriftWatch::tick(Time now) {
     light_.tick(now);
-    if (arrived_) causeWatch_.wait(showClock_.showTime(*arrived_), showClock_.showTime(now));
+    if (arrived_) causeWatch_.wait(showClock_.showTime(*arrived_), period_, showClock_.showTime(now));
 }
 
 void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, bool isSettingUp, Time now) {
     arrived_ = now;
-    if (!causeWatch_.isUsable(frame.image, showClock_.showTime(frame.exposed))) return;
     const auto pictures = static_cast<Time::rep>(frame.sequence - sequence_);
-    if (exposed_ && pictures > 0 && seconds(frame.exposed - *exposed_) < kSlowestCamera)
-        light_.exposed(frame.exposed, (frame.exposed - *exposed_) / pictures);
+    if (exposed_ && pictures > 0) period_ = (frame.exposed - *exposed_) / pictures;
+    if (exposed_ && pictures > 0 && seconds(frame.exposed - *exposed_) < kSlowestCamera) light_.exposed(frame.exposed, period_);
     exposed_ = frame.exposed;
     sequence_ = frame.sequence;
     const bool wasSettingUp = std::exchange(wasSettingUp_, isSettingUp);
@@ -91,6 +99,7 @@ void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, boo
     if (looked_ && frame.exposed - *looked_ < kLeastStep) return;
     std::vector<const GreyImage*> lights;
     for (std::size_t i = 0; i < tracks_.size(); ++i) lights.push_back(wall_.watches(i) ? light_.at(i, frame.exposed) : nullptr);
+    if (!causeWatch_.isUsable(frame.image, std::ranges::any_of(lights, isLit), showClock_.showTime(frame.exposed))) return;
     if (std::ranges::all_of(lights, [](const GreyImage* light) { return light == nullptr; })) return;
     looked_ = frame.exposed;
     const auto sights = wall_.look(frame.image, lights);
@@ -133,6 +142,7 @@ void DriftWatch::decide(Time showTime) {
     if (moved == Moved::Camera && isLasting) {
         cameraMoved_ = true;
         events_.append({showTime, show::event::CameraMoved{}});
+        causeWatch_.endWall(showTime);
         causes_.begin("", "camera moved", movedSince_);
         return;
     }

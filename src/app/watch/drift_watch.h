@@ -84,6 +84,7 @@ private:
     CauseLog causes_;
     CauseWatch causeWatch_;
     std::optional<Time> arrived_;  // when the newest picture came
+    Time period_{};                // of the camera's pictures; 0: unknown
 };
 
 }  // namespace fantascope::app

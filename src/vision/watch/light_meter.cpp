@@ -1,6 +1,7 @@
 #include "vision/watch/light_meter.h"
 
-#include <glm/common.hpp>
+#include "core/median.h"
+
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
@@ -40,8 +41,9 @@ struct Block {
     double seenFull = 0, shownFull = 0, fullFull = 0;    // those with the surface's texture, too
     // What is left of the variance.
     double left(const Strengths& by) const {
-        return std::max(0.0, seenSeen - 2 * (by.contrast * seenShown + by.texture * seenFull) + by.contrast * by.contrast * shownShown +
-                                 2 * by.contrast * by.texture * shownFull + by.texture * by.texture * fullFull);
+        return std::max(0.0, seenSeen - 2 * (by.contrast * seenShown + by.texture * seenFull) +
+                                 by.contrast * by.contrast * shownShown + 2 * by.contrast * by.texture * shownFull +
+                                 by.texture * by.texture * fullFull);
     }
 };
 using Blocks = std::vector<Block>;
@@ -125,8 +127,8 @@ public:
     }
     const std::vector<std::size_t>& which() const { return which_; }
 
-    // What a contrast leaves of a block's variance, as a share of what is usual there, or of what
-    // is seen if that is more.
+    // What strengths leave of a block's variance, as a share of what is usual there, or of what is
+    // seen if that is more.
     double shareLeft(const Blocks& blocks, std::size_t i, const Strengths& by) const {
         return blocks[i].left(by) / std::max(scale_[i], blocks[i].seenSeen);
     }
@@ -136,8 +138,7 @@ public:
         return sum / static_cast<double>(which_.size());
     }
     double shareExplained(const Blocks& blocks, const Strengths& by) const {
-        const auto count =
-            std::ranges::count_if(which_, [&](std::size_t i) { return shareLeft(blocks, i, by) < kUnexplained; });
+        const auto count = std::ranges::count_if(which_, [&](std::size_t i) { return shareLeft(blocks, i, by) < kUnexplained; });
         return static_cast<double>(count) / static_cast<double>(which_.size());
     }
     // The strengths that explain most blocks. They are found from two guesses (Tukey's biweight).
@@ -191,10 +192,7 @@ double otherLightOf(const Blocks& blocks, double contrast) {
     std::vector<double> shares;
     for (const Block& block : blocks)
         if (block.cells >= kWhole) shares.push_back((block.seen - contrast * block.shown) / block.full);
-    if (shares.empty()) return 0;
-    const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-    std::nth_element(shares.begin(), middle, shares.end());
-    return *middle;
+    return shares.empty() ? 0 : medianOf(std::move(shares));
 }
 
 // The share of the picture's bright places that the camera cannot tell.
@@ -239,7 +237,7 @@ void LightMeter::lampsChange() {
     other_.pictures = 0;
 }
 
-// What a sight shows at every blur, and which blur and contrast explain it.
+// What a sight shows at every blur, and which blur and strengths explain it.
 struct LightMeter::Comparison {
     cv::Mat shown;  // the frame's light
     std::array<Blocks, kBlurs.size()> blocks{};
@@ -264,8 +262,7 @@ private:
 LightMeter::Comparison LightMeter::compare(const Sight& sight) const {
     Comparison now{.shown = shownAt(sight.light, sight.shownFromPlace), .telling = Telling({}, 1)};
     const cv::Mat surface = viewOf(sight.surface);
-    for (std::size_t i = 0; i < kBlurs.size(); ++i)
-        now.blocks[i] = blocksOf(sight, blurredBy(now.shown, kBlurs[i]).mul(surface));
+    for (std::size_t i = 0; i < kBlurs.size(); ++i) now.blocks[i] = blocksOf(sight, blurredBy(now.shown, kBlurs[i]).mul(surface));
     now.usualBlur = now.bestBlur = nearestBlur(usual_.blur);
     std::vector<double> scale(now.blocks[0].size(), 0);
     for (std::size_t i = 0; i < scale.size(); ++i) {
@@ -286,8 +283,9 @@ LightMeter::Comparison LightMeter::compare(const Sight& sight) const {
     now.loss = fits[now.bestBlur].loss;
     const Between between = leastBetween(fits, now.bestBlur);
     now.blur = between.blur;
-    const bool isThere = now.loss < kThere * now.telling.lossOf(now.blocks[now.bestBlur], {0, fits[now.bestBlur].by.texture}) ||
-                         now.telling.shareExplained(now.blocks[now.usualBlur], {usual, fits[now.bestBlur].by.texture}) > kPartThere;
+    const bool isThere =
+        now.loss < kThere * now.telling.lossOf(now.blocks[now.bestBlur], {0, fits[now.bestBlur].by.texture}) ||
+        now.telling.shareExplained(now.blocks[now.usualBlur], {usual, fits[now.bestBlur].by.texture}) > kPartThere;
     now.contrast = isThere ? between.contrast : 0;
     now.explaining = {isThere ? fits[now.bestBlur].by.contrast : 0, fits[now.bestBlur].by.texture};
     now.otherLight = otherLightOf(now.blocks[now.bestBlur], now.contrast);
@@ -314,8 +312,7 @@ OutputLight LightMeter::describe(const Comparison& now, const Sight& sight) {
     light.otherLight = other_.pictures >= kLearningLight ? other_.now : other_.kept;
     if (now.contrast > 0 && now.blur > usual_.blur) {
         light.blur = std::sqrt(now.blur * now.blur - usual_.blur * usual_.blur);
-        const Blocks byCamera =
-            blocksOf(sight, blurredBy(now.shown.mul(viewOf(sight.surface)), kBlurs[now.bestBlur]));
+        const Blocks byCamera = blocksOf(sight, blurredBy(now.shown.mul(viewOf(sight.surface)), kBlurs[now.bestBlur]));
         light.isCameraBlurred = now.telling.best(byCamera).loss < kCameraBlurs * now.loss;
     }
     double asUsual = 0, explained = 0, hidden = 0;

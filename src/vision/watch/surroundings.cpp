@@ -12,9 +12,10 @@ namespace {
 constexpr int kPatch = 16;  // side of a patch, camera pixels
 constexpr std::size_t kLeastPatches = 8;
 constexpr double kDarkest = 1e-5;  // linear light
-constexpr int kUsualAfter = 2;     // pictures
+constexpr double kLeastGain = 0.05;
+constexpr int kUsualAfter = 2;  // pictures
 
-// The mean light of every patch of which most counts; negative: it does not count.
+// The mean light of every patch that counts as a whole; negative: it does not.
 std::vector<double> patchesOf(const GreyImage& seen, const GreyImage& mask) {
     std::vector<double> patches;
     for (int top = 0; top + kPatch <= seen.height(); top += kPatch)
@@ -31,14 +32,23 @@ std::vector<double> patchesOf(const GreyImage& seen, const GreyImage& mask) {
 
 }  // namespace
 
+void Surroundings::lampsChange() {
+    if (!isLearning()) kept_ = now_;
+    pictures_ = 0;
+}
+
 bool Surroundings::isLearning() const { return pictures_ < kUsualAfter; }
 
 std::optional<SurroundingsLight> Surroundings::measure(const GreyImage& seen) {
     const std::vector<double> now = patchesOf(seen, mask_);
-    if (pictures_ == 0) usual_ = now;
-    if (pictures_ < kUsualAfter) {
+    if (pictures_ == 0) usual_.assign(now.size(), -1);
+    if (isLearning()) {
         const double share = 1.0 / ++pictures_;
-        for (std::size_t i = 0; i < now.size(); ++i) usual_[i] += share * (now[i] - usual_[i]);
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            if (now[i] < 0) continue;
+            const double usual = std::max(0.0, now[i] - kept_.veil) / std::max(kept_.gain, kLeastGain);
+            usual_[i] = usual_[i] < 0 ? usual : usual_[i] + share * (usual - usual_[i]);
+        }
         return std::nullopt;
     }
     std::vector<std::pair<double, double>> patches;  // usual, now
@@ -74,6 +84,7 @@ std::optional<SurroundingsLight> Surroundings::measure(const GreyImage& seen) {
         light.gain = (xy / count - mean * level + flat * level / std::max(mean, kDarkest)) / (spread + flat);
         light.veil = level - light.gain * mean;
     }
+    now_ = light;
     return light;
 }
 

@@ -24,13 +24,14 @@ public:
     // little to see around the pictures, or what is usual is not known yet.
     std::optional<SurroundingsLight> measure(const GreyImage& seen);
     bool isLearning() const;
-    // Other lamps change: what is seen from now on becomes usual.
-    void lampsChange() { pictures_ = 0; }
+    // Other lamps change: what they add from the last picture to the next ones becomes usual.
+    void lampsChange();
 
 private:
     GreyImage mask_;
-    std::vector<double> usual_;  // by block; negative: it does not count
-    int pictures_ = 0;           // from which they were learned
+    std::vector<double> usual_;     // by block; negative: it does not count
+    int pictures_ = 0;              // from which they were learned
+    SurroundingsLight now_, kept_;  // at the last measurement, and before the lamps changed
 };
 
 }  // namespace fantascope::vision

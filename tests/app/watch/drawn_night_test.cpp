@@ -39,7 +39,7 @@ TEST(DrawnNight, names_each_cause_in_turn_and_says_when_it_is_over) {
     }
 }
 
-// People walk by, lamps change with the cues, and a headlight would be no fault either.
+// People walk by, and a lamp changes with the cues.
 TEST(DrawnNight, names_nothing_while_all_is_well) {
     NightOptions options;
     options.seed = 12;
