@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <regex>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -214,18 +213,31 @@ Record recordOf(const std::string& output, const OutputSurvey& survey, int numbe
             number};
 }
 
+// Whether a survey gives this name to a file: OUTPUT.NUMBER.png, OUTPUT.NUMBER.dark.png, or one of
+// its files, with an ending more, that a program had not written whole.
+bool isSurveys(std::string_view name) {
+    if (name.starts_with("survey.yaml.")) return true;
+    constexpr std::string_view kPicture = ".png", kDark = ".dark";
+    const size_t end = name.rfind(kPicture);
+    if (end == name.npos) return false;
+    const std::string_view unfinished = name.substr(end + kPicture.size());
+    std::string_view numbered = name.substr(0, end);
+    if (numbered.ends_with(kDark)) numbered.remove_suffix(kDark.size());
+    const size_t output = numbered.find_last_not_of("0123456789");
+    return (unfinished.empty() || unfinished.front() == '.') && output != name.npos && output > 0 && numbered[output] == '.' &&
+           output + 1 < numbered.size();
+}
+
 // Removes pictures that no record names any more, and what a program left that was ended while it
 // wrote.
 void removeUnnamed(const fs::path& folder, const std::vector<Record>& records) {
     std::set<fs::path> named;
     for (const Record& record : records) named.insert({record.map.filename(), record.dark.filename()});
-    static const std::regex ours(R"(.+\.[0-9]+(\.dark)?\.png(\..+)?|survey\.yaml\..+)");
     std::error_code ignored;
     std::vector<fs::path> unnamed;
     for (const auto& entry : fs::directory_iterator(folder, ignored)) {
         const fs::path name = entry.path().filename();
-        if (!named.contains(name) && std::regex_match(name.string(), ours) && entry.is_regular_file(ignored))
-            unnamed.push_back(entry.path());
+        if (!named.contains(name) && isSurveys(name.native()) && entry.is_regular_file(ignored)) unnamed.push_back(entry.path());
     }
     for (const fs::path& file : unnamed) fs::remove(file, ignored);
 }
