@@ -88,6 +88,11 @@ int StructuredLight::bits(Axis axis) const {
     return std::bit_width(static_cast<unsigned>((pixels + width - 1) / width - 1));
 }
 
+std::size_t StructuredLight::firstPhase(Axis axis) const {
+    const auto isFirst = [&](const Pair& pair) { return pair.kind == Pair::Kind::Phase && pair.axis == axis && pair.index == 0; };
+    return static_cast<std::size_t>(std::ranges::find_if(pairs_, isFirst) - pairs_.begin());
+}
+
 RgbaImage StructuredLight::picture(std::size_t pair, bool complement, double gamma) const {
     const Pair& shown = pairs_.at(pair);
     const bool across = shown.axis == Axis::Across;

@@ -41,6 +41,8 @@ public:
     int bits(Axis axis) const;
     // In the order in which they are best shown: the full picture first.
     const std::vector<Pair>& pairs() const { return pairs_; }
+    // The index of the pair of the sinusoid along an axis that is not shifted.
+    std::size_t firstPhase(Axis axis) const;
     // A pair's picture in stored values, to be sent to a projector whose light is stored ^ gamma.
     RgbaImage picture(std::size_t pair, bool complement, double gamma) const;
 

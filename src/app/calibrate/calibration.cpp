@@ -87,10 +87,36 @@ Result<void> checkUpright(OutputCalibration& calibration, const show::Site& site
             "--wanted says where a picture is to stand whichever way up they are");
     const WarpShape& before = site.outputs[calibration.output].projection.warp.shape();
     if (!upsideDown && calibration.fit && isHalfTurned(calibration.fit->shape, before))
-        calibration.note =
+        calibration.note +=
+            std::string(calibration.note.empty() ? "" : "; ") +
             "turned by half a turn from before; if it stands upside down on the wall, turn the camera the right way up, and "
             "calibrate again";
     return {};
+}
+
+// Looks whether something has moved since the outputs were measured. If so, what the camera saw
+// before and after does not fit together, and all outputs of that canvas are refused and dropped
+// from `surveys`.
+void dropMoved(LightSurvey& survey, const show::Site& site, std::vector<OutputCalibration>& calibrations,
+               std::map<std::size_t, const LightSurvey::Output*>& surveys) {
+    std::map<std::string, std::string> moved;  // by canvas: what is to be said
+    for (OutputCalibration& calibration : calibrations) {
+        const auto found = surveys.find(calibration.output);
+        if (found == surveys.end()) continue;
+        const show::Output& output = site.outputs[calibration.output];
+        const auto distance = survey.movedSince(calibration.output, *found->second, kStill);
+        if (!distance)
+            calibration.note = fmt::format("whether something moved meanwhile is not known: {}", distance.error().message());
+        else if (*distance > kStill)
+            moved[output.canvas] = fmt::format(
+                "the light of '{}' has moved by {:.1f} px since it was measured; see that camera, projectors and surface "
+                "stand still, and calibrate again",
+                output.name, *distance);
+    }
+    for (OutputCalibration& calibration : calibrations) {
+        const auto why = moved.find(site.outputs[calibration.output].canvas);
+        if (why != moved.end() && surveys.erase(calibration.output) > 0) calibration.trouble = why->second;
+    }
 }
 
 // What is kept of the good calibrations. `text`: of the site file with their warps, which are
@@ -129,6 +155,7 @@ Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show
         calibration.survey = std::move(*found);
         surveys[output] = &*calibration.survey;
     }
+    dropMoved(survey, site, calibrations, surveys);
     std::map<std::string, Result<Corners>> places;
     for (OutputCalibration& calibration : calibrations) {
         const auto found = surveys.find(calibration.output);

@@ -31,6 +31,9 @@ struct OutputCalibration {
 
 // The worst residual, projector pixels, with which a calibration counts as good.
 constexpr double kGoodRms = 1.0;
+// The farthest, projector pixels, that something may seem to have moved while outputs were
+// measured.
+constexpr double kStill = 0.5;
 
 // Finds the warps and the light of some outputs of a site. An output that fails does not stop the
 // others. `wanted`: where canvases are to stand; without markers, an output that is not in it gets

@@ -1,9 +1,12 @@
 #include "app/calibrate/light_survey.h"
 
+#include "vision/map_check.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -35,6 +38,9 @@ constexpr double kFewestKnown = 0.1;
 // The contrast at which one frame a picture is enough, and the most frames.
 constexpr double kClearContrast = 25;
 constexpr int kMostFrames = 4;
+// What seems to have moved is looked at again, so many times at most: somebody may stand before
+// much of the picture.
+constexpr int kLooks = 3;
 
 GreyImage lightOf(const vision::CameraLight& camera, const RgbaImage& stored) {
     GreyImage light(stored.width(), stored.height());
@@ -77,6 +83,13 @@ Result<void> canBeMeasured(const LightDecoder& sight) {
                         "the camera's exposure",
                         sight.lit(), kFewestLit));
     return {};
+}
+
+GreyImage lessOf(const GreyImage& picture, const GreyImage& complement) {
+    GreyImage difference(picture.width(), picture.height());
+    for (std::size_t i = 0; i < difference.pixels().size(); ++i)
+        difference.pixels()[i] = picture.pixels()[i] - complement.pixels()[i];
+    return difference;
 }
 
 const Error& ended() {
@@ -318,6 +331,7 @@ Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
     LightDecoder decoder = decoderOf(light.period());
     found.repeated += TRY(decode(output, light, found.gamma, decoder));
     found.map = decoder.map();
+    found.period = light.period();
     found.dark = decoder.dark();
     if (static_cast<double>(found.map.known) < kFewestKnown * static_cast<double>(found.map.lit)) {
         if (isSilent()) return stopped();
@@ -329,6 +343,29 @@ Result<LightSurvey::Output> LightSurvey::survey(std::size_t output) {
     }
     found.full = decoder.full();
     return found;
+}
+
+Result<double> LightSurvey::movedSince(std::size_t output, const Output& found, double still) {
+    using Axis = StructuredLight::Axis;
+    const StructuredLight light(site_.outputs[output].size(), found.period);
+    const auto picture = [&](std::size_t i) {
+        return std::make_shared<const RgbaImage>(
+            light.picture(light.firstPhase(i / 2 == 0 ? Axis::Across : Axis::Down), i % 2 == 1, found.gamma));
+    };
+    double least = std::numeric_limits<double>::infinity();
+    for (int look = 0; look < kLooks && least > still; ++look) {
+        done_ = 0, share_ = 1, doing_ = "looking whether something has moved";
+        const std::vector<Taken> taken = TRY(take(output, 4, picture, 1));
+        double moved = 0;
+        for (std::size_t i = 0; i < taken.size(); i += 2) {
+            if (taken[i].frames == 0 || taken[i + 1].frames == 0) continue;
+            const GreyImage difference = lessOf(taken[i].light, taken[i + 1].light);
+            moved = std::hypot(moved,
+                               vision::movedSince(found.map, light, i == 0 ? Axis::Across : Axis::Down, difference).value_or(0));
+        }
+        least = std::min(least, moved);
+    }
+    return least;
 }
 
 }  // namespace fantascope::app

@@ -36,6 +36,7 @@ public:
     // What one output's survey found.
     struct Output {
         vision::ProjectorMap map;
+        int period = 0;                               // of the structured light, projector pixels
         GreyImage dark;                               // by camera pixel: linear light while every output is dark
         GreyImage full;                               // the same while this output is white
         double gamma = 2.2;                           // of the projector: light = stored ^ gamma
@@ -49,6 +50,10 @@ public:
     // Error: the camera does not see the output, sees nothing at all, is saturated, or was lost;
     // the survey was ended.
     Result<Output> survey(std::size_t output);
+
+    // How far something has moved since an output was surveyed, projector pixels: the camera, the
+    // projector or the wall. Less than `still` is none. Errors as survey().
+    Result<double> movedSince(std::size_t output, const Output& found, double still);
 
     // From a picture's light to its arrival here.
     Time latency() const { return latency_; }

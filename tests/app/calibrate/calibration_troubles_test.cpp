@@ -20,8 +20,8 @@ using testing::HasSubstr;
 using testing::Not;
 using Arguments = std::vector<std::string>;
 
-// Two pictures side by side in a lit street, on a wall that the camera faces. {0}: of each
-// output, what it falls on; {1}: the faults.
+// Two pictures side by side in a lit street, on a wall that the camera faces. {0}: of each output,
+// what it falls on; {1}: the faults.
 constexpr std::string_view kNightSite = R"(fantascope: site
 version: 1
 outputs:
@@ -117,6 +117,19 @@ TEST_F(CalibrationTroubles, of_a_camera_that_is_frozen) {
     const Outcome outcome = calibrate();
     EXPECT_THAT(outcome, exits(1));
     EXPECT_THAT(outcome.out, AllOf(HasSubstr("left: " + frozen), HasSubstr("right: rms")));
+}
+
+// Example failure: the outputs that were measured before the camera was pushed get warps for where
+// it stood then.
+TEST_F(CalibrationTroubles, of_what_is_pushed_between_two_outputs) {
+    for (const char* fault : {"camera_bump, turn: [0, 0.4, 0]", "bump, output: left, turn: [0, 0, 1]"}) {
+        makeSite(fmt::format("{{kind: {}, at: 22}}", fault));
+        const Outcome outcome = calibrate();
+        EXPECT_THAT(outcome, exits(1));
+        EXPECT_THAT(outcome.out, AllOf(HasSubstr("left: the light of 'left' has moved by"), HasSubstr("right: rms")));
+        const std::string site = contentsOf(folder_ / "site.yaml");
+        EXPECT_THAT(site.substr(0, site.find("name: right")), HasSubstr("corners: [[0, 0], [160, 0], [160, 90], [0, 90]]"));
+    }
 }
 
 TEST_F(CalibrationTroubles, of_outputs_that_are_not_in_view) {
