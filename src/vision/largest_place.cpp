@@ -9,45 +9,21 @@
 namespace fantascope::vision {
 namespace {
 
-constexpr int kSamples = 17;   // along an edge of a part
 constexpr int kCentres = 192;  // tried along the longer side of what is lit
 constexpr int kHeights = 64;   // tried, down from the height of what is lit
 constexpr int kRefinements = 6, kAround = 9, kHalvings = 8;
-constexpr int kCell = 2;        // camera pixels
-constexpr double kHoles = 1.5;  // cells; a blur in which small holes vanish and straight edges stay
-constexpr float kKnownShare = 0.5f;
-
-// What is lit, in cells: those around which most pixels are known, so that small holes do not
-// count. Without the cells at the light's edge, where a place would lose its own edge.
-Image<std::uint8_t> litCells(const ProjectorMap& map) {
-    const int columns = (map.at.width() + kCell - 1) / kCell, rows = (map.at.height() + kCell - 1) / kCell;
-    GreyImage known(columns, rows);
-    for (int y = 0; y < map.at.height(); ++y)
-        for (int x = 0; x < map.at.width(); ++x) known.at(x / kCell, y / kCell) += map.isKnown(x, y) ? 1.0f / (kCell * kCell) : 0;
-    known = blurred(known, kHoles);
-    const auto isLit = [&](int column, int row) { return known.at(column, row) > kKnownShare; };
-    Image<std::uint8_t> cells(columns, rows);
-    for (int row = 1; row + 1 < rows; ++row)
-        for (int column = 1; column + 1 < columns; ++column)
-            cells.at(column, row) = isLit(column, row) && isLit(column - 1, row) && isLit(column + 1, row) &&
-                                    isLit(column, row - 1) && isLit(column, row + 1);
-    return cells;
-}
 
 class Search {
 public:
     Search(const CameraModel& camera, const std::vector<LitPart>& parts, double aspect, const Homography& uprightFromView)
-        : lens_(camera), aspect_(aspect), viewFromUpright_(uprightFromView.inverse()) {
+        : lens_(camera), reach_(camera, parts), aspect_(aspect), viewFromUpright_(uprightFromView.inverse()) {
         lens_.pose = Pose{};
-        for (const LitPart& part : parts) parts_.push_back({part.part, litCells(*part.map)});
-        for (const Part& part : parts_)
-            for (int row = 0; row < part.lit.height(); ++row)
-                for (int column = 0; column < part.lit.width(); ++column) {
-                    if (part.lit.at(column, row) == 0) continue;
-                    const glm::dvec3 ray = lens_.rayThrough((glm::dvec2(column, row) + 0.5) * double(kCell)).direction;
-                    const glm::dvec2 at = uprightFromView(glm::dvec2(ray) / ray.z);
-                    low_ = glm::min(low_, at), high_ = glm::max(high_, at);
-                }
+        for (std::size_t part = 0; part < reach_.size(); ++part)
+            for (const glm::dvec2 pixel : reach_.litPixels(part)) {
+                const glm::dvec3 ray = lens_.rayThrough(pixel).direction;
+                const glm::dvec2 at = uprightFromView(glm::dvec2(ray) / ray.z);
+                low_ = glm::min(low_, at), high_ = glm::max(high_, at);
+            }
     }
 
     std::optional<std::array<glm::dvec2, 4>> best() const {
@@ -73,32 +49,14 @@ public:
     }
 
 private:
-    struct Part {
-        CanvasPart part;
-        Image<std::uint8_t> lit;
-    };
     glm::dvec2 placed(glm::dvec2 canvas, glm::dvec2 centre, double height) const {
         return centre + (canvas - 0.5) * glm::dvec2(aspect_ * height, height);
     }
     std::optional<glm::dvec2> pixelOf(glm::dvec2 upright) const {
         return lens_.pixelFromWorld(glm::dvec3(viewFromUpright_(upright), 1));
     }
-    bool isLit(const Part& part, glm::dvec2 upright) const {
-        const auto pixel = pixelOf(upright);
-        if (!pixel || !lens_.inPicture(*pixel)) return false;
-        const glm::ivec2 cell = glm::min(glm::ivec2(*pixel) / kCell, glm::ivec2(part.lit.width(), part.lit.height()) - 1);
-        return part.lit.at(cell.x, cell.y) != 0;
-    }
-    // The parts' edges decide: what they enclose may have holes, such as things before the wall.
     bool fits(glm::dvec2 centre, double height) const {
-        for (const Part& part : parts_)
-            for (int i = 0; i < kSamples; ++i) {
-                const glm::dvec2 along = part.part.low + (part.part.high - part.part.low) * (double(i) / (kSamples - 1));
-                for (const glm::dvec2 canvas : {glm::dvec2(along.x, part.part.low.y), glm::dvec2(along.x, part.part.high.y),
-                                                glm::dvec2(part.part.low.x, along.y), glm::dvec2(part.part.high.x, along.y)})
-                    if (!isLit(part, placed(canvas, centre, height))) return false;
-            }
-        return true;
+        return reach_.covers([&](glm::dvec2 canvas) { return pixelOf(placed(canvas, centre, height)); });
     }
     // A centre where this height fits, of a lattice with cells of this side.
     std::optional<glm::dvec2> placeFor(double height, double side) const {
@@ -120,9 +78,9 @@ private:
     }
 
     CameraModel lens_;  // at the origin
+    const CanvasReach reach_;
     const double aspect_;
     const Homography viewFromUpright_;
-    std::vector<Part> parts_;
     glm::dvec2 low_{1e9}, high_{-1e9};  // what is lit
 };
 

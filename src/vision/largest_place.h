@@ -1,22 +1,15 @@
 #pragma once
 
 #include "vision/camera_model.h"
-#include "vision/structured_light.h"
+#include "vision/canvas_reach.h"
 
 #include "core/geometry.h"
-#include "core/warp.h"
 
 #include <array>
 #include <optional>
 #include <vector>
 
 namespace fantascope::vision {
-
-// An output's part of a canvas, and what of the camera's picture it lights. `map` outlives it.
-struct LitPart {
-    CanvasPart part{};
-    const ProjectorMap* map = nullptr;
-};
 
 // The largest upright place for a canvas of this aspect (width / height) where the light of each
 // output covers its part. Returns the canvas's corners in camera pixels, clockwise from the top
