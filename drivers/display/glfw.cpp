@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -47,30 +46,6 @@ Result<glm::ivec2> cornerFrom(const ConfigNode& node) {
     const std::vector<ConfigNode> items = TRY(node.items(2, 2));
     const auto x = TRY(items[0].integer(0, kLargest)), y = TRY(items[1].integer(0, kLargest));
     return glm::ivec2(x, y);
-}
-
-// Letters follow the keyboard's layout, so that 'y' is where a German finds it.
-std::optional<Key> keyOf(int key, int scanCode, int modifiers) {
-    Key result;
-    result.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
-    result.control = (modifiers & GLFW_MOD_CONTROL) != 0;
-    constexpr std::pair<int, Key::Name> kNamed[] = {{GLFW_KEY_LEFT, Key::Name::Left},    {GLFW_KEY_RIGHT, Key::Name::Right},
-                                                    {GLFW_KEY_UP, Key::Name::Up},        {GLFW_KEY_DOWN, Key::Name::Down},
-                                                    {GLFW_KEY_TAB, Key::Name::Tab},      {GLFW_KEY_ENTER, Key::Name::Enter},
-                                                    {GLFW_KEY_ESCAPE, Key::Name::Escape}};
-    for (const auto& [code, name] : kNamed)
-        if (code == key) {
-            result.name = name;
-            return result;
-        }
-    if (key == GLFW_KEY_SPACE) {
-        result.letter = ' ';
-        return result;
-    }
-    const char* const written = glfwGetKeyName(key, scanCode);
-    if (written == nullptr || written[0] < '!' || written[0] > '~' || written[1] != '\0') return std::nullopt;
-    result.letter = static_cast<char>(std::tolower(written[0]));
-    return result;
 }
 
 }  // namespace
@@ -178,7 +153,7 @@ void GlfwDisplay::installCallbacks() {
     glfwSetWindowUserPointer(window_, this);
     static constexpr auto of = [](GLFWwindow* window) { return static_cast<GlfwDisplay*>(glfwGetWindowUserPointer(window)); };
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scanCode, int action, int modifiers) {
-        if (const auto known = keyOf(key, scanCode, modifiers))
+        if (const auto known = pressedKey(key, scanCode, modifiers))
             of(window)->events_.give({action == GLFW_RELEASE ? ScreenEvent::Kind::KeyUp : ScreenEvent::Kind::KeyDown, *known,
                                       of(window)->pointer_, of(window)->clock_.now()});
     });

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 namespace fantascope::drivers {
 
@@ -126,6 +127,31 @@ void GlfwLibrary::placeWindow(GLFWwindow* window) {
     glfwSetWindowPos(window, free_.x, free_.y);
     free_.x += size.x;
     rowHeight_ = std::max(rowHeight_, size.y);
+}
+
+std::optional<Key> pressedKey(int key, int scanCode, int modifiers) {
+    Key result;
+    result.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
+    result.control = (modifiers & GLFW_MOD_CONTROL) != 0;
+    constexpr std::pair<int, Key::Name> kNamed[] = {
+        {GLFW_KEY_LEFT, Key::Name::Left},      {GLFW_KEY_RIGHT, Key::Name::Right},
+        {GLFW_KEY_UP, Key::Name::Up},          {GLFW_KEY_DOWN, Key::Name::Down},
+        {GLFW_KEY_TAB, Key::Name::Tab},        {GLFW_KEY_ENTER, Key::Name::Enter},
+        {GLFW_KEY_KP_ENTER, Key::Name::Enter}, {GLFW_KEY_BACKSPACE, Key::Name::Backspace},
+        {GLFW_KEY_ESCAPE, Key::Name::Escape}};
+    for (const auto& [code, name] : kNamed)
+        if (code == key) {
+            result.name = name;
+            return result;
+        }
+    if (key == GLFW_KEY_SPACE) {
+        result.letter = ' ';
+        return result;
+    }
+    const char* const written = glfwGetKeyName(key, scanCode);
+    if (written == nullptr || written[0] < '!' || written[0] > '~' || written[1] != '\0') return std::nullopt;
+    result.letter = static_cast<char>(std::tolower(written[0]));
+    return result;
 }
 
 void takeFromWindowManager(GLFWwindow* window) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "device/screen_event.h"
+
 #include "core/result.h"
 
 #include <glm/vec2.hpp>
@@ -66,6 +68,10 @@ void takeFromWindowManager(GLFWwindow* window);
 // Shows the window above all others, its top left corner at (x, y) in pixels of the X screen. It
 // does not take the keyboard focus.
 void showAt(GLFWwindow* window, int x, int y);
+
+// The key that a key callback of GLFW reports; nothing: a key that no part of the program uses.
+// Letters follow the keyboard's layout, so that 'y' is where a German finds it.
+std::optional<Key> pressedKey(int key, int scanCode, int modifiers);
 
 // GLFW's reason for the last failure.
 std::string whyGlfwFailed();

@@ -8,7 +8,7 @@ namespace fantascope {
 
 // A key of a keyboard: the character that it types without Shift, or its name.
 struct Key {
-    enum class Name { Letter, Left, Right, Up, Down, Tab, Enter, Escape };
+    enum class Name { Letter, Left, Right, Up, Down, Tab, Enter, Escape, Backspace };
     Name name = Name::Letter;
     char letter = 0;  // printable ASCII, lower case, for Name::Letter
     bool shift = false, control = false;

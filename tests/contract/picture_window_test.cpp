@@ -1,9 +1,11 @@
 #include "drivers/display/picture_window.h"
 
+#include "contract/eventually.h"
 #include "contract/x_server.h"
 
 #include <gmock/gmock.h>
 
+#include <tuple>
 #include <vector>
 
 namespace fantascope::contract {
@@ -28,6 +30,7 @@ protected:
         return keys;
     }
 
+    const BrokenPipesIgnored ignored_;
     std::unique_ptr<XServer> server_;
     std::unique_ptr<drivers::PictureWindow> window_;
 };
@@ -59,6 +62,67 @@ TEST_F(PictureWindow, hears_keys_and_takes_its_closing_for_escape) {
     server_->closeWindow("work");
     EXPECT_THAT(keysUntil('\x1b'), testing::ElementsAre('\x1b'));
     EXPECT_EQ(window_->pollKey(), std::nullopt);
+}
+
+// In pixels of the picture, which is scaled by ten and stands between black bars of 280 pixels.
+TEST_F(PictureWindow, reports_keys_with_their_modifiers_and_the_pointer_on_the_picture) {
+    using Kind = ScreenEvent::Kind;
+    window_->show(RgbaImage(72, 72));
+    const auto next = [&] {
+        std::optional<ScreenEvent> event;
+        eventually("an event comes", [&] { return (event = window_->pollEvent()).has_value(); });
+        return *event;
+    };
+    EXPECT_EQ(next().at, glm::dvec2(36, 36)) << "the pointer is in the middle of the screen";
+    EXPECT_FALSE(window_->pollEvent());
+    using Held = XServer::Held;
+    for (const auto& [name, key, held] : {std::tuple("Left", Key{Key::Name::Left, 0, true, false}, Held::Shift),
+                                          {"Right", Key{Key::Name::Right, 0, false, true}, Held::Control},
+                                          {"BackSpace", Key{Key::Name::Backspace}, Held::Nothing},
+                                          {"n", Key{.letter = 'n'}, Held::Nothing}}) {
+        server_->typeKey("work", name, held);
+        const ScreenEvent down = next(), up = next();
+        EXPECT_EQ(down.kind, Kind::KeyDown);
+        EXPECT_EQ(up.kind, Kind::KeyUp);
+        EXPECT_EQ(down.key, key) << name;
+        EXPECT_EQ(up.key, key) << name;
+    }
+    server_->movePointer("work", 280 + 105, 205, XServer::Button::Pressed);
+    EXPECT_EQ(next().kind, Kind::PointerMoved);
+    const ScreenEvent pressed = next();
+    EXPECT_EQ(pressed.kind, Kind::ButtonDown);
+    EXPECT_EQ(pressed.at, glm::dvec2(10.5, 20.5));
+    server_->movePointer("work", 280 + 205, 105, XServer::Button::Released);
+    EXPECT_EQ(next().at, glm::dvec2(20.5, 10.5));
+    EXPECT_EQ(next().kind, Kind::ButtonUp);
+}
+
+// The three ways in which a window goes are told apart. Example failure: a dead X server is taken
+// for a person who closed the window.
+TEST_F(PictureWindow, says_why_it_is_gone) {
+    EXPECT_EQ(window_->absence(), "");
+    server_->closeWindow("work");
+    keysUntil('\x1b');
+    EXPECT_EQ(window_->absence(), "the window was closed");
+    window_ = drivers::PictureWindow::open("work", {64, 36}).value();
+    server_->destroyWindow("work");
+    keysUntil('\x1b');
+    EXPECT_EQ(window_->absence(), "another program has destroyed the window");
+    window_.reset();
+    window_ = drivers::PictureWindow::open("work", {64, 36}).value();
+    server_->crash();
+    keysUntil('\x1b');
+    EXPECT_EQ(window_->absence(), "the X server has ended");
+    window_->show(GreyImage(16, 9));  // does nothing
+}
+
+TEST_F(PictureWindow, can_be_asked_for_in_advance_without_being_seen) {
+    EXPECT_TRUE(drivers::PictureWindow::check());
+    EXPECT_FALSE(server_->hasWindow("Fantascope"));
+    window_.reset();
+    server_->crash();
+    EXPECT_FALSE(drivers::PictureWindow::check());
+    server_->startAgain();
 }
 
 }  // namespace

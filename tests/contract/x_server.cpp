@@ -60,6 +60,20 @@ Window windowTitled(Display* display, const std::string& title) {
     return found;
 }
 
+// `type`: KeyPress or KeyRelease. `state`: the mask of the held modifiers.
+void sendKey(Display* display, const std::string& title, const std::string& key, int type, unsigned state) {
+    XEvent event{};
+    event.xkey.type = type;
+    event.xkey.display = display;
+    event.xkey.window = windowTitled(display, title);
+    event.xkey.root = DefaultRootWindow(display);
+    event.xkey.same_screen = True;
+    event.xkey.time = CurrentTime;
+    event.xkey.state = state;
+    event.xkey.keycode = XKeysymToKeycode(display, XStringToKeysym(key.c_str()));
+    XSendEvent(display, event.xkey.window, True, KeyPressMask, &event);
+}
+
 // The process of an X server with the number `display`. Error: it does not start.
 Result<pid_t> launched(std::vector<std::string> command, int display) {
     int ends[2];
@@ -178,15 +192,31 @@ bool XServer::hasWindow(const std::string& title) const {
 
 void XServer::pressKey(const std::string& title, const std::string& key) const {
     const Connection connection = connectionTo(display_);
+    sendKey(connection.get(), title, key, KeyPress, 0);
+    XSync(connection.get(), False);
+}
+
+void XServer::typeKey(const std::string& title, const std::string& key, Held held) const {
+    const Connection connection = connectionTo(display_);
+    const unsigned state = held == Held::Shift ? ShiftMask : held == Held::Control ? ControlMask : 0;
+    for (const int type : {KeyPress, KeyRelease}) sendKey(connection.get(), title, key, type, state);
+    XSync(connection.get(), False);
+}
+
+void XServer::movePointer(const std::string& title, int x, int y, Button button) const {
+    const Connection connection = connectionTo(display_);
     XEvent event{};
-    event.xkey.type = KeyPress;
-    event.xkey.display = connection.get();
-    event.xkey.window = windowTitled(connection.get(), title);
-    event.xkey.root = DefaultRootWindow(connection.get());
-    event.xkey.same_screen = True;
-    event.xkey.time = CurrentTime;
-    event.xkey.keycode = XKeysymToKeycode(connection.get(), XStringToKeysym(key.c_str()));
-    XSendEvent(connection.get(), event.xkey.window, True, KeyPressMask, &event);
+    event.xmotion.type = MotionNotify;
+    event.xmotion.window = windowTitled(connection.get(), title);
+    event.xmotion.same_screen = True;
+    event.xmotion.x = x;
+    event.xmotion.y = y;
+    XSendEvent(connection.get(), event.xmotion.window, True, PointerMotionMask, &event);
+    if (button != Button::Untouched) {
+        event.xbutton.type = button == Button::Pressed ? ButtonPress : ButtonRelease;
+        event.xbutton.button = Button1;
+        XSendEvent(connection.get(), event.xbutton.window, True, ButtonPressMask, &event);
+    }
     XSync(connection.get(), False);
 }
 

@@ -39,6 +39,12 @@ public:
     // Presses a key while the window has the focus; the key's name as xmodmap has it: "space",
     // "Escape", "a".
     void pressKey(const std::string& title, const std::string& key) const;
+    // Presses and releases it, while Shift or Control is held.
+    enum class Held { Nothing, Shift, Control };
+    void typeKey(const std::string& title, const std::string& key, Held held = Held::Nothing) const;
+    // Moves the pointer to a pixel of the window, and presses or releases the left button there.
+    enum class Button { Untouched, Pressed, Released };
+    void movePointer(const std::string& title, int x, int y, Button button = Button::Untouched) const;
     // Asks the window to close, like its close button.
     void closeWindow(const std::string& title) const;
     // Destroys the window, as no well-behaved program does.

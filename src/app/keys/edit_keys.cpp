@@ -78,6 +78,7 @@ std::optional<show::EditCommand> editCommandFor(const Key& key, edit::Tool tool,
             return edit::Handle{key.shift ? -1 : 1};
         case Name::Enter:
         case Name::Escape:
+        case Name::Backspace:
             return std::nullopt;
         case Name::Letter:
             return letterCommand(key, tool, mesh);
