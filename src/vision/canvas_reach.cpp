@@ -1,5 +1,7 @@
 #include "vision/canvas_reach.h"
 
+#include <glm/common.hpp>
+
 namespace fantascope::vision {
 namespace {
 
@@ -61,6 +63,16 @@ std::vector<glm::dvec2> CanvasReach::litPixels(std::size_t part) const {
         for (int column = 0; column < lit.width(); ++column)
             if (lit.at(column, row) != 0) pixels.push_back((glm::dvec2(column, row) + 0.5) * double(kCell));
     return pixels;
+}
+
+std::array<glm::dvec2, 4> CanvasReach::middle() const {
+    glm::dvec2 low(size_), high(0);
+    for (std::size_t part = 0; part < parts_.size(); ++part)
+        for (const glm::dvec2 pixel : litPixels(part)) low = glm::min(low, pixel), high = glm::max(high, pixel);
+    if (!(low.x < high.x && low.y < high.y)) low = glm::dvec2(0), high = glm::dvec2(size_);
+    std::array<glm::dvec2, 4> corners = rectangleCorners(1, 1);
+    for (glm::dvec2& corner : corners) corner = glm::mix(low, high, 0.2 + 0.6 * corner);
+    return corners;
 }
 
 bool CanvasReach::coversPart(std::size_t part,

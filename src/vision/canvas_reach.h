@@ -52,6 +52,9 @@ public:
     bool isLit(std::size_t part, glm::dvec2 pixel) const;
     // Camera pixels, two apart, that the light of a part's output reaches.
     std::vector<glm::dvec2> litPixels(std::size_t part) const;
+    // A rectangle in the middle of what is lit, clockwise from the top left: camera pixels. It is
+    // nobody's best place.
+    std::array<glm::dvec2, 4> middle() const;
     // Whether each part's edge lies in the light of its output. What the edge encloses may have
     // holes, such as things before the wall. `pixelFromCanvas`: as in PlacedCanvas.
     bool covers(const std::function<std::optional<glm::dvec2>(glm::dvec2)>& pixelFromCanvas) const;

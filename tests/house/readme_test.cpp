@@ -23,8 +23,9 @@ using testing::IsEmpty;
 constexpr std::string_view kProgram = "fantascope";
 
 // Whatever follows these options is written, or is not a file.
-const std::set<std::string_view> kMakes = {"-o",       "--out",      "--image",  "--view",   "--each",      "--sheet", "--video",
-                                           "--record", "--pictures", "--report", "--meshes", "--solutions", "--board", "--markers"};
+const std::set<std::string_view> kMakes = {"-o",       "--out",       "--image",  "--view",     "--each",
+                                           "--sheet",  "--video",     "--record", "--pictures", "--report",
+                                           "--meshes", "--solutions", "--board",  "--markers",  "--picture"};
 
 // The words of each command of the program, with its line: whole lines of code blocks, and text
 // between back quotes. A line that ends in a backslash continues on the next.

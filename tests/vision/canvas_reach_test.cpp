@@ -61,5 +61,13 @@ TEST(CanvasReach, names_the_parts_that_their_outputs_do_not_cover) {
     EXPECT_THAT(uncovered({{{10, 10}, {310, 10}, {310, 230}, {10, 230}}}), ElementsAre(0u, 1u));
 }
 
+TEST(CanvasReach, has_a_middle_even_if_nothing_is_lit) {
+    const ProjectorMap lit = columns(40, 240, 0), nothing = columns(0, 0, 0);
+    const Corners corners = CanvasReach(reachCamera(), {{{}, &lit}}).middle();
+    EXPECT_LT(glm::distance(corners[0], glm::dvec2(80, 60)), 3);
+    EXPECT_LT(glm::distance(corners[2], glm::dvec2(200, 180)), 3);
+    EXPECT_EQ(CanvasReach(reachCamera(), {{{}, &nothing}}).middle()[2], glm::dvec2(256, 192));
+}
+
 }  // namespace
 }  // namespace fantascope::vision

@@ -1,5 +1,6 @@
 #include "app/calibrate/calibration.h"
 
+#include "app/calibrate/lit_wall.h"
 #include "app/calibrate/marked_place.h"
 #include "app/calibrate/plan_check.h"
 #include "app/site/site_models.h"
@@ -22,38 +23,91 @@ namespace {
 
 using Corners = std::array<glm::dvec2, 4>;
 
-// The largest upright place of a canvas. Error: not all of its outputs were measured, or it finds
-// no place in their light.
-Result<Corners> largestPlaceOf(const show::Site& site, const std::string& canvas, const vision::CameraModel& camera,
-                               const std::map<std::size_t, const LightSurvey::Output*>& surveys) {
+using Surveys = std::map<std::size_t, const LightSurvey::Output*>;  // by output
+
+// The outputs of a canvas that were measured.
+std::vector<std::size_t> measuredOn(const show::Site& site, const std::string& canvas, const Surveys& surveys) {
+    std::vector<std::size_t> outputs = site.outputsOn(canvas);
+    std::erase_if(outputs, [&](std::size_t output) { return !surveys.contains(output); });
+    return outputs;
+}
+
+std::vector<vision::LitPart> partsOf(const show::Site& site, const std::string& canvas, const Surveys& surveys) {
     std::vector<vision::LitPart> parts;
-    const std::vector<std::size_t> outputs = site.outputsOn(canvas);
-    for (const std::size_t output : outputs) {
-        const auto survey = surveys.find(output);
-        if (survey == surveys.end())
-            return Error(
-                fmt::format("it shares the canvas '{}' with '{}', which was not measured; calibrate both, or say with "
-                            "--wanted where the canvas is to stand",
-                            canvas, site.outputs[output].name));
-        parts.push_back({site.outputs[output].projection.warp.shape().part, &survey->second->map});
-    }
-    const show::Output& first = site.outputs[outputs[0]];
+    for (const std::size_t output : measuredOn(site, canvas, surveys))
+        parts.push_back({site.outputs[output].projection.warp.shape().part, &surveys.at(output)->map});
+    return parts;
+}
+
+// The largest upright place of a canvas in the light of those of its outputs that were measured.
+std::optional<Corners> largestPlaceIn(const show::Site& site, const std::string& canvas, const vision::CameraModel& camera,
+                                      const Surveys& surveys) {
+    const show::Output& first = site.outputs[site.outputsOn(canvas)[0]];
     const double known = first.projection.canvasAspect;
     const double aspect = known > 0 ? known : canvasAspectInPixels(site, canvas);
     Homography upright;
     if (first.surface) upright = vision::uprightFromView(camera, {first.surface->point, first.surface->normal});
-    const auto place = vision::largestPlace(camera, parts, aspect, upright);
+    return vision::largestPlace(camera, partsOf(site, canvas, surveys), aspect, upright);
+}
+
+// The same. Error: not all of its outputs were measured, or it finds no place in their light.
+Result<Corners> largestPlaceOf(const show::Site& site, const std::string& canvas, const vision::CameraModel& camera,
+                               const Surveys& surveys) {
+    for (const std::size_t output : site.outputsOn(canvas))
+        if (!surveys.contains(output))
+            return Error(
+                fmt::format("it shares the canvas '{}' with '{}', which was not measured; calibrate both, or say with "
+                            "--wanted where the canvas is to stand",
+                            canvas, site.outputs[output].name));
+    const auto place = largestPlaceIn(site, canvas, camera, surveys);
     if (!place) return Error("no place for its canvas is lit; its outputs' pictures must touch or overlap where their parts do");
     return *place;
 }
 
 // The place of a canvas by its markers, in the light of those of its outputs that were measured.
-Result<Corners> markedPlaceOf(const show::Site& site, const std::string& canvas,
-                              const std::map<std::size_t, const LightSurvey::Output*>& surveys) {
+Result<Corners> markedPlaceOf(const show::Site& site, const std::string& canvas, const Surveys& surveys) {
     std::vector<const LightSurvey::Output*> light;
-    for (const std::size_t output : site.outputsOn(canvas))
-        if (const auto survey = surveys.find(output); survey != surveys.end()) light.push_back(survey->second);
+    for (const std::size_t output : measuredOn(site, canvas, surveys)) light.push_back(surveys.at(output));
     return markedPlace(light);
+}
+
+// A canvas whose place a person is to choose.
+OpenPlace openPlaceOf(const show::Site& site, const std::string& canvas, const vision::CameraModel& camera,
+                      const Surveys& surveys) {
+    std::vector<const LightSurvey::Output*> light;
+    std::vector<std::string> names;
+    for (const std::size_t output : measuredOn(site, canvas, surveys)) {
+        light.push_back(surveys.at(output));
+        names.push_back(site.outputs[output].name);
+    }
+    OpenPlace place{canvas, names, camera, litWallPicture(light), {camera, partsOf(site, canvas, surveys)}, {}};
+    // Where no place is in reach of all, there is one to begin with, and the person sees why.
+    place.corners = largestPlaceIn(site, canvas, camera, surveys).value_or(place.reach.middle());
+    return place;
+}
+
+// The places of the canvases of measured outputs that are not given. Error: a person was to say and
+// did not.
+Result<std::map<std::string, Result<Corners>>> placesOf(const show::Site& site, const vision::CameraModel& camera,
+                                                        const Surveys& surveys, const Wanted& wanted) {
+    std::map<std::string, Result<Corners>> places;
+    std::vector<OpenPlace> open;
+    for (const auto& [index, survey] : surveys) {
+        const show::Output& output = site.outputs[index];
+        if (wanted.corners.contains(output.name) || places.contains(output.canvas)) continue;
+        if (wanted.markers)
+            places.emplace(output.canvas, markedPlaceOf(site, output.canvas, surveys));
+        else if (!wanted.choose)
+            places.emplace(output.canvas, largestPlaceOf(site, output.canvas, camera, surveys));
+        else if (std::ranges::find(open, output.canvas, &OpenPlace::canvas) == open.end())
+            open.push_back(openPlaceOf(site, output.canvas, camera, surveys));
+    }
+    if (open.empty()) return places;
+    std::vector<std::string> canvases;
+    for (const OpenPlace& place : open) canvases.push_back(place.canvas);
+    const std::vector<Corners> chosen = TRY(wanted.choose(std::move(open)));
+    for (std::size_t i = 0; i < canvases.size(); ++i) places.emplace(canvases[i], chosen.at(i));
+    return places;
 }
 
 // Fits one output's warp, and says in `trouble` why that is not good enough.
@@ -63,6 +117,7 @@ void fit(OutputCalibration& calibration, const LightSurvey::Output& survey, cons
         calibration.trouble = wanted.error().message();
         return;
     }
+    calibration.place = *wanted;
     const auto fitted = vision::fitWarp(vision::sharedPoints(survey.map), {camera, *wanted}, now);
     if (!fitted) {
         calibration.trouble = fitted.error().message();
@@ -142,7 +197,7 @@ Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show
     const vision::CameraModel camera = TRY(cameraOf(site));
     TRY(survey.begin(outputs));
     std::vector<OutputCalibration> calibrations;
-    std::map<std::size_t, const LightSurvey::Output*> surveys;
+    Surveys surveys;
     calibrations.reserve(outputs.size());  // surveys points into it
     for (const std::size_t output : outputs) {
         OutputCalibration& calibration = calibrations.emplace_back();
@@ -156,19 +211,17 @@ Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show
         surveys[output] = &*calibration.survey;
     }
     dropMoved(survey, site, calibrations, surveys);
-    std::map<std::string, Result<Corners>> places;
+    const auto places = TRY(placesOf(site, camera, surveys, wanted));
     for (OutputCalibration& calibration : calibrations) {
         const auto found = surveys.find(calibration.output);
         if (found == surveys.end()) continue;
         const show::Output& output = site.outputs[calibration.output];
         const auto given = wanted.corners.find(output.name);
-        if (given == wanted.corners.end() && !places.contains(output.canvas))
-            places.emplace(output.canvas, wanted.markers ? markedPlaceOf(site, output.canvas, surveys)
-                                                         : largestPlaceOf(site, output.canvas, camera, surveys));
         fit(calibration, *found->second, camera,
             given != wanted.corners.end() ? Result<Corners>(given->second) : places.at(output.canvas),
             output.projection.warp.shape());
-        if (given != wanted.corners.end() || wanted.markers) continue;  // somebody has said which way up
+        // Somebody has said which way up.
+        if (given != wanted.corners.end() || wanted.markers || wanted.choose) continue;
         if (const auto upright = checkUpright(calibration, site, *found->second); !upright)
             calibration.trouble = upright.error().message();
     }

@@ -9,6 +9,7 @@
 
 #include "core/result.h"
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -19,8 +20,9 @@ namespace fantascope::app {
 // One output's calibration.
 struct OutputCalibration {
     std::size_t output = 0;
-    std::string trouble;  // why it has no fit, or why the fit is not good enough; empty: it is good
-    std::string note;     // what a person should look at although it is good; may be empty
+    std::string trouble;                             // why it has no fit, or why the fit is not good enough; empty: it is good
+    std::string note;                                // what a person should look at although it is good; may be empty
+    std::optional<std::array<glm::dvec2, 4>> place;  // of its canvas: the corners, as in a wanted file
     std::optional<vision::WarpFit> fit;
     std::optional<LightSurvey::Output> survey;  // none: not measured
     MeasuredLight light;
@@ -36,10 +38,11 @@ constexpr double kGoodRms = 1.0;
 constexpr double kStill = 0.5;
 
 // Finds the warps and the light of some outputs of a site. An output that fails does not stop the
-// others. `wanted`: where canvases are to stand; without markers, an output that is not in it gets
-// the largest upright place that its canvas's outputs light, for which all of these must be among
-// `outputs`.
-// Error: the camera gives no pictures, or sees no output.
+// others. `wanted`: where canvases are to stand; without markers or a person, an output that is not
+// in it gets the largest upright place that its canvas's outputs light, for which all of these must
+// be among `outputs`.
+// Error: the camera gives no pictures, or sees no output; the person who was asked for a place gave
+// none.
 Result<std::vector<OutputCalibration>> calibrate(LightSurvey& survey, const show::Site& site,
                                                  const std::vector<std::size_t>& outputs, const Wanted& wanted);
 
