@@ -1,5 +1,7 @@
 #include "drivers/display/picture_window.h"
 
+#include "drivers/registry.h"
+
 #include "contract/eventually.h"
 #include "contract/x_server.h"
 
@@ -123,6 +125,22 @@ TEST_F(PictureWindow, can_be_asked_for_in_advance_without_being_seen) {
     server_->crash();
     EXPECT_FALSE(drivers::PictureWindow::check());
     server_->startAgain();
+}
+
+// A person chooses corners while the projectors' windows stay on the screen.
+TEST_F(PictureWindow, leaves_the_windows_of_outputs_alone) {
+    ManualClock clock;
+    const auto output =
+        drivers::openDisplay(*ConfigNode::parse("{driver: glfw}", "site.yaml"), {"left", {64, 36}, 30}, {clock}).value();
+    ASSERT_TRUE(output->present());
+    ASSERT_TRUE(drivers::PictureWindow::check());
+    window_->show(GreyImage(16, 9));
+    EXPECT_TRUE(output->present());
+    window_.reset();
+    EXPECT_TRUE(server_->hasWindow("left"));
+    EXPECT_TRUE(output->poll());
+    EXPECT_TRUE(output->present());
+    EXPECT_EQ(output->context(), 1) << "it has lost its pictures";
 }
 
 }  // namespace
