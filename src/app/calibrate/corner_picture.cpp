@@ -178,10 +178,14 @@ private:
 
     void drawTexts() {
         const glm::dvec2 size(sheet_.size());
-        write(sheet_, view_.title, {kMargin, kHeader / 2}, kTitleSize, kText);
+        const auto fitting = [&](const std::string& text, double most) {
+            return sheet_.fontSize(text, size.x - 2 * kMargin, most);
+        };
+        write(sheet_, view_.title, {kMargin, kHeader / 2}, fitting(view_.title, kTitleSize), kText);
         const double top = size.y - kFooter;
         if (view_.isRefusal) sheet_.rectangle({{0, top + 6}, {size.x, top + 40}}, 0.3);
-        write(sheet_, view_.message, {kMargin, top + 23}, kMessageSize, view_.isRefusal ? 1 : kBrightText);
+        write(sheet_, view_.message, {kMargin, top + 23}, fitting(view_.message, kMessageSize),
+              view_.isRefusal ? 1 : kBrightText);
         for (std::size_t i = 0; i < kHelp.size(); ++i)
             write(sheet_, std::string(kHelp[i]), {kMargin, top + 58 + 26 * double(i)}, kHelpSize, kText);
     }

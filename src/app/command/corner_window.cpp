@@ -10,6 +10,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fantascope::app {
@@ -35,7 +36,20 @@ std::string titleOf(const std::vector<OpenPlace>& places, std::size_t index) {
     return title;
 }
 
-Result<Corners> choosePlace(CornerChoice& choice, drivers::PictureWindow& window, Clock& clock,
+// Tells the repetitions of a held Enter, which takes one place and not the next one, too.
+class HeldEnter {
+public:
+    bool repeats(const ScreenEvent& event) {
+        if (event.key.name != Key::Name::Enter) return false;
+        const bool isDown = event.kind == ScreenEvent::Kind::KeyDown;
+        return std::exchange(held_, isDown) && isDown;
+    }
+
+private:
+    bool held_ = false;
+};
+
+Result<Corners> choosePlace(CornerChoice& choice, drivers::PictureWindow& window, HeldEnter& enter, Clock& clock,
                             const std::function<bool()>& goesOn) {
     std::optional<Time> shown;
     RgbaImage picture;
@@ -49,7 +63,7 @@ Result<Corners> choosePlace(CornerChoice& choice, drivers::PictureWindow& window
         clock.sleepUntil(clock.now() + kPollEvery);
         changed = false;
         while (const auto event = window.pollEvent()) {
-            choice.take(*event);
+            if (!enter.repeats(*event)) choice.take(*event);
             changed = true;
         }
         if (!window.absence().empty())
@@ -72,10 +86,11 @@ Result<void> checkCornerWindow() {
 Result<std::vector<Corners>> choosePlaces(const std::vector<OpenPlace>& places, Clock& clock,
                                           const std::function<bool()>& goesOn) {
     const auto window = TRY(drivers::PictureWindow::open(kWindowTitle, CornerPicture::kSize));
+    HeldEnter enter;
     std::vector<Corners> chosen;
     for (std::size_t i = 0; i < places.size(); ++i) {
         CornerChoice choice(places[i], titleOf(places, i));
-        chosen.push_back(TRY(choosePlace(choice, *window, clock, goesOn)));
+        chosen.push_back(TRY(choosePlace(choice, *window, enter, clock, goesOn)));
     }
     return chosen;
 }
