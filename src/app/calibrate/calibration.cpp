@@ -159,10 +159,10 @@ void dropMoved(LightSurvey& survey, const show::Site& site, std::vector<OutputCa
         const auto found = surveys.find(calibration.output);
         if (found == surveys.end()) continue;
         const show::Output& output = site.outputs[calibration.output];
-        const auto distance = survey.movedSince(calibration.output, *found->second, kStill);
+        const auto distance = survey.movedSince(calibration.output, *found->second, kMostMoved);
         if (!distance)
             calibration.note = fmt::format("whether something moved meanwhile is not known: {}", distance.error().message());
-        else if (*distance > kStill)
+        else if (*distance > kMostMoved)
             moved[output.canvas] = fmt::format(
                 "the light of '{}' has moved by {:.1f} px since it was measured; see that camera, projectors and surface "
                 "stand still, and calibrate again",

@@ -35,7 +35,7 @@ struct OutputCalibration {
 constexpr double kGoodRms = 1.0;
 // The farthest, projector pixels, that something may seem to have moved while outputs were
 // measured.
-constexpr double kStill = 0.5;
+constexpr double kMostMoved = 0.5;
 
 // Finds the warps and the light of some outputs of a site. An output that fails does not stop the
 // others. `wanted`: where canvases are to stand; without markers or a person, an output that is not
