@@ -13,7 +13,7 @@ template <class Condition>
 void eventually(const char* what, Condition condition) {
     SteadyClock clock;
     while (!condition()) {
-        FANTASCOPE_CHECK(clock.now() < std::chrono::seconds(30), what);
+        FANTASCOPE_CHECK(clock.now() < std::chrono::minutes(2), what);
         clock.sleepUntil(clock.now() + std::chrono::milliseconds(1));
     }
 }
