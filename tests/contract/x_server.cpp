@@ -29,6 +29,26 @@ Connection connectionTo(const std::string& name) {
     return connection;
 }
 
+// While it lives, a window of another program may vanish between two requests of a connection; by
+// default Xlib ends the process then. Errors of other connections go where they went before.
+class VanishingWindows {
+public:
+    explicit VanishingWindows(Display* display) {
+        display_ = display;
+        before_ = XSetErrorHandler(take);
+    }
+    ~VanishingWindows() { XSetErrorHandler(before_); }
+    VanishingWindows(const VanishingWindows&) = delete;
+    VanishingWindows& operator=(const VanishingWindows&) = delete;
+
+private:
+    static int take(Display* display, XErrorEvent* error) {
+        return display == display_ && error->error_code == BadWindow ? 0 : before_(display, error);
+    }
+    static inline Display* display_ = nullptr;
+    static inline XErrorHandler before_ = nullptr;
+};
+
 std::vector<std::vector<std::array<std::uint8_t, 3>>> rowsOf(Display* display, int first, int count) {
     const int width = DisplayWidth(display, DefaultScreen(display));  // up to date, because the connection is new
     XImage* const image = XGetImage(display, DefaultRootWindow(display), 0, first, static_cast<unsigned>(width),
@@ -47,6 +67,7 @@ std::vector<std::vector<std::array<std::uint8_t, 3>>> rowsOf(Display* display, i
 
 // Without a window manager every window is a child of the root. 0: there is none.
 Window windowTitled(Display* display, const std::string& title) {
+    const VanishingWindows vanishing(display);
     Window root = 0, parent = 0, *children = nullptr, found = 0;
     unsigned count = 0;
     XQueryTree(display, DefaultRootWindow(display), &root, &parent, &children, &count);
@@ -186,6 +207,7 @@ std::vector<std::vector<std::array<std::uint8_t, 3>>> XServer::rows() const {
 bool XServer::hasWindow(const std::string& title) const {
     const Connection connection = connectionTo(display_);
     const Window window = windowTitled(connection.get(), title);
+    const VanishingWindows vanishing(connection.get());
     XWindowAttributes attributes{};
     return window != 0 && XGetWindowAttributes(connection.get(), window, &attributes) != 0 && attributes.map_state == IsViewable;
 }
