@@ -10,9 +10,10 @@ namespace fantascope::vision {
 
 // How far a projector's light has moved over the camera's picture since a map was measured:
 // projector pixels along one axis, the median over blocks of the camera's picture, so that somebody
-// who stands before some of them does not matter. Movements above a quarter of `light.period()` are
-// told as such, but not by how much. Nothing: the map knows too little. `difference`: by camera
-// pixel, linear light: the picture of `light`'s first phase along `axis`, less its complement.
+// who stands before some of them does not matter. It is never more than half of `light.period()`,
+// and a movement by whole periods is not found. Nothing: the map knows too little. `difference`: by
+// camera pixel, linear light: the picture of `light`'s first phase along `axis`, less its
+// complement.
 // Thread: reentrant.
 std::optional<double> movedSince(const ProjectorMap& map, const StructuredLight& light, StructuredLight::Axis axis,
                                  const GreyImage& difference);

@@ -152,8 +152,7 @@ Result<void> checkUpright(OutputCalibration& calibration, const show::Site& site
 // Looks whether something has moved since the outputs were measured. If so, what the camera saw
 // before and after does not fit together, and all outputs of that canvas are refused and dropped
 // from `surveys`.
-void dropMoved(LightSurvey& survey, const show::Site& site, std::vector<OutputCalibration>& calibrations,
-               std::map<std::size_t, const LightSurvey::Output*>& surveys) {
+void dropMoved(LightSurvey& survey, const show::Site& site, std::vector<OutputCalibration>& calibrations, Surveys& surveys) {
     std::map<std::string, std::string> moved;  // by canvas: what is to be said
     for (OutputCalibration& calibration : calibrations) {
         const auto found = surveys.find(calibration.output);
@@ -161,7 +160,8 @@ void dropMoved(LightSurvey& survey, const show::Site& site, std::vector<OutputCa
         const show::Output& output = site.outputs[calibration.output];
         const auto distance = survey.movedSince(calibration.output, *found->second, kMostMoved);
         if (!distance)
-            calibration.note = fmt::format("whether something moved meanwhile is not known: {}", distance.error().message());
+            calibration.note =
+                fmt::format("whether something has moved since it was measured is not known: {}", distance.error().message());
         else if (*distance > kMostMoved)
             moved[output.canvas] = fmt::format(
                 "the light of '{}' has moved by {:.1f} px since it was measured; see that camera, projectors and surface "

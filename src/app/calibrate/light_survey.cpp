@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -352,20 +351,22 @@ Result<double> LightSurvey::movedSince(std::size_t output, const Output& found, 
         return std::make_shared<const RgbaImage>(
             light.picture(light.firstPhase(i / 2 == 0 ? Axis::Across : Axis::Down), i % 2 == 1, found.gamma));
     };
-    double least = std::numeric_limits<double>::infinity();
-    for (int look = 0; look < kLooks && least > still; ++look) {
+    std::optional<double> least;
+    for (int look = 0; look < kLooks && (!least || *least > still); ++look) {
         done_ = 0, share_ = 1, doing_ = "looking whether something has moved";
-        const std::vector<Taken> taken = TRY(take(output, 4, picture, 1));
-        double moved = 0;
-        for (std::size_t i = 0; i < taken.size(); i += 2) {
-            if (taken[i].frames == 0 || taken[i + 1].frames == 0) continue;
-            const GreyImage difference = lessOf(taken[i].light, taken[i + 1].light);
-            moved = std::hypot(moved,
-                               vision::movedSince(found.map, light, i == 0 ? Axis::Across : Axis::Down, difference).value_or(0));
-        }
-        least = std::min(least, moved);
+        const auto taken = take(output, 4, picture, 1);
+        if (!taken) return hooks_.goesOn() ? taken.error() : Error("the calibration was ended");
+        if (std::ranges::any_of(*taken, [](const Taken& one) { return one.frames == 0; })) continue;  // a picture was missed
+        const auto along = [&](Axis axis, std::size_t i) {
+            return vision::movedSince(found.map, light, axis, lessOf((*taken)[i].light, (*taken)[i + 1].light));
+        };
+        const auto across = along(Axis::Across, 0), down = along(Axis::Down, 2);
+        if (!across || !down) return Error("the camera sees too little of its light");
+        const double moved = std::hypot(*across, *down);
+        least = least ? std::min(*least, moved) : moved;
     }
-    return least;
+    if (!least) return Error("the camera missed the pictures that would tell");
+    return *least;
 }
 
 }  // namespace fantascope::app

@@ -52,7 +52,9 @@ public:
     Result<Output> survey(std::size_t output);
 
     // How far something has moved since an output was surveyed, projector pixels: the camera, the
-    // projector or the wall. Less than `still` is none. Errors as survey().
+    // projector or the wall. What is farther than `still` is looked at again, since somebody may
+    // pass.
+    // Error: the calibration was ended; the camera was lost, or saw too little to tell.
     Result<double> movedSince(std::size_t output, const Output& found, double still);
 
     // From a picture's light to its arrival here.

@@ -60,7 +60,7 @@ void declare(Command& command, Options& options) {
     command.add("--seed", options.seed, "Seed of the simulated site's noise").showDefault();
     command.footer(
         "Nothing may move but passers-by: what they disturb is shown again. Escape, q and Ctrl-C end it; outputs that are "
-        "measured by then count.");
+        "measured by then count, unless you were to choose their place in a window.");
 }
 
 Result<std::vector<std::size_t>> chosen(const show::Site& site, const std::vector<std::string>& names) {
