@@ -1,6 +1,7 @@
 #include "drivers/display/glfw_library.h"
 
 #include "drivers/display/lost_x_connection.h"
+#include "drivers/display/x_connecting.h"
 
 #include "core/log.h"
 
@@ -51,6 +52,7 @@ Result<std::shared_ptr<GlfwLibrary>> GlfwLibrary::shared() {
         if (library->lost()) return Error("the X server has ended");
         return library;
     }
+    auto connecting = connectingToX();
     int opened = GLFW_FALSE;
     if (_XDisplay* const connection = lostDuring([](void* result) { *static_cast<int*>(result) = glfwInit(); }, &opened)) {
         std::atomic<bool> lost = false;
@@ -58,6 +60,7 @@ Result<std::shared_ptr<GlfwLibrary>> GlfwLibrary::shared() {
         XCloseDisplay(connection);
         return Error("the X server has ended");
     }
+    connecting.unlock();
     if (opened != GLFW_TRUE) return Error(fmt::format("{}; set DISPLAY, or start an X server", whyGlfwFailed()));
     std::shared_ptr<GlfwLibrary> library(new GlfwLibrary);
     surviveLoss(glfwGetX11Display(), library->lost_);

@@ -1,5 +1,7 @@
 #include "drivers/display/x_screen.h"
 
+#include "drivers/display/x_connecting.h"
+
 #include <fmt/format.h>
 #include <xcb/dpms.h>
 #include <xcb/randr.h>
@@ -79,7 +81,9 @@ struct XScreen::Wakefulness {
 
 Result<std::unique_ptr<XScreen>> XScreen::open() {
     int number = 0;
+    auto connecting = connectingToX();
     xcb_connection_t* const connection = xcb_connect(nullptr, &number);
+    connecting.unlock();
     const auto refuse = [&](const std::string& why) {
         xcb_disconnect(connection);
         return Error(why);

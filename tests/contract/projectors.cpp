@@ -1,5 +1,7 @@
 #include "contract/projectors.h"
 
+#include "drivers/display/x_connecting.h"
+
 #include "core/check.h"
 
 #include <fmt/format.h>
@@ -106,7 +108,9 @@ Result<std::unique_ptr<Projectors>> Projectors::start() {
 }
 
 void Projectors::connect() {
+    auto connecting = drivers::connectingToX();
     connection_ = xcb_connect(nullptr, nullptr);
+    connecting.unlock();
     FANTASCOPE_CHECK(xcb_connection_has_error(connection_) == 0, "the X server is gone");
     root_ = xcb_setup_roots_iterator(xcb_get_setup(connection_)).data->root;
     (void)answer(connection_, xcb_randr_query_version_reply, xcb_randr_query_version(connection_, 1, 5));

@@ -1,5 +1,7 @@
 #include "contract/x_server.h"
 
+#include "drivers/display/x_connecting.h"
+
 #include "core/check.h"
 
 #include <X11/Xlib.h>
@@ -24,6 +26,7 @@ namespace {
 using Connection = std::unique_ptr<Display, int (*)(Display*)>;
 
 Connection connectionTo(const std::string& name) {
+    const auto connecting = drivers::connectingToX();
     Connection connection(XOpenDisplay(name.c_str()), XCloseDisplay);
     FANTASCOPE_CHECK(connection != nullptr, "the X server is gone");
     return connection;
