@@ -70,6 +70,7 @@ Result<void> PatternSearch::Options::check() const {
     declarePaper(bounds, copy.paper);
     declareShapes(bounds, copy);
     checkColours(bounds, colours);
+    bounds.number("changeCost", changeCost, 0, 10);
     for (Shape& shape : copy.shapes) {
         declareShape(bounds, shape);
         checkColours(bounds, shape.colours);

@@ -43,6 +43,11 @@ struct PatternSearch {
         // The refined method only.
         std::optional<Region> region;
 
+        // What a change must win to be worth it, as a share of a typical instance's pixels, 0 ..
+        // 10: the first change of a given instance, its removal, and a new instance. Above 0 the
+        // search changes a given pattern only where that helps much. The refined method only.
+        double changeCost = 0;
+
         // When to stop. The caller may stop the search as well, see AskStop.
         double targetZ = 0;                                // z_0: stop once z is below it, 0..1
         int iterations = std::numeric_limits<int>::max();  // stop after so many, >= 0
@@ -164,9 +169,10 @@ struct PatternSearch {
     // `guide`: compared values (comparedGuide), in any resolution. `pattern`: has seed, shapes (at
     // least one), motion and everything else that the search leaves alone; its resolution,
     // instances and groups are filled in. The refined method starts from its instances, if any;
-    // those that remain keep their id, colour and group. The result depends on these arguments and
-    // the number of iterations alone, not on `threads`. `options` must pass check(). Thread:
-    // reentrant; askStop and plan are called on the calling thread.
+    // those that remain keep their id, colour and group. One that is moved to another part of the
+    // picture is another one, with an id of its own. The result depends on these arguments and the
+    // number of iterations alone, not on `threads`. `options` must pass check(). Thread: reentrant;
+    // askStop and plan are called on the calling thread.
     static Found run(const GreyImage& guide, ShapePattern pattern, const Options& options, int threads, const AskStop& askStop,
                      const Plan& plan = {});
 };

@@ -53,6 +53,7 @@ public:
           counts_(space.shapeCount()) {
         const glm::dvec2 sizes = space.sizes();
         typicalArea_ = std::pow(space.meanSide() * space.pixels().y, 2) * sizes.x * sizes.y;
+        changeCost_ = space.options().changeCost * typicalArea_;
         continues_ = !given.empty();
         if (continues_)
             resume(std::move(given));
@@ -141,6 +142,7 @@ private:
             if (isInRegion(instance)) {
                 instances_.push_back(instance);
                 drawn_.push_back(mask_);
+                asGiven_.push_back(true);
             } else {
                 kept_.push_back(instance);
             }
@@ -163,16 +165,17 @@ private:
         if (kind < 0.03 || instances_.empty()) {
             if (instances_.size() + kept_.size() >= maxInstances_) return;
             place(newInstance());
-            if (isGood(kNothing, mask_, -kWorth)) keepNew();
+            if (isGood(kNothing, mask_, -kWorth - changeCost_)) keepNew();
             return;
         }
         const std::size_t index = rng_.below(static_cast<std::uint32_t>(instances_.size()));
         if (kind < 0.06) {
-            if (isGood(drawn_[index], kNothing, kWorth)) forget(index);
+            // Without a new instance its cost is saved.
+            if (isGood(drawn_[index], kNothing, kWorth + (asGiven_[index] ? -changeCost_ : changeCost_))) forget(index);
         } else if (kind < 0.10) {
             ShapeInstance elsewhere = newInstance();
-            elsewhere.id = instances_[index].id;
-            replace(index, elsewhere);
+            elsewhere.id = continues_ ? nextId_ : instances_[index].id;
+            if (replace(index, elsewhere) && continues_) ++nextId_;
         } else if (kind < 0.40) {
             ShapeInstance shifted = instances_[index];
             shifted.centre += shifted.size * glm::dvec2(shift_.amount(rng_), shift_.amount(rng_));
@@ -208,8 +211,9 @@ private:
     // Replaces an instance by another one if that is good. True: it did.
     bool replace(std::size_t index, const ShapeInstance& instance) {
         place(space_.allowed(instance));
-        if (!isInRegion(proposed_) || !isGood(drawn_[index], mask_, 0)) return false;
+        if (!isInRegion(proposed_) || !isGood(drawn_[index], mask_, asGiven_[index] ? -changeCost_ : 0)) return false;
         score_.accept(drawn_[index], mask_);
+        asGiven_[index] = false;
         std::swap(drawn_[index], mask_);
         --counts_[instances_[index].shape], ++counts_[proposed_.shape];
         instances_[index] = proposed_;
@@ -234,14 +238,17 @@ private:
         instances_.back().id = nextId_++;
         ++counts_[proposed_.shape];
         drawn_.push_back(mask_);
+        asGiven_.push_back(false);
     }
     void forget(std::size_t index) {
         score_.accept(drawn_[index], kNothing);
         --counts_[instances_[index].shape];
         std::swap(instances_[index], instances_.back());
         std::swap(drawn_[index], drawn_.back());
+        asGiven_[index] = asGiven_.back();
         instances_.pop_back();
         drawn_.pop_back();
+        asGiven_.pop_back();
     }
 
     const SearchSpace& space_;
@@ -250,6 +257,7 @@ private:
     Rng rng_;
     const std::size_t maxInstances_;
     double typicalArea_ = 1;  // pixels
+    double changeCost_ = 0;   // pixels
     bool continues_ = false;  // it started from given instances
     double temperature_ = 0;
     // In sizes of the instance; in radians (turn_, tilt_); as natural logarithms of the size's
@@ -257,6 +265,7 @@ private:
     Step shift_{0.3}, turn_{0.8}, tilt_{0.3}, scale_{0.3};
     std::vector<ShapeInstance> instances_;  // inside the region: may change
     std::vector<PixelMask> drawn_;          // of instances_
+    std::vector<bool> asGiven_;             // of instances_: given, and not changed yet
     std::vector<ShapeInstance> kept_;       // outside the region
     std::vector<std::uint32_t> counts_;     // instances of each shape, in both
     std::uint32_t nextId_ = 1;

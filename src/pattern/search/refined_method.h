@@ -14,6 +14,7 @@ namespace fantascope::pattern {
 // sum of detail, tone and overlap with the weights of Options::Refined. An iteration is 1000 moves.
 //
 // Given instances are the start, and the search then begins cold, to preserve what is good. With
+// Options::changeCost, a change is accepted only if the goal falls by that much more. With
 // Options::region, instances whose centre lies outside stay as they are. Fills `instances`, except
 // the colours and groups of new ones, which come last.
 PatternSearch::Summary searchRefined(const SearchSpace& space, std::vector<ShapeInstance>& instances,
