@@ -59,19 +59,6 @@ cv::Mat blurredBy(const cv::Mat& image, double sigma) {
     return soft;
 }
 
-// The frame's light where the cells are.
-cv::Mat shownAt(const GreyImage& light, const Homography& shownFromPlace) {
-    cv::Mat x(light.height(), light.width(), CV_32F), y(light.height(), light.width(), CV_32F), shown;
-    for (int row = 0; row < x.rows; ++row)
-        for (int column = 0; column < x.cols; ++column) {
-            const glm::dvec2 at = shownFromPlace({column + 0.5, row + 0.5});
-            x.at<float>(row, column) = static_cast<float>(at.x - 0.5);
-            y.at<float>(row, column) = static_cast<float>(at.y - 0.5);
-        }
-    cv::remap(viewOf(light), shown, x, y, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
-    return shown;
-}
-
 // `lit`: the picture's light on the surface, as the camera gets it.
 Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, int left, int top) {
     Block block;
@@ -232,6 +219,20 @@ Between leastBetween(const std::array<Fit, kBlurs.size()>& fits, std::size_t bes
 
 }  // namespace
 
+GreyImage placedLight(const GreyImage& light, const Homography& shownFromPlace) {
+    cv::Mat x(light.height(), light.width(), CV_32F), y(light.height(), light.width(), CV_32F);
+    for (int row = 0; row < x.rows; ++row)
+        for (int column = 0; column < x.cols; ++column) {
+            const glm::dvec2 at = shownFromPlace({column + 0.5, row + 0.5});
+            x.at<float>(row, column) = static_cast<float>(at.x - 0.5);
+            y.at<float>(row, column) = static_cast<float>(at.y - 0.5);
+        }
+    GreyImage placed(light.width(), light.height());
+    cv::Mat out = viewOf(placed);
+    cv::remap(viewOf(light), out, x, y, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+    return placed;
+}
+
 void LightMeter::lampsChange() {
     if (other_.pictures >= kLearningLight) other_.kept = other_.now;
     other_.pictures = 0;
@@ -239,7 +240,8 @@ void LightMeter::lampsChange() {
 
 // What a sight shows at every blur, and which blur and strengths explain it.
 struct LightMeter::Comparison {
-    cv::Mat shown;  // the frame's light
+    GreyImage placed;  // the frame's light
+    cv::Mat shown = viewOf(placed);
     std::array<Blocks, kBlurs.size()> blocks{};
     Telling telling;
     std::size_t usualBlur = 0, bestBlur = 0;  // indices into kBlurs
@@ -260,7 +262,7 @@ private:
 };
 
 LightMeter::Comparison LightMeter::compare(const Sight& sight) const {
-    Comparison now{.shown = shownAt(sight.light, sight.shownFromPlace), .telling = Telling({}, 1)};
+    Comparison now{.placed = placedLight(sight.light, sight.shownFromPlace), .telling = Telling({}, 1)};
     const cv::Mat surface = viewOf(sight.surface);
     for (std::size_t i = 0; i < kBlurs.size(); ++i) now.blocks[i] = blocksOf(sight, blurredBy(now.shown, kBlurs[i]).mul(surface));
     now.usualBlur = now.bestBlur = nearestBlur(usual_.blur);

@@ -20,6 +20,10 @@ struct OutputLight {
     double hidden = 0;             // share of the picture that has not looked as usual for long
 };
 
+// The light of a frame at the places where the cells are: `light` is by cells of the frame, and
+// what was at a place is shown at shownFromPlace. 0 beyond the frame.
+GreyImage placedLight(const GreyImage& light, const Homography& shownFromPlace);
+
 // Measures an output's light on the wall while the show runs: how strong and how sharp its picture
 // is, and how much other light lies over it. The picture is divided into blocks. In a block, only
 // what differs from its mean tells how strong and sharp the picture is, so smooth light of lamps

@@ -61,6 +61,7 @@ struct WallWatch::Output {
     double score = 0;        // as usual
     int sinceWide = 99;      // pictures since the last wide search
     LightMeter meter{};
+    WallReflectance reflectance{};
     GreyImage alone{};  // by cell: 1 where no other output gives light
     int looks = 0;      // pictures in which it was found
     // The picture that was looked at last; empty: it says nothing of this output.
@@ -81,6 +82,12 @@ struct WallWatch::Output {
     std::optional<Registration> find(const GreyImage& seen, const GreyImage& light, const GreyImage& mask);
     std::optional<OutputSight> look(const GreyImage& seen, const GreyImage& light, const GreyImage& mask);
     std::optional<OutputLight> measure();
+    // Its full light where no other output gives any.
+    GreyImage fullAlone() const {
+        GreyImage lit = surface.full();
+        for (std::size_t p = 0; p < lit.pixels().size(); ++p) lit.pixels()[p] *= alone.pixels()[p];
+        return lit;
+    }
 };
 
 // Follows the picture. A picture that is not found near its last place is searched for more widely,
@@ -273,9 +280,23 @@ void WallWatch::findSurroundings() {
 std::optional<OutputLight> WallWatch::Output::measure() {
     constexpr int kLearnsSurface = 50;  // pictures
     if (light.empty() || score == 0 || (!isSurveyed && looks < kLearnsSurface)) return std::nullopt;
-    GreyImage full = surface.full();
-    for (std::size_t p = 0; p < full.pixels().size(); ++p) full.pixels()[p] *= alone.pixels()[p];
-    return meter.measure({seen.light, full, light, seen.mask, now}, isFound);
+    return meter.measure({seen.light, fullAlone(), light, seen.mask, now}, isFound);
+}
+
+bool WallWatch::measureSurface(std::size_t output) {
+    Output* const watched = outputs_[output].get();
+    if (watched == nullptr || !watched->isSurveyed || !watched->isFound || watched->light.empty()) return false;
+    return watched->reflectance.add(
+        {watched->seen.light, watched->fullAlone(), watched->light, watched->seen.mask, watched->now});
+}
+
+WallChange WallWatch::surfaceChange(std::size_t output) const {
+    const Output& watched = *outputs_[output];
+    return watched.reflectance.change(watched.view.cellSize());
+}
+
+void WallWatch::forgetSurface(std::size_t output) {
+    if (outputs_[output]) outputs_[output]->reflectance.forget();
 }
 
 WallLight WallWatch::measureLight() {

@@ -5,6 +5,7 @@
 #include "vision/watch/output_view.h"
 #include "vision/watch/registration.h"
 #include "vision/watch/surroundings.h"
+#include "vision/watch/wall_reflectance.h"
 
 #include "media/image.h"
 
@@ -73,6 +74,12 @@ public:
     // Measures the light in the picture that was looked at last, which takes about as long as ten
     // looks.
     WallLight measureLight();
+    // Measures by the picture that was looked at last what the surface gives back of a surveyed
+    // output. False: the picture says nothing of that.
+    bool measureSurface(std::size_t output);
+    // What those pictures say. The output is watched and surveyed.
+    WallChange surfaceChange(std::size_t output) const;
+    void forgetSurface(std::size_t output);
     // Whether the picture that was looked at last is upside down: turned, it shows an output that
     // it does not show as it is.
     bool isUpsideDown() const;
