@@ -32,6 +32,7 @@ struct Moment {
     Time show{};     // show time
     Time ofLayer{};  // time since the source came onto the output
     Wind wind{};
+    show::PatternExchange exchange{};  // which patterns of the source are seen
 };
 
 // One picture source as it is drawn on one output. Thread: the context's.

@@ -4,6 +4,7 @@
 
 #include "core/check.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace fantascope::render {
@@ -26,6 +27,8 @@ Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& op
     renderer->composer_ = TRY(gpu::Composer::create(place.size, options.samples, renderer->tools_.programs, options.gain.get()));
     renderer->tools_.samples = renderer->composer_->samples();
     renderer->size_ = place.size;
+    renderer->place_ = place;
+    renderer->canvasAspect_ = options.projection.canvasAspect;
     renderer->overlay_ = TRY(gpu::Overlay::create(place.size, renderer->tools_.programs));
     TRY(renderer->composer_->follow(options.projection.light, options.blend));
     for (const auto& [id, source] : sources) {
@@ -37,9 +40,12 @@ Result<std::unique_ptr<OutputRenderer>> OutputRenderer::create(const Options& op
 }
 
 Result<void> OutputRenderer::follow(const Projection& projection, const std::shared_ptr<const BlendMap>& blend) {
-    const CanvasPlace place{projection.size, projection.warp};
-    tools_.bend.follow(place);
-    for (const auto& [id, shown] : sources_) shown.drawn->follow(placeOn(place, placeOf(shown.source, projection.canvasAspect)));
+    place_ = {projection.size, projection.warp};
+    canvasAspect_ = projection.canvasAspect;
+    tools_.bend.follow(place_);
+    const auto follow = [&](const Shown& shown) { shown.drawn->follow(placeOn(place_, placeOf(shown.source, canvasAspect_))); };
+    for (const auto& [id, shown] : sources_) follow(shown);
+    for (const Exchanged& exchanged : exchanges_) follow(exchanged.shown);
     return composer_->follow(projection.light, blend);
 }
 
@@ -48,6 +54,30 @@ Result<void> OutputRenderer::setUp(const RgbaImage* overlay, const RgbaImage* ca
     card_.reset();
     if (card != nullptr) card_ = TRY(makeDrawnCard(ImageSource{std::make_shared<const RgbaImage>(*card)}, size_, tools_));
     return {};
+}
+
+Result<void> OutputRenderer::exchange(show::SourceId source, int number, const PatternSource& pattern) {
+    const Shown* const own = sources_.find(source);
+    const auto isIt = [&](const Exchanged& each) {
+        return each.source == source && each.number == number && each.pattern == pattern.pattern;
+    };
+    if (own == nullptr || std::ranges::any_of(exchanges_, isIt)) return {};
+    std::erase_if(exchanges_, [&](const Exchanged& each) {
+        return each.source == source && (each.number < number - 1 || each.number == number);
+    });
+    const PictureSource picture(pattern, own->source.fit);
+    auto drawn = TRY(makeDrawnSource(picture, placeOn(place_, placeOf(picture, canvasAspect_)), tools_));
+    exchanges_.push_back({source, number, pattern.pattern, {picture, std::move(drawn)}});
+    return gpu::checkMemory();
+}
+
+// What shows a layer: the exchange that it names, or the source itself.
+DrawnSource& OutputRenderer::drawnOf(const show::LayerState& layer) {
+    for (const Exchanged& exchanged : exchanges_)
+        if (exchanged.source == layer.source && exchanged.number == layer.exchange.number) return *exchanged.shown.drawn;
+    const Shown* const shown = sources_.find(layer.source);
+    FANTASCOPE_CHECK(shown != nullptr, "a layer shows a source that the renderer was not given");
+    return *shown->drawn;
 }
 
 Result<void> OutputRenderer::warmUp(unsigned framebuffer) {
@@ -71,10 +101,8 @@ void OutputRenderer::draw(const show::OutputState& state, const Wind& wind, Time
     const auto lay = [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const show::LayerState& layer = state.layers[i];
-            const Shown* const shown = sources_.find(layer.source);
-            FANTASCOPE_CHECK(shown != nullptr, "a layer shows a source that the renderer was not given");
             if (layer.opacity <= 0) continue;
-            shown->drawn->paint({time, time - layer.begun, wind}, composer_->nextPicture());
+            drawnOf(layer).paint({time, time - layer.begun, wind, layer.exchange}, composer_->nextPicture());
             composer_->lay(layer.opacity, layer.blend);
         }
     };

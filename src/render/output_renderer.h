@@ -19,6 +19,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace fantascope::render {
 
@@ -61,6 +62,12 @@ public:
     void correctLight(float share) { lightShare_ = share; }
     // As Composer::moveMaps: for a warp that follows a projector that has moved.
     void moveMaps(const std::optional<Homography>& moved) { composer_->moveMaps(moved); }
+    // Makes ready to draw an exchange of a source's pattern: `pattern` has its rests. Layers that
+    // name it show it from then on; until then, and if it was never made ready, they show the
+    // source's own pattern. Exchanges before the one before are dropped, and one of the same number
+    // with another pattern. Does nothing if it is ready, or if there is no such source.
+    // Error: OpenGL has no memory left.
+    Result<void> exchange(show::SourceId source, int number, const PatternSource& pattern);
     // Draws every source once and every combination of layers, so that nothing is compiled during
     // the show. Error: OpenGL has no memory left.
     Result<void> warmUp(unsigned framebuffer);
@@ -79,9 +86,21 @@ private:
         std::unique_ptr<DrawnSource> drawn;
     };
 
+    // An exchange of a source's pattern.
+    struct Exchanged {
+        show::SourceId source;
+        int number;
+        std::shared_ptr<const pattern::ShapePattern> pattern;
+        Shown shown;
+    };
+    DrawnSource& drawnOf(const show::LayerState& layer);
+
     DrawingTools tools_;
     std::optional<gpu::Composer> composer_;
     show::BySource<Shown> sources_;
+    std::vector<Exchanged> exchanges_;
+    CanvasPlace place_;        // of the canvas
+    double canvasAspect_ = 0;  // as Projection has it
     glm::ivec2 size_{0};
     float lightShare_ = 1;
     std::optional<gpu::Overlay> overlay_;

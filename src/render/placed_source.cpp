@@ -61,9 +61,10 @@ bool PlacedSource::mirrored() const {
     return glm::determinant(clipFromCanvas_) > 0;
 }
 
-void PlacedSource::place(Time time, const Wind& wind, std::span<gpu::Instance> out) {
+void PlacedSource::place(Time time, const Wind& wind, const show::PatternExchange& exchange, std::span<gpu::Instance> out) {
     FANTASCOPE_CHECK(out.size() == order_.size(), "there is one place per instance");
     if (source_.motion) source_.motion->posesAt(time, wind, poses_);
+    if (source_.rests) source_.rests->mix(exchange, poses_);
 
     // Each instance has its own slice of the depths 0 .. 1, the last instance the nearest. Clip z
     // is that depth times the warp's w, so the map from space to clip space is projective, and

@@ -34,9 +34,9 @@ public:
     // The edges of the canvas's shown part. A point in clip space (x, y, z, w) is inside if (x, y,
     // w) has no negative dot product with any of them, before a mesh bends it.
     const std::array<glm::vec3, 4>& canvasEdges() const { return canvasEdges_; }
-    // Fills `out` with all instances at show time `time`, in the wind of that time. Does not
-    // allocate.
-    void place(Time time, const Wind& wind, std::span<gpu::Instance> out);
+    // Fills `out` with all instances at show time `time`, in the wind of that time. `exchange`: the
+    // shares of the patterns, if the source is one of an exchange. Does not allocate.
+    void place(Time time, const Wind& wind, const show::PatternExchange& exchange, std::span<gpu::Instance> out);
 
 private:
     PatternSource source_;

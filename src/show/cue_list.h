@@ -27,6 +27,7 @@ struct CueList {
     Time goInterval{};         // after a cue was entered, GO is ignored for this long
     double farthestShift = 0;  // a correction that moves a corner of a projector's picture farther is ignored, pixels
     double shiftSpeed = 1;     // of the fastest corner, pixels per second
+    Time exchangeFade{};       // from one pattern of a source to the next
     Time blackoutFade{};       // from full light to none and back
     std::uint64_t seed = 1;    // of the show's own randomness: its gusts
 };

@@ -61,6 +61,15 @@ struct Teller {
         return fmt::format("the light of '{}' could be evened out (corrections: light: {{mode: automatic}} in the site file): {}",
                            light.canvas, figures);
     }
+    std::string operator()(const event::PatternFitted& fitted) const {
+        const double percent = 100 * (1 - fitted.toneAfter / fitted.toneBefore);
+        if (!fitted.applied)
+            return fmt::format(
+                "{}: the pattern would read {:.0f} % better on this wall (corrections: pattern: {{mode: automatic}})",
+                fitted.source, percent);
+        return fmt::format("{}: the pattern is fitted to this wall and reads {:.0f} % better: {} shapes come, {} go, {} change",
+                           fitted.source, percent, fitted.made, fitted.removed, fitted.changed);
+    }
     std::string operator()(const event::SettingUpBegan&) const {
         return "setting up the outputs: the picture lists the keys, e ends it";
     }

@@ -83,6 +83,14 @@ struct LightCorrected {
     bool applied = false;               // false: advice
     std::string trouble;                // why there is none; empty: there is one
 };
+// How much better a source's pattern would read on the wall, or reads from now on.
+struct PatternFitted {
+    std::string source;
+    double toneBefore = 0, toneAfter = 0;            // difference from the guide, seen from afar, of full light
+    double kept = 1;                                 // share of the picture's light that is left
+    std::size_t made = 0, removed = 0, changed = 0;  // instances
+    bool applied = false;                            // false: advice
+};
 struct SettingUpBegan {};
 struct SettingUpEnded {
     bool saved = false;
@@ -96,7 +104,7 @@ struct SiteNotSaved {
 
 using What = std::variant<InputDecided, CueEntered, BlackoutChanged, ScheduleEnded, QuitAsked, FaultBegan, FaultEnded,
                           SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear,
-                          CauseBegan, CauseEnded, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+                          CauseBegan, CauseEnded, PatternFitted, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

@@ -13,12 +13,14 @@
 namespace fantascope::show {
 namespace {
 
-constexpr std::array<std::string_view, 9> kKinds = {"go",    "back",   "jump",    "blackout",   "dark",
-                                                    "light", "revise", "correct", "corrections"};
+constexpr std::array<std::string_view, 10> kKinds = {"go",    "back",   "jump",    "blackout", "dark",
+                                                     "light", "revise", "correct", "exchange", "corrections"};
 constexpr std::array<std::string_view, 7> kSources = {"start",  "controller", "contact", "terminal",
                                                       "screen", "schedule",   "camera"};
 static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Corrections) + 1);
 static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::Camera) + 1);
+
+bool hasRevision(Input::Kind kind) { return kind == Input::Kind::Revise || kind == Input::Kind::Exchange; }
 
 std::vector<std::string_view> wordsOf(std::string_view line) {
     std::vector<std::string_view> words;
@@ -67,6 +69,8 @@ std::string_view nameOf(Outcome outcome) {
             return "ignored: it is for other outputs, lamps or relays";
         case Outcome::NoSuchOutput:
             return "ignored: there is no such output";
+        case Outcome::NoSuchPattern:
+            return "ignored: there is no such pattern";
         case Outcome::TooFar:
             return "ignored: the site file allows no correction that far";
         case Outcome::CorrectionsOff:
@@ -77,7 +81,7 @@ std::string_view nameOf(Outcome outcome) {
 
 std::string lineOf(const Input& input) {
     std::string line = fmt::format("{} {} {} {} {}", input.at.count(), kKinds[static_cast<std::size_t>(input.kind)],
-                                   input.kind == Input::Kind::Revise ? input.revision : input.cue,
+                                   hasRevision(input.kind) ? input.revision : input.cue,
                                    kSources[static_cast<std::size_t>(input.source)], input.which);
     if (input.kind == Input::Kind::Correct)
         for (const glm::vec2 corner : input.shift) line += fmt::format(" {} {}", corner.x, corner.y);
@@ -92,7 +96,7 @@ Result<Input> inputOf(std::string_view line) {
     if (words.size() != wanted) return Error(fmt::format("an input has {} words, here are {}", wanted, words.size()));
     input.at = Time(TRY(numberOf<Time::rep>(words[0])));
     input.kind = TRY(choiceOf<Input::Kind>(words[1], kKinds));
-    (input.kind == Input::Kind::Revise ? input.revision : input.cue) = TRY(numberOf<int>(words[2]));
+    (hasRevision(input.kind) ? input.revision : input.cue) = TRY(numberOf<int>(words[2]));
     input.source = TRY(choiceOf<Input::Source>(words[3], kSources));
     input.which = TRY(numberOf<int>(words[4]));
     if (input.kind == Input::Kind::Correct)

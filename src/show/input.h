@@ -23,6 +23,7 @@ struct Input {
         Light,       // end the blackout, if there is one
         Revise,      // continue with cue list `revision`
         Correct,     // move the picture of output `which` to `shift`
+        Exchange,    // exchange `revision` of the source with the id `which` (PatternCourses)
         Corrections  // toggle: take all corrections back and ignore further ones, or allow them again
     };
     // Where the input came from.
@@ -33,14 +34,14 @@ struct Input {
         Terminal,    // a key at the terminal
         Screen,      // a key at a projector's window
         Schedule,    // GO by the schedule of a rehearsal without an operator
-        Camera       // what the camera sees of output `which`
+        Camera       // what the camera sees of output, or source, `which`
     };
     Time at{};  // show time
     Kind kind = Kind::Go;
     int cue = 0;  // only for Jump: index into CueList::cues
     Source source = Source::Start;
     int which = 0;
-    int revision = 0;      // only for Revise: a number that InputLog::add() returned
+    int revision = 0;      // for Revise: a number that InputLog::add() returned; for Exchange: that of the exchange
     PictureShift shift{};  // only for Correct
     friend bool operator==(const Input&, const Input&) = default;
 };
@@ -55,14 +56,15 @@ enum class Outcome {
     NoSuchRevision,
     OtherSite,
     NoSuchOutput,
+    NoSuchPattern,
     TooFar,
     CorrectionsOff
 };
 // The outcome in words for the operator: "taken", "ignored: ...".
 std::string_view nameOf(Outcome outcome);
 
-// One line, without its end: show time in nanoseconds, kind, cue (of Revise: the revision), source,
-// which, of Correct also the shift: "12500000000 jump 3 terminal 0".
+// One line, without its end: show time in nanoseconds, kind, cue (of Revise and Exchange: the
+// revision), source, which, of Correct also the shift: "12500000000 jump 3 terminal 0".
 std::string lineOf(const Input& input);
 // Reads a line that lineOf() wrote. Error: what is wrong with the line.
 Result<Input> inputOf(std::string_view line);

@@ -141,9 +141,14 @@ Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revis
         case Input::Kind::Correct:
             if (const Outcome outcome = correct(input, *now.list, at); outcome != Outcome::Taken) return outcome;
             break;
+        case Input::Kind::Exchange:
+            if (const Outcome outcome = exchange(input, *now.list, at); outcome != Outcome::Taken) return outcome;
+            break;
         case Input::Kind::Corrections:
             corrections_.push_back(at);
-            if (!correctsAt(at)) shifts_.takeBack(at, now.list->shiftSpeed);
+            if (correctsAt(at)) break;
+            shifts_.takeBack(at, now.list->shiftSpeed);
+            patterns_.takeBack(at, now.list->exchangeFade);
             break;
     }
     taken_.push_back(at);
@@ -155,6 +160,14 @@ Outcome Playback::correct(const Input& input, const CueList& list, Time at) {
     if (!correctsAt(at)) return Outcome::CorrectionsOff;
     if (farthestOf(input.shift) > list.farthestShift) return Outcome::TooFar;
     shifts_.want(static_cast<std::size_t>(input.which), input.shift, at, list.shiftSpeed);
+    return Outcome::Taken;
+}
+
+Outcome Playback::exchange(const Input& input, const CueList& list, Time at) {
+    const SourceId source{static_cast<std::uint32_t>(input.which)};
+    if (!correctsAt(at)) return Outcome::CorrectionsOff;
+    if (!sources_.contains(source) || !patterns_.exchange(source, input.revision, at, list.exchangeFade))
+        return Outcome::NoSuchPattern;
     return Outcome::Taken;
 }
 
@@ -284,6 +297,8 @@ void Playback::stateAt(Time time, ShowState& out) const {
     out.shifts.resize(entry.outputs.size());
     for (std::size_t output = 0; output < out.shifts.size(); ++output) out.shifts[output] = shifts_.at(output, time);
     out.corrects = correctsAt(time);
+    for (OutputState& output : out.outputs)
+        for (LayerState& layer : output.layers) layer.exchange = patterns_.at(layer.source, time);
     const Shutter* shutter = lastBy(time, shutters_);
     out.blackout = shutter && shutter->dark;
     if (const float light = lightAt(time); light < 1) dim(out, light);

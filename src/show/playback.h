@@ -3,6 +3,7 @@
 #include "show/course.h"
 #include "show/cue_list.h"
 #include "show/input.h"
+#include "show/pattern_exchange.h"
 #include "show/picture_shift.h"
 #include "show/show_state.h"
 #include "show/wind.h"
@@ -38,6 +39,7 @@ namespace fantascope::show {
 //   what is seen stays until an input comes. GO then enters the cue after the nearest previous one that is still there. The
 //   past does not change.
 // - A correction moves an output's picture to a shift at the list's `shiftSpeed`. It does not depend on cues.
+// - An exchange brings another pattern of a source within the list's `exchangeFade`. It does not depend on cues either.
 //
 // Thread: const functions are reentrant. The others are bound to one thread at a time, and no const
 // function may run beside them.
@@ -118,6 +120,7 @@ private:
     void put(Entry entry);
     void followOn();
     Outcome correct(const Input& input, const CueList& list, Time at);
+    Outcome exchange(const Input& input, const CueList& list, Time at);
     Outcome revise(std::shared_ptr<const CueList> list, Time at);
     Entry entered(const std::shared_ptr<const CueList>& list, int cue, Time at) const;
     void setOut(Entry& entry, const Look& look, const std::vector<WindWish>& winds, Time fade) const;
@@ -134,6 +137,7 @@ private:
     std::vector<Entry> entries_;     // by time, future ones last; the first one is the dark before any cue
     std::vector<Shutter> shutters_;  // by time
     ShiftCourses shifts_;
+    PatternCourses patterns_;
     std::vector<Time> corrections_;  // when corrections were forbidden and allowed, in turn
     std::vector<Time> taken_;        // when each input took effect
     Time newest_ = Time::min();      // the latest time of all inputs, including ignored ones

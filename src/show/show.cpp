@@ -308,6 +308,7 @@ Result<CueList> Show::bind(const Site& site) const {
     list.seed = seed;
     list.farthestShift = site.corrections.geometry.farthest;
     list.shiftSpeed = site.corrections.geometry.speed;
+    list.exchangeFade = fromSeconds(site.corrections.pattern.fade);
     return list;
 }
 

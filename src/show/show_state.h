@@ -2,6 +2,7 @@
 // The show's only result: what is seen at one moment. Renderer and lighting read it and send
 // nothing back.
 
+#include "show/pattern_exchange.h"
 #include "show/picture_shift.h"
 #include "show/source_id.h"
 
@@ -26,7 +27,8 @@ struct LayerState {
     SourceId source;
     float opacity = 0;  // 0..1, in linear light
     Blend blend = Blend::Add;
-    Time begun{};  // show time at which the source came onto the output; a video begins there
+    Time begun{};                // show time at which the source came onto the output; a video begins there
+    PatternExchange exchange{};  // which of its patterns are seen
     friend bool operator==(const LayerState&, const LayerState&) = default;
 };
 

@@ -58,6 +58,10 @@ TEST(Events, say_one_sentence_each) {
               "light would be left; 8 % of its places stay darker and 2 % brighter than the others");
     EXPECT_EQ(said(event::LightCorrected{"wall", 1, 0, 0, true, "it was not surveyed"}),
               "the light of 'wall' is not evened out: it was not surveyed");
+    EXPECT_EQ(said(event::PatternFitted{"leaves", 0.05, 0.031, 0.9, 12, 3, 20, false}),
+              "leaves: the pattern would read 38 % better on this wall (corrections: pattern: {mode: automatic})");
+    EXPECT_EQ(said(event::PatternFitted{"leaves", 0.05, 0.031, 0.9, 12, 3, 20, true}),
+              "leaves: the pattern is fitted to this wall and reads 38 % better: 12 shapes come, 3 go, 20 change");
     EXPECT_EQ(said(event::SettingUpBegan{}), "setting up the outputs: the picture lists the keys, e ends it");
     EXPECT_EQ(said(event::SettingUpEnded{true}), "the outputs are set up");
     EXPECT_EQ(said(event::SettingUpEnded{false}), "the outputs are set up but not written to the file: e, then w");

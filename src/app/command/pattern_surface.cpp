@@ -29,7 +29,7 @@ Result<std::shared_ptr<const GreyImage>> readPatternSurface(const std::string& p
     const std::size_t output = TRY(outputNamed(site, place.substr(colon + 1)));
     const double aspect = double(guide.width()) / guide.height();
     const glm::ivec2 size(std::max(1L, std::lround(kRows * aspect)), kRows);
-    GreyImage surface = TRY(surfaceLight(site, output, aspect, Fit::Contain, size).in("--surface " + place));
+    GreyImage surface = TRY(canvasSurface(site, output, aspect, Fit::Contain, size).in("--surface " + place)).light();
     const double white = pattern::reachableWhite(surface, resized(guide, size.x, size.y), kMissing);
     if (white <= 0) return Error(fmt::format("--surface {}: the camera saw no light where the guide is lit", place));
     for (float& light : surface.pixels()) light = static_cast<float>(light / white);

@@ -148,6 +148,23 @@ FrameLoop::Output* FrameLoop::leader() {
     return first == outputs_.end() ? nullptr : &*first;
 }
 
+void FrameLoop::makeReady(show::SourceId source, int number, const render::PatternSource& pattern) {
+    std::erase_if(made_, [&](const Exchange& each) {
+        return each.source == source && (each.number < number - 1 || each.number >= number);
+    });
+    made_.push_back({source, number, pattern});
+    exchanges_.writable() = made_;
+    exchanges_.publish();
+}
+
+void FrameLoop::takeExchanges(Output& output) {
+    if (output.exchanges == version_ || std::exchange(hasTaken_, true)) return;
+    output.exchanges = version_;
+    for (const Exchange& each : exchanges_.value())
+        if (const auto made = output.renderer->exchange(each.source, each.number, each.pattern); !made)
+            tell(unfollowed_, output, "its new pattern cannot be drawn: " + made.error().message());
+}
+
 Result<void> FrameLoop::makeRenderer(Output& output, const Projection& projection,
                                      const std::shared_ptr<const render::BlendMap>& blend) {
     const render::OutputRenderer::Options options{
@@ -156,6 +173,7 @@ Result<void> FrameLoop::makeRenderer(Output& output, const Projection& projectio
     TRY(renderer->warmUp(output.display.framebuffer()));
     renderer->draw({}, Wind{}, Time{}, output.display.framebuffer());
     output.renderer = std::move(renderer);
+    output.exchanges = 0;
     output.bends = projection.warp.bends();
     return {};
 }
@@ -276,6 +294,7 @@ void FrameLoop::draw(std::size_t number, Time showTime) {
     const Time began = clock_.now();
     if (!ready(output, began)) return;
     followSettings(output, state_.shifts[number]);
+    takeExchanges(output);
     output.renderer->correctLight(lightShare_);
     output.renderer->draw(state_.outputs[number], state_.winds[number], showTime, output.display.framebuffer());
     if (output.tap) output.tap->capture(output.display.framebuffer(), showTime);
@@ -387,6 +406,8 @@ void FrameLoop::step() {
     const Time showTime = showClock_.showTime(due);
     lightShare_ = static_cast<float>(std::clamp(seconds(showClock_.runTime(due)) / seconds(kLightFade), 0.0, 1.0));
 
+    hasTaken_ = false;
+    if (exchanges_.update()) ++version_;
     Time oldestInput = Time::max();
     replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput = std::min(oldestInput, input.at); });
     for (std::size_t i = 0; i < outputs_.size(); ++i) alone(outputs_[i], [&] { draw(i, showTime); });

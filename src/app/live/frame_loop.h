@@ -68,6 +68,10 @@ public:
     // the next frame.
     LatestValue<std::shared_ptr<const OutputSettings>>& settingsOf(std::size_t output) { return *outputs_[output].settings; }
 
+    // Makes the renderers ready to draw an exchange of a source's pattern, within some frames: one
+    // output a frame. The two newest exchanges of a source are kept. Call it from one other thread.
+    void makeReady(show::SourceId source, int number, const render::PatternSource& pattern);
+
     // Makes the renderers, and draws every source once, so that nothing is compiled while people
     // watch. A display without a context gets its renderer together with its context. Error: no
     // output with a context can be drawn, for example because the installation lacks a file. A
@@ -126,6 +130,7 @@ private:
         int context = 0;                                     // the display's context that renderer and tap belong to
         show::PictureShift shift{};                          // of the warp that the renderer has
         bool fresh = false;                                  // the renderer has only the site file's settings
+        int exchanges = 0;                                   // it has the exchanges of this version
         bool faulted = false;                                // the last attempt failed
         Time retryAt{}, pause{};                             // when the next attempt is due; the back-off
         bool bends = false;                                  // the renderer was made for a mesh
@@ -160,6 +165,7 @@ private:
     bool becomesCurrent(Output& output) noexcept;
     void forget(Output& output);
     void inHand(const Output& output);
+    void takeExchanges(Output& output);
     void followSettings(Output& output, const show::PictureShift& shift);
     void draw(std::size_t output, Time showTime);
     void finish(Output& output);
@@ -182,6 +188,16 @@ private:
     PlaybackReplica replica_;
     show::ShowState state_;
     std::vector<Output> outputs_;
+    // An exchange of a source's pattern.
+    struct Exchange {
+        show::SourceId source;
+        int number;
+        render::PatternSource pattern;
+    };
+    LatestValue<std::vector<Exchange>> exchanges_;
+    std::vector<Exchange> made_;  // what was last written there; belongs to the thread that calls makeReady()
+    int version_ = 0;             // of what was last read there
+    bool hasTaken_ = false;       // an output has taken exchanges in the frame that is being made
     LatestValue<show::ShowState>* stateSlot_ = nullptr;
     bool makesAside_ = false;
     PartTimes spent_{};  // on all frames of all outputs

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace fantascope::app {
@@ -242,6 +243,78 @@ Result<void> compareShadow(const show::Source& source, const render::PictureSour
     return {};
 }
 
+// The outputs that show a source in any cue.
+std::set<std::size_t> outputsOf(show::SourceId source, const show::CueList& cues) {
+    std::set<std::size_t> outputs;
+    for (const show::CueList::Cue& cue : cues.cues)
+        for (std::size_t output = 0; output < cue.look.outputs.size(); ++output)
+            if (std::ranges::any_of(cue.look.outputs[output].layers,
+                                    [&](const show::LayerState& layer) { return layer.source == source; }))
+                outputs.insert(output);
+    return outputs;
+}
+
+// Takes the projectors' fall-off by the plan out of a surface: the eye forgives it, and the scores
+// do too, as long as the light is not evened out.
+Result<void> forgiveFallOff(vision::CanvasSurface& surface, const Programme& programme, const Guide& guide) {
+    const auto gains = gainsToApply(programme.site, programme.light);
+    for (vision::CanvasSurface::Part& part : surface.parts) {
+        const auto view = TRY(nominalViewOf(programme.site, part.output, guide.aspect, guide.fit));
+        if (!view || gains[part.output] != nullptr) continue;
+        const auto strengthAt = [&](glm::dvec2 pixel) {
+            const auto point = view->surface.hitBy(view->projector.rayThrough(pixel));
+            return point ? view->projector.pixelsPerArea(*point, view->surface.normal) : 0.0;
+        };
+        const double middle = strengthAt(glm::dvec2(programme.site.outputs[part.output].size()) / 2.0);
+        for (std::size_t i = 0; middle > 0 && i < part.light.pixels().size(); ++i)
+            if (const double strength = part.light.pixels()[i] > 0 ? strengthAt(part.pixel.pixels()[i]) : 0; strength > 0)
+                part.light.pixels()[i] *= static_cast<float>(middle / strength);
+    }
+    return {};
+}
+
+// A pattern and its wall. Error: why it cannot be fitted.
+Result<PatternOnWall> onWall(const show::Source& source, const render::PatternSource& drawn, const Guide& guide,
+                             const Programme& programme) {
+    constexpr int kRows = 360;  // the camera sees no finer
+    const show::Site& site = programme.site;
+    const std::set<std::size_t> outputs = outputsOf(source.id, *programme.cues);
+    if (drawn.pattern->instances.empty() || outputs.empty()) return Error("nothing of it is shown");
+    if (drawn.pattern->compare != pattern::CompareSpace::Light)
+        return Error("it was not compared in light; search for it with 'compare: light' in the settings");
+    for (const std::size_t output : outputs) {
+        if (site.outputs[output].canvas != site.outputs[*outputs.begin()].canvas) return Error("it is shown on several canvases");
+        if (!programme.watched.at(output) || !programme.watched[output]->isSurveyed)
+            return Error(fmt::format("output '{}' was not surveyed; 'fantascope calibrate {} --write' does that",
+                                     site.outputs[output].name, site.file.string()));
+    }
+    const double aspect = guide.aspect;
+    vision::CanvasSurface surface = TRY(canvasSurface(site, *outputs.begin(), aspect, guide.fit,
+                                                      {std::max(1, static_cast<int>(std::lround(kRows * aspect))), kRows}));
+    std::erase_if(surface.parts, [&](const vision::CanvasSurface::Part& part) { return !outputs.contains(part.output); });
+    TRY(forgiveFallOff(surface, programme, guide));
+    return PatternOnWall{source.id, source.name, drawn.pattern, guide.light, std::move(surface)};
+}
+
+std::vector<PatternOnWall> patternsOnWall(const Programme& programme, const show::BySource<std::optional<Guide>>& guides) {
+    using Mode = show::Corrections::Mode;
+    std::vector<PatternOnWall> patterns;
+    const Mode mode = programme.site.corrections.pattern.mode;
+    if (mode == Mode::Off || programme.watched.empty()) return patterns;
+    for (const show::Source& source : programme.show.sources) {
+        const auto* const drawn = std::get_if<render::PatternSource>(&programme.sources.find(source.id)->picture);
+        const auto* const guide = guides.find(source.id);
+        if (drawn == nullptr || guide == nullptr || !*guide) continue;
+        auto pattern = onWall(source, *drawn, **guide, programme);
+        if (pattern)
+            patterns.push_back(std::move(*pattern));
+        else if (mode == Mode::Automatic)
+            log::warning(
+                "app", fmt::format("the pattern of '{}' is not fitted to the wall: {}", source.name, pattern.error().message()));
+    }
+    return patterns;
+}
+
 }  // namespace
 
 Result<Guide> readGuide(const pattern::ShapePattern& pattern, const fs::path& file) {
@@ -294,6 +367,7 @@ Result<Programme> readProgramme(const RunOptions& options) {
             isWatched && std::holds_alternative<render::ShadowSource>(picture->picture))
             TRY(compareShadow(source, *picture, programme.site, programme.light, programme.comparisons));
     programme.watched = TRY(watchedOutputsOf(programme.site));
+    programme.patterns = patternsOnWall(programme, pictures.guides);
     return programme;
 }
 

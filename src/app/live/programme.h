@@ -3,6 +3,7 @@
 #include "app/live/show_run.h"
 #include "app/live/watch.h"
 #include "app/site/light_correction.h"
+#include "app/watch/pattern_correction.h"
 
 #include "pattern/shape/shape_pattern.h"
 #include "render/source/picture_source.h"
@@ -37,8 +38,9 @@ struct Programme {
     std::shared_ptr<render::PictureFeed> camera;  // the pictures of camera sources; null if the site has no camera
     std::vector<Watch::Comparisons> comparisons;  // [output]
     std::vector<std::optional<vision::WatchedOutput>>
-        watched;                         // [output]; nothing: it cannot be watched, or the site does not want it
-    std::vector<LightCorrection> light;  // of the canvases; applied if the site file says so
+        watched;                          // [output]; nothing: it cannot be watched, or the site does not want it
+    std::vector<LightCorrection> light;   // of the canvases; applied if the site file says so
+    std::vector<PatternOnWall> patterns;  // that may be fitted to the wall
 };
 
 // What the light of a source's picture is to be.

@@ -59,6 +59,21 @@ Report jsonOf(const std::vector<show::event::LightCorrected>& light) {
     return json;
 }
 
+Report jsonOf(const PatternNews& patterns) {
+    Report json = Report::array();
+    for (const auto& [at, fitted] : patterns)
+        json.push_back({{"source", fitted.source},
+                        {"at", seconds(at)},
+                        {"applied", fitted.applied},
+                        {"tone_before", fitted.toneBefore},
+                        {"tone_after", fitted.toneAfter},
+                        {"kept", fitted.kept},
+                        {"made", fitted.made},
+                        {"removed", fitted.removed},
+                        {"changed", fitted.changed}});
+    return json;
+}
+
 }  // namespace
 
 std::optional<FramePart> causeOfDelay(const PartTimes& spent, Time period) {
@@ -94,6 +109,15 @@ std::vector<show::event::LightCorrected> lightOf(const show::EventLog& events) {
     while (const show::Event* const event = reader.next())
         if (const auto* const corrected = std::get_if<show::event::LightCorrected>(&event->what)) light.push_back(*corrected);
     return light;
+}
+
+PatternNews patternsOf(const show::EventLog& events) {
+    PatternNews patterns;
+    show::EventLog::Reader reader = events.reader();
+    while (const show::Event* const event = reader.next())
+        if (const auto* const fitted = std::get_if<show::event::PatternFitted>(&event->what))
+            patterns.emplace_back(event->at, *fitted);
+    return patterns;
 }
 
 std::string sentenceOf(const std::vector<UnsafeBank>& unsafe) {
@@ -152,6 +176,7 @@ Report jsonOf(const RunReport& report) {
         json["faults"].push_back(std::move(entry));
     }
     json["light_correction"] = jsonOf(report.light);
+    json["patterns"] = jsonOf(report.patterns);
     json["z_camera"] = jsonOf(report.zCamera);
     json["tone_camera"] = jsonOf(report.toneCamera);
     json["iou_camera"] = jsonOf(report.iouCamera);

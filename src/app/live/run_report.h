@@ -55,6 +55,9 @@ struct CueReport {
 std::vector<CueReport> cuesOf(const show::EventLog& events);
 // What was told of the light correction.
 std::vector<show::event::LightCorrected> lightOf(const show::EventLog& events);
+// What was told of the patterns, and when.
+using PatternNews = std::vector<std::pair<Time, show::event::PatternFitted>>;
+PatternNews patternsOf(const show::EventLog& events);
 
 struct FaultReport {
     Time at{};
@@ -89,6 +92,7 @@ struct RunReport {
                  yardstickLate = 0;  // of an empty thread at the first output's rate: what the machine itself misses
     std::vector<CueReport> cues;
     std::vector<FaultReport> faults;
+    PatternNews patterns;                            // how they were fitted to the wall, or would have been
     std::vector<show::event::LightCorrected> light;  // what the light correction did, or would have done
     std::map<std::string, std::vector<std::pair<Time, double>>> zCamera, toneCamera, iouCamera;  // per output
     std::vector<CauseReport> causes;                                          // why the wall is not as it should be

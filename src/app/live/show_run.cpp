@@ -95,10 +95,13 @@ public:
         if (!options.asFastAsPossible) frames_.makeRenderersAside();
         if (recorder_) recorder_->begin(showClock_.runStart());
         frames_.publishStateTo(watch_.shown());
-        if (!watched_.empty())
+        if (!watched_.empty()) {
             watch_.alsoWatch(driftWatch_.emplace(programme.site, programme.watched, cameraLightOf(programme.site), watched_,
                                                  inputs_, events_, showClock_),
                              [this] { return settingUp_.on(); });
+            driftWatch_->fitPatterns(programme.patterns, options.asFastAsPossible,
+                                     std::bind_front(&FrameLoop::makeReady, &frames_));
+        }
         hand_.edit = [this](show::Button button, bool pressed) { settingUp_.button(button, pressed); };
         hand_.editing = [this] { return settingUp_.on(); };
         if (!pictured_.empty())
@@ -259,8 +262,7 @@ private:
         report.frames = frames_.framesShown();
         report.lateFrames = frames_.framesLate();
         report.dmxInterval = lighting_.dmxInterval();
-        report.cues = cuesOf(events_);
-        report.light = lightOf(events_);
+        report.cues = cuesOf(events_), report.light = lightOf(events_), report.patterns = patternsOf(events_);
         report.faults = faults_.faults();
         report.unsafe = lights_.unsafe();
         return report;

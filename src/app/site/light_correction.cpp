@@ -86,12 +86,6 @@ Result<Survey> surveyOf(const show::Site& site) {
     return std::move(*survey);
 }
 
-// The light that an output gives to a white canvas, by its pixels.
-struct Lights {
-    const Projection* projection;
-    GreyImage light, shares;
-};
-
 }  // namespace
 
 std::vector<LightCorrection> lightCorrectionsOf(const show::Site& site) {
@@ -138,36 +132,36 @@ std::vector<show::event::LightCorrected> lightNewsOf(const show::Site& site, con
     return news;
 }
 
-Result<GreyImage> surfaceLight(const show::Site& site, std::size_t output, double aspect, Fit fit, glm::ivec2 size) {
+Result<vision::CanvasSurface> canvasSurface(const show::Site& site, std::size_t output, double aspect, Fit fit, glm::ivec2 size) {
     const Survey survey = TRY(surveyOf(site));
     const show::Site bare = withoutMasks(site);
     std::vector<LightCorrection> corrections;
     if (site.corrections.light.mode == Mode::Automatic) corrections = lightCorrectionsOf(site);
-    std::vector<Lights> outputs;
+    const double canvas = site.outputs[output].projection.canvasAspect;
+    const CanvasPart place = canvas > 0 ? placeOnCanvas(aspect, canvas, fit) : CanvasPart();
+    vision::CanvasSurface surface;
     for (const std::size_t which : site.outputsOn(site.outputs[output].canvas)) {
         const Projection& projection = bare.outputs[which].projection;
         const OutputSurvey* const seen = TRY(surveyed(survey, site.outputs[which]));
-        auto light = vision::lightByProjectorPixel(seen->map, projection.size);
+        const auto light = vision::lightByProjectorPixel(seen->map, projection.size);
         if (!light) return Error(fmt::format("output '{}': the camera sees too little of it", site.outputs[which].name));
         const auto gain = gainOf(corrections, which);
-        for (std::size_t i = 0; gain && i < light->pixels().size(); ++i) light->pixels()[i] *= gain->pixels()[i];
-        for (float& value : light->pixels()) value *= static_cast<float>(brightnessOf(projection.light));
-        outputs.push_back({&projection, std::move(*light), sharesOf(bare, which)});
-    }
-    const double canvas = site.outputs[output].projection.canvasAspect;
-    const CanvasPart place = canvas > 0 ? placeOnCanvas(aspect, canvas, fit) : CanvasPart();
-    GreyImage surface(size.x, size.y);
-    for (int y = 0; y < size.y; ++y)
-        for (int x = 0; x < size.x; ++x) {
-            const glm::dvec2 at = glm::mix(place.low, place.high, (glm::dvec2(x, y) + 0.5) / glm::dvec2(size));
-            for (const Lights& one : outputs) {
-                const glm::dvec2 pixel = one.projection->warp.projectorFromCanvas(at);
+        const GreyImage shares = sharesOf(bare, which);
+        const auto brightness = static_cast<float>(brightnessOf(projection.light));
+        vision::CanvasSurface::Part part{which, GreyImage(size.x, size.y), Image<glm::vec2>(size.x, size.y)};
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                const glm::dvec2 at = glm::mix(place.low, place.high, (glm::dvec2(x, y) + 0.5) / glm::dvec2(size));
+                const glm::dvec2 pixel = projection.warp.projectorFromCanvas(at);
                 if (glm::any(glm::lessThan(pixel, glm::dvec2(0)))) continue;
-                if (glm::any(glm::greaterThanEqual(pixel, glm::dvec2(one.projection->size)))) continue;
+                if (glm::any(glm::greaterThanEqual(pixel, glm::dvec2(projection.size)))) continue;
                 const glm::ivec2 there(pixel);
-                surface.at(x, y) += one.light.at(there.x, there.y) * one.shares.at(there.x, there.y);
+                part.pixel.at(x, y) = glm::vec2(pixel);
+                part.light.at(x, y) = light->at(there.x, there.y) * (gain ? gain->at(there.x, there.y) : 1.0f) * brightness *
+                                      shares.at(there.x, there.y);
             }
-        }
+        surface.parts.push_back(std::move(part));
+    }
     return surface;
 }
 

@@ -2,6 +2,7 @@
 
 #include "show/event.h"
 #include "show/site/site.h"
+#include "vision/watch/canvas_surface.h"
 
 #include "core/fit.h"
 #include "core/result.h"
@@ -42,7 +43,7 @@ std::vector<show::event::LightCorrected> lightNewsOf(const show::Site& site, con
 // The light that a white shape gives at each place of a picture that lies on the canvas of an
 // output as `fit` says, as the camera sees it; with the light correction if that is automatic.
 // `aspect`: width / height of the picture. `size`: of the result, pixels. Linear; full light of the
-// camera's picture is 1. Error: what the survey lacks, and what to do.
-Result<GreyImage> surfaceLight(const show::Site& site, std::size_t output, double aspect, Fit fit, glm::ivec2 size);
+// camera's picture is 1. Takes a second and more. Error: what the survey lacks, and what to do.
+Result<vision::CanvasSurface> canvasSurface(const show::Site& site, std::size_t output, double aspect, Fit fit, glm::ivec2 size);
 
 }  // namespace fantascope::app

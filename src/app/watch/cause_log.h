@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +26,12 @@ public:
 
     bool isOpen(const std::string& output, const std::string& cause) const {
         return std::ranges::any_of(all_, [&](const CauseReport& report) { return isIt(report, output, cause); });
+    }
+    // Whether any cause is open, of an output or, with an empty name, of all, except some.
+    bool isAnyOpen(const std::string& output, const std::set<std::string>& except) const {
+        return std::ranges::any_of(all_, [&](const CauseReport& report) {
+            return !report.to && report.output == output && !except.contains(report.cause);
+        });
     }
     // Does nothing if it is open.
     void begin(std::string output, std::string cause, Time from) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <utility>
 
 namespace fantascope::app {
@@ -21,6 +22,8 @@ constexpr Time kRefines = std::chrono::seconds(4);           // after a correcti
 constexpr double kRefinement = 0.25;                         // pixels: a smaller one is not worth it
 constexpr double kInPlace = 0.6;                             // pixels: nobody sees less
 const std::string kOutOfPlace = "out of place";
+// Causes that do not pretend another wall. What is hidden is not measured.
+const std::set<std::string> kHarmless = {"blocked view", "ambient light", "dim projector lamp"};
 constexpr double kSlowestCamera = 2;  // seconds between pictures, from which on nothing is predicted
 
 // The rectangle of a projector's pixels that its picture is in.
@@ -81,6 +84,11 @@ DriftWatch::DriftWatch(const show::Site& site, const std::vector<std::optional<v
     }
 }
 
+void DriftWatch::fitPatterns(std::vector<PatternOnWall> patterns, bool waits, PatternCorrection::MakeReady makeReady) {
+    if (!patterns.empty())
+        patterns_.emplace(site_.corrections.pattern, std::move(patterns), waits, std::move(makeReady), inputs_, events_);
+}
+
 void DriftWatch::tick(Time now) {
     light_.tick(now);
     if (arrived_) causeWatch_.wait(showClock_.showTime(*arrived_), period_, showClock_.showTime(now));
@@ -112,6 +120,16 @@ void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, boo
     if (!cameraMoved_) causeWatch_.measure(shown, showClock_.showTime(frame.exposed));
     decide(showClock_.showTime(now));
     note(shown, showClock_.showTime(frame.exposed));
+    if (patterns_) fit(shown, showClock_.showTime(now));
+}
+
+void DriftWatch::fit(const show::ShowState& shown, Time showTime) {
+    if (cameraMoved_) return patterns_->end();
+    std::vector<bool> isTrusted(tracks_.size());
+    for (std::size_t i = 0; i < tracks_.size(); ++i)
+        isTrusted[i] =
+            wall_.watches(i) && !causes_.isAnyOpen(site_.outputs[i].name, kHarmless) && !causes_.isAnyOpen("", kHarmless);
+    patterns_->see(wall_, isTrusted, shown, showTime);
 }
 
 // A technician decides where the pictures stand: shifts end, and nothing that was seen counts.
@@ -120,6 +138,7 @@ void DriftWatch::endShifts(const show::ShowState& shown, Time showTime) {
         if (show::farthestOf(shown.shifts[i]) > 0) correct(i, Homography(), showTime);
 }
 void DriftWatch::beginAgain() {
+    if (patterns_) patterns_->end();
     for (vision::DriftTrack& track : tracks_) track.forget();
     std::ranges::fill(settled_, std::nullopt);
 }

@@ -2,6 +2,7 @@
 
 #include "app/watch/cause_log.h"
 #include "app/watch/cause_watch.h"
+#include "app/watch/pattern_correction.h"
 #include "app/watch/shown_light.h"
 
 #include "show/event.h"
@@ -47,6 +48,9 @@ public:
                const vision::CameraLight& light, const std::vector<ShownLight::Frames>& frames, show::InputLog& inputs,
                show::EventLog& events, const show::ShowClock& showClock);
 
+    // Also fits patterns to the wall. Arguments as PatternCorrection has them.
+    void fitPatterns(std::vector<PatternOnWall> patterns, bool waits, PatternCorrection::MakeReady makeReady);
+
     void tick(Time now);
     // Takes a picture of the camera. `shown`: the state that is shown. `isSettingUp`: a technician
     // moves the pictures; where they stand afterwards is where they belong.
@@ -63,6 +67,7 @@ private:
     void decide(Time showTime);
     void correct(std::size_t output, const Homography& moved, Time showTime);
     void note(const show::ShowState& shown, Time showTime);
+    void fit(const show::ShowState& shown, Time showTime);
 
     const show::Site& site_;
     show::InputLog& inputs_;
@@ -85,6 +90,7 @@ private:
     CauseWatch causeWatch_;
     std::optional<Time> arrived_;  // when the newest picture came
     Time period_{};                // of the camera's pictures; 0: unknown
+    std::optional<PatternCorrection> patterns_;
 };
 
 }  // namespace fantascope::app

@@ -2,6 +2,7 @@
 
 #include "pattern/motion/pattern_motion.h"
 #include "pattern/shape/shape_pattern.h"
+#include "render/source/pattern_rests.h"
 #include "render/source/picture_feed.h"
 #include "render/source/video_stream.h"
 #include "show/source_id.h"
@@ -31,6 +32,7 @@ namespace fantascope::render {
 struct PatternSource {
     std::shared_ptr<const pattern::ShapePattern> pattern;
     std::shared_ptr<const pattern::PatternMotion> motion;  // null: the shapes rest
+    std::shared_ptr<const PatternRests> rests = nullptr;   // of an exchange, whose all() is `pattern`; null: there is none
 };
 
 // These need nothing beside what the author says.

@@ -23,6 +23,18 @@ Result<Corrections::Light> readLight(const ConfigNode& node) {
     return light;
 }
 
+Result<Corrections::Pattern> readPattern(const ConfigNode& node) {
+    Corrections::Pattern pattern;
+    ConfigFields fields(node);
+    fields.optional().choice("mode", pattern.mode, {"off", "advise", "automatic"});
+    fields.optional().number("gain", pattern.gain, 0.05, 0.9);
+    fields.optional().number("more", pattern.more, 0, 4);
+    fields.optional().number("least", pattern.least, 0.05, 1);
+    fields.optional().number("fade", pattern.fade, 0.5, 60);
+    TRY(fields.finish());
+    return pattern;
+}
+
 }  // namespace
 
 Result<Corrections> readCorrections(const ConfigNode& node) {
@@ -30,6 +42,7 @@ Result<Corrections> readCorrections(const ConfigNode& node) {
     ConfigFields fields(node);
     fields.optional().read("geometry", corrections.geometry, readGeometry);
     fields.optional().read("light", corrections.light, readLight);
+    fields.optional().read("pattern", corrections.pattern, readPattern);
     TRY(fields.finish());
     return corrections;
 }

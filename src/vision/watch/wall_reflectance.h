@@ -34,8 +34,6 @@ public:
 
     // Adds a picture, whose place is known. False: it shows too little.
     bool add(const LightMeter::Sight& sight);
-    // Forgets all pictures.
-    void forget() { pictures_.clear(); }
     int pictures() const { return static_cast<int>(pictures_.size()); }
     // `cell`: side of a cell, projector pixels.
     WallChange change(double cell) const;

@@ -295,10 +295,6 @@ WallChange WallWatch::surfaceChange(std::size_t output) const {
     return watched.reflectance.change(watched.view.cellSize());
 }
 
-void WallWatch::forgetSurface(std::size_t output) {
-    if (outputs_[output]) outputs_[output]->reflectance.forget();
-}
-
 WallLight WallWatch::measureLight() {
     WallLight light;
     for (const auto& output : outputs_) light.outputs.push_back(output ? output->measure() : std::nullopt);

@@ -79,7 +79,6 @@ public:
     bool measureSurface(std::size_t output);
     // What those pictures say. The output is watched and surveyed.
     WallChange surfaceChange(std::size_t output) const;
-    void forgetSurface(std::size_t output);
     // Whether the picture that was looked at last is upside down: turned, it shows an output that
     // it does not show as it is.
     bool isUpsideDown() const;

@@ -137,7 +137,7 @@ TEST_F(LightOfASite, is_of_the_whole_canvas_or_not_corrected_at_all) {
     const auto corrections = lightCorrectionsOf(here);
     EXPECT_THAT(corrections[0].trouble, HasSubstr("output 'right': it was not surveyed"));
     EXPECT_EQ(gainOf(corrections, 0), nullptr);
-    EXPECT_THAT(surfaceLight(here, 0, 2, Fit::Contain, {64, 32}).error().message(), HasSubstr("output 'right'"));
+    EXPECT_THAT(canvasSurface(here, 0, 2, Fit::Contain, {64, 32}).error().message(), HasSubstr("output 'right'"));
 }
 
 // A picture that fills the canvas.
@@ -145,7 +145,7 @@ TEST_F(LightOfASite, is_what_the_search_for_a_pattern_gets) {
     const show::Site here = site("mode: off");
     keep(here);
     const double aspect = here.outputs[0].projection.canvasAspect;
-    const GreyImage surface = surfaceLight(here, 1, aspect, Fit::Contain, {64, 32}).value();
+    const GreyImage surface = canvasSurface(here, 1, aspect, Fit::Contain, {64, 32}).value().light();
     for (const glm::ivec2 at : {glm::ivec2(8, 10), {20, 16}, {50, 5}, {60, 28}}) {
         const glm::dvec2 canvas = (glm::dvec2(at) + 0.5) / glm::dvec2(64, 32);
         const double full = canvas.x < kRightBegins ? 0.8 : 0.6;
