@@ -41,6 +41,14 @@ double exposureOf(const ShapePattern& pattern, const GreyImage& guide, const Gre
     return wanted > 0 ? sumOf(seen) / wanted : 0;
 }
 
+// The guide without what cannot be seen, beyond the edges of what is lit.
+GreyImage inSight(GreyImage guide, const GreyImage& light) {
+    for (int y = 0; y < guide.height(); ++y)
+        for (int x = 0; x < guide.width(); ++x)
+            if (light.at(x * light.width() / guide.width(), y * light.height() / guide.height()) <= 0) guide.at(x, y) = 0;
+    return guide;
+}
+
 // The range of some values, and a range of angles at most a whole turn wide.
 struct Range {
     glm::dvec2 range{1e9, -1e9};
@@ -127,17 +135,18 @@ double reachableWhite(const GreyImage& light, const GreyImage& guide, double mis
     return low;
 }
 
-double toneOnSurface(const ShapePattern& pattern, const GreyImage& guide, const GreyImage& light) {
-    const GreyImage drawing = resized(guide, light.width(), light.height());
+double toneOnSurface(const ShapePattern& pattern, const GreyImage& whole, const GreyImage& light) {
+    const GreyImage guide = inSight(whole, light), drawing = resized(guide, light.width(), light.height());
     const double exposure = exposureOf(pattern, drawing, light);
     if (exposure <= 0) return 1;
     const GreyImage surface = scaled(light, 1 / exposure);
     return measure(pattern, guide, &surface).tone;
 }
 
-PatternRefit PatternRefit::of(const ShapePattern& pattern, const GreyImage& guide, const GreyImage& light, const Options& options,
+PatternRefit PatternRefit::of(const ShapePattern& pattern, const GreyImage& whole, const GreyImage& light, const Options& options,
                               const PatternSearch::AskStop& askStop) {
-    FANTASCOPE_CHECK(!pattern.instances.empty() && !guide.empty() && !light.empty(), "there is a pattern, a guide and a surface");
+    FANTASCOPE_CHECK(!pattern.instances.empty() && !whole.empty() && !light.empty(), "there is a pattern, a guide and a surface");
+    const GreyImage guide = inSight(whole, light);
     PatternRefit refit;
     refit.pattern = pattern;
     refit.toneBefore = refit.toneAfter = toneOnSurface(pattern, guide, light);

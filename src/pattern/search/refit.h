@@ -35,7 +35,7 @@ struct PatternRefit {
 
     // `pattern`: has instances, and was compared in light. `guide`: linear light, in any
     // resolution. `light`: the light that a white shape gives at each place of the pattern's
-    // canvas, in any resolution and unit; 0 where none is known. `askStop`: as PatternSearch has
+    // canvas, in any resolution and unit; 0 where the canvas ends. `askStop`: as PatternSearch has
     // it. The same arguments give the same result. Thread: reentrant.
     static PatternRefit of(const ShapePattern& pattern, const GreyImage& guide, const GreyImage& light, const Options& options,
                            const PatternSearch::AskStop& askStop);

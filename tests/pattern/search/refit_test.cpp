@@ -137,6 +137,20 @@ TEST(PatternRefit, keeps_the_share_of_the_light_that_it_must_keep) {
     EXPECT_GT(keptWith(0.9), 0.84);
 }
 
+// A picture that is larger than the canvas. Example failure: what nobody sees counts as missing,
+// and hides what the wall does.
+TEST(PatternRefit, does_not_judge_what_lies_beyond_the_canvas) {
+    const GreyImage guide = discAndBar();
+    const ShapePattern pattern = patternOf(guide, 150);
+    GreyImage light = stained(1);
+    const double whole = toneOnSurface(pattern, guide, light);
+    for (int y = 0; y < light.height(); ++y)
+        for (int x = 0; x < light.width() / 3; ++x) light.at(x, y) = 0;
+    EXPECT_LT(toneOnSurface(pattern, guide, light), 1.5 * whole);
+    const PatternRefit refit = refitted(pattern, guide, light);
+    EXPECT_LT(refit.made + refit.removed + refit.changed, pattern.instances.size() / 20);
+}
+
 TEST(PatternRefit, of_a_surface_that_gives_no_light_is_the_pattern) {
     const GreyImage guide = discAndBar();
     const ShapePattern pattern = patternOf(guide, 20);
