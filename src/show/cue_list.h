@@ -28,8 +28,14 @@ struct CueList {
     double farthestShift = 0;  // a correction that moves a corner of a projector's picture farther is ignored, pixels
     double shiftSpeed = 1;     // of the fastest corner, pixels per second
     Time exchangeFade{};       // from one pattern of a source to the next
-    Time blackoutFade{};       // from full light to none and back
-    std::uint64_t seed = 1;    // of the show's own randomness: its gusts
+    struct {
+        float least = 1;     // of the share
+        double speed = 1;    // of the share, 1/s
+        int relays = 0;      // that may be off
+        Time relayHold{};    // after relays were switched by a trim, they stay for this long
+    } trim{};                // the bounds of LampTrim; one beyond them is ignored
+    Time blackoutFade{};     // from full light to none and back
+    std::uint64_t seed = 1;  // of the show's own randomness: its gusts
 };
 
 }  // namespace fantascope::show

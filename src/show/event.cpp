@@ -1,6 +1,7 @@
 #include "show/event.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -52,6 +53,13 @@ struct Teller {
     }
     std::string operator()(const event::CauseBegan& began) const { return causeOf(began) + ": " + began.advice; }
     std::string operator()(const event::CauseEnded& ended) const { return causeOf(ended) + ": over"; }
+    std::string operator()(const event::LampsTrimmed& trim) const {
+        if (!trim.applied)
+            return trim.why + ": the lamps could give less (corrections: lamps: {mode: automatic} in the site file)";
+        if (trim.share >= 1 && trim.off.empty()) return trim.why + ": the lamps go back to what the cue asks";
+        const std::string off = trim.off.empty() ? "" : fmt::format("; off: {}", fmt::join(trim.off, ", "));
+        return fmt::format("{}: the lamps go to {:.0f} % of their levels{}; c takes it back", trim.why, 100 * trim.share, off);
+    }
     std::string operator()(const event::LightCorrected& light) const {
         if (!light.trouble.empty()) return fmt::format("the light of '{}' is not evened out: {}", light.canvas, light.trouble);
         const std::string figures =

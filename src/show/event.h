@@ -75,6 +75,13 @@ struct CauseBegan {
 struct CauseEnded {
     std::string output, cause;
 };
+// Ambient light makes the site's lamps give less, or give more again; or could.
+struct LampsTrimmed {
+    std::string why;               // what the camera sees
+    double share = 1;              // of the fixtures' levels, to which they go
+    std::vector<std::string> off;  // relays that are off
+    bool applied = false;          // false: advice
+};
 // What the light correction does with a canvas, or would do.
 struct LightCorrected {
     std::string canvas;
@@ -102,9 +109,10 @@ struct SiteNotSaved {
     std::string why;
 };
 
-using What = std::variant<InputDecided, CueEntered, BlackoutChanged, ScheduleEnded, QuitAsked, FaultBegan, FaultEnded,
-                          SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear,
-                          CauseBegan, CauseEnded, PatternFitted, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+using What =
+    std::variant<InputDecided, CueEntered, BlackoutChanged, ScheduleEnded, QuitAsked, FaultBegan, FaultEnded, SendersChanged,
+                 PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear, CauseBegan, CauseEnded,
+                 PatternFitted, LampsTrimmed, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

@@ -13,11 +13,11 @@
 namespace fantascope::show {
 namespace {
 
-constexpr std::array<std::string_view, 10> kKinds = {"go",    "back",   "jump",    "blackout", "dark",
-                                                     "light", "revise", "correct", "exchange", "corrections"};
+constexpr std::array<std::string_view, 11> kKinds = {"go",     "back",    "jump",     "blackout",    "dark", "light",
+                                                     "revise", "correct", "exchange", "corrections", "trim"};
 constexpr std::array<std::string_view, 7> kSources = {"start",  "controller", "contact", "terminal",
                                                       "screen", "schedule",   "camera"};
-static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Corrections) + 1);
+static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Trim) + 1);
 static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::Camera) + 1);
 
 bool hasRevision(Input::Kind kind) { return kind == Input::Kind::Revise || kind == Input::Kind::Exchange; }
@@ -75,6 +75,8 @@ std::string_view nameOf(Outcome outcome) {
             return "ignored: the site file allows no correction that far";
         case Outcome::CorrectionsOff:
             return "ignored: corrections are off";
+        case Outcome::RelaysHeld:
+            return "ignored: the relays stay as they are for now";
     }
     return "unknown";
 }
@@ -85,6 +87,7 @@ std::string lineOf(const Input& input) {
                                    kSources[static_cast<std::size_t>(input.source)], input.which);
     if (input.kind == Input::Kind::Correct)
         for (const glm::vec2 corner : input.shift) line += fmt::format(" {} {}", corner.x, corner.y);
+    if (input.kind == Input::Kind::Trim) line += fmt::format(" {} {}", input.trim.share, input.trim.relaysOff);
     return line;
 }
 
@@ -92,7 +95,8 @@ Result<Input> inputOf(std::string_view line) {
     const std::vector<std::string_view> words = wordsOf(line);
     constexpr std::size_t kWords = 5;
     Input input;
-    const std::size_t wanted = kWords + (words.size() > 1 && words[1] == "correct" ? 2 * input.shift.size() : 0);
+    const std::string_view kind = words.size() > 1 ? words[1] : "";
+    const std::size_t wanted = kWords + (kind == "correct" ? 2 * input.shift.size() : kind == "trim" ? 2 : 0);
     if (words.size() != wanted) return Error(fmt::format("an input has {} words, here are {}", wanted, words.size()));
     input.at = Time(TRY(numberOf<Time::rep>(words[0])));
     input.kind = TRY(choiceOf<Input::Kind>(words[1], kKinds));
@@ -102,6 +106,10 @@ Result<Input> inputOf(std::string_view line) {
     if (input.kind == Input::Kind::Correct)
         for (std::size_t i = 0; i < 2 * input.shift.size(); ++i)
             input.shift[i / 2][static_cast<int>(i % 2)] = TRY(numberOf<float>(words[kWords + i]));
+    if (input.kind == Input::Kind::Trim) {
+        input.trim.share = TRY(numberOf<float>(words[kWords]));
+        input.trim.relaysOff = TRY(numberOf<int>(words[kWords + 1]));
+    }
     return input;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "show/lamp_trim.h"
 #include "show/picture_shift.h"
 
 #include "core/clock.h"
@@ -15,16 +16,17 @@ namespace fantascope::show {
 // lineOf() writes it as text.
 struct Input {
     enum class Kind {
-        Go,          // enter the next cue
-        Back,        // enter the cue before
-        Jump,        // enter cue `cue`; also if it is the current one
-        Blackout,    // toggle the blackout of pictures and fixtures
-        Dark,        // begin the blackout, if there is none
-        Light,       // end the blackout, if there is one
-        Revise,      // continue with cue list `revision`
-        Correct,     // move the picture of output `which` to `shift`
-        Exchange,    // exchange `revision` of the source with the id `which` (PatternCourses)
-        Corrections  // toggle: take all corrections back and ignore further ones, or allow them again
+        Go,           // enter the next cue
+        Back,         // enter the cue before
+        Jump,         // enter cue `cue`; also if it is the current one
+        Blackout,     // toggle the blackout of pictures and fixtures
+        Dark,         // begin the blackout, if there is none
+        Light,        // end the blackout, if there is one
+        Revise,       // continue with cue list `revision`
+        Correct,      // move the picture of output `which` to `shift`
+        Exchange,     // exchange `revision` of the source with the id `which` (PatternCourses)
+        Corrections,  // toggle: take all corrections back and ignore further ones, or allow them again
+        Trim          // trim the site's lamps to `trim`
     };
     // Where the input came from.
     enum class Source {
@@ -34,7 +36,7 @@ struct Input {
         Terminal,    // a key at the terminal
         Screen,      // a key at a projector's window
         Schedule,    // GO by the schedule of a rehearsal without an operator
-        Camera       // what the camera sees of output, or source, `which`
+        Camera       // what the camera sees; of Correct: on output `which`; of Exchange: of source `which`
     };
     Time at{};  // show time
     Kind kind = Kind::Go;
@@ -43,6 +45,7 @@ struct Input {
     int which = 0;
     int revision = 0;      // for Revise: a number that InputLog::add() returned; for Exchange: that of the exchange
     PictureShift shift{};  // only for Correct
+    LampTrim trim{};       // only for Trim
     friend bool operator==(const Input&, const Input&) = default;
 };
 
@@ -58,13 +61,15 @@ enum class Outcome {
     NoSuchOutput,
     NoSuchPattern,
     TooFar,
-    CorrectionsOff
+    CorrectionsOff,
+    RelaysHeld
 };
 // The outcome in words for the operator: "taken", "ignored: ...".
 std::string_view nameOf(Outcome outcome);
 
 // One line, without its end: show time in nanoseconds, kind, cue (of Revise and Exchange: the
-// revision), source, which, of Correct also the shift: "12500000000 jump 3 terminal 0".
+// revision), source, which, of Correct also the shift, of Trim also the share and how many relays
+// are off: "12500000000 jump 3 terminal 0".
 std::string lineOf(const Input& input);
 // Reads a line that lineOf() wrote. Error: what is wrong with the line.
 Result<Input> inputOf(std::string_view line);

@@ -1,5 +1,7 @@
 #include "show/patch.h"
 
+#include "show/site/light_channels.h"
+
 #include "core/check.h"
 
 #include <algorithm>
@@ -19,6 +21,15 @@ void slotsOf(const Site& site, const Look& look, int universe, std::span<std::ui
             });
         level = next;
     }
+}
+
+void applyTrim(const Site& site, const LampTrim& trim, Look& look) {
+    const Corrections::Lamps& lamps = site.corrections.lamps;
+    for (const std::size_t fixture : lamps.fixtures)
+        for (std::size_t channel = 0; channel < site.fixtures[fixture].channels.size(); ++channel)
+            if (scalesLight(site.fixtures[fixture], channel)) look.levels[site.firstLevel(fixture) + channel] *= trim.share;
+    for (std::size_t i = 0; i < lamps.relays.size() && static_cast<int>(i) < trim.relaysOff; ++i)
+        look.relays[lamps.relays[i]] = 0;
 }
 
 std::vector<float> endLevels(const Site& site) {

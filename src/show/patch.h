@@ -15,6 +15,10 @@ namespace fantascope::show {
 // rounded to the nearest. The dimmer applies its own curve. Slots without a fixture are 0.
 void slotsOf(const Site& site, const Look& look, int universe, std::span<std::uint8_t, 512> out);
 
+// Takes from a look what a trim takes from the site's lamps: levels of Corrections::Lamps::fixtures
+// are scaled, and relays switched off. Nothing becomes brighter than the look asks.
+void applyTrim(const Site& site, const LampTrim& trim, Look& look);
+
 // The end levels of all fixtures, in the order of Look::levels.
 std::vector<float> endLevels(const Site& site);
 

@@ -133,6 +133,7 @@ Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revis
             const bool isDark = shutter && shutter->dark;
             const bool dark = input.kind == Input::Kind::Blackout ? !isDark : input.kind == Input::Kind::Dark;
             if (dark != isDark) shutters_.push_back({at, dark, lightAt(at), now.list->blackoutFade});
+            if (dark) trims_.releaseRelays(at);  // a dark picture is no reason for dark streets
             break;
         }
         case Input::Kind::Revise:
@@ -149,6 +150,10 @@ Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revis
             if (correctsAt(at)) break;
             shifts_.takeBack(at, now.list->shiftSpeed);
             patterns_.takeBack(at, now.list->exchangeFade);
+            trims_.want({}, at, now.list->trim.speed);
+            break;
+        case Input::Kind::Trim:
+            if (const Outcome outcome = trim(input.trim, *now.list, at); outcome != Outcome::Taken) return outcome;
             break;
     }
     taken_.push_back(at);
@@ -168,6 +173,20 @@ Outcome Playback::exchange(const Input& input, const CueList& list, Time at) {
     if (!correctsAt(at)) return Outcome::CorrectionsOff;
     if (!sources_.contains(source) || !patterns_.exchange(source, input.revision, at, list.exchangeFade))
         return Outcome::NoSuchPattern;
+    return Outcome::Taken;
+}
+
+Outcome Playback::trim(const LampTrim& trim, const CueList& list, Time at) {
+    if (!correctsAt(at)) return Outcome::CorrectionsOff;
+    const auto& bounds = list.trim;
+    const bool isWithin = trim.share >= bounds.least && trim.share <= 1 && trim.relaysOff >= 0 && trim.relaysOff <= bounds.relays;
+    if (!isWithin) return Outcome::TooFar;
+    if (trim.relaysOff != trims_.at(at).relaysOff) {
+        const Shutter* shutter = lastBy(at, shutters_);
+        const bool isHeld = trims_.switched() && at - *trims_.switched() < bounds.relayHold;
+        if (isHeld || (shutter && shutter->dark)) return Outcome::RelaysHeld;
+    }
+    trims_.want(trim, at, bounds.speed);
     return Outcome::Taken;
 }
 
@@ -296,6 +315,7 @@ void Playback::stateAt(Time time, ShowState& out) const {
                    [&](const OutputCourse& output) { return output.wind.at(time, lull); });
     out.shifts.resize(entry.outputs.size());
     for (std::size_t output = 0; output < out.shifts.size(); ++output) out.shifts[output] = shifts_.at(output, time);
+    out.lamps = trims_.at(time);
     out.corrects = correctsAt(time);
     for (OutputState& output : out.outputs)
         for (LayerState& layer : output.layers) layer.exchange = patterns_.at(layer.source, time);

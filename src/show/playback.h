@@ -3,6 +3,7 @@
 #include "show/course.h"
 #include "show/cue_list.h"
 #include "show/input.h"
+#include "show/lamp_trim.h"
 #include "show/pattern_exchange.h"
 #include "show/picture_shift.h"
 #include "show/show_state.h"
@@ -40,6 +41,8 @@ namespace fantascope::show {
 //   past does not change.
 // - A correction moves an output's picture to a shift at the list's `shiftSpeed`. It does not depend on cues.
 // - An exchange brings another pattern of a source within the list's `exchangeFade`. It does not depend on cues either.
+// - A trim moves the lamps' share at the list's `trim.speed`, and does not depend on cues either. A blackout gives the relays
+//   back to the cue, and none is trimmed while it lasts.
 //
 // Thread: const functions are reentrant. The others are bound to one thread at a time, and no const
 // function may run beside them.
@@ -121,6 +124,7 @@ private:
     void followOn();
     Outcome correct(const Input& input, const CueList& list, Time at);
     Outcome exchange(const Input& input, const CueList& list, Time at);
+    Outcome trim(const LampTrim& trim, const CueList& list, Time at);
     Outcome revise(std::shared_ptr<const CueList> list, Time at);
     Entry entered(const std::shared_ptr<const CueList>& list, int cue, Time at) const;
     void setOut(Entry& entry, const Look& look, const std::vector<WindWish>& winds, Time fade) const;
@@ -138,6 +142,7 @@ private:
     std::vector<Shutter> shutters_;  // by time
     ShiftCourses shifts_;
     PatternCourses patterns_;
+    TrimCourses trims_;
     std::vector<Time> corrections_;  // when corrections were forbidden and allowed, in turn
     std::vector<Time> taken_;        // when each input took effect
     Time newest_ = Time::min();      // the latest time of all inputs, including ignored ones

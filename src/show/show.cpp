@@ -309,6 +309,8 @@ Result<CueList> Show::bind(const Site& site) const {
     list.farthestShift = site.corrections.geometry.farthest;
     list.shiftSpeed = site.corrections.geometry.speed;
     list.exchangeFade = fromSeconds(site.corrections.pattern.fade);
+    const Corrections::Lamps& lamps = site.corrections.lamps;
+    list.trim = {static_cast<float>(lamps.least), lamps.speed, static_cast<int>(lamps.relays.size()), lamps.hold};
     return list;
 }
 

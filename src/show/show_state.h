@@ -2,6 +2,7 @@
 // The show's only result: what is seen at one moment. Renderer and lighting read it and send
 // nothing back.
 
+#include "show/lamp_trim.h"
 #include "show/pattern_exchange.h"
 #include "show/picture_shift.h"
 #include "show/source_id.h"
@@ -60,6 +61,7 @@ struct Look {
 struct ShowState : Look {
     std::vector<Wind> winds;           // one for each of Site::outputs
     std::vector<PictureShift> shifts;  // one for each of Site::outputs
+    LampTrim lamps{};                  // `levels` and `relays` are without it
     bool corrects = true;              // corrections are allowed
     Time time{};                       // show time
     int cue = -1;                      // index into Show::cues of the current cue; -1 before the first

@@ -48,6 +48,12 @@ TEST(Events, say_one_sentence_each) {
     EXPECT_EQ(said(event::PictureTaken{"pictures/a.png"}), "picture: pictures/a.png");
     EXPECT_EQ(said(event::PictureMissed{"'left' shows nothing"}), "no picture: 'left' shows nothing");
     EXPECT_EQ(said(event::PictureMoved{"left", 20.96}), "the picture of 'left' has moved by 21.0 px on the wall");
+    EXPECT_EQ(said(event::LampsTrimmed{"there is more light", 0.6, {"path", "road"}, true}),
+              "there is more light: the lamps go to 60 % of their levels; off: path, road; c takes it back");
+    EXPECT_EQ(said(event::LampsTrimmed{"there is less light", 1, {}, true}),
+              "there is less light: the lamps go back to what the cue asks");
+    EXPECT_EQ(said(event::LampsTrimmed{"there is more light", 1, {}, false}),
+              "there is more light: the lamps could give less (corrections: lamps: {mode: automatic} in the site file)");
     EXPECT_THAT(said(event::CameraMoved{}), testing::HasSubstr("calibrate again"));
     EXPECT_THAT(said(event::MovementUnclear{}), testing::HasSubstr("look at both"));
     EXPECT_EQ(said(event::LightCorrected{"wall", 0.46, 0.081, 0.02, true, ""}),

@@ -46,7 +46,7 @@ void Lighting::mergeWithDesk(Devices::Line& line, Shared& shared, Time now, std:
     if (endsAt_.load() != Time::max()) shared.merge.claimNothing();
     while (const auto frame = line.desk->receive())
         shared.merge.receive({frame->slots, frame->source, frame->priority, frame->arrived, frame->silence, frame->ended});
-    shared.merge.mergeAt(now, slots, slots);
+    shared.merge.mergeAt(now, slots, shared.asked, slots);
     const auto charges = shared.merge.inCharge();
     if (std::ranges::equal(charges, shared.inCharge, {}, &show::DmxMerge::Charge::sender)) return;
     shared.inCharge.clear();
@@ -64,6 +64,9 @@ void Lighting::mergeWithDesk(Devices::Line& line, Shared& shared, Time now, std:
 void Lighting::tick(Time moment) {
     const Time showTime = showClock_.showTime(moment), endsAt = endsAt_.load();
     replica_.stateAt(showClock_.showTime(std::min(moment, endsAt)), state_);
+    for (std::size_t i = 0; i < shared_.size(); ++i)
+        if (shared_[i]) show::slotsOf(site_, state_, site_.universes[i].number, shared_[i]->asked);
+    show::applyTrim(site_, state_.lamps, state_);
     const bool atEnd = moment >= endsAt && (hurried_ || moment - endsAt >= site_.endFade);
     if (moment >= endsAt) fadeToEnd(atEnd ? 1 : seconds(moment - endsAt) / seconds(site_.endFade));
     const auto sendTo = [&](std::size_t i) {

@@ -89,6 +89,7 @@ private:
     // A universe that a desk may send, too.
     struct Shared {
         show::DmxMerge merge;
+        show::DmxSlots asked{};                 // our own levels, before they are trimmed
         std::vector<std::string> inCharge{""};  // as last reported to the operator; at first the show
     };
     void relayTick(std::size_t bank, Time moment);

@@ -1,9 +1,15 @@
 #pragma once
 
+#include "core/clock.h"
 #include "core/config/config.h"
 #include "core/result.h"
 
+#include <cstddef>
+#include <vector>
+
 namespace fantascope::show {
+
+struct Site;
 
 // What the program may correct by itself when the camera sees that the wall is not as it should be.
 // The site file's section `corrections`.
@@ -33,9 +39,21 @@ struct Corrections {
         double least = 0.5;  // the least that is left of the picture's light, 0.05 .. 1
         double fade = 6;     // from one pattern to the next, seconds
     } pattern;
+    // Ambient light on the pictures, against which the site's own lamps give less.
+    struct Lamps {
+        Mode mode = Mode::Advise;
+        std::vector<std::size_t> fixtures;      // of Site::fixtures, that may be dimmed
+        std::vector<std::size_t> relays;        // of Site::relays, that may be switched off, in this order
+        double least = 0.3;                     // the least that is left of a fixture's level, 0 .. 1
+        double speed = 0.02;                    // of the share that is left, 1/s
+        Time hold = std::chrono::seconds(300);  // a relay that was switched stays for this long
+
+        bool any() const { return !fixtures.empty() || !relays.empty(); }
+    } lamps;
 };
 
-// Reads the section. Error: place, key, advice.
-Result<Corrections> readCorrections(const ConfigNode& node);
+// Reads the section. `site`: its fixtures and relays were read. `isRight`: nothing was wrong with
+// them; else names are not looked up. Error: place, key, advice.
+Result<Corrections> readCorrections(const ConfigNode& node, const Site& site, bool isRight);
 
 }  // namespace fantascope::show

@@ -42,11 +42,12 @@ void DmxMerge::receive(const DmxFrame& frame) {
     setSlots(*found, frame.slots, frame.arrived);
 }
 
-void DmxMerge::mergeAt(Time now, std::span<const std::uint8_t, 512> own, std::span<std::uint8_t, 512> out) {
-    if (claims_)
-        setSlots(own_, own, now);
-    else
-        std::copy(own.begin(), own.end(), own_.slots.begin());
+void DmxMerge::mergeAt(Time now, std::span<const std::uint8_t, 512> own, std::span<const std::uint8_t, 512> asked,
+                       std::span<std::uint8_t, 512> out) {
+    for (std::size_t slot = 0; slot < asked_.size(); ++slot)
+        if (claims_ && asked[slot] != asked_[slot]) own_.changed[slot] = now;
+    std::ranges::copy(asked, asked_.begin());
+    std::ranges::copy(own, own_.slots.begin());
     // A silent desk keeps its place until its settling time is over.
     const auto isOver = [&](const Source& source) { return now - source.arrived > source.silence + settings_.settling; };
     for (std::size_t i = 0; i < count_;) {

@@ -62,8 +62,10 @@ public:
     // changed last.
     void claimNothing() { claims_ = false; }
     // Merges the slots of the universe at `now`, which is not before the arrival of any frame so
-    // far. `own` and `out` may be the same.
-    void mergeAt(Time now, std::span<const std::uint8_t, 512> own, std::span<std::uint8_t, 512> out);
+    // far. `asked`: our own levels before the camera trimmed them, because a trim claims no slot.
+    // `own` and `out` may be the same.
+    void mergeAt(Time now, std::span<const std::uint8_t, 512> own, std::span<const std::uint8_t, 512> asked,
+                 std::span<std::uint8_t, 512> out);
     // The senders in charge at the last merge: our own levels first, then the desks in the order in
     // which they appeared. Valid until the next call of a non-const method.
     std::span<const Charge> inCharge() const { return inCharge_; }
@@ -82,6 +84,7 @@ private:
     Settings settings_;
     bool claims_ = true;
     Source own_;
+    DmxSlots asked_{};
     std::vector<Source> sources_;  // the first count_ are in use, in the order in which they appeared
     std::size_t count_ = 0;
     std::vector<const Source*> winners_;

@@ -148,7 +148,8 @@ public:
         readBanks();
         readController();
         readCamera();
-        fields_.optional().read("corrections", site_.corrections, readCorrections);
+        fields_.optional().read("corrections", site_.corrections,
+                                [&](const ConfigNode& node) { return readCorrections(node, site_, fields_.right()); });
         fields_.optional().read("simulation", site_.simulation,
                                 [](const ConfigNode& node) -> Result<ConfigNode> { return node; });
         relayBanks_.check(fields_);

@@ -157,6 +157,56 @@ TEST_F(LightingPart, fades_the_lamps_to_the_end_levels_and_makes_the_relays_safe
     EXPECT_THAT(run_.world.relays("road"), Each(true));
 }
 
+// A trim takes from what the cue asks. It takes nothing from a blackout, from the end levels and
+// from the relays' safe states. Example failure: the show ends, and the street stays dark because
+// of a shop window.
+TEST_F(LightingPart, gives_less_by_a_trim_but_not_at_the_end) {
+    run_.site.fixtures[0].end = {0.4f};
+    run_.site.endFade = 1s;
+    run_.site.corrections.lamps.fixtures = {0};
+    run_.site.corrections.lamps.relays = {1, 0};
+    show::CueList cues = run_.cues;
+    cues.trim = {0.2f, 0.05, 2, 10s};
+    for (show::CueList::Cue& cue : cues.cues) cue.look.relays = {1, 1};
+    show::InputLog inputs(cues);
+    Lighting lighting(run_.site, inputs, run_.devices, run_.clock, show::ShowClock(), nullptr, run_.faults, run_.events);
+    const std::vector<Part> relays = lighting.relayParts();
+    const auto work = [&](Time time) {
+        run_.clock.advance(time);
+        lighting.tick(run_.clock.now());
+        for (const Part& part : relays) part.work(run_.clock.now());
+    };
+    const auto trim = [&](float share, int relaysOff) {
+        const show::Input input{.at = run_.clock.now(), .kind = show::Input::Kind::Trim, .trim = {share, relaysOff}};
+        EXPECT_EQ(inputs.submit(input).outcome, show::Outcome::Taken);
+    };
+    inputs.submit(run_.jumpTo("Full"));
+    work(10s);
+    ASSERT_EQ(sculpture(), 255);
+    trim(0.4f, 1);
+    work(4s);
+    EXPECT_EQ(sculpture(), 204) << "0.05 a second";
+    EXPECT_THAT(run_.world.relays("road"), testing::ElementsAre(true, false));
+    work(20s);
+    EXPECT_EQ(sculpture(), 102);
+    inputs.submit({.at = run_.clock.now(), .kind = show::Input::Kind::Dark});
+    work(10s);
+    EXPECT_EQ(sculpture(), 0);
+    EXPECT_THAT(run_.world.relays("road"), Each(true)) << "a dark picture is no reason for dark streets";
+    inputs.submit({.at = run_.clock.now(), .kind = show::Input::Kind::Light});
+    work(10s);
+    trim(0.2f, 2);
+    work(10s);
+    EXPECT_EQ(sculpture(), 51);
+    EXPECT_THAT(run_.world.relays("road"), Each(false));
+    lighting.end(run_.clock.now());
+    work(Time{});
+    EXPECT_EQ(sculpture(), 51) << "from where they are";
+    EXPECT_THAT(run_.world.relays("road"), Each(true));
+    work(2s);
+    EXPECT_EQ(sculpture(), 102);
+}
+
 // Nobody waits for the fade where a display hangs, or somebody is impatient.
 // Example failure: the lamps stay at the level of that moment until the morning.
 TEST_F(LightingPart, hurried_jumps_to_the_end_levels_with_one_frame_and_says_which_line_has_not_taken_it) {

@@ -27,19 +27,24 @@ class Universe {
 public:
     explicit Universe(const DmxMerge::Settings& settings = {}) : merge_(settings) {}
 
-    void own(int first, int second = 0) { own_ = levels(first, second); }
+    void own(int first, int second = 0) { own_ = asked_ = levels(first, second); }
     void sends(const std::string& sender, const DmxSlots& slots, Time when, int priority = 100, Time silence = 2500ms) {
         merge_.receive({slots, sender, priority, when, silence, false});
     }
     void leaves(const std::string& sender, Time when) { merge_.receive({levels(0), sender, 100, when, 2500ms, true}); }
 
+    // What the show asks of the first slot, and what a trim leaves of it.
+    void trimmed(int asked, int left) {
+        asked_ = levels(asked);
+        own_ = levels(left);
+    }
     void claimNothing() { merge_.claimNothing(); }
 
     // The first two slots.
     std::pair<int, int> at(Time now) {
         DmxSlots out;
         out.fill(99);  // what an earlier frame left
-        merge_.mergeAt(now, own_, out);
+        merge_.mergeAt(now, own_, asked_, out);
         EXPECT_EQ(out[511], 0);
         return {out[0], out[1]};
     }
@@ -55,7 +60,7 @@ public:
 
 private:
     DmxMerge merge_;
-    DmxSlots own_ = levels(10);
+    DmxSlots own_ = levels(10), asked_ = levels(10);
 };
 
 using Slots = std::pair<int, int>;
@@ -108,6 +113,22 @@ TEST(DmxMerge, by_the_other_rule_the_level_that_changed_last_wins) {
     EXPECT_EQ(universe.at(3s), Slots(11, 20));
     universe.sends("a", levels(4, 20), 4s);
     EXPECT_EQ(universe.at(4s), Slots(11, 20)) << "a repeated frame changes nothing";
+}
+
+// The camera trims the show's own lamps, and nobody has moved a fader. Example failure: the desk
+// loses the slot that it set, because the trim changes it all the time.
+TEST(DmxMerge, by_that_rule_a_trim_takes_no_slot_from_a_desk) {
+    Universe universe({.rule = DmxMerge::Rule::Latest});
+    universe.own(100);
+    universe.at(0s);
+    universe.sends("a", levels(50), 1s);
+    EXPECT_EQ(universe.at(1s), Slots(50, 0));
+    universe.trimmed(100, 80);
+    EXPECT_EQ(universe.at(2s), Slots(50, 0));
+    universe.trimmed(90, 72);
+    EXPECT_EQ(universe.at(3s), Slots(72, 0)) << "the show itself moved it";
+    universe.trimmed(90, 60);
+    EXPECT_EQ(universe.at(4s), Slots(60, 0)) << "and the trim goes on";
 }
 
 // The show ends and fades its lamps: those that a desk moved last are the desk's.
@@ -216,7 +237,7 @@ TEST(DmxMerge, own_levels_may_lie_where_the_result_goes) {
     DmxMerge merge({});
     DmxSlots slots = levels(10, 3), desk = levels(5, 20);
     merge.receive({desk, "desk", 100, 0s, 1s, false});
-    merge.mergeAt(0s, slots, slots);
+    merge.mergeAt(0s, slots, slots, slots);
     EXPECT_EQ(slots, levels(10, 20));
 }
 
@@ -251,7 +272,7 @@ TEST(DmxMerge, random_desks_are_merged_as_the_rule_says) {
                     std::transform(wanted.begin(), wanted.end(), other.slots.begin(), wanted.begin(),
                                    [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
             DmxSlots got;
-            merge.mergeAt(now, own, got);
+            merge.mergeAt(now, own, own, got);
             ASSERT_EQ(got, wanted) << "seed " << seed << ", step " << step;
         }
     }
@@ -263,11 +284,11 @@ TEST(DmxMerge, allocates_nothing_in_steady_state) {
     DmxMerge merge({});
     DmxSlots out;
     merge.receive({slots, longName, 150, 0s, 1s, false});
-    merge.mergeAt(0s, own, out);
+    merge.mergeAt(0s, own, own, out);
     const std::int64_t before = allocationsSoFar();
     for (int step = 1; step < 1000; ++step) {
         merge.receive({slots, longName, 150, step * 20ms, 1s, false});
-        merge.mergeAt(step * 20ms, own, out);
+        merge.mergeAt(step * 20ms, own, own, out);
     }
     EXPECT_EQ(allocationsSoFar(), before);
 }

@@ -161,6 +161,39 @@ TEST(Site, a_site_of_projectors_alone_is_a_site) {
               "accepted");
 }
 
+TEST(Site, says_which_lamps_may_be_trimmed) {
+    const ScratchFolder folder;
+    const auto with = [&](const std::string& lamps) {
+        return readSite(folder.file("site.yaml", std::string(kSite) + "corrections: {lamps: {" + lamps + "}}\n"));
+    };
+    const auto none = readSite(folder.file("site.yaml", kSite));
+    EXPECT_EQ(none->corrections.lamps.mode, Corrections::Mode::Advise);
+    EXPECT_FALSE(none->corrections.lamps.any()) << "none unless the file names it";
+    const auto site =
+        with("mode: automatic, fixtures: [fountain, sculpture], relays: [road-south], least: 0.5, speed: 0.01, hold: 60");
+    ASSERT_TRUE(site) << site.error().message();
+    EXPECT_EQ(site->corrections.lamps.mode, Corrections::Mode::Automatic);
+    EXPECT_THAT(site->corrections.lamps.fixtures, ElementsAre(1, 0));
+    EXPECT_THAT(site->corrections.lamps.relays, ElementsAre(2));
+    EXPECT_EQ(site->corrections.lamps.least, 0.5);
+    EXPECT_EQ(site->corrections.lamps.speed, 0.01);
+    EXPECT_EQ(site->corrections.lamps.hold, std::chrono::minutes(1));
+    const auto refused = [&](const std::string& lamps) {
+        const auto read = with(lamps);
+        return read ? "accepted" : folder.relative(read.error().message());
+    };
+    EXPECT_EQ(refused("fixtures: [sculpture, tree]"),
+              "site.yaml:38:45: corrections.lamps.fixtures[1]: there is no fixture 'tree'; there are sculpture, fountain, lawn");
+    EXPECT_THAT(refused("relays: [sculpture]"), HasSubstr("corrections.lamps.relays[0]: there is no relay 'sculpture'"));
+    EXPECT_THAT(refused("fixtures: [sculpture, sculpture]"), HasSubstr("fixture 'sculpture' is named twice"));
+    EXPECT_THAT(refused("fixtures: [lawn]"), HasSubstr("neither a channel 'intensity' nor colours"));
+    EXPECT_THAT(refused("speed: 0.06"), HasSubstr("0.001 .. 0.05"));
+    EXPECT_THAT(refused("least: -0.1"), HasSubstr("0 .. 1"));
+    EXPECT_THAT(refused("hold: 1"), HasSubstr("10 .. 86400"));
+    EXPECT_THAT(refused("fixtures: [sculpture]}, geometry: {mode: off"), HasSubstr("needs the watch of the wall"));
+    EXPECT_EQ(refused("mode: off, fixtures: [sculpture]}, geometry: {mode: off"), "accepted");
+}
+
 TEST(Site, mistakes_are_refused_with_place_and_advice) {
     EXPECT_EQ(refusalAfter("    refresh_rate: 30\n", ""), "site.yaml:4:5: outputs[0]: 'refresh_rate' is missing");
     EXPECT_EQ(refusalAfter("corners:", "cornres:"), "site.yaml:8:5: outputs[0].cornres: unknown key (did you mean 'corners'?)");
