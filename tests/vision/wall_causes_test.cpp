@@ -65,6 +65,8 @@ TEST(WallCauses, of_all_outputs_together_are_no_projector) {
     EXPECT_EQ(said({kForeign, kForeign}), one(Cause::CameraElsewhere));
     EXPECT_EQ(said({kLit, kLit}, SurroundingsLight{8, 0}), one(Cause::AmbientLight));
     EXPECT_EQ(said({kLit, kLit}, SurroundingsLight{1, 0.01}), one(Cause::CameraDirty)) << "a veil over what is dark, too";
+    const OutputLight onWall = with([](OutputLight& light) { light.otherLight = 0.05, light.textured = 0.8; });
+    EXPECT_EQ(said({onWall, onWall}, SurroundingsLight{1, 0.01}), one(Cause::AmbientLight)) << "it shows the wall's texture";
     EXPECT_THAT(said({kLit, usual()}, SurroundingsLight{1, 0}), IsEmpty()) << "a lamp on one picture";
 }
 

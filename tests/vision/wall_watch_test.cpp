@@ -3,8 +3,8 @@
 #include "vision/watch/wall_watch.h"
 
 #include "vision/watch/drift_track.h"
-#include "vision/watched_wall.h"
 #include "vision/watch/what_moved.h"
+#include "vision/watched_wall.h"
 
 #include <gmock/gmock.h>
 

@@ -22,6 +22,7 @@ constexpr int kLasting = 5;                // measurements: nobody who passes hi
 constexpr double kTells = 0.05;            // a block tells something if its light varies so much, as a share of full light
 constexpr double kUnexplained = 0.3;       // of the picture's variance: what is left of a block that is explained
 constexpr double kOutlier = 0.5;           // and from which on it has no weight
+constexpr double kLeastOther = 0.005;      // of full light: other light whose texture can be told
 constexpr double kThere = 0.6;             // a picture is there if it leaves less than this share of what no picture leaves
 constexpr double kPartThere = 0.1;         // or if so much of it is as usual
 constexpr double kCameraBlurs = 0.8;       // and the camera blurs, if that leaves less than this share
@@ -311,6 +312,8 @@ OutputLight LightMeter::describe(const Comparison& now, const Sight& sight) {
     OutputLight light;
     light.contrast = now.contrast / usual_.contrast;
     light.saturated = saturatedShare(sight, now.shown);
+    light.allOtherLight = now.otherLight;
+    if (now.otherLight > kLeastOther) light.textured = std::clamp(now.explaining.texture / now.otherLight, 0.0, 1.0);
     light.otherLight = other_.pictures >= kLearningLight ? other_.now : other_.kept;
     if (now.contrast > 0 && now.blur > usual_.blur) {
         light.blur = std::sqrt(now.blur * now.blur - usual_.blur * usual_.blur);

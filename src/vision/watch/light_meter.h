@@ -14,6 +14,8 @@ struct OutputLight {
     double blur = 0;               // standard deviation of a Gaussian beside the usual blur, cells
     bool isCameraBlurred = false;  // the surface is blurred too, so the camera is what blurs
     double otherLight = 0;         // light that is not the picture's, beside the usual, as a share of full light
+    double textured = 0;           // share of all other light that shows the surface's texture: a haze does not
+    double allOtherLight = 0;      // all light that is not the picture's, as a share of full light
     double saturated = 0;          // share of its bright places where the camera is saturated
     double asUsual = 1;            // share of the picture that looks as usual
     double explained = 1;          // share of the picture that contrast and blur explain

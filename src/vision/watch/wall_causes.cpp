@@ -17,6 +17,7 @@ constexpr double kFlatLight = 0.08;  // of full light: what shines without a pic
 constexpr double kAmbient = 0.012;   // of full light
 constexpr double kLitFog = 0.01;     // of full light, that fog adds for the light that it takes
 constexpr double kLighter = 1.15;    // times the surroundings' usual light
+constexpr double kOnWall = 0.5;      // of the other light: so much of it with the surface's texture is no haze
 constexpr double kVeil = 0.002;      // linear camera light
 
 // How one output's picture looks.
@@ -90,7 +91,10 @@ void addOtherLight(const Looks& looks, std::vector<NamedCause>& causes) {
         if (looks.of(k).otherLight < kAmbient) return;
     const auto& around = looks.light.surroundings;
     const double other = looks.mean(&OutputLight::otherLight);
-    const bool isHaze = around && around->gain < kLighter && around->veil > kVeil;
+    // Light on the wall shows its texture. Around the pictures it looks like a haze if lamps light
+    // what is there.
+    const bool isOnWall = looks.mean(&OutputLight::textured) > kOnWall;
+    const bool isHaze = around && around->gain < kLighter && around->veil > kVeil && !isOnWall;
     causes.push_back({isHaze ? Cause::CameraDirty : Cause::AmbientLight, {}, other});
 }
 

@@ -3,6 +3,7 @@
 #include "vision/watch/surface_texture.h"
 
 #include "core/check.h"
+#include "core/median.h"
 
 #include <glm/common.hpp>
 #include <opencv2/calib3d.hpp>
@@ -53,6 +54,7 @@ struct WallWatch::Output {
     bool isSurveyed;
     Image<glm::vec2> cell;  // by coarse camera pixel: the place in cells that lights it; NaN: none
     GreyImage full;         // by coarse camera pixel: its full light
+    double dark = 0;        // light that is known of the dark, as a share of full light; the median
     Homography now;         // in cells
     SurfaceTexture surface;
     Homography learnedAt{};  // in cells: `now` when the surface was learned
@@ -88,6 +90,7 @@ struct WallWatch::Output {
         for (std::size_t p = 0; p < lit.pixels().size(); ++p) lit.pixels()[p] *= alone.pixels()[p];
         return lit;
     }
+    void findDark(const GreyImage& seen);
 };
 
 // Follows the picture. A picture that is not found near its last place is searched for more widely,
@@ -162,6 +165,7 @@ WallWatch::WallWatch(const std::vector<std::optional<WatchedOutput>>& outputs, g
                 output.cell.at(x, y) = at / size;
                 output.full.at(x, y) = watched->map.light.at(x * step_ + middle, y * step_ + middle);
             }
+        output.findDark(dark_);
     }
     findAlone();
     findSurroundings();
@@ -280,7 +284,9 @@ void WallWatch::findSurroundings() {
 std::optional<OutputLight> WallWatch::Output::measure() {
     constexpr int kLearnsSurface = 50;  // pictures
     if (light.empty() || score == 0 || (!isSurveyed && looks < kLearnsSurface)) return std::nullopt;
-    return meter.measure({seen.light, fullAlone(), light, seen.mask, now}, isFound);
+    auto measured = meter.measure({seen.light, fullAlone(), light, seen.mask, now}, isFound);
+    if (measured) measured->allOtherLight += dark;
+    return measured;
 }
 
 bool WallWatch::measureSurface(std::size_t output) {
@@ -293,6 +299,13 @@ bool WallWatch::measureSurface(std::size_t output) {
 WallChange WallWatch::surfaceChange(std::size_t output) const {
     const Output& watched = *outputs_[output];
     return watched.reflectance.change(watched.view.cellSize());
+}
+
+void WallWatch::Output::findDark(const GreyImage& seen) {
+    std::vector<double> shares;
+    for (std::size_t p = 0; p < full.pixels().size(); ++p)
+        if (full.pixels()[p] > 0) shares.push_back(seen.pixels()[p] / full.pixels()[p]);
+    if (!shares.empty()) dark = medianOf(std::move(shares));
 }
 
 WallLight WallWatch::measureLight() {
