@@ -37,6 +37,16 @@ void addWatch(Report& json, const RunReport& report) {
                                   {"cause", cause.cause}});
 }
 
+void addLamps(Report& json, const RunReport& report) {
+    json["lamps"] = Report::array();
+    for (const LampReport& lamps : report.lamps)
+        json["lamps"].push_back({{"at", seconds(lamps.at)},
+                                 {"excess", lamps.excess},
+                                 {"ambient", lamps.ambient},
+                                 {"share", lamps.trim.share},
+                                 {"relays_off", lamps.trim.relaysOff}});
+}
+
 Report jsonOf(const std::map<std::string, std::vector<std::pair<Time, double>>>& byOutput) {
     Report json = Report::object();
     for (const auto& [output, series] : byOutput) {
@@ -181,6 +191,7 @@ Report jsonOf(const RunReport& report) {
     json["tone_camera"] = jsonOf(report.toneCamera);
     json["iou_camera"] = jsonOf(report.iouCamera);
     addWatch(json, report);
+    addLamps(json, report);
     return json;
 }
 

@@ -95,6 +95,7 @@ struct RunReport {
     PatternNews patterns;                            // how they were fitted to the wall, or would have been
     std::vector<show::event::LightCorrected> light;  // what the light correction did, or would have done
     std::map<std::string, std::vector<std::pair<Time, double>>> zCamera, toneCamera, iouCamera;  // per output
+    std::vector<LampReport> lamps;                                                               // empty: none may be trimmed
     std::vector<CauseReport> causes;                                          // why the wall is not as it should be
     std::map<std::string, std::vector<DriftReport>> watch;                    // per output
     std::map<std::string, std::int64_t> lateVideoFrames, damagedVideoFrames;  // per source that is a video

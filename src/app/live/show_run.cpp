@@ -226,7 +226,8 @@ public:
         report.zCamera = watch_.series();
         report.toneCamera = watch_.tones();
         report.iouCamera = watch_.ious();
-        if (driftWatch_) report.causes = driftWatch_->causes(), report.watch = driftWatch_->series();
+        if (driftWatch_)
+            report.causes = driftWatch_->causes(), report.watch = driftWatch_->series(), report.lamps = driftWatch_->lamps();
         for (const show::Source& source : programme_.show.sources)
             if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources.find(source.id)->picture)) {
                 const std::string& name = source.name;

@@ -83,21 +83,23 @@ void CauseWatch::endWall(Time at) {
     std::erase_if(suspicions_, [](const auto& each) { return !each.second.ofPicture; });
 }
 
-void CauseWatch::measure(const show::ShowState& shown, Time at) {
-    if (measured_ && at - *measured_ < kStep) return;
+std::optional<CauseWatch::Measured> CauseWatch::measure(const show::ShowState& shown, Time at,
+                                                        const std::function<void(vision::WallLight&)>& explain) {
+    if (measured_ && at - *measured_ < kStep) return std::nullopt;
     measured_ = at;
     if (shown.levels != lamps_.levels || shown.relays != lamps_.relays) {
         wall_.lampsChange();
         lamps_.levels = shown.levels;
         lamps_.relays = shown.relays;
     }
-    const vision::WallLight light = wall_.measureLight();
+    vision::WallLight light = wall_.measureLight();
+    if (explain) explain(light);
     for (std::size_t i = 0; i < hidden_.size(); ++i)
         if (light.outputs[i]) {
             hidden_[i] = light.outputs[i]->explained < 1 - kMostHidden;
             saturated_[i] = light.outputs[i]->saturated > kMostSaturated;
         }
-    if (std::ranges::none_of(light.outputs, [](const auto& output) { return output.has_value(); })) return;
+    if (std::ranges::none_of(light.outputs, [](const auto& output) { return output.has_value(); })) return std::nullopt;
     const auto named = vision::causesOf(light);
     const bool isLost = std::ranges::any_of(named, [](const vision::NamedCause& cause) {
         return cause.cause == vision::Cause::CameraElsewhere || cause.cause == vision::Cause::CameraBlind ||
@@ -111,6 +113,9 @@ void CauseWatch::measure(const show::ShowState& shown, Time at) {
             suspect(cause.output ? site_.outputs[*cause.output].name : "", wordsOf(cause), false, at);
     }
     if (!light.isSettling) endOthers(false, at);  // else they cannot be told
+    const bool isClear =
+        std::ranges::all_of(named, [](const auto& cause) { return cause.output || cause.cause == vision::Cause::AmbientLight; });
+    return Measured{std::move(light), isClear};
 }
 
 void CauseWatch::suspect(const std::string& output, const Words& words, bool ofPicture, Time at) {

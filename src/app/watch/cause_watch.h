@@ -11,6 +11,7 @@
 #include "core/clock.h"
 #include "media/image.h"
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -34,9 +35,16 @@ public:
     void wait(Time last, Time period, Time now);
     // Nothing more can be said of the wall.
     void endWall(Time at);
+    // What was measured.
+    struct Measured {
+        vision::WallLight light;
+        bool isClear = false;  // nothing is wrong with all pictures but ambient light
+    };
     // Measures the light in the picture that the wall's watch has looked at last; not more often
-    // than is useful. `shown`: the state at that moment.
-    void measure(const show::ShowState& shown, Time at);
+    // than is useful. `shown`: the state at that moment. Nothing: it measured nothing.
+    // `explain`: may correct how much other light was measured before causes are told from it.
+    std::optional<Measured> measure(const show::ShowState& shown, Time at,
+                                    const std::function<void(vision::WallLight&)>& explain = nullptr);
     // Whether something hides a part of an output's picture, so that its place is not certain.
     bool isHidden(std::size_t output) const { return hidden_[output]; }
     // Whether the camera is saturated by an output's picture, so that its place is not known.

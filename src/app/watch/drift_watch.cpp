@@ -78,6 +78,8 @@ DriftWatch::DriftWatch(const show::Site& site, const std::vector<std::optional<v
       settled_(site.outputs.size()),
       settledAt_(site.outputs.size(), Time::min() / 2),
       causeWatch_(site, wall_, causes_, events) {
+    const show::Corrections::Lamps& lamps = site.corrections.lamps;
+    if (lamps.mode != show::Corrections::Mode::Off && lamps.any()) lamps_.emplace(site, inputs, events);
     for (std::size_t i = 0; i < site.outputs.size(); ++i) {
         const auto [low, high] = litBy(site.outputs[i].projection);
         tracks_.emplace_back(low, high, outputs[i] && outputs[i]->isSurveyed);
@@ -91,10 +93,12 @@ void DriftWatch::fitPatterns(std::vector<PatternOnWall> patterns, bool waits, Pa
 
 void DriftWatch::tick(Time now) {
     light_.tick(now);
+    if (lamps_) lamps_->tick(showClock_.showTime(now));
     if (arrived_) causeWatch_.wait(showClock_.showTime(*arrived_), period_, showClock_.showTime(now));
 }
 
 void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, bool isSettingUp, Time now) {
+    if (lamps_) lamps_->note(shown);
     arrived_ = now;
     const auto pictures = static_cast<Time::rep>(frame.sequence - sequence_);
     if (exposed_ && pictures > 0) period_ = (frame.exposed - *exposed_) / pictures;
@@ -117,7 +121,7 @@ void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, boo
         for (std::size_t i = 0; i < tracks_.size(); ++i)
             if (settled_[i]) correct(i, *settled_[i], showClock_.showTime(now));
     corrects_ = shown.corrects;
-    if (!cameraMoved_) causeWatch_.measure(shown, showClock_.showTime(frame.exposed));
+    if (!cameraMoved_) measure(shown, showClock_.showTime(frame.exposed), showClock_.showTime(now));
     decide(showClock_.showTime(now));
     note(shown, showClock_.showTime(frame.exposed));
     if (patterns_) fit(shown, showClock_.showTime(now));
@@ -130,6 +134,15 @@ void DriftWatch::fit(const show::ShowState& shown, Time showTime) {
         isTrusted[i] =
             wall_.watches(i) && !causes_.isAnyOpen(site_.outputs[i].name, kHarmless) && !causes_.isAnyOpen("", kHarmless);
     patterns_->see(wall_, isTrusted, shown, showTime);
+}
+
+void DriftWatch::measure(const show::ShowState& shown, Time exposed, Time now) {
+    if (!lamps_) {
+        causeWatch_.measure(shown, exposed);
+        return;
+    }
+    const auto measured = causeWatch_.measure(shown, exposed, [&](vision::WallLight& light) { lamps_->explain(light, exposed); });
+    if (measured) lamps_->see(measured->light, measured->isClear, exposed, now);
 }
 
 // A technician decides where the pictures stand: shifts end, and nothing that was seen counts.

@@ -2,6 +2,7 @@
 
 #include "app/watch/cause_log.h"
 #include "app/watch/cause_watch.h"
+#include "app/watch/lamp_watch.h"
 #include "app/watch/pattern_correction.h"
 #include "app/watch/shown_light.h"
 
@@ -60,8 +61,11 @@ public:
     const std::map<std::string, std::vector<DriftReport>>& series() const { return series_; }
     // In the order in which they were noticed.
     const std::vector<CauseReport>& causes() const { return causes_.all(); }
+    // Empty unless the site lists lamps that may be trimmed.
+    std::vector<LampReport> lamps() const { return lamps_ ? lamps_->series() : std::vector<LampReport>(); }
 
 private:
+    void measure(const show::ShowState& shown, Time exposed, Time now);
     void endShifts(const show::ShowState& shown, Time showTime);
     void beginAgain();
     void decide(Time showTime);
@@ -88,6 +92,7 @@ private:
     std::optional<Time> noted_;  // show time of the newest entries of `series_`
     CauseLog causes_;
     CauseWatch causeWatch_;
+    std::optional<LampWatch> lamps_;
     std::optional<Time> arrived_;  // when the newest picture came
     Time period_{};                // of the camera's pictures; 0: unknown
     std::optional<PatternCorrection> patterns_;

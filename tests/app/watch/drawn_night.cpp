@@ -6,6 +6,7 @@
 #include "drivers/site/simulated_site.h"
 
 #include "show/cue_list.h"
+#include "show/patch.h"
 
 #include "core/file.h"
 #include "core/warp.h"
@@ -101,13 +102,14 @@ public:
         }
         return picture;
     }
-    static std::uint8_t lampAt(double time, std::uint64_t seed) {
+    // `isDim`: it is dim in two cues of three, else dark.
+    static double lampAt(double time, std::uint64_t seed, bool isDim) {
         const int cue = static_cast<int>(time / kCue);
         const auto level = [&](int of) {
-            return of < 0 ? 0.0 : static_cast<double>((seed + static_cast<std::uint64_t>(of)) % 3 == 0);
+            if (of < 0) return isDim ? 0.6 : 0.0;
+            return (seed + static_cast<std::uint64_t>(of)) % 3 == 0 ? 1.0 : isDim ? 0.6 : 0.0;
         };
-        return static_cast<std::uint8_t>(
-            255 * std::lerp(level(cue - 1), level(cue), std::clamp((time - cue * kCue) / kFade, 0.0, 1.0)));
+        return std::lerp(level(cue - 1), level(cue), std::clamp((time - cue * kCue) / kFade, 0.0, 1.0));
     }
 
 private:
@@ -175,7 +177,13 @@ public:
             "{}\n  k1: {:.4f}\n  k2: 0\n",
             options_.camera.x, options_.camera.y, fov, listOf({in(-2, 2), in(1.5, 3), in(11, 13)}),
             listOf({in(-0.3, 0.3), in(2, 2.5), 0}), in(-0.1, 0));
-        text += fmt::format("corrections: {{geometry: {{mode: {}}}}}\n", options_.geometry);
+        const bool isTrimmed = !options_.lamps.empty();
+        text += fmt::format("corrections:\n  geometry: {{mode: {}}}\n", options_.geometry);
+        if (isTrimmed)
+            text += fmt::format(
+                "  lamps: {{mode: {}, fixtures: [spot], relays: [street], speed: {}, hold: 20}}\nrelay_banks: [{{name: "
+                "road, device: {{driver: simulated}}}}]\nrelays: [{{name: street, coil: 0, safe: on}}]\n",
+                options_.lamps, options_.lampSpeed);
         const double ambient = ambient_ = logIn(0.2, 2);
         text += fmt::format("simulation:\n  ambient: {}\n  sky: [0.02, 0.03, 0.06]\n",
                             listOf({0.7 * ambient, 0.9 * ambient, 1.4 * ambient}));
@@ -189,8 +197,17 @@ public:
             "reflectance: [0.8, 0.8, 0.8]}\n    - {name: ground, rectangle: {corner: [-20, 0, -5], right: [40, 0, 0], up: [0, 0, "
             "25]}, reflectance: "
             "[0.17, 0.21, 0.12]}\n";
-        text +=
-            "  lamps:\n    spot: {position: [-2, 5, 6], look_at: [1, 1.5, 0], beam_angle: 25, field_angle: 40, candela: 900}\n";
+        // A spot on one of the pictures; or a flood and a street lamp for all of them.
+        if (isTrimmed)
+            text += fmt::format(
+                "  lamps:\n    spot: {{position: [0, 5, 9], look_at: [0, 2, 0], beam_angle: 90, field_angle: 130, candela: "
+                "{:.0f}}}\n  street_lamps:\n    street: {{position: [-4, 7, 9], look_at: [0, 2, 0], beam_angle: 90, "
+                "field_angle: 130, candela: {:.0f}}}\n",
+                logIn(600, 4000), logIn(600, 1500));
+        else
+            text +=
+                "  lamps:\n    spot: {position: [-2, 5, 6], look_at: [1, 1.5, 0], beam_angle: 25, field_angle: 40, candela: "
+                "900}\n";
         text += fmt::format(
             "  camera: {{white: {:.1f}, read_noise: {:.4f}, shot_noise: 0.012, latency: {:.3f}, frame_rate: {}, vignetting: "
             "{:.2f}, blur: {:.2f}, rolling: "
@@ -233,7 +250,8 @@ private:
         const std::string& kind = options_.fault;
         if (kind.empty()) return;
         faultAt = std::round(10 * in(options_.faultAt, options_.faultAt + Leaves::kCue)) / 10;
-        const std::string when = fmt::format("at: {:.1f}", faultAt);
+        std::string when = fmt::format("at: {:.1f}", faultAt);
+        if (options_.faultLasts > 0) when += fmt::format(", until: {:.1f}", faultAt + options_.faultLasts);
         const std::string output = names[static_cast<std::size_t>(in(0, 0.999 * static_cast<double>(names.size())))];
         const auto ofOutput = [&](const std::string& keys) {
             faulty = output;
@@ -279,6 +297,7 @@ struct Site {
     Site(const show::Site& plan, std::uint64_t seed) {
         simulation = must(site::SimulatedSite::open(*plan.simulation, must(simulationOf(plan)), seed, world));
         simulation->begin(Time{});
+        for (const show::Bank& bank : plan.relayBanks) world.installRelays(bank.name, {true});
     }
 };
 
@@ -382,6 +401,9 @@ show::CueList cuesOf(const show::Site& site) {
     cues.dark.levels.resize(site.channelCount());
     cues.farthestShift = site.corrections.geometry.farthest;
     cues.shiftSpeed = site.corrections.geometry.speed;
+    cues.dark.relays.assign(site.relays.size(), 1);
+    const show::Corrections::Lamps& lamps = site.corrections.lamps;
+    cues.trim = {static_cast<float>(lamps.least), lamps.speed, static_cast<int>(lamps.relays.size()), lamps.hold};
     return cues;
 }
 
@@ -420,10 +442,8 @@ public:
             isNew_[i] = 1;
             open_.world.setFrame(site_.outputs[i].name, std::make_shared<const RgbaImage>(frames_[i].image));
         }
-        std::array<std::uint8_t, kDmxSlots> slots{};
-        slots[0] = Leaves::lampAt(seconds(exposed), options_.seed);
-        open_.world.setSlots(1, slots);
-        state_.levels[0] = static_cast<float>(slots[0]) / 255;
+        state_.levels[0] = static_cast<float>(Leaves::lampAt(seconds(exposed), options_.seed, !options_.lamps.empty()));
+        light(exposed);
         open_.simulation->advanceTo(exposed);
         watch_->tick(exposed);
         // The last row is exposed a little later, and the picture arrives later still.
@@ -434,12 +454,33 @@ public:
         }
     }
     const show::ShowState& state() const { return state_; }
+    const std::vector<LampMoment>& lamps() const { return lamps_; }
+    std::string told() const {
+        std::string told;
+        show::EventLog::Reader reader = events_.reader();
+        while (const show::Event* const event = reader.next())
+            told += fmt::format("{:.1f} {}\n", seconds(event->at), sentenceOf(*event));
+        return told;
+    }
     const DriftWatch& watch() const { return *watch_; }
 
 private:
+    // Gives the lamps what the show asks and the camera leaves.
+    void light(Time at) {
+        show::Look look = state_;
+        show::applyTrim(site_, state_.lamps, look);
+        std::array<std::uint8_t, kDmxSlots> slots{};
+        show::slotsOf(site_, look, 1, slots);
+        open_.world.setSlots(1, slots);
+        if (site_.relays.empty()) return;
+        open_.world.setRelays(site_.relayBanks[0].name, {look.relays[0] != 0});
+        lamps_.push_back({at, state_.levels[0], look.levels[0], look.relays[0] != 0});
+    }
+
     const NightOptions& options_;
     const show::Site& site_;
     Site open_;
+    std::vector<LampMoment> lamps_;
     show::InputLog inputs_;
     show::EventLog events_;
     PlaybackReplica playback_;
@@ -472,6 +513,7 @@ NightResult playNight(const NightOptions& options) {
     result.outputs = draw.names;
     result.output = draw.faulty;
     result.drawn = draw.fault;
+    result.faultAt = draw.faultAt;
     const auto faulty = static_cast<std::size_t>(std::ranges::find(draw.names, draw.faulty) - draw.names.begin());
     std::optional<BumpedOutput> bumped;
     if (options.fault == "bump")
@@ -488,6 +530,9 @@ NightResult playNight(const NightOptions& options) {
     }
     result.causes = night.watch().causes();
     result.drifts = night.watch().series();
+    result.lamps = night.lamps();
+    result.otherLight = night.watch().lamps();
+    result.told = night.told();
     return result;
 }
 

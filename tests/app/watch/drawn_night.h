@@ -24,10 +24,13 @@ struct NightOptions {
     int outputs = 0;                    // 0: drawn
     glm::ivec2 camera{640, 360};        // pixels
     double faultAt = 14;                // seconds; it happens within the length of a cue after that
+    double faultLasts = 0;              // seconds; 0: for good
     double length = 34;                 // seconds
     bool isSurveyed = true;             // the site was calibrated
     double latency = 0.1;               // of the camera, seconds
     std::string geometry = "advise";    // the mode of `corrections`
+    std::string lamps{};                // the mode of the lamps' correction; empty: none may be trimmed
+    double lampSpeed = 0.05;            // of a trim, 1/s
 };
 
 // A kind of fault, and what it should be called.
@@ -46,13 +49,24 @@ struct Placed {
     double shifted = 0;  // how far the corrections move it
 };
 
+// What the site's lamps did at a moment.
+struct LampMoment {
+    Time at{};
+    double asked = 0, given = 0;  // level of the spot
+    bool isLampOn = true;         // the street lamp
+};
+
 struct NightResult {
     std::vector<std::string> outputs;
     std::string output;  // that the fault concerns; empty: all
+    double faultAt = 0;  // seconds
     std::string drawn;   // the fault as it was drawn, for people
     std::vector<CauseReport> causes;
     std::map<std::string, std::vector<DriftReport>> drifts;
     std::vector<Placed> placed;              // for the fault "bump"
+    std::vector<LampMoment> lamps;           // if some may be trimmed
+    std::vector<LampReport> otherLight;      // as the watch measured it
+    std::string told;                        // to the operator, a line each
     std::map<std::string, double> farthest;  // by output: how far corrections moved a corner at most, projector pixels
 };
 

@@ -80,5 +80,72 @@ TEST(DrawnNight, brings_a_picture_back_without_overshoot_however_late_the_camera
     }
 }
 
+// A night with a flood and a street lamp that may be trimmed.
+NightOptions nightWithLamps(std::uint64_t seed) {
+    NightOptions options;
+    options.seed = seed;
+    options.outputs = 2;
+    options.camera = {400, 225};
+    options.lamps = "automatic";
+    return options;
+}
+
+// The least share of what the cue asked that the flood was given within a time.
+double leastShare(const NightResult& night, double from, double to) {
+    double least = 1;
+    for (const LampMoment& moment : night.lamps)
+        if (seconds(moment.at) >= from && seconds(moment.at) < to && moment.asked > 0)
+            least = std::min(least, moment.given / moment.asked);
+    return least;
+}
+
+// A window lights up, and is dark again: cues change the lamps meanwhile.
+TEST(DrawnNight, lets_the_lamps_give_less_while_there_is_more_ambient_light) {
+    for (const double latency : {0.0, 0.5}) {
+        NightOptions options = nightWithLamps(4);
+        options.latency = latency;
+        options.script = {"kind: ambient, at: 20, until: 64.6, level: 12, rise: 0.5"};
+        options.length = 115;
+        const NightResult night = playNight(options);
+        EXPECT_EQ(leastShare(night, 0, 22), 1) << latency;
+        EXPECT_LT(leastShare(night, 22, 63), 0.9) << latency << night.told;
+        EXPECT_GE(leastShare(night, 0, 200), 0.3 - 1e-6) << latency;
+        for (const LampReport& report : night.otherLight) {
+            if (seconds(report.at) > 58 && seconds(report.at) < 63) {
+                EXPECT_NEAR(report.excess, 0, 0.015) << latency << ": " << seconds(report.at) << " s\n" << night.told;
+                EXPECT_GT(report.ambient, 0.01) << latency << ": " << seconds(report.at) << " s";
+            }
+        }
+        EXPECT_GT(leastShare(night, 112, 115), 0.75) << latency << night.told;  // what is left is about the dead band
+        EXPECT_THAT(night.told, testing::HasSubstr("c takes it back")) << latency;
+        EXPECT_THAT(night.told, testing::HasSubstr("the lamps go back")) << latency;
+    }
+}
+
+TEST(DrawnNight, lets_cues_people_headlights_and_fog_move_no_lamp) {
+    NightOptions options = nightWithLamps(6);
+    options.isBusy = true;
+    options.script = {"kind: fog, at: 22, until: 40, density: 0.03, rise: 4",
+                      "kind: cover, at: 48, until: 56, rectangle: [0, 0, 0.5, 1]",
+                      "kind: exposure, at: 64, until: 74, gain: 0.5, rise: 2"};
+    options.length = 85;
+    const NightResult night = playNight(options);
+    EXPECT_EQ(leastShare(night, 0, 200), 1) << night.told;
+    EXPECT_FALSE(night.otherLight.empty());
+    EXPECT_THAT(causesOf(night), testing::Contains("fog")) << "a test of nothing";
+    for (const LampMoment& moment : night.lamps) ASSERT_TRUE(moment.isLampOn) << seconds(moment.at);
+}
+
+TEST(DrawnNight, only_advises_where_the_site_says_so) {
+    NightOptions options = nightWithLamps(4);
+    options.lamps = "advise";
+    options.script = {"kind: ambient, at: 20, level: 12, rise: 1"};
+    options.length = 40;
+    const NightResult night = playNight(options);
+    EXPECT_EQ(leastShare(night, 0, 200), 1);
+    EXPECT_THAT(night.told, testing::HasSubstr("the lamps could give less"));
+    EXPECT_GT(night.otherLight.back().excess, 0.01);
+}
+
 }  // namespace
 }  // namespace fantascope::app
