@@ -1,6 +1,6 @@
 // Measures what the watch of the wall makes of nights in simulation that a seed draws: which faults
 // it names, whether it names or moves anything where nothing is wrong, and how it brings pictures
-// back.
+// back, and the lamps of the site.
 
 #include "app/watch/drawn_night.h"
 
@@ -84,6 +84,48 @@ void playDrift(NightOptions options, std::uint64_t first, std::uint64_t last) {
     }
 }
 
+// A window that lights up, and is dark again: how the lamps answer. `first` .. `last`: the seeds.
+void playLamps(NightOptions options, std::uint64_t first, std::uint64_t last) {
+    constexpr double kLasts = 70;  // seconds
+    options.lamps = "automatic";
+    options.fault = "ambient";
+    options.faultAt = 20;
+    options.faultLasts = kLasts;
+    options.length = 145;
+    for (options.seed = first; options.seed <= last; ++options.seed) {
+        const NightResult night = playNight(options);
+        const double from = night.faultAt, to = from + kLasts;
+        // By what was given of what the cues asked, and by what the watch measured.
+        double end = 1, least = 1, settled = 0, back = -1, before = 1, ambient = 0, rest = 0;
+        int counted = 0;
+        const auto shareOf = [](const LampMoment& moment) { return moment.asked > 0 ? moment.given / moment.asked : 1; };
+        for (const LampMoment& moment : night.lamps) {
+            const double at = seconds(moment.at), share = shareOf(moment);
+            if (at < from) before = std::min(before, share);
+            if (at < to) end = share, least = std::min(least, share);
+            if (at >= to && share < 0.999) back = at - to;
+        }
+        for (const LampMoment& moment : night.lamps)
+            if (seconds(moment.at) >= from && seconds(moment.at) < to && shareOf(moment) > end + 0.1 * (1 - end))
+                settled = seconds(moment.at) - from;
+        for (const LampReport& report : night.otherLight)
+            if (seconds(report.at) > to - 20 && seconds(report.at) < to) {
+                ambient += report.ambient, rest += report.excess;
+                ++counted;
+            }
+        ambient /= std::max(1, counted), rest /= std::max(1, counted);
+        fmt::print(
+            "{:4} latency {:.2f}: +{:.1f} % of full light, share {:.2f}, overshoot {:.1f} %, 90 % after {:.1f} s, left {:+.1f} "
+            "%, "
+            "moved before {:.2f}, back after {:.1f} s, relay {} |{}\n",
+            options.seed, options.latency, 100 * ambient, end, end < 1 ? 100 * (end - least) / (1 - end) : 0, settled, 100 * rest,
+            1 - before, back,
+            std::ranges::all_of(night.lamps, [](const LampMoment& moment) { return moment.isLampOn; }) ? "on" : "off",
+            wordsOf(night.causes));
+        std::fflush(stdout);
+    }
+}
+
 }  // namespace
 }  // namespace fantascope::app
 
@@ -93,7 +135,7 @@ int main(int argc, char** argv) {
     std::uint64_t first = 1, last = 14;
     std::string what = "faults", kind;
     bool isPlan = false;
-    app.add_option("what", what, "faults, quiet or drift")->check(CLI::IsMember({"faults", "quiet", "drift"}));
+    app.add_option("what", what, "faults, quiet, drift or lamps")->check(CLI::IsMember({"faults", "quiet", "drift", "lamps"}));
     app.add_option("--first", first, "first seed");
     app.add_option("--last", last, "last seed");
     app.add_option("--kind", kind, "only faults of this kind, as in a site file (default: each in turn)");
@@ -106,8 +148,9 @@ int main(int argc, char** argv) {
         !kind.empty() && std::ranges::find(all, kind, &fantascope::app::DrawnFault::kind) == all.end())
         return fmt::print(stderr, "watch_bench: there are no faults of the kind '{}'\n", kind), 1;
     options.isSurveyed = !isPlan;
-    if (what != "faults") options.geometry = "automatic";
+    if (what == "quiet" || what == "drift") options.geometry = "automatic";
     if (what == "faults") fantascope::app::playFaults(options, kind, first, last);
     if (what == "quiet") fantascope::app::playQuiet(options, first, last);
     if (what == "drift") fantascope::app::playDrift(options, first, last);
+    if (what == "lamps") fantascope::app::playLamps(options, first, last);
 }
