@@ -230,9 +230,8 @@ public:
             report.causes = driftWatch_->causes(), report.watch = driftWatch_->series(), report.lamps = driftWatch_->lamps();
         for (const show::Source& source : programme_.show.sources)
             if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources.find(source.id)->picture)) {
-                const std::string& name = source.name;
-                report.lateVideoFrames[name] = video->stream->lateFrames();
-                report.damagedVideoFrames[name] = video->stream->damagedFrames();
+                report.lateVideoFrames[source.name] = video->stream->lateFrames();
+                report.damagedVideoFrames[source.name] = video->stream->damagedFrames();
             }
         if (openSite_.simulation)
             for (const site::Happening& happening : openSite_.simulation->happenings())
