@@ -160,33 +160,36 @@ void LampWatch::see(const vision::WallLight& light, bool isClear, Time exposed, 
     if (!isTold) return;
     measured_ = now;
     const TrimSight sight = sightAt(then, exposed, now);
-    series_.push_back({exposed, sight.excess, ambient(), then.trim});
+    series_.push_back({exposed, sight.excess, sight.ambient.mean, then.trim});
     if (settings_.mode != show::Corrections::Mode::Automatic) return advise(sight, now);
     if (!corrects_) return;
     const show::LampTrim next = loop_.step(sight, goal_);
     if (next == goal_) return;
     const bool isLess = next.share < goal_.share || next.relaysOff > goal_.relaysOff;
     want(next,
-         isLess ? fmt::format("ambient light on the pictures has risen by {:.1f} % of full light", 100 * ambient())
+         isLess ? fmt::format("ambient light on the pictures has risen by {:.1f} % of full light", 100 * ambient().mean)
                 : "ambient light on the pictures is less again",
          now);
 }
 
-double LampWatch::ambient() const {
-    double sum = 0;
-    int count = 0;
-    for (const vision::AmbientLight& light : light_)
-        if (light.isKnown()) sum += light.rise(), ++count;
-    return sum / std::max(1, count);
+// The rise of ambient light, as the mean over the outputs.
+vision::AmbientLight::Light LampWatch::ambient() const {
+    return meanOf([](const vision::AmbientLight& light) { return light.rise(); });
 }
 
 // The light of all lamps at these levels, as the mean over the outputs.
 vision::AmbientLight::Light LampWatch::lightOf(const std::vector<float>& levels) const {
+    return meanOf([&](const vision::AmbientLight& light) { return light.of(levels); });
+}
+
+// The mean over the outputs of which it is known what is usual.
+template <class Light>
+vision::AmbientLight::Light LampWatch::meanOf(const Light& lightOf) const {
     vision::AmbientLight::Light mean;
     int count = 0;
     for (const vision::AmbientLight& light : light_) {
         if (!light.isKnown()) continue;
-        const vision::AmbientLight::Light of = light.of(levels);
+        const vision::AmbientLight::Light of = lightOf(light);
         mean.mean += of.mean;
         mean.sigma += of.sigma;
         ++count;
@@ -200,7 +203,8 @@ TrimSight LampWatch::sightAt(const Moment& then, Time exposed, Time now) const {
         less[i] -= then.asked[i];
         if (lamps_[i].isDimmed) dimmed[i] = then.asked[i], full[i] = 1;
     }
-    TrimSight sight{.at = exposed, .excess = ambient() + lightOf(less).mean, .share = then.trim.share};
+    TrimSight sight{.at = exposed, .ambient = plain(ambient()), .share = then.trim.share};
+    sight.excess = sight.ambient.mean + lightOf(less).mean;
     int known = 0;
     for (std::size_t i = 0; i < light_.size(); ++i)
         if (light_[i].isKnown()) sight.total += total_[i], ++known;
@@ -228,9 +232,11 @@ void LampWatch::advise(const TrimSight& sight, Time now) {
     if (sight.excess < band / 2) isAdvised_ = false;
     if (sight.excess <= band || !isWorthIt || std::exchange(isAdvised_, true)) return;
     events_.append(
-        {now,
-         show::event::LampsTrimmed{
-             fmt::format("ambient light on the pictures has risen by {:.1f} % of full light", 100 * ambient()), 1, {}, false}});
+        {now, show::event::LampsTrimmed{
+                  fmt::format("ambient light on the pictures has risen by {:.1f} % of full light", 100 * ambient().mean),
+                  1,
+                  {},
+                  false}});
 }
 
 void LampWatch::want(const show::LampTrim& trim, const std::string& why, Time now) {

@@ -71,8 +71,10 @@ private:
     bool isSteady(Time exposed) const;
     void listen();
     TrimSight sightAt(const Moment& then, Time exposed, Time now) const;
+    template <class Light>
+    vision::AmbientLight::Light meanOf(const Light& lightOf) const;
     vision::AmbientLight::Light lightOf(const std::vector<float>& levels) const;
-    double ambient() const;
+    vision::AmbientLight::Light ambient() const;
     void advise(const TrimSight& sight, Time now);
     void want(const show::LampTrim& trim, const std::string& why, Time now);
     void tell(const show::LampTrim& trim, const std::string& why, Time now);

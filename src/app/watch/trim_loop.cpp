@@ -10,6 +10,7 @@ constexpr Time kDecides = std::chrono::milliseconds(2300);
 constexpr double kGain = 0.4;        // share of the excess that one decision takes away
 constexpr double kDeadBand = 0.006;  // of full light,
 constexpr double kDeadShare = 0.03;  // and of the other light
+constexpr double kMostUnsure = 2;    // dead bands: an uncertainty that matters
 constexpr double kNearEnough = 0.3;  // of the dead band: a movement ends there
 constexpr double kLeastStep = 0.01;  // of the share
 constexpr double kAtLimit = 0.02;    // of the share
@@ -40,8 +41,11 @@ double TrimLoop::shareFor(const TrimSight& sight, double goal) {
     if (!isWorthIt(sight)) return 1;
     const double band = deadBandOf(sight), ahead = goal - sight.share;
     const double most = std::max(band / 2, std::min(sight.total, sight.fixtures.most()));
-    // What the full share would add is no excess either: the rest of a trim ends.
-    if (sight.excess + (1 - sight.share) * most <= band / 2) return 1;
+    // The rest of a trim ends if what the full share would add is no excess either, or if the rise
+    // may as well be none. No trim begins for such a rise.
+    const double unsure = std::min(sight.ambient.sigma, kMostUnsure * band);
+    if (sight.excess + (1 - sight.share) * most <= band / 2 || sight.ambient.mean <= (goal < 1 ? band / 2 : band) + unsure)
+        return 1;
     const bool matters = sight.fixtures.most() > band / 2;  // else the cue has darkened them
     moves_ = matters && std::abs(sight.excess) > (moves_ ? kNearEnough * band : band);
     if (!moves_) return std::abs(ahead) > kLeastStep ? sight.share : goal;

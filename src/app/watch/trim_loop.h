@@ -11,13 +11,14 @@ namespace fantascope::app {
 // What is known of the other light on the pictures when a picture was exposed. Light is a share of
 // the projectors' full light, linear.
 struct TrimSight {
-    Time at{};          // show time
-    double excess = 0;  // other light beside what is usual with the lamps that the cue asks for
-    double total = 0;   // all other light, above the camera's dark
+    Time at{};  // show time
     struct Light {
         double mean = 0, sigma = 0;
         double most() const { return mean + 2 * sigma; }
     };
+    Light ambient{};              // how much more ambient light there is than usual
+    double excess = 0;            // other light beside what is usual with the lamps that the cue asks for
+    double total = 0;             // all other light, above the camera's dark
     Light fixtures{}, full{};     // of the fixtures that may be dimmed: at the levels that the cue asks for; at full level
     double share = 1;             // of their levels that was given
     std::optional<Light> next{};  // of the relay that would be switched off next; nothing: there is none

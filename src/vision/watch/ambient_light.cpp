@@ -54,7 +54,9 @@ AmbientLight& AmbientLight::operator=(AmbientLight&&) noexcept = default;
 
 bool AmbientLight::isKnown() const { return filter_->seen >= kUsualFrom; }
 
-double AmbientLight::rise() const { return filter_->state(kRise); }
+AmbientLight::Light AmbientLight::rise() const {
+    return {filter_->state(kRise), std::sqrt(std::max(0.0, filter_->covariance(kRise, kRise)))};
+}
 
 void AmbientLight::forgetBase() { filter_->covariance(kBase, kBase) += 1; }
 
@@ -70,8 +72,11 @@ void AmbientLight::Filter::foresee(std::span<const float> nowAsked, Time at) {
     const Eigen::VectorXd change = levelsOf(nowAsked) - asked;
     asked += change;
     if (seen > 0) covariance(kBase, kBase) += kCurve * kCurve * state.tail(lamps()).cwiseProduct(change).squaredNorm();
-    if (strangeSince && !change.isZero() && at - *strangeSince >= kStrangeBefore) {
-        state(kRise) += strangeBy;
+    if (strangeSince && !change.isZero()) {
+        if (at - *strangeSince >= kStrangeBefore)
+            state(kRise) += strangeBy;
+        else
+            covariance(kRise, kRise) += strangeBy * strangeBy;
         strangeSince.reset();
     }
     if (seen >= kUsualFrom) covariance(kRise, kRise) += kWander * kWander * seconds(at - *last);

@@ -30,13 +30,13 @@ public:
 
     // Whether it is known what is usual.
     bool isKnown() const;
-    // How much more ambient light there is than usual.
-    double rise() const;
-    // How much of a light is beside what is usual with lamps at these levels.
-    double excessOf(double light, std::span<const float> levels) const;
     struct Light {
         double mean = 0, sigma = 0;
     };
+    // How much more ambient light there is than usual.
+    Light rise() const;
+    // How much of a light is beside what is usual with lamps at these levels.
+    double excessOf(double light, std::span<const float> levels) const;
     // The light of the lamps at these levels, by what was learned of them.
     Light of(std::span<const float> levels) const;
 

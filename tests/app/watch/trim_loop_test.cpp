@@ -70,7 +70,8 @@ std::vector<Moment> run(const Plant& plant, double length, const std::function<d
             return TrimSight::Light{sum.mean, sum.sigma};
         };
         TrimSight sight{.at = fromSeconds(time),
-                        .excess = light.rise() + of(given[0] - 1, given[1] - 1).mean,
+                        .ambient = {light.rise().mean, light.rise().sigma},
+                        .excess = light.rise().mean + of(given[0] - 1, given[1] - 1).mean,
                         .total = seen,
                         .fixtures = of(1, 0),
                         .full = of(1, 0),
