@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <utility>
 
 namespace fantascope::app {
 namespace {
@@ -84,6 +85,20 @@ void playDrift(NightOptions options, std::uint64_t first, std::uint64_t last) {
     }
 }
 
+// How much light the lamps take away beyond the rise at most, once a cue is not new any more.
+double overshootOf(const NightResult& night, double from, double to) {
+    constexpr double kNew = 10;  // seconds
+    double most = 0, asked = -1, changed = 0;
+    auto report = night.otherLight.begin();
+    for (const LampMoment& moment : night.lamps) {
+        const double at = seconds(moment.at);
+        if (moment.asked != std::exchange(asked, moment.asked)) changed = at;
+        for (; report != night.otherLight.end() && report->at <= moment.at; ++report)
+            if (at >= from && at < to && at - changed > kNew) most = std::max(most, -report->excess);
+    }
+    return most;
+}
+
 // A window that lights up, and is dark again: how the lamps answer. `first` .. `last`: the seeds.
 void playLamps(NightOptions options, std::uint64_t first, std::uint64_t last) {
     constexpr double kLasts = 70;  // seconds
@@ -96,13 +111,13 @@ void playLamps(NightOptions options, std::uint64_t first, std::uint64_t last) {
         const NightResult night = playNight(options);
         const double from = night.faultAt, to = from + kLasts;
         // By what was given of what the cues asked, and by what the watch measured.
-        double end = 1, least = 1, settled = 0, back = -1, before = 1, ambient = 0, rest = 0;
+        double end = 1, settled = 0, back = -1, before = 1, ambient = 0, rest = 0;
         int counted = 0;
         const auto shareOf = [](const LampMoment& moment) { return moment.asked > 0 ? moment.given / moment.asked : 1; };
         for (const LampMoment& moment : night.lamps) {
             const double at = seconds(moment.at), share = shareOf(moment);
             if (at < from) before = std::min(before, share);
-            if (at < to) end = share, least = std::min(least, share);
+            if (at < to) end = share;
             if (at >= to && share < 0.999) back = at - to;
         }
         for (const LampMoment& moment : night.lamps)
@@ -115,10 +130,10 @@ void playLamps(NightOptions options, std::uint64_t first, std::uint64_t last) {
             }
         ambient /= std::max(1, counted), rest /= std::max(1, counted);
         fmt::print(
-            "{:4} latency {:.2f}: +{:.1f} % of full light, share {:.2f}, overshoot {:.1f} %, 90 % after {:.1f} s, left {:+.1f} "
+            "{:4} latency {:.2f}: +{:.1f} % of full light, share {:.2f}, overshoot {:.2f} %, 90 % after {:.1f} s, left {:+.1f} "
             "%, "
             "moved before {:.2f}, back after {:.1f} s, relay {} |{}\n",
-            options.seed, options.latency, 100 * ambient, end, end < 1 ? 100 * (end - least) / (1 - end) : 0, settled, 100 * rest,
+            options.seed, options.latency, 100 * ambient, end, 100 * overshootOf(night, from, to), settled, 100 * rest,
             1 - before, back,
             std::ranges::all_of(night.lamps, [](const LampMoment& moment) { return moment.isLampOn; }) ? "on" : "off",
             wordsOf(night.causes));

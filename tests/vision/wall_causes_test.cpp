@@ -57,8 +57,9 @@ TEST(WallCauses, of_one_output_leave_the_others_alone) {
 }
 
 TEST(WallCauses, of_all_outputs_together_are_no_projector) {
-    EXPECT_EQ(said({kDim, kDim}, SurroundingsLight{0.9, 0.01}), one(Cause::Fog));
-    EXPECT_EQ(said({kDim, kDim}, SurroundingsLight{0.5, 0}), one(Cause::CameraExposure));
+    EXPECT_EQ(said({kDim, kDim}, SurroundingsLight{0.9, 0.01, 1.1}), one(Cause::Fog));
+    EXPECT_EQ(said({kDim, kDim}, SurroundingsLight{0.5, 0, 0.5}), one(Cause::CameraExposure));
+    EXPECT_EQ(said({kDim, kDim}, SurroundingsLight{0.7, 0.001, 0.98}), one(Cause::CameraExposure)) << "there is hardly any light";
     EXPECT_EQ(said({kStrong, kStrong}, SurroundingsLight{2, 0}), one(Cause::CameraExposure));
     EXPECT_EQ(said({kBlurred, kBlurred}), one(Cause::CameraDirty));
     EXPECT_EQ(said({kDark, kDark}), one(Cause::CameraBlind));
@@ -79,8 +80,11 @@ TEST(WallCauses, do_not_call_a_covered_output_dead) {
 
 TEST(WallCauses, of_a_single_output_are_told_by_its_surroundings) {
     EXPECT_EQ(said({kDim}, SurroundingsLight{1, 0}), one(Cause::DimLamp, 0));
-    EXPECT_EQ(said({kDim}, SurroundingsLight{0.5, 0}), one(Cause::CameraExposure));
-    EXPECT_EQ(said({kDim}, SurroundingsLight{0.8, 0.01}), one(Cause::Fog));
+    EXPECT_EQ(said({kDim}, SurroundingsLight{0.7, 0.0005, 0.9}), one(Cause::CameraExposure));
+    EXPECT_EQ(said({kDim}, SurroundingsLight{0.8, 0.01, 1.06}), one(Cause::Fog));
+    const OutputLight dimAndLit =
+        with([](OutputLight& light) { light.contrast = 0.7, light.asUsual = 0, light.otherLight = 0.005; });
+    EXPECT_EQ(said({dimAndLit}, SurroundingsLight{1, 0}), one(Cause::DimLamp, 0)) << "fog is seen around the picture, too";
     EXPECT_EQ(said({kDark}, SurroundingsLight{1, 0}), one(Cause::DeadOutput, 0));
     EXPECT_EQ(said({kDark}, SurroundingsLight{0.05, 0}), one(Cause::CameraBlind));
     EXPECT_EQ(said({kBlurred}), one(Cause::OutOfFocus, 0));
@@ -90,6 +94,8 @@ TEST(WallCauses, of_a_single_output_are_told_by_its_surroundings) {
     WallLight early;
     early.outputs = {kDim};
     early.isSettling = true;
+    EXPECT_THAT(causesOf(early), IsEmpty());
+    early.outputs = {kDim, kDim};
     EXPECT_THAT(causesOf(early), IsEmpty());
 }
 

@@ -193,9 +193,37 @@ TEST(Surroundings, tell_a_veil_from_a_change_of_all_light) {
     EXPECT_NEAR(same.veil, 0, 0.0002);
     EXPECT_NEAR(brighter.gain, 3, 0.05);
     EXPECT_NEAR(brighter.veil, 0, 0.002);
+    EXPECT_NEAR(brighter.level, 3, 0.05);
     EXPECT_NEAR(hazy.gain, 1, 0.05);
     EXPECT_NEAR(hazy.veil, 0.02, 0.002);
     EXPECT_FALSE(Surroundings(GreyImage(320, 160, 0)).measure(usual));
+}
+
+// A dark night: the patches differ less than the camera's noise. Example failure: the noise makes
+// the line flatter, and a usual night looks like a change of exposure and a veil.
+TEST(Surroundings, are_as_usual_in_the_noise_of_a_dark_night) {
+    Rng rng(3);
+    const auto picture = [&] {
+        constexpr int kSide = 16;
+        GreyImage picture(320, 160);
+        for (int top = 0; top < picture.height(); top += kSide)
+            for (int left = 0; left < picture.width(); left += kSide) {
+                const double light = 0.004 + 0.001 * left / 320 + 0.0003 * rng.normal();
+                for (int y = top; y < top + kSide; ++y)
+                    for (int x = left; x < left + kSide; ++x) picture.at(x, y) = static_cast<float>(light);
+            }
+        return picture;
+    };
+    double gain = 0;
+    constexpr int kNights = 20;
+    for (int night = 0; night < kNights; ++night) {
+        Surroundings surroundings(GreyImage(320, 160, 1));
+        while (surroundings.isLearning()) surroundings.measure(picture());
+        const SurroundingsLight same = *surroundings.measure(picture());
+        EXPECT_NEAR(same.level, 1, 0.02);
+        gain += same.gain / kNights;
+    }
+    EXPECT_NEAR(gain, 1, 0.2);
 }
 
 // Example failure: once a lamp of the show has changed, a camera that was too dark before counts as

@@ -20,7 +20,8 @@ constexpr Time kLonger = std::chrono::milliseconds(3800);  // nobody who passes 
 constexpr Time kGone = std::chrono::seconds(3);            // without a picture
 constexpr double kMostSaturated = 0.1;                     // of a picture whose place is certain; and hidden of it:
 constexpr double kMostHidden = 0.2;
-constexpr int kBlack = 40;  // a stored value
+constexpr double kAsWeak = 0.06;  // of the usual light
+constexpr int kBlack = 40;        // a stored value
 
 bool isUniform(const RgbaImage& picture) {
     const Rgba8 first = picture.pixels()[0];
@@ -100,7 +101,8 @@ std::optional<CauseWatch::Measured> CauseWatch::measure(const show::ShowState& s
             saturated_[i] = light.outputs[i]->saturated > kMostSaturated;
         }
     if (std::ranges::none_of(light.outputs, [](const auto& output) { return output.has_value(); })) return std::nullopt;
-    const auto named = vision::causesOf(light);
+    std::vector<vision::NamedCause> named = vision::causesOf(light);
+    keepWeak(named);
     const bool isLost = std::ranges::any_of(named, [](const vision::NamedCause& cause) {
         return cause.cause == vision::Cause::CameraElsewhere || cause.cause == vision::Cause::CameraBlind ||
                cause.cause == vision::Cause::BlockedView || cause.cause == vision::Cause::WrongInput ||
@@ -116,6 +118,17 @@ std::optional<CauseWatch::Measured> CauseWatch::measure(const show::ShowState& s
     const bool isClear =
         std::ranges::all_of(named, [](const auto& cause) { return cause.output || cause.cause == vision::Cause::AmbientLight; });
     return Measured{std::move(light), isClear};
+}
+
+// Fog and the camera's exposure weaken all pictures alike. Neither turns into the other while the
+// pictures stay as weak, whatever the lamps do around them.
+void CauseWatch::keepWeak(std::vector<vision::NamedCause>& named) {
+    for (vision::NamedCause& cause : named) {
+        if (cause.cause != vision::Cause::Fog && cause.cause != vision::Cause::CameraExposure) continue;
+        if (weak_ && causes_.isOpen("", wordsOf(*weak_).cause) && std::abs(weak_->figure - cause.figure) < kAsWeak)
+            cause.cause = weak_->cause;
+        weak_ = cause;
+    }
 }
 
 void CauseWatch::suspect(const std::string& output, const Words& words, bool ofPicture, Time at) {

@@ -61,6 +61,7 @@ private:
         std::string advice;  // what is seen, and what to do
         Time lasts{};        // a cause is named once it has lasted so long
     };
+    void keepWeak(std::vector<vision::NamedCause>& named);
     void suspect(const std::string& output, const Words& words, bool ofPicture, Time at);
     void endOthers(bool ofPicture, Time at);
     Words wordsOf(const vision::NamedCause& named) const;
@@ -71,6 +72,7 @@ private:
     show::EventLog& events_;
     std::map<Name, Suspicion> suspicions_;
     std::vector<bool> hidden_, saturated_;
+    std::optional<vision::NamedCause> weak_;  // why all pictures were weak last
     std::optional<Time> measured_;
     show::ShowState lamps_;       // its levels and relays, at the last measurement
     std::vector<Rgba8> picture_;  // some pixels of the last one

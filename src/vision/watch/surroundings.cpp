@@ -13,7 +13,8 @@ constexpr int kPatch = 16;  // side of a patch, camera pixels
 constexpr std::size_t kLeastPatches = 8;
 constexpr double kDarkest = 1e-5;  // linear light
 constexpr double kLeastGain = 0.05;
-constexpr int kUsualAfter = 2;  // pictures
+constexpr double kLeastOwn = 0.5;  // of the spread: so much of it at least is no noise
+constexpr int kUsualAfter = 2;     // pictures
 
 // The mean light of every patch that counts as a whole; negative: it does not.
 std::vector<double> patchesOf(const GreyImage& seen, const GreyImage& mask) {
@@ -39,16 +40,25 @@ void Surroundings::lampsChange() {
 
 bool Surroundings::isLearning() const { return pictures_ < kUsualAfter; }
 
+void Surroundings::learn(const std::vector<double>& now) {
+    if (pictures_ == 0) usual_.assign(now.size(), -1);
+    const double share = 1.0 / ++pictures_;
+    std::vector<double> squares;  // of differences between this picture and those before
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        if (now[i] < 0) continue;
+        const double usual = std::max(0.0, now[i] - kept_.veil) / std::max(kept_.gain, kLeastGain), off = usual - usual_[i];
+        if (usual_[i] >= 0) squares.push_back(off * off);
+        usual_[i] = usual_[i] < 0 ? usual : usual_[i] + share * off;
+    }
+    // Half of such squares are less than 0.455 of their mean, which is twice a picture's variance
+    // and four times that of two pictures' mean.
+    if (!squares.empty()) noise_ = medianOf(squares) / 0.455 / 4;
+}
+
 std::optional<SurroundingsLight> Surroundings::measure(const GreyImage& seen) {
     const std::vector<double> now = patchesOf(seen, mask_);
-    if (pictures_ == 0) usual_.assign(now.size(), -1);
     if (isLearning()) {
-        const double share = 1.0 / ++pictures_;
-        for (std::size_t i = 0; i < now.size(); ++i) {
-            if (now[i] < 0) continue;
-            const double usual = std::max(0.0, now[i] - kept_.veil) / std::max(kept_.gain, kLeastGain);
-            usual_[i] = usual_[i] < 0 ? usual : usual_[i] + share * (usual - usual_[i]);
-        }
+        learn(now);
         return std::nullopt;
     }
     std::vector<std::pair<double, double>> patches;  // usual, now
@@ -64,7 +74,7 @@ std::optional<SurroundingsLight> Surroundings::measure(const GreyImage& seen) {
         for (const auto& [x, y] : patches) left.push_back(std::abs(y - guess.gain * x - guess.veil));
         return medianOf(left);
     };
-    const SurroundingsLight changed{medianOf(ratios), 0}, veiled{1, medianOf(differences)};
+    const SurroundingsLight changed{.gain = medianOf(ratios)}, veiled{.veil = medianOf(differences)};
     SurroundingsLight light = missOf(changed) <= missOf(veiled) ? changed : veiled;
     for (int turn = 0; turn < 5; ++turn) {
         const double cut = 4.685 * 1.4826 * std::max(missOf(light), kDarkest);
@@ -79,9 +89,12 @@ std::optional<SurroundingsLight> Surroundings::measure(const GreyImage& seen) {
             xy += weight * usual * seen;
         }
         const double mean = x / count, level = y / count;
-        // Where all patches are alike, a line says nothing, and the gain explains all.
+        // The camera's noise adds to the spread of what is usual, which would make every line too
+        // flat. Where all patches are alike, a line says nothing, and the gain explains all.
         const double spread = xx / count - mean * mean, flat = 0.001 * mean * mean + 1e-10;
-        light.gain = (xy / count - mean * level + flat * level / std::max(mean, kDarkest)) / (spread + flat);
+        const double own = std::max(spread - noise_, kLeastOwn * spread), ratio = level / std::max(mean, kDarkest);
+        light.gain = (xy / count - mean * level + flat * ratio) / (own + flat);
+        light.level = ratio;
         light.veil = level - light.gain * mean;
     }
     now_ = light;

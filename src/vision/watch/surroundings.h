@@ -9,8 +9,9 @@ namespace fantascope::vision {
 
 // What is seen around the pictures, compared with what is usual there.
 struct SurroundingsLight {
-    double gain = 1;  // of the light that is usual
-    double veil = 0;  // light that is added everywhere, linear
+    double gain = 1;   // of the light that is usual
+    double veil = 0;   // light that is added everywhere, linear
+    double level = 1;  // the whole light / the usual
 };
 
 // Measures the light of all that the outputs do not light: sky, ground, walls beside the pictures.
@@ -28,8 +29,11 @@ public:
     void lampsChange();
 
 private:
+    void learn(const std::vector<double>& now);
+
     GreyImage mask_;
-    std::vector<double> usual_;     // by block; negative: it does not count
+    std::vector<double> usual_;     // by patch; negative: it does not count
+    double noise_ = 0;              // variance of a patch's usual light, of the camera's noise
     int pictures_ = 0;              // from which they were learned
     SurroundingsLight now_, kept_;  // at the last measurement, and before the lamps changed
 };

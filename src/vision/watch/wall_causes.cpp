@@ -9,16 +9,17 @@ constexpr double kNoPicture = 0.12;  // of the usual contrast: less is none
 constexpr double kWeak = 0.85, kStrong = 1.25;
 constexpr double kSaturated = 0.3;  // of the bright places
 constexpr double kSaturatesSome = 0.05;
-constexpr double kBlurred = 0.65;    // cells
-constexpr double kAll = 0.85;        // of the picture: so much is as good as all of it
-constexpr double kSome = 0.1;        // and so little is hardly anything
-constexpr double kHidden = 0.08;     // of the picture: more is worth a look
-constexpr double kFlatLight = 0.08;  // of full light: what shines without a picture is some other source's
-constexpr double kAmbient = 0.012;   // of full light
-constexpr double kLitFog = 0.01;     // of full light, that fog adds for the light that it takes
-constexpr double kLighter = 1.15;    // times the surroundings' usual light
-constexpr double kOnWall = 0.5;      // of the other light: so much of it with the surface's texture is no haze
-constexpr double kVeil = 0.002;      // linear camera light
+constexpr double kBlurred = 0.65;                          // cells
+constexpr double kAll = 0.85;                              // of the picture: so much is as good as all of it
+constexpr double kSome = 0.1;                              // and so little is hardly anything
+constexpr double kHidden = 0.08;                           // of the picture: more is worth a look
+constexpr double kFlatLight = 0.08;                        // of full light: what shines without a picture is some other source's
+constexpr double kAmbient = 0.012;                         // of full light
+constexpr double kLitFog = 0.01;                           // of full light, that fog adds for the light that it takes
+constexpr double kLitAround = 1.035, kDarkAround = 0.975;  // times the surroundings' usual light
+constexpr double kLighter = 1.15;                          // times the surroundings' usual light
+constexpr double kOnWall = 0.5;  // of the other light: so much of it with the surface's texture is no haze
+constexpr double kVeil = 0.002;  // linear camera light
 
 // How one output's picture looks.
 enum class Look { Usual, Blurred, Weak, Strong, Dark, Foreign, Hidden, Passing };
@@ -61,16 +62,18 @@ struct Looks {
     }
 };
 
-// All pictures are weak.
+// All pictures are weak. Fog is lit by the projectors, also where no picture is. The camera's
+// exposure darkens what is around the pictures as well, a projector's lamp does not.
 void addWeak(const Looks& looks, std::vector<NamedCause>& causes) {
-    const double contrast = looks.mean(&OutputLight::contrast), lost = 1 - contrast;
+    if (looks.light.isSettling) return;  // it cannot be told yet
+    const double contrast = looks.mean(&OutputLight::contrast);
     const auto& around = looks.light.surroundings;
-    if (looks.looks.size() == 1 && looks.light.isSettling) return;  // it cannot be told yet
-    const bool isLighter = looks.mean(&OutputLight::otherLight) > kLitFog * lost || (around && around->veil > kVeil);
-    if (around && !isLighter && around->gain < 1 - 0.6 * lost)
-        causes.push_back({Cause::CameraExposure, {}, contrast});
-    else if (looks.looks.size() > 1 || isLighter)
+    const bool isOne = looks.looks.size() == 1;
+    const bool isLighter = around ? around->level > kLitAround : looks.mean(&OutputLight::otherLight) > kLitFog * (1 - contrast);
+    if (isLighter || (!isOne && !around))
         causes.push_back({Cause::Fog, {}, contrast});
+    else if (!isOne || (around && around->level < kDarkAround))
+        causes.push_back({Cause::CameraExposure, {}, contrast});
     else
         causes.push_back({Cause::DimLamp, looks.outputs[0], contrast});
 }
