@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kSureOfSurface = 3;  // standard deviations
 constexpr double kStill = 0.3;        // of the largest drift: an output that moved so little did not move with the others
-constexpr double kSharp = 0.15;       // and how well its place must be known for that
+constexpr double kAtMost = 0.65;      // and so much of it at most, with two standard deviations more
 constexpr double kExplained = 0.15;   // of the camera's movement, besides:
 constexpr double kMeasured = 0.2;     // camera pixels: what a movement of the camera may leave unexplained
 
@@ -30,7 +30,7 @@ Moved whatMoved(const WallWatch& wall, const std::vector<std::optional<Drift>>& 
         movements.push_back(drift ? &drift->moved : nullptr);
         if (!drift) continue;
         ++watched;
-        anyStill = anyStill || (drift->px < kStill * largest && drift->sigma < kSharp * largest);
+        anyStill = anyStill || (drift->px < kStill * largest && drift->px + 2 * drift->sigma < kAtMost * largest);
         allMoved = allMoved && drift->isSure();
     }
     if (anyStill) return Moved::Projectors;
