@@ -102,7 +102,7 @@ std::optional<CauseWatch::Measured> CauseWatch::measure(const show::ShowState& s
         }
     if (std::ranges::none_of(light.outputs, [](const auto& output) { return output.has_value(); })) return std::nullopt;
     std::vector<vision::NamedCause> named = vision::causesOf(light);
-    keepWeak(named);
+    keepWeak(light, named);
     const bool isLost = std::ranges::any_of(named, [](const vision::NamedCause& cause) {
         return cause.cause == vision::Cause::CameraElsewhere || cause.cause == vision::Cause::CameraBlind ||
                cause.cause == vision::Cause::BlockedView || cause.cause == vision::Cause::WrongInput ||
@@ -111,8 +111,7 @@ std::optional<CauseWatch::Measured> CauseWatch::measure(const show::ShowState& s
     if (isLost && wall_.isUpsideDown()) {
         suspect("", {"camera upside down", "its picture is turned by half a turn: turn it back", kLong}, false, at);
     } else {
-        for (const vision::NamedCause& cause : named)
-            suspect(cause.output ? site_.outputs[*cause.output].name : "", wordsOf(cause), false, at);
+        for (const vision::NamedCause& cause : named) suspect(nameOf(cause), wordsOf(cause), false, at);
     }
     if (!light.isSettling) endOthers(false, at);  // else they cannot be told
     const bool isClear =
@@ -120,15 +119,30 @@ std::optional<CauseWatch::Measured> CauseWatch::measure(const show::ShowState& s
     return Measured{std::move(light), isClear};
 }
 
-// Fog and the camera's exposure weaken all pictures alike. Neither turns into the other while the
-// pictures stay as weak, whatever the lamps do around them.
-void CauseWatch::keepWeak(std::vector<vision::NamedCause>& named) {
+// Fog and the camera's exposure weaken all pictures alike, and a single one looks as if its lamp
+// were dim. None of these turns into another while the pictures stay as weak, whatever the lamps do
+// around them.
+void CauseWatch::keepWeak(const vision::WallLight& light, std::vector<vision::NamedCause>& named) {
+    double contrast = 0;
+    int measured = 0;
+    for (const auto& output : light.outputs)
+        if (output) contrast += output->contrast, ++measured;
+    const auto stays = [&](double figure) {
+        return weak_ && causes_.isOpen(nameOf(*weak_), wordsOf(*weak_).cause) && std::abs(weak_->figure - figure) < kAsWeak;
+    };
+    if (light.isSettling && stays(contrast / measured)) named.push_back(*weak_);
     for (vision::NamedCause& cause : named) {
-        if (cause.cause != vision::Cause::Fog && cause.cause != vision::Cause::CameraExposure) continue;
-        if (weak_ && causes_.isOpen("", wordsOf(*weak_).cause) && std::abs(weak_->figure - cause.figure) < kAsWeak)
-            cause.cause = weak_->cause;
+        if (cause.cause != vision::Cause::Fog && cause.cause != vision::Cause::CameraExposure &&
+            (cause.cause != vision::Cause::DimLamp || measured > 1))
+            continue;
+        if (stays(cause.figure)) cause.cause = weak_->cause, cause.output = weak_->output;
         weak_ = cause;
     }
+}
+
+// The output's name; "": the cause is of all of them.
+std::string CauseWatch::nameOf(const vision::NamedCause& named) const {
+    return named.output ? site_.outputs[*named.output].name : "";
 }
 
 void CauseWatch::suspect(const std::string& output, const Words& words, bool ofPicture, Time at) {

@@ -61,7 +61,8 @@ private:
         std::string advice;  // what is seen, and what to do
         Time lasts{};        // a cause is named once it has lasted so long
     };
-    void keepWeak(std::vector<vision::NamedCause>& named);
+    void keepWeak(const vision::WallLight& light, std::vector<vision::NamedCause>& named);
+    std::string nameOf(const vision::NamedCause& named) const;
     void suspect(const std::string& output, const Words& words, bool ofPicture, Time at);
     void endOthers(bool ofPicture, Time at);
     Words wordsOf(const vision::NamedCause& named) const;
