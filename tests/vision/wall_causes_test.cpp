@@ -61,6 +61,9 @@ TEST(WallCauses, of_all_outputs_together_are_no_projector) {
     EXPECT_EQ(said({kDim, kDim}, SurroundingsLight{0.5, 0, 0.5}), one(Cause::CameraExposure));
     EXPECT_EQ(said({kDim, kDim}, SurroundingsLight{0.7, 0.001, 0.98}), one(Cause::CameraExposure)) << "there is hardly any light";
     EXPECT_EQ(said({kStrong, kStrong}, SurroundingsLight{2, 0}), one(Cause::CameraExposure));
+    const OutputLight saturates =
+        with([](OutputLight& light) { light.contrast = 1.9, light.asUsual = 0.7, light.explained = 0.8, light.saturated = 0.1; });
+    EXPECT_EQ(said({saturates, saturates}), one(Cause::CameraExposure)) << "some of it is white";
     EXPECT_EQ(said({kBlurred, kBlurred}), one(Cause::CameraDirty));
     EXPECT_EQ(said({kDark, kDark}), one(Cause::CameraBlind));
     EXPECT_EQ(said({kForeign, kForeign}), one(Cause::CameraElsewhere));

@@ -6,7 +6,8 @@ namespace fantascope::vision {
 namespace {
 
 constexpr double kNoPicture = 0.12;  // of the usual contrast: less is none
-constexpr double kWeak = 0.85, kStrong = 1.25;
+constexpr double kWeak = 0.85, kStrong = 1.25, kMuchStronger = 1.5;
+constexpr double kMost = 0.5;       // of the picture
 constexpr double kSaturated = 0.3;  // of the bright places
 constexpr double kSaturatesSome = 0.05;
 constexpr double kBlurred = 0.65;                          // cells
@@ -28,7 +29,8 @@ Look lookOf(const OutputLight& light) {
     const bool isExplained = light.explained >= kAll;
     if (light.saturated > kSaturated) return Look::Strong;
     if (light.contrast < kNoPicture && isExplained) return light.otherLight < kFlatLight ? Look::Dark : Look::Foreign;
-    if (light.contrast > kStrong && light.asUsual < 0.5) return Look::Strong;
+    if (light.contrast > kStrong && light.asUsual < kMost) return Look::Strong;
+    if (light.contrast > kMuchStronger && light.explained > kMost) return Look::Strong;
     if (light.saturated > kSaturatesSome) return Look::Passing;  // what is left of the picture says little
     if (!isExplained && light.asUsual < kSome) return Look::Foreign;
     if (light.hidden > kHidden && light.explained < 1 - kHidden) return Look::Hidden;
