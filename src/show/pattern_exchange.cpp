@@ -1,19 +1,11 @@
 #include "show/pattern_exchange.h"
 
+#include "show/course.h"
+
 #include <algorithm>
 #include <iterator>
 
 namespace fantascope::show {
-namespace {
-
-// Begins and ends without a jerk.
-float easedShare(Time passed, Time fade) {
-    if (passed >= fade) return 1;
-    const auto share = static_cast<float>(seconds(passed) / seconds(fade));
-    return share * share * (3 - 2 * share);
-}
-
-}  // namespace
 
 bool PatternCourses::exchange(SourceId source, int number, Time at, Time fade) {
     const auto found = steps_.find(source);
@@ -39,7 +31,7 @@ PatternExchange PatternCourses::at(SourceId source, Time time) const {
     const auto next = std::ranges::upper_bound(steps, time, {}, &Step::at);
     if (next == steps.begin()) return {};
     const Step& step = *std::prev(next);
-    const float share = easedShare(time - step.at, step.fade);
+    const float share = Course{0, 1, step.at, step.fade, Curve::Smooth}.valueAt(time);
     if (step.isBack) return {step.number, share, 0};
     const bool isFromOriginal = std::prev(next) == steps.begin() || std::prev(next, 2)->isBack;
     return isFromOriginal ? PatternExchange{step.number, 1 - share, 0} : PatternExchange{step.number, 0, 1 - share};

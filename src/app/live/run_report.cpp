@@ -104,30 +104,16 @@ std::string lateFramesByCause(const std::vector<OutputReport>& outputs) {
     return text;
 }
 
-std::vector<CueReport> cuesOf(const show::EventLog& events) {
-    std::vector<CueReport> cues;
+void addEvents(const show::EventLog& events, RunReport& report) {
     show::EventLog::Reader reader = events.reader();
-    while (const show::Event* const event = reader.next())
+    while (const show::Event* const event = reader.next()) {
         if (const auto* const entered = std::get_if<show::event::CueEntered>(&event->what))
-            cues.push_back({entered->name, event->at});
-    return cues;
-}
-
-std::vector<show::event::LightCorrected> lightOf(const show::EventLog& events) {
-    std::vector<show::event::LightCorrected> light;
-    show::EventLog::Reader reader = events.reader();
-    while (const show::Event* const event = reader.next())
-        if (const auto* const corrected = std::get_if<show::event::LightCorrected>(&event->what)) light.push_back(*corrected);
-    return light;
-}
-
-PatternNews patternsOf(const show::EventLog& events) {
-    PatternNews patterns;
-    show::EventLog::Reader reader = events.reader();
-    while (const show::Event* const event = reader.next())
-        if (const auto* const fitted = std::get_if<show::event::PatternFitted>(&event->what))
-            patterns.emplace_back(event->at, *fitted);
-    return patterns;
+            report.cues.push_back({entered->name, event->at});
+        else if (const auto* const corrected = std::get_if<show::event::LightCorrected>(&event->what))
+            report.light.push_back(*corrected);
+        else if (const auto* const fitted = std::get_if<show::event::PatternFitted>(&event->what))
+            report.patterns.emplace_back(event->at, *fitted);
+    }
 }
 
 std::string sentenceOf(const std::vector<UnsafeBank>& unsafe) {

@@ -51,13 +51,8 @@ struct CueReport {
     Time entered{};
 };
 
-// The cues in the order in which they were entered.
-std::vector<CueReport> cuesOf(const show::EventLog& events);
-// What was told of the light correction.
-std::vector<show::event::LightCorrected> lightOf(const show::EventLog& events);
 // What was told of the patterns, and when.
 using PatternNews = std::vector<std::pair<Time, show::event::PatternFitted>>;
-PatternNews patternsOf(const show::EventLog& events);
 
 struct FaultReport {
     Time at{};
@@ -104,6 +99,9 @@ struct RunReport {
     std::string stopReason;
     std::string hung;  // why the program did not wait for the render thread; empty: the thread ended in order
 };
+
+// Adds what the events tell of cues, of the light correction and of patterns, in their order.
+void addEvents(const show::EventLog& events, RunReport& report);
 
 // All late frames by cause: "3 render, 1 machine"; empty if none was late.
 std::string lateFramesByCause(const std::vector<OutputReport>& outputs);

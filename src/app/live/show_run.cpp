@@ -262,7 +262,7 @@ private:
         report.frames = frames_.framesShown();
         report.lateFrames = frames_.framesLate();
         report.dmxInterval = lighting_.dmxInterval();
-        report.cues = cuesOf(events_), report.light = lightOf(events_), report.patterns = patternsOf(events_);
+        addEvents(events_, report);
         report.faults = faults_.faults();
         report.unsafe = lights_.unsafe();
         return report;

@@ -27,8 +27,6 @@ bool tells(const vision::OutputLight& light) {
            light.saturated <= kMostSaturatedLight;
 }
 
-TrimSight::Light plain(const vision::AmbientLight::Light& light) { return {light.mean, light.sigma}; }
-
 }  // namespace
 
 std::vector<LampWatch::Lamp> LampWatch::lampsOf(const show::Site& site) {
@@ -203,14 +201,14 @@ TrimSight LampWatch::sightAt(const Moment& then, Time exposed, Time now) const {
         less[i] -= then.asked[i];
         if (lamps_[i].isDimmed) dimmed[i] = then.asked[i], full[i] = 1;
     }
-    TrimSight sight{.at = exposed, .ambient = plain(ambient()), .share = then.trim.share};
+    TrimSight sight{.at = exposed, .ambient = ambient(), .share = then.trim.share};
     sight.excess = sight.ambient.mean + lightOf(less).mean;
     int known = 0;
     for (std::size_t i = 0; i < light_.size(); ++i)
         if (light_[i].isKnown()) sight.total += total_[i], ++known;
     sight.total /= std::max(1, known);
-    sight.fixtures = plain(lightOf(dimmed));
-    sight.full = plain(lightOf(full));
+    sight.fixtures = lightOf(dimmed);
+    sight.full = lightOf(full);
     const auto relay = [&](int number) -> std::optional<TrimSight::Light> {
         const auto isIt = [&](const Lamp& lamp) { return lamp.offFrom == number; };
         const auto found = std::ranges::find_if(lamps_, isIt);
@@ -218,7 +216,7 @@ TrimSight LampWatch::sightAt(const Moment& then, Time exposed, Time now) const {
         const auto index = static_cast<std::size_t>(found - lamps_.begin());
         std::vector<float> alone(lamps_.size(), 0);
         alone[index] = then.asked[index];
-        return plain(lightOf(alone));
+        return lightOf(alone);
     };
     sight.next = relay(goal_.relaysOff);
     sight.last = relay(goal_.relaysOff - 1);

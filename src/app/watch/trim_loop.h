@@ -1,6 +1,7 @@
 #pragma once
 
 #include "show/lamp_trim.h"
+#include "vision/watch/ambient_light.h"
 
 #include "core/clock.h"
 
@@ -12,10 +13,7 @@ namespace fantascope::app {
 // the projectors' full light, linear.
 struct TrimSight {
     Time at{};  // show time
-    struct Light {
-        double mean = 0, sigma = 0;
-        double most() const { return mean + 2 * sigma; }
-    };
+    using Light = vision::AmbientLight::Light;
     Light ambient{};              // how much more ambient light there is than usual
     double excess = 0;            // other light beside what is usual with the lamps that the cue asks for
     double total = 0;             // all other light, above the camera's dark

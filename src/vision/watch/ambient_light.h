@@ -31,7 +31,8 @@ public:
     // Whether it is known what is usual.
     bool isKnown() const;
     struct Light {
-        double mean = 0, sigma = 0;
+        double mean = 0, sigma = 0;  // sigma: its standard deviation
+        double most() const { return mean + 2 * sigma; }
     };
     // How much more ambient light there is than usual.
     Light rise() const;

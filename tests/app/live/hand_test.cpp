@@ -46,7 +46,9 @@ TEST_F(HandPart, a_press_reaches_every_part_of_the_show_and_the_operator) {
     EXPECT_THAT(run_.told(), Contains("blackout: pictures and lamps are dark"));
     press(show::Button::Blackout);
     EXPECT_EQ(run_.told().back(), "light: the blackout is over");
-    const std::vector<CueReport> cues = cuesOf(run_.events);
+    RunReport report;
+    addEvents(run_.events, report);
+    const std::vector<CueReport>& cues = report.cues;
     ASSERT_EQ(cues.size(), 1u);
     EXPECT_EQ(cues[0].name, "Dusk");
     EXPECT_EQ(cues[0].entered, 2s);
@@ -62,7 +64,9 @@ TEST_F(HandPart, of_a_resumed_show_stamps_presses_with_show_time) {
     hand.tick(run_.clock.now());
     show::InputLog::Reader inputs = run_.inputs.reader();
     EXPECT_EQ(inputs.next()->input.at, 3h + 1s) << "when it was pressed, and not when it was asked for";
-    EXPECT_EQ(cuesOf(run_.events)[0].entered, 3h + 1s + 5ms);
+    RunReport report;
+    addEvents(run_.events, report);
+    EXPECT_EQ(report.cues.at(0).entered, 3h + 1s + 5ms);
 }
 
 // Example failure: a part whose thread stood still for a while stays in a cue that the others have

@@ -65,12 +65,9 @@ std::vector<Moment> run(const Plant& plant, double length, const std::function<d
         const double seen =
             plant.base + ambientAt(time - plant.latency) + lampsAt(time - plant.latency) + plant.noise * (2 * rng.uniform() - 1);
         if (!light.see(seen, given, asked, fromSeconds(time)) || !light.isKnown()) continue;
-        const auto of = [&](float first, float second) {
-            const vision::AmbientLight::Light sum = light.of(std::array{first, second});
-            return TrimSight::Light{sum.mean, sum.sigma};
-        };
+        const auto of = [&](float first, float second) { return light.of(std::array{first, second}); };
         TrimSight sight{.at = fromSeconds(time),
-                        .ambient = {light.rise().mean, light.rise().sigma},
+                        .ambient = light.rise(),
                         .excess = light.rise().mean + of(given[0] - 1, given[1] - 1).mean,
                         .total = seen,
                         .fixtures = of(1, 0),
