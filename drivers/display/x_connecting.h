@@ -4,9 +4,8 @@
 
 namespace fantascope::drivers {
 
-// Whoever connects to an X server holds this meanwhile, with XCB, Xlib or GLFW: libXau keeps the
-// name of the authority file in a buffer that all threads share, and may free it under another
-// thread's hands. Thread: any.
+// A lock to hold while you connect to an X server, by XCB, Xlib or GLFW. libXau keeps the name of
+// the authority file in one buffer for all threads, and a second thread would free it. Thread: any.
 inline std::unique_lock<std::mutex> connectingToX() {
     static std::mutex mutex;
     return std::unique_lock(mutex);

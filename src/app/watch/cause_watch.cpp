@@ -119,9 +119,9 @@ std::optional<CauseWatch::Measured> CauseWatch::measure(const show::ShowState& s
     return Measured{std::move(light), isClear};
 }
 
-// Fog and the camera's exposure weaken all pictures alike, and a single one looks as if its lamp
-// were dim. None of these turns into another while the pictures stay as weak, whatever the lamps do
-// around them.
+// Fog and another exposure weaken all pictures alike; where there is only one, a dim lamp does so,
+// too. None of these becomes another while the pictures stay as weak, whatever the lamps around
+// them do.
 void CauseWatch::keepWeak(const vision::WallLight& light, std::vector<vision::NamedCause>& named) {
     double contrast = 0;
     int measured = 0;

@@ -41,8 +41,8 @@ double TrimLoop::shareFor(const TrimSight& sight, double goal) {
     if (!isWorthIt(sight)) return 1;
     const double band = deadBandOf(sight), ahead = goal - sight.share;
     const double most = std::max(band / 2, std::min(sight.total, sight.fixtures.most()));
-    // The rest of a trim ends if what the full share would add is no excess either, or if the rise
-    // may as well be none. No trim begins for such a rise.
+    // A trim ends if the full share would leave no excess, or if the rise is within its
+    // uncertainty. For such a rise none begins.
     const double unsure = std::min(sight.ambient.sigma, kMostUnsure * band);
     if (sight.excess + (1 - sight.share) * most <= band / 2 || sight.ambient.mean <= (goal < 1 ? band / 2 : band) + unsure)
         return 1;

@@ -67,7 +67,8 @@ bool AmbientLight::see(double light, std::span<const float> given, std::span<con
 
 // What may have changed since the last measurement. What a cue changes is usual afterwards: it is
 // foreseen by what is known of the lamps, but not for certain. What was strange for some time
-// before it counts as a rise: afterwards the two could not be told apart.
+// before counts as a rise, and what was strange for a moment may be one: afterwards it could not be
+// told from the cue.
 void AmbientLight::Filter::foresee(std::span<const float> nowAsked, Time at) {
     const Eigen::VectorXd change = levelsOf(nowAsked) - asked;
     asked += change;

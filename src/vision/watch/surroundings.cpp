@@ -50,8 +50,8 @@ void Surroundings::learn(const std::vector<double>& now) {
         if (usual_[i] >= 0) squares.push_back(off * off);
         usual_[i] = usual_[i] < 0 ? usual : usual_[i] + share * off;
     }
-    // Half of such squares are less than 0.455 of their mean, which is twice a picture's variance
-    // and four times that of two pictures' mean.
+    // The difference of two pictures has twice the variance of one, and four times that of their
+    // mean. The median of its square is 0.455 of its variance.
     if (!squares.empty()) noise_ = medianOf(squares) / 0.455 / 4;
 }
 

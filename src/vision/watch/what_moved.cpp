@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kSureOfSurface = 3;  // standard deviations
 constexpr double kStill = 0.3;        // of the largest drift: an output that moved so little did not move with the others
-constexpr double kAtMost = 0.65;      // and so much of it at most, with two standard deviations more
+constexpr double kAtMost = 0.65;      // of the largest drift: its own and two standard deviations are less
 constexpr double kExplained = 0.15;   // of the camera's movement, besides:
 constexpr double kMeasured = 0.2;     // camera pixels: what a movement of the camera may leave unexplained
 
