@@ -14,7 +14,7 @@ constexpr double kMostUnsure = 2;    // dead bands: an uncertainty that matters
 constexpr double kNearEnough = 0.3;  // of the dead band: a movement ends there
 constexpr double kLeastStep = 0.01;  // of the share
 constexpr double kAtLimit = 0.02;    // of the share
-constexpr double kKnown = 0.3;       // of a relay's light: an uncertainty that is small
+constexpr double kTooMuch = 0.1;     // of the rise: what a relay may take away beyond what is missed
 constexpr double kBetter = 0.75;     // of what is missed: a relay that leaves less comes on again
 constexpr Time kRelayPatience = std::chrono::seconds(10);
 
@@ -24,6 +24,13 @@ struct Reach {
     double low = 0, high = 0;
     double missed(double more = 0) const { return std::max({0.0, low + more, -(high + more)}); }
 };
+
+// The most light that a relay's lamp may give: no more than there is other light on a usual night
+// beside that of the fixtures.
+double mostOf(const TrimSight::Light& relay, const TrimSight& sight) {
+    const double usual = sight.total - sight.excess, fixtures = std::max(0.0, sight.fixtures.mean - 2 * sight.fixtures.sigma);
+    return std::min(relay.most(), std::max(0.0, usual - fixtures));
+}
 
 }  // namespace
 
@@ -56,16 +63,15 @@ double TrimLoop::shareFor(const TrimSight& sight, double goal) {
     return std::abs(wanted - goal) < kLeastStep && !isLast ? goal : wanted;
 }
 
-// One more or one less that should be off, once that has lasted. Switching a known relay off must
-// leave less than half of what is missed, so nothing is switched to and fro.
+// One more or one less that should be off, once that has lasted. A relay is switched off only if
+// its lamp takes away no more than what is missed, however much light it gives.
 int TrimLoop::relayStep(const TrimSight& sight) {
     const double light = std::max(0.0, sight.fixtures.mean), band = deadBandOf(sight);
     const Reach reach{sight.excess + (bounds_.least - sight.share) * light, sight.excess + (1 - sight.share) * light};
     const bool isAtLimit = sight.share <= bounds_.least + kAtLimit || !isWorthIt(sight);
     int wish = 0;
-    if (sight.next && isAtLimit && reach.low > band) {
-        const bool isKnown = sight.next->sigma < kKnown * sight.next->mean;
-        if (!isKnown || reach.missed(-sight.next->mean) < reach.low / 2) wish = 1;
+    if (sight.next && isAtLimit && reach.low > band && mostOf(*sight.next, sight) <= reach.low + kTooMuch * sight.ambient.mean) {
+        wish = 1;
     } else if (sight.last) {
         const double missed = reach.missed(), left = reach.missed(sight.last->mean);
         if (left <= band / 2 || (missed > band && left < kBetter * missed)) wish = -1;

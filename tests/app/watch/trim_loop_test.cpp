@@ -166,7 +166,7 @@ int switchings(const std::vector<Moment>& moments, double hold) {
 
 TEST(TrimLoop, switches_a_relay_off_once_the_fixtures_are_at_their_limit_and_on_again) {
     const Plant plant{.lamp = 0.05, .relay = 0.1, .bounds = {0.3, 0.05}};
-    const auto ambient = [](double time) { return time >= 20 && time < 300 ? 0.12 : 0; };
+    const auto ambient = [](double time) { return time >= 20 && time < 300 ? 0.2 : 0; };
     const std::vector<Moment> moments = run(plant, 500, ambient);
     EXPECT_EQ(switchings(moments, plant.hold), 2);
     for (const Moment& moment : moments) {
@@ -177,23 +177,38 @@ TEST(TrimLoop, switches_a_relay_off_once_the_fixtures_are_at_their_limit_and_on_
     }
     const auto at = [&](double time) { return moments[static_cast<std::size_t>(time / 0.025)]; };
     EXPECT_EQ(at(290).trim.relaysOff, 1);
-    EXPECT_NEAR(at(290).excess, 0, 0.01);
+    EXPECT_NEAR(at(290).excess, 0.2 - 0.1 - 0.035, 0.005);
     EXPECT_EQ(moments.back().trim, show::LampTrim{});
 }
 
-// It takes away more than there is too much: the wall was lighter by 0.04, and is darker by 0.06
-// then.
-TEST(TrimLoop, gives_a_relay_back_that_takes_too_much_away_and_leaves_it) {
-    const Plant plant{.lamp = 0.01, .relay = 0.1, .bounds = {0.3, 0.05}};
-    const std::vector<Moment> moments = run(plant, 1000, [](double time) { return time >= 20 ? 0.04 : 0.0; });
-    EXPECT_EQ(switchings(moments, plant.hold), 2) << "it was tried once";
-    EXPECT_EQ(moments.back().trim.relaysOff, 0);
+// How much light a relay's lamp gives is not known before it was switched. Example failure: it is
+// tried whatever it gives, and the wall, which was lighter by 0.04, is darker by 0.06 then.
+TEST(TrimLoop, takes_no_more_light_away_with_a_relay_than_has_come) {
+    int switched = 0, count = 0;
+    for (const double latency : {0.0, 0.5})
+        for (const double lamp : {0.0005, 0.03, 0.2})
+            for (const double relay : {0.01, 0.05, 0.2})
+                for (const double base : {0.0, 0.02, 0.2})
+                    for (const double rise : {0.03, 0.1, 0.4}) {
+                        const Plant plant{
+                            .lamp = lamp, .relay = relay, .base = base, .latency = latency, .bounds = {0.3, 0.05}};
+                        const std::vector<Moment> moments = run(plant, 190, risen(rise));
+                        double least = 0;
+                        for (const Moment& moment : moments) least = std::min(least, moment.excess);
+                        EXPECT_GT(least, -0.1 * rise) << plant << ", relay " << relay << ", rise " << rise;
+                        switched += switchings(moments, plant.hold) > 0 ? 1 : 0;
+                        ++count;
+                    }
+    EXPECT_GT(switched, count / 4);
 }
 
 TEST(TrimLoop, switches_no_relay_to_and_fro_at_the_border) {
     const Plant plant{.lamp = 0.05, .relay = 0.1, .bounds = {0.3, 0.05}};
-    const auto wavers = [](double time) { return time < 20 ? 0.0 : 0.045 + 0.008 * std::sin(time / 30); };
-    EXPECT_LE(switchings(run(plant, 2000, wavers), plant.hold), 2);
+    const auto wavers = [](double time) {
+        const double wave = 0.01 * std::sin(time / 30);
+        return time < 20 ? 0.0 : time < 1000 ? 0.16 + 2 * wave : 0.063 + wave;
+    };
+    EXPECT_EQ(switchings(run(plant, 2000, wavers), plant.hold), 2) << "off at the upper border, on at the lower one";
 }
 
 }  // namespace
