@@ -2,10 +2,9 @@
 // with the pattern's, and with both. Each show is a rehearsal of the built program on a calibrated
 // simulated site; z and tone are the camera's, means over the last seconds.
 
-#include "media/image.h"
-
 #include "core/file.h"
 #include "core/random.h"
+#include "media/image.h"
 #include "scratch_folder.h"
 #include "source_folder.h"
 
@@ -30,9 +29,12 @@ namespace {
 double noise(double x, double y, std::uint64_t seed) {
     const double column = std::floor(x), row = std::floor(y);
     const auto value = [&](double dx, double dy) {
-        Rng rng((seed * 4099 + static_cast<std::uint64_t>(column + dx + 1000)) * 4099 +
-                static_cast<std::uint64_t>(row + dy + 1000));
-        return rng.uniform();
+        // The finalizer of splitmix64.
+        std::uint64_t hash =
+            (seed * 4099 + static_cast<std::uint64_t>(column + dx + 1000)) * 4099 + static_cast<std::uint64_t>(row + dy + 1000);
+        hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9;
+        hash = (hash ^ hash >> 27) * 0x94d049bb133111eb;
+        return static_cast<double>((hash ^ hash >> 31) >> 11) * 0x1p-53;
     };
     const double u = x - column, v = y - row;
     return std::lerp(std::lerp(value(0, 0), value(1, 0), u), std::lerp(value(0, 1), value(1, 1), u), v);
@@ -40,8 +42,8 @@ double noise(double x, double y, std::uint64_t seed) {
 
 // The share of light that a wall of 8 x 5 m gives back at a place, in metres.
 double reflectanceOf(const std::string& wall, double x, double y, std::uint64_t seed) {
-    const double stain = std::clamp(4 * (0.6 * noise(x / 1.1, y / 0.9, seed + 1) + 0.4 * noise(x / 0.4, y / 0.4, seed + 2) - 0.5),
-                                    0.0, 1.0);
+    const double stain =
+        std::clamp(4 * (0.6 * noise(x / 1.1, y / 0.9, seed + 1) + 0.4 * noise(x / 0.4, y / 0.4, seed + 2) - 0.5), 0.0, 1.0);
     const double grain = noise(50 * x, 50 * y, seed + 3);
     if (wall == "grass") return std::lerp(0.1 + 0.12 * grain, 0.3 + 0.1 * grain, stain);  // and bare earth
     if (wall == "gravel") {                                                               // and where it is wet
@@ -84,7 +86,8 @@ public:
               "{outputs: {left: [{source: drawing}]}}}\ncues: [{name: one, look: all, fade: 0.1}]\n");
         write("few.pattern-settings.yaml", "fantascope: pattern-settings\nversion: 1\nsearch: {rows: 360}\n");
         site_ = fmt::format(
-            "fantascope: site\nversion: 1\noutputs:\n  - name: left\n    display: {{driver: headless}}\n    size: [960, 540]\n    "
+            "fantascope: site\nversion: 1\noutputs:\n  - name: left\n    display: {{driver: headless}}\n    size: [960, 540]\n   "
+            " "
             "refresh_rate: 10\n    projector: {{position: [{:.2f}, {:.2f}, 6], look_at: [0, 1.5, 0], throw_ratio: 1.6}}\n    "
             "surface: {{point: [0, 0, 0], normal: [0, 0, 1]}}\ncue_controller: {{device: {{driver: simulated}}, buttons: {{go: "
             "1}}}}\ncamera:\n  device: {{driver: simulated}}\n  size: [480, 270]\n  field_of_view: 46\n  position: [{:.2f}, "
@@ -132,8 +135,8 @@ private:
     }
     std::string correctionsOf(bool light, bool pattern) const {
         const auto mode = [](bool is) { return is ? "automatic" : "off"; };
-        return fmt::format("corrections: {{light: {{mode: {}, least: {}}}, pattern: {{mode: {}}}}}\n", mode(light), options_.least,
-                           mode(pattern));
+        return fmt::format("corrections: {{light: {{mode: {}, least: {}}}, pattern: {{mode: {}}}}}\n", mode(light),
+                           options_.least, mode(pattern));
     }
     void run(const std::string& arguments) const {
         const std::string command =

@@ -20,7 +20,7 @@ constexpr double kNightHeader = 74, kCueNames = 18, kPanelTitle = 26, kPanelHeig
 constexpr double kRowHeight = 32;
 constexpr std::size_t kMostRows = 16;
 constexpr double kLeastBar = 3;
-constexpr glm::dvec3 kOfAllOutputs{0.25, 0.25, 0.25};
+constexpr glm::dvec3 kOfAllOutputs{0.25, 0.25, 0.25}, kDeed{0.35, 0.55, 0.3};
 constexpr Stroke kCueLine{{0.45, 0.45, 0.45}, 0.8, 0.7};
 
 // The time axis of all charts of a night.
@@ -43,6 +43,7 @@ NightTime timeOf(const Night& night) {
             if (!series.empty()) end = std::max(end, series.back().x);
         if (!output.sights.empty()) end = std::max(end, output.sights.back().at);
     }
+    if (!night.otherLight.empty()) end = std::max(end, night.otherLight.back().at);
     if (end <= 0) end = 1;
     if (end > 3 * kHour) return {kHour, {0, end / kHour, "show time, h"}};
     if (end > 5 * kMinute) return {kMinute, {0, end / kMinute, "show time, min"}};
@@ -144,7 +145,31 @@ std::optional<NightPanel> driftPanel(const Night& night, const NightTime& time) 
         }};
 }
 
-// A line of the strip: all bars of a cause and an output, or of a device.
+using Lines = std::vector<std::vector<glm::dvec2>>;
+
+// Of something that concerns all outputs; the lines after the first are dashed.
+NightPanel panelOfAll(std::string title, Axis y, Lines lines, const NightTime& time) {
+    return {std::move(title), kPanelHeight, std::move(y), [lines = std::move(lines), time](Chart& chart) {
+                for (std::size_t i = lines.size(); i-- > 0;) drawSeries(chart, lines[i], time, {kOfAllOutputs, 1.4, 1, i > 0});
+            }};
+}
+
+std::vector<NightPanel> lightPanels(const Night& night, const NightTime& time) {
+    if (night.otherLight.empty()) return {};
+    Lines lights(2), shares(1);
+    std::vector<double> values;
+    for (const Night::OtherLight& light : night.otherLight) {
+        lights[0].emplace_back(time.of(light.at), 100 * light.excess);
+        lights[1].emplace_back(time.of(light.at), 100 * light.ambient);
+        shares[0].emplace_back(time.of(light.at), 100 * light.share);
+        values.insert(values.end(), {lights[0].back().y, lights[1].back().y});
+    }
+    return {panelOfAll("other light on the pictures, beside the usual; dashed: the ambient light that has come",
+                       axisAround(values, "% of full light"), std::move(lights), time),
+            panelOfAll("what is left of the lamps' levels", {0, 105, "%"}, std::move(shares), time)};
+}
+
+// A line of the strip: all bars of a cause and an output, of a deed, or of a device.
 struct NightRow {
     std::string key, label;
     glm::dvec3 colour;
@@ -168,6 +193,8 @@ std::vector<NightRow> rowsOf(const Night& night) {
         const std::string label = cause.output.empty() ? cause.what : fmt::format("{}: {}", cause.output, cause.what);
         rowOf(rows, {"cause " + label, label, colour}).bars.emplace_back(cause.from, cause.to.value_or(end));
     }
+    for (const Night::Deed& deed : night.deeds)
+        rowOf(rows, {"deed " + deed.what, "done: " + deed.what, kDeed}).bars.emplace_back(deed.from, deed.to.value_or(end));
     constexpr std::size_t kFaultColour = 6;  // vermilion
     for (const Night::Fault& fault : night.faults) {
         const std::string label = fault.device.empty() ? fault.what : fmt::format("{}: {}", fault.device, fault.what);
@@ -189,7 +216,7 @@ NightPanel stripPanel(const Page& page, std::vector<NightRow> rows, const NightT
     for (NightRow& row : rows) row.label = page.shortened(row.label, kNightText, kNightColumns - kNightText);
     const auto count = static_cast<double>(rows.size());
     const Axis y{0, count, "", false, Axis::Marks::None};
-    return {"what was wrong, and when", count * kRowHeight, y, [rows = std::move(rows), time, count](Chart& chart) {
+    return {"what was wrong, and what was done", count * kRowHeight, y, [rows = std::move(rows), time, count](Chart& chart) {
                 const double least = kLeastBar * time.perPoint();
                 for (std::size_t i = 0; i < rows.size(); ++i) {
                     const double bottom = count - 1 - static_cast<double>(i);
@@ -255,6 +282,7 @@ Page nightFigure(const Night& night) {
     add(scorePanel(night, time, "tone of the camera: 0 is the drawing's light", "tone", &Night::Output::tone));
     add(scorePanel(night, time, "IoU of the camera: 1 is the shadow's target", "IoU", &Night::Output::iou));
     add(driftPanel(night, time));
+    for (NightPanel& panel : lightPanels(night, time)) panels.push_back(std::move(panel));
     const bool isScored = !panels.empty();
     panels.push_back(stripPanel(Page(1, 1), rowsOf(night), time, isScored));
 

@@ -30,6 +30,17 @@ struct Night {
         double from = 0;
         std::optional<double> to{};
     };
+    // What the program did against it. Nothing in `to`: it lasted to the end.
+    struct Deed {
+        std::string what;
+        double from = 0;
+        std::optional<double> to{};
+    };
+    // The other light on the pictures, beside what is usual, and what of it is ambient light, as
+    // shares of the projectors' full light; the share of their levels that the lamps were given.
+    struct OtherLight {
+        double at = 0, excess = 0, ambient = 0, share = 1;
+    };
     struct Fault {
         std::string device;  // may be empty
         std::string what;
@@ -44,14 +55,16 @@ struct Night {
     double seconds = 0;
     std::int64_t frames = 0, lateFrames = 0;
     std::vector<Output> outputs{};
+    std::vector<OtherLight> otherLight{};  // ordered by time; empty: no lamp may be trimmed
     std::vector<Cause> causes{};
+    std::vector<Deed> deeds{};
     std::vector<Fault> faults{};
     std::vector<Cue> cues{};
 };
 
-// Charts of z, tone, IoU and drift over the time, each with one line per output; below them a bar
-// for each cause and fault. Lines across all charts show when the cues were entered. A chart
-// without data is left out.
+// Charts of z, tone, IoU and drift over the time, each with one line per output; of the other light
+// and the lamps; below them a bar for each cause, deed and fault. Lines across all charts show when
+// the cues were entered. A chart without data is left out.
 Page nightFigure(const Night& night);
 
 }  // namespace fantascope::plot

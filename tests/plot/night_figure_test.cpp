@@ -139,6 +139,54 @@ TEST(NightFigure, has_a_bar_for_each_cause_and_fault_from_its_beginning_to_its_e
     EXPECT_TRUE(yOf(0.25, 0).empty()) << "the bar has its output's colour";
 }
 
+// Each has a row of its own.
+TEST(NightFigure, has_a_bar_for_what_was_done) {
+    Night night{.seconds = 100};
+    const int bare = drawn(night).height();
+    night.deeds = {{"drawing: the pattern was fitted to the wall", 40, 40}, {"relays were switched off", 60, std::nullopt}};
+    const RgbaImage page = drawn(night);
+    EXPECT_EQ(drawn({.seconds = 100, .deeds = {night.deeds[0]}}).height(), bare);
+    EXPECT_EQ(page.height() - bare, 32);
+    const auto isGreen = [](Rgba8 p) { return p.g > p.r + 30 && p.g > p.b + 30; };
+    const auto greens = [&](int x) {
+        int count = 0;
+        for (int y = 80; y < page.height(); ++y) count += isGreen(page.at(x, y)) ? 1 : 0;
+        return count;
+    };
+    EXPECT_GT(greens(columnAt(0.4) + 1), 5);
+    EXPECT_EQ(greens(columnAt(0.5)), 0);
+    EXPECT_GT(greens(columnAt(0.6) + 2), 5);
+    EXPECT_GT(greens(kRight - 2), 5);
+}
+
+// The rows in which a column is dark, in the chart whose upper edge is at `top`.
+std::vector<int> darkRows(const RgbaImage& page, int x, int top) {
+    std::vector<int> rows;
+    for (int y = top + 3; y < top + 167; ++y)
+        if (page.at(x, y).r < 128 && page.at(x, y).b < 128) rows.push_back(y);
+    return rows;
+}
+
+TEST(NightFigure, shows_the_other_light_and_what_the_lamps_are_given) {
+    Night night{.seconds = 100};
+    for (int i = 0; i <= 100; ++i) {
+        const double ambient = i < 50 ? 0.02 : 0.1;
+        night.otherLight.push_back({double(i), 0.4 * ambient, ambient, i < 50 ? 1 : 0.3});
+    }
+    const RgbaImage page = drawn(night);
+    constexpr int kFirst = 74 + 26 + 18, kSecond = kFirst + 170 + 8 + 26;
+    const auto usual = darkRows(page, columnAt(0.255), kFirst), risen = darkRows(page, columnAt(0.755), kFirst);
+    ASSERT_FALSE(usual.empty() || risen.empty());
+    EXPECT_GT(usual.front(), risen.back()) << "more light lies higher";
+    const auto full = darkRows(page, columnAt(0.255), kSecond), dimmed = darkRows(page, columnAt(0.755), kSecond);
+    ASSERT_FALSE(full.empty() || dimmed.empty());
+    EXPECT_NEAR(dimmed.front() - full.front(), 170 * 0.7 / 1.05, 3);
+    int dashes = 0;
+    for (int x = columnAt(0.55); x < columnAt(0.95); ++x) dashes += darkRows(page, x, kFirst).front() < risen.back() - 20 ? 1 : 0;
+    EXPECT_GT(dashes, 100) << "the ambient light";
+    EXPECT_LT(dashes, 380) << "is dashed";
+}
+
 // Example failure: a line that failed all night fills a page as high as a house.
 TEST(NightFigure, has_a_limited_number_of_rows_however_much_failed) {
     const auto heightWith = [](int faults) {

@@ -43,6 +43,35 @@ std::vector<plot::Night::Sight> sightsOf(const Report& series) {
     return sights;
 }
 
+std::vector<plot::Night::OtherLight> otherLightOf(const Report& series) {
+    std::vector<plot::Night::OtherLight> lights;
+    for (const Report& entry : series) {
+        const auto at = numberOf(valueOf(entry, "at")), excess = numberOf(valueOf(entry, "excess"));
+        if (at && excess)
+            lights.push_back(
+                {*at, *excess, numberOf(valueOf(entry, "ambient")).value_or(0), numberOf(valueOf(entry, "share")).value_or(1)});
+    }
+    return lights;
+}
+
+// Patterns that were fitted to their wall, and lamps that a trim held off.
+std::vector<plot::Night::Deed> deedsOf(const Report& report) {
+    std::vector<plot::Night::Deed> deeds;
+    for (const Report& pattern : valueOf(report, "patterns")) {
+        const double at = pattern.at("at").get<double>();
+        if (pattern.at("applied").get<bool>())
+            deeds.push_back({pattern.at("source").get<std::string>() + ": the pattern was fitted to the wall", at, at});
+    }
+    bool isOff = false;
+    for (const Report& lamps : valueOf(report, "lamps")) {
+        const double at = lamps.at("at").get<double>();
+        const bool wasOff = std::exchange(isOff, lamps.at("relays_off").get<int>() > 0);
+        if (isOff && !wasOff) deeds.push_back({"relays were switched off for ambient light", at, {}});
+        if (!isOff && wasOff) deeds.back().to = at;
+    }
+    return deeds;
+}
+
 // The outputs that the camera has seen, or that something was wrong with.
 std::vector<plot::Night::Output> outputsOf(const Report& report, const std::vector<plot::Night::Cause>& causes) {
     std::vector<plot::Night::Output> outputs;
@@ -77,6 +106,8 @@ plot::Night readNight(const Report& report) {
                                 fault.at("at").get<double>(), numberOf(valueOf(fault, "until"))});
     for (const Report& cue : valueOf(report, "cues"))
         night.cues.push_back({cue.at("name").get<std::string>(), cue.at("entered").get<double>()});
+    night.otherLight = otherLightOf(valueOf(report, "lamps"));
+    night.deeds = deedsOf(report);
     night.outputs = outputsOf(report, night.causes);
     return night;
 }

@@ -90,10 +90,18 @@ TEST_F(PlotCommand, draws_the_report_of_a_run) {
     const std::string shadows = R"("iou_camera": {"left": [[1, 0.9], [2, 0.8]], "right": []})";
     EXPECT_TRUE(writeFile(folder_ / "shadows.json", fmt::format("{{{}, {}, {}}}", cues, faults, shadows)));
     EXPECT_THAT(run({"plot", "shadows.json", "-o", "shadows.png"}), exits(0));
+    const std::string lamps = R"("lamps": [{"at": 1, "excess": 0, "ambient": 0, "share": 1, "relays_off": 0},
+                                           {"at": 2, "excess": null, "ambient": 0.1, "share": 0.5, "relays_off": 1},
+                                           {"at": 3, "excess": 0.02, "ambient": 0.1, "share": 0.5, "relays_off": 0}])";
+    const std::string patterns = R"("patterns": [{"source": "drawing", "at": 4, "applied": true},
+                                                 {"source": "other", "at": 5, "applied": false}])";
+    EXPECT_TRUE(writeFile(folder_ / "done.json", fmt::format("{{{}, {}, {}, {}}}", cues, faults, lamps, patterns)));
+    EXPECT_THAT(run({"plot", "done.json", "-o", "done.png"}), exits(0));
     EXPECT_EQ(readFile(folder_ / "r.png").value(), readFile(folder_ / "night.png").value());
     const auto height = [&](const std::string& picture) { return readRgba(folder_ / picture).value().height(); };
     EXPECT_GT(height("r.png"), height("blind.png") + 300) << "z and drift, but no tone";
     EXPECT_GT(height("shadows.png"), height("blind.png") + 150) << "the IoU alone";
+    EXPECT_EQ(height("done.png"), height("blind.png") + 2 * (170 + 26 + 8) + 2 * 32) << "light, lamps, and two deeds";
 
     EXPECT_THAT(
         run({"plot", "r.json", "--figure", "search", "-o", "x.png"}).errors,

@@ -20,6 +20,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace fantascope::app {
 namespace {
@@ -32,31 +33,40 @@ T must(Result<T> result) {
     return std::move(*result);
 }
 
-// Noise of a wavelength, 0..1, that repeats after `size` pixels.
-double noise(double x, double y, int cells, std::uint64_t seed) {
-    const auto value = [&](int column, int row) {
-        Rng rng(seed * 7919 +
-                static_cast<std::uint64_t>(((row % cells + cells) % cells) * cells + (column % cells + cells) % cells));
-        return rng.uniform();
-    };
-    const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
-    const double u = x - column, v = y - row;
-    return std::lerp(std::lerp(value(column, row), value(column + 1, row), u),
-                     std::lerp(value(column, row + 1), value(column + 1, row + 1), u), v);
-}
+// Smooth noise of a wavelength of one, 0..1, that repeats after a number of cells.
+class Noise {
+public:
+    Noise(int cells, std::uint64_t seed) : cells_(cells) {
+        for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(cells * cells); ++i)
+            values_.push_back(Rng(seed * 7919 + i).uniform());
+    }
+    double operator()(double x, double y) const {
+        const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
+        const double u = x - column, v = y - row;
+        return std::lerp(std::lerp(value(column, row), value(column + 1, row), u),
+                         std::lerp(value(column, row + 1), value(column + 1, row + 1), u), v);
+    }
+
+private:
+    double value(int column, int row) const { return values_[static_cast<std::size_t>(row % cells_ * cells_ + column % cells_)]; }
+
+    int cells_;
+    std::vector<double> values_;
+};
 
 RgbaImage texture(std::uint64_t seed) {
     constexpr int kSize = 256;
     RgbaImage picture(kSize, kSize);
     const int kind = static_cast<int>(seed % 3);
+    const Noise stone(128, seed), stains(16, seed + 1), blotches(43, seed), bricks(8, seed);
     for (int y = 0; y < kSize; ++y)
         for (int x = 0; x < kSize; ++x) {
             double value = 0;
-            if (kind == 0) value = 0.3 + 0.4 * noise(x / 2.0, y / 2.0, 128, seed) + 0.2 * noise(x / 16.0, y / 16.0, 16, seed + 1);
-            if (kind == 1) value = noise(x / 6.0, y / 6.0, 43, seed) > 0.5 ? 0.75 : 0.45;
+            if (kind == 0) value = 0.3 + 0.4 * stone(x / 2.0, y / 2.0) + 0.2 * stains(x / 16.0, y / 16.0);
+            if (kind == 1) value = blotches(x / 6.0, y / 6.0) > 0.5 ? 0.75 : 0.45;
             if (kind == 2) {
                 const int course = y / 32, along = (x + course % 2 * 32) % kSize;
-                value = y % 32 < 3 || along % 64 < 3 ? 0.8 : 0.35 + 0.35 * noise(along / 64, course, 8, seed);
+                value = y % 32 < 3 || along % 64 < 3 ? 0.8 : 0.35 + 0.35 * bricks(along / 64, course);
             }
             const auto stored = static_cast<std::uint8_t>(255 * value);
             picture.at(x, y) = {stored, static_cast<std::uint8_t>(0.92 * stored), static_cast<std::uint8_t>(0.8 * stored), 255};
@@ -96,8 +106,11 @@ public:
         if (share < 1 && cue > 0) add(cue - 1, time, 1 - share);
         add(cue, time, cue == 0 ? 1 : share);
         RgbaImage picture(size_.x, size_.y);
+        float last = 0;
+        std::uint8_t stored = 0;  // of `last`: neighbours are mostly equal
         for (std::size_t i = 0; i < light_.size(); ++i) {
-            const auto stored = static_cast<std::uint8_t>(std::lround(255 * std::pow(light_[i], 1 / 2.2f)));
+            if (light_[i] != std::exchange(last, light_[i]))
+                stored = static_cast<std::uint8_t>(std::lround(255 * std::pow(last, 1 / 2.2f)));
             picture.pixels()[i] = {stored, stored, stored, 255};
         }
         return picture;
