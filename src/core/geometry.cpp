@@ -59,11 +59,6 @@ Result<Homography> Homography::fromCorners(const std::array<glm::dvec2, 4>& sour
     return Homography(targetFromFirstCorner * firstCornerFromSource);
 }
 
-glm::dvec2 Homography::operator()(glm::dvec2 point) const {
-    const glm::dvec3 mapped = matrix_ * glm::dvec3(point, 1.0);
-    return glm::dvec2(mapped) / mapped.z;
-}
-
 Homography Homography::inverse() const { return Homography(glm::inverse(matrix_)); }
 
 glm::dmat3 rotationXyz(glm::dvec3 angles) {

@@ -30,7 +30,11 @@ public:
     // quadrilateral must be convex), or a coordinate is not finite.
     static Result<Homography> fromCorners(const std::array<glm::dvec2, 4>& source, const std::array<glm::dvec2, 4>& target);
 
-    glm::dvec2 operator()(glm::dvec2 point) const;
+    // Inline: pictures call it for every pixel.
+    glm::dvec2 operator()(glm::dvec2 point) const {
+        const glm::dvec3 mapped = matrix_ * glm::dvec3(point, 1.0);
+        return glm::dvec2(mapped) / mapped.z;
+    }
     Homography inverse() const;
     Homography operator*(const Homography& first) const {
         return Homography(matrix_ * first.matrix_);

@@ -56,15 +56,19 @@ std::vector<Level> levelsOf(const GreyImage& seen, const GreyImage& expected, co
     return levels;
 }
 
-// What differs from the neighbourhood. `image` is 0 where `mask` is.
-cv::Mat detailOf(const cv::Mat& image, const cv::Mat& mask) {
-    cv::Mat sum, weight;
-    const cv::Size side(kNeighbourhood, kNeighbourhood);
-    cv::boxFilter(image, sum, CV_32F, side, cv::Point(-1, -1), false, cv::BORDER_CONSTANT);
-    cv::boxFilter(mask, weight, CV_32F, side, cv::Point(-1, -1), false, cv::BORDER_CONSTANT);
-    cv::max(weight, 1e-3, weight);
-    cv::divide(sum, weight, sum);
-    cv::Mat detail = image - sum.mul(mask);
+// The sum over each pixel's neighbourhood.
+cv::Mat aroundOf(const cv::Mat& image) {
+    cv::Mat sum;
+    cv::boxFilter(image, sum, CV_32F, {kNeighbourhood, kNeighbourhood}, cv::Point(-1, -1), false, cv::BORDER_CONSTANT);
+    return sum;
+}
+
+// What differs from the neighbourhood. `image` is 0 where `mask` is; `weight`: the sum of the mask
+// over each neighbourhood.
+cv::Mat detailOf(const cv::Mat& image, const cv::Mat& mask, const cv::Mat& weight) {
+    cv::Mat mean = aroundOf(image);
+    cv::divide(mean, weight, mean);
+    cv::Mat detail = image - mean.mul(mask);
     return detail;
 }
 
@@ -85,8 +89,9 @@ public:
         mask_ = level.mask.mul(inside);
         cv::Mat moved;
         cv::remap(level.expected, moved, x, y, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-        expected_ = detailOf(moved.mul(mask_), mask_);
-        seen_ = detailOf(level.seen.mul(inside), mask_);
+        const cv::Mat weight = cv::max(aroundOf(mask_), 1e-3);
+        expected_ = detailOf(moved.mul(mask_), mask_, weight);
+        seen_ = detailOf(level.seen.mul(inside), mask_, weight);
         weigh();
     }
 
@@ -136,15 +141,15 @@ public:
 private:
     // Gain, residuals' spread and weights depend on each other, so they are found in turn.
     void weigh() {
-        content_ = std::sqrt(cv::mean(expected_.mul(expected_))[0]);
+        const cv::Mat squared = expected_.mul(expected_), product = seen_.mul(expected_);
+        content_ = std::sqrt(cv::mean(squared)[0]);
         weight_ = mask_.clone();
         for (int turn = 0; turn < 2; ++turn) {
-            const double power = weight_.dot(expected_.mul(expected_));
-            gain_ = power > 0 ? weight_.dot(seen_.mul(expected_)) / power : 0;
+            const double power = weight_.dot(squared);
+            gain_ = power > 0 ? weight_.dot(product) / power : 0;
             reweigh();
         }
-        const double both = weight_.dot(seen_.mul(expected_)), ours = weight_.dot(expected_.mul(expected_)),
-                     theirs = weight_.dot(seen_.mul(seen_));
+        const double both = weight_.dot(product), ours = weight_.dot(squared), theirs = weight_.dot(seen_.mul(seen_));
         agreement_ = ours > 0 && theirs > 0 ? both / std::sqrt(ours * theirs) : 0;
         const cv::Mat residual = seen_ - gain_ * expected_;
         const double weights = cv::sum(weight_)[0];
@@ -154,11 +159,13 @@ private:
     void reweigh() {
         const cv::Mat residual = seen_ - gain_ * expected_;
         const auto threshold = static_cast<float>(kContent * content_);
+        const auto hasContent = [&](float mask, float expected) { return mask > 0.5f && std::abs(expected) > threshold; };
         std::vector<float> spread;
-        for (int row = 0; row < size_.height; ++row)
+        for (int row = 0; row < size_.height; ++row) {
+            const auto *mask = mask_.ptr<float>(row), *expected = expected_.ptr<float>(row), *off = residual.ptr<float>(row);
             for (int column = 0; column < size_.width; ++column)
-                if (mask_.at<float>(row, column) > 0.5f && std::abs(expected_.at<float>(row, column)) > threshold)
-                    spread.push_back(std::abs(residual.at<float>(row, column)));
+                if (hasContent(mask[column], expected[column])) spread.push_back(std::abs(off[column]));
+        }
         used_ = 0;
         if (spread.empty()) {
             weight_.setTo(0);
@@ -166,14 +173,16 @@ private:
         }
         const double withContent = static_cast<double>(spread.size());
         const auto cut = static_cast<float>(kBiweight * 1.4826 * std::max(medianOf(std::move(spread)), 1e-6f));
-        for (int row = 0; row < size_.height; ++row)
+        for (int row = 0; row < size_.height; ++row) {
+            const auto *mask = mask_.ptr<float>(row), *expected = expected_.ptr<float>(row), *off = residual.ptr<float>(row);
+            auto* weight = weight_.ptr<float>(row);
             for (int column = 0; column < size_.width; ++column) {
-                const float share = residual.at<float>(row, column) / cut, left = std::max(0.0f, 1 - share * share);
-                float& weight = weight_.at<float>(row, column);
-                weight = mask_.at<float>(row, column) * left * left;
-                if (mask_.at<float>(row, column) > 0.5f && std::abs(expected_.at<float>(row, column)) > threshold)
-                    used_ += weight / withContent;
+                const float share = off[column] / cut, left = std::max(0.0f, 1 - share * share);
+                weight[column] = mask[column] * left * left;
             }
+            for (int column = 0; column < size_.width; ++column)
+                if (hasContent(mask[column], expected[column])) used_ += weight[column] / withContent;
+        }
     }
 
     cv::Size size_;

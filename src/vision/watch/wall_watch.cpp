@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace fantascope::vision {
 namespace {
@@ -64,18 +65,19 @@ struct WallWatch::Output {
     int sinceWide = 99;      // pictures since the last wide search
     LightMeter meter{};
     WallReflectance reflectance{};
-    GreyImage alone{};  // by cell: 1 where no other output gives light
-    int looks = 0;      // pictures in which it was found
+    GreyImage alone{};             // by cell: 1 where no other output gives light
+    Image<std::uint8_t> shared{};  // by coarse camera pixel: 1 where another output looks
+    int looks = 0;                 // pictures in which it was found
     // The picture that was looked at last; empty: it says nothing of this output.
     Seen seen{};
     GreyImage light{};
     bool isFound = false;
 
-    // What the camera gets of this output, by coarse camera pixels.
+    // What the camera gets of this output, by coarse camera pixels, where another output looks.
     void addTo(GreyImage& seen, const GreyImage& light) const {
         for (int y = 0; y < seen.height(); ++y)
             for (int x = 0; x < seen.width(); ++x) {
-                if (full.at(x, y) <= 0) continue;
+                if (full.at(x, y) <= 0 || shared.at(x, y) == 0) continue;
                 const glm::dvec2 at = now(glm::dvec2(cell.at(x, y)));
                 if (at.x < 0 || at.y < 0 || at.x > light.width() || at.y > light.height()) continue;
                 seen.at(x, y) += static_cast<float>(gain * surface.level()) * full.at(x, y) * valueAt(light, glm::vec2(at));
@@ -167,6 +169,7 @@ WallWatch::WallWatch(const std::vector<std::optional<WatchedOutput>>& outputs, g
             }
         output.findDark(dark_);
     }
+    findShared();
     findAlone();
     findSurroundings();
 }
@@ -240,6 +243,28 @@ std::vector<std::optional<OutputSight>> WallWatch::look(const RgbaImage& picture
         sights[i] = output.look(output.seen.light, output.light, output.seen.mask);
     }
     return sights;
+}
+
+// The pixels between which an output's cells lie, for all other outputs.
+void WallWatch::findShared() {
+    const glm::ivec2 last(dark_.width() - 1, dark_.height() - 1);
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        if (!outputs_[i]) continue;
+        Image<std::uint8_t>& shared = outputs_[i]->shared;
+        shared = Image<std::uint8_t>(dark_.width(), dark_.height());
+        for (std::size_t other = 0; other < outputs_.size(); ++other) {
+            if (other == i || !outputs_[other]) continue;
+            const OutputView& view = outputs_[other]->view;
+            for (std::size_t cell = 0; cell < view.full().pixels().size(); ++cell) {
+                if (view.full().pixels()[cell] <= 0) continue;
+                const glm::ivec2 corner(glm::floor(view.camera().pixels()[cell] / static_cast<float>(step_) - 0.5f));
+                for (const glm::ivec2 by : {glm::ivec2(0, 0), {1, 0}, {0, 1}, {1, 1}}) {
+                    const glm::ivec2 at = glm::clamp(corner + by, glm::ivec2(0), last);
+                    shared.at(at.x, at.y) = 1;
+                }
+            }
+        }
+    }
 }
 
 // The cells of each output that no other output lights. An output that has few of them is measured

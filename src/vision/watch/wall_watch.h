@@ -93,6 +93,7 @@ private:
     struct Seen;
     GreyImage lightSeen(const RgbaImage& picture) const;
     Seen seenOf(std::size_t output, const GreyImage& light, const std::vector<GreyImage>& predicted) const;
+    void findShared();
     void findAlone();
     void findSurroundings();
 
