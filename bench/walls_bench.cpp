@@ -17,9 +17,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
+#include <exception>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace fantascope {
@@ -40,7 +43,7 @@ double noise(double x, double y, std::uint64_t seed) {
     return std::lerp(std::lerp(value(0, 0), value(1, 0), u), std::lerp(value(0, 1), value(1, 1), u), v);
 }
 
-// The share of light that a wall of 8 x 5 m gives back at a place, in metres.
+// The share of light that a wall gives back at a place. The place is in metres.
 double reflectanceOf(const std::string& wall, double x, double y, std::uint64_t seed) {
     const double stain =
         std::clamp(4 * (0.6 * noise(x / 1.1, y / 0.9, seed + 1) + 0.4 * noise(x / 0.4, y / 0.4, seed + 2) - 0.5), 0.0, 1.0);
@@ -74,27 +77,42 @@ struct Options {
     int iterations = 300;
 };
 
+// {0}, {1}: where the projector stands; {2}, {3}: the camera; {4}: vignetting; {5}: blur.
+constexpr std::string_view kSite = R"(fantascope: site
+version: 1
+outputs:
+  - name: left
+    display: {{driver: headless}}
+    size: [960, 540]
+    refresh_rate: 10
+    projector: {{position: [{0:.2f}, {1:.2f}, 6], look_at: [0, 1.5, 0], throw_ratio: 1.6}}
+    surface: {{point: [0, 0, 0], normal: [0, 0, 1]}}
+cue_controller: {{device: {{driver: simulated}}, buttons: {{go: 1}}}}
+camera:
+  device: {{driver: simulated}}
+  size: [480, 270]
+  field_of_view: 46
+  position: [{2:.2f}, {3:.2f}, 6]
+  look_at: [0, 1.5, 0]
+simulation:
+  ambient: [0.2, 0.25, 0.4]
+  objects:
+    - {{name: wall, rectangle: {{corner: [-4, -1, 0], right: [8, 0, 0], up: [0, 5, 0], texture: wall.png}}, reflectance: [1, 1, 1]}}
+  camera: {{white: 110, latency: 0.05, frame_rate: 5, vignetting: {4:.2f}, blur: {5:.2f}, read_noise: 0.004}}
+)";
+
 // A site before a wall, and a show of one drawing.
 class Wall {
 public:
-    Wall(const Options& options, const std::string& wall) : options_(options) {
+    Wall(const Options& options, std::string name) : options_(options), name_(std::move(name)) {
         Rng rng(options.seed);
         const auto in = [&](double low, double high) { return std::lerp(low, high, rng.uniform()); };
-        paint(folder_ / "wall.png", wall, options.seed);
+        paint(folder_ / "wall.png", name_, options.seed);
         write("show.yaml",
               "fantascope: show\nversion: 1\ntitle: Wall\nsources: {drawing: {pattern: drawing.pattern.yaml}}\nlooks: {all: "
               "{outputs: {left: [{source: drawing}]}}}\ncues: [{name: one, look: all, fade: 0.1}]\n");
         write("few.pattern-settings.yaml", "fantascope: pattern-settings\nversion: 1\nsearch: {rows: 360}\n");
-        site_ = fmt::format(
-            "fantascope: site\nversion: 1\noutputs:\n  - name: left\n    display: {{driver: headless}}\n    size: [960, 540]\n   "
-            " "
-            "refresh_rate: 10\n    projector: {{position: [{:.2f}, {:.2f}, 6], look_at: [0, 1.5, 0], throw_ratio: 1.6}}\n    "
-            "surface: {{point: [0, 0, 0], normal: [0, 0, 1]}}\ncue_controller: {{device: {{driver: simulated}}, buttons: {{go: "
-            "1}}}}\ncamera:\n  device: {{driver: simulated}}\n  size: [480, 270]\n  field_of_view: 46\n  position: [{:.2f}, "
-            "{:.2f}, 6]\n  look_at: [0, 1.5, 0]\nsimulation:\n  ambient: [0.2, 0.25, 0.4]\n  objects:\n    - {{name: wall, "
-            "rectangle: {{corner: [-4, -1, 0], right: [8, 0, 0], up: [0, 5, 0], texture: wall.png}}, reflectance: [1, 1, 1]}}\n  "
-            "camera: {{white: 110, latency: 0.05, frame_rate: 5, vignetting: {:.2f}, blur: {:.2f}, read_noise: 0.004}}\n",
-            in(-1.8, 1.8), in(1, 3), in(-1.5, 1.5), in(1, 2.5), in(0, 0.3), in(0.4, 1));
+        site_ = fmt::format(kSite, in(-1.8, 1.8), in(1, 3), in(-1.5, 1.5), in(1, 2.5), in(0, 0.3), in(0.4, 1));
         write("site.yaml", site_ + correctionsOf(false, false));
         run("calibrate . --simulate --write");
         run(fmt::format("pattern '{}' -o drawing.pattern.yaml --iterations {} --settings few.pattern-settings.yaml",
@@ -103,7 +121,7 @@ public:
         site_.resize(site_.find("corrections:"));
     }
     // Plays the show, and prints a line.
-    void play(const std::string& wall, bool light, bool pattern) const {
+    void play(bool light, bool pattern) const {
         write("site.yaml", site_ + correctionsOf(light, pattern));
         run(fmt::format("rehearse . --site site.yaml --from one --seconds {} --as-fast-as-possible --report r.json",
                         options_.seconds));
@@ -115,7 +133,7 @@ public:
                 if (entry[0] > options_.seconds - 6) sum += entry[1].get<double>(), ++count;
             return count > 0 ? sum / count : std::nan("");
         };
-        fmt::print("{:7} {:3} {:8} z {:.4f} tone {:.4f}, exchanges {}\n", wall, options_.seed,
+        fmt::print("{:7} {:3} {:8} z {:.4f} tone {:.4f}, exchanges {}\n", name_, options_.seed,
                    light && pattern ? "both"
                    : light          ? "light"
                    : pattern        ? "pattern"
@@ -146,6 +164,7 @@ private:
     }
 
     const Options& options_;
+    const std::string name_;
     const ScratchFolder folder_;
     std::string site_;  // without its corrections
 };
@@ -165,10 +184,14 @@ int main(int argc, char** argv) {
     app.add_option("--least", options.least, "of the correction of light, as in a site file");
     app.add_option("--iterations", options.iterations, "of the search for the pattern");
     CLI11_PARSE(app, argc, argv);
-    for (options.seed = first; options.seed <= last; ++options.seed)
-        for (const std::string& name : walls) {
-            const fantascope::Wall wall(options, name);
-            for (const auto& [light, pattern] : {std::pair{false, false}, {true, false}, {false, true}, {true, true}})
-                wall.play(name, light, pattern);
-        }
+    try {
+        for (options.seed = first; options.seed <= last; ++options.seed)
+            for (const std::string& name : walls) {
+                const fantascope::Wall wall(options, name);
+                for (const auto& [light, pattern] : {std::pair{false, false}, {true, false}, {false, true}, {true, true}})
+                    wall.play(light, pattern);
+            }
+    } catch (const std::exception& error) {
+        return fmt::print(stderr, "walls_bench: {}\n", error.what()), 1;
+    }
 }

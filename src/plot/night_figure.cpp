@@ -20,7 +20,7 @@ constexpr double kNightHeader = 74, kCueNames = 18, kPanelTitle = 26, kPanelHeig
 constexpr double kRowHeight = 32;
 constexpr std::size_t kMostRows = 16;
 constexpr double kLeastBar = 3;
-constexpr glm::dvec3 kOfAllOutputs{0.25, 0.25, 0.25}, kDeed{0.35, 0.55, 0.3};
+constexpr glm::dvec3 kOfAllOutputs{0.25, 0.25, 0.25}, kAction{0.35, 0.55, 0.3};
 constexpr Stroke kCueLine{{0.45, 0.45, 0.45}, 0.8, 0.7};
 
 // The time axis of all charts of a night.
@@ -169,7 +169,7 @@ std::vector<NightPanel> lightPanels(const Night& night, const NightTime& time) {
             panelOfAll("what is left of the lamps' levels", {0, 105, "%"}, std::move(shares), time)};
 }
 
-// A line of the strip: all bars of a cause and an output, of a deed, or of a device.
+// A line of the strip: all bars of a cause and an output, of an action, or of a device.
 struct NightRow {
     std::string key, label;
     glm::dvec3 colour;
@@ -193,8 +193,9 @@ std::vector<NightRow> rowsOf(const Night& night) {
         const std::string label = cause.output.empty() ? cause.what : fmt::format("{}: {}", cause.output, cause.what);
         rowOf(rows, {"cause " + label, label, colour}).bars.emplace_back(cause.from, cause.to.value_or(end));
     }
-    for (const Night::Deed& deed : night.deeds)
-        rowOf(rows, {"deed " + deed.what, "done: " + deed.what, kDeed}).bars.emplace_back(deed.from, deed.to.value_or(end));
+    for (const Night::Action& action : night.actions)
+        rowOf(rows, {"action " + action.what, "done: " + action.what, kAction})
+            .bars.emplace_back(action.from, action.to.value_or(end));
     constexpr std::size_t kFaultColour = 6;  // vermilion
     for (const Night::Fault& fault : night.faults) {
         const std::string label = fault.device.empty() ? fault.what : fmt::format("{}: {}", fault.device, fault.what);

@@ -31,7 +31,7 @@ struct Night {
         std::optional<double> to{};
     };
     // What the program did against it. Nothing in `to`: it lasted to the end.
-    struct Deed {
+    struct Action {
         std::string what;
         double from = 0;
         std::optional<double> to{};
@@ -57,14 +57,14 @@ struct Night {
     std::vector<Output> outputs{};
     std::vector<OtherLight> otherLight{};  // ordered by time; empty: no lamp may be trimmed
     std::vector<Cause> causes{};
-    std::vector<Deed> deeds{};
+    std::vector<Action> actions{};
     std::vector<Fault> faults{};
     std::vector<Cue> cues{};
 };
 
 // Charts of z, tone, IoU and drift over the time, each with one line per output; of the other light
-// and the lamps; below them a bar for each cause, deed and fault. Lines across all charts show when
-// the cues were entered. A chart without data is left out.
+// and the lamps; below them a bar for each cause, action and fault. Lines across all charts show
+// when the cues were entered. A chart without data is left out.
 Page nightFigure(const Night& night);
 
 }  // namespace fantascope::plot

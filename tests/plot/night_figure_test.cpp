@@ -143,9 +143,9 @@ TEST(NightFigure, has_a_bar_for_each_cause_and_fault_from_its_beginning_to_its_e
 TEST(NightFigure, has_a_bar_for_what_was_done) {
     Night night{.seconds = 100};
     const int bare = drawn(night).height();
-    night.deeds = {{"drawing: the pattern was fitted to the wall", 40, 40}, {"relays were switched off", 60, std::nullopt}};
+    night.actions = {{"drawing: the pattern was fitted to the wall", 40, 40}, {"relays were switched off", 60, std::nullopt}};
     const RgbaImage page = drawn(night);
-    EXPECT_EQ(drawn({.seconds = 100, .deeds = {night.deeds[0]}}).height(), bare);
+    EXPECT_EQ(drawn({.seconds = 100, .actions = {night.actions[0]}}).height(), bare);
     EXPECT_EQ(page.height() - bare, 32);
     const auto isGreen = [](Rgba8 p) { return p.g > p.r + 30 && p.g > p.b + 30; };
     const auto greens = [&](int x) {

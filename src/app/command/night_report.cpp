@@ -54,22 +54,22 @@ std::vector<plot::Night::OtherLight> otherLightOf(const Report& series) {
     return lights;
 }
 
-// Patterns that were fitted to their wall, and lamps that a trim held off.
-std::vector<plot::Night::Deed> deedsOf(const Report& report) {
-    std::vector<plot::Night::Deed> deeds;
+// Patterns that were fitted to their wall, and relays that a trim held off.
+std::vector<plot::Night::Action> actionsOf(const Report& report) {
+    std::vector<plot::Night::Action> actions;
     for (const Report& pattern : valueOf(report, "patterns")) {
         const double at = pattern.at("at").get<double>();
         if (pattern.at("applied").get<bool>())
-            deeds.push_back({pattern.at("source").get<std::string>() + ": the pattern was fitted to the wall", at, at});
+            actions.push_back({pattern.at("source").get<std::string>() + ": the pattern was fitted to the wall", at, at});
     }
     bool isOff = false;
     for (const Report& lamps : valueOf(report, "lamps")) {
         const double at = lamps.at("at").get<double>();
         const bool wasOff = std::exchange(isOff, lamps.at("relays_off").get<int>() > 0);
-        if (isOff && !wasOff) deeds.push_back({"relays were switched off for ambient light", at, {}});
-        if (!isOff && wasOff) deeds.back().to = at;
+        if (isOff && !wasOff) actions.push_back({"relays were switched off for ambient light", at, {}});
+        if (!isOff && wasOff) actions.back().to = at;
     }
-    return deeds;
+    return actions;
 }
 
 // The outputs that the camera has seen, or that something was wrong with.
@@ -107,7 +107,7 @@ plot::Night readNight(const Report& report) {
     for (const Report& cue : valueOf(report, "cues"))
         night.cues.push_back({cue.at("name").get<std::string>(), cue.at("entered").get<double>()});
     night.otherLight = otherLightOf(valueOf(report, "lamps"));
-    night.deeds = deedsOf(report);
+    night.actions = actionsOf(report);
     night.outputs = outputsOf(report, night.causes);
     return night;
 }

@@ -66,14 +66,14 @@ struct WallWatch::Output {
     LightMeter meter{};
     WallReflectance reflectance{};
     GreyImage alone{};             // by cell: 1 where no other output gives light
-    Image<std::uint8_t> shared{};  // by coarse camera pixel: 1 where another output looks
+    Image<std::uint8_t> shared{};  // by coarse camera pixel: 1 where cells of another output lie
     int looks = 0;                 // pictures in which it was found
     // The picture that was looked at last; empty: it says nothing of this output.
     Seen seen{};
     GreyImage light{};
     bool isFound = false;
 
-    // What the camera gets of this output, by coarse camera pixels, where another output looks.
+    // What the camera gets of this output where cells of another lie, by coarse camera pixels.
     void addTo(GreyImage& seen, const GreyImage& light) const {
         for (int y = 0; y < seen.height(); ++y)
             for (int x = 0; x < seen.width(); ++x) {
@@ -245,7 +245,7 @@ std::vector<std::optional<OutputSight>> WallWatch::look(const RgbaImage& picture
     return sights;
 }
 
-// The pixels between which an output's cells lie, for all other outputs.
+// For each output, the pixels from which the light of other outputs' cells is interpolated.
 void WallWatch::findShared() {
     const glm::ivec2 last(dark_.width() - 1, dark_.height() - 1);
     for (std::size_t i = 0; i < outputs_.size(); ++i) {

@@ -101,7 +101,7 @@ TEST_F(PlotCommand, draws_the_report_of_a_run) {
     const auto height = [&](const std::string& picture) { return readRgba(folder_ / picture).value().height(); };
     EXPECT_GT(height("r.png"), height("blind.png") + 300) << "z and drift, but no tone";
     EXPECT_GT(height("shadows.png"), height("blind.png") + 150) << "the IoU alone";
-    EXPECT_EQ(height("done.png"), height("blind.png") + 2 * (170 + 26 + 8) + 2 * 32) << "light, lamps, and two deeds";
+    EXPECT_EQ(height("done.png"), height("blind.png") + 2 * (170 + 26 + 8) + 2 * 32) << "light, lamps, and two actions";
 
     EXPECT_THAT(
         run({"plot", "r.json", "--figure", "search", "-o", "x.png"}).errors,
