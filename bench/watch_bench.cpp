@@ -156,6 +156,8 @@ int main(int argc, char** argv) {
     app.add_option("--kind", kind, "only faults of this kind, as in a site file (default: each in turn)");
     app.add_option("--length", options.length, "seconds of a night");
     app.add_option("--latency", options.latency, "of the camera, seconds");
+    app.add_option("--camera-rate", options.cameraRate, "of the camera, Hz");
+    app.add_option("--frame-delay", options.frameDelay, "until the watch gets a frame that is visible, seconds");
     app.add_flag("--plan", isPlan, "the sites were not calibrated");
     app.add_flag("--busy", options.isBusy, "headlights pass, and thin fog comes and goes");
     CLI11_PARSE(app, argc, argv);

@@ -54,13 +54,15 @@ void Watch::score(std::size_t output, const CameraFrame& frame, Time showTime) {
 void Watch::tick(Time moment) {
     if (camera_ == nullptr) return;
     shown_.update();
-    if (drifts_ != nullptr) drifts_->tick(moment);
     const auto frame = camera_->newest();
-    if (!frame) return;
+    if (frame) see(frame);
+    if (drifts_ != nullptr) drifts_->tick(frame, shown_.value(), isSettingUp_(), moment);
+}
+
+void Watch::see(const std::shared_ptr<const CameraFrame>& frame) {
     if (pictures_ != nullptr) pictures_->publish({frame, &frame->image});
     const Time showTime = showClock_.showTime(frame->exposed);
     for (std::size_t output = 0; output < outputs_.size(); ++output) score(output, *frame, showTime);
-    if (drifts_ != nullptr) drifts_->see(*frame, shown_.value(), isSettingUp_(), moment);
     keepForCue(shown_.value().cue, frame, showTime);
 }
 

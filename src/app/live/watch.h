@@ -77,6 +77,7 @@ private:
         std::shared_ptr<const CameraFrame> frame;
         Time showTime{};
     };
+    void see(const std::shared_ptr<const CameraFrame>& frame);
     const show::LayerState* comparedLayer(std::size_t output) const;
     void score(std::size_t output, const CameraFrame& frame, Time showTime);
     void keepForCue(int cue, std::shared_ptr<const CameraFrame> frame, Time showTime);

@@ -91,24 +91,30 @@ void DriftWatch::fitPatterns(std::vector<PatternOnWall> patterns, bool waits, Pa
         patterns_.emplace(site_.corrections.pattern, std::move(patterns), waits, std::move(makeReady), inputs_, events_);
 }
 
-void DriftWatch::tick(Time now) {
+void DriftWatch::tick(std::shared_ptr<const CameraFrame> arrived, const show::ShowState& shown, bool isSettingUp, Time now) {
+    const Time showTime = showClock_.showTime(now);
     light_.tick(now);
-    if (lamps_) lamps_->tick(showClock_.showTime(now));
-    if (arrived_) causeWatch_.wait(showClock_.showTime(*arrived_), period_, showClock_.showTime(now));
+    if (lamps_) lamps_->tick(showTime);
+    if (!arrived && arrived_) causeWatch_.wait(showClock_.showTime(*arrived_), period_, showTime);
+    const bool wasSettingUp = std::exchange(wasSettingUp_, isSettingUp);
+    if (isSettingUp && !wasSettingUp) endShifts(shown, showTime);
+    if (arrived && lamps_) lamps_->note(shown);
+    if (arrived && isWorthALook(*arrived, now) && !waiting_) waiting_ = std::move(arrived);
+    if (isSettingUp || wasSettingUp) return beginAgain();
+    if (waiting_ && !light_.isComing(waiting_->exposed, now)) look(*std::exchange(waiting_, nullptr), shown, now);
 }
 
-void DriftWatch::see(const CameraFrame& frame, const show::ShowState& shown, bool isSettingUp, Time now) {
-    if (lamps_) lamps_->note(shown);
+bool DriftWatch::isWorthALook(const CameraFrame& frame, Time now) {
     arrived_ = now;
     const auto pictures = static_cast<Time::rep>(frame.sequence - sequence_);
     if (exposed_ && pictures > 0) period_ = (frame.exposed - *exposed_) / pictures;
     if (exposed_ && pictures > 0 && seconds(frame.exposed - *exposed_) < kSlowestCamera) light_.exposed(frame.exposed, period_);
     exposed_ = frame.exposed;
     sequence_ = frame.sequence;
-    const bool wasSettingUp = std::exchange(wasSettingUp_, isSettingUp);
-    if (isSettingUp && !wasSettingUp) endShifts(shown, showClock_.showTime(now));
-    if (isSettingUp || wasSettingUp) return beginAgain();
-    if (looked_ && frame.exposed - *looked_ < kLeastStep) return;
+    return !looked_ || frame.exposed - *looked_ >= kLeastStep;
+}
+
+void DriftWatch::look(const CameraFrame& frame, const show::ShowState& shown, Time now) {
     std::vector<const GreyImage*> lights;
     for (std::size_t i = 0; i < tracks_.size(); ++i) lights.push_back(wall_.watches(i) ? light_.at(i, frame.exposed) : nullptr);
     if (!causeWatch_.isUsable(frame.image, std::ranges::any_of(lights, isLit), showClock_.showTime(frame.exposed))) return;
@@ -152,6 +158,7 @@ void DriftWatch::endShifts(const show::ShowState& shown, Time showTime) {
 }
 void DriftWatch::beginAgain() {
     if (patterns_) patterns_->end();
+    waiting_.reset();
     for (vision::DriftTrack& track : tracks_) track.forget();
     std::ranges::fill(settled_, std::nullopt);
 }

@@ -19,6 +19,7 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,10 +53,10 @@ public:
     // Also fits patterns to the wall. Arguments as PatternCorrection has them.
     void fitPatterns(std::vector<PatternOnWall> patterns, bool waits, PatternCorrection::MakeReady makeReady);
 
-    void tick(Time now);
-    // Takes a picture of the camera. `shown`: the state that is shown. `isSettingUp`: a technician
-    // moves the pictures; where they stand afterwards is where they belong.
-    void see(const CameraFrame& frame, const show::ShowState& shown, bool isSettingUp, Time now);
+    // Call this often. `arrived`: the camera's newest picture; null: none since the last call.
+    // `shown`: the state that is shown. `isSettingUp`: a technician moves the pictures; where they
+    // stand afterwards is where they belong.
+    void tick(std::shared_ptr<const CameraFrame> arrived, const show::ShowState& shown, bool isSettingUp, Time now);
 
     // By output, one a second.
     const std::map<std::string, std::vector<DriftReport>>& series() const { return series_; }
@@ -65,6 +66,8 @@ public:
     std::vector<LampReport> lamps() const { return lamps_ ? lamps_->series() : std::vector<LampReport>(); }
 
 private:
+    bool isWorthALook(const CameraFrame& frame, Time now);
+    void look(const CameraFrame& frame, const show::ShowState& shown, Time now);
     void measure(const show::ShowState& shown, Time exposed, Time now);
     void endShifts(const show::ShowState& shown, Time showTime);
     void beginAgain();
@@ -81,6 +84,7 @@ private:
     ShownLight light_;
     std::optional<Time> exposed_, looked_;  // the exposure of the newest picture, and of the one that was looked at last
     std::uint64_t sequence_ = 0;
+    std::shared_ptr<const CameraFrame> waiting_;  // for the frames that were visible in it
     std::vector<vision::DriftTrack> tracks_;
     std::vector<std::optional<Homography>> settled_;  // by output: where the picture stood when all was right
     std::vector<Time> settledAt_;                     // show time

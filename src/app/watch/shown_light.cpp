@@ -9,6 +9,7 @@ namespace {
 constexpr std::size_t kKept = 24;                            // frames: more than a camera's latency lets wait
 constexpr Time kLeastStep = std::chrono::milliseconds(195);  // between the pictures that are looked at
 constexpr Time kAhead = std::chrono::milliseconds(80);       // a frame is drawn so long before it is visible
+constexpr Time kLongestWait = std::chrono::seconds(1);       // for a frame
 constexpr double kTolerance = 0.5;                           // of a refresh period, for the inaccuracy of both moments
 
 Time periodOf(double rate) { return fromSeconds(1 / rate); }
@@ -21,7 +22,7 @@ ShownLight::Frames ShownLight::framesOf(render::NewestFrame& reader) {
 
 ShownLight::ShownLight(std::vector<Output> outputs, const vision::WallWatch& wall, const show::ShowClock& showClock)
     : wall_(wall), showClock_(showClock) {
-    for (const Output& output : outputs) outputs_.push_back({output, {}});
+    for (const Output& output : outputs) outputs_.push_back({output});
 }
 
 void ShownLight::exposed(Time at, Time period) {
@@ -39,13 +40,14 @@ void ShownLight::tick(Time now) {
         kept.frames.push_back({frame->shown.at, wall_.lightOf(i, frame->image)});
     }
     // The frames of one exposure are drawn before those of the next are asked for.
-    if (period_ <= Time{} || now + kAhead < askedFor_ + period_ / 2) return;
-    const Time soonest = std::max(now + kAhead, askedFor_ + kLeastStep);
+    if (period_ <= Time{} || now + kAhead < asked_.back() + period_ / 2) return;
+    const Time soonest = std::max(now + kAhead, asked_.back() + kLeastStep);
     const auto steps = soonest > exposed_ ? (soonest - exposed_ + period_ - Time(1)) / period_ : 0;
-    askedFor_ = exposed_ + steps * period_;
+    asked_.push_back(exposed_ + steps * period_);
+    if (asked_.size() > kKept) asked_.pop_front();
     for (const Kept& kept : outputs_)
         if (kept.output.frames.ask)
-            kept.output.frames.ask(showClock_.showTime(askedFor_ - periodOf(kept.output.refreshRate) + Time(1)));
+            kept.output.frames.ask(showClock_.showTime(asked_.back() - periodOf(kept.output.refreshRate) + Time(1)));
 }
 
 const GreyImage* ShownLight::at(std::size_t output, Time moment) const {
@@ -60,6 +62,20 @@ const GreyImage* ShownLight::at(std::size_t output, Time moment) const {
         nearest = &frame.light;
     }
     return nearest;
+}
+
+bool ShownLight::isComing(Time moment, Time now) const {
+    if (now - moment > kLongestWait) return false;
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        const Kept& kept = outputs_[i];
+        const Time period = periodOf(kept.output.refreshRate);
+        // The frame is the one that was asked for, or the next one where it was asked for too late.
+        const auto isOfMoment = [&](Time asked) { return moment > asked - period && moment < asked + 2 * period; };
+        const bool isAskedFor = kept.output.frames.ask && std::ranges::any_of(asked_, isOfMoment);
+        const bool isPassed = !kept.frames.empty() && kept.frames.back().visible > moment;
+        if (isAskedFor && !isPassed && at(i, moment) == nullptr) return true;
+    }
+    return false;
 }
 
 }  // namespace fantascope::app

@@ -41,6 +41,9 @@ public:
     void tick(Time now);
     // The light of the frame that was visible at `moment`, by cells; null: it is not known.
     const GreyImage* at(std::size_t output, Time moment) const;
+    // Whether the light of `moment` is not known yet, but will be: a frame takes its time from the
+    // display to here, and slow displays have slow frames. Nobody waits for a frame for ever.
+    bool isComing(Time moment, Time now) const;
 
 private:
     struct Frame {
@@ -49,13 +52,13 @@ private:
     };
     struct Kept {
         Output output;
-        std::deque<Frame> frames;  // oldest first
+        std::deque<Frame> frames{};  // oldest first
     };
     std::vector<Kept> outputs_;
     const vision::WallWatch& wall_;
     const show::ShowClock showClock_;
-    Time exposed_{}, period_{};  // of the newest picture; the period is 0 until it is known
-    Time askedFor_{};            // the exposure that the frames were asked for last
+    Time exposed_{}, period_{};       // of the newest picture; the period is 0 until it is known
+    std::deque<Time> asked_{Time{}};  // the exposures that frames were asked for last, oldest first; never empty
 };
 
 }  // namespace fantascope::app

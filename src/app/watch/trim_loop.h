@@ -29,8 +29,8 @@ struct TrimSight {
 // they possibly do: what was learned of it and twice its uncertainty, but no more than all other
 // light. So the gain of the loop is at most 0.4 if light follows the level linearly, and 0.8 if it
 // grows with its square; and a delay of half a second is a part of one step. It does not overshoot.
-// A small excess moves nothing. Relays are switched off one after the other once the fixtures are at
-// their limit, and none that may take away more than is missed.
+// A small excess moves nothing. Relays are switched off one after the other once the fixtures are
+// at their limit, and none that may take away more than is missed.
 // Thread: thread-bound.
 class TrimLoop {
 public:

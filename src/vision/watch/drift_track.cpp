@@ -10,6 +10,8 @@ namespace fantascope::vision {
 namespace {
 
 constexpr Time kWindow = std::chrono::milliseconds(1200);
+constexpr std::size_t kFewPlaces = 6;                  // where fewer come within the window, as from a slow camera,
+constexpr Time kLongWindow = std::chrono::seconds(6);  // it is so long
 constexpr std::size_t kLeastSights = 4;
 constexpr double kGoodSight = 0.5;        // agreement x share of the content
 constexpr double kSharpSight = 2;         // standard deviation, pixels
@@ -40,7 +42,8 @@ void DriftTrack::add(Time at, const std::optional<OutputSight>& sight) {
             place.corners[2 * i + 1] = now.y;
         }
     }
-    while (places_.front().at < at - kWindow) places_.pop_front();
+    const auto isPast = [&](const Place& place) { return place.at < at - (places_.size() > kFewPlaces ? kWindow : kLongWindow); };
+    while (isPast(places_.front())) places_.pop_front();
     now_ = estimate();
     if (!now_) return;
     // Against a survey, only what is too small to be told from an error of the comparison itself

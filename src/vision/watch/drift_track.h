@@ -58,7 +58,7 @@ private:
 
     glm::dvec2 low_, high_;
     bool isSurveyed_;
-    std::deque<Place> places_;               // of the last 1.2 seconds
+    std::deque<Place> places_;               // of the last 1.2 seconds; the last six where these are older
     std::array<glm::dvec2, 4> reference_{};  // where the places of the rectangle's corners were lit
     double weights_ = 0;
     int references_ = 0;  // how many estimates are averaged in it

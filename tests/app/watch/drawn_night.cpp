@@ -19,13 +19,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <stdexcept>
 #include <utility>
 
 namespace fantascope::app {
 namespace {
-
-constexpr double kCameraRate = 5;  // Hz: every picture is looked at
 
 template <class T>
 T must(Result<T> result) {
@@ -176,11 +175,11 @@ public:
                                   : outputs == 2 ? (i - 0.5) * apart
                                                  : std::array{-1, 1, 0}[static_cast<std::size_t>(i)] * apart;
             text += fmt::format(
-                "  - name: {}\n    display: {{driver: headless}}\n    size: [{}, {}]\n    refresh_rate: 30\n    projector: "
+                "  - name: {}\n    display: {{driver: headless}}\n    size: [{}, {}]\n    refresh_rate: {}\n    projector: "
                 "{{position: {}, look_at: {}, "
                 "throw_ratio: {:.3f}}}\n    surface: {{point: [0, 0, 0], normal: [0, 0, 1]}}\n",
-                names.back(), size.x, size.y, listOf({middle + in(-2, 2), in(1.5, 4), in(7, 9)}), listOf({middle, 2.5, 0}),
-                in(1.5, 1.8));
+                names.back(), size.x, size.y, options_.refreshRate, listOf({middle + in(-2, 2), in(1.5, 4), in(7, 9)}),
+                listOf({middle, 2.5, 0}), in(1.5, 1.8));
         }
         const double fov = outputs == 3 ? 80 : in(58, 70);
         text += fmt::format(
@@ -225,7 +224,7 @@ public:
             "  camera: {{white: {:.1f}, read_noise: {:.4f}, shot_noise: 0.012, latency: {:.3f}, frame_rate: {}, vignetting: "
             "{:.2f}, blur: {:.2f}, rolling: "
             "{:.3f}}}\n",
-            in(30, 60), in(0.002, 0.006), options_.latency, kCameraRate, in(0, 0.4), in(0.4, 1.2), in(0, 0.03));
+            in(30, 60), in(0.002, 0.006), options_.latency, options_.cameraRate, in(0, 0.4), in(0.4, 1.2), in(0, 0.03));
         text += "  walkers:\n";
         const int walkers = static_cast<int>(in(1, 3.99));
         for (int i = 0; i < walkers; ++i)
@@ -316,7 +315,7 @@ struct Site {
 
 // What calibrating would have found: the plan's map, which is true, with the light of a white and a
 // black picture.
-void survey(const show::Site& site, std::vector<std::optional<vision::WatchedOutput>>& watched) {
+void survey(const show::Site& site, double cameraRate, std::vector<std::optional<vision::WatchedOutput>>& watched) {
     const vision::CameraLight light = cameraLightOf(site);
     const auto pictureOf = [&](std::size_t white, bool any) {
         Site open(site, 99);
@@ -332,7 +331,7 @@ void survey(const show::Site& site, std::vector<std::optional<vision::WatchedOut
         for (int step = 0, pictures = 0; pictures < kPictures; ++step) {
             // The last row is exposed a little later, and the picture arrives later still.
             for (const double part : {0.0, 0.3, 0.95}) {
-                open.clock.advanceTo(fromSeconds((step + part) / kCameraRate));
+                open.clock.advanceTo(fromSeconds((step + part) / cameraRate));
                 open.simulation->advanceTo(open.clock.now());
             }
             if (const auto frame = open.world.takeFromCamera()) {
@@ -430,40 +429,38 @@ public:
           inputs_(cuesOf(site)),
           playback_(inputs_),
           frames_(site.outputs.size()),
-          isNew_(site.outputs.size(), 0) {
+          given_(site.outputs.size()) {
         auto watched = must(watchedOutputsOf(site));
-        if (options.isSurveyed) survey(site, watched);
+        if (options.isSurveyed) survey(site, options.cameraRate, watched);
         std::vector<ShownLight::Frames> sources;
         for (std::size_t i = 0; i < site.outputs.size(); ++i) {
             leaves_.emplace_back(options.seed * 10 + i, site.outputs[i].size());
-            sources.push_back(
-                {[this, i](Time) { return std::exchange(isNew_[i], 0) != 0 ? &frames_[i] : nullptr; }, [](Time) {}});
+            sources.push_back({[this, i](Time now) { return nextFrame(i, now); }, [](Time) {}});
         }
         watch_.emplace(site, watched, cameraLightOf(site), sources, inputs_, events_, show::ShowClock());
     }
 
-    // One picture of the camera.
+    // One exposure of the camera.
     void step(std::int64_t number) {
-        const Time exposed = tickTime(number, kCameraRate), frameTime = fromSeconds(1 / 30.0);
+        const Time exposed = tickTime(number, options_.cameraRate), frameTime = fromSeconds(1 / options_.refreshRate);
         open_.clock.advanceTo(exposed);
         playback_.stateAt(exposed, state_);
         for (std::size_t i = 0; i < frames_.size(); ++i) {
-            frames_[i] = {i,
-                          exposed,
-                          {number, exposed - frameTime / 2, exposed, {}},
-                          shifted(leaves_[i].at(seconds(exposed)), state_.shifts[i])};
-            isNew_[i] = 1;
-            open_.world.setFrame(site_.outputs[i].name, std::make_shared<const RgbaImage>(frames_[i].image));
+            frames_[i].push_back({i,
+                                  exposed,
+                                  {number, exposed - frameTime / 2, exposed, {}},
+                                  shifted(leaves_[i].at(seconds(exposed)), state_.shifts[i])});
+            open_.world.setFrame(site_.outputs[i].name, std::make_shared<const RgbaImage>(frames_[i].back().image));
         }
         state_.levels[0] = static_cast<float>(Leaves::lampAt(seconds(exposed), options_.seed, !options_.lamps.empty()));
         light(exposed);
         open_.simulation->advanceTo(exposed);
-        watch_->tick(exposed);
+        watch(exposed);
         // The last row is exposed a little later, and the picture arrives later still.
         for (const double part : {0.3, 0.6, 0.95}) {
-            open_.clock.advanceTo(exposed + fromSeconds(part / kCameraRate));
+            open_.clock.advanceTo(exposed + fromSeconds(part / options_.cameraRate));
             open_.simulation->advanceTo(open_.clock.now());
-            if (const auto frame = open_.world.takeFromCamera()) watch_->see(*frame, state_, false, open_.clock.now());
+            watch(open_.clock.now());
         }
     }
     const show::ShowState& state() const { return state_; }
@@ -475,9 +472,24 @@ public:
             told += fmt::format("{:.1f} {}\n", seconds(event->at), sentenceOf(*event));
         return told;
     }
-    const DriftWatch& watch() const { return *watch_; }
+    const DriftWatch& result() const { return *watch_; }
 
 private:
+    void watch(Time now) {
+        const double still = seconds(now) - options_.standsStillAt;
+        if (options_.standsStillAt >= 0 && still >= 0 && still < 4) return;
+        watch_->tick(open_.world.takeFromCamera(), state_, false, now);
+    }
+    // The newest frame that has come to the watch, once.
+    const render::ShownFrame* nextFrame(std::size_t output, Time now) {
+        std::deque<render::ShownFrame>& frames = frames_[output];
+        const render::ShownFrame* next = nullptr;
+        for (; !frames.empty() && frames.front().showTime + fromSeconds(options_.frameDelay) <= now; frames.pop_front()) {
+            given_[output] = std::move(frames.front());
+            next = &given_[output];
+        }
+        return next;
+    }
     // Gives the lamps what the show asks and the camera leaves.
     void light(Time at) {
         show::Look look = state_;
@@ -498,8 +510,8 @@ private:
     show::EventLog events_;
     PlaybackReplica playback_;
     std::vector<Leaves> leaves_;
-    std::vector<render::ShownFrame> frames_;  // by output: the newest
-    std::vector<char> isNew_;                 // and whether it was taken
+    std::vector<std::deque<render::ShownFrame>> frames_;  // by output: those that are under way to the watch
+    std::vector<render::ShownFrame> given_;               // and the one that it was given last
     std::optional<DriftWatch> watch_;
     show::ShowState state_;
 };
@@ -532,19 +544,19 @@ NightResult playNight(const NightOptions& options) {
     if (options.fault == "bump")
         bumped.emplace(site.outputs[faulty], must(simulationOf(site)).outputs[faulty].projector, draw.turn);
     Night night(options, site);
-    for (std::int64_t step = 0; seconds(tickTime(step, kCameraRate)) < options.length; ++step) {
+    for (std::int64_t step = 0; seconds(tickTime(step, options.cameraRate)) < options.length; ++step) {
         night.step(step);
-        const Time at = tickTime(step, kCameraRate);
+        const Time at = tickTime(step, options.cameraRate);
         for (std::size_t i = 0; i < site.outputs.size(); ++i) {
             double& most = result.farthest[site.outputs[i].name];
             most = std::max(most, static_cast<double>(show::farthestOf(night.state().shifts[i])));
         }
         if (bumped) result.placed.push_back(bumped->placed(at, night.state().shifts[faulty], seconds(at) >= draw.faultAt));
     }
-    result.causes = night.watch().causes();
-    result.drifts = night.watch().series();
+    result.causes = night.result().causes();
+    result.drifts = night.result().series();
     result.lamps = night.lamps();
-    result.otherLight = night.watch().lamps();
+    result.otherLight = night.result().lamps();
     result.told = night.told();
     return result;
 }

@@ -28,6 +28,10 @@ struct NightOptions {
     double length = 34;                 // seconds
     bool isSurveyed = true;             // the site was calibrated
     double latency = 0.1;               // of the camera, seconds
+    double cameraRate = 5;              // Hz
+    double refreshRate = 30;            // of the displays, Hz
+    double frameDelay = 0;              // from a frame's moment until the watch gets it, seconds
+    double standsStillAt = -1;          // seconds; the watch gets no turn for four seconds from then on; negative: it always does
     std::string geometry = "advise";    // the mode of `corrections`
     std::string lamps{};                // the mode of the lamps' correction; empty: none may be trimmed
     double lampSpeed = 0.05;            // of a trim, 1/s

@@ -50,34 +50,75 @@ TEST(DrawnNight, names_nothing_while_all_is_well) {
     EXPECT_FALSE(night.drifts.empty());
 }
 
+// A projector is pushed, and its picture comes back.
+NightOptions nightWithPush() {
+    NightOptions options;
+    options.seed = 5;
+    options.outputs = 2;
+    options.camera = {400, 225};
+    options.geometry = "automatic";
+    options.fault = "bump";
+    options.faultAt = 4;
+    options.length = 20;
+    return options;
+}
+
+void expectBroughtBack(const NightResult& night, const std::string& what) {
+    double moved = 0, most = 0;
+    for (const Placed& placed : night.placed) {
+        moved = std::max(moved, placed.moved);
+        most = std::max(most, placed.shifted);
+    }
+    ASSERT_GT(moved, 3) << "a test of nothing";
+    EXPECT_LT(most, 1.1 * moved) << what;
+    EXPECT_LT(night.placed.back().missed, 1) << what;
+    for (const auto& [output, far] : night.farthest) {
+        if (output != night.output) {
+            EXPECT_EQ(far, 0) << what;
+        }
+    }
+}
+
 // The camera's delay is no part of the loop, because the prediction knows what was shown. Example
 // failure: it does not, and the correction goes too far by what was corrected meanwhile.
 TEST(DrawnNight, brings_a_picture_back_without_overshoot_however_late_the_camera_is) {
     for (const double latency : {0.0, 0.25, 0.5}) {
-        NightOptions options;
-        options.seed = 5;
-        options.outputs = 2;
-        options.camera = {400, 225};
-        options.geometry = "automatic";
+        NightOptions options = nightWithPush();
         options.latency = latency;
-        options.fault = "bump";
-        options.faultAt = 4;
-        options.length = 20;
-        const NightResult night = playNight(options);
-        double moved = 0, most = 0;
-        for (const Placed& placed : night.placed) {
-            moved = std::max(moved, placed.moved);
-            most = std::max(most, placed.shifted);
-        }
-        ASSERT_GT(moved, 3) << "a test of nothing";
-        EXPECT_LT(most, 1.1 * moved) << latency;
-        EXPECT_LT(night.placed.back().missed, 1) << latency;
-        for (const auto& [output, far] : night.farthest) {
-            if (output != night.output) {
-                EXPECT_EQ(far, 0) << latency;
-            }
-        }
+        expectBroughtBack(playNight(options), std::to_string(latency));
     }
+}
+
+// Example failure: a picture whose frame is still under way is dropped, so nothing is ever seen.
+TEST(DrawnNight, brings_a_picture_back_however_late_the_frames_are) {
+    NightOptions options = nightWithPush();
+    options.latency = 0.02;
+    options.frameDelay = 0.27;
+    expectBroughtBack(playNight(options), "");
+}
+
+// Example failure: a slow camera's pictures of the last second are too few to say anything.
+TEST(DrawnNight, brings_a_picture_back_however_slow_the_camera_is) {
+    for (const double rate : {1.0, 2.0}) {
+        NightOptions options = nightWithPush();
+        options.cameraRate = rate;
+        options.faultAt = 6;
+        expectBroughtBack(playNight(options), std::to_string(rate));
+    }
+}
+
+// Example failure: the machine is busy, and the watch takes its own absence for the camera's.
+TEST(DrawnNight, names_no_cause_after_it_stood_still_itself) {
+    NightOptions options;
+    options.seed = 12;
+    options.outputs = 1;
+    options.camera = {400, 225};
+    options.standsStillAt = 8;
+    options.length = 16;
+    const NightResult night = playNight(options);
+    EXPECT_THAT(causesOf(night), IsEmpty());
+    ASSERT_FALSE(night.drifts.at(night.outputs[0]).empty());
+    EXPECT_GT(seconds(night.drifts.at(night.outputs[0]).back().at), 13) << "it goes on";
 }
 
 // A night with a flood and a street lamp that may be trimmed.

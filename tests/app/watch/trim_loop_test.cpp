@@ -190,8 +190,7 @@ TEST(TrimLoop, takes_no_more_light_away_with_a_relay_than_has_come) {
             for (const double relay : {0.01, 0.05, 0.2})
                 for (const double base : {0.0, 0.02, 0.2})
                     for (const double rise : {0.03, 0.1, 0.4}) {
-                        const Plant plant{
-                            .lamp = lamp, .relay = relay, .base = base, .latency = latency, .bounds = {0.3, 0.05}};
+                        const Plant plant{.lamp = lamp, .relay = relay, .base = base, .latency = latency, .bounds = {0.3, 0.05}};
                         const std::vector<Moment> moments = run(plant, 190, risen(rise));
                         double least = 0;
                         for (const Moment& moment : moments) least = std::min(least, moment.excess);
