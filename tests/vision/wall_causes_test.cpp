@@ -60,6 +60,14 @@ TEST(WallCauses, of_all_outputs_together_are_no_projector) {
     EXPECT_EQ(said({kDim, kDim}, SurroundingsLight{0.9, 0.01, 1.1}), one(Cause::Fog));
     EXPECT_EQ(said({kDim, kDim}, SurroundingsLight{0.5, 0, 0.5}), one(Cause::CameraExposure));
     EXPECT_EQ(said({kDim, kDim}, SurroundingsLight{0.7, 0.001, 0.98}), one(Cause::CameraExposure)) << "there is hardly any light";
+    // Thin fog takes nearly as much from a picture that is not weak yet.
+    const OutputLight weak = with([](OutputLight&light) { light.contrast = 0.83; }),
+                      almost = with([](OutputLight&light) { light.contrast = 0.88; }),
+                      hardly = with([](OutputLight&light) { light.contrast = 0.96; });
+    EXPECT_EQ(said({almost, weak, almost}, SurroundingsLight{0.9, 0.01, 1.5}), one(Cause::Fog));
+    EXPECT_EQ(said({weak, almost}, SurroundingsLight{0.85, 0, 0.85}), one(Cause::CameraExposure));
+    EXPECT_EQ(said({hardly, weak, almost}, SurroundingsLight{0.9, 0.01, 1.5}), one(Cause::DimLamp, 1));
+    EXPECT_THAT(said({almost, almost}, SurroundingsLight{0.9, 0.01, 1.5}), IsEmpty()) << "hardly any fog";
     EXPECT_EQ(said({kStrong, kStrong}, SurroundingsLight{2, 0}), one(Cause::CameraExposure));
     const OutputLight saturates =
         with([](OutputLight& light) { light.contrast = 1.9, light.asUsual = 0.7, light.explained = 0.8, light.saturated = 0.1; });

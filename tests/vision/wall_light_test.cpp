@@ -114,11 +114,34 @@ TEST(WallLight, tells_other_light_and_forgets_that_of_known_lamps) {
     EXPECT_NEAR(night.output().otherLight, 0.04, 0.008);
     EXPECT_NEAR(night.output().contrast, 1, 0.05);
     // A lamp of the show: what was there before it stays told.
-    night.watch.lampsChange();
+    night.watch.lampsChange(LampState{1});
     night.wall.ambient = before + 0.10 * night.wall.strength;
     for (int i = 0; i < 4; ++i) EXPECT_NEAR(night.output().otherLight, 0.04, 0.01);
     night.wall.ambient = before + 0.06 * night.wall.strength;
     EXPECT_NEAR(night.output().otherLight, 0, 0.01);
+}
+
+// Example failure: what is usual is learned anew whenever the lamps change, from what was beside it
+// at that moment, so the errors of a night add up.
+TEST(WallLight, knows_the_lamps_again_after_many_cues) {
+    Night night;
+    night.begin();
+    const double before = night.wall.ambient;
+    Rng rng(5);
+    for (int cue = 0; cue < 24; ++cue) {
+        const std::uint8_t lamp = cue % 2;
+        if (cue % 5 == 0) night.watch.lampsChange({});  // a fade
+        night.watch.lampsChange(LampState{lamp});
+        for (int i = 0; i < 3; ++i) {
+            night.wall.ambient = before + (0.03 * lamp + 0.008 * rng.uniform()) * night.wall.strength;  // cars pass
+            night.output();
+        }
+    }
+    night.watch.lampsChange(LampState{0});
+    night.wall.ambient = before;
+    EXPECT_NEAR(night.output().otherLight, 0, 0.008);
+    night.wall.ambient = before + 0.03 * night.wall.strength;
+    EXPECT_NEAR(night.output().otherLight, 0.03, 0.008);
 }
 
 // Example failure: whoever passes counts as hiding the picture, or what hangs there does not.
@@ -239,10 +262,35 @@ TEST(Surroundings, keep_what_was_amiss_before_the_lamps_changed) {
     Surroundings surroundings(GreyImage(320, 160, 1));
     while (surroundings.isLearning()) surroundings.measure(pictureOf(1, 0));
     EXPECT_NEAR(surroundings.measure(pictureOf(0.5f, 0))->gain, 0.5, 0.01);
-    surroundings.lampsChange();
+    surroundings.lampsChange(LampState{1});
     while (surroundings.isLearning()) EXPECT_FALSE(surroundings.measure(pictureOf(0.5f, 0.02f)));
     EXPECT_NEAR(surroundings.measure(pictureOf(0.5f, 0.02f))->gain, 0.5, 0.02);
     EXPECT_NEAR(surroundings.measure(pictureOf(1, 0.02f))->gain, 1, 0.02);
+}
+
+// Example failure: what is usual around the pictures drifts away, cue by cue.
+TEST(Surroundings, are_known_again_after_many_cues) {
+    Rng rng(8);
+    const auto picture = [&](float lamp) {
+        const float passing = static_cast<float>(1 + 0.03 * rng.normal());  // clouds, and cars
+        GreyImage picture(320, 160);
+        for (int y = 0; y < picture.height(); ++y)
+            for (int x = 0; x < picture.width(); ++x)
+                picture.at(x, y) = passing * (0.01f + 0.02f * static_cast<float>(x) / 320 + lamp * static_cast<float>(y) / 160);
+        return picture;
+    };
+    Surroundings surroundings(GreyImage(320, 160, 1));
+    surroundings.lampsChange(LampState{0});
+    while (surroundings.isLearning()) surroundings.measure(picture(0));
+    for (std::uint8_t cue = 1; cue < 100; ++cue) {
+        surroundings.lampsChange(LampState{static_cast<std::uint8_t>(cue % 3)});
+        for (int i = 0; i < 4; ++i) surroundings.measure(picture(0.01f * (cue % 3)));
+    }
+    surroundings.lampsChange(LampState{0});
+    EXPECT_FALSE(surroundings.isLearning());
+    double level = 0;
+    for (int i = 0; i < 100; ++i) level += surroundings.measure(picture(0))->level / 100;
+    EXPECT_NEAR(level, 1, 0.08);
 }
 
 }  // namespace

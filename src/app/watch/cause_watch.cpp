@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <utility>
 
@@ -18,7 +19,9 @@ constexpr Time kShort = std::chrono::milliseconds(900);
 constexpr Time kLong = std::chrono::milliseconds(1500);
 constexpr Time kLonger = std::chrono::milliseconds(3800);  // nobody who passes takes so long
 constexpr Time kGone = std::chrono::seconds(3);            // without a picture
-constexpr double kMostSaturated = 0.1;                     // of a picture whose place is certain; and hidden of it:
+constexpr Time kKeptLamps = std::chrono::seconds(4);
+constexpr Time kSteadyFor = std::chrono::milliseconds(600);  // lamps and a camera may be late by so much
+constexpr double kMostSaturated = 0.1;                       // of a picture whose place is certain; and hidden of it:
 constexpr double kMostHidden = 0.2;
 constexpr double kAsWeak = 0.06;  // of the usual light
 constexpr int kBlack = 40;        // a stored value
@@ -84,15 +87,34 @@ void CauseWatch::endWall(Time at) {
     std::erase_if(suspicions_, [](const auto& each) { return !each.second.ofPicture; });
 }
 
+void CauseWatch::noteLamps(const show::ShowState& shown) {
+    vision::LampState state;
+    for (const float level : shown.levels)
+        state.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(level, 0.0f, 1.0f))));
+    state.insert(state.end(), shown.relays.begin(), shown.relays.end());
+    if (lamps_.empty() || lamps_.back().second != state) lamps_.emplace_back(shown.time, std::move(state));
+    while (lamps_.size() > 1 && lamps_[1].first < shown.time - kKeptLamps) lamps_.pop_front();
+}
+
+// The state of the lamps when a picture was exposed; nothing: they were changing about that moment.
+std::optional<vision::LampState> CauseWatch::lampsAt(Time exposed) const {
+    const vision::LampState* state = &lamps_.front().second;
+    for (std::size_t i = 1; i < lamps_.size(); ++i) {
+        const auto& [since, next] = lamps_[i];
+        if (since > exposed - kSteadyFor && since < exposed + kSteadyFor) return std::nullopt;
+        if (since <= exposed) state = &next;
+    }
+    return *state;
+}
+
 std::optional<CauseWatch::Measured> CauseWatch::measure(const show::ShowState& shown, Time at,
                                                         const std::function<void(vision::WallLight&)>& explain) {
+    noteLamps(shown);
     if (measured_ && at - *measured_ < kStep) return std::nullopt;
     measured_ = at;
-    if (shown.levels != lamps_.levels || shown.relays != lamps_.relays) {
-        wall_.lampsChange();
-        lamps_.levels = shown.levels;
-        lamps_.relays = shown.relays;
-    }
+    const auto lamps = lampsAt(at);
+    if (!lamps || lamps != measuredWith_) wall_.lampsChange(lamps);
+    measuredWith_ = lamps;
     vision::WallLight light = wall_.measureLight();
     if (explain) explain(light);
     for (std::size_t i = 0; i < hidden_.size(); ++i)

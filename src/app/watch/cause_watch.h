@@ -11,6 +11,7 @@
 #include "core/clock.h"
 #include "media/image.h"
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -41,8 +42,9 @@ public:
         bool isClear = false;  // nothing is wrong with all pictures but ambient light
     };
     // Measures the light in the picture that the wall's watch has looked at last; not more often
-    // than is useful. `shown`: the state at that moment. Nothing: it measured nothing.
-    // `explain`: may correct how much other light was measured before causes are told from it.
+    // than is useful. `at`: when the picture was exposed. `shown`: the state that is shown now.
+    // Nothing: it measured nothing. `explain`: may correct how much other light was measured before
+    // causes are told from it.
     std::optional<Measured> measure(const show::ShowState& shown, Time at,
                                     const std::function<void(vision::WallLight&)>& explain = nullptr);
     // Whether something hides a part of an output's picture, so that its place is not certain.
@@ -61,6 +63,8 @@ private:
         std::string advice;  // what is seen, and what to do
         Time lasts{};        // a cause is named once it has lasted so long
     };
+    void noteLamps(const show::ShowState& shown);
+    std::optional<vision::LampState> lampsAt(Time exposed) const;
     void keepWeak(const vision::WallLight& light, std::vector<vision::NamedCause>& named);
     std::string nameOf(const vision::NamedCause& named) const;
     void suspect(const std::string& output, const Words& words, bool ofPicture, Time at);
@@ -75,8 +79,9 @@ private:
     std::vector<bool> hidden_, saturated_;
     std::optional<vision::NamedCause> weak_;  // why all pictures were weak last
     std::optional<Time> measured_;
-    show::ShowState lamps_;       // its levels and relays, at the last measurement
-    std::vector<Rgba8> picture_;  // some pixels of the last one
+    std::deque<std::pair<Time, vision::LampState>> lamps_;  // since when; of the last seconds
+    std::optional<vision::LampState> measuredWith_;         // nothing: they were changing
+    std::vector<Rgba8> picture_;                            // some pixels of the last one
 };
 
 }  // namespace fantascope::app

@@ -234,9 +234,10 @@ GreyImage placedLight(const GreyImage& light, const Homography& shownFromPlace) 
     return placed;
 }
 
-void LightMeter::lampsChange() {
-    if (other_.pictures >= kLearningLight) other_.kept = other_.now;
-    other_.pictures = 0;
+void LightMeter::lampsChange(const std::optional<LampState>& state) {
+    const bool isLearned = usualOther_->pictures >= kLearningLight;
+    if (isLearned) keptOther_ = other_;
+    usualOther_.change(state, isLearned);
 }
 
 // What a sight shows at every blur, and which blur and strengths explain it.
@@ -296,7 +297,8 @@ LightMeter::Comparison LightMeter::compare(const Sight& sight) const {
 }
 
 void LightMeter::learn(const Comparison& now) {
-    if (other_.pictures < kLearningLight) other_.usual += (now.otherLight - other_.kept - other_.usual) / ++other_.pictures;
+    if (usualOther_->pictures < kLearningLight)
+        usualOther_->light += (now.otherLight - keptOther_ - usualOther_->light) / ++usualOther_->pictures;
     if (usual_.pictures >= kLearning || now.contrast <= 0) return;
     const double share = 1.0 / ++usual_.pictures;  // so that the usual is the mean
     usual_.contrast += share * (now.contrast - usual_.contrast);
@@ -314,7 +316,7 @@ OutputLight LightMeter::describe(const Comparison& now, const Sight& sight) {
     light.saturated = saturatedShare(sight, now.shown);
     light.allOtherLight = now.otherLight;
     if (now.otherLight > kLeastOther) light.textured = std::clamp(now.explaining.texture / now.otherLight, 0.0, 1.0);
-    light.otherLight = other_.pictures >= kLearningLight ? other_.now : other_.kept;
+    light.otherLight = usualOther_->pictures >= kLearningLight ? other_ : keptOther_;
     if (now.contrast > 0 && now.blur > usual_.blur) {
         light.blur = std::sqrt(now.blur * now.blur - usual_.blur * usual_.blur);
         const Blocks byCamera = blocksOf(sight, blurredBy(now.shown.mul(viewOf(sight.surface)), kBlurs[now.bestBlur]));
@@ -342,7 +344,7 @@ std::optional<OutputLight> LightMeter::measure(const Sight& sight, bool isFound)
     usual_.unexplained.resize(now.blocks[0].size(), -1);
     off_.resize(now.blocks[0].size());
     if (isFound) learn(now);
-    other_.now = now.otherLight - other_.usual;
+    other_ = now.otherLight - usualOther_->light;
     return isKnown ? std::optional(describe(now, sight)) : std::nullopt;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vision/watch/usual_by_lamps.h"
+
 #include "core/geometry.h"
 #include "media/image.h"
 
@@ -43,8 +45,9 @@ public:
     // `isFound`: the picture stands at shownFromPlace; only then it may count as usual. Nothing: it
     // has too little content, or what is usual is not known yet.
     std::optional<OutputLight> measure(const Sight& sight, bool isFound);
-    // Other lamps change: what they add from the last picture to the next ones becomes usual.
-    void lampsChange();
+    // Other lamps change. In a new state, what they add from the last picture to the next ones
+    // becomes usual. Nothing: they are changing.
+    void lampsChange(const std::optional<LampState>& state);
 
 private:
     struct Comparison;
@@ -58,12 +61,13 @@ private:
         std::vector<double> unexplained{};  // by block: as a share of the picture's variance; negative: unknown
     } usual_;
     std::vector<int> off_{};  // by block: how many measurements it has not looked as usual
-    // Light that is not the picture's, as a share of full light.
+    // Usual light that is not the picture's, as a share of full light.
     struct OtherLight {
-        int pictures = 0;           // from which the usual light was learned
-        double usual = 0, now = 0;  // now: beside the usual
-        double kept = 0;            // what was beside the usual before the lamps changed
-    } other_;
+        int pictures = 0;  // from which it was learned
+        double light = 0;
+    };
+    UsualByLamps<OtherLight> usualOther_;
+    double other_ = 0, keptOther_ = 0;  // beside the usual: now, and before the lamps changed
 };
 
 }  // namespace fantascope::vision

@@ -33,26 +33,27 @@ std::vector<double> patchesOf(const GreyImage& seen, const GreyImage& mask) {
 
 }  // namespace
 
-void Surroundings::lampsChange() {
+void Surroundings::lampsChange(const std::optional<LampState>& state) {
     if (!isLearning()) kept_ = now_;
-    pictures_ = 0;
+    usual_.change(state, !isLearning());
 }
 
-bool Surroundings::isLearning() const { return pictures_ < kUsualAfter; }
+bool Surroundings::isLearning() const { return usual_->pictures < kUsualAfter; }
 
 void Surroundings::learn(const std::vector<double>& now) {
-    if (pictures_ == 0) usual_.assign(now.size(), -1);
-    const double share = 1.0 / ++pictures_;
+    if (usual_->pictures == 0) usual_->light.assign(now.size(), -1);
+    const double share = 1.0 / ++usual_->pictures;
     std::vector<double> squares;  // of differences between this picture and those before
     for (std::size_t i = 0; i < now.size(); ++i) {
         if (now[i] < 0) continue;
-        const double usual = std::max(0.0, now[i] - kept_.veil) / std::max(kept_.gain, kLeastGain), off = usual - usual_[i];
-        if (usual_[i] >= 0) squares.push_back(off * off);
-        usual_[i] = usual_[i] < 0 ? usual : usual_[i] + share * off;
+        const double usual = std::max(0.0, now[i] - kept_.veil) / std::max(kept_.gain, kLeastGain),
+                     off = usual - usual_->light[i];
+        if (usual_->light[i] >= 0) squares.push_back(off * off);
+        usual_->light[i] = usual_->light[i] < 0 ? usual : usual_->light[i] + share * off;
     }
     // The difference of two pictures has twice the variance of one, and four times that of their
     // mean. The median of its square is 0.455 of its variance.
-    if (!squares.empty()) noise_ = medianOf(squares) / 0.455 / 4;
+    if (!squares.empty()) usual_->noise = medianOf(squares) / 0.455 / 4;
 }
 
 std::optional<SurroundingsLight> Surroundings::measure(const GreyImage& seen) {
@@ -63,7 +64,7 @@ std::optional<SurroundingsLight> Surroundings::measure(const GreyImage& seen) {
     }
     std::vector<std::pair<double, double>> patches;  // usual, now
     for (std::size_t i = 0; i < now.size(); ++i)
-        if (usual_[i] >= 0) patches.emplace_back(usual_[i], now[i]);
+        if (usual_->light[i] >= 0) patches.emplace_back(usual_->light[i], now[i]);
     if (patches.size() < kLeastPatches) return std::nullopt;
     // A straight line through most patches: now = gain x usual + veil. Patches that somebody hides,
     // or a headlight lights, count less and less.
@@ -92,7 +93,7 @@ std::optional<SurroundingsLight> Surroundings::measure(const GreyImage& seen) {
         // The camera's noise adds to the spread of what is usual, which would make every line too
         // flat. Where all patches are alike, a line says nothing, and the gain explains all.
         const double spread = xx / count - mean * mean, flat = 0.001 * mean * mean + 1e-10;
-        const double own = std::max(spread - noise_, kLeastOwn * spread), ratio = level / std::max(mean, kDarkest);
+        const double own = std::max(spread - usual_->noise, kLeastOwn * spread), ratio = level / std::max(mean, kDarkest);
         light.gain = (xy / count - mean * level + flat * ratio) / (own + flat);
         light.level = ratio;
         light.veil = level - light.gain * mean;

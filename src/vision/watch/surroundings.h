@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vision/watch/usual_by_lamps.h"
+
 #include "media/image.h"
 
 #include <optional>
@@ -25,16 +27,20 @@ public:
     // little to see around the pictures, or what is usual is not known yet.
     std::optional<SurroundingsLight> measure(const GreyImage& seen);
     bool isLearning() const;
-    // Other lamps change: what they add from the last picture to the next ones becomes usual.
-    void lampsChange();
+    // Other lamps change. In a new state, what they add from the last picture to the next ones
+    // becomes usual. Nothing: they are changing.
+    void lampsChange(const std::optional<LampState>& state);
 
 private:
     void learn(const std::vector<double>& now);
 
     GreyImage mask_;
-    std::vector<double> usual_;     // by patch; negative: it does not count
-    double noise_ = 0;              // variance of a patch's usual light, of the camera's noise
-    int pictures_ = 0;              // from which they were learned
+    struct Usual {
+        std::vector<double> light{};  // by patch; negative: it does not count
+        double noise = 0;             // variance of a patch's light, of the camera's noise
+        int pictures = 0;             // from which they were learned
+    };
+    UsualByLamps<Usual> usual_;
     SurroundingsLight now_, kept_;  // at the last measurement, and before the lamps changed
 };
 

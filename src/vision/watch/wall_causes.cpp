@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kNoPicture = 0.12;  // of the usual contrast: less is none
 constexpr double kWeak = 0.85, kStrong = 1.25, kMuchStronger = 1.5;
+constexpr double kAlike = 0.5;      // of the loss of the weakest picture: one that loses so much loses it with that
 constexpr double kMost = 0.5;       // of the picture
 constexpr double kSaturated = 0.3;  // of the bright places
 constexpr double kSaturatesSome = 0.05;
@@ -52,6 +53,18 @@ struct Looks {
     const OutputLight& of(std::size_t k) const { return *light.outputs[outputs[k]]; }
     std::size_t count(Look look) const { return static_cast<std::size_t>(std::ranges::count(looks, look)); }
     bool all(Look look) const { return !looks.empty() && count(look) == looks.size(); }
+    // Some pictures are weak, and the others almost. A projector's lamp weakens its own picture
+    // only.
+    bool allWeaken() const {
+        if (count(Look::Weak) == 0) return false;
+        double least = 1;
+        for (std::size_t k = 0; k < outputs.size(); ++k) least = std::min(least, of(k).contrast);
+        for (std::size_t k = 0; k < outputs.size(); ++k) {
+            const bool isTold = looks[k] == Look::Weak || looks[k] == Look::Usual || looks[k] == Look::Passing;
+            if (!isTold || 1 - of(k).contrast < kAlike * (1 - least)) return false;
+        }
+        return true;
+    }
     double mean(double OutputLight::*figure) const {
         double sum = 0;
         for (std::size_t k = 0; k < outputs.size(); ++k) sum += of(k).*figure;
@@ -126,7 +139,7 @@ std::vector<NamedCause> causesOf(const WallLight& light) {
         looks.each(Look::Foreign, Cause::WrongInput, contrastOf, causes);
     }
     if (looks.all(Look::Strong)) return {{Cause::CameraExposure, {}, looks.mean(&OutputLight::contrast)}};
-    if (looks.all(Look::Weak))
+    if (looks.allWeaken())
         addWeak(looks, causes);
     else
         looks.each(Look::Weak, Cause::DimLamp, contrastOf, causes);

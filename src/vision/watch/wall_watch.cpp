@@ -356,10 +356,10 @@ bool WallWatch::isUpsideDown() const {
     return false;
 }
 
-void WallWatch::lampsChange() {
-    surroundings_->lampsChange();
+void WallWatch::lampsChange(const std::optional<LampState>& state) {
+    surroundings_->lampsChange(state);
     for (const auto& output : outputs_)
-        if (output) output->meter.lampsChange();
+        if (output) output->meter.lampsChange(state);
 }
 
 std::optional<CameraMovement> WallWatch::cameraMovement(const std::vector<const Homography*>& shownFromPlace) const {

@@ -82,8 +82,8 @@ public:
     // Whether the picture that was looked at last is upside down: turned, it shows an output that
     // it does not show as it is.
     bool isUpsideDown() const;
-    // Other lamps change, so their light is no fault.
-    void lampsChange();
+    // Other lamps change, so their light is no fault. Nothing: they are changing.
+    void lampsChange(const std::optional<LampState>& state);
     // The movement of the camera that best explains movements of pictures, as OutputSight has them;
     // null: an output that says nothing. Nothing: too few places are seen.
     std::optional<CameraMovement> cameraMovement(const std::vector<const Homography*>& shownFromPlace) const;
