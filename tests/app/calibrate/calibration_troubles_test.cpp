@@ -47,15 +47,15 @@ simulation:
   ambient: [60, 60, 60]
   objects:
     - {{name: wall, rectangle: {{corner: [-9, -2, 0], right: [18, 0, 0], up: [0, 8, 0]}}, reflectance: [0.58, 0.57, 0.54]}}
-  camera: {{white: 600, frame_rate: 15}}
+  camera: {{white: 600, frame_rate: 15, read_noise: {2}}}
   faults: [{1}]
 )";
 const std::string kWall = "\n    surface: {point: [0, 0, 0], normal: [0, 0, 1]}";
 
 class CalibrationTroubles : public testing::Test {
 protected:
-    void makeSite(const std::string& faults, const std::string& surface = kWall) const {
-        folder_.file("site.yaml", fmt::format(kNightSite, surface, faults));
+    void makeSite(const std::string& faults, const std::string& surface = kWall, double noise = 0.002) const {
+        folder_.file("site.yaml", fmt::format(kNightSite, surface, faults, noise));
     }
     Outcome calibrate(const Arguments& more = {}) const {
         Arguments arguments = {"calibrate", ".", "--simulate", "--write"};
@@ -135,6 +135,10 @@ TEST_F(CalibrationTroubles, of_what_is_pushed_between_two_outputs) {
 TEST_F(CalibrationTroubles, of_outputs_that_are_not_in_view) {
     expectRefusal("{kind: camera_bump, at: 0, turn: [0, 70, 0]}",
                   {"error: the camera sees no light of the outputs", "turn the camera"});
+    // Example failure: noise passes for the light of an output, and the camera for a slow one.
+    makeSite("{kind: camera_bump, at: 0, turn: [0, 70, 0]}", kWall, 0.1);
+    EXPECT_THAT(calibrate(),
+                AllOf(exits(1), testing::Field(&Outcome::errors, HasSubstr("the camera sees no light of the outputs"))));
     makeSite("{kind: bump, output: right, at: 0, turn: [0, 60, 0]}");
     const Outcome outcome = calibrate();
     EXPECT_THAT(outcome, exits(1));
