@@ -88,10 +88,13 @@ void CauseWatch::endWall(Time at) {
 }
 
 void CauseWatch::noteLamps(const show::ShowState& shown) {
-    vision::LampState state;
-    for (const float level : shown.levels)
+    vision::LampState state = shown.relays;
+    const auto add = [&](float level) {
         state.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(level, 0.0f, 1.0f))));
-    state.insert(state.end(), shown.relays.begin(), shown.relays.end());
+    };
+    for (const float level : shown.levels) add(level);
+    add(shown.lamps.share);
+    state.push_back(static_cast<std::uint8_t>(shown.lamps.relaysOff));
     if (lamps_.empty() || lamps_.back().second != state) lamps_.emplace_back(shown.time, std::move(state));
     while (lamps_.size() > 1 && lamps_[1].first < shown.time - kKeptLamps) lamps_.pop_front();
 }
