@@ -98,20 +98,22 @@ void DriftWatch::tick(std::shared_ptr<const CameraFrame> arrived, const show::Sh
     if (!arrived && arrived_) causeWatch_.wait(showClock_.showTime(*arrived_), period_, showTime);
     const bool wasSettingUp = std::exchange(wasSettingUp_, isSettingUp);
     if (isSettingUp && !wasSettingUp) endShifts(shown, showTime);
-    if (arrived && lamps_) lamps_->note(shown);
-    if (arrived && isWorthALook(*arrived, now) && !waiting_) waiting_ = std::move(arrived);
+    if (arrived) {
+        if (lamps_) lamps_->note(shown);
+        note(*arrived, now);
+        if (!waiting_ && (!looked_ || arrived->exposed - *looked_ >= kLeastStep)) waiting_ = std::move(arrived);
+    }
     if (isSettingUp || wasSettingUp) return beginAgain();
     if (waiting_ && !light_.isComing(waiting_->exposed, now)) look(*std::exchange(waiting_, nullptr), shown, now);
 }
 
-bool DriftWatch::isWorthALook(const CameraFrame& frame, Time now) {
+void DriftWatch::note(const CameraFrame& frame, Time now) {
     arrived_ = now;
     const auto pictures = static_cast<Time::rep>(frame.sequence - sequence_);
     if (exposed_ && pictures > 0) period_ = (frame.exposed - *exposed_) / pictures;
     if (exposed_ && pictures > 0 && seconds(frame.exposed - *exposed_) < kSlowestCamera) light_.exposed(frame.exposed, period_);
     exposed_ = frame.exposed;
     sequence_ = frame.sequence;
-    return !looked_ || frame.exposed - *looked_ >= kLeastStep;
 }
 
 void DriftWatch::look(const CameraFrame& frame, const show::ShowState& shown, Time now) {

@@ -66,7 +66,7 @@ public:
     std::vector<LampReport> lamps() const { return lamps_ ? lamps_->series() : std::vector<LampReport>(); }
 
 private:
-    bool isWorthALook(const CameraFrame& frame, Time now);
+    void note(const CameraFrame& frame, Time now);
     void look(const CameraFrame& frame, const show::ShowState& shown, Time now);
     void measure(const show::ShowState& shown, Time exposed, Time now);
     void endShifts(const show::ShowState& shown, Time showTime);

@@ -8,9 +8,12 @@ namespace {
 
 constexpr std::size_t kKept = 24;                            // frames: more than a camera's latency lets wait
 constexpr Time kLeastStep = std::chrono::milliseconds(195);  // between the pictures that are looked at
-constexpr Time kAhead = std::chrono::milliseconds(80);       // a frame is drawn so long before it is visible
-constexpr Time kLongestWait = std::chrono::seconds(1);       // for a frame
-constexpr double kTolerance = 0.5;                           // of a refresh period, for the inaccuracy of both moments
+constexpr Time kAhead = std::chrono::milliseconds(80);       // a frame is drawn so long before it is visible,
+constexpr double kFramesAhead = 1.5;                         // and so many frames
+constexpr Time kLongestWait = std::chrono::seconds(1);       // for a frame,
+constexpr Time kGivesNone = std::chrono::seconds(3);         // and none for an output that gave none for so long
+constexpr Time kTolerance = std::chrono::milliseconds(20);   // for the inaccuracy of both moments,
+constexpr double kMostTolerance = 0.5;                       // of a refresh period
 
 Time periodOf(double rate) { return fromSeconds(1 / rate); }
 
@@ -22,7 +25,11 @@ ShownLight::Frames ShownLight::framesOf(render::NewestFrame& reader) {
 
 ShownLight::ShownLight(std::vector<Output> outputs, const vision::WallWatch& wall, const show::ShowClock& showClock)
     : wall_(wall), showClock_(showClock) {
-    for (const Output& output : outputs) outputs_.push_back({output});
+    ahead_ = kAhead;
+    for (const Output& output : outputs) {
+        outputs_.push_back({output});
+        if (output.frames.ask) ahead_ = std::max(ahead_, fromSeconds(kFramesAhead / output.refreshRate));
+    }
 }
 
 void ShownLight::exposed(Time at, Time period) {
@@ -40,8 +47,8 @@ void ShownLight::tick(Time now) {
         kept.frames.push_back({frame->shown.at, wall_.lightOf(i, frame->image)});
     }
     // The frames of one exposure are drawn before those of the next are asked for.
-    if (period_ <= Time{} || now + kAhead < asked_.back() + period_ / 2) return;
-    const Time soonest = std::max(now + kAhead, asked_.back() + kLeastStep);
+    if (period_ <= Time{} || now + ahead_ < asked_.back() + period_ / 2) return;
+    const Time soonest = std::max(now + ahead_, asked_.back() + kLeastStep);
     const auto steps = soonest > exposed_ ? (soonest - exposed_ + period_ - Time(1)) / period_ : 0;
     asked_.push_back(exposed_ + steps * period_);
     if (asked_.size() > kKept) asked_.pop_front();
@@ -52,7 +59,8 @@ void ShownLight::tick(Time now) {
 
 const GreyImage* ShownLight::at(std::size_t output, Time moment) const {
     const Kept& kept = outputs_[output];
-    const Time period = periodOf(kept.output.refreshRate), tolerance = fromSeconds(kTolerance * seconds(period));
+    const Time period = periodOf(kept.output.refreshRate),
+               tolerance = std::min(kTolerance, fromSeconds(kMostTolerance * seconds(period)));
     const GreyImage* nearest = nullptr;
     Time least = period / 2 + tolerance;
     for (const Frame& frame : kept.frames) {
@@ -72,8 +80,9 @@ bool ShownLight::isComing(Time moment, Time now) const {
         // The frame is the one that was asked for, or the next one where it was asked for too late.
         const auto isOfMoment = [&](Time asked) { return moment > asked - period && moment < asked + 2 * period; };
         const bool isAskedFor = kept.output.frames.ask && std::ranges::any_of(asked_, isOfMoment);
-        const bool isPassed = !kept.frames.empty() && kept.frames.back().visible > moment;
-        if (isAskedFor && !isPassed && at(i, moment) == nullptr) return true;
+        const bool isExpected =
+            !kept.frames.empty() && kept.frames.back().visible <= moment && kept.frames.back().visible > now - kGivesNone;
+        if (isAskedFor && isExpected && at(i, moment) == nullptr) return true;
     }
     return false;
 }

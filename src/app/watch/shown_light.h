@@ -42,7 +42,8 @@ public:
     // The light of the frame that was visible at `moment`, by cells; null: it is not known.
     const GreyImage* at(std::size_t output, Time moment) const;
     // Whether the light of `moment` is not known yet, but will be: a frame takes its time from the
-    // display to here, and slow displays have slow frames. Nobody waits for a frame for ever.
+    // display to here, and slow displays have slow frames. False once it has taken too long, or if
+    // the output gives no frames any more.
     bool isComing(Time moment, Time now) const;
 
 private:
@@ -57,6 +58,7 @@ private:
     std::vector<Kept> outputs_;
     const vision::WallWatch& wall_;
     const show::ShowClock showClock_;
+    Time ahead_{};                    // how long before it is visible a frame must be asked for
     Time exposed_{}, period_{};       // of the newest picture; the period is 0 until it is known
     std::deque<Time> asked_{Time{}};  // the exposures that frames were asked for last, oldest first; never empty
 };
