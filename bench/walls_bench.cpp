@@ -2,6 +2,8 @@
 // with the pattern's, and with both. Each show is a rehearsal of the built program on a calibrated
 // simulated site; z and tone are the camera's, means over the last seconds.
 
+#include "show/site/corrections.h"
+
 #include "core/file.h"
 #include "core/random.h"
 #include "media/image.h"
@@ -73,7 +75,7 @@ void paint(const std::filesystem::path& file, const std::string& wall, std::uint
 struct Options {
     std::filesystem::path guide = sourceFolder() + "/shows/light-movement/guides/left.png";
     std::uint64_t seed = 1;
-    double least = 0.7, seconds = 54;
+    double least = 0.7, gain = show::Corrections::Pattern{}.gain, seconds = 54;
     int iterations = 300;
 };
 
@@ -153,8 +155,8 @@ private:
     }
     std::string correctionsOf(bool light, bool pattern) const {
         const auto mode = [](bool is) { return is ? "automatic" : "off"; };
-        return fmt::format("corrections: {{light: {{mode: {}, least: {}}}, pattern: {{mode: {}}}}}\n", mode(light),
-                           options_.least, mode(pattern));
+        return fmt::format("corrections: {{light: {{mode: {}, least: {}}}, pattern: {{mode: {}, gain: {}}}}}\n", mode(light),
+                           options_.least, mode(pattern), options_.gain);
     }
     void run(const std::string& arguments) const {
         const std::string command =
@@ -182,6 +184,7 @@ int main(int argc, char** argv) {
     app.add_option("--first", first, "first seed");
     app.add_option("--last", last, "last seed");
     app.add_option("--least", options.least, "of the correction of light, as in a site file");
+    app.add_option("--gain", options.gain, "of the correction of patterns, as in a site file");
     app.add_option("--iterations", options.iterations, "of the search for the pattern");
     CLI11_PARSE(app, argc, argv);
     try {

@@ -156,6 +156,7 @@ int main(int argc, char** argv) {
     app.add_option("--kind", kind, "only faults of this kind, as in a site file (default: each in turn)");
     app.add_option("--length", options.length, "seconds of a night");
     app.add_option("--latency", options.latency, "of the camera, seconds");
+    app.add_option("--camera-width", options.camera.x, "of the camera's pictures, pixels");
     app.add_option("--camera-rate", options.cameraRate, "of the camera, Hz");
     app.add_option("--frame-delay", options.frameDelay, "until the watch gets a frame that is visible, seconds");
     app.add_flag("--plan", isPlan, "the sites were not calibrated");
@@ -165,6 +166,7 @@ int main(int argc, char** argv) {
         !kind.empty() && std::ranges::find(all, kind, &fantascope::app::DrawnFault::kind) == all.end())
         return fmt::print(stderr, "watch_bench: there are no faults of the kind '{}'\n", kind), 1;
     options.isSurveyed = !isPlan;
+    options.camera.y = options.camera.x * 9 / 16;
     if (what == "quiet" || what == "drift") options.geometry = "automatic";
     if (what == "faults") fantascope::app::playFaults(options, kind, first, last);
     if (what == "quiet") fantascope::app::playQuiet(options, first, last);

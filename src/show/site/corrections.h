@@ -34,7 +34,7 @@ struct Corrections {
     // Light patterns that do not read as their guides on the surface that they are shown on.
     struct Pattern {
         Mode mode = Mode::Advise;
-        double gain = 0.2;   // an exchange must win so much of the difference from the guide, 0.05 .. 0.9
+        double gain = 0.1;   // an exchange must win so much of the difference from the guide, 0.05 .. 0.9
         double more = 0.25;  // how many instances it may add, as a share of those that there are, 0 .. 4
         double least = 0.5;  // the least that is left of the picture's light, 0.05 .. 1
         double fade = 6;     // from one pattern to the next, seconds
