@@ -61,9 +61,8 @@ TEST(WallCauses, of_all_outputs_together_are_no_projector) {
     EXPECT_EQ(said({kDim, kDim}, SurroundingsLight{0.5, 0, 0.5}), one(Cause::CameraExposure));
     EXPECT_EQ(said({kDim, kDim}, SurroundingsLight{0.7, 0.001, 0.98}), one(Cause::CameraExposure)) << "there is hardly any light";
     // Thin fog takes nearly as much from a picture that is not weak yet.
-    const OutputLight weak = with([](OutputLight&light) { light.contrast = 0.83; }),
-                      almost = with([](OutputLight&light) { light.contrast = 0.88; }),
-                      hardly = with([](OutputLight&light) { light.contrast = 0.96; });
+    OutputLight weak, almost, hardly;
+    weak.contrast = 0.83, almost.contrast = 0.88, hardly.contrast = 0.96;
     EXPECT_EQ(said({almost, weak, almost}, SurroundingsLight{0.9, 0.01, 1.5}), one(Cause::Fog));
     EXPECT_EQ(said({weak, almost}, SurroundingsLight{0.85, 0, 0.85}), one(Cause::CameraExposure));
     EXPECT_EQ(said({hardly, weak, almost}, SurroundingsLight{0.9, 0.01, 1.5}), one(Cause::DimLamp, 1));

@@ -160,7 +160,7 @@ Result<void> LightSurvey::awaitCamera() {
 }
 
 // Lights the output and darkens it again, and notes between which two frames each change was seen.
-// False: what the camera sees does not follow.
+// False: what the camera sees does not follow the output.
 Result<bool> LightSurvey::measureDelay(std::size_t output) {
     const auto white = plain(site_.outputs[output].size(), 1);
     const auto stillOf = [&](bool lit) -> Result<GreyImage> {
@@ -176,8 +176,8 @@ Result<bool> LightSurvey::measureDelay(std::size_t output) {
     constexpr double kVisible = 0.01;
     if (pixels.size() < kFewestLit || lit - unlit < kVisible) return false;
 
-    // Pixels of a noisy picture that were chosen for their difference lie halfway between
-    // afterwards. Somebody may pass once.
+    // Noise, too, has pixels that differed in the two stills. Afterwards these lie halfway between
+    // both, whatever the output shows. One change may be missed, since somebody may pass.
     constexpr double kFollows = 0.6;
     constexpr int kMostStrays = 1;
     int strays = 0;

@@ -8,10 +8,10 @@ namespace {
 
 constexpr std::size_t kKept = 24;                            // frames: more than a camera's latency lets wait
 constexpr Time kLeastStep = std::chrono::milliseconds(195);  // between the pictures that are looked at
-constexpr Time kAhead = std::chrono::milliseconds(80);       // a frame is drawn so long before it is visible,
-constexpr double kFramesAhead = 1.5;                         // and so many frames
-constexpr Time kLongestWait = std::chrono::seconds(1);       // for a frame,
-constexpr Time kGivesNone = std::chrono::seconds(3);         // and none for an output that gave none for so long
+constexpr Time kAhead = std::chrono::milliseconds(80);       // a frame is drawn so long before it is visible;
+constexpr double kFramesAhead = 1.5;                         // so many frames on a slow display
+constexpr Time kLongestWait = std::chrono::seconds(1);       // for a frame;
+constexpr Time kGivesNone = std::chrono::seconds(3);         // an output that gave no frame for so long is not waited for
 constexpr Time kTolerance = std::chrono::milliseconds(20);   // for the inaccuracy of both moments,
 constexpr double kMostTolerance = 0.5;                       // of a refresh period
 

@@ -10,7 +10,8 @@
 
 namespace fantascope::vision {
 
-// What the site's lamps are asked to give. In the same state they give the same light.
+// What the site's lamps are set to: levels, relays and trims. In the same state they give the same
+// light.
 using LampState = std::vector<std::uint8_t>;
 
 // What is usual in each state of the site's lamps. When cues come back to a state, what was learned
@@ -25,12 +26,13 @@ public:
     // The lamps change. `state`: nothing while they are changing. `isLearned`: what was usual until
     // now is known, and may be kept.
     void change(const std::optional<LampState>& state, bool isLearned) {
-        if (state_ && isLearned) kept_.emplace_back(*std::exchange(state_, {}), std::move(usual_));
+        if (state_ && isLearned) kept_.emplace_back(std::move(*state_), std::move(usual_));
         if (kept_.size() > kMost) kept_.pop_front();
         state_ = state;
         usual_ = {};
-        const auto found = std::ranges::find(kept_, state, [](const auto& each) { return std::optional(each.first); });
-        if (!state || found == kept_.end()) return;
+        if (!state) return;
+        const auto found = std::ranges::find(kept_, *state, &std::pair<LampState, Usual>::first);
+        if (found == kept_.end()) return;
         usual_ = std::move(found->second);
         kept_.erase(found);
     }

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kNoPicture = 0.12;  // of the usual contrast: less is none
 constexpr double kWeak = 0.85, kStrong = 1.25, kMuchStronger = 1.5;
-constexpr double kAlike = 0.5;      // of the loss of the weakest picture: one that loses so much loses it with that
+constexpr double kAlike = 0.5;      // of the weakest picture's loss: a picture that loses so much shares its cause
 constexpr double kMost = 0.5;       // of the picture
 constexpr double kSaturated = 0.3;  // of the bright places
 constexpr double kSaturatesSome = 0.05;
