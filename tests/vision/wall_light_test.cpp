@@ -166,6 +166,25 @@ TEST(WallLight, tells_what_hides_a_part_for_long) {
     EXPECT_NEAR(light.asUsual, 1 - light.hidden, 0.1);
 }
 
+// A picture of about 80 camera pixels across, and a post before it. Example failure: blocks have as
+// many cells as in a large picture, so each is too much of it.
+TEST(WallLight, a_post_hides_little_of_a_small_picture) {
+    for (const glm::ivec2 at : {glm::ivec2(60, 35), glm::ivec2(66, 25), glm::ivec2(75, 35)}) {
+        ProjectedWall wall = brickWall();
+        wall.camera = *CameraModel::fromFieldOfView(wall.camera.pose, {136, 76}, 0.9, -0.05, 0.01);
+        Night night{wall};
+        night.begin();
+        OutputLight light;
+        for (int i = 0; i < 8; ++i)
+            light = night.output(0, [&](GreyImage& seen) {
+                for (int y = at.y; y < at.y + 12; ++y)
+                    for (int x = at.x; x < at.x + 4; ++x) seen.at(x, y) = 0.4f;
+            });
+        EXPECT_GT(light.hidden, 0) << at.x;
+        EXPECT_LT(light.hidden, 0.05) << at.x;
+    }
+}
+
 TEST(WallLight, tells_another_picture_from_none) {
     Night night;
     night.begin();

@@ -13,19 +13,19 @@
 namespace fantascope::vision {
 namespace {
 
-constexpr int kSide = 16;                  // of a block, cells
-constexpr int kWhole = kSide * kSide / 2;  // cells of a block that counts
-constexpr std::size_t kLeastBlocks = 12;   // that tell something
-constexpr int kLearning = 6;               // pictures, from which the usual picture is known
-constexpr int kLearningLight = 3;          // pictures, from which the usual other light is known
-constexpr int kLasting = 5;                // measurements: nobody who passes hides a block for so long
-constexpr double kTells = 0.05;            // a block tells something if its light varies so much, as a share of full light
-constexpr double kUnexplained = 0.3;       // of the picture's variance: what is left of a block that is explained
-constexpr double kOutlier = 0.5;           // and from which on it has no weight
-constexpr double kLeastOther = 0.005;      // of full light: other light whose texture can be told
-constexpr double kThere = 0.6;             // a picture is there if it leaves less than this share of what no picture leaves
-constexpr double kPartThere = 0.1;         // or if so much of it is as usual
-constexpr double kCameraBlurs = 0.8;       // and the camera blurs, if that leaves less than this share
+constexpr int kBlocks = 32;                    // at least, unless blocks would be too small
+constexpr int kLeastSide = 8, kMostSide = 16;  // of a block, cells
+constexpr std::size_t kLeastBlocks = 12;       // that tell something
+constexpr int kLearning = 6;                   // pictures, from which the usual picture is known
+constexpr int kLearningLight = 3;              // pictures, from which the usual other light is known
+constexpr int kLasting = 5;                    // measurements: nobody who passes hides a block for so long
+constexpr double kTells = 0.05;                // a block tells something if its light varies so much, as a share of full light
+constexpr double kUnexplained = 0.3;           // of the picture's variance: what is left of a block that is explained
+constexpr double kOutlier = 0.5;               // and from which on it has no weight
+constexpr double kLeastOther = 0.005;          // of full light: other light whose texture can be told
+constexpr double kThere = 0.6;                 // a picture is there if it leaves less than this share of what no picture leaves
+constexpr double kPartThere = 0.1;             // or if so much of it is as usual
+constexpr double kCameraBlurs = 0.8;           // and the camera blurs, if that leaves less than this share
 constexpr std::array<double, 9> kBlurs{0, 0.5, 0.8, 1.2, 1.8, 2.7, 4, 6, 9};  // cells
 
 // How strong the picture is on the wall, and how much other light shows the surface's texture, as a
@@ -36,7 +36,7 @@ struct Strengths {
 
 // A part of the picture: the light that is seen, and the picture's light as it is expected.
 struct Block {
-    int cells = 0;
+    bool isWhole = false;                                // most of its cells count
     double seen = 0, shown = 0, full = 0;                // means
     double seenSeen = 0, seenShown = 0, shownShown = 0;  // variances and covariance,
     double seenFull = 0, shownFull = 0, fullFull = 0;    // those with the surface's texture, too
@@ -60,14 +60,22 @@ cv::Mat blurredBy(const cv::Mat& image, double sigma) {
     return soft;
 }
 
-// `lit`: the picture's light on the surface, as the camera gets it.
-Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, int left, int top) {
+// Cells along a block's side. Where a picture is small, blocks of many cells would each be too much
+// of it.
+int sideOf(const GreyImage& picture) {
+    const double cells = static_cast<double>(picture.width()) * picture.height();
+    return std::clamp(static_cast<int>(std::sqrt(cells / kBlocks)), kLeastSide, kMostSide);
+}
+
+// `lit`: the picture's light on the surface, as the camera gets it. `side`: of a block.
+Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, int side, int left, int top) {
     Block block;
-    for (int y = top; y < std::min(top + kSide, lit.rows); ++y)
-        for (int x = left; x < std::min(left + kSide, lit.cols); ++x) {
+    int cells = 0;
+    for (int y = top; y < std::min(top + side, lit.rows); ++y)
+        for (int x = left; x < std::min(left + side, lit.cols); ++x) {
             const double full = sight.surface.at(x, y), seen = sight.seen.at(x, y), shown = lit.at<float>(y, x);
             if (full <= 0 || sight.mask.at(x, y) <= 0) continue;
-            ++block.cells;
+            ++cells;
             block.seen += seen;
             block.shown += shown;
             block.full += full;
@@ -78,7 +86,8 @@ Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, int left, int 
             block.shownFull += shown * full;
             block.fullFull += full * full;
         }
-    const double count = std::max(1, block.cells);
+    block.isWhole = cells >= side * side / 2;
+    const double count = std::max(1, cells);
     for (double* sum : {&block.seen, &block.shown, &block.full, &block.seenSeen, &block.seenShown, &block.shownShown,
                         &block.seenFull, &block.shownFull, &block.fullFull})
         *sum /= count;
@@ -93,8 +102,9 @@ Block blockOf(const LightMeter::Sight& sight, const cv::Mat& lit, int left, int 
 
 Blocks blocksOf(const LightMeter::Sight& sight, const cv::Mat& lit) {
     Blocks blocks;
-    for (int top = 0; top < lit.rows; top += kSide)
-        for (int left = 0; left < lit.cols; left += kSide) blocks.push_back(blockOf(sight, lit, left, top));
+    const int side = sideOf(sight.surface);
+    for (int top = 0; top < lit.rows; top += side)
+        for (int left = 0; left < lit.cols; left += side) blocks.push_back(blockOf(sight, lit, side, left, top));
     return blocks;
 }
 
@@ -179,7 +189,7 @@ private:
 double otherLightOf(const Blocks& blocks, double contrast) {
     std::vector<double> shares;
     for (const Block& block : blocks)
-        if (block.cells >= kWhole) shares.push_back((block.seen - contrast * block.shown) / block.full);
+        if (block.isWhole) shares.push_back((block.seen - contrast * block.shown) / block.full);
     return shares.empty() ? 0 : medianOf(std::move(shares));
 }
 
@@ -272,7 +282,7 @@ LightMeter::Comparison LightMeter::compare(const Sight& sight) const {
     for (std::size_t i = 0; i < scale.size(); ++i) {
         const Block& sharp = now.blocks[0][i];
         const bool isStrange = usual_.pictures >= kLearning && usual_.unexplained[i] >= kUnexplained;
-        if (sharp.cells >= kWhole && sharp.shownShown > kTells * kTells * sharp.full * sharp.full && !isStrange)
+        if (sharp.isWhole && sharp.shownShown > kTells * kTells * sharp.full * sharp.full && !isStrange)
             scale[i] = now.blocks[now.usualBlur][i].shownShown;
     }
     double usual = usual_.contrast;
