@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <utility>
 
 namespace fantascope::app {
@@ -19,9 +20,7 @@ constexpr Time kShort = std::chrono::milliseconds(900);
 constexpr Time kLong = std::chrono::milliseconds(1500);
 constexpr Time kLonger = std::chrono::milliseconds(3800);  // nobody who passes takes so long
 constexpr Time kGone = std::chrono::seconds(3);            // without a picture
-constexpr Time kKeptLamps = std::chrono::seconds(4);
-constexpr Time kSteadyFor = std::chrono::milliseconds(600);  // lamps and a camera may be late by so much
-constexpr double kMostSaturated = 0.1;                       // of a picture whose place is certain; and hidden of it:
+constexpr double kMostSaturated = 0.1;                     // of a picture whose place is certain; and hidden of it:
 constexpr double kMostHidden = 0.2;
 constexpr double kAsWeak = 0.06;  // of the usual light
 constexpr int kBlack = 40;        // a stored value
@@ -81,6 +80,16 @@ void CauseWatch::wait(Time last, Time period, Time now) {
     suspect("", {"camera gone", "it sends nothing: look at its plug", Time{}}, true, now);
 }
 
+void CauseWatch::noteSlowCamera(Time period, Time at) {
+    suspect("",
+            {"camera slow",
+             fmt::format("it sends one picture in {:.1f} s, and nothing can be told of the wall: set a shorter exposure, or "
+                         "smaller pictures",
+                         seconds(period)),
+             kLong},
+            true, at);
+}
+
 void CauseWatch::endWall(Time at) {
     for (const auto& [name, suspicion] : suspicions_)
         if (!suspicion.ofPicture) causes_.end(name.first, name.second, at);
@@ -95,19 +104,13 @@ void CauseWatch::noteLamps(const show::ShowState& shown) {
     for (const float level : shown.levels) add(level);
     add(shown.lamps.share);
     state.push_back(static_cast<std::uint8_t>(shown.lamps.relaysOff));
-    if (lamps_.empty() || lamps_.back().second != state) lamps_.emplace_back(shown.time, std::move(state));
-    while (lamps_.size() > 1 && lamps_[1].first < shown.time - kKeptLamps) lamps_.pop_front();
+    lamps_.note(shown.time, std::move(state));
 }
 
 // The state of the lamps when a picture was exposed; nothing: they were changing about that moment.
 std::optional<vision::LampState> CauseWatch::lampsAt(Time exposed) const {
-    const vision::LampState* state = &lamps_.front().second;
-    for (std::size_t i = 1; i < lamps_.size(); ++i) {
-        const auto& [since, next] = lamps_[i];
-        if (since > exposed - kSteadyFor && since < exposed + kSteadyFor) return std::nullopt;
-        if (since <= exposed) state = &next;
-    }
-    return *state;
+    if (!lamps_.isSteady(exposed, std::equal_to<>())) return std::nullopt;
+    return lamps_.at(exposed);
 }
 
 std::optional<CauseWatch::Measured> CauseWatch::measure(const show::ShowState& shown, Time at,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/watch/cause_log.h"
+#include "app/watch/shown_lately.h"
 
 #include "show/event.h"
 #include "show/show_state.h"
@@ -11,7 +12,6 @@
 #include "core/clock.h"
 #include "media/image.h"
 
-#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -34,6 +34,8 @@ public:
     bool isUsable(const RgbaImage& picture, bool isLit, Time at);
     // The camera has sent nothing since `last`. `period`: of its pictures, as far as it is known.
     void wait(Time last, Time period, Time now);
+    // The camera's pictures come so seldom that nothing can be told of the wall.
+    void noteSlowCamera(Time period, Time at);
     // Nothing more can be said of the wall.
     void endWall(Time at);
     // What was measured.
@@ -79,9 +81,9 @@ private:
     std::vector<bool> hidden_, saturated_;
     std::optional<vision::NamedCause> weak_;  // why all pictures were weak last
     std::optional<Time> measured_;
-    std::deque<std::pair<Time, vision::LampState>> lamps_;  // since when; of the last seconds
-    std::optional<vision::LampState> measuredWith_;         // nothing: they were changing
-    std::vector<Rgba8> picture_;                            // some pixels of the last one
+    ShownLately<vision::LampState> lamps_;
+    std::optional<vision::LampState> measuredWith_;  // nothing: they were changing
+    std::vector<Rgba8> picture_;                     // some pixels of the last one
 };
 
 }  // namespace fantascope::app

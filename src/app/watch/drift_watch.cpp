@@ -112,6 +112,7 @@ void DriftWatch::note(const CameraFrame& frame, Time now) {
     const auto pictures = static_cast<Time::rep>(frame.sequence - sequence_);
     if (exposed_ && pictures > 0) period_ = (frame.exposed - *exposed_) / pictures;
     if (exposed_ && pictures > 0 && seconds(frame.exposed - *exposed_) < kSlowestCamera) light_.exposed(frame.exposed, period_);
+    if (seconds(period_) >= kSlowestCamera) causeWatch_.noteSlowCamera(period_, showClock_.showTime(now));
     exposed_ = frame.exposed;
     sequence_ = frame.sequence;
 }

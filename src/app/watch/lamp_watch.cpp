@@ -12,9 +12,7 @@
 namespace fantascope::app {
 namespace {
 
-constexpr Time kKeptMoments = std::chrono::seconds(4);
-constexpr Time kSteadyFor = std::chrono::milliseconds(600);  // a camera may say that it is earlier or later by so much
-constexpr float kSteady = 0.05f;                             // of a level
+constexpr float kSteady = 0.05f;  // of a level
 constexpr Time kForgotten = std::chrono::minutes(3);
 constexpr double kMostContrast = 0.1;  // beside the usual: more is fog, or the camera's exposure
 constexpr double kLeastExplained = 0.85;
@@ -70,7 +68,7 @@ LampWatch::LampWatch(const show::Site& site, show::InputLog& inputs, show::Event
 
 void LampWatch::note(const show::ShowState& shown) {
     if (shown.levels.size() != site_.channelCount() || shown.relays.size() != site_.relays.size()) return;  // nothing yet
-    Moment moment{shown.time, {}, shown.lamps};
+    Moment moment{{}, shown.lamps};
     std::vector<float> others = shown.levels;  // without those of lamps
     for (const Lamp& lamp : lamps_) {
         if (lamp.relay) {
@@ -92,14 +90,7 @@ void LampWatch::note(const show::ShowState& shown) {
     isDark_ = shown.blackout;
     if (!corrects_) goal_ = told_ = {};
     goal_.relaysOff = shown.lamps.relaysOff;  // a blackout gives them back
-    moments_.push_back(std::move(moment));
-    while (shown.time - moments_.front().at > kKeptMoments) moments_.pop_front();
-}
-
-// The one that was shown at a time.
-const LampWatch::Moment& LampWatch::momentAt(Time time) const {
-    const auto next = std::ranges::upper_bound(moments_, time, {}, &Moment::at);
-    return next == moments_.begin() ? moments_.front() : *std::prev(next);
+    moments_.note(shown.time, std::move(moment));
 }
 
 std::vector<float> LampWatch::given(const Moment& moment) const {
@@ -113,14 +104,10 @@ std::vector<float> LampWatch::given(const Moment& moment) const {
 
 // Whether no lamp changed quickly about the time when a picture was exposed, as far as is known.
 bool LampWatch::isSteady(Time exposed) const {
-    const std::vector<float> then = given(momentAt(exposed));
-    for (const Moment& moment : moments_) {
-        if (moment.at < exposed - kSteadyFor || moment.at > exposed + kSteadyFor) continue;
-        const std::vector<float> levels = given(moment);
-        for (std::size_t i = 0; i < levels.size(); ++i)
-            if (std::abs(levels[i] - then[i]) > kSteady) return false;
-    }
-    return true;
+    return moments_.isSteady(exposed, [&](const Moment& one, const Moment& other) {
+        return std::ranges::equal(given(one), given(other),
+                                  [](float level, float then) { return std::abs(level - then) <= kSteady; });
+    });
 }
 
 // Which universes a desk sends, too.
@@ -141,13 +128,13 @@ void LampWatch::explain(vision::WallLight& light, Time exposed) const {
     if (moments_.empty()) return;
     for (std::size_t i = 0; i < light_.size(); ++i)
         if (light.outputs[i] && light_[i].isKnown())
-            light.outputs[i]->otherLight = light_[i].excessOf(light.outputs[i]->allOtherLight, momentAt(exposed).asked);
+            light.outputs[i]->otherLight = light_[i].excessOf(light.outputs[i]->allOtherLight, moments_.at(exposed).asked);
 }
 
 void LampWatch::see(const vision::WallLight& light, bool isClear, Time exposed, Time now) {
     listen();
     if (!isClear || !foreign_.empty() || isDark_ || moments_.empty() || !isSteady(exposed)) return;
-    const Moment& then = momentAt(exposed);
+    const Moment& then = moments_.at(exposed);
     const std::vector<float> levels = given(then);
     bool isTold = false;
     for (std::size_t i = 0; i < light_.size(); ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/watch/shown_lately.h"
 #include "app/watch/trim_loop.h"
 
 #include "show/event.h"
@@ -12,7 +13,6 @@
 #include "core/clock.h"
 
 #include <cstddef>
-#include <deque>
 #include <optional>
 #include <set>
 #include <string>
@@ -61,13 +61,11 @@ private:
         std::optional<int> offFrom;                    // a trim with more relays off switches it off
     };
     struct Moment {
-        Time at{};
         std::vector<float> asked;  // by lamp
         show::LampTrim trim;
     };
     static std::vector<Lamp> lampsOf(const show::Site& site);
     std::vector<float> given(const Moment& moment) const;
-    const Moment& momentAt(Time time) const;
     bool isSteady(Time exposed) const;
     void listen();
     TrimSight sightAt(const Moment& then, Time exposed, Time now) const;
@@ -87,7 +85,7 @@ private:
     const std::vector<Lamp> lamps_;
     std::vector<vision::AmbientLight> light_;  // by output
     std::vector<double> total_;                // by output: all other light, at the last measurement
-    std::deque<Moment> moments_;               // that were shown lately, oldest first
+    ShownLately<Moment> moments_;
     std::vector<float> otherLevels_;           // of the channels that are no lamp's, as shown last
     std::vector<std::uint8_t> relays_;         // as shown last, with the trim
     std::optional<Time> switched_, measured_;  // a relay of the trim's; the last measurement that counts

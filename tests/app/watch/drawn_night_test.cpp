@@ -107,6 +107,15 @@ TEST(DrawnNight, brings_a_picture_back_however_slow_the_camera_is) {
     }
 }
 
+// Example failure: nothing is predicted for such a camera, and nobody is told.
+TEST(DrawnNight, says_that_the_camera_is_too_slow) {
+    NightOptions options = nightWithPush();
+    options.cameraRate = 0.4;
+    const NightResult night = playNight(options);
+    EXPECT_THAT(causesOf(night), ElementsAre("camera slow"));
+    EXPECT_THAT(night.told, testing::HasSubstr("one picture in 2.5 s"));
+}
+
 // Example failure: the machine is busy, and the watch takes its own absence for the camera's.
 TEST(DrawnNight, names_no_cause_after_it_stood_still_itself) {
     NightOptions options;
