@@ -7,6 +7,7 @@
 
 #include <glm/common.hpp>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -267,6 +268,21 @@ void WallWatch::findShared() {
     }
 }
 
+// The full light of all outputs but one, by coarse camera pixels; each pixel as the brightest about
+// it, since the camera blurs.
+GreyImage WallWatch::lightBeside(std::size_t output) const {
+    constexpr int kBlurs = 2;  // coarse camera pixels
+    GreyImage sum(dark_.width(), dark_.height());
+    for (std::size_t other = 0; other < outputs_.size(); ++other)
+        for (std::size_t p = 0; other != output && outputs_[other] && p < sum.pixels().size(); ++p)
+            sum.pixels()[p] += outputs_[other]->full.pixels()[p];
+    GreyImage light(sum.width(), sum.height());
+    cv::Mat out(light.height(), light.width(), CV_32F, light.pixels().data());
+    cv::dilate(cv::Mat(sum.height(), sum.width(), CV_32F, sum.pixels().data()), out,
+               cv::getStructuringElement(cv::MORPH_RECT, {2 * kBlurs + 1, 2 * kBlurs + 1}));
+    return light;
+}
+
 // The cells of each output that no other output lights. An output that has few of them is measured
 // everywhere.
 void WallWatch::findAlone() {
@@ -278,18 +294,15 @@ void WallWatch::findAlone() {
         const GreyImage& full = view.full();
         GreyImage& alone = outputs_[i]->alone;
         alone = GreyImage(full.width(), full.height());
+        const GreyImage others = lightBeside(i);
+        const glm::ivec2 last(others.width() - 1, others.height() - 1);
         std::size_t lit = 0, count = 0;
         for (int y = 0; y < full.height(); ++y)
             for (int x = 0; x < full.width(); ++x) {
                 if (full.at(x, y) <= 0) continue;
                 ++lit;
-                const glm::ivec2 at(view.camera().at(x, y) / static_cast<float>(step_));
-                float others = 0;
-                for (std::size_t other = 0; other < outputs_.size(); ++other)
-                    if (other != i && outputs_[other])
-                        others += outputs_[other]->full.at(std::min(at.x, outputs_[other]->full.width() - 1),
-                                                           std::min(at.y, outputs_[other]->full.height() - 1));
-                if (others > kHardly * full.at(x, y)) continue;
+                const glm::ivec2 at = glm::min(glm::ivec2(view.camera().at(x, y) / static_cast<float>(step_)), last);
+                if (others.at(at.x, at.y) > kHardly * full.at(x, y)) continue;
                 alone.at(x, y) = 1;
                 ++count;
             }

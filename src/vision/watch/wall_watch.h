@@ -94,6 +94,7 @@ private:
     GreyImage lightSeen(const RgbaImage& picture) const;
     Seen seenOf(std::size_t output, const GreyImage& light, const std::vector<GreyImage>& predicted) const;
     void findShared();
+    GreyImage lightBeside(std::size_t output) const;
     void findAlone();
     void findSurroundings();
 
