@@ -22,7 +22,7 @@ struct CueList {
         std::string name = {};             // a revision of the list finds the cue by it
     };
     std::vector<Cue> cues;
-    bool loops = false;        // the first cue follows the last one, if the last one has a `follow`
+    bool loops = false;        // the first cue comes after the last one
     Look dark;                 // what is seen before the first cue: black pictures, levels 0, relays in their safe states
     Time goInterval{};         // after a cue was entered, GO is ignored for this long
     double farthestShift = 0;  // a correction that moves a corner of a projector's picture farther is ignored, pixels
@@ -36,6 +36,12 @@ struct CueList {
     } trim{};                // the bounds of LampTrim; one beyond them is ignored
     Time blackoutFade{};     // from full light to none and back
     std::uint64_t seed = 1;  // of the show's own randomness: its gusts
+
+    // The cue after a cue; -1 is before the first. Nothing: it is the last one.
+    std::optional<int> after(int cue) const {
+        if (cue + 1 < static_cast<int>(cues.size())) return cue + 1;
+        return loops ? std::optional(0) : std::nullopt;
+    }
 };
 
 }  // namespace fantascope::show

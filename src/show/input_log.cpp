@@ -23,4 +23,9 @@ LoggedInput InputLog::submit(const Input& input) {
     return logged;
 }
 
+void InputLog::foresee(Time time) {
+    const std::lock_guard lock(mutex_);
+    playback_.foresee(time);
+}
+
 }  // namespace fantascope::show

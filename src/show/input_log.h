@@ -26,8 +26,8 @@ struct LoggedInput {
 // decides the outcome of each, and gives every reader the same sequence. A late reader misses no
 // input.
 //
-// Thread: submit() and add() from any thread; they wait only for each other. Readers as AppendLog
-// says.
+// Thread: submit(), add() and foresee() from any thread; they wait only for each other. Readers as
+// AppendLog says.
 class InputLog {
 public:
     using Reader = AppendLog<LoggedInput>::Reader;
@@ -42,6 +42,9 @@ public:
     int add(std::shared_ptr<const CueList> cues);
 
     LoggedInput submit(const Input& input);
+    // Works out the cues that follow by themselves until `time`. Call it now and then, so that the
+    // first input after hours of a loop need not wait for that. Nothing changes.
+    void foresee(Time time);
     // A reader that begins with the first input. The log outlives it.
     Reader reader() const { return inputs_.reader(); }
 

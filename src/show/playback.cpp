@@ -12,6 +12,8 @@ namespace fantascope::show {
 
 namespace {
 
+constexpr Time kKept = std::chrono::minutes(10);
+
 // The last of `events` that is not after `time`, or null. They are sorted by `at`.
 template <class Event>
 const Event* lastBy(Time time, const std::vector<Event>& events) {
@@ -50,8 +52,7 @@ bool isOfOneSite(const Look& a, const Look& b) {
 // When the next cue follows a cue that was entered at `at`.
 std::optional<Time> followerAt(const CueList& list, int cue, Time at) {
     const std::optional<Time>& follow = list.cues[static_cast<std::size_t>(cue)].follow;
-    const bool hasNext = list.loops || static_cast<std::size_t>(cue) + 1 < list.cues.size();
-    return follow && hasNext ? std::optional(at + *follow) : std::nullopt;
+    return follow && list.after(cue) ? std::optional(at + *follow) : std::nullopt;
 }
 
 // Where a cue of the list `old` is in another list: the cue of the same name, or else the nearest
@@ -114,8 +115,9 @@ Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revis
     switch (input.kind) {
         case Input::Kind::Go: {
             if (cue >= 0 && at - now.entered < now.list->goInterval) return Outcome::TooSoonAfterCue;
-            if (cue == last && !now.list->loops) return Outcome::AtLastCue;
-            enter((cue + 1) % (last + 1), at);
+            const auto next = now.list->after(cue);
+            if (!next) return Outcome::AtLastCue;
+            enter(*next, at);
             break;
         }
         case Input::Kind::Back:
@@ -205,13 +207,21 @@ void Playback::followOn() {
     for (std::size_t added = 0; added < most; ++added) {
         const Entry& last = entries_.back();
         if (!last.left) return;
-        const int next = (last.cue + 1) % static_cast<int>(most);
-        entries_.push_back(entered(last.list, next, *last.left));
+        entries_.push_back(entered(last.list, *last.list->after(last.cue), *last.left));
     }
 }
 
 void Playback::foresee(Time time) {
-    while (entries_.back().at <= time && entries_.back().left) followOn();
+    while (entries_.back().at <= time && entries_.back().left) {
+        followOn();
+        forget(time - kKept);
+    }
+}
+
+// Drops what is over before `time`.
+void Playback::forget(Time time) {
+    const auto next = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.at > time; });
+    if (next - entries_.begin() > 1) entries_.erase(entries_.begin(), next - 1);
 }
 
 // The entry of a cue, with the courses from what is seen at `at` to the cue's look.
@@ -325,7 +335,10 @@ void Playback::stateAt(Time time, ShowState& out) const {
     out.inputs = static_cast<std::uint64_t>(std::upper_bound(taken_.begin(), taken_.end(), time) - taken_.begin());
 }
 
-const Playback::Entry& Playback::entryAt(Time time) const { return *lastBy(time, entries_); }
+const Playback::Entry& Playback::entryAt(Time time) const {
+    const Entry* const entry = lastBy(time, entries_);
+    return entry != nullptr ? *entry : entries_.front();
+}
 
 // What would be seen without a blackout.
 void Playback::lookAt(Time time, Look& out) const {

@@ -61,7 +61,8 @@ public:
     Outcome apply(const Input& input, std::shared_ptr<const CueList> revision = nullptr);
 
     // Works out the follows until `time`. Every input works them out for one pass of the list, so
-    // only a list that loops needs this call; for other lists it does nothing.
+    // only a list that loops needs this call. What was seen more than ten minutes before `time` is
+    // forgotten, so that a loop may go on for ever.
     void foresee(Time time);
 
     // The rest of the current cue's fade at `time`; 0 once the fade is over, and before the first
@@ -73,8 +74,9 @@ public:
     std::optional<Time> untilFollowAt(Time time) const;
 
     // What is seen at `time`. Any time will do, but a list that loops must have been foreseen until
-    // then. The cost is a few binary searches and the evaluation of each course. The call allocates
-    // only when it fills `out` for the first time.
+    // then, and of a time that is forgotten it is told what was seen first since. The cost is a few
+    // binary searches and the evaluation of each course. The call allocates only when it fills
+    // `out` for the first time.
     void stateAt(Time time, ShowState& out) const;
 
 private:
@@ -122,6 +124,7 @@ private:
     void enter(int cue, Time at);
     void put(Entry entry);
     void followOn();
+    void forget(Time time);
     Outcome correct(const Input& input, const CueList& list, Time at);
     Outcome exchange(const Input& input, const CueList& list, Time at);
     Outcome trim(const LampTrim& trim, const CueList& list, Time at);

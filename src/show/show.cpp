@@ -14,7 +14,7 @@ namespace fantascope::show {
 
 namespace {
 
-constexpr int kNewestVersion = 1;
+constexpr int kNewestVersion = 2, kTracking = 2;  // of the file; from kTracking on, cues need not block
 
 // Defaults. 0.3 s is shorter than a deliberate second press and longer than a bouncing or trembling
 // one; as a fade it is quick without being a flash.
@@ -27,6 +27,8 @@ constexpr double kLongestBlackoutFade = 10;
 constexpr double kLongestFade = 3600;
 constexpr double kLongestFollow = 86400;
 constexpr double kStrongestWind = 4;  // times what a pattern was made for
+
+constexpr std::string_view kDark = "dark";  // a show starts so, if it does not start with a cue
 
 template <class Range>
 std::vector<std::string> namesOf(const Range& things) {
@@ -109,6 +111,19 @@ Result<NamedLook::OutputWish> readOutput(const ConfigNode& node, const KnownSour
     return output;
 }
 
+// Reads a key, which may be absent, that files have since a version.
+template <class Value, class Parse>
+void readSince(std::int64_t since, std::int64_t version, ConfigFields& fields, std::string_view key, Value& target, Parse parse) {
+    fields.optional().read(key, target, [&](const ConfigNode& node) -> Result<Value> {
+        if (version < since)
+            return node.error(
+                fmt::format("'{}' needs 'version: {}' of this file; docs/show-format.md says what else changes "
+                            "with it",
+                            key, since));
+        return parse(node);
+    });
+}
+
 Result<float> readLevel(const ConfigNode& node) { return static_cast<float>(TRY(node.number(0, 1))); }
 
 Result<bool> readSwitch(const ConfigNode& node) { return TRY(node.choice({"off", "on"})) == 1; }
@@ -138,14 +153,23 @@ Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, cons
     });
     fields.optional().read("fixtures", look.fixtures,
                            [](const ConfigNode& map) { return readNamed<NamedLook::Levels>(map, readLevels); });
-    fields.optional().read("wind", look.wind, readWind);
+    fields.optional().read("wind", look.wind, [](const ConfigNode& wind) -> Result<std::optional<WindWish>> {
+        return std::optional(TRY(readWind(wind)));
+    });
     fields.optional().read("relays", look.relays, [](const ConfigNode& map) { return readNamed<bool>(map, readSwitch); });
     TRY(fields.finish());
     return look;
 }
 
-Result<Cue> readCue(const ConfigNode& node, const std::vector<std::string>& looks) {
+// What is said of the cues beside the list itself.
+struct CueRules {
+    std::int64_t version = kNewestVersion;
+    bool loops = false;
+};
+
+Result<Cue> readCue(const ConfigNode& node, const std::vector<std::string>& looks, const CueRules& rules) {
     Cue cue;
+    cue.blocks = rules.version < kTracking;
     ConfigFields fields(node);
     fields.text("name", cue.name);
     fields.read("look", cue.look, [&](const ConfigNode& value) { return value.choice(looks); });
@@ -153,24 +177,40 @@ Result<Cue> readCue(const ConfigNode& node, const std::vector<std::string>& look
     fields.optional().read("follow", cue.follow, [](const ConfigNode& value) -> Result<Time> {
         return fromSeconds(TRY(value.number(0, kLongestFollow, "s")));
     });
+    readSince(kTracking, rules.version, fields, "block", cue.blocks, [](const ConfigNode& value) { return value.boolean(); });
     TRY(fields.finish());
     return cue;
 }
 
-Result<std::vector<Cue>> readCues(const ConfigNode& node, const std::vector<std::string>& looks) {
+Result<std::vector<Cue>> readCues(const ConfigNode& node, const std::vector<std::string>& looks, const CueRules& rules) {
     std::vector<Cue> cues;
     const auto items = TRY(node.items(1));
     ConfigFaults faults;
     for (const ConfigNode& item : items)
-        faults.take(readCue(item, looks), [&](Cue cue) {
+        faults.take(readCue(item, looks, rules), [&](Cue cue) {
             const auto same = [&](const Cue& other) { return other.name == cue.name; };
             if (std::any_of(cues.begin(), cues.end(), same))
                 faults.add(item.error(fmt::format("another cue is called '{}'; each needs its own name", cue.name)));
             cues.push_back(std::move(cue));
         });
     TRY(faults.result());
-    if (cues.back().follow) return items.back().error("no cue comes after this one; remove its 'follow'");
+    if (cues.back().follow && !rules.loops)
+        return items.back().error(fmt::format("no cue comes after this one; remove its 'follow'{}",
+                                              rules.version < kTracking ? "" : ", or add 'at_end: loop' to the show"));
+    const auto takesTime = [](const Cue& cue) { return !cue.follow || *cue.follow > Time{}; };
+    if (rules.loops && std::ranges::none_of(cues, takesTime))
+        return node.error("a loop of cues that all follow at once would never end; give one of them a longer 'follow'");
     return cues;
+}
+
+// The cue that a show starts with; nothing: it starts dark.
+Result<std::optional<std::size_t>> readStart(const ConfigNode& node, const std::vector<Cue>& cues) {
+    std::vector<std::string> names = namesOf(cues);
+    if (std::ranges::find(names, kDark) != names.end() && TRY(node.text()) == kDark)
+        return node.error(fmt::format("'{}' means that nothing is seen, but a cue is called so, too; rename the cue", kDark));
+    names.emplace_back(kDark);
+    const std::size_t start = TRY(node.choice(names));
+    return start < cues.size() ? std::optional(start) : std::nullopt;
 }
 
 // The index in the site of a thing that the show calls by name.
@@ -204,9 +244,8 @@ Look darkLook(const Site& site) {
     return look;
 }
 
-// Names that the site does not have go to `faults`.
-Look bindLook(const NamedLook& named, const Site& site, ConfigFaults& faults) {
-    Look look = darkLook(site);
+// Puts what a look names over another one. Names that the site does not have go to `faults`.
+void putLook(const NamedLook& named, const Site& site, Look& look, ConfigFaults& faults) {
     // An output's own layers, set last, replace those of its canvas.
     for (const bool own : {false, true})
         for (const auto& output : named.outputs)
@@ -231,18 +270,16 @@ Look bindLook(const NamedLook& named, const Site& site, ConfigFaults& faults) {
             for (const Named<float>& channel : std::get<NamedLook::ChannelLevels>(fixture.wish))
                 faults.take(indexOf(channel, channels, what, site), [&](std::size_t slot) { levels[slot] = channel.wish; });
         });
-    return look;
 }
 
-// The winds of a look, one for each output of `site`.
-std::vector<WindWish> bindWinds(const NamedLook& named, const Site& site) {
-    std::vector<WindWish> winds(site.outputs.size(), named.wind);
+// Puts the winds that a look names over others; one for each output of `site`.
+void putWinds(const NamedLook& named, const Site& site, std::vector<WindWish>& winds) {
+    if (named.wind) std::ranges::fill(winds, *named.wind);
     for (const bool own : {false, true})
         for (const auto& output : named.outputs)
             for (std::size_t i = 0; i < winds.size(); ++i)
                 if (output.wish.wind && (own ? site.outputs[i].name : site.outputs[i].canvas) == output.name)
                     winds[i] = *output.wish.wind;
-    return winds;
 }
 
 }  // namespace
@@ -260,7 +297,7 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder, SourceNames& 
     show.blackoutFade = kBlackoutFade;
     const ConfigNode root = TRY(ConfigNode::load(show.file));
     ConfigFields fields(root);
-    fields.header("show", kNewestVersion);
+    CueRules rules{fields.header("show", kNewestVersion)};
     fields.text("title", show.title);
     fields.optional().time("go_interval", show.goInterval, 0, kLongestGoInterval);
     fields.optional().time("blackout_fade", show.blackoutFade, 0, kLongestBlackoutFade);
@@ -288,21 +325,41 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder, SourceNames& 
         TRY(faults.result());
         return looks;
     });
-    fields.read("cues", show.cues, [&](const ConfigNode& node) { return readCues(node, lookNames); });
+    readSince(kTracking, rules.version, fields, "at_end", rules.loops, [](const ConfigNode& node) -> Result<bool> {
+        return TRY(node.choice({"stay", "loop"})) == 1;
+    });
+    show.loops = rules.loops;
+    fields.read("cues", show.cues, [&](const ConfigNode& node) { return readCues(node, lookNames, rules); });
+    readSince(kTracking, rules.version, fields, "start", show.start, [&](const ConfigNode& node) {
+        return show.cues.empty() ? std::optional<std::size_t>() : readStart(node, show.cues);  // faulty cues are told already
+    });
     TRY(fields.finish());
     return show;
 }
 
 Result<CueList> Show::bind(const Site& site) const {
-    std::vector<Look> bound;
+    CueList list;
+    list.dark = darkLook(site);
     ConfigFaults faults;
-    for (const NamedLook& look : looks) bound.push_back(bindLook(look, site, faults));
+    for (const NamedLook& look : looks) {  // all of them, so that each fault is told once
+        Look bound = list.dark;
+        putLook(look, site, bound, faults);
+    }
     TRY(faults.result());
 
-    CueList list;
-    for (const Cue& cue : cues)
-        list.cues.push_back({bound[cue.look], cue.fade, cue.follow, bindWinds(looks[cue.look], site), cue.name});
-    list.dark = darkLook(site);
+    CueList::Cue nothing;
+    nothing.look = list.dark;
+    nothing.winds.resize(site.outputs.size());
+    for (const Cue& cue : cues) {
+        CueList::Cue bound = cue.blocks || list.cues.empty() ? nothing : list.cues.back();
+        putLook(looks[cue.look], site, bound.look, faults);
+        putWinds(looks[cue.look], site, bound.winds);
+        bound.fade = cue.fade;
+        bound.follow = cue.follow;
+        bound.name = cue.name;
+        list.cues.push_back(std::move(bound));
+    }
+    list.loops = loops;
     list.goInterval = goInterval;
     list.blackoutFade = blackoutFade;
     list.seed = seed;
@@ -312,6 +369,19 @@ Result<CueList> Show::bind(const Site& site) const {
     const Corrections::Lamps& lamps = site.corrections.lamps;
     list.trim = {static_cast<float>(lamps.least), lamps.speed, static_cast<int>(lamps.relays.size()), lamps.hold};
     return list;
+}
+
+bool Show::playsByItself() const {
+    const auto follows = [](const Cue& cue) { return cue.follow.has_value(); };
+    return start && std::all_of(cues.begin(), cues.end() - (loops ? 0 : 1), follows);
+}
+
+std::string Show::beginning() const {
+    if (!start) return "starts dark and waits for GO";
+    return fmt::format("starts with '{}' and {}", cues[*start].name,
+                       !playsByItself() ? "waits for GO later"
+                       : loops          ? "plays by itself for ever"
+                                        : "plays by itself to its end");
 }
 
 Result<std::size_t> Show::cueNamed(std::string_view name) const { return find(name, namesOf(cues), "cue").in(file.string()); }

@@ -27,8 +27,9 @@ struct Named {
     Wish wish;
 };
 
-// A look as its author wrote it. Outputs that it does not name are black, fixtures are at level 0,
-// and relays are in their safe states.
+// A look as its author wrote it. What it does not name is dark in a cue that blocks: outputs are
+// black, fixtures are at level 0, and relays are in their safe states. In another cue it stays as
+// it was in the cue before.
 struct NamedLook {
     using ChannelLevels = std::vector<Named<float>>;
     using Levels = std::variant<float, ChannelLevels>;  // one level for all channels of a fixture, or levels by channel
@@ -38,7 +39,7 @@ struct NamedLook {
         std::optional<WindWish> wind;  // none: that of the look
     };
     std::vector<Named<OutputWish>> outputs;
-    WindWish wind;
+    std::optional<WindWish> wind;  // of all outputs
     std::vector<Named<Levels>> fixtures;
     std::vector<Named<bool>> relays;  // true: on
 };
@@ -49,6 +50,7 @@ struct Cue {
     std::size_t look = 0;  // index into Show::looks
     Time fade{};
     std::optional<Time> follow;
+    bool blocks = true;  // what the look does not name is dark; else it stays
 };
 
 // show.yaml as its author wrote it; docs/show-format.md describes the file. Value type.
@@ -61,6 +63,8 @@ struct Show {
     std::vector<Source> sources;
     std::vector<NamedLook> looks;
     std::vector<Cue> cues;
+    std::optional<std::size_t> start;  // index into `cues`: entered as the show begins; none: dark until an input
+    bool loops = false;                // the first cue comes after the last
 
     // Reads a show.yaml, or the one in a folder. Strict; the files that it names must exist.
     // Sources get their ids from `names`, so a source keeps its id when the show is read again.
@@ -71,6 +75,11 @@ struct Show {
 
     // Looks every name up in `site`. Error: place in the show file, and what the site has instead.
     Result<CueList> bind(const Site& site) const;
+
+    // Whether the show starts by itself and waits for nobody: each cue follows the one before.
+    bool playsByItself() const;
+    // What it does if nobody presses anything: "starts dark and waits for GO".
+    std::string beginning() const;
 
     // The index of a cue. Error: no cue has this name; suggests the nearest name.
     Result<std::size_t> cueNamed(std::string_view name) const;

@@ -318,6 +318,32 @@ TEST(Rehearsal, ends_with_its_lamps_at_the_end_levels_and_its_relays_safe) {
     EXPECT_EQ(std::count(recorded.begin(), recorded.end(), '\n'), 1 + 2 * 2 * 30);
 }
 
+// A machine that boots plays. Example failures: the show waits in the dark for GO; it ends after
+// one pass; the rehearsal presses GO in between.
+TEST(Rehearsal, of_a_show_that_plays_by_itself_presses_nothing) {
+    const ScratchFolder folder;
+    fs::copy(kSource / "shows/light-movement", folder / "show", fs::copy_options::recursive);
+    std::string show = contentsOf(folder / "show/show.yaml");
+    replace(show, "version: 1", "version: 2\nstart: Left rises\nat_end: loop");
+    for (const std::string& cue : kCues) replace(show, "name: " + cue + ",", "name: " + cue + ", block: true, follow: 0.5,");
+    std::ofstream(folder / "show/show.yaml") << show;
+    ASSERT_THAT(runProgram({"check", "show"}, folder.path()).out,
+                HasSubstr("starts with 'Left rises' and plays by itself for ever"));
+    ASSERT_THAT(
+        runProgram({"rehearse", "show", "--as-fast-as-possible", "--seconds", "4.2", "--report", "report.json"}, folder.path()),
+        exits(0));
+    std::vector<std::string> entered;
+    std::vector<double> times;
+    const json report = json::parse(contentsOf(folder / "report.json"));
+    for (const json& cue : report["cues"]) {
+        entered.push_back(cue["name"]);
+        times.push_back(cue["entered"]);
+    }
+    EXPECT_THAT(entered, testing::ElementsAre("Left rises", "Both", "Full", "Farewell", "Dusk", "First light", "Left rises",
+                                              "Both", "Full"));
+    for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], 0.5 * static_cast<double>(i), 0.02) << i;
+}
+
 // Each mistake ends with one message that says where and what to do, exit status 1, and nothing
 // half written.
 TEST(Rehearsal, bad_input_is_refused_before_anything_is_shown) {

@@ -4,6 +4,7 @@
 #include "core/random.h"
 
 #include <gmock/gmock.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <cmath>
@@ -556,7 +557,6 @@ TEST(Playback, every_state_is_well_formed) {
     }
 }
 
-// The render thread asks for a state with every frame and must not wait for the heap.
 // Cues that follow each other for ever are worked out as far as somebody asks. Example failures:
 // the program never returns from the first GO; at hour ten the list is a moment off, or its levels
 // are.
@@ -567,10 +567,15 @@ TEST(Playback, a_list_that_loops_goes_on_for_ever) {
     Playback playback(list);
     ASSERT_EQ(playback.apply(go(0s)), Outcome::Taken);
     const Time pass = 10s;
+    const std::vector<std::pair<Time, int>> moments{{0s, 0}, {2s, 0}, {3s, 1}, {7s, 1}, {8s, 2}};
+    playback.foresee(2 * pass);
+    std::vector<Look> looks;
+    for (const auto& [into, cue] : moments) looks.push_back(lookOf(playback, pass + into));
     playback.foresee(10h + pass);
-    for (const auto& [into, cue] : {std::pair(0s, 0), {2s, 0}, {3s, 1}, {7s, 1}, {8s, 2}}) {
+    for (std::size_t i = 0; i < moments.size(); ++i) {
+        const auto& [into, cue] = moments[i];
         EXPECT_EQ(stateOf(playback, 10h + into).cue, cue) << seconds(into);
-        EXPECT_EQ(lookOf(playback, 10h + into), lookOf(playback, pass + into)) << seconds(into);
+        EXPECT_EQ(lookOf(playback, 10h + into), looks[i]) << seconds(into);
     }
     EXPECT_EQ(playback.untilFollowAt(10h + 1s), 2s);
     EXPECT_EQ(playback.apply(jump(10h + 4s, 2)), Outcome::Taken);
@@ -581,6 +586,22 @@ TEST(Playback, a_list_that_loops_goes_on_for_ever) {
     EXPECT_EQ(stateOf(playback, 11h + 1s).cue, 0) << "GO at the last cue begins anew";
 }
 
+// Example failure: a show that loops for thirty nights fills the memory.
+TEST(Playback, a_list_that_loops_forgets_what_is_long_over) {
+    CueList list = followingCues();
+    list.loops = true;
+    list.cues[2].follow = 2s;
+    Playback playback(list);
+    playback.apply(go(0s));
+    playback.foresee(1h);
+    const std::size_t before = mallinfo2().uordblks;
+    playback.foresee(101h);
+    EXPECT_LT(mallinfo2().uordblks, before + 20000) << "36000 more passes";
+    EXPECT_EQ(stateOf(playback, 101h - 9min).cue, stateOf(playback, 101h + 1min).cue) << "ten minutes are kept";
+    EXPECT_EQ(lookOf(playback, 0s), lookOf(playback, 1h)) << "of a time that is forgotten, what was seen first since";
+}
+
+// The render thread asks for a state with every frame and must not wait for the heap.
 TEST(Playback, asking_again_allocates_nothing) {
     Rng rng(7);
     Playback playback(randomCues(rng));

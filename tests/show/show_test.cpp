@@ -120,8 +120,8 @@ TEST(ShowFile, mistakes_are_refused_with_place_and_advice) {
     EXPECT_EQ(refusalAfter("source: dim", "source: dimm"),
               "show.yaml:11:55: looks.bright.outputs.left[1].source: one of leaves, dim is needed, here is 'dimm' (did you mean "
               "'dim'?)");
-    EXPECT_EQ(refusalAfter("version: 1", "version: 2"),
-              "show.yaml:2:10: version: version 2 was written by a newer program, this one reads up to 1; update it");
+    EXPECT_EQ(refusalAfter("version: 1", "version: 3"),
+              "show.yaml:2:10: version: version 3 was written by a newer program, this one reads up to 2; update it");
 }
 
 TEST(ShowFile, pattern_files_are_there_and_inside_the_show) {
@@ -413,6 +413,123 @@ TEST(ShowFile, a_wind_out_of_its_range_is_refused) {
     EXPECT_THAT(refusalOf("{gusts: -0.1}"), HasSubstr("looks.bright.wind.gusts: -0.1 is out of range, 0 .. 1"));
     EXPECT_THAT(refusalOf("{direction: 400}"), HasSubstr("-360 .. 360 degrees"));
     EXPECT_THAT(refusalOf("{strenght: 1}"), HasSubstr("did you mean 'strength'?"));
+}
+
+// The show of version 2, in which a cue changes what its look names.
+constexpr std::string_view kTrackedShow = R"(fantascope: show
+version: 2
+title: Test
+sources:
+  leaves: {pattern: patterns/leaves.pattern.yaml}
+  dim: {solid: [0.1, 0.2, 0.3]}
+looks:
+  dusk:
+    wind: {strength: 2}
+    outputs: {left: [{source: leaves}], right: {layers: [{source: dim}], wind: {strength: 3}}}
+    fixtures: {fountain: {red: 0.25, blue: 0.75}, sculpture: 1}
+    relays: {road: off}
+  left alone:
+    outputs: {left: [{source: dim}]}
+    fixtures: {fountain: {red: 0.5}}
+  black:
+    outputs: {left: []}
+    wind: {strength: 0.5}
+  nothing: {}
+cues:
+  - {name: Dusk, look: dusk, fade: 2}
+  - {name: Left, look: left alone, fade: 1, follow: 20}
+  - {name: Black, look: black, fade: 1}
+  - {name: Anew, look: left alone, fade: 0, block: true}
+  - {name: Rest, look: nothing, fade: 0}
+)";
+
+std::string trackedRefusal(std::string_view what, std::string_view by) {
+    return refusal(replaced(std::string(kTrackedShow), what, by));
+}
+
+TEST(TrackedShow, keeps_what_a_cue_does_not_mention) {
+    const Loaded loaded{std::string(kTrackedShow)};
+    ASSERT_TRUE(loaded.show) << loaded.show.error().message();
+    const auto list = loaded.show->bind(testSite());
+    ASSERT_TRUE(list) << list.error().message();
+    const LayerState leaves{0, 1.0f}, dim{1, 1.0f};
+    const auto& cues = list->cues;  // outputs: right, left; channels: sculpture, fountain's red, green, blue; relays: fog, road
+    EXPECT_EQ(cues[0].look, (Look{{{{dim}}, {{leaves}}}, {1, 0.25f, 0, 0.75f}, {0, 0}}));
+    EXPECT_EQ(cues[1].look, (Look{{{{dim}}, {{dim}}}, {1, 0.5f, 0, 0.75f}, {0, 0}})) << "green and blue, right and road stay";
+    EXPECT_EQ(cues[2].look, (Look{{{{dim}}, {}}, {1, 0.5f, 0, 0.75f}, {0, 0}})) << "an empty list is black";
+    EXPECT_EQ(cues[3].look, (Look{{{}, {{dim}}}, {0, 0.5f, 0, 0}, {0, 1}})) << "a cue that blocks begins with the dark";
+    EXPECT_EQ(cues[4].look, cues[3].look);
+    const auto strengths = [&](std::size_t cue) { return std::pair(cues[cue].winds[0].strength, cues[cue].winds[1].strength); };
+    EXPECT_EQ(strengths(0), std::pair(3.0, 2.0));
+    EXPECT_EQ(strengths(1), std::pair(3.0, 2.0));
+    EXPECT_EQ(strengths(2), std::pair(0.5, 0.5));
+    EXPECT_EQ(strengths(3), std::pair(1.0, 1.0));
+    EXPECT_EQ(cues[1].follow, 20s);
+    EXPECT_FALSE(cues[0].follow) << "nothing of the cue itself is kept";
+}
+
+// The migration that docs/show-format.md tells. Example failure: a show of version 1 plays
+// otherwise than before.
+TEST(TrackedShow, in_which_each_cue_blocks_is_that_of_version_1) {
+    const Loaded before{std::string(kShow)};
+    std::string text = replaced(std::string(kShow), "version: 1", "version: 2");
+    for (const char* name : {"Dusk", "Night", "Farewell"})
+        text = replaced(text, fmt::format("name: {},", name), fmt::format("name: {}, block: true,", name));
+    const Loaded after{text};
+    ASSERT_TRUE(after.show) << after.show.error().message();
+    const CueList one = *before.show->bind(testSite()), two = *after.show->bind(testSite());
+    ASSERT_EQ(one.cues.size(), two.cues.size());
+    for (std::size_t i = 0; i < one.cues.size(); ++i) {
+        EXPECT_EQ(one.cues[i].look, two.cues[i].look) << i;
+        EXPECT_EQ(one.cues[i].fade, two.cues[i].fade) << i;
+        EXPECT_EQ(one.cues[i].follow, two.cues[i].follow) << i;
+    }
+    EXPECT_FALSE(before.show->start);
+    EXPECT_FALSE(before.show->loops);
+    EXPECT_FALSE(one.loops);
+}
+
+TEST(TrackedShow, may_start_and_loop_by_itself) {
+    const auto with = [](std::string_view keys, bool allFollow) {
+        std::string text = replaced(std::string(kTrackedShow), "cues:\n", std::string(keys) + "cues:\n");
+        if (allFollow)
+            for (const char* last : {"look: dusk, ", "look: black, ", "look: nothing, "})
+                text = replaced(text, last, std::string(last) + "follow: 5, ");
+        if (allFollow) text = replaced(text, "block: true", "block: true, follow: 5");
+        return text;
+    };
+    const Loaded waits(with("start: Left\n", false)), plays(with("start: Dusk\nat_end: loop\n", true)),
+        dark(with("start: dark\nat_end: stay\n", false));
+    ASSERT_TRUE(waits.show && plays.show && dark.show)
+        << (waits.show ? plays.show ? dark.show.error() : plays.show.error() : waits.show.error()).message();
+    EXPECT_EQ(waits.show->start, 1u);
+    EXPECT_FALSE(waits.show->playsByItself());
+    EXPECT_EQ(plays.show->start, 0u);
+    EXPECT_TRUE(plays.show->playsByItself());
+    EXPECT_TRUE(plays.show->bind(testSite())->loops);
+    EXPECT_FALSE(dark.show->start);
+    EXPECT_FALSE(dark.show->loops);
+}
+
+TEST(TrackedShow, is_refused_with_advice) {
+    EXPECT_THAT(refusalAfter("cues:\n", "start: Night\ncues:\n"), HasSubstr("start: 'start' needs 'version: 2' of this file"));
+    EXPECT_THAT(refusalAfter("fade: 0}", "fade: 0, block: true}"), HasSubstr("'block' needs 'version: 2'"));
+    EXPECT_THAT(trackedRefusal("cues:\n", "start: Dsk\ncues:\n"), HasSubstr("did you mean 'Dusk'?"));
+    EXPECT_THAT(trackedRefusal("cues:\n", "at_end: lop\ncues:\n"), HasSubstr("did you mean 'loop'?"));
+    EXPECT_THAT(trackedRefusal("name: Rest", "name: dark"), testing::Eq("accepted"));
+    EXPECT_THAT(
+        refusal(replaced(replaced(std::string(kTrackedShow), "name: Rest", "name: dark"), "cues:\n", "start: dark\ncues:\n")),
+        HasSubstr("rename the cue"));
+    EXPECT_THAT(trackedRefusal("look: nothing, fade: 0", "look: nothing, fade: 0, follow: 3"),
+                HasSubstr("no cue comes after this one; remove its 'follow', or add 'at_end: loop' to the show"));
+    std::string endless = replaced(std::string(kTrackedShow), "follow: 20", "follow: 0");
+    for (const char* last : {"look: dusk, ", "look: black, ", "look: nothing, "})
+        endless = replaced(endless, last, std::string(last) + "follow: 0, ");
+    endless = replaced(replaced(endless, "block: true", "block: true, follow: 0"), "cues:\n", "at_end: loop\ncues:\n");
+    EXPECT_THAT(refusal(endless), HasSubstr("would never end"));
+    // A mistake in a cue is told once, not again for 'start'.
+    EXPECT_EQ(refusal(replaced(replaced(std::string(kTrackedShow), "fade: 2}", "fade: -2}"), "cues:\n", "start: Dusk\ncues:\n")),
+              "show.yaml:22:36: cues[0].fade: -2 is out of range, 0 .. 3600 s is allowed");
 }
 
 }  // namespace

@@ -136,8 +136,8 @@ Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>&
 
 Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>& site) {
     const show::Show show = TRY(show::Show::load(path));
-    Finding finding{fmt::format("show, {}, {}, {}", counted(show.cues.size(), "cue"), counted(show.looks.size(), "look"),
-                                counted(show.sources.size(), "source"))};
+    Finding finding{fmt::format("show, {}, {}, {}, {}", counted(show.cues.size(), "cue"), counted(show.looks.size(), "look"),
+                                counted(show.sources.size(), "source"), show.beginning())};
     ConfigFaults faults;
     show::CueList cues;
     if (site) faults.take(show.bind(*site), [&](show::CueList bound) { cues = std::move(bound); });

@@ -65,14 +65,15 @@ glm::ivec2 sizeOfCanvas(int rows, double aspect) { return {2 * std::max(1L, std:
 // Plays a show without its devices; GO is pressed as in a rehearsal.
 class ShowFrames {
 public:
-    ShowFrames(show::CueList cues, std::optional<show::Input> firstInput, std::size_t presses, Time length)
-        : playback_(std::move(cues)), schedule_(presses, firstInput.has_value(), length) {
+    ShowFrames(show::CueList cues, const std::optional<show::Input>& firstInput, GoSchedule schedule)
+        : playback_(std::move(cues)), schedule_(schedule) {
         if (firstInput) playback_.apply(*firstInput);
     }
     const show::ShowState& at(Time time) {
         for (; tickTime(tick_, Hand::kRate) <= time; ++tick_)
             if (const Time moment = tickTime(tick_, Hand::kRate); schedule_.due(moment))
                 playback_.apply({moment, show::Input::Kind::Go, 0});
+        playback_.foresee(time);
         playback_.stateAt(time, state_);
         return state_;
     }
@@ -158,16 +159,16 @@ Result<Film> Film::ofShow(const FilmRequest& request) {
     film.frameRate_ = request.frameRate.value_or(output.refreshRate);
 
     show::CueList cues = *programme.cues;
-    std::size_t toCome = cues.cues.size() - (programme.firstInput ? static_cast<std::size_t>(programme.firstInput->cue) + 1 : 0);
     film.seconds_ = request.seconds.value_or(kShowSeconds);
     if (!request.cue.empty()) {  // it is entered at once and nothing follows it
         show::CueList::Cue& cue = cues.cues[static_cast<std::size_t>(programme.firstInput->cue)];
         programme.firstInput->at = -cue.fade;
         cue.follow.reset();
-        toCome = 0;
         if (const double loop = loopOf(programme.sources); !request.seconds && loop > 0) film.seconds_ = loop;
     }
-    const auto played = std::make_shared<ShowFrames>(std::move(cues), programme.firstInput, toCome, fromSeconds(film.seconds_));
+    GoSchedule schedule = goScheduleOf(programme, fromSeconds(film.seconds_));
+    if (!request.cue.empty()) schedule.end();
+    const auto played = std::make_shared<ShowFrames>(std::move(cues), programme.firstInput, schedule);
     film.seenAt_ = [played, index](Time time) {
         const show::ShowState& state = played->at(time);
         return Seen{state.outputs[index], state.winds[index]};

@@ -46,6 +46,7 @@ void Hand::tick(Time moment) {
                                                   showClock_.showTime(change->at)))
                 inputs_.submit(*input);
     const Time showTime = showClock_.showTime(moment);
+    inputs_.foresee(showTime);
     while (const show::LoggedInput* const logged = outcomes_.next())
         events_.append({showTime, show::event::InputDecided{*logged}});
     replica_.stateAt(showTime, state_);
@@ -65,7 +66,7 @@ ButtonLight Hand::lightOf(show::Button button, Time showTime) const {
         switch (button) {
             case show::Button::Go:
                 if (replica_.playback().fadesAt(showTime)) return State::Active;
-                return lit(state_.cue + 1 < static_cast<int>(show_.cues.size()), State::Ready);
+                return lit(replica_.playback().cues().after(state_.cue).has_value(), State::Ready);
             case show::Button::Back:
                 return lit(state_.cue > 0, State::Ready);
             case show::Button::Blackout:

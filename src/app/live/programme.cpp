@@ -343,14 +343,19 @@ Result<render::PictureSource> readPictureSource(const show::Source& source, rend
     return TRY(readSource(source, {pace, camera})).source;
 }
 
+GoSchedule goScheduleOf(const Programme& programme, Time length) {
+    const bool cueIsOn = programme.firstInput.has_value();
+    const std::size_t entered = cueIsOn ? static_cast<std::size_t>(programme.firstInput->cue) + 1 : 0;
+    return {programme.show.playsByItself() ? 0 : programme.show.cues.size() - entered, cueIsOn, length};
+}
+
 Result<Programme> readProgramme(const RunOptions& options) {
     show::Show show = TRY(show::Show::load(options.show));
     show::Site site = TRY(readSite(options.site));
     Programme programme(TRY(show::Revision::of(std::move(show), std::move(site))));
-    if (!options.fromCue.empty()) {
-        const std::size_t cue = TRY(programme.show.cueNamed(options.fromCue));
-        programme.firstInput = show::Input{Time{}, show::Input::Kind::Jump, static_cast<int>(cue)};
-    }
+    std::optional<std::size_t> first = programme.show.start;
+    if (!options.fromCue.empty()) first = TRY(programme.show.cueNamed(options.fromCue));
+    if (first) programme.firstInput = show::Input{Time{}, show::Input::Kind::Jump, static_cast<int>(*first)};
     if (programme.site.nominalCamera)
         programme.camera = std::make_shared<render::PictureFeed>(programme.site.nominalCamera->size);
     using Pace = render::VideoStream::Pace;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/keys/go_schedule.h"
 #include "app/live/show_run.h"
 #include "app/live/watch.h"
 #include "app/site/light_correction.h"
@@ -33,7 +34,7 @@ struct Programme {
     const show::Show& show;                       // of `revision`
     const show::Site& site;                       // of `revision`
     std::shared_ptr<const show::CueList> cues;    // of `revision`
-    std::optional<show::Input> firstInput;        // the cue to start from
+    std::optional<show::Input> firstInput;        // the cue to start with: that of --from, or the show's own
     render::PictureSources sources;               // in the order of Show::sources
     std::shared_ptr<render::PictureFeed> camera;  // the pictures of camera sources; null if the site has no camera
     std::vector<Watch::Comparisons> comparisons;  // [output]
@@ -67,6 +68,10 @@ Result<render::PatternSource> readPatternSource(const std::filesystem::path& fil
 // the fault in its files.
 Result<render::PictureSource> readPictureSource(const show::Source& source, render::VideoStream::Pace pace,
                                                 const std::shared_ptr<render::PictureFeed>& camera);
+
+// The schedule of a rehearsal of this length: every cue is entered. There is none for a show that
+// plays by itself.
+GoSchedule goScheduleOf(const Programme& programme, Time length);
 
 // Reads everything that a run with these options needs. Error: what is wrong, with its place and
 // advice; all faulty sources at once.

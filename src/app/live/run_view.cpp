@@ -10,13 +10,13 @@ RunStatus RunView::at(Time moment, Time nextGo) {
     const Time time = showClock_.showTime(moment), runTime = showClock_.runTime(moment);
     replica_.stateAt(time, state_);
     const auto& cues = show_.cues;
-    const auto next = static_cast<std::size_t>(state_.cue + 1);
     RunStatus status;
     status.showTime = time;
     status.cue = state_.cue;
     status.cues = static_cast<int>(cues.size());
-    if (next > 0) status.cueName = cues[next - 1].name;
-    if (next < cues.size()) status.nextName = cues[next].name;
+    if (state_.cue >= 0) status.cueName = cues[static_cast<std::size_t>(state_.cue)].name;
+    if (const auto next = replica_.playback().cues().after(state_.cue))
+        status.nextName = cues[static_cast<std::size_t>(*next)].name;
     status.fadeLeft = replica_.playback().fadeLeftAt(time);
     status.untilNext = replica_.playback().untilFollowAt(time);
     if (nextGo != Time::max())

@@ -290,9 +290,7 @@ private:
     }
     static GoSchedule scheduleOf(const RunOptions& options, const Programme& programme) {
         if (!options.handsOff || !options.length) return {0, false, {}};
-        const bool cueIsOn = programme.firstInput.has_value();
-        const std::size_t entered = cueIsOn ? static_cast<std::size_t>(programme.firstInput->cue) + 1 : 0;
-        return {programme.show.cues.size() - entered, cueIsOn, *options.length};
+        return goScheduleOf(programme, *options.length);
     }
     std::unique_ptr<FrameRecorder> recorderOf(Recording* recording) {
         if (recording == nullptr) return nullptr;

@@ -244,19 +244,22 @@ void ConfigFields::vector3(std::string_view key, glm::dvec3& target, double low,
     read(key, target, [&](const ConfigNode& node) { return node.vector3(low, high, unit); });
 }
 
-void ConfigFields::header(std::string_view kind, std::int64_t newestVersion) {
+std::int64_t ConfigFields::header(std::string_view kind, std::int64_t newestVersion) {
+    std::int64_t version = newestVersion;
     visit("fantascope", [&](const ConfigNode& node) -> Result<void> {
         const std::string found = TRY(node.text());
         if (found != kind) return node.error(fmt::format("this is a {} file, a {} file is needed here", found, kind));
         return {};
     });
     visit("version", [&](const ConfigNode& node) -> Result<void> {
-        const std::int64_t version = TRY(node.integer(1, std::numeric_limits<std::int64_t>::max()));
-        if (version > newestVersion)
-            return node.error(fmt::format("version {} was written by a newer program, this one reads up to {}; update it",
-                                          version, newestVersion));
+        const std::int64_t found = TRY(node.integer(1, std::numeric_limits<std::int64_t>::max()));
+        if (found > newestVersion)
+            return node.error(fmt::format("version {} was written by a newer program, this one reads up to {}; update it", found,
+                                          newestVersion));
+        version = found;
         return {};
     });
+    return version;
 }
 
 Result<void> ConfigFields::finish() {

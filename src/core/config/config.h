@@ -161,8 +161,8 @@ public:
         });
     }
     // The first two keys of every file: `fantascope: KIND` and `version: N`. Error: another kind of
-    // file, or a version of a newer program.
-    void header(std::string_view kind, std::int64_t newestVersion);
+    // file, or a version of a newer program. Returns the version; the newest if it is wrong.
+    std::int64_t header(std::string_view kind, std::int64_t newestVersion);
     // What else is wrong: `checked` is told at the place of `at`.
     void check(const ConfigNode& at, const Result<void>& checked);
     // Whether nothing is wrong so far. Unknown keys show in finish() alone.

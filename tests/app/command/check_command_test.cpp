@@ -59,7 +59,7 @@ TEST(Check, says_of_each_good_file_what_it_holds) {
         "wanted.yaml", "fantascope: wanted\nversion: 1\noutputs: {left: {camera: [[0, 0], [9, 0], [9, 9], [0, 9]]}}\n");
     const Checked checked = check(folder, {{folder.path() / "show.yaml", site, settings, guide, wanted}, std::nullopt});
     EXPECT_EQ(checked.lines,
-              "ok show.yaml: show, 2 cues, 1 look, 1 source\n"
+              "ok show.yaml: show, 2 cues, 1 look, 1 source, starts dark and waits for GO\n"
               "ok site.yaml: site, 1 output, 1 fixture, 0 relays\n"
               "ok fine.pattern-settings.yaml: pattern settings, at most 40 instances\n"
               "ok guide.png: guide, 64 x 36 px\n"
@@ -83,7 +83,7 @@ TEST(Check, a_show_is_held_against_the_site) {
     const Checked fits = check(folder, {{show}, site});
     EXPECT_EQ(fits.lines,
               "ok site.yaml: site, 1 output, 1 fixture, 0 relays\n"
-              "ok show.yaml: show, 2 cues, 1 look, 1 source, plays on site.yaml\n");
+              "ok show.yaml: show, 2 cues, 1 look, 1 source, starts dark and waits for GO, plays on site.yaml\n");
     const Checked misses = check(folder, {{other}, site});
     EXPECT_THAT(misses.lines,
                 HasSubstr("other.yaml:5:67: looks.glow.fixtures.lmap: no fixture is called 'lmap' (known: lamp) in site.yaml"));
@@ -105,7 +105,7 @@ TEST(Check, a_show_is_checked_with_the_patterns_and_guides_that_it_names) {
     const auto show =
         folder.file("show.yaml", replaced(std::string(kShow), "{solid: [0.1, 0.1, 0.1]}", "{pattern: leaves.pattern.yaml}"));
     EXPECT_EQ(check(folder, {{show}, std::nullopt}).lines,
-              "ok show.yaml: show, 2 cues, 1 look, 1 source\n"
+              "ok show.yaml: show, 2 cues, 1 look, 1 source, starts dark and waits for GO\n"
               "ok leaves.pattern.yaml: pattern, 2 instances, 2 triangles\n"
               "ok leaves.png: guide, 64 x 36 px\n");
     std::filesystem::remove(guide);
@@ -125,7 +125,7 @@ TEST(Check, a_show_is_checked_with_its_images_and_videos) {
         folder.file("show.yaml", replaced(std::string(kShow), "dim: {solid: [0.1, 0.1, 0.1]}",
                                           "dim: {video: rain.mp4}, poster: {image: poster.png}, wall: {camera: {}}"));
     EXPECT_EQ(check(folder, {{show}, std::nullopt}).lines,
-              "ok show.yaml: show, 2 cues, 1 look, 3 sources\n"
+              "ok show.yaml: show, 2 cues, 1 look, 3 sources, starts dark and waits for GO\n"
               "ok rain.mp4: video, 64 x 64 px, 60 frames, 2.00 s, h264\n"
               "ok poster.png: guide, 64 x 36 px\n");
     const std::string bytes = readFile(video).value();

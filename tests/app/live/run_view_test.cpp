@@ -29,6 +29,18 @@ TEST_F(View, counts_cues_in_show_time_and_what_is_left_in_run_time) {
     EXPECT_EQ(status.untilNext, 18s) << "the schedule's press";
 }
 
+TEST_F(View, tells_the_first_cue_after_the_last_of_a_show_that_loops) {
+    const int last = static_cast<int>(run_.cues.cues.size()) - 1;
+    show::CueList loop = run_.cues;
+    loop.loops = true;
+    for (const bool loops : {false, true}) {
+        show::InputLog inputs(loops ? loop : run_.cues);
+        RunView view(run_.show, inputs, run_.events, clock_, 60s);
+        inputs.submit({3h, show::Input::Kind::Jump, last});
+        EXPECT_EQ(view.at(11s, Time::max()).nextName, loops ? "Dusk" : "");
+    }
+}
+
 // Example failure: the report has read a sentence, and the terminal never shows it.
 TEST_F(View, says_what_happened_once_whoever_else_listens) {
     EXPECT_FALSE(view_.hasNews());
