@@ -30,7 +30,7 @@ struct Input {
     };
     // Where the input came from.
     enum class Source {
-        Start,       // the command line's --from
+        Start,       // the command line's --from, or the show's own start
         Controller,  // a button of the hand controller, number `which`
         Contact,     // Site::contacts[which]
         Terminal,    // a key at the terminal

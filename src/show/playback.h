@@ -74,9 +74,9 @@ public:
     std::optional<Time> untilFollowAt(Time time) const;
 
     // What is seen at `time`. Any time will do, but a list that loops must have been foreseen until
-    // then, and of a time that is forgotten it is told what was seen first since. The cost is a few
-    // binary searches and the evaluation of each course. The call allocates only when it fills
-    // `out` for the first time.
+    // then. For a time that is forgotten it gives what is oldest. The cost is a few binary searches
+    // and the evaluation of each course. The call allocates only when it fills `out` for the first
+    // time.
     void stateAt(Time time, ShowState& out) const;
 
 private:

@@ -117,9 +117,7 @@ void readSince(std::int64_t since, std::int64_t version, ConfigFields& fields, s
     fields.optional().read(key, target, [&](const ConfigNode& node) -> Result<Value> {
         if (version < since)
             return node.error(
-                fmt::format("'{}' needs 'version: {}' of this file; docs/show-format.md says what else changes "
-                            "with it",
-                            key, since));
+                fmt::format("'{}' needs 'version: {}' in this file; docs/show-format.md says what that changes", key, since));
         return parse(node);
     });
 }
@@ -161,7 +159,7 @@ Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, cons
     return look;
 }
 
-// What is said of the cues beside the list itself.
+// What the rest of the file says of its cues.
 struct CueRules {
     std::int64_t version = kNewestVersion;
     bool loops = false;
@@ -371,17 +369,17 @@ Result<CueList> Show::bind(const Site& site) const {
     return list;
 }
 
-bool Show::playsByItself() const {
-    const auto follows = [](const Cue& cue) { return cue.follow.has_value(); };
-    return start && std::all_of(cues.begin(), cues.end() - (loops ? 0 : 1), follows);
+bool Show::needsNoGoFrom(std::size_t cue) const {
+    const std::size_t first = loops ? 0 : cue, count = cues.size() - first - (loops ? 0 : 1);
+    return std::ranges::all_of(std::span(cues).subspan(first, count), [](const Cue& each) { return each.follow.has_value(); });
 }
 
 std::string Show::beginning() const {
     if (!start) return "starts dark and waits for GO";
     return fmt::format("starts with '{}' and {}", cues[*start].name,
-                       !playsByItself() ? "waits for GO later"
-                       : loops          ? "plays by itself for ever"
-                                        : "plays by itself to its end");
+                       !needsNoGoFrom(*start) ? "waits for GO later"
+                       : loops                ? "plays by itself for ever"
+                                              : "plays by itself to its end");
 }
 
 Result<std::size_t> Show::cueNamed(std::string_view name) const { return find(name, namesOf(cues), "cue").in(file.string()); }

@@ -76,8 +76,9 @@ struct Show {
     // Looks every name up in `site`. Error: place in the show file, and what the site has instead.
     Result<CueList> bind(const Site& site) const;
 
-    // Whether the show starts by itself and waits for nobody: each cue follows the one before.
-    bool playsByItself() const;
+    // Whether the show waits for no input once a cue is entered: each cue from there on follows the
+    // one before.
+    bool needsNoGoFrom(std::size_t cue) const;
     // What it does if nobody presses anything: "starts dark and waits for GO".
     std::string beginning() const;
 

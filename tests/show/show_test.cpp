@@ -503,16 +503,26 @@ TEST(TrackedShow, may_start_and_loop_by_itself) {
     ASSERT_TRUE(waits.show && plays.show && dark.show)
         << (waits.show ? plays.show ? dark.show.error() : plays.show.error() : waits.show.error()).message();
     EXPECT_EQ(waits.show->start, 1u);
-    EXPECT_FALSE(waits.show->playsByItself());
+    EXPECT_FALSE(waits.show->needsNoGoFrom(1));
+    EXPECT_TRUE(waits.show->needsNoGoFrom(4)) << "nothing comes after the last cue";
+    EXPECT_THAT(waits.show->beginning(), HasSubstr("waits for GO later"));
     EXPECT_EQ(plays.show->start, 0u);
-    EXPECT_TRUE(plays.show->playsByItself());
+    EXPECT_TRUE(plays.show->needsNoGoFrom(0));
     EXPECT_TRUE(plays.show->bind(testSite())->loops);
+    // Example failure: a cue before the start, which is never reached, counts.
+    const Loaded late(with("start: Anew\n", false));
+    ASSERT_TRUE(late.show) << late.show.error().message();
+    EXPECT_FALSE(late.show->needsNoGoFrom(3));
+    Show last = *late.show;
+    last.cues[3].follow = 5s;
+    EXPECT_TRUE(last.needsNoGoFrom(3));
+    EXPECT_EQ(last.beginning(), "starts with 'Anew' and plays by itself to its end");
     EXPECT_FALSE(dark.show->start);
     EXPECT_FALSE(dark.show->loops);
 }
 
 TEST(TrackedShow, is_refused_with_advice) {
-    EXPECT_THAT(refusalAfter("cues:\n", "start: Night\ncues:\n"), HasSubstr("start: 'start' needs 'version: 2' of this file"));
+    EXPECT_THAT(refusalAfter("cues:\n", "start: Night\ncues:\n"), HasSubstr("start: 'start' needs 'version: 2' in this file"));
     EXPECT_THAT(refusalAfter("fade: 0}", "fade: 0, block: true}"), HasSubstr("'block' needs 'version: 2'"));
     EXPECT_THAT(trackedRefusal("cues:\n", "start: Dsk\ncues:\n"), HasSubstr("did you mean 'Dusk'?"));
     EXPECT_THAT(trackedRefusal("cues:\n", "at_end: lop\ncues:\n"), HasSubstr("did you mean 'loop'?"));

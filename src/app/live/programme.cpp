@@ -344,9 +344,11 @@ Result<render::PictureSource> readPictureSource(const show::Source& source, rend
 }
 
 GoSchedule goScheduleOf(const Programme& programme, Time length) {
-    const bool cueIsOn = programme.firstInput.has_value();
-    const std::size_t entered = cueIsOn ? static_cast<std::size_t>(programme.firstInput->cue) + 1 : 0;
-    return {programme.show.playsByItself() ? 0 : programme.show.cues.size() - entered, cueIsOn, length};
+    const show::Show& show = programme.show;
+    if (!programme.firstInput) return {show.cues.size(), false, length};
+    const auto first = static_cast<std::size_t>(programme.firstInput->cue);
+    const bool playsByItself = show.start && show.needsNoGoFrom(first);
+    return {playsByItself ? 0 : show.cues.size() - first - 1, true, length};
 }
 
 Result<Programme> readProgramme(const RunOptions& options) {

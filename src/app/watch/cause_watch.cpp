@@ -83,7 +83,7 @@ void CauseWatch::wait(Time last, Time period, Time now) {
 void CauseWatch::noteSlowCamera(Time period, Time at) {
     suspect("",
             {"camera slow",
-             fmt::format("it sends one picture in {:.1f} s, and nothing can be told of the wall: set a shorter exposure, or "
+             fmt::format("it sends one picture in {:.1f} s, too few to watch the wall: set a shorter exposure, or "
                          "smaller pictures",
                          seconds(period)),
              kLong},

@@ -34,7 +34,7 @@ public:
     bool isUsable(const RgbaImage& picture, bool isLit, Time at);
     // The camera has sent nothing since `last`. `period`: of its pictures, as far as it is known.
     void wait(Time last, Time period, Time now);
-    // The camera's pictures come so seldom that nothing can be told of the wall.
+    // The camera sends too few pictures to watch the wall.
     void noteSlowCamera(Time period, Time at);
     // Nothing more can be said of the wall.
     void endWall(Time at);
