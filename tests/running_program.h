@@ -18,8 +18,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -80,6 +82,16 @@ public:
     std::ptrdiff_t countOf(const char* what) const {
         return std::distance(std::filesystem::directory_iterator(fmt::format("/proc/{}/{}", process_, what)),
                              std::filesystem::directory_iterator());
+    }
+    // What each of its open files is, by number; what is closed meanwhile is left out.
+    std::map<int, std::string> openFiles() const {
+        std::map<int, std::string> files;
+        for (const auto& entry : std::filesystem::directory_iterator(fmt::format("/proc/{}/fd", process_))) {
+            std::error_code closed;
+            const std::filesystem::path file = std::filesystem::read_symlink(entry, closed);
+            if (!closed) files.emplace(std::stoi(entry.path().filename()), file.string());
+        }
+        return files;
     }
     // Memory that is its own, in KiB.
     long kibibytes() const {

@@ -17,6 +17,7 @@
 #include "test_run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -203,28 +204,34 @@ TEST_F(Plugging, at_the_real_drivers_leaves_nothing_over_and_the_show_goes_on) {
         std::ptrdiff_t files, threads;
         long kibibytes;
     };
-    // The least of several looks: what is open for a moment only is not left over.
+    const auto look = [&] { return Holdings{program.countOf("fd"), program.countOf("task"), program.kibibytes()}; };
+    // The least and the most of several looks. A file may be open for a moment only; and a device
+    // that answers late on a busy machine may have no file for a moment.
     const auto holdings = [&] {
         SteadyClock clock;
-        Holdings least{program.countOf("fd"), program.countOf("task"), program.kibibytes()};
-        for (int look = 1; look < 20; ++look) {
+        Holdings least = look(), most = least;
+        for (int looks = 1; looks < 20; ++looks) {
             clock.sleepUntil(clock.now() + std::chrono::milliseconds(20));
-            least = {std::min(least.files, program.countOf("fd")), std::min(least.threads, program.countOf("task")),
-                     std::min(least.kibibytes, program.kibibytes())};
+            const Holdings now = look();
+            least = {std::min(least.files, now.files), std::min(least.threads, now.threads),
+                     std::min(least.kibibytes, now.kibibytes)};
+            most = {std::max(most.files, now.files), std::max(most.threads, now.threads),
+                    std::max(most.kibibytes, now.kibibytes)};
         }
-        return least;
+        return std::pair(least, most);
     };
-    const Holdings before = holdings();
+    const auto [leastBefore, before] = holdings();
+    const auto filesBefore = program.openFiles();
     plugAndUnplug(program, kTimes);
     if (HasFatalFailure()) return;
-    const Holdings after = holdings();
-    fmt::print("{} files, {} threads, {} KiB before; {}, {}, {} KiB after\n", before.files, before.threads, before.kibibytes,
+    const Holdings after = holdings().first;
+    fmt::print("{} files, {} threads, {} KiB before; {}, {}, {} KiB after\n", before.files, before.threads, leastBefore.kibibytes,
                after.files, after.threads, after.kibibytes);
-    EXPECT_EQ(after.files, before.files);
-    EXPECT_EQ(after.threads, before.threads);
+    EXPECT_LE(after.files, before.files) << fmt::format("before: {}\nafter: {}", filesBefore, program.openFiles());
+    EXPECT_LE(after.threads, before.threads);
 #ifndef FANTASCOPE_SANITIZED
     constexpr long kAtEveryLoss = 1;  // KiB, of the report's and the allocator's; the leak sanitizer finds real leaks
-    EXPECT_LT(after.kibibytes, before.kibibytes + kAtEveryLoss * kTimes * std::ssize(plugs_));
+    EXPECT_LT(after.kibibytes, leastBefore.kibibytes + kAtEveryLoss * kTimes * std::ssize(plugs_));
 #endif
 
     // Everything still works.
