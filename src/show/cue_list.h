@@ -1,10 +1,15 @@
 #pragma once
 
+#include "show/course/course.h"
+#include "show/course/wind.h"
 #include "show/show_state.h"
-#include "show/wind.h"
+#include "show/source_id.h"
 
 #include "core/clock.h"
 
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,14 +17,70 @@
 
 namespace fantascope::show {
 
+// How what is seen moves to another look. What becomes brighter comes in, what becomes darker goes
+// out.
+struct Fade {
+    Time in{}, out{};
+    Curve curve = Curve::Linear;
+
+    Fade() = default;
+    template <class Rep, class Period>
+    Fade(std::chrono::duration<Rep, Period> both) : in(both), out(both) {}
+    Fade(Time fadeIn, Time fadeOut, Curve along) : in(fadeIn), out(fadeOut), curve(along) {}
+    Time longer() const { return std::max(in, out); }
+    friend bool operator==(const Fade&, const Fade&) = default;
+};
+
+// Things that begin to move to a look at the same moment. A thing without a fade goes on as before.
+struct Movement {
+    Time start{};
+    std::vector<std::optional<Fade>> outputs{}, levels{};  // of each of a Look's
+    std::vector<std::uint8_t> relays{};                    // 1: switches
+    struct Layer {
+        std::size_t output = 0;
+        SourceId source;
+        std::optional<Fade> fade;
+    };
+    std::vector<Layer> layers{};  // that do not move as their output does
+};
+
 // A show's cues with every name looked up in one site: all that playback needs. See Show::bind.
 struct CueList {
+    // Some things that move to a cue's look in their own time. No thing is in two parts of a cue.
+    struct Part {
+        Time wait{};  // from when the cue is entered until they begin to change
+        Fade fade;
+        std::vector<std::size_t> outputs = {}, levels = {}, relays = {};  // indices into Look's
+        struct Layer {
+            std::size_t output = 0;
+            SourceId source;
+        };
+        std::vector<Layer> layers = {};  // that add their light, of outputs whose others move apart from them
+    };
     struct Cue {
         Look look;
-        Time fade{};                       // from what is seen when the cue is entered to the cue's look
+        Fade fade;                         // from what is seen when the cue begins to change, to its look
         std::optional<Time> follow;        // from when the cue is entered until the next one is; none: it waits for an input
         std::vector<WindWish> winds = {};  // one for each output; a missing one is the usual wind
         std::string name = {};             // a revision of the list finds the cue by it
+        Time wait = {};                    // from when the cue is entered until it begins to change
+        std::vector<Part> parts = {};      // what is in none of them has `wait` and `fade`
+
+        // From when the cue is entered until it begins to change what is seen.
+        Time firstWait() const {
+            Time first = wait;
+            for (const Part& part : parts) first = std::min(first, part.wait);
+            return first;
+        }
+        // From when the cue is entered until its look is whole.
+        Time length() const {
+            Time end = wait + fade.longer();
+            for (const Part& part : parts) end = std::max(end, part.wait + part.fade.longer());
+            return end;
+        }
+        // How a cue that was entered at `entered` moves what is seen from `at` on, by start. What
+        // has begun before `at` takes the rest of its fade, but no less than `least`.
+        std::vector<Movement> movements(Time entered, Time at, Time least) const;
     };
     std::vector<Cue> cues;
     bool loops = false;        // the first cue comes after the last one

@@ -23,7 +23,7 @@ struct Teller {
         return decided.input.outcome == Outcome::Taken ? "" : std::string(nameOf(decided.input.outcome));
     }
     std::string operator()(const event::CueEntered& entered) const {
-        return fmt::format("cue {} of {}: {}", entered.cue + 1, entered.cues, entered.name);
+        return fmt::format("cue {}: {}", placeOf(entered.number, entered.cue, entered.cues), entered.name);
     }
     std::string operator()(const event::BlackoutChanged& change) const {
         return change.dark ? "blackout: pictures and lamps are dark" : "light: the blackout is over";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "show/cue.h"
 #include "show/input_log.h"
 
 #include "core/append_log.h"
@@ -24,6 +25,7 @@ struct CueEntered {
     int cue = 0;  // index into Show::cues, of `cues`
     int cues = 0;
     std::string name;
+    CueNumber number = 0;
 };
 struct BlackoutChanged {
     bool dark = false;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "show/lamp_trim.h"
-#include "show/picture_shift.h"
+#include "show/course/lamp_trim.h"
+#include "show/course/picture_shift.h"
 
 #include "core/clock.h"
 #include "core/result.h"

@@ -1,6 +1,6 @@
 #include "show/pattern_exchange.h"
 
-#include "show/course.h"
+#include "show/course/course.h"
 
 #include <algorithm>
 #include <iterator>

@@ -22,29 +22,6 @@ const Event* lastBy(Time time, const std::vector<Event>& events) {
     return next == events.begin() ? nullptr : &*std::prev(next);
 }
 
-using Layers = std::span<const LayerState>;
-
-const LayerState* layerOf(SourceId source, Layers layers) {
-    const auto found =
-        std::find_if(layers.begin(), layers.end(), [&](const LayerState& layer) { return layer.source == source; });
-    return found == layers.end() ? nullptr : &*found;
-}
-
-// The layers that add their light one by one.
-Layers addedLayers(const OutputState& output) {
-    return Layers(output.layers).first(output.pictures.empty() ? output.layers.size() : output.pictures[0].first);
-}
-Layers layersOf(const ComposedPicture& picture, const OutputState& output) {
-    return Layers(output.layers).subspan(picture.first, picture.last - picture.first);
-}
-
-// Whether two pictures have the same composition, whenever their layers began.
-bool sameComposition(Layers a, Layers b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const LayerState& one, const LayerState& other) {
-        return one.source == other.source && one.opacity == other.opacity && one.blend == other.blend;
-    });
-}
-
 bool isOfOneSite(const Look& a, const Look& b) {
     return a.outputs.size() == b.outputs.size() && a.levels.size() == b.levels.size() && a.relays.size() == b.relays.size();
 }
@@ -86,10 +63,7 @@ void dim(Look& look, float light) {
 
 Playback::Playback(std::shared_ptr<const CueList> list) : gusts_(list->seed) {
     examine(*list);
-    Entry& dark = entries_.emplace_back(Entry{.list = list, .left = {}});
-    for (const OutputState& output : list->dark.outputs) dark.outputs.push_back(courseOf(output, output, Time{}, Time{}));
-    for (const float level : list->dark.levels) dark.levels.push_back(Course::at(level));
-    dark.relays = list->dark.relays;
+    entries_.push_back({.list = list, .left = {}, .seen = LookCourses(list->dark)});
 }
 
 // Checks the looks of another list, and notes how much room they need.
@@ -192,13 +166,43 @@ Outcome Playback::trim(const LampTrim& trim, const CueList& list, Time at) {
     return Outcome::Taken;
 }
 
-void Playback::enter(int cue, Time at) { put(entered(entryAt(at).list, cue, at)); }
-
-// Adds an entry and the cues that follow it. Later entries are dropped.
-void Playback::put(Entry entry) {
-    while (entries_.back().at > entry.at) entries_.pop_back();
-    entries_.push_back(std::move(entry));
+void Playback::enter(int cue, Time at) {
+    begin(entryAt(at).list, cue, at);
     followOn();
+}
+
+// Adds the entries of a cue that is entered at `at`. Later entries are dropped.
+void Playback::begin(std::shared_ptr<const CueList> list, int cue, Time at) {
+    const CueList::Cue& wanted = list->cues[static_cast<std::size_t>(cue)];
+    const std::optional<Time> left = followerAt(*list, cue, at);
+    drop(at);
+    Entry entry{.at = at,
+                .list = std::move(list),
+                .cue = cue,
+                .entered = at,
+                .whole = at + wanted.length(),
+                .left = left,
+                .seen = entries_.back().seen};
+    move(std::move(entry), wanted, Time{});
+}
+
+// Adds an entry that goes on with what is seen, and one for each further moment at which the cue
+// begins to move something. The cue was entered at `entry.entered`.
+void Playback::move(Entry entry, const CueList::Cue& wanted, Time least) {
+    entries_.push_back(std::move(entry));
+    for (const Movement& movement : wanted.movements(entries_.back().entered, entries_.back().at, least)) {
+        if (movement.start > entries_.back().at) {
+            Entry later = entries_.back();
+            later.at = movement.start;
+            entries_.push_back(std::move(later));
+        }
+        entries_.back().seen = entries_.back().seen.moved(movement, wanted.look, wanted.winds);
+    }
+}
+
+// Drops what was to come after `at`.
+void Playback::drop(Time at) {
+    while (entries_.back().at > at) entries_.pop_back();
 }
 
 // Adds the cues that follow the last entry, at most one pass of the list.
@@ -207,12 +211,12 @@ void Playback::followOn() {
     for (std::size_t added = 0; added < most; ++added) {
         const Entry& last = entries_.back();
         if (!last.left) return;
-        entries_.push_back(entered(last.list, *last.list->after(last.cue), *last.left));
+        begin(last.list, *last.list->after(last.cue), *last.left);
     }
 }
 
 void Playback::foresee(Time time) {
-    while (entries_.back().at <= time && entries_.back().left) {
+    while (entries_.back().entered <= time && entries_.back().left) {
         followOn();
         forget(time - kKept);
     }
@@ -224,82 +228,30 @@ void Playback::forget(Time time) {
     if (next - entries_.begin() > 1) entries_.erase(entries_.begin(), next - 1);
 }
 
-// The entry of a cue, with the courses from what is seen at `at` to the cue's look.
-Playback::Entry Playback::entered(const std::shared_ptr<const CueList>& list, int cue, Time at) const {
-    const CueList::Cue& wanted = list->cues[static_cast<std::size_t>(cue)];
-    Entry entry{.at = at, .list = list, .cue = cue, .entered = at, .whole = at + wanted.fade, .left = followerAt(*list, cue, at)};
-    setOut(entry, wanted.look, wanted.winds, wanted.fade);
-    return entry;
-}
-
-// Gives an entry the courses to a look. A missing wind is the usual one.
-void Playback::setOut(Entry& entry, const Look& look, const std::vector<WindWish>& winds, Time fade) const {
-    Look from;
-    lookAt(entry.at, from);
-    const std::vector<OutputCourse>& before = entryAt(entry.at).outputs;
-    for (std::size_t i = 0; i < look.outputs.size(); ++i) {
-        entry.outputs.push_back(courseOf(from.outputs[i], look.outputs[i], entry.at, fade));
-        entry.outputs.back().wind = WindCourse(before[i].wind, i < winds.size() ? winds[i] : WindWish(), entry.at, fade);
-    }
-    for (std::size_t i = 0; i < look.levels.size(); ++i) entry.levels.push_back({from.levels[i], look.levels[i], entry.at, fade});
-    entry.relays = look.relays;
-}
-
 Outcome Playback::revise(std::shared_ptr<const CueList> list, Time at) {
     if (list == nullptr) return Outcome::NoSuchRevision;
     const Entry& now = entryAt(at);
     if (!isOfOneSite(list->dark, now.list->dark)) return Outcome::OtherSite;
     examine(*list);
     const auto [cue, isThere] = foundAgain(now.cue, *now.list, *list);
-    Entry entry{.at = at, .list = list, .cue = cue, .entered = now.entered, .whole = now.whole, .left = {}};
-    if (!isThere || now.isGone) {
-        entry.isGone = true;
-        entry.outputs = now.outputs;
-        entry.levels = now.levels;
-        entry.relays = now.relays;
+    Entry entry{.at = at, .list = list, .cue = cue, .entered = now.entered, .whole = now.whole, .left = {}, .seen = now.seen};
+    entry.isGone = !isThere || now.isGone;
+    drop(at);
+    if (entry.isGone) {
+        entries_.push_back(std::move(entry));
     } else if (cue < 0) {
-        setOut(entry, list->dark, {}, list->blackoutFade);
+        const CueList::Cue dark{.look = list->dark, .fade = list->blackoutFade, .follow = {}};
+        entry.entered = at;
+        move(std::move(entry), dark, Time{});
     } else {
         const CueList::Cue& wanted = list->cues[static_cast<std::size_t>(cue)];
-        const Time fade = std::max(now.entered + wanted.fade - at, list->blackoutFade);
-        setOut(entry, wanted.look, wanted.winds, fade);
-        entry.whole = at + fade;
-        entry.left = followerAt(*list, cue, now.entered);
+        entry.whole = std::max(entry.entered + wanted.length(), at + list->blackoutFade);
+        entry.left = followerAt(*list, cue, entry.entered);
         if (entry.left) entry.left = std::max(at, *entry.left);
+        move(std::move(entry), wanted, list->blackoutFade);
     }
-    put(std::move(entry));
+    followOn();
     return Outcome::Taken;
-}
-
-// A source that both pictures have does not begin again.
-Playback::OutputCourse Playback::courseOf(const OutputState& from, const OutputState& to, Time at, Time fade) {
-    OutputCourse course;
-    const auto begunOf = [&](SourceId source) {
-        const LayerState* const before = layerOf(source, from.layers);
-        return before != nullptr ? before->begun : at;
-    };
-    const Layers before = addedLayers(from), after = addedLayers(to);
-    const auto add = [&](SourceId source) {
-        const LayerState *first = layerOf(source, before), *second = layerOf(source, after);
-        course.layers.push_back({source, {first ? first->opacity : 0, second ? second->opacity : 0, at, fade}, begunOf(source)});
-    };
-    for (const LayerState& layer : before) add(layer.source);
-    for (const LayerState& layer : after)
-        if (!layerOf(layer.source, before)) add(layer.source);
-
-    // The course of a composition; a new one if there is none yet.
-    const auto composed = [&](const ComposedPicture& picture, const OutputState& of) -> PictureCourse& {
-        const Layers layers = layersOf(picture, of);
-        for (PictureCourse& there : course.pictures)
-            if (sameComposition(there.layers, layers)) return there;
-        PictureCourse& added = course.pictures.emplace_back();
-        for (const LayerState& layer : layers)
-            added.layers.push_back({layer.source, layer.opacity, layer.blend, begunOf(layer.source)});
-        return added;
-    };
-    for (const ComposedPicture& picture : from.pictures) composed(picture, from).leaving = {picture.share, 0, at, fade};
-    for (const ComposedPicture& picture : to.pictures) composed(picture, to).coming = {0, picture.share, at, fade};
-    return course;
 }
 
 Time Playback::fadeLeftAt(Time time) const {
@@ -308,22 +260,25 @@ Time Playback::fadeLeftAt(Time time) const {
     return std::max(Time{}, entry.whole - time);
 }
 
+Time Playback::waitLeftAt(Time time) const {
+    const Entry& entry = entryAt(time);
+    if (entry.cue < 0 || entry.isGone) return Time{};
+    return std::max(Time{}, entry.entered + entry.list->cues[static_cast<std::size_t>(entry.cue)].firstWait() - time);
+}
+
 std::optional<Time> Playback::untilFollowAt(Time time) const {
-    const Entry* const next = &entryAt(time) + 1;
-    if (next == entries_.data() + entries_.size()) return std::nullopt;
-    return next->at - time;
+    const Entry& now = entryAt(time);
+    const auto next = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.entered > now.entered; });
+    return next != entries_.end() ? std::optional(next->at - time) : std::nullopt;
 }
 
 void Playback::stateAt(Time time, ShowState& out) const {
     const Entry& entry = entryAt(time);
     out.time = time;
     out.cue = entry.cue;
-    lookAt(time, out);
-    const double lull = gusts_.lullAt(time);
-    out.winds.resize(entry.outputs.size());
-    std::transform(entry.outputs.begin(), entry.outputs.end(), out.winds.begin(),
-                   [&](const OutputCourse& output) { return output.wind.at(time, lull); });
-    out.shifts.resize(entry.outputs.size());
+    entry.seen.lookAt(time, {sources_.size() + composed_.layers, composed_.pictures}, out);
+    entry.seen.windsAt(time, gusts_.lullAt(time), out.winds);
+    out.shifts.resize(out.outputs.size());
     for (std::size_t output = 0; output < out.shifts.size(); ++output) out.shifts[output] = shifts_.at(output, time);
     out.lamps = trims_.at(time);
     out.corrects = correctsAt(time);
@@ -338,32 +293,6 @@ void Playback::stateAt(Time time, ShowState& out) const {
 const Playback::Entry& Playback::entryAt(Time time) const {
     const Entry* const entry = lastBy(time, entries_);
     return entry != nullptr ? *entry : entries_.front();
-}
-
-// What would be seen without a blackout.
-void Playback::lookAt(Time time, Look& out) const {
-    const Entry& entry = entryAt(time);
-    out.outputs.resize(entry.outputs.size());
-    for (std::size_t i = 0; i < entry.outputs.size(); ++i) {
-        OutputState& output = out.outputs[i];
-        output.layers.reserve(sources_.size() + composed_.layers);
-        output.pictures.reserve(composed_.pictures);
-        output.layers.clear();
-        output.pictures.clear();
-        for (const LayerCourse& layer : entry.outputs[i].layers)
-            if (const float opacity = layer.opacity.valueAt(time); opacity > 0)
-                output.layers.push_back({layer.source, opacity, Blend::Add, layer.begun});
-        for (const PictureCourse& picture : entry.outputs[i].pictures) {
-            const float share = picture.leaving.valueAt(time) + picture.coming.valueAt(time);
-            if (share <= 0) continue;
-            const auto first = static_cast<std::uint32_t>(output.layers.size());
-            output.layers.insert(output.layers.end(), picture.layers.begin(), picture.layers.end());
-            output.pictures.push_back({first, static_cast<std::uint32_t>(output.layers.size()), share});
-        }
-    }
-    out.levels.resize(entry.levels.size());
-    std::ranges::transform(entry.levels, out.levels.begin(), [&](const Course& level) { return level.valueAt(time); });
-    out.relays = entry.relays;
 }
 
 bool Playback::correctsAt(Time time) const {

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "show/course.h"
+#include "show/course/lamp_trim.h"
+#include "show/course/picture_shift.h"
+#include "show/course/wind.h"
 #include "show/cue_list.h"
 #include "show/input.h"
-#include "show/lamp_trim.h"
+#include "show/look_courses.h"
 #include "show/pattern_exchange.h"
-#include "show/picture_shift.h"
 #include "show/show_state.h"
-#include "show/wind.h"
 
 #include "core/clock.h"
 
@@ -25,9 +25,10 @@ namespace fantascope::show {
 // the inputs so far. Asking changes nothing, so the same inputs give the same state in whatever
 // order the moments are asked for.
 //
-// - Each layer, picture, channel and wind has a course of its own (Course, WindCourse). When a cue is entered, each of them
-//   begins a new course, which lasts the cue's `fade`. It leads from what is seen at that moment, perhaps the middle of
-//   another fade, to the cue's look. Layers that only add their light are matched by source. Relays switch at once.
+// - Each layer, picture, channel and wind has a course of its own (LookCourses). When a cue is entered, each of them begins
+//   a new course after the `wait` of its part of the cue, which lasts the part's `fade`. Until then it goes on as before.
+//   The course leads from what is seen at that moment, perhaps the middle of another fade, to the cue's look. Layers that
+//   only add their light are matched by source. Relays switch after their part's wait.
 // - The wind of each output moves to the wind of the cue without a jump, even while the output is dark.
 // - A cue with `follow` enters the next cue by itself, that long after it was entered, unless an input enters another cue
 //   first. In a list that loops, the first cue comes after the last.
@@ -68,6 +69,9 @@ public:
     // The rest of the current cue's fade at `time`; 0 once the fade is over, and before the first
     // cue.
     Time fadeLeftAt(Time time) const;
+    // The rest of the current cue's wait at `time`; 0 once it changes what is seen, and before the
+    // first cue.
+    Time waitLeftAt(Time time) const;
     bool fadesAt(Time time) const { return fadeLeftAt(time) > Time{}; }
     // The time from `time` until the next cue follows by itself; nothing if the current cue waits
     // for an input.
@@ -80,35 +84,18 @@ public:
     void stateAt(Time time, ShowState& out) const;
 
 private:
-    struct LayerCourse {
-        SourceId source;
-        Course opacity;
-        Time begun{};
-    };
-    // Both looks of a fade may have the same composition. Then it fades in and out at the same
-    // time.
-    struct PictureCourse {
-        std::vector<LayerState> layers;
-        Course coming, leaving;  // of its share
-    };
-    struct OutputCourse {
-        std::vector<LayerCourse> layers;  // each adds its light by itself
-        std::vector<PictureCourse> pictures;
-        WindCourse wind{WindWish()};
-    };
-    // A cue that was entered, or that will follow by itself if no input comes first; and the
-    // courses that it begins.
+    // What is seen from a moment on, because of a cue that was entered, or that will follow by
+    // itself if no input comes first. A cue that moves things at different moments has an entry for
+    // each.
     struct Entry {
         Time at = Time::min();
         std::shared_ptr<const CueList> list;
         int cue = -1;                // of `list`
-        Time entered = Time::min();  // when the cue was entered; earlier than `at` if a revision has come since
-        Time whole = Time::min();    // when the fade is over
+        Time entered = Time::min();  // when the cue was entered, at `at` or earlier
+        Time whole = Time::min();    // when the cue's look is whole
         std::optional<Time> left;    // when the next cue follows by itself
         bool isGone = false;         // `list` has lost the cue that is seen; `cue` is the nearest one before it
-        std::vector<OutputCourse> outputs{};
-        std::vector<Course> levels{};
-        std::vector<std::uint8_t> relays{};
+        LookCourses seen;
     };
     // A blackout began or ended.
     struct Shutter {
@@ -122,17 +109,15 @@ private:
     int cueAt(Time time) const { return entryAt(time).cue; }
     void examine(const CueList& list);
     void enter(int cue, Time at);
-    void put(Entry entry);
+    void begin(std::shared_ptr<const CueList> list, int cue, Time at);
+    void move(Entry entry, const CueList::Cue& wanted, Time least);
+    void drop(Time at);
     void followOn();
     void forget(Time time);
     Outcome correct(const Input& input, const CueList& list, Time at);
     Outcome exchange(const Input& input, const CueList& list, Time at);
     Outcome trim(const LampTrim& trim, const CueList& list, Time at);
     Outcome revise(std::shared_ptr<const CueList> list, Time at);
-    Entry entered(const std::shared_ptr<const CueList>& list, int cue, Time at) const;
-    void setOut(Entry& entry, const Look& look, const std::vector<WindWish>& winds, Time fade) const;
-    static OutputCourse courseOf(const OutputState& from, const OutputState& to, Time at, Time fade);
-    void lookAt(Time time, Look& out) const;
     float lightAt(Time time) const;
     bool correctsAt(Time time) const;
 

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -14,7 +16,7 @@ namespace fantascope::show {
 
 namespace {
 
-constexpr int kNewestVersion = 2, kTracking = 2;  // of the file; from kTracking on, cues need not block
+constexpr std::int64_t kNewestVersion = kTrackingVersion;  // of the file
 
 // Defaults. 0.3 s is shorter than a deliberate second press and longer than a bouncing or trembling
 // one; as a fade it is quick without being a flash.
@@ -24,8 +26,6 @@ constexpr Time kBlackoutFade = std::chrono::milliseconds(300);
 // Limits in seconds.
 constexpr double kLongestGoInterval = 5;
 constexpr double kLongestBlackoutFade = 10;
-constexpr double kLongestFade = 3600;
-constexpr double kLongestFollow = 86400;
 constexpr double kStrongestWind = 4;  // times what a pattern was made for
 
 constexpr std::string_view kDark = "dark";  // a show starts so, if it does not start with a cue
@@ -49,31 +49,24 @@ Result<std::size_t> find(std::string_view name, const std::vector<std::string>& 
     return Error(fmt::format("no {} is called '{}' ({})", what, name, advice));
 }
 
-// The sources that a look may name. A faulty source is among them: it is reported once, and not
-// again at each look that names it.
-struct KnownSources {
-    std::vector<std::string> names;
-    std::vector<SourceId> ids;  // of `names`
-};
-
 // The layers of one output of a look.
-Result<OutputState> readLayers(const ConfigNode& node, const KnownSources& sources) {
+Result<OutputState> readLayers(const ConfigNode& node, const CueRules& rules) {
     OutputState output;
     for (const ConfigNode& item : TRY(node.items())) {
         LayerState layer;
         double opacity = 1;
         ConfigFields fields(item);
         std::size_t source = 0;
-        fields.read("source", source, [&](const ConfigNode& value) { return value.choice(sources.names); });
+        fields.read("source", source, [&](const ConfigNode& value) { return value.choice(rules.sources); });
         fields.optional().number("opacity", opacity, 0, 1);
         fields.optional().choice("blend", layer.blend, {"add", "over", "multiply", "screen"});
         TRY(fields.finish());
-        layer.source = sources.ids[source];
+        layer.source = rules.ids[source];
         layer.opacity = static_cast<float>(opacity);
         const auto same = [&](const LayerState& other) { return other.source == layer.source; };
         if (std::any_of(output.layers.begin(), output.layers.end(), same))
             return item.error(
-                fmt::format("'{}' is on this output already; one layer of a source is enough", sources.names[source]));
+                fmt::format("'{}' is on this output already; one layer of a source is enough", rules.sources[source]));
         output.layers.push_back(layer);
     }
     // Layers that only add their light need no order, so a fade can treat each source by itself.
@@ -96,30 +89,19 @@ Result<WindWish> readWind(const ConfigNode& node) {
 }
 
 // An output of a look: its layers, or a map with them and a wind of its own.
-Result<NamedLook::OutputWish> readOutput(const ConfigNode& node, const KnownSources& sources) {
+Result<NamedLook::OutputWish> readOutput(const ConfigNode& node, const CueRules& rules) {
     NamedLook::OutputWish output;
     if (!node.isMap()) {
-        output.layers = TRY(readLayers(node, sources));
+        output.layers = TRY(readLayers(node, rules));
         return output;
     }
     ConfigFields fields(node);
-    fields.read("layers", output.layers, [&](const ConfigNode& layers) { return readLayers(layers, sources); });
+    fields.read("layers", output.layers, [&](const ConfigNode& layers) { return readLayers(layers, rules); });
     fields.optional().read("wind", output.wind, [](const ConfigNode& wind) -> Result<std::optional<WindWish>> {
         return std::optional(TRY(readWind(wind)));
     });
     TRY(fields.finish());
     return output;
-}
-
-// Reads a key, which may be absent, that files have since a version.
-template <class Value, class Parse>
-void readSince(std::int64_t since, std::int64_t version, ConfigFields& fields, std::string_view key, Value& target, Parse parse) {
-    fields.optional().read(key, target, [&](const ConfigNode& node) -> Result<Value> {
-        if (version < since)
-            return node.error(
-                fmt::format("'{}' needs 'version: {}' in this file; docs/show-format.md says what that changes", key, since));
-        return parse(node);
-    });
 }
 
 Result<float> readLevel(const ConfigNode& node) { return static_cast<float>(TRY(node.number(0, 1))); }
@@ -142,12 +124,12 @@ Result<NamedLook::Levels> readLevels(const ConfigNode& node) {
     return NamedLook::Levels(TRY(readLevel(node)));
 }
 
-Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, const KnownSources& sources) {
+Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, const CueRules& rules) {
     NamedLook look;
     look.name = name;
     ConfigFields fields(node);
     fields.optional().read("outputs", look.outputs, [&](const ConfigNode& map) {
-        return readNamed<NamedLook::OutputWish>(map, [&](const ConfigNode& output) { return readOutput(output, sources); });
+        return readNamed<NamedLook::OutputWish>(map, [&](const ConfigNode& output) { return readOutput(output, rules); });
     });
     fields.optional().read("fixtures", look.fixtures,
                            [](const ConfigNode& map) { return readNamed<NamedLook::Levels>(map, readLevels); });
@@ -157,48 +139,6 @@ Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, cons
     fields.optional().read("relays", look.relays, [](const ConfigNode& map) { return readNamed<bool>(map, readSwitch); });
     TRY(fields.finish());
     return look;
-}
-
-// What the rest of the file says of its cues.
-struct CueRules {
-    std::int64_t version = kNewestVersion;
-    bool loops = false;
-};
-
-Result<Cue> readCue(const ConfigNode& node, const std::vector<std::string>& looks, const CueRules& rules) {
-    Cue cue;
-    cue.blocks = rules.version < kTracking;
-    ConfigFields fields(node);
-    fields.text("name", cue.name);
-    fields.read("look", cue.look, [&](const ConfigNode& value) { return value.choice(looks); });
-    fields.time("fade", cue.fade, 0, kLongestFade);
-    fields.optional().read("follow", cue.follow, [](const ConfigNode& value) -> Result<Time> {
-        return fromSeconds(TRY(value.number(0, kLongestFollow, "s")));
-    });
-    readSince(kTracking, rules.version, fields, "block", cue.blocks, [](const ConfigNode& value) { return value.boolean(); });
-    TRY(fields.finish());
-    return cue;
-}
-
-Result<std::vector<Cue>> readCues(const ConfigNode& node, const std::vector<std::string>& looks, const CueRules& rules) {
-    std::vector<Cue> cues;
-    const auto items = TRY(node.items(1));
-    ConfigFaults faults;
-    for (const ConfigNode& item : items)
-        faults.take(readCue(item, looks, rules), [&](Cue cue) {
-            const auto same = [&](const Cue& other) { return other.name == cue.name; };
-            if (std::any_of(cues.begin(), cues.end(), same))
-                faults.add(item.error(fmt::format("another cue is called '{}'; each needs its own name", cue.name)));
-            cues.push_back(std::move(cue));
-        });
-    TRY(faults.result());
-    if (cues.back().follow && !rules.loops)
-        return items.back().error(fmt::format("no cue comes after this one; remove its 'follow'{}",
-                                              rules.version < kTracking ? "" : ", or add 'at_end: loop' to the show"));
-    const auto takesTime = [](const Cue& cue) { return !cue.follow || *cue.follow > Time{}; };
-    if (rules.loops && std::ranges::none_of(cues, takesTime))
-        return node.error("a loop of cues that all follow at once would never end; give one of them a longer 'follow'");
-    return cues;
 }
 
 // The cue that a show starts with; nothing: it starts dark.
@@ -220,8 +160,9 @@ Result<std::size_t> indexOf(const Named<Wish>& wanted, const std::vector<std::st
     return *index;
 }
 
-// The outputs that a name in a look means: one output, or all outputs of one canvas.
-Result<std::vector<std::size_t>> outputsOf(const Named<NamedLook::OutputWish>& wanted, const Site& site) {
+// The outputs that a name means: one output, or all outputs of one canvas.
+template <class Wish>
+Result<std::vector<std::size_t>> outputsOf(const Named<Wish>& wanted, const Site& site) {
     std::vector<std::string> names = namesOf(site.outputs);
     if (const auto one = std::find(names.begin(), names.end(), wanted.name); one != names.end())
         return std::vector{static_cast<std::size_t>(one - names.begin())};
@@ -280,6 +221,66 @@ void putWinds(const NamedLook& named, const Site& site, std::vector<WindWish>& w
                     winds[i] = *output.wish.wind;
 }
 
+// Whether a source's layer comes and goes with the picture that it is composed in.
+bool isComposed(SourceId source, const OutputState& output) {
+    const auto composed = std::span(output.layers).subspan(addedLayers(output).size());
+    return std::ranges::find(composed, source, &LayerState::source) != composed.end();
+}
+
+// Looks up what a part of a cue names. `look`: the cue's. Names that the site does not have, and
+// layers that cannot move alone, go to `faults`.
+CueList::Part boundPart(const CuePart& named, const Cue& cue, const Look& look, const Site& site, ConfigFaults& faults) {
+    CueList::Part part{named.wait.value_or(cue.wait), named.fade.value_or(cue.fade)};
+    std::vector<std::size_t> outputs;
+    for (const CuePart::Name& name : named.outputs)
+        faults.take(outputsOf(name, site),
+                    [&](const std::vector<std::size_t>& found) { outputs.insert(outputs.end(), found.begin(), found.end()); });
+    if (named.sources.empty()) {
+        part.outputs = outputs;
+    } else if (named.outputs.empty()) {
+        outputs.resize(site.outputs.size());
+        std::iota(outputs.begin(), outputs.end(), 0u);
+    }
+    for (const Named<SourceId>& source : named.sources)
+        for (const std::size_t output : outputs) {
+            if (isComposed(source.wish, look.outputs[output]))
+                faults.add(source.at.error(fmt::format(
+                    "the layers on '{}' are composed in order, so they move together; name the output without 'sources'",
+                    site.outputs[output].name)));
+            part.layers.push_back({output, source.wish});
+        }
+    for (const CuePart::Name& relay : named.relays)
+        faults.take(indexOf(relay, namesOf(site.relays), "relay", site),
+                    [&](std::size_t index) { part.relays.push_back(index); });
+    for (const CuePart::Name& fixture : named.fixtures)
+        faults.take(indexOf(fixture, namesOf(site.fixtures), "fixture", site), [&](std::size_t index) {
+            for (std::size_t slot = 0; slot < site.fixtures[index].channels.size(); ++slot)
+                part.levels.push_back(site.firstLevel(index) + slot);
+        });
+    return part;
+}
+
+// The parts of a cue, looked up. What is in two of them goes to `faults`.
+std::vector<CueList::Part> boundParts(const Cue& cue, const Look& look, const Site& site, ConfigFaults& faults) {
+    std::vector<CueList::Part> parts;
+    std::set<std::pair<std::size_t, SourceId>> layers;
+    std::set<std::size_t> outputs, levels, relays;
+    for (const CuePart& named : cue.parts) {
+        CueList::Part part = boundPart(named, cue, look, site, faults);
+        bool twice = false;
+        const auto take = [&](std::set<std::size_t>& taken, const std::vector<std::size_t>& things) {
+            for (const std::size_t thing : things) twice = !taken.insert(thing).second || twice;
+        };
+        take(outputs, part.outputs);
+        take(levels, part.levels);
+        take(relays, part.relays);
+        for (const auto& [output, source] : part.layers) twice = !layers.emplace(output, source).second || twice;
+        if (twice) faults.add(named.at.error("this part names what it or another part of the cue names already"));
+        parts.push_back(std::move(part));
+    }
+    return parts;
+}
+
 }  // namespace
 
 Result<Show> Show::load(const std::filesystem::path& fileOrFolder) {
@@ -295,20 +296,20 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder, SourceNames& 
     show.blackoutFade = kBlackoutFade;
     const ConfigNode root = TRY(ConfigNode::load(show.file));
     ConfigFields fields(root);
-    CueRules rules{fields.header("show", kNewestVersion)};
+    // Faulty sources and looks are among the known ones. They are reported once, and not again
+    // where they are named.
+    CueRules rules{.version = fields.header("show", kNewestVersion), .looks = {}, .sources = {}, .ids = {}};
     fields.text("title", show.title);
     fields.optional().time("go_interval", show.goInterval, 0, kLongestGoInterval);
     fields.optional().time("blackout_fade", show.blackoutFade, 0, kLongestBlackoutFade);
     fields.optional().integer("seed", show.seed, 0, std::numeric_limits<std::int64_t>::max());
-    KnownSources known;
-    std::vector<std::string> lookNames;  // also of faulty looks: a cue that names one is no further fault
     fields.read("sources", show.sources, [&](const ConfigNode& node) -> Result<std::vector<Source>> {
         std::vector<Source> sources;
         ConfigFaults faults;
         for (const auto& [name, source] : TRY(node.entries())) {
-            known.names.push_back(name);
-            known.ids.push_back(names.idOf(name));
-            faults.take(readSource(name, known.ids.back(), source), [&](Source read) { sources.push_back(std::move(read)); });
+            rules.sources.push_back(name);
+            rules.ids.push_back(names.idOf(name));
+            faults.take(readSource(name, rules.ids.back(), source), [&](Source read) { sources.push_back(std::move(read)); });
         }
         TRY(faults.result());
         return sources;
@@ -317,18 +318,18 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder, SourceNames& 
         std::vector<NamedLook> looks;
         ConfigFaults faults;
         for (const auto& [name, look] : TRY(node.entries())) {
-            lookNames.push_back(name);
-            faults.take(readLook(name, look, known), [&](NamedLook read) { looks.push_back(std::move(read)); });
+            rules.looks.push_back(name);
+            faults.take(readLook(name, look, rules), [&](NamedLook read) { looks.push_back(std::move(read)); });
         }
         TRY(faults.result());
         return looks;
     });
-    readSince(kTracking, rules.version, fields, "at_end", rules.loops, [](const ConfigNode& node) -> Result<bool> {
+    readTracking(rules.version, fields, "at_end", rules.loops, [](const ConfigNode& node) -> Result<bool> {
         return TRY(node.choice({"stay", "loop"})) == 1;
     });
     show.loops = rules.loops;
-    fields.read("cues", show.cues, [&](const ConfigNode& node) { return readCues(node, lookNames, rules); });
-    readSince(kTracking, rules.version, fields, "start", show.start, [&](const ConfigNode& node) {
+    fields.read("cues", show.cues, [&](const ConfigNode& node) { return readCues(node, rules); });
+    readTracking(rules.version, fields, "start", show.start, [&](const ConfigNode& node) {
         return show.cues.empty() ? std::optional<std::size_t>() : readStart(node, show.cues);  // faulty cues are told already
     });
     TRY(fields.finish());
@@ -352,11 +353,14 @@ Result<CueList> Show::bind(const Site& site) const {
         CueList::Cue bound = cue.blocks || list.cues.empty() ? nothing : list.cues.back();
         putLook(looks[cue.look], site, bound.look, faults);
         putWinds(looks[cue.look], site, bound.winds);
+        bound.wait = cue.wait;
         bound.fade = cue.fade;
         bound.follow = cue.follow;
         bound.name = cue.name;
+        bound.parts = boundParts(cue, bound.look, site, faults);
         list.cues.push_back(std::move(bound));
     }
+    TRY(faults.result());
     list.loops = loops;
     list.goInterval = goInterval;
     list.blackoutFade = blackoutFade;
@@ -382,6 +386,10 @@ std::string Show::beginning() const {
                                               : "plays by itself to its end");
 }
 
-Result<std::size_t> Show::cueNamed(std::string_view name) const { return find(name, namesOf(cues), "cue").in(file.string()); }
+Result<std::size_t> Show::cueNamed(std::string_view nameOrNumber) const {
+    const auto named = find(nameOrNumber, namesOf(cues), "cue").in(file.string());
+    const auto numbered = std::ranges::find(cues, nameOrNumber, [](const Cue& cue) { return textOf(cue.number); });
+    return named || numbered == cues.end() ? named : static_cast<std::size_t>(numbered - cues.begin());
+}
 
 }  // namespace fantascope::show

@@ -1,12 +1,13 @@
 #pragma once
 
+#include "show/course/wind.h"
+#include "show/cue.h"
 #include "show/cue_list.h"
 #include "show/show_state.h"
 #include "show/site/site.h"
 #include "show/source.h"
-#include "show/wind.h"
 
-#include "core/config/file_place.h"
+#include "core/clock.h"
 #include "core/result.h"
 
 #include <cstdint>
@@ -18,14 +19,6 @@
 #include <vector>
 
 namespace fantascope::show {
-
-// What the show asks of a thing of the site, which it calls by name.
-template <class Wish>
-struct Named {
-    std::string name;
-    FilePlace at;  // for an error about the name
-    Wish wish;
-};
 
 // A look as its author wrote it. What it does not name is dark in a cue that blocks: outputs are
 // black, fixtures are at level 0, and relays are in their safe states. In another cue it stays as
@@ -42,15 +35,6 @@ struct NamedLook {
     std::optional<WindWish> wind;  // of all outputs
     std::vector<Named<Levels>> fixtures;
     std::vector<Named<bool>> relays;  // true: on
-};
-
-// One step of the show.
-struct Cue {
-    std::string name;
-    std::size_t look = 0;  // index into Show::looks
-    Time fade{};
-    std::optional<Time> follow;
-    bool blocks = true;  // what the look does not name is dark; else it stays
 };
 
 // show.yaml as its author wrote it; docs/show-format.md describes the file. Value type.
@@ -82,8 +66,9 @@ struct Show {
     // What it does if nobody presses anything: "starts dark and waits for GO".
     std::string beginning() const;
 
-    // The index of a cue. Error: no cue has this name; suggests the nearest name.
-    Result<std::size_t> cueNamed(std::string_view name) const;
+    // The index of the cue with a name, or else with a number. Error: there is none; suggests the
+    // nearest name.
+    Result<std::size_t> cueNamed(std::string_view nameOrNumber) const;
 };
 
 }  // namespace fantascope::show

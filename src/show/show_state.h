@@ -2,15 +2,16 @@
 // The show's only result: what is seen at one moment. Renderer and lighting read it and send
 // nothing back.
 
-#include "show/lamp_trim.h"
+#include "show/course/lamp_trim.h"
+#include "show/course/picture_shift.h"
 #include "show/pattern_exchange.h"
-#include "show/picture_shift.h"
 #include "show/source_id.h"
 
 #include "core/clock.h"
 #include "core/wind.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace fantascope::show {
@@ -47,6 +48,11 @@ struct OutputState {
     std::vector<ComposedPicture> pictures{};  // in the order of their layers
     friend bool operator==(const OutputState&, const OutputState&) = default;
 };
+
+// The layers that add their light one by one.
+inline std::span<const LayerState> addedLayers(const OutputState& output) {
+    return std::span(output.layers).first(output.pictures.empty() ? output.layers.size() : output.pictures[0].first);
+}
 
 // Everything that the site can show, in the site's order.
 struct Look {

@@ -97,7 +97,8 @@ const std::vector<Row> kTable = {
 
     {"plot", {"core", "media", "pattern", "theatre"}, {}, {"cairo"}},
     {"show/site", {"core", "media"}, {}, {}},
-    {"show", {"core", "media", "show/site"}, {}, {}},
+    {"show/course", {"core"}, {}, {}},
+    {"show", {"core", "media", "show/course", "show/site"}, {}, {}},
     {"render/canvas", {"core", "media"}, {}, {}},
     {"render/source",
      {"core", "media", "show/show_state.h", "show/source_id.h", "show/source_kinds.h", "pattern/motion", "pattern/shape",

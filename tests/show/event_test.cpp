@@ -23,7 +23,7 @@ std::vector<std::string> heard(EventLog::Reader& reader) {
 TEST(Events, are_heard_by_every_listener_whenever_it_listens) {
     EventLog events;
     auto terminal = events.reader(), console = events.reader();
-    events.append({1s, event::CueEntered{0, 3, "Dusk"}});
+    events.append({1s, event::CueEntered{0, 3, "Dusk", 1000}});
     EXPECT_THAT(heard(terminal), ElementsAre("cue 1 of 3: Dusk"));
     events.append({2s, event::BlackoutChanged{true}});
     EXPECT_THAT(heard(console), ElementsAre("cue 1 of 3: Dusk", "blackout: pictures and lamps are dark"));

@@ -133,6 +133,52 @@ TEST(Playback, crossfade_matches_layers_by_their_source) {
     EXPECT_EQ(lookOf(playback, 14s), threeCues().cues[1].look);
 }
 
+// Example failures: what was fading stands still while the cue waits; the lamp switches with the
+// press; a GO in the wait enters the cue that waits.
+TEST(Playback, a_cue_that_waits_leaves_what_was_before_as_it_goes) {
+    CueList list = threeCues();
+    list.cues[1].wait = 3s;
+    list.cues[1].look.relays = {1};
+    const Playback playback = after(list, {go(0s), go(1s)});
+    EXPECT_EQ(stateOf(playback, 1s).cue, 1) << "it is the current one";
+    EXPECT_EQ(playback.waitLeftAt(1500ms), 2500ms);
+    EXPECT_EQ(playback.waitLeftAt(4s), 0s);
+    EXPECT_EQ(playback.fadeLeftAt(1s), 7s);
+    EXPECT_THAT(lookOf(playback, 1500ms).levels, ElementsAre(0.75f, 0.0f)) << "the first cue's fade goes on";
+    EXPECT_THAT(lookOf(playback, 6s).levels, ElementsAre(0.5f, 0.25f));
+    EXPECT_THAT(lookOf(playback, 4s - 1ns).relays, ElementsAre(0));
+    EXPECT_THAT(lookOf(playback, 4s).relays, ElementsAre(1));
+
+    const Playback pressed = after(list, {go(0s), go(1s), go(2s)});
+    EXPECT_EQ(stateOf(pressed, 2s).cue, 2);
+    EXPECT_EQ(lookOf(pressed, 5s), list.cues[2].look) << "the second does not come any more";
+}
+
+TEST(Playback, the_parts_of_a_cue_move_in_their_own_time_and_way) {
+    CueList list = threeCues();
+    list.cues[1].fade = Fade(2s, 8s, Curve::Linear);
+    list.cues[1].parts = {{2s, Fade(4s, 4s, Curve::SlowStart), {}, {1}}, {1s, 1s, {}, {}, {}, {{0, {1}}}}};
+    const Playback playback = after(list, {go(0s), go(10s)});
+    EXPECT_EQ(playback.fadeLeftAt(10s), 8s);
+    EXPECT_THAT(lookOf(playback, 11s).outputs[0].layers, ElementsAre(LayerState{0, 0.9375f})) << "it goes out in eight seconds";
+    EXPECT_THAT(lookOf(playback, 11500ms).outputs[0].layers, testing::Contains(LayerState{1, 0.5f}));
+    EXPECT_THAT(lookOf(playback, 12s).levels, ElementsAre(0.75f, 0.0f)) << "the first goes out in eight, the second waits";
+    EXPECT_THAT(lookOf(playback, 14s).levels, ElementsAre(0.5f, 0.125f)) << "a quarter of the way after half of the time";
+    EXPECT_EQ(lookOf(playback, 18s).levels, list.cues[1].look.levels);
+}
+
+// Example failure: it comes in at its own pace and goes at another, and has too much light in
+// between.
+TEST(Playback, a_picture_that_stays_keeps_its_light_where_in_and_out_differ) {
+    CueList list = threeCues();
+    for (const int cue : {0, 1})
+        list.cues[static_cast<std::size_t>(cue)].look.outputs[0] = {{{0, 1.0f, Blend::Over}}, {{0, 1, 1.0f}}};
+    list.cues[1].fade = Fade(1s, 4s, Curve::Linear);
+    const Playback playback = after(list, {go(0s), go(10s)});
+    for (const Time time : {Time(10500ms), Time(11s), Time(13s)})
+        EXPECT_THAT(lookOf(playback, time).outputs[0].pictures, ElementsAre(ComposedPicture{0, 1, 1.0f})) << seconds(time);
+}
+
 // A slide over a light must not go before the light does: the picture fades as one.
 TEST(Playback, a_picture_of_blended_layers_comes_and_goes_as_a_whole) {
     CueList list = threeCues();
@@ -379,7 +425,13 @@ CueList randomCues(Rng& rng) {
     list.goInterval = 300ms;
     list.blackoutFade = 500ms;
     for (std::uint32_t i = 0, count = 2 + rng.below(5); i < count; ++i) {
-        CueList::Cue cue{look(), fromSeconds(0.5 + 3 * rng.uniform()), std::nullopt};
+        const auto fade = [&] {
+            return Fade(fromSeconds(0.5 + 3 * rng.uniform()), fromSeconds(0.5 + 3 * rng.uniform()),
+                        static_cast<Curve>(rng.below(4)));
+        };
+        CueList::Cue cue{look(), fade(), std::nullopt};
+        if (rng.uniform() < 0.3) cue.wait = fromSeconds(2 * rng.uniform());
+        if (rng.uniform() < 0.5) cue.parts = {{fromSeconds(2 * rng.uniform()), fade(), {0}, {1}}};
         for (int output = 0; output < kOutputs; ++output) cue.winds.push_back(wind());
         if (i + 1 < count && rng.uniform() < 0.4) cue.follow = fromSeconds(5 * rng.uniform());
         list.cues.push_back(std::move(cue));
@@ -440,7 +492,14 @@ TEST(Playback, no_level_and_no_opacity_ever_steps) {
 
         // A change of the light multiplies: its rate and the fade's add up at most.
         double rate = 1 / seconds(list.blackoutFade), quickest = 0;
-        for (const CueList::Cue& cue : list.cues) quickest = std::max(quickest, 1 / seconds(cue.fade));
+        const auto rateOf = [](const Fade& fade) {
+            constexpr double kSteepest = 2;  // of the curves
+            return kSteepest / seconds(std::min(fade.in, fade.out));
+        };
+        for (const CueList::Cue& cue : list.cues) {
+            quickest = std::max(quickest, rateOf(cue.fade));
+            for (const CueList::Part& part : cue.parts) quickest = std::max(quickest, rateOf(part.fade));
+        }
         rate += quickest;
         constexpr Time kStep = 5ms;
         const double allowed = rate * seconds(kStep) + 1e-6;

@@ -489,6 +489,81 @@ TEST(TrackedShow, in_which_each_cue_blocks_is_that_of_version_1) {
     EXPECT_FALSE(one.loops);
 }
 
+// Example failures: a part that takes the cue's wait for its own; a fixture of which one channel
+// moves; a follow after the fade that forgets the longest part.
+TEST(TrackedShow, moves_the_parts_of_a_cue_in_their_own_time) {
+    const Loaded loaded{replaced(std::string(kTrackedShow), "{name: Left, look: left alone, fade: 1, follow: 20}", R"(
+    name: Left
+    number: 1.5
+    note: after the bell
+    look: left alone
+    wait: 2
+    fade: {in: 1, out: 4, curve: smooth}
+    follow: {after_fade: 3}
+    parts:
+      - {outputs: [left], fixtures: [fountain], wait: 0.5}
+      - {sources: [dim], outputs: [right], relays: [road], fade: 8})")};
+    ASSERT_TRUE(loaded.show) << loaded.show.error().message();
+    const Show& show = *loaded.show;
+    EXPECT_EQ(show.cues[1].note, "after the bell");
+    std::vector<std::string> numbers;
+    for (const Cue& cue : show.cues) numbers.push_back(textOf(cue.number));
+    EXPECT_THAT(numbers, ElementsAre("1", "1.5", "2", "3", "4")) << "the next whole number";
+    EXPECT_EQ(*show.cueNamed("1.5"), 1u);
+    EXPECT_EQ(*show.cueNamed("Left"), 1u);
+    EXPECT_FALSE(show.cueNamed("1.50")) << "as it is written";
+
+    const auto list = show.bind(testSite());
+    ASSERT_TRUE(list) << list.error().message();
+    const CueList::Cue& cue = list->cues[1];
+    EXPECT_EQ(cue.wait, 2s);
+    EXPECT_EQ(cue.fade, Fade(1s, 4s, Curve::Smooth));
+    EXPECT_EQ(cue.length(), 10s) << "the relay's part: two seconds, and eight";
+    EXPECT_EQ(cue.follow, 13s);
+    EXPECT_EQ(cue.firstWait(), 500ms);
+    ASSERT_EQ(cue.parts.size(), 2u);
+    EXPECT_EQ(cue.parts[0].wait, 500ms);
+    EXPECT_EQ(cue.parts[0].fade, cue.fade);
+    EXPECT_THAT(cue.parts[0].outputs, ElementsAre(1u)) << "left is the site's second";
+    EXPECT_THAT(cue.parts[0].levels, ElementsAre(1u, 2u, 3u));
+    EXPECT_EQ(cue.parts[1].wait, 2s);
+    EXPECT_EQ(cue.parts[1].fade, Fade(8s));
+    EXPECT_THAT(cue.parts[1].relays, ElementsAre(1u));
+    ASSERT_EQ(cue.parts[1].layers.size(), 1u);
+    EXPECT_EQ(cue.parts[1].layers[0].output, 0u);
+    EXPECT_EQ(cue.parts[1].layers[0].source, SourceId{1});
+    EXPECT_TRUE(list->cues[2].parts.empty()) << "parts do not track";
+}
+
+TEST(TrackedShow, refuses_parts_and_numbers_that_make_no_sense) {
+    const auto partsRefusal = [](const std::string& parts) {
+        return trackedRefusal("look: left alone, fade: 1, follow: 20", "look: left alone, fade: 1, parts: " + parts);
+    };
+    EXPECT_EQ(partsRefusal("[{wait: 1}]"),
+              "show.yaml:22:53: cues[1].parts[0]: this part names nothing; add 'outputs', 'sources', 'fixtures' or 'relays'");
+    EXPECT_THAT(partsRefusal("[{outputs: [left]}]"), HasSubstr("moves as the rest of its cue does; add a 'wait' or a 'fade'"));
+    EXPECT_THAT(partsRefusal("[{sources: [dimm], wait: 1}]"), HasSubstr("did you mean 'dim'?"));
+    EXPECT_THAT(trackedRefusal("name: Black,", "name: Black, number: 2,"), HasSubstr("cue 2 comes after cue 2; numbers go up"));
+    EXPECT_THAT(trackedRefusal("name: Black,", "name: Black, number: 2.0005,"), HasSubstr("at most three decimal places"));
+    EXPECT_THAT(trackedRefusal("version: 2", "version: 1"), HasSubstr("'block' needs 'version: 2'"));
+    EXPECT_THAT(refusalAfter("fade: 1.5", "fade: {in: 1, out: 2}"), HasSubstr("'in' needs 'version: 2'"));
+
+    const auto faultOf = [](const std::string& parts, std::string_view blend = "add") {
+        const std::string text = replaced(std::string(kTrackedShow), "fade: 1, follow: 20", "fade: 1, parts: " + parts);
+        const Loaded loaded{replaced(text, "left: [{source: dim}]", fmt::format("left: [{{source: dim, blend: {}}}]", blend))};
+        EXPECT_TRUE(loaded.show) << loaded.show.error().message();
+        const auto list = loaded.show->bind(testSite());
+        return list ? "" : list.error().message();
+    };
+    EXPECT_THAT(faultOf("[{outputs: [lefd], wait: 1}]"), HasSubstr("did you mean 'left'?"));
+    EXPECT_THAT(faultOf("[{relays: [raod], wait: 1}]"), HasSubstr("no relay is called 'raod' (known: fog, road)"));
+    EXPECT_THAT(faultOf("[{outputs: [left], wait: 1}, {fixtures: [fountain], outputs: [left], fade: 2}]"),
+                HasSubstr("cues[1].parts[1]: this part names what it or another part of the cue names already"));
+    EXPECT_EQ(faultOf("[{outputs: [left], wait: 1}, {outputs: [left], sources: [dim], wait: 2}]"), "")
+        << "a layer may leave its output alone";
+    EXPECT_THAT(faultOf("[{sources: [dim], wait: 1}]", "over"), HasSubstr("composed in order, so they move together"));
+}
+
 TEST(TrackedShow, may_start_and_loop_by_itself) {
     const auto with = [](std::string_view keys, bool allFollow) {
         std::string text = replaced(std::string(kTrackedShow), "cues:\n", std::string(keys) + "cues:\n");

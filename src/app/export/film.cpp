@@ -162,7 +162,7 @@ Result<Film> Film::ofShow(const FilmRequest& request) {
     film.seconds_ = request.seconds.value_or(kShowSeconds);
     if (!request.cue.empty()) {  // it is entered at once and nothing follows it
         show::CueList::Cue& cue = cues.cues[static_cast<std::size_t>(programme.firstInput->cue)];
-        programme.firstInput->at = -cue.fade;
+        programme.firstInput->at = -cue.length();
         cue.follow.reset();
         if (const double loop = loopOf(programme.sources); !request.seconds && loop > 0) film.seconds_ = loop;
     }

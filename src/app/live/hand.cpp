@@ -55,8 +55,8 @@ void Hand::tick(Time moment) {
         events_.append({showTime, show::event::BlackoutChanged{state_.blackout}});
     if (state_.cue == cue_) return;
     cue_ = state_.cue;
-    const std::string& name = show_.cues[static_cast<std::size_t>(cue_)].name;
-    events_.append({showTime, show::event::CueEntered{cue_, static_cast<int>(show_.cues.size()), name}});
+    const show::Cue& cue = show_.cues[static_cast<std::size_t>(cue_)];
+    events_.append({showTime, show::event::CueEntered{cue_, static_cast<int>(show_.cues.size()), cue.name, cue.number}});
 }
 
 ButtonLight Hand::lightOf(show::Button button, Time showTime) const {

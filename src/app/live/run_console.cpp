@@ -22,21 +22,23 @@ enum LinePart { Blackout, SettingUp, Cue, Fade, Next, Left, Late, Rate, Scores, 
 using Forms = std::vector<std::string>;
 
 // The parts to shorten by one form, in this order, while the line is too long.
-constexpr LinePart kShortening[] = {Scores, Rate, Next,      Cue, Cue,       Late,     Fade, Left,
-                                    Next,   Next, SettingUp, Cue, SettingUp, Blackout, Cue};
+constexpr LinePart kShortening[] = {Scores, Rate, Next, Next,      Cue, Cue,       Late,     Fade,
+                                    Left,   Next, Next, SettingUp, Cue, SettingUp, Blackout, Cue};
 
 Forms cueForms(const RunStatus& status) {
     if (status.cue < 0) return {"no cue yet", ""};
     const std::string number = fmt::format("{}/{}", status.cue + 1, status.cues);
-    return {fmt::format("cue {} of {}: {}", status.cue + 1, status.cues, status.cueName), number + " " + status.cueName,
+    const std::string place = show::placeOf(status.number, status.cue, status.cues);
+    return {fmt::format("cue {}: {}", place, status.cueName), number + " " + status.cueName,
             number + " " + fitted(status.cueName, kShortName), number, ""};
 }
 
 Forms nextForms(const RunStatus& status) {
     if (status.nextName.empty()) return {"last cue", ""};
     const std::string in = status.untilNext ? " in " + shortDuration(*status.untilNext) : "";
-    return {"next: " + status.nextName + in, "next: " + fitted(status.nextName, kShortName) + in, in.empty() ? "" : "next" + in,
-            ""};
+    const std::string note = status.nextNote.empty() ? "" : fmt::format(" ({})", status.nextNote);
+    return {"next: " + status.nextName + in + note, "next: " + status.nextName + in,
+            "next: " + fitted(status.nextName, kShortName) + in, in.empty() ? "" : "next" + in, ""};
 }
 
 std::string scoresOf(const RunStatus& status) {
@@ -56,7 +58,10 @@ std::array<Forms, kParts> partsOf(const RunStatus& status) {
     if (status.blackout) parts[Blackout].push_back("BLACKOUT");
     if (status.settingUp) parts[SettingUp] = {ended("SETTING UP", RunKey::Action::SetUp, "ends"), "SETTING UP", ""};
     parts[Cue] = cueForms(status);
-    if (status.fadeLeft > Time{}) parts[Fade] = {"fading " + shortDuration(status.fadeLeft), ""};
+    if (status.waitLeft > Time{})
+        parts[Fade] = {"waits " + shortDuration(status.waitLeft), ""};
+    else if (status.fadeLeft > Time{})
+        parts[Fade] = {"fading " + shortDuration(status.fadeLeft), ""};
     parts[Next] = nextForms(status);
     parts[Left] = {status.left ? shortDuration(*status.left) + " left" : "at " + shortDuration(status.showTime), ""};
     parts[Late] = {fmt::format("{} late", status.lateFrames), ""};

@@ -3,6 +3,8 @@
 #include "app/base/terminal_line.h"
 #include "app/live/run_report.h"
 
+#include "show/cue.h"
+
 #include "core/clock.h"
 
 #include <cstdint>
@@ -19,8 +21,11 @@ namespace fantascope::app {
 struct RunStatus {
     Time showTime{};
     int cue = -1, cues = 0;                 // the current cue, from 0, -1 before the first; the number of cues
+    show::CueNumber number = 0;             // of the current cue
     std::string cueName, nextName;          // empty: there is none
-    Time fadeLeft{};                        // 0: nothing fades
+    std::string nextNote;                   // of the next cue; empty: it has none
+    Time waitLeft{};                        // until the current cue begins to change what is seen; 0: it has begun
+    Time fadeLeft{};                        // until its look is whole; 0: it is
     std::optional<Time> untilNext;          // until the next cue comes by a follow or by the schedule; none: it waits
     std::optional<Time> left;               // of the run; none: the run has no length
     bool blackout = false;                  // pictures and fixtures are held dark

@@ -14,9 +14,16 @@ RunStatus RunView::at(Time moment, Time nextGo) {
     status.showTime = time;
     status.cue = state_.cue;
     status.cues = static_cast<int>(cues.size());
-    if (state_.cue >= 0) status.cueName = cues[static_cast<std::size_t>(state_.cue)].name;
-    if (const auto next = replica_.playback().cues().after(state_.cue))
+    if (state_.cue >= 0) {
+        const show::Cue& cue = cues[static_cast<std::size_t>(state_.cue)];
+        status.cueName = cue.name;
+        status.number = cue.number;
+    }
+    if (const auto next = replica_.playback().cues().after(state_.cue)) {
         status.nextName = cues[static_cast<std::size_t>(*next)].name;
+        status.nextNote = cues[static_cast<std::size_t>(*next)].note;
+    }
+    status.waitLeft = replica_.playback().waitLeftAt(time);
     status.fadeLeft = replica_.playback().fadeLeftAt(time);
     status.untilNext = replica_.playback().untilFollowAt(time);
     if (nextGo != Time::max())

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "show/lamp_trim.h"
+#include "show/course/lamp_trim.h"
 #include "vision/watch/ambient_light.h"
 
 #include "core/clock.h"

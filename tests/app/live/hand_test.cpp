@@ -120,7 +120,7 @@ TEST_F(HandPart, lights_the_buttons_by_what_a_press_would_do) {
     run_.clock.advance(2s);
     press(show::Button::Go);
     EXPECT_EQ(lit(show::Button::Go), Active) << "it fades";
-    run_.clock.advance(run_.cues.cues[0].fade);
+    run_.clock.advance(run_.cues.cues[0].fade.in);
     EXPECT_EQ(lit(show::Button::Go), Ready);
     EXPECT_EQ(lit(show::Button::Back), Off);
     press(show::Button::Go);
@@ -132,7 +132,7 @@ TEST_F(HandPart, lights_the_buttons_by_what_a_press_would_do) {
     EXPECT_EQ(lit(show::Button::Blackout), Off);
 
     run_.inputs.submit(run_.jumpTo(run_.show.cues.back().name));
-    run_.clock.advance(run_.cues.cues.back().fade);
+    run_.clock.advance(run_.cues.cues.back().fade.in);
     EXPECT_EQ(lit(show::Button::Go), Off) << "this is the last cue";
     EXPECT_EQ(lit(show::Button::Back), Ready);
 }
@@ -170,7 +170,7 @@ TEST(HandLights, are_told_once_a_change_and_of_editing_too) {
     editing = true;
     EXPECT_THAT(toldIn(1s), ElementsAre(Pair(7, ButtonLight{Active, "EDIT"}), Pair(9, ButtonLight{Ready, "LEFT"})));
     run.inputs.submit({run.clock.now(), show::Input::Kind::Go});
-    EXPECT_THAT(toldIn(run.cues.cues[0].fade + 1s),
+    EXPECT_THAT(toldIn(run.cues.cues[0].fade.in + 1s),
                 ElementsAre(Pair(4, ButtonLight{Active, "GO"}), Pair(4, ButtonLight{Ready, "GO"})));
 }
 

@@ -24,7 +24,7 @@ TEST_F(View, counts_cues_in_show_time_and_what_is_left_in_run_time) {
     EXPECT_EQ(status.cue, 0);
     EXPECT_EQ(status.cueName, "Dusk");
     EXPECT_EQ(status.nextName, "First light");
-    EXPECT_EQ(status.fadeLeft, run_.cues.cues[0].fade - 1s);
+    EXPECT_EQ(status.fadeLeft, run_.cues.cues[0].fade.in - 1s);
     EXPECT_EQ(status.left, 58s);
     EXPECT_EQ(status.untilNext, 18s) << "the schedule's press";
 }

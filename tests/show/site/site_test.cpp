@@ -62,12 +62,14 @@ end_fade: 2.5
 )";
 
 // What readSite says of the text, led by the file's name.
-std::string refusal(const std::string& text) {
+std::string siteRefusal(const std::string& text) {
     const ScratchFolder folder;
     const auto site = readSite(folder.file("site.yaml", text));
     return site ? "accepted" : folder.relative(site.error().message());
 }
-std::string refusalAfter(std::string_view what, std::string_view by) { return refusal(replaced(std::string(kSite), what, by)); }
+std::string siteRefusalAfter(std::string_view what, std::string_view by) {
+    return siteRefusal(replaced(std::string(kSite), what, by));
+}
 
 TEST(Site, reads_a_measured_lens_and_light_and_has_usual_ones_without) {
     const ScratchFolder folder;
@@ -82,9 +84,9 @@ TEST(Site, reads_a_measured_lens_and_light_and_has_usual_ones_without) {
     EXPECT_EQ(site->nominalCamera->lensOf, "C525");
     EXPECT_THAT(site->nominalCamera->response, ElementsAre(0, 0.2, 1));
     EXPECT_THAT(site->nominalCamera->hotPixels, ElementsAre(glm::ivec2(4, 5)));
-    EXPECT_THAT(refusalAfter("  k1: -0.05", "  k1: -0.05\n  response: [0, 0.3, 0.2, 1]"),
+    EXPECT_THAT(siteRefusalAfter("  k1: -0.05", "  k1: -0.05\n  response: [0, 0.3, 0.2, 1]"),
                 HasSubstr("response[2]: the light of a higher"));
-    EXPECT_THAT(refusalAfter("  k1: -0.05", "  k1: -0.05\n  response: [0.1, 1]"), HasSubstr("must rise from 0"));
+    EXPECT_THAT(siteRefusalAfter("  k1: -0.05", "  k1: -0.05\n  response: [0.1, 1]"), HasSubstr("must rise from 0"));
 }
 
 TEST(Site, reads_everything_that_the_file_says) {
@@ -156,8 +158,8 @@ TEST(Site, without_corners_the_canvas_fills_the_picture) {
 }
 
 TEST(Site, a_site_of_projectors_alone_is_a_site) {
-    EXPECT_EQ(refusal("fantascope: site\nversion: 1\noutputs:\n  - {name: a, display: {driver: glfw}, size: [640, 360], "
-                      "refresh_rate: 60}\n"),
+    EXPECT_EQ(siteRefusal("fantascope: site\nversion: 1\noutputs:\n  - {name: a, display: {driver: glfw}, size: [640, 360], "
+                          "refresh_rate: 60}\n"),
               "accepted");
 }
 
@@ -195,51 +197,52 @@ TEST(Site, says_which_lamps_may_be_trimmed) {
 }
 
 TEST(Site, mistakes_are_refused_with_place_and_advice) {
-    EXPECT_EQ(refusalAfter("    refresh_rate: 30\n", ""), "site.yaml:4:5: outputs[0]: 'refresh_rate' is missing");
-    EXPECT_EQ(refusalAfter("corners:", "cornres:"), "site.yaml:8:5: outputs[0].cornres: unknown key (did you mean 'corners'?)");
-    EXPECT_EQ(refusalAfter("size: [640, 360]", "size: wide"),
+    EXPECT_EQ(siteRefusalAfter("    refresh_rate: 30\n", ""), "site.yaml:4:5: outputs[0]: 'refresh_rate' is missing");
+    EXPECT_EQ(siteRefusalAfter("corners:", "cornres:"),
+              "site.yaml:8:5: outputs[0].cornres: unknown key (did you mean 'corners'?)");
+    EXPECT_EQ(siteRefusalAfter("size: [640, 360]", "size: wide"),
               "site.yaml:6:11: outputs[0].size: a list is needed, here is 'wide'");
-    EXPECT_EQ(refusalAfter("[1920, 1080]", "[1920, 0]"),
+    EXPECT_EQ(siteRefusalAfter("[1920, 1080]", "[1920, 0]"),
               "site.yaml:11:57: outputs[1].size[1]: 0 is out of range, 1 .. 16384 is allowed");
-    EXPECT_EQ(refusalAfter("field_of_view: 60", "field_of_view: 1.2 rad"),
+    EXPECT_EQ(siteRefusalAfter("field_of_view: 60", "field_of_view: 1.2 rad"),
               "site.yaml:32:18: camera.field_of_view: a number in 1 .. 179 degrees is needed, here is '1.2 rad'");
-    EXPECT_EQ(refusalAfter("display: {driver: glfw}", "display: {name: glfw}"),
+    EXPECT_EQ(siteRefusalAfter("display: {driver: glfw}", "display: {name: glfw}"),
               "site.yaml:11:28: outputs[1].display: 'driver' is missing: the name of the device's driver");
-    EXPECT_EQ(refusalAfter("safe: off", "safe: open"),
+    EXPECT_EQ(siteRefusalAfter("safe: off", "safe: open"),
               "site.yaml:20:103: relays[1].safe: one of off, on is needed, here is 'open'");
-    EXPECT_EQ(refusalAfter("end: {blue: 0.5}", "end: {bleu: 0.5}"),
+    EXPECT_EQ(siteRefusalAfter("end: {blue: 0.5}", "end: {bleu: 0.5}"),
               "site.yaml:17:91: fixtures[1].end.bleu: 'fountain' has no channel 'bleu'; it has red, green, blue");
-    EXPECT_EQ(refusalAfter(", closes: go", ""),
+    EXPECT_EQ(siteRefusalAfter(", closes: go", ""),
               "site.yaml:27:5: contacts[0]: 'gate' asks for nothing; say what it does when it 'closes' or 'opens'");
-    EXPECT_EQ(refusalAfter("look_at: [0, 1, 0], throw", "look_at: [0, 4, 9], throw"),
+    EXPECT_EQ(siteRefusalAfter("look_at: [0, 1, 0], throw", "look_at: [0, 4, 9], throw"),
               "site.yaml:9:16: outputs[0].projector: target and position are the same point; move one of them");
-    EXPECT_EQ(refusal("fantascope: site\nversion: 1\noutputs: []\n"),
+    EXPECT_EQ(siteRefusal("fantascope: site\nversion: 1\noutputs: []\n"),
               "site.yaml:3:10: outputs: a list of at least 1 items is needed, here are 0");
     EXPECT_THAT(readSite("nowhere/site.yaml").error().message(), EndsWith("cannot be read: No such file or directory"));
 }
 
 TEST(Site, names_that_recordings_could_not_be_called_by_are_refused) {
-    EXPECT_EQ(refusalAfter("name: right", "name: ../right"),
+    EXPECT_EQ(siteRefusalAfter("name: right", "name: ../right"),
               "site.yaml:11:12: outputs[1].name: '../right' is no name: it may not contain a '/' or begin with a '.'");
 }
 
 // A show that names one of two things of one name would light the wrong one.
 TEST(Site, what_must_differ_is_refused_when_it_is_the_same) {
-    EXPECT_EQ(refusalAfter("name: right", "name: left"),
+    EXPECT_EQ(siteRefusalAfter("name: right", "name: left"),
               "site.yaml:11:12: outputs[1].name: left is taken by another output; each needs its own");
-    EXPECT_EQ(refusalAfter("number: 7", "number: 1"),
+    EXPECT_EQ(siteRefusalAfter("number: 7", "number: 1"),
               "site.yaml:14:14: universes[1].number: 1 is taken by another universe; each needs its own");
-    EXPECT_EQ(refusalAfter("name: lawn", "name: fountain"),
+    EXPECT_EQ(siteRefusalAfter("name: lawn", "name: fountain"),
               "site.yaml:18:12: fixtures[2].name: fountain is taken by another fixture; each needs its own");
-    EXPECT_EQ(refusalAfter("[warm, cold]", "[warm, warm]"),
+    EXPECT_EQ(siteRefusalAfter("[warm, cold]", "[warm, warm]"),
               "site.yaml:18:60: fixtures[2].channels[1]: warm is taken by another channel of this fixture; each needs its own");
-    EXPECT_EQ(refusalAfter("name: fog", "name: road-north"),
+    EXPECT_EQ(siteRefusalAfter("name: fog", "name: road-north"),
               "site.yaml:20:70: relays[1].name: road-north is taken by another relay; each needs its own");
-    EXPECT_EQ(refusalAfter("coil: 0", "coil: 4"),
+    EXPECT_EQ(siteRefusalAfter("coil: 0", "coil: 4"),
               "site.yaml:21:49: relays[2].coil: 4 is taken by another relay of its bank; each needs its own");
-    EXPECT_EQ(refusalAfter("blackout: 3", "blackout: 1"),
+    EXPECT_EQ(siteRefusalAfter("blackout: 3", "blackout: 1"),
               "site.yaml:24:30: cue_controller.buttons.blackout: 1 is taken by another button; each needs its own");
-    EXPECT_EQ(refusalAfter("input: 0", "input: 4"),
+    EXPECT_EQ(siteRefusalAfter("input: 0", "input: 4"),
               "site.yaml:28:30: contacts[1].input: 4 is taken by another contact of its bank; each needs its own");
 }
 
@@ -247,48 +250,48 @@ TEST(Site, what_must_differ_is_refused_when_it_is_the_same) {
 TEST(Site, no_bank_has_the_name_of_another_device) {
     for (const char* taken : {"street", "left", "universe 7", "desk 1", "cue controller", "camera"})
         EXPECT_EQ(
-            refusalAfter("name: doors", std::string("name: ") + taken),
+            siteRefusalAfter("name: doors", std::string("name: ") + taken),
             fmt::format("site.yaml:25:24: contact_banks[0].name: {} is taken by another device; each needs its own", taken));
 }
 
 TEST(Site, a_bank_is_named_where_there_are_several_and_holds_something) {
-    EXPECT_EQ(refusalAfter("name: fog, bank: stage", "name: fog"), "site.yaml:20:63: relays[1]: 'bank' is missing");
-    EXPECT_EQ(refusalAfter("bank: stage", "bank: stag"),
+    EXPECT_EQ(siteRefusalAfter("name: fog, bank: stage", "name: fog"), "site.yaml:20:63: relays[1]: 'bank' is missing");
+    EXPECT_EQ(siteRefusalAfter("bank: stage", "bank: stag"),
               "site.yaml:20:81: relays[1].bank: one of street, stage is needed, here is 'stag' (did you mean 'stage'?)");
-    EXPECT_EQ(refusalAfter("bank: stage", "bank: street"),
+    EXPECT_EQ(siteRefusalAfter("bank: stage", "bank: street"),
               "site.yaml:20:95: relays[1].coil: 4 is taken by another relay of its bank; each needs its own");
-    EXPECT_EQ(refusalAfter("fog, bank: stage, coil: 4", "fog, bank: street, coil: 1"),
+    EXPECT_EQ(siteRefusalAfter("fog, bank: stage, coil: 4", "fog, bank: street, coil: 1"),
               "site.yaml:19:60: relay_banks[1]: the bank 'stage' is empty; add to it under 'relays', or remove it");
-    EXPECT_EQ(refusalAfter("contact_banks: [{name: doors, device: {driver: simulated}}]\n", ""),
+    EXPECT_EQ(siteRefusalAfter("contact_banks: [{name: doors, device: {driver: simulated}}]\n", ""),
               "site.yaml:26:25: contacts[0].input: there is no bank; add it under 'contact_banks'");
 }
 
 // What files said as long as there could be one of each.
 TEST(Site, the_old_keys_of_a_bank_are_refused_with_what_to_write_now) {
-    EXPECT_EQ(refusalAfter("contact_banks: [{name: doors, device: {driver: simulated}}]\ncontacts:",
-                           "contact_bank:\n  device: {driver: simulated}\n  contacts:"),
+    EXPECT_EQ(siteRefusalAfter("contact_banks: [{name: doors, device: {driver: simulated}}]\ncontacts:",
+                               "contact_bank:\n  device: {driver: simulated}\n  contacts:"),
               "site.yaml:26:3: contact_bank: there may be several now; write 'contact_banks: [{name: NAME, device: ...}]', and "
               "'contacts' beside it instead of in it");
-    EXPECT_EQ(refusalAfter("relay_banks: [", "relay_bank: ["),
+    EXPECT_EQ(siteRefusalAfter("relay_banks: [", "relay_bank: ["),
               "site.yaml:19:13: relay_bank: there may be several now; write 'relay_banks: [{name: NAME, device: ...}]', and "
               "'relays' beside it instead of in it");
 }
 
 TEST(Site, fixtures_stay_in_their_universe_and_off_each_other) {
-    EXPECT_EQ(refusalAfter("address: 1, channels: [intensity]", "address: 511, channels: [intensity]"),
+    EXPECT_EQ(siteRefusalAfter("address: 1, channels: [intensity]", "address: 511, channels: [intensity]"),
               "site.yaml:17:5: fixtures[1]: 'sculpture' and 'fountain' overlap at slot 511 of universe 1; move one of them");
-    EXPECT_EQ(refusalAfter("address: 510", "address: 511"),
+    EXPECT_EQ(siteRefusalAfter("address: 510", "address: 511"),
               "site.yaml:17:5: fixtures[1]: 'fountain' would reach slot 513, a universe ends at 512; move its address");
-    EXPECT_EQ(refusalAfter("universe: 7, address", "universe: 8, address"),
+    EXPECT_EQ(siteRefusalAfter("universe: 7, address", "universe: 8, address"),
               "site.yaml:18:28: fixtures[2].universe: universe 8 is not declared; add it under 'universes'");
 }
 
 TEST(Site, corners_that_make_no_picture_are_refused) {
     EXPECT_EQ(
-        refusalAfter("[[10, 0], [640, 20], [630, 360], [0, 350]]", "[[10, 0], [640, 20], [0, 350], [630, 360]]"),
+        siteRefusalAfter("[[10, 0], [640, 20], [630, 360], [0, 350]]", "[[10, 0], [640, 20], [0, 350], [630, 360]]"),
         "site.yaml:8:14: outputs[0].corners: the corners are crossed or folded inwards; go round from the top left: top-right, "
         "bottom-right, bottom-left");
-    EXPECT_EQ(refusalAfter("[[10, 0], [640, 20], [630, 360], [0, 350]]", "[[10, 0], [640, 20], [630, 360]]"),
+    EXPECT_EQ(siteRefusalAfter("[[10, 0], [640, 20], [630, 360], [0, 350]]", "[[10, 0], [640, 20], [630, 360]]"),
               "site.yaml:8:14: outputs[0].corners: a list of exactly 4 items is needed, here are 3");
 }
 
@@ -323,7 +326,7 @@ TEST(Site, reads_how_a_projector_throws_its_part_of_a_canvas) {
 
 TEST(Site, what_cannot_be_projected_is_refused_with_place_and_advice) {
     const auto refusalOf = [](const std::string& keys) {
-        return refusalAfter("refresh_rate: 59.94}", "refresh_rate: 59.94, " + keys + "}");
+        return siteRefusalAfter("refresh_rate: 59.94}", "refresh_rate: 59.94, " + keys + "}");
     };
     EXPECT_THAT(refusalOf("corners: [[2000, 0], [2100, 0], [2100, 9], [2000, 9]]"),
                 EndsWith("nothing of the picture would be seen: its corners lie outside of the 1920 x 1080 pixels"));
@@ -344,9 +347,9 @@ TEST(Site, what_cannot_be_projected_is_refused_with_place_and_advice) {
 
 TEST(Site, a_surface_faces_its_projector) {
     EXPECT_EQ(
-        refusalAfter("normal: [0, 0, 0.5]", "normal: [0, 0, -1]"),
+        siteRefusalAfter("normal: [0, 0, 0.5]", "normal: [0, 0, -1]"),
         "site.yaml:4:5: outputs[0]: the projector stands behind its surface; turn the surface's normal towards the projector");
-    EXPECT_EQ(refusalAfter("normal: [0, 0, 0.5]", "normal: [0, 0, 0]"),
+    EXPECT_EQ(siteRefusalAfter("normal: [0, 0, 0.5]", "normal: [0, 0, 0]"),
               "site.yaml:10:14: outputs[0].surface: the normal has no length; give the direction that the surface faces");
 }
 
@@ -355,10 +358,10 @@ TEST(Site, looking_straight_down_needs_up) {
     const std::string_view aim = "position: [0, 4, 9], look_at: [0, 1, 0]";
     const std::string_view surface = "normal: [0, 0, 0.5]";
     const std::string flat = replaced(std::string(kSite), surface, "normal: [0, 1, 0]");
-    EXPECT_EQ(refusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0]")),
+    EXPECT_EQ(siteRefusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0]")),
               "site.yaml:9:16: outputs[0].projector: 'up' is zero or along the view; give another 'up'");
-    EXPECT_EQ(refusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0], up: [0, 0, -1]")), "accepted");
-    EXPECT_EQ(refusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0], up: [0, 0, 0]")),
+    EXPECT_EQ(siteRefusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0], up: [0, 0, -1]")), "accepted");
+    EXPECT_EQ(siteRefusal(replaced(flat, aim, "position: [0, 4, 0], look_at: [0, 0, 0], up: [0, 0, 0]")),
               "site.yaml:9:16: outputs[0].projector: 'up' is zero or along the view; give another 'up'");
 }
 

@@ -1,4 +1,4 @@
-#include "show/wind.h"
+#include "show/course/wind.h"
 
 #include "core/random.h"
 

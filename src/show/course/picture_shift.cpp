@@ -1,4 +1,4 @@
-#include "show/picture_shift.h"
+#include "show/course/picture_shift.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

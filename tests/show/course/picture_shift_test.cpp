@@ -1,6 +1,6 @@
 // Corrections of where an output's picture stands: inputs that move it slowly, within bounds.
 
-#include "show/picture_shift.h"
+#include "show/course/picture_shift.h"
 
 #include "show/input.h"
 #include "show/playback.h"

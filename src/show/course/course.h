@@ -9,8 +9,25 @@ namespace fantascope::show {
 // How a value moves from one to another.
 enum class Curve {
     Linear,
-    Smooth  // begins and ends at rest: 3 s^2 - 2 s^3 of the share s of its time
+    Smooth,     // begins and ends at rest: 3 s^2 - 2 s^3 of the share s of its time
+    SlowStart,  // begins at rest: s^2
+    SlowEnd     // ends at rest: s (2 - s)
 };
+
+// How much of a change has happened after the share `s`, 0..1, of its time.
+constexpr float along(Curve curve, float s) {
+    switch (curve) {
+        case Curve::Linear:
+            break;
+        case Curve::Smooth:
+            return s * s * (3 - 2 * s);
+        case Curve::SlowStart:
+            return s * s;
+        case Curve::SlowEnd:
+            return s * (2 - s);
+    }
+    return s;
+}
 
 // The course of one value in time: it is `from` until `start`, and `to` from `start` + `length` on.
 // Value type; thread: reentrant.
@@ -28,10 +45,7 @@ struct Course {
         if (time <= start) return 0;
         return static_cast<float>(seconds(time - start) / seconds(length));
     }
-    float valueAt(Time time) const {
-        const float share = shareAt(time);
-        return std::lerp(from, to, curve == Curve::Linear ? share : share * share * (3 - 2 * share));
-    }
+    float valueAt(Time time) const { return std::lerp(from, to, along(curve, shareAt(time))); }
     friend bool operator==(const Course&, const Course&) = default;
 };
 

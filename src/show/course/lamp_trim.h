@@ -1,6 +1,6 @@
 #pragma once
 
-#include "show/course.h"
+#include "show/course/course.h"
 
 #include "core/clock.h"
 

@@ -1,6 +1,6 @@
 // Trims of the site's own lamps: inputs that let them give less, slowly and within bounds.
 
-#include "show/lamp_trim.h"
+#include "show/course/lamp_trim.h"
 
 #include "show/input.h"
 #include "show/patch.h"

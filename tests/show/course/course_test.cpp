@@ -1,4 +1,4 @@
-#include "show/course.h"
+#include "show/course/course.h"
 
 #include <gmock/gmock.h>
 

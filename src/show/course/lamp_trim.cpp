@@ -1,4 +1,4 @@
-#include "show/lamp_trim.h"
+#include "show/course/lamp_trim.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,162 @@
+#include "show/cue.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fantascope::show {
+
+namespace {
+
+// Limits in seconds.
+constexpr double kLongestFade = 3600;
+constexpr double kLongestWait = 86400;
+constexpr CueNumber kThousandths = 1000;
+constexpr double kHighestNumber = 99999;
+
+const std::initializer_list<std::string_view> kCurves = {"linear", "smooth", "slow_start", "slow_end"};
+
+Result<Time> readTime(const ConfigNode& node, double longest) { return fromSeconds(TRY(node.number(0, longest, "s"))); }
+
+Result<Fade> readFade(const ConfigNode& node, std::int64_t version) {
+    if (!node.isMap()) return Fade(TRY(readTime(node, kLongestFade)));
+    TRY(needsTracking(node, "in", version));
+    Fade fade;
+    ConfigFields fields(node);
+    fields.time("in", fade.in, 0, kLongestFade);
+    fields.time("out", fade.out, 0, kLongestFade);
+    fields.optional().choice("curve", fade.curve, kCurves);
+    TRY(fields.finish());
+    return fade;
+}
+
+// From when the cue is entered; or, as {after_fade: SECONDS}, from when its look is whole.
+struct Follow {
+    Time time{};
+    bool isAfterFade = false;
+};
+Result<Follow> readFollow(const ConfigNode& node, std::int64_t version) {
+    if (!node.isMap()) return Follow{TRY(readTime(node, kLongestWait)), false};
+    TRY(needsTracking(node, "after_fade", version));
+    Follow follow{Time{}, true};
+    ConfigFields fields(node);
+    fields.time("after_fade", follow.time, 0, kLongestWait);
+    TRY(fields.finish());
+    return follow;
+}
+
+Result<CueNumber> readNumber(const ConfigNode& node) {
+    const double number = TRY(node.number(0, kHighestNumber)) * kThousandths;
+    if (std::abs(number - std::round(number)) > 1e-6 || std::round(number) == 0)
+        return node.error("a cue's number is above 0 and has at most three decimal places");
+    return static_cast<CueNumber>(std::llround(number));
+}
+
+Result<CuePart::Name> readName(const ConfigNode& node) { return CuePart::Name{TRY(node.text()), node.here(), {}}; }
+
+Result<CuePart> readPart(const ConfigNode& node, const CueRules& rules) {
+    CuePart part{.at = node.here(), .wait = {}, .fade = {}, .outputs = {}, .fixtures = {}, .relays = {}, .sources = {}};
+    ConfigFields fields(node);
+    fields.optional().list("outputs", part.outputs, readName, 1);
+    fields.optional().list(
+        "sources", part.sources,
+        [&](const ConfigNode& item) -> Result<Named<SourceId>> {
+            const std::size_t source = TRY(item.choice(rules.sources));
+            return Named<SourceId>{rules.sources[source], item.here(), rules.ids[source]};
+        },
+        1);
+    fields.optional().list("fixtures", part.fixtures, readName, 1);
+    fields.optional().list("relays", part.relays, readName, 1);
+    fields.optional().read("wait", part.wait, [](const ConfigNode& value) { return readTime(value, kLongestWait); });
+    fields.optional().read("fade", part.fade, [&](const ConfigNode& value) { return readFade(value, rules.version); });
+    TRY(fields.finish());
+    if (part.outputs.empty() && part.sources.empty() && part.fixtures.empty() && part.relays.empty())
+        return node.error("this part names nothing; add 'outputs', 'sources', 'fixtures' or 'relays'");
+    if (!part.wait && !part.fade) return node.error("this part moves as the rest of its cue does; add a 'wait' or a 'fade'");
+    return part;
+}
+
+Result<Cue> readCue(const ConfigNode& node, const CueRules& rules) {
+    Cue cue;
+    cue.blocks = rules.version < kTrackingVersion;
+    std::optional<Follow> follow;
+    ConfigFields fields(node);
+    const auto since2 = [&](std::string_view key, auto& target, auto parse) {
+        readTracking(rules.version, fields, key, target, parse);
+    };
+    fields.text("name", cue.name);
+    since2("number", cue.number, readNumber);
+    since2("note", cue.note, [](const ConfigNode& value) { return value.text(); });
+    fields.read("look", cue.look, [&](const ConfigNode& value) { return value.choice(rules.looks); });
+    since2("wait", cue.wait, [](const ConfigNode& value) { return readTime(value, kLongestWait); });
+    fields.read("fade", cue.fade, [&](const ConfigNode& value) { return readFade(value, rules.version); });
+    fields.optional().read("follow", follow, [&](const ConfigNode& value) { return readFollow(value, rules.version); });
+    since2("block", cue.blocks, [](const ConfigNode& value) { return value.boolean(); });
+    since2("parts", cue.parts, [&](const ConfigNode& list) -> Result<std::vector<CuePart>> {
+        std::vector<CuePart> parts;
+        ConfigFaults faults;
+        for (const ConfigNode& item : TRY(list.items(1)))
+            faults.take(readPart(item, rules), [&](CuePart part) { parts.push_back(std::move(part)); });
+        TRY(faults.result());
+        return parts;
+    });
+    TRY(fields.finish());
+    if (follow) cue.follow = follow->time + (follow->isAfterFade ? cue.length() : Time{});
+    return cue;
+}
+
+// Gives a cue without a number the next whole one. Error: the number is not above that of the cue
+// before.
+Result<void> giveNumber(Cue& cue, CueNumber before, const ConfigNode& at) {
+    if (cue.number == 0) cue.number = (before / kThousandths + 1) * kThousandths;
+    if (cue.number > before) return {};
+    return at.error(fmt::format("cue {} comes after cue {}; numbers go up from cue to cue", textOf(cue.number), textOf(before)));
+}
+
+}  // namespace
+
+std::string textOf(CueNumber number) { return shortest(static_cast<double>(number) / static_cast<double>(kThousandths)); }
+
+std::string placeOf(CueNumber number, int cue, int cues) {
+    const std::string place = fmt::format("{} of {}", cue + 1, cues);
+    return number == (cue + 1) * kThousandths ? place : fmt::format("{} ({})", textOf(number), place);
+}
+
+Result<void> needsTracking(const ConfigNode& node, std::string_view what, std::int64_t version) {
+    if (version >= kTrackingVersion) return {};
+    return node.error(
+        fmt::format("'{}' needs 'version: {}' in this file; docs/show-format.md says what that changes", what, kTrackingVersion));
+}
+
+Time Cue::length() const {
+    Time end = wait + fade.longer();
+    for (const CuePart& part : parts) end = std::max(end, part.wait.value_or(wait) + part.fade.value_or(fade).longer());
+    return end;
+}
+
+Result<std::vector<Cue>> readCues(const ConfigNode& node, const CueRules& rules) {
+    std::vector<Cue> cues;
+    const auto items = TRY(node.items(1));
+    ConfigFaults faults;
+    for (const ConfigNode& item : items)
+        faults.take(readCue(item, rules), [&](Cue cue) {
+            const auto same = [&](const Cue& other) { return other.name == cue.name; };
+            if (std::any_of(cues.begin(), cues.end(), same))
+                faults.add(item.error(fmt::format("another cue is called '{}'; each needs its own name", cue.name)));
+            if (const auto given = giveNumber(cue, cues.empty() ? 0 : cues.back().number, item); !given)
+                faults.add(given.error());
+            cues.push_back(std::move(cue));
+        });
+    TRY(faults.result());
+    if (cues.back().follow && !rules.loops)
+        return items.back().error(fmt::format("no cue comes after this one; remove its 'follow'{}",
+                                              rules.version < kTrackingVersion ? "" : ", or add 'at_end: loop' to the show"));
+    const auto takesTime = [](const Cue& cue) { return !cue.follow || *cue.follow > Time{}; };
+    if (rules.loops && std::ranges::none_of(cues, takesTime))
+        return node.error("a loop of cues that all follow at once would never end; give one of them a longer 'follow'");
+    return cues;
+}
+
+}  // namespace fantascope::show

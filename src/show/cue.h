@@ -1,0 +1,88 @@
+#pragma once
+
+#include "show/cue_list.h"
+
+#include "core/clock.h"
+#include "core/config/config.h"
+#include "core/config/file_place.h"
+#include "core/result.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fantascope::show {
+
+// What the show asks of a thing of the site, which it calls by name.
+template <class Wish>
+struct Named {
+    std::string name;
+    FilePlace at;  // for an error about the name
+    Wish wish;
+};
+
+// The number of a cue, in thousandths: 2500 is cue 2.5.
+using CueNumber = std::int64_t;
+// "2.5".
+std::string textOf(CueNumber number);
+// Where a cue is in its list: "3 of 7", or "2.5 (3 of 7)" where its number says something else.
+std::string placeOf(CueNumber number, int cue, int cues);
+
+// Things that move in their own time, as their author names them.
+struct CuePart {
+    struct Nothing {};
+    using Name = Named<Nothing>;
+    FilePlace at;
+    std::optional<Time> wait;  // none: that of the cue
+    std::optional<Fade> fade;
+    std::vector<Name> outputs, fixtures, relays;  // outputs, or canvases
+    std::vector<Named<SourceId>> sources;         // of `outputs`, the layers of these sources alone; without `outputs`, of all
+};
+
+// One step of the show, as its author wrote it.
+struct Cue {
+    std::string name;
+    CueNumber number = 0;
+    std::string note;      // for the operator; may be empty
+    std::size_t look = 0;  // index into Show::looks
+    Time wait{};           // from when it is entered until it begins to change what is seen
+    Fade fade;
+    std::optional<Time> follow;  // from when it is entered until the next one is
+    bool blocks = true;          // what the look does not name is dark; else it stays
+    std::vector<CuePart> parts;
+
+    // From when it is entered until its look is whole.
+    Time length() const;
+};
+
+// What cues are read with.
+struct CueRules {
+    std::int64_t version = 1;        // of the file
+    bool loops = false;              // the first cue comes after the last
+    std::vector<std::string> looks;  // of the file, in its order
+    std::vector<std::string> sources;
+    std::vector<SourceId> ids;  // of `sources`
+};
+
+// From this version of a show file on, cues need not block, and have all their keys.
+constexpr std::int64_t kTrackingVersion = 2;
+
+// Error: `what` stands at `node`, but not in files of `version`.
+Result<void> needsTracking(const ConfigNode& node, std::string_view what, std::int64_t version);
+
+// Reads a key, which may be absent and stands in files since kTrackingVersion alone.
+template <class Value, class Parse>
+void readTracking(std::int64_t version, ConfigFields& fields, std::string_view key, Value& target, Parse parse) {
+    fields.optional().read(key, target, [&](const ConfigNode& node) -> Result<Value> {
+        TRY(needsTracking(node, key, version));
+        return parse(node);
+    });
+}
+
+// Reads the cues of a show file. Error: file, line, column, key, advice, for all faults.
+Result<std::vector<Cue>> readCues(const ConfigNode& node, const CueRules& rules);
+
+}  // namespace fantascope::show

@@ -1,0 +1,52 @@
+#include "show/cue_list.h"
+
+#include <set>
+
+namespace fantascope::show {
+
+std::vector<Movement> CueList::Cue::movements(Time entered, Time at, Time least) const {
+    // When a part of the cue begins to move, and how.
+    struct Timing {
+        Time start;
+        Fade fade;
+    };
+    const auto timingOf = [&](Time waits, const Fade& own) {
+        const Time begun = entered + waits;
+        if (begun >= at) return Timing{begun, own};
+        const auto rest = [&](Time length) { return std::max(begun + length - at, least); };
+        return Timing{at, Fade(rest(own.in), rest(own.out), own.curve)};
+    };
+    const Timing others = timingOf(wait, fade);
+    std::vector<Timing> outputs(look.outputs.size(), others), levels(look.levels.size(), others),
+        relays(look.relays.size(), others);
+    struct Layer {
+        Part::Layer which;
+        Timing timing;
+    };
+    std::vector<Layer> layers;
+    std::set<Time> starts = {others.start};
+    for (const Part& part : parts) {
+        const Timing own = timingOf(part.wait, part.fade);
+        for (const std::size_t output : part.outputs) outputs[output] = own;
+        for (const std::size_t level : part.levels) levels[level] = own;
+        for (const std::size_t relay : part.relays) relays[relay] = own;
+        for (const Part::Layer& layer : part.layers) layers.push_back({layer, own});
+        starts.insert(own.start);
+    }
+
+    std::vector<Movement> movements;
+    for (const Time start : starts) {
+        const auto fadeNow = [&](const Timing& timing) {
+            return timing.start == start ? std::optional(timing.fade) : std::nullopt;
+        };
+        Movement& movement = movements.emplace_back(Movement{.start = start});
+        for (const Timing& timing : outputs) movement.outputs.push_back(fadeNow(timing));
+        for (const Timing& timing : levels) movement.levels.push_back(fadeNow(timing));
+        for (const Timing& timing : relays) movement.relays.push_back(timing.start == start);
+        for (const Layer& layer : layers)
+            movement.layers.push_back({layer.which.output, layer.which.source, fadeNow(layer.timing)});
+    }
+    return movements;
+}
+
+}  // namespace fantascope::show

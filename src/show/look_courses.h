@@ -1,0 +1,63 @@
+#pragma once
+
+#include "show/course/course.h"
+#include "show/course/wind.h"
+#include "show/cue_list.h"
+#include "show/show_state.h"
+
+#include "core/clock.h"
+#include "core/wind.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fantascope::show {
+
+// How everything that is seen moves: the courses of each layer, picture, channel and wind, and the
+// state of each relay. A layer that only adds its light has a course of its own. Layers of a
+// picture that is composed in order come and go as a whole. Value type; thread: reentrant.
+class LookCourses {
+public:
+    // A look that has been seen forever, in the usual wind.
+    explicit LookCourses(const Look& look);
+
+    // From `movement.start` on, the things that it moves go from what is seen at that moment to
+    // `look` and `winds`. All others go on as before. Relays switch at once. A source that is seen
+    // already does not begin again. `winds`: one for each output; a missing one is the usual wind.
+    LookCourses moved(const Movement& movement, const Look& look, std::span<const WindWish> winds) const;
+
+    // Room for the layers and pictures of one output, so that lookAt() need not allocate.
+    struct Room {
+        std::size_t layers = 0, pictures = 0;
+    };
+    // What is seen at `time`, not before the start of the last movement.
+    void lookAt(Time time, const Room& room, Look& out) const;
+    // The winds at `time`, one for each output; `lull` is Gusts::lullAt(time).
+    void windsAt(Time time, double lull, std::vector<Wind>& out) const;
+
+private:
+    struct LayerCourse {
+        SourceId source;
+        Course opacity;
+        Time begun{};
+    };
+    struct PictureCourse {
+        std::vector<LayerState> layers;
+        Course share;
+    };
+    struct OutputCourse {
+        std::vector<LayerCourse> layers;
+        std::vector<PictureCourse> pictures;
+        WindCourse wind{WindWish()};
+    };
+    static OutputCourse moved(const OutputCourse& before, const OutputState& from, const OutputState& to,
+                              const Movement& movement, std::size_t output);
+
+    std::vector<OutputCourse> outputs_;
+    std::vector<Course> levels_;
+    std::vector<std::uint8_t> relays_;
+};
+
+}  // namespace fantascope::show
