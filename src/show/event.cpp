@@ -25,6 +25,10 @@ struct Teller {
     std::string operator()(const event::CueEntered& entered) const {
         return fmt::format("cue {}: {}", placeOf(entered.number, entered.cue, entered.cues), entered.name);
     }
+    std::string operator()(const event::LockChanged& change) const {
+        return change.locked ? "locked: GO and back of hand controller, contacts and windows are ignored"
+                             : "unlocked: GO and back are taken from everywhere";
+    }
     std::string operator()(const event::BlackoutChanged& change) const {
         return change.dark ? "blackout: pictures and lamps are dark" : "light: the blackout is over";
     }

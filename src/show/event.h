@@ -30,6 +30,9 @@ struct CueEntered {
 struct BlackoutChanged {
     bool dark = false;
 };
+struct LockChanged {
+    bool locked = false;
+};
 // A person took over from the schedule of a rehearsal.
 struct ScheduleEnded {};
 // Somebody pressed the key that ends the run. The run ends if it is pressed again within
@@ -112,7 +115,7 @@ struct SiteNotSaved {
 };
 
 using What =
-    std::variant<InputDecided, CueEntered, BlackoutChanged, ScheduleEnded, QuitAsked, FaultBegan, FaultEnded, SendersChanged,
+    std::variant<InputDecided, CueEntered, BlackoutChanged, LockChanged, ScheduleEnded, QuitAsked, FaultBegan, FaultEnded, SendersChanged,
                  PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear, CauseBegan, CauseEnded,
                  PatternFitted, LampsTrimmed, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 

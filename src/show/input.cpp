@@ -13,11 +13,11 @@
 namespace fantascope::show {
 namespace {
 
-constexpr std::array<std::string_view, 11> kKinds = {"go",     "back",    "jump",     "blackout",    "dark", "light",
-                                                     "revise", "correct", "exchange", "corrections", "trim"};
+constexpr std::array<std::string_view, 12> kKinds = {"go",     "back",    "jump",     "blackout",    "dark", "light",
+                                                     "revise", "correct", "exchange", "corrections", "trim", "lock"};
 constexpr std::array<std::string_view, 7> kSources = {"start",  "controller", "contact", "terminal",
                                                       "screen", "schedule",   "camera"};
-static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Trim) + 1);
+static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Lock) + 1);
 static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::Camera) + 1);
 
 bool hasRevision(Input::Kind kind) { return kind == Input::Kind::Revise || kind == Input::Kind::Exchange; }
@@ -77,6 +77,8 @@ std::string_view nameOf(Outcome outcome) {
             return "ignored: corrections are off";
         case Outcome::RelaysHeld:
             return "ignored: the relays stay as they are for now";
+        case Outcome::Locked:
+            return "ignored: GO and back are locked";
     }
     return "unknown";
 }

@@ -26,7 +26,8 @@ struct Input {
         Correct,      // move the picture of output `which` to `shift`
         Exchange,     // exchange `revision` of the source with the id `which` (PatternCourses)
         Corrections,  // toggle: take all corrections back and ignore further ones, or allow them again
-        Trim          // trim the site's lamps to `trim`
+        Trim,         // trim the site's lamps to `trim`
+        Lock          // toggle: ignore GO, back and jumps of hand controller, contacts and windows, or take them again
     };
     // Where the input came from.
     enum class Source {
@@ -62,7 +63,8 @@ enum class Outcome {
     NoSuchPattern,
     TooFar,
     CorrectionsOff,
-    RelaysHeld
+    RelaysHeld,
+    Locked
 };
 // The outcome in words for the operator: "taken", "ignored: ...".
 std::string_view nameOf(Outcome outcome);

@@ -22,6 +22,11 @@ const Event* lastBy(Time time, const std::vector<Event>& events) {
     return next == events.begin() ? nullptr : &*std::prev(next);
 }
 
+// Whether something that changes at each of `times` in turn, and is off at first, is on.
+bool isOnAt(Time time, const std::vector<Time>& times) {
+    return (std::upper_bound(times.begin(), times.end(), time) - times.begin()) % 2 == 1;
+}
+
 bool isOfOneSite(const Look& a, const Look& b) {
     return a.outputs.size() == b.outputs.size() && a.levels.size() == b.levels.size() && a.relays.size() == b.relays.size();
 }
@@ -84,6 +89,7 @@ Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revis
     newest_ = std::max(newest_, input.at);
     const Time at = newest_;
     foresee(at);
+    if (isLockedOut(input, at)) return Outcome::Locked;
     const Entry& now = entryAt(at);
     const int cue = now.cue, last = static_cast<int>(now.list->cues.size()) - 1;
     switch (input.kind) {
@@ -127,6 +133,9 @@ Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revis
             shifts_.takeBack(at, now.list->shiftSpeed);
             patterns_.takeBack(at, now.list->exchangeFade);
             trims_.want({}, at, now.list->trim.speed);
+            break;
+        case Input::Kind::Lock:
+            locks_.push_back(at);
             break;
         case Input::Kind::Trim:
             if (const Outcome outcome = trim(input.trim, *now.list, at); outcome != Outcome::Taken) return outcome;
@@ -286,6 +295,7 @@ void Playback::stateAt(Time time, ShowState& out) const {
         for (LayerState& layer : output.layers) layer.exchange = patterns_.at(layer.source, time);
     const Shutter* shutter = lastBy(time, shutters_);
     out.blackout = shutter && shutter->dark;
+    out.locked = isOnAt(time, locks_);
     if (const float light = lightAt(time); light < 1) dim(out, light);
     out.inputs = static_cast<std::uint64_t>(std::upper_bound(taken_.begin(), taken_.end(), time) - taken_.begin());
 }
@@ -295,8 +305,14 @@ const Playback::Entry& Playback::entryAt(Time time) const {
     return entry != nullptr ? *entry : entries_.front();
 }
 
-bool Playback::correctsAt(Time time) const {
-    return (std::upper_bound(corrections_.begin(), corrections_.end(), time) - corrections_.begin()) % 2 == 0;
+bool Playback::correctsAt(Time time) const { return !isOnAt(time, corrections_); }
+
+bool Playback::isLockedOut(const Input& input, Time at) const {
+    using Kind = Input::Kind;
+    using Source = Input::Source;
+    const bool entersCue = input.kind == Kind::Go || input.kind == Kind::Back || input.kind == Kind::Jump;
+    const bool isByHand = input.source == Source::Controller || input.source == Source::Contact || input.source == Source::Screen;
+    return entersCue && isByHand && isOnAt(at, locks_);
 }
 
 // The factor that a blackout applies to pictures and levels. It moves at a constant rate, so that a

@@ -36,6 +36,8 @@ namespace fantascope::show {
 //   cue.
 // - A blackout dims pictures and levels to zero in `blackoutFade`, over whatever is running. A second one, or Light, ends it.
 //   The cues continue underneath. Blackout does not switch relays: a dark picture is no reason for dark streets.
+// - A lock ignores GO, back and jumps that come from the hand controller, a contact or a window. A blackout is taken all the
+//   same, for it may be needed, and harms nothing.
 // - After a revision the cue of the same name continues. What is seen moves to the cue's new look in the rest of its new
 //   fade, but in no less than the new `blackoutFade`. Its follow counts from when the cue was entered. If the cue is gone,
 //   what is seen stays until an input comes. GO then enters the cue after the nearest previous one that is still there. The
@@ -120,6 +122,7 @@ private:
     Outcome revise(std::shared_ptr<const CueList> list, Time at);
     float lightAt(Time time) const;
     bool correctsAt(Time time) const;
+    bool isLockedOut(const Input& input, Time at) const;
 
     Gusts gusts_;                 // of the first list's seed; a revision does not change them
     std::set<SourceId> sources_;  // of all looks: at most so many layers add their light on one output
@@ -132,6 +135,7 @@ private:
     PatternCourses patterns_;
     TrimCourses trims_;
     std::vector<Time> corrections_;  // when corrections were forbidden and allowed, in turn
+    std::vector<Time> locks_;        // when the lock was closed and opened, in turn
     std::vector<Time> taken_;        // when each input took effect
     Time newest_ = Time::min();      // the latest time of all inputs, including ignored ones
 };

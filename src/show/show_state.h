@@ -72,6 +72,7 @@ struct ShowState : Look {
     Time time{};                       // show time
     int cue = -1;                      // index into Show::cues of the current cue; -1 before the first
     bool blackout = false;             // pictures and fixtures are held dark
+    bool locked = false;               // GO, back and jumps are taken from the terminal and the show itself alone
     std::uint64_t inputs = 0;          // how many inputs have taken effect so far
     friend bool operator==(const ShowState&, const ShowState&) = default;
 };

@@ -43,6 +43,11 @@ public:
     bool apply(const Input& input) {
         newest_ = std::max(newest_, input.at);
         advance(newest_);
+        const bool entersCue =
+            input.kind == Input::Kind::Go || input.kind == Input::Kind::Back || input.kind == Input::Kind::Jump;
+        if (isLocked_ && entersCue && input.source == Input::Source::Controller) return false;
+        if (input.kind == Input::Kind::Lock) isLocked_ = !isLocked_;
+        if (input.kind == Input::Kind::Lock) return true;
         const int cue = entered_.empty() ? -1 : entered_.back().cue, last = static_cast<int>(list_.cues.size()) - 1;
         int wanted = 0;
         switch (input.kind) {
@@ -140,6 +145,7 @@ private:
     std::vector<Entered> entered_;
     std::vector<Shutter> shutters_;
     Time newest_ = Time::min();
+    bool isLocked_ = false;
 };
 
 // The part of a cue that a thing is in; the cue itself if it is in none.
@@ -216,11 +222,14 @@ CueList anyList() {
 }
 
 Input anyInput(Time after) {
-    constexpr Input::Kind kKinds[] = {Input::Kind::Go,   Input::Kind::Go,       Input::Kind::Go,   Input::Kind::Back,
-                                      Input::Kind::Jump, Input::Kind::Blackout, Input::Kind::Dark, Input::Kind::Light};
+    constexpr Input::Kind kKinds[] = {Input::Kind::Go,   Input::Kind::Go,    Input::Kind::Go,
+                                      Input::Kind::Back, Input::Kind::Jump,  Input::Kind::Blackout,
+                                      Input::Kind::Dark, Input::Kind::Light, Input::Kind::Lock};
+    constexpr Input::Source kSources[] = {Input::Source::Controller, Input::Source::Terminal};
     // One that comes a little too late takes effect when it comes.
     const Time at = after + *rc::gen::element(-50, 0, 0, 100, 299, 300, 500, 1000, 2500) * 1ms;
-    return {at, kKinds[*rc::gen::inRange(0, 8)], *rc::gen::inRange(-1, 7)};
+    const Input::Kind kind = kKinds[*rc::gen::inRange(0, 9)];
+    return {at, kind, *rc::gen::inRange(-1, 7), kSources[*rc::gen::inRange(0, 2)]};
 }
 
 float opacityOf(const ShowState& state, std::size_t output, SourceId source) {

@@ -36,6 +36,8 @@ TEST(Events, are_heard_by_every_listener_whenever_it_listens) {
 TEST(Events, say_one_sentence_each) {
     const auto said = [](const event::What& what) { return sentenceOf(Event{{}, what}); };
     EXPECT_EQ(said(event::InputDecided{{0, {}, Outcome::AtLastCue}}), "ignored: this is the last cue");
+    EXPECT_EQ(said(event::CueEntered{2, 7, "Dusk", 2500}), "cue 2.5 (3 of 7): Dusk");
+    EXPECT_EQ(said(event::LockChanged{true}), "locked: GO and back of hand controller, contacts and windows are ignored");
     EXPECT_EQ(said(event::BlackoutChanged{false}), "light: the blackout is over");
     EXPECT_EQ(said(event::ScheduleEnded{}), "you have the controller");
     EXPECT_EQ(said(event::QuitAsked{"q", 3s}), "the show goes on; q again within 3 s ends it");

@@ -179,6 +179,25 @@ TEST(Playback, a_picture_that_stays_keeps_its_light_where_in_and_out_differ) {
         EXPECT_THAT(lookOf(playback, time).outputs[0].pictures, ElementsAre(ComposedPicture{0, 1, 1.0f})) << seconds(time);
 }
 
+// Example failures: the terminal is locked, too, and nobody can unlock; a lock keeps the wall from
+// being made dark; a cue does not follow any more.
+TEST(Playback, a_lock_takes_cues_from_the_terminal_and_the_show_alone) {
+    using Source = Input::Source;
+    Playback playback = after(followingCues(), {go(0s), {1s, Input::Kind::Lock}});
+    EXPECT_FALSE(stateOf(playback, 1s - 1ns).locked);
+    EXPECT_TRUE(stateOf(playback, 1s).locked);
+    for (const Source source : {Source::Controller, Source::Contact, Source::Screen}) {
+        EXPECT_EQ(playback.apply({.at = 2s, .kind = Input::Kind::Go, .source = source}), Outcome::Locked);
+        EXPECT_EQ(playback.apply({.at = 2s, .kind = Input::Kind::Back, .source = source}), Outcome::Locked);
+        EXPECT_EQ(playback.apply({.at = 2s, .kind = Input::Kind::Jump, .cue = 2, .source = source}), Outcome::Locked);
+    }
+    EXPECT_EQ(playback.apply({.at = 2s, .kind = Input::Kind::Dark, .source = Source::Controller}), Outcome::Taken);
+    EXPECT_EQ(stateOf(playback, 3s).cue, 1) << "the second follows";
+    EXPECT_EQ(playback.apply({.at = 4s, .kind = Input::Kind::Go, .source = Source::Terminal}), Outcome::Taken);
+    EXPECT_EQ(playback.apply({.at = 5s, .kind = Input::Kind::Lock}), Outcome::Taken);
+    EXPECT_EQ(playback.apply({.at = 5s, .kind = Input::Kind::Back, .source = Source::Controller}), Outcome::Taken);
+}
+
 // A slide over a light must not go before the light does: the picture fades as one.
 TEST(Playback, a_picture_of_blended_layers_comes_and_goes_as_a_whole) {
     CueList list = threeCues();

@@ -44,6 +44,9 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
         case RunKey::Action::Corrections:
             inputs_.submit({.at = showTime, .kind = Kind::Corrections, .source = source});
             return;
+        case RunKey::Action::Lock:
+            inputs_.submit({.at = showTime, .kind = Kind::Lock, .source = source});
+            return;
         case RunKey::Action::Pictures:
             return actions_.takePictures();
         case RunKey::Action::Quit:

@@ -11,7 +11,7 @@ namespace fantascope::app {
 
 // A key, at the terminal or at a display's window, and its action while a show runs.
 struct RunKey {
-    enum class Action { Go, Back, Blackout, Pictures, SetUp, Corrections, Quit };
+    enum class Action { Go, Back, Blackout, Pictures, SetUp, Corrections, Lock, Quit };
     char letter;
     std::string_view name;  // on the keyboard
     std::string_view does;
@@ -19,13 +19,14 @@ struct RunKey {
 };
 
 // All keys. README.md has the same table.
-constexpr std::array<RunKey, 7> kRunKeys = {
+constexpr std::array<RunKey, 8> kRunKeys = {
     {{' ', "space", "GO: the next cue", RunKey::Action::Go},
      {'b', "b", "back: the cue before", RunKey::Action::Back},
      {'0', "0", "blackout; again: light", RunKey::Action::Blackout},
      {'s', "s", "take a picture of every output", RunKey::Action::Pictures},
      {'e', "e", "set the outputs up; again: done", RunKey::Action::SetUp},
      {'c', "c", "take the camera's corrections back; again: allow them", RunKey::Action::Corrections},
+     {'l', "l", "lock GO and back of hand controller, contacts and windows; again: unlock", RunKey::Action::Lock},
      {'q', "q", "end; `run` asks for it twice", RunKey::Action::Quit}}};
 
 std::optional<RunKey::Action> actionOf(char letter);

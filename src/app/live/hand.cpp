@@ -53,6 +53,8 @@ void Hand::tick(Time moment) {
     light(showTime);
     if (std::exchange(blackout_, state_.blackout) != state_.blackout)
         events_.append({showTime, show::event::BlackoutChanged{state_.blackout}});
+    if (std::exchange(locked_, state_.locked) != state_.locked)
+        events_.append({showTime, show::event::LockChanged{state_.locked}});
     if (state_.cue == cue_) return;
     cue_ = state_.cue;
     const show::Cue& cue = show_.cues[static_cast<std::size_t>(cue_)];
@@ -66,9 +68,9 @@ ButtonLight Hand::lightOf(show::Button button, Time showTime) const {
         switch (button) {
             case show::Button::Go:
                 if (replica_.playback().fadesAt(showTime)) return State::Active;
-                return lit(replica_.playback().cues().after(state_.cue).has_value(), State::Ready);
+                return lit(!state_.locked && replica_.playback().cues().after(state_.cue).has_value(), State::Ready);
             case show::Button::Back:
-                return lit(state_.cue > 0, State::Ready);
+                return lit(!state_.locked && state_.cue > 0, State::Ready);
             case show::Button::Blackout:
                 return lit(state_.blackout, State::Alarm);
             case show::Button::Edit:

@@ -50,7 +50,7 @@ private:
     show::ShowState state_;
     std::vector<ButtonLight> lights_;  // of Site::buttons, as last sent to the controller
     int cue_ = -1;
-    bool blackout_ = false;
+    bool blackout_ = false, locked_ = false;
 };
 
 }  // namespace fantascope::app

@@ -18,12 +18,12 @@ constexpr Time kRedraw = std::chrono::milliseconds(100), kRepeat = std::chrono::
 
 // The parts of the line from left to right. Each has several forms, from the longest to the
 // shortest. An empty form takes no room.
-enum LinePart { Blackout, SettingUp, Cue, Fade, Next, Left, Late, Rate, Scores, kParts };
+enum LinePart { Blackout, SettingUp, Locked, Cue, Fade, Next, Left, Late, Rate, Scores, kParts };
 using Forms = std::vector<std::string>;
 
 // The parts to shorten by one form, in this order, while the line is too long.
-constexpr LinePart kShortening[] = {Scores, Rate, Next, Next,      Cue, Cue,       Late,     Fade,
-                                    Left,   Next, Next, SettingUp, Cue, SettingUp, Blackout, Cue};
+constexpr LinePart kShortening[] = {Scores, Rate, Next,   Next,      Cue, Cue,       Late,   Fade,     Left,
+                                    Next,   Next, Locked, SettingUp, Cue, SettingUp, Locked, Blackout, Cue};
 
 Forms cueForms(const RunStatus& status) {
     if (status.cue < 0) return {"no cue yet", ""};
@@ -57,6 +57,8 @@ std::array<Forms, kParts> partsOf(const RunStatus& status) {
         parts[Blackout] = {ended("BLACKOUT", RunKey::Action::Blackout, "lifts")};
     if (status.blackout) parts[Blackout].push_back("BLACKOUT");
     if (status.settingUp) parts[SettingUp] = {ended("SETTING UP", RunKey::Action::SetUp, "ends"), "SETTING UP", ""};
+    if (status.locked && status.keys && !status.settingUp) parts[Locked] = {ended("LOCKED", RunKey::Action::Lock, "unlocks")};
+    if (status.locked) parts[Locked].insert(parts[Locked].end(), {"LOCKED", ""});
     parts[Cue] = cueForms(status);
     if (status.waitLeft > Time{})
         parts[Fade] = {"waits " + shortDuration(status.waitLeft), ""};

@@ -29,6 +29,7 @@ struct RunStatus {
     std::optional<Time> untilNext;          // until the next cue comes by a follow or by the schedule; none: it waits
     std::optional<Time> left;               // of the run; none: the run has no length
     bool blackout = false;                  // pictures and fixtures are held dark
+    bool locked = false;                    // GO and back are taken from the terminal alone
     bool settingUp = false;                 // the keys are those of setting up
     bool keys = false;                      // somebody can press keys
     std::optional<double> framesPerSecond;  // of all outputs together; none before the first measurement

@@ -30,6 +30,7 @@ RunStatus RunView::at(Time moment, Time nextGo) {
         status.untilNext = std::min(status.untilNext.value_or(Time::max()), std::max(Time{}, nextGo - runTime));
     if (length_) status.left = std::max(Time{}, *length_ - runTime);
     status.blackout = state_.blackout;
+    status.locked = state_.locked;
     if (hasNews()) status.said = std::exchange(news_, {});
     return status;
 }

@@ -126,6 +126,12 @@ TEST_F(HandPart, lights_the_buttons_by_what_a_press_would_do) {
     press(show::Button::Go);
     EXPECT_EQ(lit(show::Button::Back), Ready);
 
+    for (const bool locked : {true, false}) {
+        run_.inputs.submit({run_.clock.now(), show::Input::Kind::Lock});
+        EXPECT_EQ(lit(show::Button::Back), locked ? Off : Ready);
+        EXPECT_THAT(run_.told(), Contains(HasSubstr(locked ? "locked: GO and back" : "unlocked: GO")));
+    }
+
     press(show::Button::Blackout);
     EXPECT_EQ(lit(show::Button::Blackout), Alarm);
     press(show::Button::Blackout);

@@ -19,6 +19,7 @@ RunStatus fading() {
     status.showTime = 12s;
     status.cue = 2;
     status.cues = 6;
+    status.number = 3000;
     status.cueName = "Left rises";
     status.nextName = "Both";
     status.fadeLeft = 4s;
@@ -44,6 +45,16 @@ TEST(StatusLine, says_what_is_on_what_comes_and_when) {
         "cue 3 of 6: Left rises  fading 4 s  next: Both in 18 s  48 s left  0 late  30.0 frames/s  z left 0.812  z right -");
 }
 
+TEST(StatusLine, says_a_number_that_is_not_the_place_what_waits_and_the_next_note) {
+    RunStatus status = fading();
+    status.number = 2500;
+    status.waitLeft = 3s;
+    status.nextNote = "after the bell";
+    EXPECT_EQ(statusLine(status, 120),
+              "cue 2.5 (3 of 6): Left rises  waits 3 s  next: Both in 18 s (after the bell)  48 s left  0 late  30.0 frames/s");
+    EXPECT_EQ(statusLine(status, 80), "cue 2.5 (3 of 6): Left rises  waits 3 s  next: Both in 18 s  48 s left  0 late");
+}
+
 TEST(StatusLine, leaves_out_what_matters_least_where_it_is_narrow) {
     EXPECT_THAT(
         at(fading(), kWidths),
@@ -67,6 +78,15 @@ TEST(StatusLine, says_of_a_blackout_for_as_long_as_it_lasts_and_what_lifts_it) {
     EXPECT_THAT(statusLine(status, 80), StartsWith("BLACKOUT  SETTING UP, e ends it  ")) << "the key means something else now";
 }
 
+TEST(StatusLine, says_that_go_is_locked_and_what_unlocks_it) {
+    RunStatus status = fading();
+    status.locked = true;
+    EXPECT_THAT(statusLine(status, 200), StartsWith("LOCKED, l unlocks it  cue 3 of 6"));
+    EXPECT_THAT(statusLine(status, 30), StartsWith("LOCKED  3/6"));
+    status.keys = false;
+    EXPECT_THAT(statusLine(status, 200), StartsWith("LOCKED  cue 3 of 6"));
+}
+
 TEST(StatusLine, before_the_first_cue_and_in_the_last) {
     RunStatus status;
     status.cues = 1;
@@ -74,6 +94,7 @@ TEST(StatusLine, before_the_first_cue_and_in_the_last) {
     status.showTime = 3s;
     EXPECT_EQ(statusLine(status, 80), "no cue yet  next: Dusk  at 3 s  0 late");
     status.cue = 0;
+    status.number = 1000;
     status.cueName = "Dusk";
     status.nextName.clear();
     EXPECT_EQ(statusLine(status, 80), "cue 1 of 1: Dusk  last cue  at 3 s  0 late");
