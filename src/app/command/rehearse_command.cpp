@@ -44,7 +44,7 @@ Result<void> runAndReport(const RunOptions& run) {
 
 void declareCommon(Command& command, Options& options) {
     command.add("--seconds", options.length, "end after this much show time").range(0.1, 1e6);
-    command.add("--from", options.fromCue, "enter this cue at once, by its name");
+    command.add("--from", options.fromCue, "enter this cue at once, by its name or number");
     command.add("--record", options.record, "write videos, traces and a contact sheet to this folder, or one video to FILE.mp4");
     command.add("--pictures", options.pictures, "folder for the pictures that the key s takes").showDefault();
     command.add("--report", options.report, "write the run's figures to this JSON file (docs/report.md)");
