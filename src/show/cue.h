@@ -58,7 +58,7 @@ struct Cue {
     Time length() const;
 };
 
-// What cues are read with.
+// What the rest of the file says, as far as its cues need it.
 struct CueRules {
     std::int64_t version = 1;        // of the file
     bool loops = false;              // the first cue comes after the last
@@ -67,13 +67,13 @@ struct CueRules {
     std::vector<SourceId> ids;  // of `sources`
 };
 
-// From this version of a show file on, cues need not block, and have all their keys.
+// Since this version of the show file cues may track, and may have the keys that say how they move.
 constexpr std::int64_t kTrackingVersion = 2;
 
-// Error: `what` stands at `node`, but not in files of `version`.
+// Error: a file of `version` may not have the key `what`, which stands at `node`.
 Result<void> needsTracking(const ConfigNode& node, std::string_view what, std::int64_t version);
 
-// Reads a key, which may be absent and stands in files since kTrackingVersion alone.
+// Reads an optional key that files may have since kTrackingVersion.
 template <class Value, class Parse>
 void readTracking(std::int64_t version, ConfigFields& fields, std::string_view key, Value& target, Parse parse) {
     fields.optional().read(key, target, [&](const ConfigNode& node) -> Result<Value> {

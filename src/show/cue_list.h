@@ -55,7 +55,7 @@ struct CueList {
             std::size_t output = 0;
             SourceId source;
         };
-        std::vector<Layer> layers = {};  // that add their light, of outputs whose others move apart from them
+        std::vector<Layer> layers = {};  // that move apart from the rest of their output; they must add their light
     };
     struct Cue {
         Look look;
@@ -64,7 +64,7 @@ struct CueList {
         std::vector<WindWish> winds = {};  // one for each output; a missing one is the usual wind
         std::string name = {};             // a revision of the list finds the cue by it
         Time wait = {};                    // from when the cue is entered until it begins to change
-        std::vector<Part> parts = {};      // what is in none of them has `wait` and `fade`
+        std::vector<Part> parts = {};      // all else moves by `wait` and `fade`
 
         // From when the cue is entered until it begins to change what is seen.
         Time firstWait() const {

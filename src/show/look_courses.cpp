@@ -100,7 +100,8 @@ LookCourses::OutputCourse LookCourses::moved(const OutputCourse& before, const O
         after.pictures = before.pictures;
         return after;
     }
-    // Pictures cross over in one time, whatever the other is, or both would be seen whole.
+    // The picture that comes and the one that goes take the same time. Otherwise both would be seen
+    // at full light for a while.
     const Fade& fade = *movement.outputs[output];
     const Time length = to.pictures.empty() ? fade.out : fade.in;
     const auto compose = [&](const ComposedPicture& picture, const OutputState& of) {
