@@ -59,7 +59,9 @@ void MockCamera::plugIn(int number) {
     told += fmt::format("\nP: {0}/{1}:1.0/video4linux/video{2}\nN: video{2}=00\nE: SUBSYSTEM=video4linux\nA: name={3}\n", place,
                         kind_.usb, number, kind_.card);
     // Whoever opens a node finds somebody who answers, before it can be seen and after it is gone:
-    // umockdev ends the program otherwise.
+    // umockdev ends the program otherwise. Nor does the node's file go when the camera is unplugged:
+    // umockdev never closes its connection for an open() that fails.
+    std::filesystem::remove(machine_.root().string() + file().string());
     GError* error = nullptr;
     stopUnless(umockdev_testbed_attach_ioctl(machine_.testbed(), file().c_str(), handler_, &error), error);
     answered_.push_back(file());
@@ -84,7 +86,6 @@ void MockCamera::unplug() {
         close(std::exchange(memory_, -1));
         changed_.notify_all();
     }
-    std::filesystem::remove(machine_.root().string() + file().string());
     const std::string interface = fmt::format("{0}/{1}:1.0", parent_, kind_.usb);
     umockdev_testbed_remove_device(machine_.testbed(), fmt::format("{}/video4linux/video{}", interface, number_).c_str());
     umockdev_testbed_remove_device(machine_.testbed(), interface.c_str());

@@ -89,9 +89,21 @@ public:
         for (const auto& entry : std::filesystem::directory_iterator(fmt::format("/proc/{}/fd", process_))) {
             std::error_code closed;
             const std::filesystem::path file = std::filesystem::read_symlink(entry, closed);
-            if (!closed) files.emplace(std::stoi(entry.path().filename()), file.string());
+            if (closed) continue;
+            const std::string name = file.string();
+            const bool socket = name.starts_with("socket:[");
+            files.emplace(std::stoi(entry.path().filename()), socket ? nameOfSocket(name.substr(8, name.size() - 9)) : name);
         }
         return files;
+    }
+    // The kernel's line about a socket: its kind, and its addresses or its path.
+    std::string nameOfSocket(const std::string& inode) const {
+        for (const char* kind : {"unix", "tcp", "tcp6", "udp", "udp6", "netlink", "packet", "raw"}) {
+            std::ifstream table(fmt::format("/proc/{}/net/{}", process_, kind));
+            for (std::string line; std::getline(table, line);)
+                if ((' ' + line + ' ').find(' ' + inode + ' ') != std::string::npos) return fmt::format("{}: {}", kind, line);
+        }
+        return "socket " + inode;
     }
     // Memory that is its own, in KiB.
     long kibibytes() const {

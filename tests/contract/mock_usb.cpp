@@ -106,8 +106,9 @@ public:
                 "\nP: {0}\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber={1:02x}\\n\n"
                 "\nP: {2}\nE: SUBSYSTEM=hid\nH: report_descriptor={3}\n",
                 interfaceFolder(i).substr(4), i, hidFolder(i).substr(4), hex(device_.reportDescriptors[i]));
-        // libusb may open the device before its event: a late event of the same port is enough. So
-        // its file and its handler come first. If open() failed, umockdev would keep descriptor -1,
+        // libusb may open the device before its event: a late event of the same port is enough; and
+        // it may open it after it is gone. So its file and its handler come first and go last. If
+        // open() failed, umockdev would keep descriptor -1 and the connection that belongs to it;
         // and a read() of -1 on umockdev's own thread would wait for itself.
         FANTASCOPE_CHECK(mkfifo(file().c_str(), 0600) == 0, "no pipe");
         pipe_ = ::open(file().c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
@@ -123,6 +124,7 @@ public:
         umockdev_testbed_uevent(bed_, folder_.c_str(), "add");
     }
     ~Plugged() {
+        unlink(file().c_str());
         umockdev_testbed_detach_ioctl(bed_, node_.c_str(), nullptr);
         { const std::lock_guard lock(mutex_); }  // after the last answer of umockdev's thread
         g_object_unref(handler_);
@@ -147,7 +149,6 @@ public:
             umockdev_testbed_remove_device(bed_, interfaceFolder(i).c_str());
         }
         umockdev_testbed_remove_device(bed_, folder_.c_str());
-        unlink(file().c_str());
     }
 
     void report(int interface, const Bytes& bytes) {
