@@ -96,6 +96,7 @@ struct CueList {
         Time relayHold{};    // after relays were switched by a trim, they stay for this long
     } trim{};                // the bounds of LampTrim; one beyond them is ignored
     Time blackoutFade{};     // from full light to none and back
+    Time panicFade{};        // from full light to none in a panic
     std::uint64_t seed = 1;  // of the show's own randomness: its gusts
 
     // The cue after a cue; -1 is before the first. Nothing: it is the last one.

@@ -22,6 +22,7 @@ constexpr std::int64_t kNewestVersion = kTrackingVersion;  // of the file
 // one; as a fade it is quick without being a flash.
 constexpr Time kGoInterval = std::chrono::milliseconds(300);
 constexpr Time kBlackoutFade = std::chrono::milliseconds(300);
+constexpr Time kPanicFade = std::chrono::seconds(2);
 
 // Limits in seconds.
 constexpr double kLongestGoInterval = 5;
@@ -294,6 +295,7 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder, SourceNames& 
     show.file = std::filesystem::is_directory(fileOrFolder, ignored) ? fileOrFolder / "show.yaml" : fileOrFolder;
     show.goInterval = kGoInterval;
     show.blackoutFade = kBlackoutFade;
+    show.panicFade = kPanicFade;
     const ConfigNode root = TRY(ConfigNode::load(show.file));
     ConfigFields fields(root);
     // Faulty sources and looks are among the known ones. They are reported once, and not again
@@ -323,6 +325,9 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder, SourceNames& 
         }
         TRY(faults.result());
         return looks;
+    });
+    readTracking(rules.version, fields, "panic_fade", show.panicFade, [](const ConfigNode& node) -> Result<Time> {
+        return fromSeconds(TRY(node.number(0, kLongestBlackoutFade, "s")));
     });
     readTracking(rules.version, fields, "at_end", rules.loops, [](const ConfigNode& node) -> Result<bool> {
         return TRY(node.choice({"stay", "loop"})) == 1;
@@ -364,6 +369,7 @@ Result<CueList> Show::bind(const Site& site) const {
     list.loops = loops;
     list.goInterval = goInterval;
     list.blackoutFade = blackoutFade;
+    list.panicFade = panicFade;
     list.seed = seed;
     list.farthestShift = site.corrections.geometry.farthest;
     list.shiftSpeed = site.corrections.geometry.speed;

@@ -43,6 +43,7 @@ struct Show {
     std::string title;
     Time goInterval{};
     Time blackoutFade{};
+    Time panicFade{};
     std::uint64_t seed = 1;  // of the show's own randomness
     std::vector<Source> sources;
     std::vector<NamedLook> looks;

@@ -11,6 +11,7 @@
 #include "core/wind.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,7 +30,7 @@ struct LayerState {
     SourceId source;
     float opacity = 0;  // 0..1, in linear light
     Blend blend = Blend::Add;
-    Time begun{};                // show time at which the source came onto the output; a video begins there
+    Time begun{};                // cue time at which the source came onto the output; a video begins there
     PatternExchange exchange{};  // which of its patterns are seen
     friend bool operator==(const LayerState&, const LayerState&) = default;
 };
@@ -62,17 +63,30 @@ struct Look {
     friend bool operator==(const Look&, const Look&) = default;
 };
 
+// Where the cues are, and what the operator does to them.
+struct Controls {
+    int cue = -1;               // index into Show::cues of the current cue; -1 before the first
+    int loaded = -1;            // the cue that GO is to enter; -1: the one after the current one
+    std::optional<int> next{};  // the cue that GO enters; nothing: there is none
+    bool blackout = false;      // pictures and fixtures are held dark
+    bool panic = false;         // they are held dark, and relays safe, until the operator restores them
+    bool paused = false;        // the cues' time is paused
+    bool frozen = false;        // what is seen is kept, whatever the cues do
+    float master = 1;           // the factor of pictures and levels that is wanted
+    bool locked = false;        // nothing but darkness is taken from hand controller, contacts and windows
+    friend bool operator==(const Controls&, const Controls&) = default;
+};
+
 // The look at one moment of show time. Value type. Reuse it from frame to frame: its vectors keep
 // their capacity.
-struct ShowState : Look {
+struct ShowState : Look, Controls {
     std::vector<Wind> winds;           // one for each of Site::outputs
     std::vector<PictureShift> shifts;  // one for each of Site::outputs
     LampTrim lamps{};                  // `levels` and `relays` are without it
     bool corrects = true;              // corrections are allowed
     Time time{};                       // show time
-    int cue = -1;                      // index into Show::cues of the current cue; -1 before the first
-    bool blackout = false;             // pictures and fixtures are held dark
-    bool locked = false;               // GO, back and jumps are taken from the terminal and the show itself alone
+    Time cueTime{};                    // by which videos, shadows and patterns move
+    bool moves = true;                 // cueTime goes on; else it stands still
     std::uint64_t inputs = 0;          // how many inputs have taken effect so far
     friend bool operator==(const ShowState&, const ShowState&) = default;
 };

@@ -6,8 +6,8 @@
 #include "app/site/devices.h"
 #include "drivers/site/world.h"
 
-#include "show/event.h"
-#include "show/input_log.h"
+#include "show/play/event.h"
+#include "show/play/input_log.h"
 #include "show/show.h"
 #include "show/site/site.h"
 

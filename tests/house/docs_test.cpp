@@ -109,8 +109,8 @@ std::vector<std::string> missingFiles(const TextFile& file, const auto& exists) 
     return missing;
 }
 
-// The steps of a tour, "`src/show/playback.cpp`, `Playback::apply()`", whose file lacks what is
-// named.
+// The steps of a tour, "`src/show/play/playback.cpp`, `Playback::apply()`", whose file lacks what
+// is named.
 std::vector<std::string> lostSteps(const TextFile& file, const std::map<std::string, std::string>& texts) {
     std::vector<std::string> lost;
     forEachLine(file, [&](std::size_t i, const std::string& line) {

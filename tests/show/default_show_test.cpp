@@ -1,4 +1,4 @@
-#include "show/playback.h"
+#include "show/play/playback.h"
 #include "show/show.h"
 #include "show/site/site.h"
 

@@ -2,8 +2,8 @@
 
 #include "show/pattern_exchange.h"
 
-#include "show/input.h"
-#include "show/playback.h"
+#include "show/play/input.h"
+#include "show/play/playback.h"
 
 #include <gmock/gmock.h>
 

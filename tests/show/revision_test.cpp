@@ -3,8 +3,8 @@
 
 #include "show/revision.h"
 
-#include "show/input_log.h"
-#include "show/playback.h"
+#include "show/play/input_log.h"
+#include "show/play/playback.h"
 #include "show/replaced.h"
 
 #include "scratch_folder.h"

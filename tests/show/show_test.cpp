@@ -96,6 +96,15 @@ TEST(ShowFile, a_folder_stands_for_the_show_in_it) {
                 EndsWith("patterns/show.yaml: cannot be read: No such file or directory"));
 }
 
+TEST(ShowFile, a_panic_has_a_fade_of_its_own_since_version_2) {
+    EXPECT_EQ(Loaded(std::string(kShow)).show->panicFade, 2s);
+    const std::string slow = replaced(std::string(kShow), "title: Test", "title: Test\npanic_fade: 5");
+    EXPECT_FALSE(Loaded(slow).show);
+    const Loaded loaded(replaced(slow, "version: 1", "version: 2"));
+    ASSERT_TRUE(loaded.show) << loaded.show.error().message();
+    EXPECT_EQ(loaded.show->panicFade, 5s);
+}
+
 TEST(ShowFile, own_go_interval_and_blackout_fade_replace_the_defaults) {
     const Loaded loaded(replaced(std::string(kShow), "title: Test", "title: Test\ngo_interval: 1\nblackout_fade: 0"));
     EXPECT_EQ(loaded.show->goInterval, 1s);

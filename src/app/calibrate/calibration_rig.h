@@ -5,8 +5,8 @@
 #include "app/site/open_site.h"
 #include "app/site/site_claims.h"
 
-#include "show/input_log.h"
-#include "show/show_clock.h"
+#include "show/play/input_log.h"
+#include "show/play/show_clock.h"
 #include "show/site/site.h"
 
 #include "device/camera_source.h"

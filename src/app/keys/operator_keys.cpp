@@ -1,5 +1,7 @@
 #include "app/keys/operator_keys.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -11,6 +13,7 @@ using Kind = show::Input::Kind;
 OperatorKeys::OperatorKeys(show::InputLog& inputs, show::EventLog& events, const show::ShowClock& showClock,
                            std::unique_ptr<TerminalKeys> terminal, GoSchedule schedule, QuitKey quitKey, Actions actions)
     : inputs_(inputs),
+      replica_(inputs),
       events_(events),
       showClock_(showClock),
       terminal_(std::move(terminal)),
@@ -31,31 +34,71 @@ void OperatorKeys::tick(Time moment) {
 // A key acts like a button of the hand controller. A key that gives an input ends the schedule.
 void OperatorKeys::press(const Key& key, Source source, Time moment) {
     if (actions_.setUp(key)) return;
-    const auto action = actionOf(key.letter);
+    const auto action = actionOf(key);
     if (!action) return;
-    const Time showTime = showClock_.showTime(moment);
+    using Action = RunKey::Action;
+    show::Input input{.at = showClock_.showTime(moment), .source = source};
+    const auto take = [&](Kind kind) {
+        input.kind = kind;
+        takeOver(input);
+    };
+    const auto toggle = [&](Kind kind) {
+        input.kind = kind;
+        inputs_.submit(input);
+    };
     switch (*action) {
-        case RunKey::Action::Go:
-            return takeOver({.at = showTime, .kind = Kind::Go, .source = source});
-        case RunKey::Action::Back:
-            return takeOver({.at = showTime, .kind = Kind::Back, .source = source});
-        case RunKey::Action::Blackout:
-            return takeOver({.at = showTime, .kind = Kind::Blackout, .source = source});
-        case RunKey::Action::Corrections:
-            inputs_.submit({.at = showTime, .kind = Kind::Corrections, .source = source});
-            return;
-        case RunKey::Action::Lock:
-            inputs_.submit({.at = showTime, .kind = Kind::Lock, .source = source});
-            return;
-        case RunKey::Action::Pictures:
+        case Action::Go:
+            return take(Kind::Go);
+        case Action::Back:
+            return take(Kind::Back);
+        case Action::LoadPrevious:
+            return load(input, -1);
+        case Action::LoadNext:
+            return load(input, 1);
+        case Action::Blackout:
+            return take(Kind::Blackout);
+        case Action::Pause:
+            return take(Kind::Pause);
+        case Action::Freeze:
+            return take(Kind::Freeze);
+        case Action::Panic:
+            return take(Kind::Panic);
+        case Action::Restore:
+            return take(Kind::Restore);
+        case Action::Dimmer:
+            return dim(input, -1);
+        case Action::Brighter:
+            return dim(input, 1);
+        case Action::Corrections:
+            return toggle(Kind::Corrections);
+        case Action::Lock:
+            return toggle(Kind::Lock);
+        case Action::Pictures:
             return actions_.takePictures();
-        case RunKey::Action::Quit:
+        case Action::Quit:
             if (quitKey_.press(moment)) return actions_.end();
-            events_.append({showTime, show::event::QuitAsked{std::string(keyFor(*action)), QuitKey::kPatience}});
+            events_.append({input.at, show::event::QuitAsked{std::string(keyFor(*action)), QuitKey::kPatience}});
             return;
-        case RunKey::Action::SetUp:
+        case Action::SetUp:
             return;  // setUp has taken this key
     }
+}
+
+// Loads the cue `step` cues after the one that GO would enter.
+void OperatorKeys::load(show::Input input, int step) {
+    replica_.stateAt(input.at, state_);
+    const int last = static_cast<int>(replica_.playback().cues().cues.size()) - 1;
+    input.kind = Kind::Load;
+    input.cue = std::clamp(state_.next.value_or(last + 1) + step, 0, last);
+    inputs_.submit(input);
+}
+
+void OperatorKeys::dim(show::Input input, int step) {
+    constexpr float kSteps = 10;
+    replica_.stateAt(input.at, state_);
+    input.kind = Kind::Master;
+    input.level = std::clamp((std::round(state_.master * kSteps) + static_cast<float>(step)) / kSteps, 0.0f, 1.0f);
+    inputs_.submit(input);
 }
 
 void OperatorKeys::takeOver(const show::Input& input) {

@@ -5,9 +5,10 @@
 #include "app/keys/go_schedule.h"
 #include "app/keys/run_keys.h"
 
-#include "show/event.h"
-#include "show/input_log.h"
-#include "show/show_clock.h"
+#include "show/play/event.h"
+#include "show/play/input_log.h"
+#include "show/play/playback_replica.h"
+#include "show/play/show_clock.h"
 
 #include "device/screen_event.h"
 
@@ -52,8 +53,12 @@ private:
     };
     void press(const Key& key, show::Input::Source source, Time moment);
     void takeOver(const show::Input& input);
+    void load(show::Input input, int step);
+    void dim(show::Input input, int step);
 
     show::InputLog& inputs_;
+    show::PlaybackReplica replica_;
+    show::ShowState state_;
     show::EventLog& events_;
     const show::ShowClock showClock_;
     std::unique_ptr<TerminalKeys> terminal_;

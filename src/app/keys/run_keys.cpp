@@ -7,9 +7,11 @@
 
 namespace fantascope::app {
 
-std::optional<RunKey::Action> actionOf(char letter) {
-    const auto key = std::ranges::find(kRunKeys, letter, &RunKey::letter);
-    return key == kRunKeys.end() ? std::nullopt : std::optional(key->action);
+std::optional<RunKey::Action> actionOf(const Key& key) {
+    const char letter = key.letter == '=' ? '+' : key.letter;  // of one key on many keyboards
+    const auto found =
+        std::ranges::find_if(kRunKeys, [&](const RunKey& run) { return run.key.name == key.name && run.key.letter == letter; });
+    return found == kRunKeys.end() ? std::nullopt : std::optional(found->action);
 }
 
 std::string_view keyFor(RunKey::Action action) { return std::ranges::find(kRunKeys, action, &RunKey::action)->name; }

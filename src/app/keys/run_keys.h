@@ -1,5 +1,7 @@
 #pragma once
 
+#include "device/screen_event.h"
+
 #include "core/clock.h"
 
 #include <array>
@@ -9,27 +11,55 @@
 
 namespace fantascope::app {
 
+constexpr Key letterKey(char letter) { return {Key::Name::Letter, letter}; }
+
 // A key, at the terminal or at a display's window, and its action while a show runs.
 struct RunKey {
-    enum class Action { Go, Back, Blackout, Pictures, SetUp, Corrections, Lock, Quit };
-    char letter;
+    enum class Action {
+        Go,
+        Back,
+        LoadPrevious,
+        LoadNext,
+        Blackout,
+        Pause,
+        Freeze,
+        Panic,
+        Restore,
+        Dimmer,
+        Brighter,
+        Pictures,
+        SetUp,
+        Corrections,
+        Lock,
+        Quit
+    };
+    Key key;
     std::string_view name;  // on the keyboard
     std::string_view does;
     Action action;
 };
 
 // All keys. README.md has the same table.
-constexpr std::array<RunKey, 8> kRunKeys = {
-    {{' ', "space", "GO: the next cue", RunKey::Action::Go},
-     {'b', "b", "back: the cue before", RunKey::Action::Back},
-     {'0', "0", "blackout; again: light", RunKey::Action::Blackout},
-     {'s', "s", "take a picture of every output", RunKey::Action::Pictures},
-     {'e', "e", "set the outputs up; again: done", RunKey::Action::SetUp},
-     {'c', "c", "take the camera's corrections back; again: allow them", RunKey::Action::Corrections},
-     {'l', "l", "lock GO and back of hand controller, contacts and windows; again: unlock", RunKey::Action::Lock},
-     {'q', "q", "end; `run` asks for it twice", RunKey::Action::Quit}}};
+constexpr std::array<RunKey, 16> kRunKeys = {
+    {{letterKey(' '), "space", "GO: the loaded cue, or the next one; after a pause: go on", RunKey::Action::Go},
+     {letterKey('b'), "b", "back: the cue before", RunKey::Action::Back},
+     {{Key::Name::Up}, "up", "load the cue before the one that GO would enter", RunKey::Action::LoadPrevious},
+     {{Key::Name::Down}, "down", "load the cue after the one that GO would enter", RunKey::Action::LoadNext},
+     {letterKey('0'), "0", "blackout; again: light", RunKey::Action::Blackout},
+     {letterKey('p'), "p", "pause: the cues stand still; again: go on", RunKey::Action::Pause},
+     {letterKey('f'), "f", "freeze what is seen; again: show the cues", RunKey::Action::Freeze},
+     {{Key::Name::Escape}, "Esc", "panic: dark, relays safe, cues still; again: at once", RunKey::Action::Panic},
+     {letterKey('r'), "r", "restore after a panic: everything goes on from where it was", RunKey::Action::Restore},
+     {letterKey('-'), "-", "master: 10 % darker", RunKey::Action::Dimmer},
+     {letterKey('+'), "+", "master: 10 % brighter", RunKey::Action::Brighter},
+     {letterKey('s'), "s", "take a picture of every output", RunKey::Action::Pictures},
+     {letterKey('e'), "e", "set the outputs up; again: done", RunKey::Action::SetUp},
+     {letterKey('c'), "c", "take the camera's corrections back; again: allow them", RunKey::Action::Corrections},
+     {letterKey('l'), "l", "lock hand controller, contacts and windows, but for darkness; again: unlock", RunKey::Action::Lock},
+     {letterKey('q'), "q", "end; `run` asks for it twice", RunKey::Action::Quit}}};
 
-std::optional<RunKey::Action> actionOf(char letter);
+// Shift and Control do not matter.
+std::optional<RunKey::Action> actionOf(const Key& key);
 std::string_view keyFor(RunKey::Action action);
 
 // The text for --help: a line for each key.

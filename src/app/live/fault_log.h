@@ -2,8 +2,8 @@
 
 #include "app/live/run_report.h"
 
-#include "show/event.h"
-#include "show/show_clock.h"
+#include "show/play/event.h"
+#include "show/play/show_clock.h"
 
 #include "device/status.h"
 

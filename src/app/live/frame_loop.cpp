@@ -296,7 +296,7 @@ void FrameLoop::draw(std::size_t number, Time showTime) {
     followSettings(output, state_.shifts[number]);
     takeExchanges(output);
     output.renderer->correctLight(lightShare_);
-    output.renderer->draw(state_.outputs[number], state_.winds[number], showTime, output.display.framebuffer());
+    output.renderer->draw(state_.outputs[number], state_.winds[number], state_.cueTime, output.display.framebuffer());
     if (output.tap) output.tap->capture(output.display.framebuffer(), showTime);
     const Time uploading = output.renderer->uploading();
     spend(output, FramePart::Upload, uploading);

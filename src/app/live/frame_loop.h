@@ -1,12 +1,12 @@
 #pragma once
 
-#include "app/live/playback_replica.h"
 #include "app/live/run_report.h"
 #include "app/site/devices.h"
 
 #include "render/frame_tap.h"
 #include "render/output_renderer.h"
-#include "show/show_clock.h"
+#include "show/play/playback_replica.h"
+#include "show/play/show_clock.h"
 #include "show/site/site.h"
 
 #include "core/latest_value.h"
@@ -185,7 +185,7 @@ private:
     show::ShowClock showClock_;
     Time newest_{};         // the moment of the newest frame
     float lightShare_ = 0;  // how far the light correction is faded in with it
-    PlaybackReplica replica_;
+    show::PlaybackReplica replica_;
     show::ShowState state_;
     std::vector<Output> outputs_;
     // An exchange of a source's pattern.

@@ -1,6 +1,6 @@
 #include "app/live/hand.h"
 
-#include "show/contact_inputs.h"
+#include "show/play/contact_inputs.h"
 
 #include <array>
 #include <cstddef>
@@ -11,8 +11,9 @@ namespace fantascope::app {
 namespace {
 
 // The labels of the buttons, in the order of show::Button.
-constexpr std::array<std::string_view, 14> kWords = {"GO",   "BACK", "DARK",   "EDIT", "LEFT",    "RIGHT", "UP",
-                                                     "DOWN", "NEXT", "OUTPUT", "TOOL", "PICTURE", "UNDO",  "WRITE"};
+constexpr std::array<std::string_view, 18> kWords = {"GO",      "BACK",   "DARK", "PAUSE",   "FREEZE", "PANIC",
+                                                     "RESTORE", "EDIT",   "LEFT", "RIGHT",   "UP",     "DOWN",
+                                                     "NEXT",    "OUTPUT", "TOOL", "PICTURE", "UNDO",   "WRITE"};
 static_assert(kWords.size() == static_cast<std::size_t>(show::Button::Write) + 1);
 
 }  // namespace
@@ -51,14 +52,35 @@ void Hand::tick(Time moment) {
         events_.append({showTime, show::event::InputDecided{*logged}});
     replica_.stateAt(showTime, state_);
     light(showTime);
-    if (std::exchange(blackout_, state_.blackout) != state_.blackout)
-        events_.append({showTime, show::event::BlackoutChanged{state_.blackout}});
-    if (std::exchange(locked_, state_.locked) != state_.locked)
-        events_.append({showTime, show::event::LockChanged{state_.locked}});
-    if (state_.cue == cue_) return;
-    cue_ = state_.cue;
-    const show::Cue& cue = show_.cues[static_cast<std::size_t>(cue_)];
-    events_.append({showTime, show::event::CueEntered{cue_, static_cast<int>(show_.cues.size()), cue.name, cue.number}});
+    tell(showTime);
+}
+
+// What has changed since the last tick, as events.
+void Hand::tell(Time showTime) {
+    using Hold = show::event::HoldChanged::Hold;
+    const std::pair<Hold, bool show::Controls::*> kHolds[] = {{Hold::Blackout, &show::Controls::blackout},
+                                                              {Hold::Panic, &show::Controls::panic},
+                                                              {Hold::Pause, &show::Controls::paused},
+                                                              {Hold::Freeze, &show::Controls::frozen},
+                                                              {Hold::Lock, &show::Controls::locked}};
+    for (const auto& [hold, on] : kHolds)
+        if (told_.*on != state_.*on) events_.append({showTime, show::event::HoldChanged{hold, state_.*on}});
+    if (told_.master != state_.master) events_.append({showTime, show::event::MasterChanged{state_.master}});
+    const int cues = static_cast<int>(show_.cues.size());
+    if (told_.cue != state_.cue) {
+        const show::Cue& cue = show_.cues[static_cast<std::size_t>(state_.cue)];
+        events_.append({showTime, show::event::CueEntered{state_.cue, cues, cue.name, cue.number}});
+    }
+    if (told_.loaded != state_.loaded && (state_.loaded >= 0 || told_.cue == state_.cue)) {
+        show::event::CueLoaded news{.cue = state_.loaded, .cues = cues, .name = {}};
+        if (state_.loaded >= 0) {
+            const show::Cue& cue = show_.cues[static_cast<std::size_t>(state_.loaded)];
+            news.name = cue.name;
+            news.number = cue.number;
+        }
+        events_.append({showTime, news});
+    }
+    told_ = state_;
 }
 
 ButtonLight Hand::lightOf(show::Button button, Time showTime) const {
@@ -68,11 +90,19 @@ ButtonLight Hand::lightOf(show::Button button, Time showTime) const {
         switch (button) {
             case show::Button::Go:
                 if (replica_.playback().fadesAt(showTime)) return State::Active;
-                return lit(!state_.locked && replica_.playback().cues().after(state_.cue).has_value(), State::Ready);
+                return lit(!state_.locked && !state_.panic && (state_.next || state_.paused), State::Ready);
             case show::Button::Back:
-                return lit(!state_.locked && state_.cue > 0, State::Ready);
+                return lit(!state_.locked && !state_.panic && state_.cue > 0, State::Ready);
             case show::Button::Blackout:
                 return lit(state_.blackout, State::Alarm);
+            case show::Button::Pause:
+                return lit(state_.paused, State::Alarm);
+            case show::Button::Freeze:
+                return lit(state_.frozen, State::Alarm);
+            case show::Button::Panic:
+                return lit(state_.panic, State::Alarm);
+            case show::Button::Restore:
+                return lit(state_.panic, State::Ready);
             case show::Button::Edit:
                 return lit(editing(), State::Active);
             default:  // the other buttons are for setting up only

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "app/live/playback_replica.h"
 #include "app/site/devices.h"
 
-#include "show/cue_buttons.h"
-#include "show/event.h"
+#include "show/play/cue_buttons.h"
+#include "show/play/event.h"
+#include "show/play/playback_replica.h"
+#include "show/play/show_clock.h"
 #include "show/show.h"
-#include "show/show_clock.h"
 
 #include <functional>
 #include <optional>
@@ -37,6 +37,7 @@ public:
 private:
     ButtonLight lightOf(show::Button button, Time showTime) const;
     void light(Time showTime);
+    void tell(Time showTime);
 
     const show::Show& show_;
     const show::Site& site_;
@@ -45,12 +46,11 @@ private:
     show::EventLog& events_;
     show::CueButtons buttons_;
     show::InputLog& inputs_;
-    PlaybackReplica replica_;
+    show::PlaybackReplica replica_;
     show::InputLog::Reader outcomes_;
     show::ShowState state_;
     std::vector<ButtonLight> lights_;  // of Site::buttons, as last sent to the controller
-    int cue_ = -1;
-    bool blackout_ = false, locked_ = false;
+    show::Controls told_;              // what the newest events say
 };
 
 }  // namespace fantascope::app

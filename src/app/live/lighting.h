@@ -3,13 +3,13 @@
 #include "app/base/durations.h"
 #include "app/live/fault_log.h"
 #include "app/live/part.h"
-#include "app/live/playback_replica.h"
 #include "app/live/recording.h"
 #include "app/site/devices.h"
 #include "drivers/common/back_off.h"
 
-#include "show/event.h"
-#include "show/show_clock.h"
+#include "show/play/event.h"
+#include "show/play/playback_replica.h"
+#include "show/play/show_clock.h"
 #include "show/site/dmx_merge.h"
 #include "show/site/site.h"
 
@@ -111,7 +111,7 @@ private:
     Recording* recording_;
     FaultLog& faults_;
     show::EventLog& events_;
-    PlaybackReplica replica_;
+    show::PlaybackReplica replica_;
     show::ShowState state_;
     std::vector<std::optional<Shared>> shared_;  // by line
     std::optional<Time> lastTick_;

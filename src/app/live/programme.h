@@ -8,7 +8,7 @@
 
 #include "pattern/shape/shape_pattern.h"
 #include "render/source/picture_source.h"
-#include "show/playback.h"
+#include "show/play/playback.h"
 #include "show/revision.h"
 #include "vision/compare/guide_comparison.h"
 

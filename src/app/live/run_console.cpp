@@ -18,17 +18,36 @@ constexpr Time kRedraw = std::chrono::milliseconds(100), kRepeat = std::chrono::
 
 // The parts of the line from left to right. Each has several forms, from the longest to the
 // shortest. An empty form takes no room.
-enum LinePart { Blackout, SettingUp, Locked, Cue, Fade, Next, Left, Late, Rate, Scores, kParts };
+enum LinePart {
+    Panic,
+    Blackout,
+    SettingUp,
+    Frozen,
+    Paused,
+    Master,
+    Locked,
+    Cue,
+    Fade,
+    Loaded,
+    Next,
+    Left,
+    Late,
+    Rate,
+    Scores,
+    kParts
+};
 using Forms = std::vector<std::string>;
 
 // The parts to shorten by one form, in this order, while the line is too long.
-constexpr LinePart kShortening[] = {Scores, Rate, Next,   Next,      Cue, Cue,       Late,   Fade,     Left,
-                                    Next,   Next, Locked, SettingUp, Cue, SettingUp, Locked, Blackout, Cue};
+constexpr LinePart kShortening[] = {Scores, Rate,   Next,   Next,   Cue,    Cue,    Late,      Fade, Left,
+                                    Next,   Next,   Loaded, Locked, Paused, Frozen, SettingUp, Cue,  SettingUp,
+                                    Loaded, Locked, Master, Paused, Frozen, Panic,  Blackout,  Cue};
 
 Forms cueForms(const RunStatus& status) {
-    if (status.cue < 0) return {"no cue yet", ""};
-    const std::string number = fmt::format("{}/{}", status.cue + 1, status.cues);
-    const std::string place = show::placeOf(status.number, status.cue, status.cues);
+    const int cue = status.controls.cue;
+    if (cue < 0) return {"no cue yet", ""};
+    const std::string number = fmt::format("{}/{}", cue + 1, status.cues);
+    const std::string place = show::placeOf(status.number, cue, status.cues);
     return {fmt::format("cue {}: {}", place, status.cueName), number + " " + status.cueName,
             number + " " + fitted(status.cueName, kShortName), number, ""};
 }
@@ -50,15 +69,24 @@ std::string scoresOf(const RunStatus& status) {
 
 std::array<Forms, kParts> partsOf(const RunStatus& status) {
     std::array<Forms, kParts> parts;
-    const auto ended = [](const char* what, RunKey::Action by, const char* how) {
-        return fmt::format("{}, {} {} it", what, keyFor(by), how);
+    const show::Controls& controls = status.controls;
+    const auto tell = [&](LinePart part, bool on, std::string what, RunKey::Action by, const char* does) {
+        if (!on) return;
+        if (status.keys && (!status.settingUp || part == SettingUp))
+            parts[part] = {fmt::format("{}, {} {} it", what, keyFor(by), does)};
+        parts[part].push_back(std::move(what));
+        if (part != Blackout && part != Panic) parts[part].push_back("");
     };
-    if (status.blackout && status.keys && !status.settingUp)
-        parts[Blackout] = {ended("BLACKOUT", RunKey::Action::Blackout, "lifts")};
-    if (status.blackout) parts[Blackout].push_back("BLACKOUT");
-    if (status.settingUp) parts[SettingUp] = {ended("SETTING UP", RunKey::Action::SetUp, "ends"), "SETTING UP", ""};
-    if (status.locked && status.keys && !status.settingUp) parts[Locked] = {ended("LOCKED", RunKey::Action::Lock, "unlocks")};
-    if (status.locked) parts[Locked].insert(parts[Locked].end(), {"LOCKED", ""});
+    tell(Panic, controls.panic, "PANIC", RunKey::Action::Restore, "restores");
+    tell(Blackout, controls.blackout, "BLACKOUT", RunKey::Action::Blackout, "lifts");
+    tell(SettingUp, status.settingUp, "SETTING UP", RunKey::Action::SetUp, "ends");
+    tell(Frozen, controls.frozen, "FROZEN", RunKey::Action::Freeze, "ends");
+    tell(Paused, controls.paused, "PAUSED", RunKey::Action::Pause, "ends");
+    tell(Locked, controls.locked, "LOCKED", RunKey::Action::Lock, "unlocks");
+    if (controls.master < 1) parts[Master] = {fmt::format("master {:.0f} %", 100 * controls.master)};
+    if (controls.master > 0) parts[Master].push_back("");
+    if (!status.loadedName.empty())
+        parts[Loaded] = {"GO: " + status.loadedName, "GO: " + fitted(status.loadedName, kShortName), ""};
     parts[Cue] = cueForms(status);
     if (status.waitLeft > Time{})
         parts[Fade] = {"waits " + shortDuration(status.waitLeft), ""};

@@ -4,6 +4,7 @@
 #include "app/live/run_report.h"
 
 #include "show/cue.h"
+#include "show/show_state.h"
 
 #include "core/clock.h"
 
@@ -20,16 +21,16 @@ namespace fantascope::app {
 // What the person at the terminal sees of a run at one moment.
 struct RunStatus {
     Time showTime{};
-    int cue = -1, cues = 0;                 // the current cue, from 0, -1 before the first; the number of cues
+    show::Controls controls{};              // with the current cue
+    int cues = 0;                           // their number
     show::CueNumber number = 0;             // of the current cue
     std::string cueName, nextName;          // empty: there is none
     std::string nextNote;                   // of the next cue; empty: it has none
+    std::string loadedName;                 // of the cue that GO enters instead; empty: none is loaded
     Time waitLeft{};                        // until the current cue begins to change what is seen; 0: it has begun
     Time fadeLeft{};                        // until its look is whole; 0: it is
     std::optional<Time> untilNext;          // until the next cue comes by a follow or by the schedule; none: it waits
     std::optional<Time> left;               // of the run; none: the run has no length
-    bool blackout = false;                  // pictures and fixtures are held dark
-    bool locked = false;                    // GO and back are taken from the terminal alone
     bool settingUp = false;                 // the keys are those of setting up
     bool keys = false;                      // somebody can press keys
     std::optional<double> framesPerSecond;  // of all outputs together; none before the first measurement

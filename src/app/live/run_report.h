@@ -4,7 +4,7 @@
 #include "app/base/report.h"
 #include "app/watch/drift_watch.h"
 
-#include "show/event.h"
+#include "show/play/event.h"
 
 #include "core/clock.h"
 

@@ -12,7 +12,6 @@ RunStatus RunView::at(Time moment, Time nextGo) {
     const auto& cues = show_.cues;
     RunStatus status;
     status.showTime = time;
-    status.cue = state_.cue;
     status.cues = static_cast<int>(cues.size());
     if (state_.cue >= 0) {
         const show::Cue& cue = cues[static_cast<std::size_t>(state_.cue)];
@@ -29,8 +28,8 @@ RunStatus RunView::at(Time moment, Time nextGo) {
     if (nextGo != Time::max())
         status.untilNext = std::min(status.untilNext.value_or(Time::max()), std::max(Time{}, nextGo - runTime));
     if (length_) status.left = std::max(Time{}, *length_ - runTime);
-    status.blackout = state_.blackout;
-    status.locked = state_.locked;
+    if (state_.loaded >= 0) status.loadedName = cues[static_cast<std::size_t>(state_.loaded)].name;
+    status.controls = state_;
     if (hasNews()) status.said = std::exchange(news_, {});
     return status;
 }

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "app/live/playback_replica.h"
 #include "app/live/run_console.h"
 
-#include "show/event.h"
-#include "show/input_log.h"
+#include "show/play/event.h"
+#include "show/play/input_log.h"
+#include "show/play/playback_replica.h"
+#include "show/play/show_clock.h"
 #include "show/show.h"
-#include "show/show_clock.h"
 
 #include "core/clock.h"
 
@@ -36,7 +36,7 @@ private:
     const show::Show& show_;
     const show::ShowClock showClock_;
     const std::optional<Time> length_;
-    PlaybackReplica replica_;
+    show::PlaybackReplica replica_;
     show::ShowState state_;
     show::EventLog::Reader events_;
     std::string news_;

@@ -1,11 +1,10 @@
 #pragma once
 
-#include "app/live/playback_replica.h"
-
 #include "render/frame_tap.h"
-#include "show/event.h"
+#include "show/play/event.h"
+#include "show/play/playback_replica.h"
+#include "show/play/show_clock.h"
 #include "show/show.h"
-#include "show/show_clock.h"
 
 #include "core/clock.h"
 #include "core/result.h"
@@ -49,7 +48,7 @@ private:
     const show::Show& show_;
     const show::ShowClock showClock_;
     show::EventLog& events_;
-    PlaybackReplica replica_;  // finds the cue of a frame
+    show::PlaybackReplica replica_;  // finds the cue of a frame
     show::ShowState state_;
     std::vector<Output> outputs_;
     Time from_{};   // show time of the frames that were asked for

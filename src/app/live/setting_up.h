@@ -3,8 +3,8 @@
 #include "app/live/frame_loop.h"
 #include "app/site/devices.h"
 
-#include "show/event.h"
-#include "show/show_clock.h"
+#include "show/play/event.h"
+#include "show/play/show_clock.h"
 #include "show/site/site_editor.h"
 
 #include "device/screen_event.h"

@@ -23,8 +23,8 @@
 #include "app/site/relay_guard.h"
 #include "app/site/site_claims.h"
 
-#include "show/event.h"
-#include "show/show_clock.h"
+#include "show/play/event.h"
+#include "show/play/show_clock.h"
 
 #include "core/check.h"
 #include "core/log.h"

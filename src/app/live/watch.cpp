@@ -46,8 +46,10 @@ void Watch::score(std::size_t output, const CameraFrame& frame, Time showTime) {
             scores_[output] = seen->z;
         }
     const ShadowScore* const shadow = comparisons_[output].shadows.find(layer->source);
-    if (shadow == nullptr || showTime < layer->begun) return;
-    const GreyImage& wanted = shadow->wanted->at(render::frameAt(shadow->source, showTime - layer->begun));
+    const show::ShowState& shown = shown_.value();
+    const Time cueTime = shown.moves ? shown.cueTime - (shown.time - showTime) : shown.cueTime;
+    if (shadow == nullptr || cueTime < layer->begun) return;
+    const GreyImage& wanted = shadow->wanted->at(render::frameAt(shadow->source, cueTime - layer->begun));
     if (const auto iou = shadow->comparison->compare(frame.image, wanted)) ious_[name].emplace_back(showTime, *iou);
 }
 

@@ -5,8 +5,8 @@
 
 #include "render/source/picture_feed.h"
 #include "render/source/picture_source.h"
+#include "show/play/show_clock.h"
 #include "show/show.h"
-#include "show/show_clock.h"
 #include "theatre/motion/wanted_shadow.h"
 #include "vision/compare/guide_comparison.h"
 #include "vision/compare/shadow_comparison.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "show/event.h"
+#include "show/play/event.h"
 #include "show/site/site.h"
 #include "vision/watch/canvas_surface.h"
 

@@ -3,7 +3,7 @@
 #include "app/watch/cause_log.h"
 #include "app/watch/shown_lately.h"
 
-#include "show/event.h"
+#include "show/play/event.h"
 #include "show/show_state.h"
 #include "show/site/site.h"
 #include "vision/watch/wall_causes.h"

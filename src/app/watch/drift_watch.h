@@ -6,9 +6,9 @@
 #include "app/watch/pattern_correction.h"
 #include "app/watch/shown_light.h"
 
-#include "show/event.h"
-#include "show/input_log.h"
-#include "show/show_clock.h"
+#include "show/play/event.h"
+#include "show/play/input_log.h"
+#include "show/play/show_clock.h"
 #include "show/show_state.h"
 #include "show/site/site.h"
 #include "vision/watch/drift_track.h"

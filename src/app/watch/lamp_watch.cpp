@@ -87,7 +87,7 @@ void LampWatch::note(const show::ShowState& shown) {
         relays.push_back(static_cast<int>(i) < shown.lamps.relaysOff ? 0 : shown.relays[settings_.relays[i]]);
     if (relays != std::exchange(relays_, relays) || !switched_) switched_ = shown.time;
     corrects_ = shown.corrects;
-    isDark_ = shown.blackout;
+    isDark_ = shown.blackout || shown.panic;
     if (!corrects_) goal_ = told_ = {};
     goal_.relaysOff = shown.lamps.relaysOff;  // a blackout gives them back
     moments_.note(shown.time, std::move(moment));

@@ -3,8 +3,8 @@
 #include "app/watch/shown_lately.h"
 #include "app/watch/trim_loop.h"
 
-#include "show/event.h"
-#include "show/input_log.h"
+#include "show/play/event.h"
+#include "show/play/input_log.h"
 #include "show/show_state.h"
 #include "show/site/site.h"
 #include "vision/watch/ambient_light.h"

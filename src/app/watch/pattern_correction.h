@@ -2,8 +2,8 @@
 
 #include "pattern/shape/shape_pattern.h"
 #include "render/source/picture_source.h"
-#include "show/event.h"
-#include "show/input_log.h"
+#include "show/play/event.h"
+#include "show/play/input_log.h"
 #include "show/show_state.h"
 #include "show/site/corrections.h"
 #include "vision/watch/canvas_surface.h"

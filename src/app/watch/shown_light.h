@@ -1,7 +1,7 @@
 #pragma once
 
 #include "render/frame_tap.h"
-#include "show/show_clock.h"
+#include "show/play/show_clock.h"
 #include "vision/watch/wall_watch.h"
 
 #include "core/clock.h"

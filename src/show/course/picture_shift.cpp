@@ -4,7 +4,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <iterator>
 
 namespace fantascope::show {
 
@@ -30,27 +29,29 @@ float farthestOf(const PictureShift& shift) {
 }
 
 void ShiftCourses::want(std::size_t output, const PictureShift& shift, Time at, double speed) {
-    if (steps_.size() <= output) steps_.resize(output + 1);
+    if (moves_.size() <= output) moves_.resize(output + 1);
     const PictureShift from = this->at(output, at);
     PictureShift way;
     for (std::size_t i = 0; i < way.size(); ++i) way[i] = shift[i] - from[i];
-    steps_[output].push_back({at, fromSeconds(farthestOf(way) / speed), from, shift});
+    moves_[output].set(at, {at, fromSeconds(farthestOf(way) / speed), from, shift});
 }
 
 void ShiftCourses::takeBack(Time at, double speed) {
-    for (std::size_t output = 0; output < steps_.size(); ++output) want(output, {}, at, speed);
+    for (std::size_t output = 0; output < moves_.size(); ++output) want(output, {}, at, speed);
 }
 
 PictureShift ShiftCourses::at(std::size_t output, Time time) const {
-    if (output >= steps_.size()) return {};
-    const auto next = std::ranges::upper_bound(steps_[output], time, {}, &Step::at);
-    if (next == steps_[output].begin()) return {};
-    const Step& step = *std::prev(next);
-    if (time - step.at >= step.length) return step.to;
-    const auto share = static_cast<float>(seconds(time - step.at) / seconds(step.length));
+    if (output >= moves_.size()) return {};
+    const Move& move = moves_[output].at(time);
+    if (time - move.at >= move.length) return move.to;
+    const auto share = static_cast<float>(seconds(time - move.at) / seconds(move.length));
     PictureShift shift;
-    for (std::size_t i = 0; i < shift.size(); ++i) shift[i] = glm::mix(step.from[i], step.to[i], share);
+    for (std::size_t i = 0; i < shift.size(); ++i) shift[i] = glm::mix(move.from[i], move.to[i], share);
     return shift;
+}
+
+void ShiftCourses::forget(Time time) {
+    for (Steps<Move>& moves : moves_) moves.forget(time);
 }
 
 }  // namespace fantascope::show

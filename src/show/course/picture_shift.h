@@ -1,5 +1,7 @@
 #pragma once
 
+#include "show/course/steps.h"
+
 #include "core/clock.h"
 #include "core/geometry.h"
 
@@ -35,13 +37,14 @@ public:
     // Takes all shifts back.
     void takeBack(Time at, double speed);
     PictureShift at(std::size_t output, Time time) const;
+    void forget(Time time);
 
 private:
-    struct Step {
+    struct Move {
         Time at{}, length{};
         PictureShift from{}, to{};
     };
-    std::vector<std::vector<Step>> steps_;  // by output, by time
+    std::vector<Steps<Move>> moves_;  // by output
 };
 
 }  // namespace fantascope::show

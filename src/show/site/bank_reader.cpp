@@ -20,7 +20,8 @@ Result<Relay> readRelay(const ConfigNode& node, std::set<std::string>& names, Ba
 
 Result<Contact> readContact(const ConfigNode& node, std::set<std::string>& names, Banks& banks) {
     const auto readAction = [](const ConfigNode& value) -> Result<std::optional<ContactAction>> {
-        return std::optional(static_cast<ContactAction>(TRY(value.choice({"go", "back", "blackout", "dark", "light"}))));
+        return std::optional(static_cast<ContactAction>(
+            TRY(value.choice({"go", "back", "blackout", "dark", "light", "pause", "freeze", "panic", "restore"}))));
     };
     Contact contact;
     ConfigFields fields(node);

@@ -13,11 +13,12 @@ namespace fantascope::show {
 namespace {
 
 constexpr std::pair<std::string_view, Button> kButtonKeys[] = {
-    {"go", Button::Go},         {"back", Button::Back},  {"blackout", Button::Blackout},
-    {"edit", Button::Edit},     {"left", Button::Left},  {"right", Button::Right},
-    {"up", Button::Up},         {"down", Button::Down},  {"next", Button::Next},
-    {"output", Button::Output}, {"tool", Button::Tool},  {"picture", Button::Picture},
-    {"undo", Button::Undo},     {"write", Button::Write}};
+    {"go", Button::Go},           {"back", Button::Back},     {"blackout", Button::Blackout},
+    {"pause", Button::Pause},     {"freeze", Button::Freeze}, {"panic", Button::Panic},
+    {"restore", Button::Restore}, {"edit", Button::Edit},     {"left", Button::Left},
+    {"right", Button::Right},     {"up", Button::Up},         {"down", Button::Down},
+    {"next", Button::Next},       {"output", Button::Output}, {"tool", Button::Tool},
+    {"picture", Button::Picture}, {"undo", Button::Undo},     {"write", Button::Write}};
 
 }  // namespace
 

@@ -105,12 +105,31 @@ struct Relay {
 };
 
 // What a button of the hand controller does. Edit and all after it are for setting up (SiteEditor).
-enum class Button { Go, Back, Blackout, Edit, Left, Right, Up, Down, Next, Output, Tool, Picture, Undo, Write };
+enum class Button {
+    Go,
+    Back,
+    Blackout,
+    Pause,
+    Freeze,
+    Panic,
+    Restore,
+    Edit,
+    Left,
+    Right,
+    Up,
+    Down,
+    Next,
+    Output,
+    Tool,
+    Picture,
+    Undo,
+    Write
+};
 
 std::string_view nameOf(Button button);  // its key in the site file: "go"
 
-// What a contact asks for when it closes or opens: a door may give GO, an emergency button Dark.
-enum class ContactAction { Go, Back, Blackout, Dark, Light };
+// What a contact asks for when it closes or opens: a door may give GO, an emergency button Panic.
+enum class ContactAction { Go, Back, Blackout, Dark, Light, Pause, Freeze, Panic, Restore };
 
 struct Contact {
     std::string name;

@@ -56,6 +56,51 @@ TEST_F(Keys, at_a_window_ask_for_what_the_hand_controller_does_at_the_moment_of_
     EXPECT_EQ(ends_, 0);
 }
 
+TEST_F(Keys, hold_time_and_light) {
+    const auto keys = keysWith({0, false, {}});
+    for (const char letter : {'p', 'f', 'r', 'l', 'c'}) keys->pressedAtScreen({.letter = letter}, 12s);
+    keys->pressedAtScreen({Key::Name::Escape}, 12s);
+    keys->tick(12s);
+    std::vector<Kind> kinds;
+    for (const show::Input& input : inputs()) kinds.push_back(input.kind);
+    EXPECT_THAT(kinds, ElementsAre(Kind::Pause, Kind::Freeze, Kind::Restore, Kind::Lock, Kind::Corrections, Kind::Panic));
+}
+
+// The show has six cues.
+TEST_F(Keys, load_the_cue_beside_the_one_that_go_would_enter) {
+    const auto keys = keysWith({0, false, {}});
+    const auto loadedBy = [&](Key::Name key) {
+        keys->pressedAtScreen({key}, 12s);
+        keys->tick(12s);
+        EXPECT_EQ(inputs().back().kind, Kind::Load);
+        return inputs().back().cue;
+    };
+    EXPECT_EQ(loadedBy(Key::Name::Down), 1);
+    EXPECT_EQ(loadedBy(Key::Name::Down), 2);
+    EXPECT_EQ(loadedBy(Key::Name::Up), 1);
+    EXPECT_EQ(loadedBy(Key::Name::Up), 0);
+    EXPECT_EQ(loadedBy(Key::Name::Up), 0) << "it is the first";
+    run_.inputs.submit({.at = 3h + 2s, .kind = Kind::Jump, .cue = 5});
+    EXPECT_EQ(loadedBy(Key::Name::Down), 5) << "no cue comes after the last";
+    EXPECT_EQ(loadedBy(Key::Name::Up), 4);
+}
+
+// Example failure: rounding makes the tenth press reach 0.99999994.
+TEST_F(Keys, move_the_master_by_a_tenth) {
+    const auto keys = keysWith({0, false, {}});
+    const auto masterAfter = [&](char letter, int presses) {
+        for (int press = 0; press < presses; ++press) keys->pressedAtScreen({.letter = letter}, 12s);
+        keys->tick(12s);
+        EXPECT_EQ(inputs().back().kind, Kind::Master);
+        return inputs().back().level;
+    };
+    EXPECT_EQ(masterAfter('-', 1), 0.9f);
+    EXPECT_EQ(masterAfter('-', 2), 0.7f);
+    EXPECT_EQ(masterAfter('+', 1), 0.8f);
+    EXPECT_EQ(masterAfter('-', 20), 0);
+    EXPECT_EQ(masterAfter('=', 20), 1) << "of the same key as +";
+}
+
 // Example failure: the seventeenth key of somebody in a hurry does nothing.
 TEST_F(Keys, are_all_taken_however_many_came_before_anybody_looked) {
     const auto keys = keysWith({0, false, {}});

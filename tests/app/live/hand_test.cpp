@@ -31,7 +31,7 @@ protected:
     }
 
     RunningShow run_;
-    PlaybackReplica lamps_{run_.inputs};
+    show::PlaybackReplica lamps_{run_.inputs};
     Hand hand_{run_.show, run_.inputs, run_.site, run_.devices, show::ShowClock(), run_.events};
 };
 
@@ -52,6 +52,36 @@ TEST_F(HandPart, a_press_reaches_every_part_of_the_show_and_the_operator) {
     ASSERT_EQ(cues.size(), 1u);
     EXPECT_EQ(cues[0].name, "Dusk");
     EXPECT_EQ(cues[0].entered, 2s);
+}
+
+TEST_F(HandPart, tells_what_the_operator_holds) {
+    using Kind = show::Input::Kind;
+    run_.clock.advance(2s);
+    const auto told = [&](show::Input input) {
+        input.at = run_.clock.now();
+        run_.inputs.submit(input);
+        hand_.tick(run_.clock.now());
+        return run_.told().back();
+    };
+    EXPECT_EQ(told({.kind = Kind::Load, .cue = 3}), "GO enters cue 4 of 6: " + run_.show.cues[3].name);
+    EXPECT_EQ(told({.kind = Kind::Load, .cue = -1}), "GO enters the next cue");
+    EXPECT_EQ(told({.kind = Kind::Pause}), "paused: the cues stand still");
+    EXPECT_EQ(told({.kind = Kind::Pause}), "the cues go on");
+    EXPECT_EQ(told({.kind = Kind::Freeze}), "frozen: what is seen stays, the cues go on unseen");
+    EXPECT_EQ(told({.kind = Kind::Master, .level = 0.7f}), "master 70 %");
+    EXPECT_EQ(told({.kind = Kind::Panic}), "PANIC: pictures and lamps go dark, relays are safe, the cues stand still");
+    EXPECT_EQ(told({.kind = Kind::Go}), "ignored: all is dark after a panic; restore comes first");
+    EXPECT_EQ(told({.kind = Kind::Restore}), "restored: the show goes on from where it was");
+}
+
+// GO enters the loaded cue, and nothing is loaded any more: that needs no news of its own.
+TEST_F(HandPart, tells_of_the_loaded_cue_that_go_has_entered_once) {
+    run_.clock.advance(2s);
+    run_.inputs.submit({.at = 2s, .kind = show::Input::Kind::Load, .cue = 3});
+    hand_.tick(run_.clock.now());
+    press(show::Button::Go);
+    EXPECT_THAT(run_.told(),
+                ElementsAre("GO enters cue 4 of 6: " + run_.show.cues[3].name, "cue 4 of 6: " + run_.show.cues[3].name));
 }
 
 // Example failure: a press of a show that was resumed after three hours counts as one from before
@@ -129,7 +159,7 @@ TEST_F(HandPart, lights_the_buttons_by_what_a_press_would_do) {
     for (const bool locked : {true, false}) {
         run_.inputs.submit({run_.clock.now(), show::Input::Kind::Lock});
         EXPECT_EQ(lit(show::Button::Back), locked ? Off : Ready);
-        EXPECT_THAT(run_.told(), Contains(HasSubstr(locked ? "locked: GO and back" : "unlocked: GO")));
+        EXPECT_THAT(run_.told(), Contains(HasSubstr(locked ? "locked: hand controller" : "unlocked: hand controller")));
     }
 
     press(show::Button::Blackout);
@@ -189,7 +219,7 @@ TEST(ContactsPart, a_gate_steps_the_cues_and_an_emergency_button_darkens_the_sho
     run.site.contacts = {{"gate", 0, 1, show::ContactAction::Go, {}},
                          {"emergency", 1, 1, show::ContactAction::Dark, show::ContactAction::Light}};
     run.devices = valueOf(openDevices(run.site, Backends::SimulatedHeadless, {run.clock, &run.world}));
-    PlaybackReplica lamps{run.inputs};
+    show::PlaybackReplica lamps{run.inputs};
     Hand hand{run.show, run.inputs, run.site, run.devices, show::ShowClock(), run.events};
     const auto stateAfter = [&](const char* bank, bool closed) {
         run.world.setContact(bank, 1, closed);

@@ -17,7 +17,7 @@ using testing::StartsWith;
 RunStatus fading() {
     RunStatus status;
     status.showTime = 12s;
-    status.cue = 2;
+    status.controls.cue = 2;
     status.cues = 6;
     status.number = 3000;
     status.cueName = "Left rises";
@@ -68,7 +68,7 @@ TEST(StatusLine, leaves_out_what_matters_least_where_it_is_narrow) {
 
 TEST(StatusLine, says_of_a_blackout_for_as_long_as_it_lasts_and_what_lifts_it) {
     RunStatus status = fading();
-    status.blackout = true;
+    status.controls.blackout = true;
     EXPECT_THAT(at(status, kWidths), testing::Each(StartsWith("BLACKOUT, 0 lifts it  ")));
     EXPECT_EQ(statusLine(status, 40), "BLACKOUT, 0 lifts it  3/6 Left rises");
     EXPECT_EQ(statusLine(status, 8), "BLACKOUT");
@@ -80,11 +80,25 @@ TEST(StatusLine, says_of_a_blackout_for_as_long_as_it_lasts_and_what_lifts_it) {
 
 TEST(StatusLine, says_that_go_is_locked_and_what_unlocks_it) {
     RunStatus status = fading();
-    status.locked = true;
+    status.controls.locked = true;
     EXPECT_THAT(statusLine(status, 200), StartsWith("LOCKED, l unlocks it  cue 3 of 6"));
     EXPECT_THAT(statusLine(status, 30), StartsWith("LOCKED  3/6"));
     status.keys = false;
     EXPECT_THAT(statusLine(status, 200), StartsWith("LOCKED  cue 3 of 6"));
+}
+
+TEST(StatusLine, says_what_the_operator_holds_and_how_to_let_it_go) {
+    RunStatus status = fading();
+    status.controls.panic = status.controls.frozen = status.controls.paused = true;
+    status.controls.master = 0.7f;
+    status.loadedName = "Storm";
+    EXPECT_THAT(statusLine(status, 200), StartsWith("PANIC, r restores it  FROZEN, f ends it  PAUSED, p ends it  master 70 %  "
+                                                    "cue 3 of 6: Left rises  fading 4 s  GO: Storm  next: Both"));
+    EXPECT_EQ(statusLine(status, 60), "PANIC, r restores it  FROZEN  PAUSED  master 70 %  3/6");
+    EXPECT_EQ(statusLine(status, 5), "PANIC") << "the last that is left out";
+    status = fading();
+    status.controls.master = 0;
+    EXPECT_THAT(statusLine(status, 30), StartsWith("master 0 %")) << "it is dark, and this is why";
 }
 
 TEST(StatusLine, before_the_first_cue_and_in_the_last) {
@@ -93,7 +107,7 @@ TEST(StatusLine, before_the_first_cue_and_in_the_last) {
     status.nextName = "Dusk";
     status.showTime = 3s;
     EXPECT_EQ(statusLine(status, 80), "no cue yet  next: Dusk  at 3 s  0 late");
-    status.cue = 0;
+    status.controls.cue = 0;
     status.number = 1000;
     status.cueName = "Dusk";
     status.nextName.clear();

@@ -21,7 +21,7 @@ TEST_F(View, counts_cues_in_show_time_and_what_is_left_in_run_time) {
     run_.inputs.submit({3h + 1s, show::Input::Kind::Go});
     const RunStatus status = view_.at(12s, 20s);
     EXPECT_EQ(status.showTime, 3h + 2s);
-    EXPECT_EQ(status.cue, 0);
+    EXPECT_EQ(status.controls.cue, 0);
     EXPECT_EQ(status.cueName, "Dusk");
     EXPECT_EQ(status.nextName, "First light");
     EXPECT_EQ(status.fadeLeft, run_.cues.cues[0].fade.in - 1s);
@@ -44,7 +44,7 @@ TEST_F(View, tells_the_first_cue_after_the_last_of_a_show_that_loops) {
 // Example failure: the report has read a sentence, and the terminal never shows it.
 TEST_F(View, says_what_happened_once_whoever_else_listens) {
     EXPECT_FALSE(view_.hasNews());
-    run_.events.append({3h, show::event::BlackoutChanged{true}});
+    run_.events.append({3h, show::event::HoldChanged{show::event::HoldChanged::Hold::Blackout, true}});
     run_.events.append({3h, show::event::InputDecided{}});
     run_.events.append({3h, show::event::ScheduleEnded{}});
     EXPECT_EQ(run_.told().size(), 2u);

@@ -1,12 +1,12 @@
 #include "drawn_night.h"
 
-#include "app/live/playback_replica.h"
 #include "app/site/site_file.h"
 #include "app/site/site_models.h"
 #include "drivers/site/simulated_site.h"
 
 #include "show/cue_list.h"
 #include "show/patch.h"
+#include "show/play/playback_replica.h"
 
 #include "core/file.h"
 #include "core/warp.h"
@@ -508,7 +508,7 @@ private:
     std::vector<LampMoment> lamps_;
     show::InputLog inputs_;
     show::EventLog events_;
-    PlaybackReplica playback_;
+    show::PlaybackReplica playback_;
     std::vector<Leaves> leaves_;
     std::vector<std::deque<render::ShownFrame>> frames_;  // by output: those that are under way to the watch
     std::vector<render::ShownFrame> given_;               // and the one that it was given last

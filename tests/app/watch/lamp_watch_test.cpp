@@ -3,7 +3,7 @@
 #include "app/watch/lamp_watch.h"
 
 #include "show/cue_list.h"
-#include "show/playback.h"
+#include "show/play/playback.h"
 
 #include "core/random.h"
 

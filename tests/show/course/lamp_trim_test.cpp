@@ -2,9 +2,9 @@
 
 #include "show/course/lamp_trim.h"
 
-#include "show/input.h"
 #include "show/patch.h"
-#include "show/playback.h"
+#include "show/play/input.h"
+#include "show/play/playback.h"
 
 #include <gmock/gmock.h>
 

@@ -2,8 +2,8 @@
 
 #include "show/course/picture_shift.h"
 
-#include "show/input.h"
-#include "show/playback.h"
+#include "show/play/input.h"
+#include "show/play/playback.h"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "show/cue_buttons.h"
+#include "show/play/cue_buttons.h"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "show/cue_list.h"
-#include "show/input.h"
-#include "show/playback.h"
+#include "show/play/input.h"
+#include "show/play/playback.h"
 
 #include "core/append_log.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "show/playback.h"
+#include "show/play/playback.h"
 #include "show/site/site.h"
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "show/input_log.h"
+#include "show/play/input_log.h"
 
 namespace fantascope::show {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "show/cue.h"
-#include "show/input_log.h"
+#include "show/play/input_log.h"
 
 #include "core/append_log.h"
 #include "core/clock.h"
@@ -27,11 +27,21 @@ struct CueEntered {
     std::string name;
     CueNumber number = 0;
 };
-struct BlackoutChanged {
-    bool dark = false;
+// The operator holds the show in some way, or lets it go.
+struct HoldChanged {
+    enum class Hold { Blackout, Panic, Pause, Freeze, Lock };
+    Hold hold = Hold::Blackout;
+    bool on = false;
 };
-struct LockChanged {
-    bool locked = false;
+struct MasterChanged {
+    float level = 1;
+};
+// GO is to enter another cue than the one after the current.
+struct CueLoaded {
+    int cue = -1;  // index into Show::cues, of `cues`; -1: the next one, as usual
+    int cues = 0;
+    std::string name;
+    CueNumber number = 0;
 };
 // A person took over from the schedule of a rehearsal.
 struct ScheduleEnded {};
@@ -114,10 +124,10 @@ struct SiteNotSaved {
     std::string why;
 };
 
-using What =
-    std::variant<InputDecided, CueEntered, BlackoutChanged, LockChanged, ScheduleEnded, QuitAsked, FaultBegan, FaultEnded, SendersChanged,
-                 PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear, CauseBegan, CauseEnded,
-                 PatternFitted, LampsTrimmed, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ScheduleEnded, QuitAsked, FaultBegan,
+                          FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved,
+                          MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, SettingUpBegan, SettingUpEnded,
+                          SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

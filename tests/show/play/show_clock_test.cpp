@@ -1,4 +1,4 @@
-#include "show/show_clock.h"
+#include "show/play/show_clock.h"
 
 #include "core/random.h"
 

@@ -1,9 +1,9 @@
 // One way in for everybody: inputs of many producers have one order, and whoever plays them sees
 // the same show.
 
-#include "show/input_log.h"
+#include "show/play/input_log.h"
 
-#include "show/input_journal.h"
+#include "show/play/input_journal.h"
 
 #include "core/random.h"
 #include "scratch_folder.h"

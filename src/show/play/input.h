@@ -27,7 +27,13 @@ struct Input {
         Exchange,     // exchange `revision` of the source with the id `which` (PatternCourses)
         Corrections,  // toggle: take all corrections back and ignore further ones, or allow them again
         Trim,         // trim the site's lamps to `trim`
-        Lock          // toggle: ignore GO, back and jumps of hand controller, contacts and windows, or take them again
+        Lock,         // toggle: ignore hand controller, contacts and windows but for darkness, or take them again
+        Load,         // let GO enter cue `cue`; -1: the cue after the current one
+        Pause,        // toggle: let the cues' time stand still, or go on
+        Freeze,       // toggle: keep what is seen, or show the cues again
+        Panic,        // make all dark and safe within the show's `panicFade`; again: at once
+        Restore,      // end the panic: everything goes on from where it was
+        Master        // dim pictures and fixtures to `level`
     };
     // Where the input came from.
     enum class Source {
@@ -41,12 +47,13 @@ struct Input {
     };
     Time at{};  // show time
     Kind kind = Kind::Go;
-    int cue = 0;  // only for Jump: index into CueList::cues
+    int cue = 0;  // for Jump and Load: index into CueList::cues
     Source source = Source::Start;
     int which = 0;
     int revision = 0;      // for Revise: a number that InputLog::add() returned; for Exchange: that of the exchange
     PictureShift shift{};  // only for Correct
     LampTrim trim{};       // only for Trim
+    float level = 1;       // only for Master, 0..1
     friend bool operator==(const Input&, const Input&) = default;
 };
 
@@ -64,14 +71,17 @@ enum class Outcome {
     TooFar,
     CorrectionsOff,
     RelaysHeld,
-    Locked
+    Locked,
+    Panicked,
+    NothingToRestore,
+    NoSuchLevel
 };
 // The outcome in words for the operator: "taken", "ignored: ...".
 std::string_view nameOf(Outcome outcome);
 
 // One line, without its end: show time in nanoseconds, kind, cue (of Revise and Exchange: the
 // revision), source, which, of Correct also the shift, of Trim also the share and how many relays
-// are off: "12500000000 jump 3 terminal 0".
+// are off, of Master also the level: "12500000000 jump 3 terminal 0".
 std::string lineOf(const Input& input);
 // Reads a line that lineOf() wrote. Error: what is wrong with the line.
 Result<Input> inputOf(std::string_view line);

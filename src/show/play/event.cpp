@@ -1,4 +1,4 @@
-#include "show/event.h"
+#include "show/play/event.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,12 +25,30 @@ struct Teller {
     std::string operator()(const event::CueEntered& entered) const {
         return fmt::format("cue {}: {}", placeOf(entered.number, entered.cue, entered.cues), entered.name);
     }
-    std::string operator()(const event::LockChanged& change) const {
-        return change.locked ? "locked: GO and back of hand controller, contacts and windows are ignored"
-                             : "unlocked: GO and back are taken from everywhere";
+    std::string operator()(const event::HoldChanged& change) const {
+        using Hold = event::HoldChanged::Hold;
+        switch (change.hold) {
+            case Hold::Blackout:
+                return change.on ? "blackout: pictures and lamps are dark" : "light: the blackout is over";
+            case Hold::Panic:
+                return change.on ? "PANIC: pictures and lamps go dark, relays are safe, the cues stand still"
+                                 : "restored: the show goes on from where it was";
+            case Hold::Pause:
+                return change.on ? "paused: the cues stand still" : "the cues go on";
+            case Hold::Freeze:
+                return change.on ? "frozen: what is seen stays, the cues go on unseen" : "what the cues do is seen again";
+            case Hold::Lock:
+                return change.on ? "locked: hand controller, contacts and windows can only make it dark"
+                                 : "unlocked: hand controller, contacts and windows work";
+        }
+        return "";
     }
-    std::string operator()(const event::BlackoutChanged& change) const {
-        return change.dark ? "blackout: pictures and lamps are dark" : "light: the blackout is over";
+    std::string operator()(const event::MasterChanged& change) const {
+        return fmt::format("master {:.0f} %", 100 * change.level);
+    }
+    std::string operator()(const event::CueLoaded& loaded) const {
+        if (loaded.cue < 0) return "GO enters the next cue";
+        return fmt::format("GO enters cue {}: {}", placeOf(loaded.number, loaded.cue, loaded.cues), loaded.name);
     }
     std::string operator()(const event::ScheduleEnded&) const { return "you have the controller"; }
     std::string operator()(const event::QuitAsked& asked) const {

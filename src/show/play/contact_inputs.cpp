@@ -1,4 +1,4 @@
-#include "show/contact_inputs.h"
+#include "show/play/contact_inputs.h"
 
 #include <algorithm>
 
@@ -15,11 +15,9 @@ std::optional<Input> inputFor(const Site& site, std::size_t bank, std::size_t co
     constexpr struct {
         Input::Kind kind;
         bool isState;
-    } kAsked[] = {{Input::Kind::Go, false},
-                  {Input::Kind::Back, false},
-                  {Input::Kind::Blackout, false},
-                  {Input::Kind::Dark, true},
-                  {Input::Kind::Light, true}};
+    } kAsked[] = {{Input::Kind::Go, false},     {Input::Kind::Back, false}, {Input::Kind::Blackout, false},
+                  {Input::Kind::Dark, true},    {Input::Kind::Light, true}, {Input::Kind::Pause, false},
+                  {Input::Kind::Freeze, false}, {Input::Kind::Panic, true}, {Input::Kind::Restore, false}};
     const auto& asked = kAsked[static_cast<std::size_t>(*action)];
     if (!witnessed && !asked.isState) return std::nullopt;
     const auto which = static_cast<int>(declared - site.contacts.begin());

@@ -1,6 +1,6 @@
 // What a crash, a full disk or a second machine leaves of a night's inputs can be played again.
 
-#include "show/input_journal.h"
+#include "show/play/input_journal.h"
 
 #include "core/file.h"
 #include "scratch_folder.h"

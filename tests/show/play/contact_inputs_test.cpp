@@ -1,4 +1,4 @@
-#include "show/contact_inputs.h"
+#include "show/play/contact_inputs.h"
 
 #include <gmock/gmock.h>
 
@@ -13,7 +13,8 @@ Site site() {
     Site site;
     site.contacts = {{"gate", 0, 4, ContactAction::Go, {}},
                      {"emergency", 0, 1, ContactAction::Dark, ContactAction::Light},
-                     {"door", 1, 4, ContactAction::Back, {}}};
+                     {"door", 1, 4, ContactAction::Back, {}},
+                     {"stop", 1, 5, ContactAction::Panic, ContactAction::Restore}};
     return site;
 }
 
@@ -43,6 +44,13 @@ TEST(ContactInputs, a_cue_needs_a_movement_that_was_seen) { EXPECT_EQ(asked(4, t
 TEST(ContactInputs, the_dark_holds_however_it_came_about) {
     EXPECT_EQ(asked(1, true, false), Input::Kind::Dark);
     EXPECT_EQ(asked(1, false, false), Input::Kind::Light);
+    EXPECT_EQ(asked(5, true, false, 1), Input::Kind::Panic);
+}
+
+// Example failure: a module that comes back brings the light back, too, without anybody there.
+TEST(ContactInputs, a_show_is_restored_only_by_a_movement_that_was_seen) {
+    EXPECT_EQ(asked(5, false, true, 1), Input::Kind::Restore);
+    EXPECT_EQ(asked(5, false, false, 1), std::nullopt);
 }
 
 }  // namespace

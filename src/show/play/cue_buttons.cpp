@@ -1,4 +1,4 @@
-#include "show/cue_buttons.h"
+#include "show/play/cue_buttons.h"
 
 #include <algorithm>
 
@@ -7,10 +7,24 @@ namespace fantascope::show {
 namespace {
 
 std::optional<Input::Kind> kindOf(Button button) {
-    if (button == Button::Go) return Input::Kind::Go;
-    if (button == Button::Back) return Input::Kind::Back;
-    if (button == Button::Blackout) return Input::Kind::Blackout;
-    return std::nullopt;
+    switch (button) {
+        case Button::Go:
+            return Input::Kind::Go;
+        case Button::Back:
+            return Input::Kind::Back;
+        case Button::Blackout:
+            return Input::Kind::Blackout;
+        case Button::Pause:
+            return Input::Kind::Pause;
+        case Button::Freeze:
+            return Input::Kind::Freeze;
+        case Button::Panic:
+            return Input::Kind::Panic;
+        case Button::Restore:
+            return Input::Kind::Restore;
+        default:  // those for setting up
+            return std::nullopt;
+    }
 }
 
 }  // namespace

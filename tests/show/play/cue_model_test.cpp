@@ -1,7 +1,7 @@
 // The cue engine against a model that shares none of its code: random lists, random inputs, random
 // moments.
 
-#include "show/playback.h"
+#include "show/play/playback.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -26,6 +26,35 @@ struct Move {
     float target;
 };
 
+// Light that moves to what is wanted at a constant rate.
+class ModelLight {
+public:
+    void want(float level, Time at, Time fade) { wishes_.push_back({at, level, fade}); }
+    float wantedAt(Time time) const {
+        float level = 1;
+        for (const Wish& wish : wishes_)
+            if (wish.at <= time) level = wish.level;
+        return level;
+    }
+    float at(Time time) const {
+        double light = 1;
+        for (std::size_t i = 0; i < wishes_.size() && wishes_[i].at <= time; ++i) {
+            const Time until = i + 1 < wishes_.size() ? std::min(time, wishes_[i + 1].at) : time;
+            const double most = wishes_[i].fade > Time{} ? seconds(until - wishes_[i].at) / seconds(wishes_[i].fade) : 1;
+            light += std::clamp(wishes_[i].level - light, -most, most);
+        }
+        return static_cast<float>(light);
+    }
+
+private:
+    struct Wish {
+        Time at;
+        float level;
+        Time fade;
+    };
+    std::vector<Wish> wishes_;
+};
+
 // Finds what is seen by going through everything that happened from the beginning.
 class Model {
 public:
@@ -34,44 +63,68 @@ public:
     // Until `time`, with the cues that follow by themselves.
     void advance(Time time) {
         while (!entered_.empty()) {
-            const auto [at, cue] = entered_.back();
-            const auto& follow = cueOf(cue).follow;
-            if (!follow || !hasNext(cue) || at + *follow > time) return;
-            entered_.push_back({at + *follow, next(cue)});
+            const Entered last = entered_.back();
+            const auto& follow = cueOf(last.cue).follow;
+            if (!follow || !hasNext(last.cue) || last.cueTime + *follow > cueTime(time)) return;
+            const Time cueTime = last.cueTime + *follow;
+            entered_.push_back({runs_.back().at + (cueTime - runs_.back().cueTime), cueTime, next(last.cue)});
         }
     }
     bool apply(const Input& input) {
         newest_ = std::max(newest_, input.at);
         advance(newest_);
-        const bool entersCue =
-            input.kind == Input::Kind::Go || input.kind == Input::Kind::Back || input.kind == Input::Kind::Jump;
-        if (isLocked_ && entersCue && input.source == Input::Source::Controller) return false;
-        if (input.kind == Input::Kind::Lock) isLocked_ = !isLocked_;
-        if (input.kind == Input::Kind::Lock) return true;
-        const int cue = entered_.empty() ? -1 : entered_.back().cue, last = static_cast<int>(list_.cues.size()) - 1;
-        int wanted = 0;
+        const bool isPanic = panic_.wantedAt(newest_) == 0;
+        if (isLocked_ && input.source == Input::Source::Controller) switch (input.kind) {
+                case Input::Kind::Blackout:
+                case Input::Kind::Dark:
+                case Input::Kind::Light:
+                case Input::Kind::Panic:
+                case Input::Kind::Restore:
+                case Input::Kind::Lock:
+                    break;
+                default:
+                    return false;
+            }
         switch (input.kind) {
+            case Input::Kind::Lock:
+                isLocked_ = !isLocked_;
+                return true;
+            case Input::Kind::Load:
+                if (input.cue < -1 || input.cue >= count()) return false;
+                loaded_ = input.cue;
+                return true;
             case Input::Kind::Go:
-                if (!entered_.empty() && newest_ - entered_.back().at < list_.goInterval) return false;
-                if (cue >= 0 && !hasNext(cue)) return false;
-                wanted = cue < 0 ? 0 : next(cue);
-                break;
             case Input::Kind::Back:
-                if (cue <= 0) return false;
-                wanted = cue - 1;
-                break;
             case Input::Kind::Jump:
-                if (input.cue < 0 || input.cue > last) return false;
-                wanted = input.cue;
-                break;
+                return !isPanic && moveOn(input);
+            case Input::Kind::Pause:
+                if (isPanic) return false;
+                isPaused_ = !isPaused_;
+                run(!isPaused_);
+                return true;
+            case Input::Kind::Freeze:
+                if (isPanic) return false;
+                freezes_.push_back({newest_, freezes_.empty() || !freezes_.back().on, entered_.size()});
+                return true;
+            case Input::Kind::Panic:
+                panic_.want(0, newest_, isPanic ? 0s : list_.panicFade);
+                run(false);
+                return true;
+            case Input::Kind::Restore:
+                if (!isPanic) return false;
+                panic_.want(1, newest_, list_.blackoutFade);
+                if (!isPaused_) run(true);
+                return true;
+            case Input::Kind::Master:
+                if (input.level < 0 || input.level > 1) return false;
+                master_.want(input.level, newest_, list_.blackoutFade);
+                return true;
             default: {
                 const bool dark = input.kind == Input::Kind::Dark || (input.kind == Input::Kind::Blackout && !isDark(newest_));
-                shutters_.push_back({newest_, dark});
+                blackout_.want(dark ? 0 : 1, newest_, list_.blackoutFade);
                 return true;
             }
         }
-        entered_.push_back({newest_, wanted});
-        return true;
     }
 
     int cueAt(Time time) const {
@@ -80,31 +133,27 @@ public:
             if (entered.at <= time) cue = entered.cue;
         return cue;
     }
-    bool isDark(Time time) const {
-        bool dark = false;
-        for (const Shutter& shutter : shutters_)
-            if (shutter.at <= time) dark = shutter.dark;
-        return dark;
+    bool isDark(Time time) const { return blackout_.wantedAt(time) == 0; }
+    bool isPanic(Time time) const { return panic_.wantedAt(time) == 0; }
+    bool isFrozen(Time time) const {
+        const Freeze* const freeze = freezeAt(time);
+        return freeze != nullptr && freeze->on;
     }
-    float lightAt(Time time) const {
-        double light = 1;
-        Time since = -24h;  // before everything
-        bool dark = false;
-        const auto go = [&](Time until) {
-            const double moved = seconds(until - since) / seconds(list_.blackoutFade);
-            light = std::clamp(light + (dark ? -moved : moved), 0., 1.);
-            since = until;
-        };
-        for (const Shutter& shutter : shutters_) {
-            if (shutter.at > time) break;
-            go(shutter.at);
-            dark = shutter.dark;
-        }
-        go(time);
-        return static_cast<float>(light);
+    float lightAt(Time time) const { return blackout_.at(time) * panic_.at(time) * master_.at(time); }
+    // What GO would enter now; nothing: GO would be ignored as it is the last cue.
+    std::optional<int> next() const {
+        if (loaded_ >= 0) return loaded_;
+        const int cue = entered_.empty() ? -1 : entered_.back().cue;
+        return cue < 0 || hasNext(cue) ? std::optional(cue < 0 ? 0 : next(cue)) : std::nullopt;
     }
     // `moveIn`: what the thing does in a cue.
     float valueAt(Time time, float dark, const std::function<Move(const CueList::Cue&)>& moveIn) const {
+        std::size_t count = entered_.size();
+        if (isFrozen(time)) {
+            count = freezeAt(time)->entered;
+            time = freezeAt(time)->at;
+        }
+        const Time now = cueTime(time);
         float from = dark, to = dark;
         Time start{};
         Fade fade;
@@ -114,38 +163,95 @@ public:
             const double bent[] = {share, share * share * (3 - 2 * share), share * share, 1 - (1 - share) * (1 - share)};
             return static_cast<float>(from + (to - from) * bent[static_cast<int>(fade.curve)]);
         };
-        for (std::size_t i = 0; i < entered_.size(); ++i) {
-            const Time until = i + 1 < entered_.size() ? std::min(time, entered_[i + 1].at) : time;
+        for (std::size_t i = 0; i < count && entered_[i].at <= time; ++i) {
+            const bool isLast = i + 1 == count || entered_[i + 1].at > time;
             const Move move = moveIn(cueOf(entered_[i].cue));
-            const Time begins = entered_[i].at + move.wait;
-            if (begins > until) continue;
+            const Time begins = entered_[i].cueTime + move.wait;
+            if (begins > (isLast ? now : entered_[i + 1].cueTime)) continue;
             from = valueOf(begins);
             to = move.target;
             start = begins;
             fade = move.fade;
         }
-        return valueOf(time);
+        return valueOf(now);
     }
     Time newest() const { return newest_; }
 
 private:
     struct Entered {
-        Time at;
+        Time at, cueTime;
         int cue;
     };
-    struct Shutter {
-        Time at;
-        bool dark;
+    // From a moment on, cue time goes on, or stands still.
+    struct Run {
+        Time at, cueTime;
+        bool runs;
     };
+    struct Freeze {
+        Time at;
+        bool on;
+        std::size_t entered;  // before it
+    };
+    bool moveOn(const Input& input) {
+        const int cue = entered_.empty() ? -1 : entered_.back().cue;
+        int wanted = 0;
+        switch (input.kind) {
+            case Input::Kind::Go:
+                if (isPaused_) {
+                    isPaused_ = false;
+                    run(true);
+                    return true;
+                }
+                if (!entered_.empty() && cueTime(newest_) - entered_.back().cueTime < list_.goInterval) return false;
+                if (wentOn_ && newest_ - *wentOn_ < list_.goInterval) return false;
+                if (!next()) return false;
+                wanted = *next();
+                break;
+            case Input::Kind::Back:
+                if (cue <= 0) return false;
+                wanted = cue - 1;
+                break;
+            default:
+                if (input.cue < 0 || input.cue >= count()) return false;
+                wanted = input.cue;
+        }
+        if (isPaused_) run(true);
+        isPaused_ = false;
+        loaded_ = -1;
+        entered_.push_back({newest_, cueTime(newest_), wanted});
+        return true;
+    }
+    void run(bool runs) {
+        if (runs_.back().runs == runs) return;
+        runs_.push_back({newest_, cueTime(newest_), runs});
+        if (runs) wentOn_ = newest_;
+    }
+    Time cueTime(Time time) const {
+        const Run* run = &runs_.front();
+        for (const Run& candidate : runs_)
+            if (candidate.at <= time) run = &candidate;
+        return run->runs ? run->cueTime + (time - run->at) : run->cueTime;
+    }
+    const Freeze* freezeAt(Time time) const {
+        const Freeze* freeze = nullptr;
+        for (const Freeze& candidate : freezes_)
+            if (candidate.at <= time) freeze = &candidate;
+        return freeze;
+    }
     const CueList::Cue& cueOf(int cue) const { return list_.cues[static_cast<std::size_t>(cue)]; }
-    bool hasNext(int cue) const { return list_.loops || cue + 1 < static_cast<int>(list_.cues.size()); }
-    int next(int cue) const { return (cue + 1) % static_cast<int>(list_.cues.size()); }
+    int count() const { return static_cast<int>(list_.cues.size()); }
+    bool hasNext(int cue) const { return list_.loops || cue + 1 < count(); }
+    int next(int cue) const { return (cue + 1) % count(); }
 
     const CueList& list_;
     std::vector<Entered> entered_;
-    std::vector<Shutter> shutters_;
+    std::vector<Run> runs_{{Time{}, Time{}, true}};
+    std::vector<Freeze> freezes_;
+    ModelLight blackout_, panic_, master_;
     Time newest_ = Time::min();
-    bool isLocked_ = false;
+    std::optional<Time> wentOn_;
+    int loaded_ = -1;
+    bool isLocked_ = false, isPaused_ = false;
 };
 
 // The part of a cue that a thing is in; the cue itself if it is in none.
@@ -215,6 +321,7 @@ CueList anyList() {
     list.dark = {std::vector<OutputState>(kOutputs), std::vector<float>(kLevels, 0.f), {1, 0}};
     list.goInterval = 300ms;
     list.blackoutFade = 500ms;
+    list.panicFade = anyTime();
     for (int cues = *rc::gen::inRange(1, 7); cues > 0; --cues) list.cues.push_back(anyCue());
     list.loops = *rc::gen::arbitrary<bool>() &&
                  std::ranges::any_of(list.cues, [](const CueList::Cue& cue) { return !cue.follow || *cue.follow > Time{}; });
@@ -222,14 +329,19 @@ CueList anyList() {
 }
 
 Input anyInput(Time after) {
-    constexpr Input::Kind kKinds[] = {Input::Kind::Go,   Input::Kind::Go,    Input::Kind::Go,
-                                      Input::Kind::Back, Input::Kind::Jump,  Input::Kind::Blackout,
-                                      Input::Kind::Dark, Input::Kind::Light, Input::Kind::Lock};
+    using Kind = Input::Kind;
+    constexpr Kind kKinds[] = {Kind::Go,       Kind::Go,    Kind::Go,      Kind::Go,      Kind::Back,  Kind::Jump,
+                               Kind::Blackout, Kind::Dark,  Kind::Light,   Kind::Lock,    Kind::Load,  Kind::Pause,
+                               Kind::Freeze,   Kind::Panic, Kind::Restore, Kind::Restore, Kind::Master};
     constexpr Input::Source kSources[] = {Input::Source::Controller, Input::Source::Terminal};
+    Input input;
     // One that comes a little too late takes effect when it comes.
-    const Time at = after + *rc::gen::element(-50, 0, 0, 100, 299, 300, 500, 1000, 2500) * 1ms;
-    const Input::Kind kind = kKinds[*rc::gen::inRange(0, 9)];
-    return {at, kind, *rc::gen::inRange(-1, 7), kSources[*rc::gen::inRange(0, 2)]};
+    input.at = after + *rc::gen::element(-50, 0, 0, 100, 299, 300, 500, 1000, 2500) * 1ms;
+    input.kind = *rc::gen::elementOf(std::vector(std::begin(kKinds), std::end(kKinds)));
+    input.cue = *rc::gen::inRange(-2, 7);
+    input.source = kSources[*rc::gen::inRange(0, 2)];
+    input.level = static_cast<float>(*rc::gen::inRange(-1, 6)) / 4;
+    return input;
 }
 
 float opacityOf(const ShowState& state, std::size_t output, SourceId source) {
@@ -245,6 +357,9 @@ void compare(const Playback& playback, const Model& model, const CueList& list, 
     playback.stateAt(time, state);
     RC_ASSERT(state.cue == model.cueAt(time));
     RC_ASSERT(state.blackout == model.isDark(time));
+    RC_ASSERT(state.panic == model.isPanic(time));
+    RC_ASSERT(state.frozen == model.isFrozen(time));
+    if (time >= model.newest()) RC_ASSERT(state.next == model.next());
     const float light = model.lightAt(time);
     for (std::size_t i = 0; i < kLevels; ++i) {
         const auto move = [&](const CueList::Cue& cue) { return moveOfLevel(cue, i); };
@@ -253,7 +368,8 @@ void compare(const Playback& playback, const Model& model, const CueList& list, 
     }
     for (std::size_t i = 0; i < kRelays; ++i) {
         const auto move = [&](const CueList::Cue& cue) { return moveOfRelay(cue, i); };
-        RC_ASSERT(float(state.relays[i]) == model.valueAt(time, list.dark.relays[i], move));
+        const float dark = list.dark.relays[i];
+        RC_ASSERT(float(state.relays[i]) == (model.isPanic(time) ? dark : model.valueAt(time, dark, move)));
     }
     for (std::size_t output = 0; output < kOutputs; ++output)
         for (std::uint32_t source = 0; source < kSources; ++source) {

@@ -1,4 +1,4 @@
-#include "show/input.h"
+#include "show/play/input.h"
 
 #include <fmt/format.h>
 
@@ -13,11 +13,12 @@
 namespace fantascope::show {
 namespace {
 
-constexpr std::array<std::string_view, 12> kKinds = {"go",     "back",    "jump",     "blackout",    "dark", "light",
-                                                     "revise", "correct", "exchange", "corrections", "trim", "lock"};
+constexpr std::array<std::string_view, 18> kKinds = {"go",     "back",    "jump",     "blackout",    "dark",    "light",
+                                                     "revise", "correct", "exchange", "corrections", "trim",    "lock",
+                                                     "load",   "pause",   "freeze",   "panic",       "restore", "master"};
 constexpr std::array<std::string_view, 7> kSources = {"start",  "controller", "contact", "terminal",
                                                       "screen", "schedule",   "camera"};
-static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Lock) + 1);
+static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Master) + 1);
 static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::Camera) + 1);
 
 bool hasRevision(Input::Kind kind) { return kind == Input::Kind::Revise || kind == Input::Kind::Exchange; }
@@ -78,7 +79,13 @@ std::string_view nameOf(Outcome outcome) {
         case Outcome::RelaysHeld:
             return "ignored: the relays stay as they are for now";
         case Outcome::Locked:
-            return "ignored: GO and back are locked";
+            return "ignored: it is locked";
+        case Outcome::Panicked:
+            return "ignored: all is dark after a panic; restore comes first";
+        case Outcome::NothingToRestore:
+            return "ignored: there was no panic";
+        case Outcome::NoSuchLevel:
+            return "ignored: a level is 0 to 1";
     }
     return "unknown";
 }
@@ -89,6 +96,7 @@ std::string lineOf(const Input& input) {
                                    kSources[static_cast<std::size_t>(input.source)], input.which);
     if (input.kind == Input::Kind::Correct)
         for (const glm::vec2 corner : input.shift) line += fmt::format(" {} {}", corner.x, corner.y);
+    if (input.kind == Input::Kind::Master) line += fmt::format(" {}", input.level);
     if (input.kind == Input::Kind::Trim) line += fmt::format(" {} {}", input.trim.share, input.trim.relaysOff);
     return line;
 }
@@ -98,7 +106,10 @@ Result<Input> inputOf(std::string_view line) {
     constexpr std::size_t kWords = 5;
     Input input;
     const std::string_view kind = words.size() > 1 ? words[1] : "";
-    const std::size_t wanted = kWords + (kind == "correct" ? 2 * input.shift.size() : kind == "trim" ? 2 : 0);
+    const std::size_t wanted = kWords + (kind == "correct"  ? 2 * input.shift.size()
+                                         : kind == "trim"   ? 2
+                                         : kind == "master" ? 1
+                                                            : 0);
     if (words.size() != wanted) return Error(fmt::format("an input has {} words, here are {}", wanted, words.size()));
     input.at = Time(TRY(numberOf<Time::rep>(words[0])));
     input.kind = TRY(choiceOf<Input::Kind>(words[1], kKinds));
@@ -108,6 +119,7 @@ Result<Input> inputOf(std::string_view line) {
     if (input.kind == Input::Kind::Correct)
         for (std::size_t i = 0; i < 2 * input.shift.size(); ++i)
             input.shift[i / 2][static_cast<int>(i % 2)] = TRY(numberOf<float>(words[kWords + i]));
+    if (input.kind == Input::Kind::Master) input.level = TRY(numberOf<float>(words[kWords]));
     if (input.kind == Input::Kind::Trim) {
         input.trim.share = TRY(numberOf<float>(words[kWords]));
         input.trim.relaysOff = TRY(numberOf<int>(words[kWords + 1]));

@@ -1,4 +1,4 @@
-#include "show/input_journal.h"
+#include "show/play/input_journal.h"
 
 #include "core/file.h"
 

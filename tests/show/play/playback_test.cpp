@@ -1,4 +1,4 @@
-#include "show/playback.h"
+#include "show/play/playback.h"
 
 #include "allocations.h"
 #include "core/random.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "show/playback.h"
+#include "show/play/playback.h"
 #include "show/site/site.h"
 
 #include "core/clock.h"
@@ -19,7 +19,7 @@ public:
     explicit CueButtons(const std::vector<std::pair<int, Button>>& buttons);
 
     // Call this when `button` went down or up at show time `at`. Returns the input that this asks
-    // for. A release gives none, nor does a button that is not GO, back or blackout.
+    // for. A release gives none, nor does a button for setting up.
     std::optional<Input> inputFor(int button, bool pressed, Time at);
 
 private:

@@ -1,4 +1,4 @@
-#include "show/look_courses.h"
+#include "show/play/look_courses.h"
 
 #include <algorithm>
 #include <iterator>

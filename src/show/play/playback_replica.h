@@ -1,11 +1,11 @@
 #pragma once
 
-#include "show/input_log.h"
-#include "show/playback.h"
+#include "show/play/input_log.h"
+#include "show/play/playback.h"
 
 #include "core/check.h"
 
-namespace fantascope::app {
+namespace fantascope::show {
 
 // One thread's own copy of the playback. Playback is a pure function of the inputs, and every
 // replica reads the same log. So all replicas agree, and no thread has to ask another. Thread:
@@ -13,12 +13,12 @@ namespace fantascope::app {
 class PlaybackReplica {
 public:
     // `inputs` outlives the replica.
-    explicit PlaybackReplica(const show::InputLog& inputs) : playback_(inputs.cues()), inputs_(inputs.reader()) {}
+    explicit PlaybackReplica(const InputLog& inputs) : playback_(inputs.cues()), inputs_(inputs.reader()) {}
 
     // What is seen at `time`, given all inputs so far. `taken` is called with each input since the
     // last call.
-    void stateAt(Time time, show::ShowState& state, const auto& taken) {
-        while (const show::LoggedInput* const logged = inputs_.next()) {
+    void stateAt(Time time, ShowState& state, const auto& taken) {
+        while (const LoggedInput* const logged = inputs_.next()) {
             FANTASCOPE_CHECK(playback_.apply(logged->input, logged->revision) == logged->outcome,
                              "every copy of the playback comes to the same");
             taken(logged->input);
@@ -26,16 +26,16 @@ public:
         playback_.foresee(time);
         playback_.stateAt(time, state);
     }
-    void stateAt(Time time, show::ShowState& state) {
-        stateAt(time, state, [](const show::Input&) {});
+    void stateAt(Time time, ShowState& state) {
+        stateAt(time, state, [](const Input&) {});
     }
 
     // The playback after the inputs that the last stateAt() took.
-    const show::Playback& playback() const { return playback_; }
+    const Playback& playback() const { return playback_; }
 
 private:
-    show::Playback playback_;
-    show::InputLog::Reader inputs_;
+    Playback playback_;
+    InputLog::Reader inputs_;
 };
 
-}  // namespace fantascope::app
+}  // namespace fantascope::show

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "show/input.h"
-#include "show/input_log.h"
+#include "show/play/input.h"
+#include "show/play/input_log.h"
 
 #include "core/appended_file.h"
 #include "core/result.h"

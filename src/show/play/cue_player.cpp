@@ -1,0 +1,162 @@
+#include "show/play/cue_player.h"
+
+#include "core/check.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace fantascope::show {
+
+namespace {
+
+// When the next cue follows a cue that was entered at `at`.
+std::optional<Time> followerAt(const CueList& list, int cue, Time at) {
+    const std::optional<Time>& follow = list.cues[static_cast<std::size_t>(cue)].follow;
+    return follow && list.after(cue) ? std::optional(at + *follow) : std::nullopt;
+}
+
+}  // namespace
+
+bool isOfOneSite(const Look& a, const Look& b) {
+    return a.outputs.size() == b.outputs.size() && a.levels.size() == b.levels.size() && a.relays.size() == b.relays.size();
+}
+
+FoundCue foundAgain(int cue, const CueList& old, const CueList& list) {
+    for (int before = cue; before >= 0; --before) {
+        const auto found = std::ranges::find(list.cues, old.cues[static_cast<std::size_t>(before)].name, &CueList::Cue::name);
+        if (found != list.cues.end()) return {static_cast<int>(found - list.cues.begin()), before == cue};
+    }
+    return {-1, cue < 0};
+}
+
+CuePlayer::CuePlayer(std::shared_ptr<const CueList> list) {
+    examine(*list);
+    entries_.push_back({.list = list, .left = {}, .seen = LookCourses(list->dark)});
+}
+
+// Checks the looks of another list, and notes how much room they need.
+void CuePlayer::examine(const CueList& list) {
+    for (const CueList::Cue& cue : list.cues) {
+        FANTASCOPE_CHECK(isOfOneSite(cue.look, list.dark), "all looks of a cue list are for one site");
+        for (const OutputState& output : cue.look.outputs) {
+            for (const LayerState& layer : output.layers) sources_.insert(layer.source);
+            composed_.layers += output.pictures.empty() ? 0 : output.layers.size();
+            composed_.pictures += output.pictures.size();
+        }
+    }
+    const auto waits = [](const CueList::Cue& cue) { return !cue.follow || *cue.follow > Time{}; };
+    FANTASCOPE_CHECK(!list.loops || std::ranges::any_of(list.cues, waits), "a pass of a list that loops takes time");
+}
+
+LookCourses::Room CuePlayer::room() const { return {sources_.size() + composed_.layers, composed_.pictures}; }
+
+void CuePlayer::enter(int cue, Time at) {
+    begin(this->at(at).list, cue, at);
+    followOn();
+}
+
+// Adds the entries of a cue that is entered at `at`. Later entries are dropped.
+void CuePlayer::begin(std::shared_ptr<const CueList> list, int cue, Time at) {
+    const CueList::Cue& wanted = list->cues[static_cast<std::size_t>(cue)];
+    const std::optional<Time> left = followerAt(*list, cue, at);
+    drop(at);
+    Entry entry{.at = at,
+                .list = std::move(list),
+                .cue = cue,
+                .entered = at,
+                .whole = at + wanted.length(),
+                .left = left,
+                .seen = entries_.back().seen};
+    move(std::move(entry), wanted, Time{});
+}
+
+// Adds an entry that goes on with what is seen, and one for each further moment at which the cue
+// begins to move something. The cue was entered at `entry.entered`.
+void CuePlayer::move(Entry entry, const CueList::Cue& wanted, Time least) {
+    entries_.push_back(std::move(entry));
+    for (const Movement& movement : wanted.movements(entries_.back().entered, entries_.back().at, least)) {
+        if (movement.start > entries_.back().at) {
+            Entry later = entries_.back();
+            later.at = movement.start;
+            entries_.push_back(std::move(later));
+        }
+        entries_.back().seen = entries_.back().seen.moved(movement, wanted.look, wanted.winds);
+    }
+}
+
+// Drops what was to come after `at`.
+void CuePlayer::drop(Time at) {
+    while (entries_.back().at > at) entries_.pop_back();
+}
+
+// Adds the cues that follow the last entry, at most one pass of the list.
+void CuePlayer::followOn() {
+    const std::size_t most = cues().cues.size();
+    for (std::size_t added = 0; added < most; ++added) {
+        const Entry& last = entries_.back();
+        if (!last.left) return;
+        begin(last.list, *last.list->after(last.cue), *last.left);
+    }
+}
+
+void CuePlayer::foresee(Time time, Time kept) {
+    const auto forget = [&] {
+        const auto next = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.at > kept; });
+        if (next - entries_.begin() > 1) entries_.erase(entries_.begin(), next - 1);
+    };
+    while (entries_.back().entered <= time && entries_.back().left) {
+        followOn();
+        forget();
+    }
+    forget();
+}
+
+void CuePlayer::revise(std::shared_ptr<const CueList> list, Time at) {
+    const Entry& now = this->at(at);
+    FANTASCOPE_CHECK(isOfOneSite(list->dark, now.list->dark), "all lists are for one site");
+    examine(*list);
+    const auto [cue, isThere] = foundAgain(now.cue, *now.list, *list);
+    Entry entry{.at = at, .list = list, .cue = cue, .entered = now.entered, .whole = now.whole, .left = {}, .seen = now.seen};
+    entry.isGone = !isThere || now.isGone;
+    drop(at);
+    if (entry.isGone) {
+        entries_.push_back(std::move(entry));
+    } else if (cue < 0) {
+        const CueList::Cue dark{.look = list->dark, .fade = list->blackoutFade, .follow = {}};
+        entry.entered = at;
+        move(std::move(entry), dark, Time{});
+    } else {
+        const CueList::Cue& wanted = list->cues[static_cast<std::size_t>(cue)];
+        entry.whole = std::max(entry.entered + wanted.length(), at + list->blackoutFade);
+        entry.left = followerAt(*list, cue, entry.entered);
+        if (entry.left) entry.left = std::max(at, *entry.left);
+        move(std::move(entry), wanted, list->blackoutFade);
+    }
+    followOn();
+}
+
+const CuePlayer::Entry& CuePlayer::at(Time time) const {
+    const auto next =
+        std::upper_bound(entries_.begin(), entries_.end(), time, [](Time t, const Entry& entry) { return t < entry.at; });
+    return next == entries_.begin() ? entries_.front() : *std::prev(next);
+}
+
+Time CuePlayer::fadeLeftAt(Time time) const {
+    const Entry& entry = at(time);
+    if (entry.cue < 0) return Time{};
+    return std::max(Time{}, entry.whole - time);
+}
+
+Time CuePlayer::waitLeftAt(Time time) const {
+    const Entry& entry = at(time);
+    if (entry.cue < 0 || entry.isGone) return Time{};
+    return std::max(Time{}, entry.entered + entry.list->cues[static_cast<std::size_t>(entry.cue)].firstWait() - time);
+}
+
+std::optional<Time> CuePlayer::untilFollowAt(Time time) const {
+    const Entry& now = at(time);
+    const auto next = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.entered > now.entered; });
+    return next != entries_.end() ? std::optional(next->at - time) : std::nullopt;
+}
+
+}  // namespace fantascope::show
