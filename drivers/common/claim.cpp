@@ -1,5 +1,7 @@
 #include "drivers/common/claim.h"
 
+#include "core/hash.h"
+
 #include <fmt/format.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -21,14 +23,8 @@ namespace {
 // them.
 constexpr int kAskers = 4096;
 
-// FNV-1a, the same in every build. A hash, because a file name may be longer than an address.
-std::uint64_t hashOf(const std::string& text) {
-    std::uint64_t hash = 0xcbf29ce484222325;
-    for (const char letter : text) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3;
-    return hash;
-}
-
-std::string labelOf(const std::string& name) { return fmt::format("fantascope-claim-{:016x}", hashOf(name)); }
+// A hash, because a file name may be longer than an address.
+std::string labelOf(const std::string& name) { return fmt::format("fantascope-claim-{:016x}", fnv1a(name)); }
 
 // An abstract address, because a crash leaves no file behind.
 std::pair<sockaddr_un, socklen_t> addressOf(const std::string& name) {

@@ -35,6 +35,8 @@ void addTemplateCommand(Program& program);
 void addPreviewCommand(Program& program);
 // `fantascope plot PATTERN|REPORT|CAST -o PNG|SVG`: draws figures.
 void addPlotCommand(Program& program);
+// `fantascope report JOURNAL -o PAGE.html`: the audit of nights.
+void addReportCommand(Program& program);
 // fantascope check PATH... [--site SITE]
 void addCheckCommand(Program& program);
 // `calibrate SITE [OUTPUT..]`: the outputs' warps, found with the camera.

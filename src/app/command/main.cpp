@@ -14,9 +14,9 @@ namespace {
 
 // Every subcommand of the program.
 constexpr AddCommand kCommands[] = {
-    addPatternCommand,  addPoseCommand,      addDeformCommand, addAdaptCommand,    addFabricateCommand, addConvertCommand,
-    addRehearseCommand, addRunCommand,       addExportCommand, addTemplateCommand, addPreviewCommand,   addPlotCommand,
-    addCheckCommand,    addCalibrateCommand, addLensCommand,   addDevicesCommand,  addGuardCommand};
+    addPatternCommand,  addPoseCommand,  addDeformCommand,    addAdaptCommand,    addFabricateCommand, addConvertCommand,
+    addRehearseCommand, addRunCommand,   addExportCommand,    addTemplateCommand, addPreviewCommand,   addPlotCommand,
+    addReportCommand,   addCheckCommand, addCalibrateCommand, addLensCommand,     addDevicesCommand,   addGuardCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

@@ -16,7 +16,7 @@ namespace {
 
 struct Options {
     std::string show, site, fromCue, record;
-    std::string pictures = RunOptions{}.pictures;
+    std::string pictures = RunOptions{}.pictures, journal;
     std::optional<double> length;  // seconds
     std::filesystem::path report;
     std::uint64_t seed = 1;
@@ -47,6 +47,8 @@ void declareCommon(Command& command, Options& options) {
     command.add("--from", options.fromCue, "enter this cue at once, by its name or number");
     command.add("--record", options.record, "write videos, traces and a contact sheet to this folder, or one video to FILE.mp4");
     command.add("--pictures", options.pictures, "folder for the pictures that the key s takes").showDefault();
+    command.add("--journal", options.journal,
+                "write what is pressed and happens to this folder; a run that died goes on from there");
     command.add("--report", options.report, "write the run's figures to this JSON file (docs/report.md)");
     command.footer(runKeysHelp());
 }
@@ -60,6 +62,7 @@ RunOptions commonOf(const Options& options) {
     run.recordTo = options.record;
     run.pictures = options.pictures;
     run.report = options.report;
+    run.journal = options.journal;
     run.seed = options.seed;
     return run;
 }

@@ -166,7 +166,7 @@ Result<Film> Film::ofShow(const FilmRequest& request) {
         cue.follow.reset();
         if (const double loop = loopOf(programme.sources); !request.seconds && loop > 0) film.seconds_ = loop;
     }
-    GoSchedule schedule = goScheduleOf(programme, fromSeconds(film.seconds_));
+    GoSchedule schedule = goScheduleOf(programme, programme.firstCue(), fromSeconds(film.seconds_));
     if (!request.cue.empty()) schedule.end();
     const auto played = std::make_shared<ShowFrames>(std::move(cues), programme.firstInput, schedule);
     film.seenAt_ = [played, index](Time time) {

@@ -22,6 +22,7 @@ OperatorKeys::OperatorKeys(show::InputLog& inputs, show::EventLog& events, const
       actions_(std::move(actions)) {}
 
 void OperatorKeys::tick(Time moment) {
+    lateness_.look(moment);
     while (const auto character = terminal_ ? terminal_->poll() : std::nullopt)
         if (const auto key = parser_.take(*character)) press(*key, Source::Terminal, moment);
     if (const auto key = parser_.pause(moment)) press(*key, Source::Terminal, moment);
@@ -37,7 +38,7 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
     const auto action = actionOf(key);
     if (!action) return;
     using Action = RunKey::Action;
-    show::Input input{.at = showClock_.showTime(moment), .source = source};
+    show::Input input{.at = showClock_.showTime(moment), .source = source, .late = lateness_.isLate(moment)};
     const auto take = [&](Kind kind) {
         input.kind = kind;
         takeOver(input);

@@ -3,6 +3,7 @@
 #include "app/base/terminal_keys.h"
 #include "app/keys/edit_keys.h"
 #include "app/keys/go_schedule.h"
+#include "app/keys/lateness.h"
 #include "app/keys/run_keys.h"
 
 #include "show/play/event.h"
@@ -65,6 +66,7 @@ private:
     TerminalKeyParser parser_;
     AppendLog<Press> screenKeys_;
     AppendLog<Press>::Reader pressedAtScreens_ = screenKeys_.reader();
+    Lateness lateness_;
     GoSchedule schedule_;
     std::atomic<Time> nextGo_ = Time::max();
     QuitKey quitKey_;

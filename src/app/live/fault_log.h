@@ -25,7 +25,7 @@ namespace fantascope::app {
 // fault lasts just as long while the show is paused. Events and report have show time. Thread: any.
 class FaultLog {
 public:
-    enum class Topic { Missing, Trouble, Relays, Desk, SafeStates, EndLevels, Guard, Recording, RecordedFrames, Part };
+    enum class Topic { Missing, Trouble, Relays, Desk, SafeStates, EndLevels, Guard, Recording, RecordedFrames, Journal, Part };
 
     // After kBurst faults of a topic within kRestless, the next one is reported as coming and
     // going. Nothing more is reported until the topic has been steady for kRestless.
@@ -43,6 +43,11 @@ public:
     // Reports that nothing is wrong at `moment`. If there was a fault, the operator is told `news`
     // and how long the fault lasted. With empty `news` the operator is not told.
     void clear(Time moment, const std::string& device, Topic topic, const std::string& news);
+
+    // raise(), or clear() if `what` is empty.
+    void tell(Time moment, const std::string& device, Topic topic, const std::string& what, const std::string& news) {
+        what.empty() ? clear(moment, device, topic, news) : raise(moment, device, topic, what);
+    }
 
     std::vector<FaultReport> faults() const;  // in the order of their beginning
 

@@ -30,22 +30,28 @@ Hand::Hand(const show::Show& show, show::InputLog& inputs, const show::Site& sit
       replica_(inputs),
       outcomes_(inputs.reader()) {
     lights_.resize(site.buttons.size());
+    while (outcomes_.next() != nullptr) continue;  // of an earlier run: no news
 }
 
 void Hand::tick(Time moment) {
+    lateness_.look(moment);
+    const auto submit = [&](std::optional<show::Input> input, Time at) {
+        if (!input) return;
+        input->late = lateness_.isLate(at);
+        inputs_.submit(*input);
+    };
     while (devices_.cueController) {
         const auto event = devices_.cueController->poll();
         if (!event) break;
-        if (const auto input = buttons_.inputFor(event->button, event->pressed, showClock_.showTime(event->at)))
-            inputs_.submit(*input);
+        submit(buttons_.inputFor(event->button, event->pressed, showClock_.showTime(event->at)), event->at);
         for (const auto& [number, button] : site_.buttons)
             if (number == event->button && button >= show::Button::Edit) edit(button, event->pressed);
     }
     for (std::size_t bank = 0; bank < devices_.contactBanks.size(); ++bank)
         while (const auto change = devices_.contactBanks[bank]->poll())
-            if (const auto input = show::inputFor(site_, bank, change->contact, change->closed, change->witnessed,
-                                                  showClock_.showTime(change->at)))
-                inputs_.submit(*input);
+            submit(
+                show::inputFor(site_, bank, change->contact, change->closed, change->witnessed, showClock_.showTime(change->at)),
+                change->at);
     const Time showTime = showClock_.showTime(moment);
     inputs_.foresee(showTime);
     while (const show::LoggedInput* const logged = outcomes_.next())

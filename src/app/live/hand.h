@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/keys/lateness.h"
 #include "app/site/devices.h"
 
 #include "show/play/cue_buttons.h"
@@ -45,6 +46,7 @@ private:
     const show::ShowClock showClock_;
     show::EventLog& events_;
     show::CueButtons buttons_;
+    Lateness lateness_;
     show::InputLog& inputs_;
     show::PlaybackReplica replica_;
     show::InputLog::Reader outcomes_;

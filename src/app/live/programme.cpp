@@ -343,12 +343,19 @@ Result<render::PictureSource> readPictureSource(const show::Source& source, rend
     return TRY(readSource(source, {pace, camera})).source;
 }
 
-GoSchedule goScheduleOf(const Programme& programme, Time length) {
+void addVideos(const Programme& programme, RunReport& report) {
+    for (const show::Source& source : programme.show.sources)
+        if (const auto* video = std::get_if<render::VideoSource>(&programme.sources.find(source.id)->picture)) {
+            report.lateVideoFrames[source.name] = video->stream->lateFrames();
+            report.damagedVideoFrames[source.name] = video->stream->damagedFrames();
+        }
+}
+
+GoSchedule goScheduleOf(const Programme& programme, std::optional<std::size_t> first, Time length) {
     const show::Show& show = programme.show;
-    if (!programme.firstInput) return {show.cues.size(), false, length};
-    const auto first = static_cast<std::size_t>(programme.firstInput->cue);
-    const bool playsByItself = show.start && show.needsNoGoFrom(first);
-    return {playsByItself ? 0 : show.cues.size() - first - 1, true, length};
+    if (!first) return {show.cues.size(), false, length};
+    const bool playsByItself = show.start && show.needsNoGoFrom(*first);
+    return {playsByItself ? 0 : show.cues.size() - *first - 1, true, length};
 }
 
 Result<Programme> readProgramme(const RunOptions& options) {

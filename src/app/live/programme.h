@@ -31,10 +31,13 @@ struct Programme {
         : revision(std::move(played)), show(revision->show), site(revision->site), cues(show::Revision::cuesOf(revision)) {}
 
     std::shared_ptr<const show::Revision> revision;
-    const show::Show& show;                       // of `revision`
-    const show::Site& site;                       // of `revision`
-    std::shared_ptr<const show::CueList> cues;    // of `revision`
-    std::optional<show::Input> firstInput;        // the cue to start with: that of --from, or the show's own
+    const show::Show& show;                     // of `revision`
+    const show::Site& site;                     // of `revision`
+    std::shared_ptr<const show::CueList> cues;  // of `revision`
+    std::optional<show::Input> firstInput;      // the cue to start with: that of --from, or the show's own
+    std::optional<std::size_t> firstCue() const {
+        return firstInput ? std::optional(static_cast<std::size_t>(firstInput->cue)) : std::nullopt;
+    }
     render::PictureSources sources;               // in the order of Show::sources
     std::shared_ptr<render::PictureFeed> camera;  // the pictures of camera sources; null if the site has no camera
     std::vector<Watch::Comparisons> comparisons;  // [output]
@@ -69,9 +72,12 @@ Result<render::PatternSource> readPatternSource(const std::filesystem::path& fil
 Result<render::PictureSource> readPictureSource(const show::Source& source, render::VideoStream::Pace pace,
                                                 const std::shared_ptr<render::PictureFeed>& camera);
 
-// The schedule of a rehearsal of this length: every cue is entered. There is none for a show that
-// plays by itself.
-GoSchedule goScheduleOf(const Programme& programme, Time length);
+// Adds the videos' late and damaged frames.
+void addVideos(const Programme& programme, RunReport& report);
+
+// The schedule of a rehearsal of this length, from the cue `first` or the dark on: every cue is
+// entered. There is none for a show that plays by itself.
+GoSchedule goScheduleOf(const Programme& programme, std::optional<std::size_t> first, Time length);
 
 // Reads everything that a run with these options needs. Error: what is wrong, with its place and
 // advice; all faulty sources at once.

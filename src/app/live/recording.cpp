@@ -2,6 +2,8 @@
 
 #include "app/base/contact_sheet.h"
 
+#include "core/hash.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,12 +20,13 @@ namespace {
 // refresh a little faster than the site file says.
 constexpr int kTicks = 4;
 
-// FNV-1a, 64 bits, over the stored bytes. Two runs that show the same pictures give the same
-// hashes.
+// Over the stored bytes. Two runs that show the same pictures give the same hashes.
 std::uint64_t hashOf(const RgbaImage& picture) {
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    for (const Rgba8& pixel : picture.pixels())
-        for (const std::uint8_t byte : {pixel.r, pixel.g, pixel.b}) hash = (hash ^ byte) * 0x100000001b3u;
+    std::uint64_t hash = fnv1a("");
+    for (const Rgba8& pixel : picture.pixels()) {
+        const char bytes[] = {static_cast<char>(pixel.r), static_cast<char>(pixel.g), static_cast<char>(pixel.b)};
+        hash = fnv1a({bytes, sizeof bytes}, hash);
+    }
     return hash;
 }
 
@@ -37,6 +40,13 @@ Recording::Recording(fs::path target, std::vector<Output> outputs)
       framesTable_(target_ / "frames.csv", "refresh,show_time_s,output,fnv1a64\n"),
       dmx_(target_ / "dmx.csv", "show_time_s,universe,slots\n"),
       relays_(target_ / "relays.csv", "show_time_s,bank,states\n") {}
+
+Result<std::unique_ptr<Recording>> Recording::ofSite(const fs::path& target, const show::Site& site) {
+    if (target.empty()) return std::unique_ptr<Recording>();
+    std::vector<Output> outputs;
+    for (const show::Output& output : site.outputs) outputs.push_back({output.name, output.size(), output.refreshRate});
+    return open(target, std::move(outputs));
+}
 
 Result<std::unique_ptr<Recording>> Recording::open(const fs::path& target, std::vector<Output> outputs) {
     std::unique_ptr<Recording> recording(new Recording(target, std::move(outputs)));

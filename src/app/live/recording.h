@@ -3,6 +3,8 @@
 #include "app/base/video_writer.h"
 #include "app/live/table_file.h"
 
+#include "show/site/site.h"
+
 #include "device/display_sink.h"
 
 #include "core/clock.h"
@@ -50,6 +52,8 @@ public:
     };
     // Error: the target cannot be written, or is a file with another ending.
     static Result<std::unique_ptr<Recording>> open(const std::filesystem::path& target, std::vector<Output> outputs);
+    // Of a site's outputs; null for an empty target: nobody wants one.
+    static Result<std::unique_ptr<Recording>> ofSite(const std::filesystem::path& target, const show::Site& site);
 
     // Sets the moment at which all videos begin.
     void begin(Time runStart) { runStart_ = runStart; }

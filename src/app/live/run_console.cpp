@@ -18,7 +18,8 @@ constexpr Time kRedraw = std::chrono::milliseconds(100), kRepeat = std::chrono::
 
 // The parts of the line from left to right. Each has several forms, from the longest to the
 // shortest. An empty form takes no room.
-enum LinePart {
+namespace line {
+enum Part {
     Panic,
     Blackout,
     SettingUp,
@@ -36,12 +37,15 @@ enum LinePart {
     Scores,
     kParts
 };
+}  // namespace line
 using Forms = std::vector<std::string>;
 
 // The parts to shorten by one form, in this order, while the line is too long.
-constexpr LinePart kShortening[] = {Scores, Rate,   Next,   Next,   Cue,    Cue,    Late,      Fade, Left,
-                                    Next,   Next,   Loaded, Locked, Paused, Frozen, SettingUp, Cue,  SettingUp,
-                                    Loaded, Locked, Master, Paused, Frozen, Panic,  Blackout,  Cue};
+constexpr line::Part kShortening[] = {line::Scores,   line::Rate,   line::Next,   line::Next,      line::Cue,    line::Cue,
+                                      line::Late,     line::Fade,   line::Left,   line::Next,      line::Next,   line::Loaded,
+                                      line::Locked,   line::Paused, line::Frozen, line::SettingUp, line::Cue,    line::SettingUp,
+                                      line::Loaded,   line::Locked, line::Master, line::Paused,    line::Frozen, line::Panic,
+                                      line::Blackout, line::Cue};
 
 Forms cueForms(const RunStatus& status) {
     const int cue = status.controls.cue;
@@ -67,53 +71,53 @@ std::string scoresOf(const RunStatus& status) {
     return text;
 }
 
-std::array<Forms, kParts> partsOf(const RunStatus& status) {
-    std::array<Forms, kParts> parts;
+std::array<Forms, line::kParts> partsOf(const RunStatus& status) {
+    std::array<Forms, line::kParts> parts;
     const show::Controls& controls = status.controls;
-    const auto tell = [&](LinePart part, bool on, std::string what, RunKey::Action by, const char* does) {
+    const auto tell = [&](line::Part part, bool on, std::string what, RunKey::Action by, const char* does) {
         if (!on) return;
-        if (status.keys && (!status.settingUp || part == SettingUp))
+        if (status.keys && (!status.settingUp || part == line::SettingUp))
             parts[part] = {fmt::format("{}, {} {} it", what, keyFor(by), does)};
         parts[part].push_back(std::move(what));
-        if (part != Blackout && part != Panic) parts[part].push_back("");
+        if (part != line::Blackout && part != line::Panic) parts[part].push_back("");
     };
-    tell(Panic, controls.panic, "PANIC", RunKey::Action::Restore, "restores");
-    tell(Blackout, controls.blackout, "BLACKOUT", RunKey::Action::Blackout, "lifts");
-    tell(SettingUp, status.settingUp, "SETTING UP", RunKey::Action::SetUp, "ends");
-    tell(Frozen, controls.frozen, "FROZEN", RunKey::Action::Freeze, "ends");
-    tell(Paused, controls.paused, "PAUSED", RunKey::Action::Pause, "ends");
-    tell(Locked, controls.locked, "LOCKED", RunKey::Action::Lock, "unlocks");
-    if (controls.master < 1) parts[Master] = {fmt::format("master {:.0f} %", 100 * controls.master)};
-    if (controls.master > 0) parts[Master].push_back("");
+    tell(line::Panic, controls.panic, "PANIC", RunKey::Action::Restore, "restores");
+    tell(line::Blackout, controls.blackout, "BLACKOUT", RunKey::Action::Blackout, "lifts");
+    tell(line::SettingUp, status.settingUp, "SETTING UP", RunKey::Action::SetUp, "ends");
+    tell(line::Frozen, controls.frozen, "FROZEN", RunKey::Action::Freeze, "ends");
+    tell(line::Paused, controls.paused, "PAUSED", RunKey::Action::Pause, "ends");
+    tell(line::Locked, controls.locked, "LOCKED", RunKey::Action::Lock, "unlocks");
+    if (controls.master < 1) parts[line::Master] = {fmt::format("master {:.0f} %", 100 * controls.master)};
+    if (controls.master > 0) parts[line::Master].push_back("");
     if (!status.loadedName.empty())
-        parts[Loaded] = {"GO: " + status.loadedName, "GO: " + fitted(status.loadedName, kShortName), ""};
-    parts[Cue] = cueForms(status);
+        parts[line::Loaded] = {"GO: " + status.loadedName, "GO: " + fitted(status.loadedName, kShortName), ""};
+    parts[line::Cue] = cueForms(status);
     if (status.waitLeft > Time{})
-        parts[Fade] = {"waits " + shortDuration(status.waitLeft), ""};
+        parts[line::Fade] = {"waits " + shortDuration(status.waitLeft), ""};
     else if (status.fadeLeft > Time{})
-        parts[Fade] = {"fading " + shortDuration(status.fadeLeft), ""};
-    parts[Next] = nextForms(status);
-    parts[Left] = {status.left ? shortDuration(*status.left) + " left" : "at " + shortDuration(status.showTime), ""};
-    parts[Late] = {fmt::format("{} late", status.lateFrames), ""};
-    if (status.framesPerSecond) parts[Rate] = {fmt::format("{:.1f} frames/s", *status.framesPerSecond), ""};
-    parts[Scores] = {scoresOf(status), ""};
+        parts[line::Fade] = {"fading " + shortDuration(status.fadeLeft), ""};
+    parts[line::Next] = nextForms(status);
+    parts[line::Left] = {status.left ? shortDuration(*status.left) + " left" : "at " + shortDuration(status.showTime), ""};
+    parts[line::Late] = {fmt::format("{} late", status.lateFrames), ""};
+    if (status.framesPerSecond) parts[line::Rate] = {fmt::format("{:.1f} frames/s", *status.framesPerSecond), ""};
+    parts[line::Scores] = {scoresOf(status), ""};
     return parts;
 }
 
 }  // namespace
 
 std::string statusLine(const RunStatus& status, int columns) {
-    const std::array<Forms, kParts> parts = partsOf(status);
-    std::array<std::size_t, kParts> form{};
+    const std::array<Forms, line::kParts> parts = partsOf(status);
+    std::array<std::size_t, line::kParts> form{};
     const auto line = [&] {
         std::string text;
-        for (std::size_t part = 0; part < kParts; ++part)
+        for (std::size_t part = 0; part < line::kParts; ++part)
             if (form[part] < parts[part].size() && !parts[part][form[part]].empty())
                 text += (text.empty() ? "" : kBetween) + parts[part][form[part]];
         return text;
     };
     std::string text = line();
-    for (const LinePart part : kShortening) {
+    for (const line::Part part : kShortening) {
         if (columnsOf(text) <= columns) break;
         if (form[part] + 1 < parts[part].size()) ++form[part];
         text = line();

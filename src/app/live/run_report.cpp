@@ -109,6 +109,11 @@ void addEvents(const show::EventLog& events, RunReport& report) {
     while (const show::Event* const event = reader.next()) {
         if (const auto* const entered = std::get_if<show::event::CueEntered>(&event->what))
             report.cues.push_back({entered->name, event->at});
+        else if (const auto* const decided = std::get_if<show::event::InputDecided>(&event->what)) {
+            ++report.inputsBySource[std::string(show::nameOf(decided->input.input.source))];
+            ++report.inputsByOutcome[std::string(show::nameOf(decided->input.outcome))];
+        } else if (const auto* const resumed = std::get_if<show::event::ShowResumed>(&event->what))
+            report.resumed = CueReport{resumed->cue, event->at};
         else if (const auto* const corrected = std::get_if<show::event::LightCorrected>(&event->what))
             report.light.push_back(*corrected);
         else if (const auto* const fitted = std::get_if<show::event::PatternFitted>(&event->what))
@@ -162,6 +167,9 @@ Report jsonOf(const RunReport& report) {
     json["damaged_video_frames"] = Report(report.damagedVideoFrames);
     json["input_to_frame_ms"] = jsonOf(report.inputToFrame);
     json["dmx_interval_ms"] = jsonOf(report.dmxInterval);
+    json["inputs"] = {{"by_source", report.inputsBySource}, {"by_outcome", report.inputsByOutcome}};
+    json["resumed"] = nullptr;
+    if (report.resumed) json["resumed"] = {{"cue", report.resumed->name}, {"at", seconds(report.resumed->entered)}};
     json["cues"] = Report::array();
     for (const CueReport& cue : report.cues) json["cues"].push_back({{"name", cue.name}, {"entered", seconds(cue.entered)}});
     json["faults"] = Report::array();

@@ -84,7 +84,9 @@ struct RunReport {
     Durations inputToFrame;  // from a button's arrival to the first refresh that shows its effect
     Durations dmxInterval;   // between DMX frames
     std::int64_t yardstickTicks = 0,
-                 yardstickLate = 0;  // of an empty thread at the first output's rate: what the machine itself misses
+                 yardstickLate = 0;    // of an empty thread at the first output's rate: what the machine itself misses
+    std::optional<CueReport> resumed;  // the cue and the time at which the run went on; none: it began
+    std::map<std::string, std::int64_t> inputsBySource, inputsByOutcome;
     std::vector<CueReport> cues;
     std::vector<FaultReport> faults;
     PatternNews patterns;                            // how they were fitted to the wall, or would have been

@@ -2,6 +2,7 @@
 
 #include "app/base/data_folder.h"
 #include "app/base/terminal_keys.h"
+#include "app/journal/journal_keeper.h"
 #include "app/keys/operator_keys.h"
 #include "app/live/fault_log.h"
 #include "app/live/frame_loop.h"
@@ -54,9 +55,10 @@ std::vector<std::string> namesOf(const auto& named) {
 // the parts.
 class ShowRun {
 public:
-    // All arguments by reference or pointer outlive this. `recording` and `guard` may be null.
+    // All arguments by reference or pointer outlive this. `recording`, `guard` and `journal` may be
+    // null.
     ShowRun(const RunOptions& options, const Programme& programme, OpenSite& openSite, Recording* recording, Clock& clock,
-            const std::filesystem::path& assets, Supervisor& supervisor, RelayGuard* guard)
+            const std::filesystem::path& assets, Supervisor& supervisor, RelayGuard* guard, NightJournal* journal)
         : options_(options),
           programme_(programme),
           openSite_(openSite),
@@ -64,6 +66,7 @@ public:
           supervisor_(supervisor),
           faults_(events_),
           inputs_(programme.cues),
+          journal_(journal, programme.show, inputs_, events_),
           frames_(programme.site, inputs_, programme.sources, assets, openSite.devices, clock,
                   gainsToApply(programme.site, programme.light)),
           terminal_(options.asFastAsPossible ? nullptr : std::make_unique<TerminalKeys>()),
@@ -76,15 +79,15 @@ public:
               readers(!programme.watched.empty(), [](render::FrameTap& tap) { return ShownLight::framesOf(tap.addNewest(0)); })),
           pictured_(readers(attended_, [](render::FrameTap& tap) { return &tap.addNewest(0); })),
           prepared_(frames_.prepare()),
-          showClock_(frames_.refreshFrom(clock.now() + kStartUp)),
+          showClock_(frames_.refreshFrom(clock.now() + kStartUp), journal_.resume()),
           deviceWatch_(faults_, namesOf(programme.site.relayBanks), showClock_.runStart()),
           lighting_(programme.site, inputs_, openSite.devices, clock, showClock_, recording, faults_, events_),
           hand_(programme.show, inputs_, programme.site, openSite.devices, showClock_, events_),
           watch_(programme.show, namesOf(programme.site.outputs), programme.comparisons, openSite.devices.camera.get(),
                  programme.camera.get(), showClock_, recording),
           settingUp_(programme.site, frames_, openSite.devices, showClock_, events_),
-          keys_(inputs_, events_, showClock_, std::move(terminal_), scheduleOf(options, programme),
-                QuitKey(options.backends == Backends::AsDeclared), keyActions()),
+          keys_(inputs_, events_, showClock_, std::move(terminal_), schedule(), QuitKey(options.backends == Backends::AsDeclared),
+                keyActions()),
           view_(programme.show, inputs_, events_, showClock_, options.length),
           yardstick_(programme.site.outputs[0].refreshRate, showClock_.runStart()),
           lights_(programme.site, openSite.devices, lighting_, faults_, clock, guard) {
@@ -107,7 +110,7 @@ public:
         if (!pictured_.empty())
             screenshots_.emplace(options.pictures, programme.show, inputs_, namesOf(programme.site.outputs), pictured_,
                                  showClock_, events_);
-        if (programme.firstInput) inputs_.submit(*programme.firstInput);
+        if (!journal_.start() && programme.firstInput) inputs_.submit(*programme.firstInput);
     }
 
     ~ShowRun() {
@@ -126,6 +129,7 @@ public:
                              hand_.tick(moment);
                          },
                          Rank::Input});
+        parts.push_back({"journal", JournalKeeper::kRate, start, [this](Time moment) { keepJournal(moment); }, Rank::Input});
         parts.push_back({"lighting", Lighting::kRate, start, [this](Time moment) { lighting_.tick(moment); }, Rank::Lighting});
         for (Part& relays : lighting_.relayParts()) parts.push_back(std::move(relays));
         return guardedParts(std::move(parts));
@@ -218,6 +222,7 @@ public:
         RunReport report = reportOfLights();
         report.length = length_;
         report.stopReason = options_.length && report.length >= *options_.length ? "length" : "interrupted";
+        journal_.end(figuresAt(showClock_.runStart() + length_), report.stopReason);
         report.outputs = std::move(outputs);
         report.swapSkew = frames_.swapSkew();
         report.inputToFrame = frames_.inputToFrame();
@@ -228,11 +233,7 @@ public:
         report.iouCamera = watch_.ious();
         if (driftWatch_)
             report.causes = driftWatch_->causes(), report.watch = driftWatch_->series(), report.lamps = driftWatch_->lamps();
-        for (const show::Source& source : programme_.show.sources)
-            if (const auto* video = std::get_if<render::VideoSource>(&programme_.sources.find(source.id)->picture)) {
-                report.lateVideoFrames[source.name] = video->stream->lateFrames();
-                report.damagedVideoFrames[source.name] = video->stream->damagedFrames();
-            }
+        addVideos(programme_, report);
         if (openSite_.simulation)
             for (const site::Happening& happening : openSite_.simulation->happenings())
                 report.faults.push_back({showClock_.showTime(showClock_.runStart() + happening.at), happening.text});
@@ -288,9 +289,14 @@ private:
                 words += fmt::format(". No report: {}", written.error().message());
         std::fputs(("\nfantascope: error: " + words + "\n").c_str(), stderr);
     }
-    static GoSchedule scheduleOf(const RunOptions& options, const Programme& programme) {
-        if (!options.handsOff || !options.length) return {0, false, {}};
-        return goScheduleOf(programme, *options.length);
+    GoSchedule schedule() const {
+        if (!options_.handsOff || !options_.length) return {0, false, {}};
+        const auto cueOn = journal_.cueOn();
+        return goScheduleOf(programme_, cueOn ? cueOn : programme_.firstCue(), *options_.length);
+    }
+    void keepJournal(Time moment) {
+        journal_.tick(figuresAt(moment));
+        faults_.tell(moment, "", FaultLog::Topic::Journal, journal_.trouble(), "the journal is written again");
     }
     std::unique_ptr<FrameRecorder> recorderOf(Recording* recording) {
         if (recording == nullptr) return nullptr;
@@ -338,14 +344,14 @@ private:
         RunStatus status = view_.at(moment, keys_.nextGo());
         status.settingUp = settingUp_.on();
         status.keys = attended_;
-        const std::int64_t shown = frames_.framesShown();
-        const std::int64_t before = std::exchange(framesBefore_, shown);
+        const std::int64_t shown = frames_.framesShown(), before = std::exchange(framesBefore_, shown);
         if (showClock_.runTime(moment) > Time{}) status.framesPerSecond = static_cast<double>(shown - before) * kProgressRate;
         status.lateFrames = frames_.framesLate();
-        const auto scores = watch_.newestScores();
-        for (std::size_t output = 0; output < scores.size(); ++output)
-            status.zCamera.emplace_back(programme_.site.outputs[output].name, scores[output]);
+        status.zCamera = watch_.newestScores();
         return status;
+    }
+    show::journal::Figures figuresAt(Time moment) const {
+        return {showClock_.showTime(moment), frames_.framesShown(), frames_.framesLate(), watch_.newestScores()};
     }
 
     const RunOptions& options_;
@@ -356,6 +362,7 @@ private:
     show::EventLog events_;
     FaultLog faults_;
     show::InputLog inputs_;
+    JournalKeeper journal_;
     FrameLoop frames_;
     std::unique_ptr<TerminalKeys> terminal_;      // null: as fast as possible, nobody presses keys
     const bool attended_;                         // somebody at the terminal can press keys
@@ -401,15 +408,10 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
     supervisor.step("opening the devices: look at the X server");
     if (!options.asFastAsPossible) setThreadRank(Rank::Render);  // before the displays start threads, which inherit it
     const auto openSite = TRY(OpenSite::open(programme.site, options.backends, options.seed, clock));
-    std::unique_ptr<Recording> recording;
-    if (!options.recordTo.empty()) {
-        std::vector<Recording::Output> outputs;
-        for (const show::Output& output : programme.site.outputs)
-            outputs.push_back({output.name, output.size(), output.refreshRate});
-        recording = TRY(Recording::open(options.recordTo, std::move(outputs)));
-    }
+    const auto journal = TRY(NightJournal::open(options.journal, !options.fromCue.empty(), options.asFastAsPossible));
+    const auto recording = TRY(Recording::ofSite(options.recordTo, programme.site));
     supervisor.step("preparing the pictures: look at the graphics card");
-    ShowRun run(options, programme, *openSite, recording.get(), clock, assets, supervisor, guard.get());
+    ShowRun run(options, programme, *openSite, recording.get(), clock, assets, supervisor, guard.get(), journal.get());
     if (guard) guard->arm();
     supervisor.attend(run.supervised());
     supervisor.step("showing the pictures: look at the X server and the graphics card");

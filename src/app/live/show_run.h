@@ -24,6 +24,7 @@ struct RunOptions {
     std::filesystem::path recordTo;                          // empty: no recording; see Recording
     std::filesystem::path pictures = "fantascope-pictures";  // the folder for the operator's pictures; see Screenshots
     std::filesystem::path report;                            // a JSON file; empty: no report
+    std::filesystem::path journal;                           // the folder of the nights' journals; empty: none is kept
     bool asFastAsPossible = false;                           // on a stepped clock: the same bytes every time. It needs a length
     bool handsOff = false;   // the simulated controller presses GO by itself, evenly over the length
     std::uint64_t seed = 1;  // of the simulated site's noise

@@ -78,6 +78,10 @@ void Watch::keepForCue(int cue, std::shared_ptr<const CameraFrame> frame, Time s
     last_ = {cue, std::move(frame), showTime};
 }
 
-std::vector<double> Watch::newestScores() const { return {scores_.begin(), scores_.end()}; }
+std::vector<std::pair<std::string, double>> Watch::newestScores() const {
+    std::vector<std::pair<std::string, double>> newest;
+    for (std::size_t output = 0; output < scores_.size(); ++output) newest.emplace_back(outputs_[output], scores_[output]);
+    return newest;
+}
 
 }  // namespace fantascope::app

@@ -64,7 +64,7 @@ public:
     void tick(Time moment);
 
     // The newest score of each output, for the status line; negative: none yet. Thread-safe.
-    std::vector<double> newestScores() const;
+    std::vector<std::pair<std::string, double>> newestScores() const;
     // z_camera, tone_camera and iou_camera by output. Call these once the part has ended.
     using Series = std::map<std::string, std::vector<std::pair<Time, double>>>;
     const Series& series() const { return series_; }

@@ -50,6 +50,12 @@ struct Teller {
         if (loaded.cue < 0) return "GO enters the next cue";
         return fmt::format("GO enters cue {}: {}", placeOf(loaded.number, loaded.cue, loaded.cues), loaded.name);
     }
+    std::string operator()(const event::ShowResumed& resumed) const {
+        std::string text = "the show goes on where the journal ends";
+        if (!resumed.isExact) text += "; the list of cues is another one, so the cue begins again";
+        if (resumed.damaged > 0) text += fmt::format("; {} of its lines are damaged and left out", resumed.damaged);
+        return text;
+    }
     std::string operator()(const event::ScheduleEnded&) const { return "you have the controller"; }
     std::string operator()(const event::QuitAsked& asked) const {
         return fmt::format("the show goes on; {} again within {:.0f} s ends it", asked.key, seconds(asked.patience));

@@ -43,6 +43,12 @@ struct CueLoaded {
     std::string name;
     CueNumber number = 0;
 };
+// The run goes on with what an earlier one has left in the journal.
+struct ShowResumed {
+    std::string cue;          // that is on; empty: none
+    bool isExact = true;      // its fades, waits and follows go on, too
+    std::size_t damaged = 0;  // lines of the journal
+};
 // A person took over from the schedule of a rehearsal.
 struct ScheduleEnded {};
 // Somebody pressed the key that ends the run. The run ends if it is pressed again within
@@ -124,10 +130,10 @@ struct SiteNotSaved {
     std::string why;
 };
 
-using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ScheduleEnded, QuitAsked, FaultBegan,
-                          FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved,
-                          MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, SettingUpBegan, SettingUpEnded,
-                          SiteSaved, SiteNotSaved>;
+using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ShowResumed, ScheduleEnded, QuitAsked,
+                          FaultBegan, FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved,
+                          CameraMoved, MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, SettingUpBegan,
+                          SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

@@ -16,10 +16,10 @@ namespace {
 constexpr std::array<std::string_view, 18> kKinds = {"go",     "back",    "jump",     "blackout",    "dark",    "light",
                                                      "revise", "correct", "exchange", "corrections", "trim",    "lock",
                                                      "load",   "pause",   "freeze",   "panic",       "restore", "master"};
-constexpr std::array<std::string_view, 7> kSources = {"start",  "controller", "contact", "terminal",
-                                                      "screen", "schedule",   "camera"};
+constexpr std::array<std::string_view, 8> kSources = {"start",  "controller", "contact", "terminal",
+                                                      "screen", "schedule",   "camera",  "journal"};
 static_assert(kKinds.size() == static_cast<std::size_t>(Input::Kind::Master) + 1);
-static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::Camera) + 1);
+static_assert(kSources.size() == static_cast<std::size_t>(Input::Source::Journal) + 1);
 
 bool hasRevision(Input::Kind kind) { return kind == Input::Kind::Revise || kind == Input::Kind::Exchange; }
 
@@ -84,27 +84,33 @@ std::string_view nameOf(Outcome outcome) {
             return "ignored: all is dark after a panic; restore comes first";
         case Outcome::NothingToRestore:
             return "ignored: there was no panic";
+        case Outcome::TooLate:
+            return "ignored: it was pressed while the machine was busy; press it again";
         case Outcome::NoSuchLevel:
             return "ignored: a level is 0 to 1";
     }
     return "unknown";
 }
 
+std::string_view nameOf(Input::Source source) { return kSources[static_cast<std::size_t>(source)]; }
+
 std::string lineOf(const Input& input) {
     std::string line = fmt::format("{} {} {} {} {}", input.at.count(), kKinds[static_cast<std::size_t>(input.kind)],
-                                   hasRevision(input.kind) ? input.revision : input.cue,
-                                   kSources[static_cast<std::size_t>(input.source)], input.which);
+                                   hasRevision(input.kind) ? input.revision : input.cue, nameOf(input.source), input.which);
     if (input.kind == Input::Kind::Correct)
         for (const glm::vec2 corner : input.shift) line += fmt::format(" {} {}", corner.x, corner.y);
     if (input.kind == Input::Kind::Master) line += fmt::format(" {}", input.level);
     if (input.kind == Input::Kind::Trim) line += fmt::format(" {} {}", input.trim.share, input.trim.relaysOff);
+    if (input.late) line += " late";
     return line;
 }
 
 Result<Input> inputOf(std::string_view line) {
-    const std::vector<std::string_view> words = wordsOf(line);
+    std::vector<std::string_view> words = wordsOf(line);
+    const bool late = words.back() == "late";
+    if (late) words.pop_back();
     constexpr std::size_t kWords = 5;
-    Input input;
+    Input input{.late = late};
     const std::string_view kind = words.size() > 1 ? words[1] : "";
     const std::size_t wanted = kWords + (kind == "correct"  ? 2 * input.shift.size()
                                          : kind == "trim"   ? 2

@@ -43,7 +43,8 @@ struct Input {
         Terminal,    // a key at the terminal
         Screen,      // a key at a projector's window
         Schedule,    // GO by the schedule of a rehearsal without an operator
-        Camera       // what the camera sees; of Correct: on output `which`; of Exchange: of source `which`
+        Camera,      // what the camera sees; of Correct: on output `which`; of Exchange: of source `which`
+        Journal      // what an earlier run has left, where its journal is damaged
     };
     Time at{};  // show time
     Kind kind = Kind::Go;
@@ -54,6 +55,7 @@ struct Input {
     PictureShift shift{};  // only for Correct
     LampTrim trim{};       // only for Trim
     float level = 1;       // only for Master, 0..1
+    bool late = false;     // a person asked for it so long before it was taken that it may not be wanted any more
     friend bool operator==(const Input&, const Input&) = default;
 };
 
@@ -74,14 +76,16 @@ enum class Outcome {
     Locked,
     Panicked,
     NothingToRestore,
+    TooLate,
     NoSuchLevel
 };
 // The outcome in words for the operator: "taken", "ignored: ...".
 std::string_view nameOf(Outcome outcome);
+std::string_view nameOf(Input::Source source);  // as in a line: "controller"
 
 // One line, without its end: show time in nanoseconds, kind, cue (of Revise and Exchange: the
 // revision), source, which, of Correct also the shift, of Trim also the share and how many relays
-// are off, of Master also the level: "12500000000 jump 3 terminal 0".
+// are off, of Master also the level; and "late" if it is: "12500000000 jump 3 terminal 0".
 std::string lineOf(const Input& input);
 // Reads a line that lineOf() wrote. Error: what is wrong with the line.
 Result<Input> inputOf(std::string_view line);

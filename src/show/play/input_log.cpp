@@ -19,8 +19,14 @@ LoggedInput InputLog::submit(const Input& input) {
     const auto revision = static_cast<std::size_t>(input.revision);  // a negative number becomes larger than any
     if (input.kind == Input::Kind::Revise && revision < revisions_.size()) logged.revision = revisions_[revision];
     logged.outcome = playback_.apply(input, logged.revision);
+    if (write_) write_(logged);
     inputs_.append(logged);
     return logged;
+}
+
+void InputLog::writeTo(std::function<void(const LoggedInput&)> write) {
+    const std::lock_guard lock(mutex_);
+    write_ = std::move(write);
 }
 
 void InputLog::foresee(Time time) {

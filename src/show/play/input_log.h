@@ -7,6 +7,7 @@
 #include "core/append_log.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -42,6 +43,9 @@ public:
     int add(std::shared_ptr<const CueList> cues);
 
     LoggedInput submit(const Input& input);
+    // Calls `write` with every input from now on, before any reader sees it. Nothing: no more.
+    // `write` must not submit inputs.
+    void writeTo(std::function<void(const LoggedInput&)> write);
     // Works out the cues that follow by themselves until `time`. Call it now and then, so that the
     // first input after hours of a loop need not wait for that. Nothing changes.
     void foresee(Time time);
@@ -53,6 +57,7 @@ private:
     std::vector<std::shared_ptr<const CueList>> revisions_;
     Playback playback_;
     std::uint64_t count_ = 0;
+    std::function<void(const LoggedInput&)> write_;
     AppendLog<LoggedInput> inputs_;
 };
 

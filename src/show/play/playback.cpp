@@ -35,7 +35,9 @@ Outcome Playback::apply(const Input& input, std::shared_ptr<const CueList> revis
     newest_ = std::max(newest_, input.at);
     const Time at = newest_;
     foresee(at);
-    const Outcome outcome = isLockedOut(input, at) ? Outcome::Locked : take(input, at, std::move(revision));
+    const Outcome outcome = isTooLate(input)         ? Outcome::TooLate
+                            : isLockedOut(input, at) ? Outcome::Locked
+                                                     : take(input, at, std::move(revision));
     if (outcome == Outcome::Taken) taken_.set(at, taken_.last() + 1);
     return outcome;
 }
@@ -52,7 +54,7 @@ Outcome Playback::take(const Input& input, Time at, std::shared_ptr<const CueLis
         case Input::Kind::Dark:
         case Input::Kind::Light: {
             const bool isDark = blackout_.wantedAt(at) < 1;
-            const bool dark = input.kind == Input::Kind::Blackout ? !isDark : input.kind == Input::Kind::Dark;
+            const bool dark = input.kind == Input::Kind::Blackout ? !isDark || input.late : input.kind == Input::Kind::Dark;
             if (dark != isDark) blackout_.want(dark ? 0 : 1, at, list.blackoutFade);
             if (dark) trims_.releaseRelays(at);  // a dark picture is no reason for dark streets
             return Outcome::Taken;
@@ -240,6 +242,13 @@ void Playback::stateAt(Time time, ShowState& out) const {
     out.locked = locked_.at(time);
     if (const float light = blackout_.at(time) * panic_.at(time) * master_.at(time); light < 1) dim(out, light);
     out.inputs = taken_.at(time);
+}
+
+bool Playback::isTooLate(const Input& input) {
+    using Kind = Input::Kind;
+    constexpr Kind kEvenLate[] = {Kind::Blackout, Kind::Dark,    Kind::Light,    Kind::Panic,
+                                  Kind::Revise,   Kind::Correct, Kind::Exchange, Kind::Trim};
+    return input.late && std::ranges::find(kEvenLate, input.kind) == std::end(kEvenLate);
 }
 
 bool Playback::isLockedOut(const Input& input, Time at) const {

@@ -46,6 +46,8 @@ namespace fantascope::show {
 //   everything goes on from where it was.
 // - The master dims pictures and levels, on top of blackout and panic. From full to none it takes
 //   `blackoutFade`.
+// - A late input is ignored, so that a machine that was busy does not fire what was pressed meanwhile
+//   in a burst. Only darkness comes however late it is; a late toggle of the blackout never ends it.
 // - A lock ignores what comes from the hand controller, a contact or a window, but for blackout,
 //   panic and their ends, which may be needed, and harm nothing.
 // - A revision continues with another list (CuePlayer). A loaded cue stays loaded if the new list
@@ -111,6 +113,7 @@ private:
     void letGoOn(Time at);
     std::optional<int> nextAt(Time time) const;
     bool isPanicAt(Time time) const { return panic_.wantedAt(time) < 1; }
+    static bool isTooLate(const Input& input);
     bool isLockedOut(const Input& input, Time at) const;
 
     Gusts gusts_;       // of the first list's seed; a revision does not change them

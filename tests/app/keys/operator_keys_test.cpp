@@ -15,6 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::SizeIs;
 using Kind = show::Input::Kind;
 using Source = show::Input::Source;
 
@@ -99,6 +100,23 @@ TEST_F(Keys, move_the_master_by_a_tenth) {
     EXPECT_EQ(masterAfter('+', 1), 0.8f);
     EXPECT_EQ(masterAfter('-', 20), 0);
     EXPECT_EQ(masterAfter('=', 20), 1) << "of the same key as +";
+}
+
+// Example failure: the machine stood still for some seconds, and what was typed meanwhile is fired
+// in a burst.
+TEST_F(Keys, that_come_through_a_machine_that_stood_still_are_late) {
+    const auto keys = keysWith({0, false, {}});
+    keys->tick(12s);
+    keys->pressedAtScreen({.letter = ' '}, 12s + 1ms);
+    keys->tick(12s + 5ms);
+    EXPECT_FALSE(inputs().back().late);
+    for (int press = 0; press < 3; ++press) keys->pressedAtScreen({.letter = ' '}, 13s);
+    keys->tick(13s);
+    EXPECT_THAT(inputs(), SizeIs(4));
+    EXPECT_TRUE(inputs().back().late);
+    keys->pressedAtScreen({.letter = ' '}, 13s + 1ms);
+    keys->tick(13s + 5ms);
+    EXPECT_FALSE(inputs().back().late);
 }
 
 // Example failure: the seventeenth key of somebody in a hurry does nothing.

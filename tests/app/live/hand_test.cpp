@@ -21,6 +21,7 @@ using testing::HasSubstr;
 class HandPart : public testing::Test {
 protected:
     void press(show::Button button) {
+        hand_.tick(run_.clock.now());  // it looks all the time
         for (const bool down : {true, false}) run_.world.press(run_.buttonOf(button), down);
         hand_.tick(run_.clock.now());
     }

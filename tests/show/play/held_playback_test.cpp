@@ -213,6 +213,22 @@ TEST(HeldPlayback, a_lock_still_lets_everybody_make_it_dark) {
     for (const Kind kind : {Kind::Blackout, Kind::Panic, Kind::Restore}) EXPECT_EQ(byHand(kind), Outcome::Taken);
 }
 
+// Example failure: somebody presses GO three times at a machine that does not answer, and three
+// cues pass in one moment.
+TEST(HeldPlayback, what_comes_too_late_is_ignored_but_for_darkness) {
+    Playback playback = after({{0s, Kind::Go}});
+    const auto late = [&](Kind kind, int cue = 0) { return playback.apply({.at = 2s, .kind = kind, .cue = cue, .late = true}); };
+    for (const Kind kind : {Kind::Go, Kind::Back, Kind::Jump, Kind::Load, Kind::Pause, Kind::Freeze, Kind::Restore, Kind::Master,
+                            Kind::Lock, Kind::Corrections})
+        EXPECT_EQ(late(kind), Outcome::TooLate);
+    EXPECT_EQ(stateOf(playback, 2s).cue, 0);
+    EXPECT_EQ(late(Kind::Blackout), Outcome::Taken);
+    EXPECT_EQ(late(Kind::Blackout), Outcome::Taken);
+    EXPECT_TRUE(stateOf(playback, 2s).blackout) << "two presses of somebody who wants it dark";
+    EXPECT_EQ(late(Kind::Panic), Outcome::Taken);
+    EXPECT_TRUE(stateOf(playback, 2s).panic);
+}
+
 // Example failure: after thirty nights of a hand on the blackout, every question takes longer.
 TEST(HeldPlayback, of_a_million_inputs_it_keeps_ten_minutes) {
     CueList list = cues();

@@ -1,0 +1,199 @@
+#include "show/play/journal.h"
+
+#include "core/file.h"
+#include "core/hash.h"
+#include "core/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string_view>
+
+namespace fantascope::show {
+
+namespace {
+
+constexpr std::size_t kCheckDigits = 8;
+
+// The flags of the controls, in the order of kFlags.
+constexpr std::string_view kFlagLetters = "bxpflc";
+std::vector<bool> flagsOf(const journal::State& state) {
+    const Controls& controls = state.controls;
+    return {controls.blackout, controls.panic, controls.paused, controls.frozen, controls.locked, state.corrects};
+}
+
+std::string checkOf(std::string_view text) { return fmt::format("{:08x}", static_cast<std::uint32_t>(fnv1a(text))); }
+
+// Takes words off a line, from the left.
+class Words {
+public:
+    explicit Words(std::string_view line) : rest_(line) {}
+    std::string_view word() {
+        const std::size_t end = std::min(rest_.find(' '), rest_.size());
+        const std::string_view word = rest_.substr(0, end);
+        rest_.remove_prefix(std::min(end + 1, rest_.size()));
+        return word;
+    }
+    template <class Number>
+    Number number(int base = 10) {
+        const std::string_view text = word();
+        Number number{};
+        std::from_chars_result read{};
+        if constexpr (std::is_integral_v<Number>)
+            read = std::from_chars(text.data(), text.data() + text.size(), number, base);
+        else
+            read = std::from_chars(text.data(), text.data() + text.size(), number);
+        if (read.ec != std::errc() || read.ptr != text.data() + text.size()) isGood_ = false;
+        return number;
+    }
+    Time time() { return Time(number<Time::rep>()); }
+    std::string rest() { return std::string(std::exchange(rest_, {})); }
+    bool isGood() const { return isGood_; }
+
+private:
+    std::string_view rest_;
+    bool isGood_ = true;
+};
+
+struct Writer {
+    std::string operator()(const journal::Run& run) const {
+        return fmt::format("run {} {} {} {:016x} {}", run.at.count(), run.utc.count(), run.goesOn ? "goes-on" : "begins",
+                           run.list, printable(run.show, 1000));
+    }
+    std::string operator()(const Input& input) const { return "input " + lineOf(input); }
+    std::string operator()(const journal::State& state) const {
+        std::string flags;
+        const std::vector<bool> on = flagsOf(state);
+        for (std::size_t i = 0; i < on.size(); ++i)
+            if (on[i]) flags += kFlagLetters[i];
+        return fmt::format("state {} {} {} {} {} {}", state.at.count(), state.controls.cue, state.controls.loaded,
+                           state.controls.master, flags.empty() ? "-" : flags, printable(state.cue, 1000));
+    }
+    std::string operator()(const journal::Told& told) const {
+        return fmt::format("event {} {}", told.at.count(), printable(told.text, 1000));
+    }
+    std::string operator()(const journal::Figures& figures) const {
+        std::string text = fmt::format("figures {} {} {} ", figures.at.count(), figures.frames, figures.lateFrames);
+        for (const auto& [output, z] : figures.z) text += fmt::format("{} {}/", z, printable(output));
+        return text;
+    }
+    std::string operator()(const journal::Gap& gap) const { return fmt::format("gap {}", gap.at.count()); }
+    std::string operator()(const journal::End& end) const {
+        return fmt::format("end {} {}", end.at.count(), printable(end.why, 1000));
+    }
+};
+
+// Nothing: it is no line of a journal.
+std::optional<journal::Line> lineFrom(std::string_view text) {
+    Words words(text);
+    const std::string_view kind = words.word();
+    std::optional<journal::Line> line;
+    if (kind == "run") {
+        journal::Run run;
+        run.at = words.time();
+        run.utc = words.time();
+        run.goesOn = words.word() == "goes-on";
+        run.list = words.number<std::uint64_t>(16);
+        run.show = words.rest();
+        line = run;
+    } else if (kind == "input") {
+        const auto input = inputOf(words.rest());
+        if (input) line = *input;
+    } else if (kind == "state") {
+        journal::State state;
+        state.at = words.time();
+        state.controls.cue = words.number<int>();
+        state.controls.loaded = words.number<int>();
+        state.controls.master = words.number<float>();
+        const std::string_view flags = words.word();
+        bool* const on[] = {&state.controls.blackout, &state.controls.panic,  &state.controls.paused,
+                            &state.controls.frozen,   &state.controls.locked, &state.corrects};
+        for (std::size_t i = 0; i < kFlagLetters.size(); ++i) *on[i] = flags.find(kFlagLetters[i]) != std::string_view::npos;
+        state.cue = words.rest();
+        line = state;
+    } else if (kind == "event") {
+        const Time at = words.time();
+        line = journal::Told{at, words.rest()};
+    } else if (kind == "figures") {
+        journal::Figures figures;
+        figures.at = words.time();
+        figures.frames = words.number<std::int64_t>();
+        figures.lateFrames = words.number<std::int64_t>();
+        for (std::string rest = words.rest(); !rest.empty(); rest.erase(0, rest.find('/') + 1)) {
+            if (rest.find('/') == std::string::npos) return std::nullopt;
+            Words score(std::string_view(rest).substr(0, rest.find('/')));
+            const double z = score.number<double>();
+            if (!score.isGood()) return std::nullopt;
+            figures.z.emplace_back(score.rest(), z);
+        }
+        line = figures;
+    } else if (kind == "gap") {
+        line = journal::Gap{words.time()};
+    } else if (kind == "end") {
+        const Time at = words.time();
+        line = journal::End{at, words.rest()};
+    }
+    return words.isGood() ? line : std::nullopt;
+}
+
+Time timeOf(const journal::Line& line) {
+    return std::visit([](const auto& one) { return one.at; }, line);
+}
+
+}  // namespace
+
+std::string lineOf(const journal::Line& line) {
+    const std::string text = std::visit(Writer(), line);
+    return checkOf(text) + ' ' + text + '\n';
+}
+
+Time Journal::newest() const {
+    Time newest{};
+    for (const Entry& entry : entries) newest = std::max(newest, timeOf(entry.line));
+    return newest;
+}
+
+Result<Journal> readJournal(const std::filesystem::path& file) {
+    return journalOf(TRY(readFile(file, kMaxFileBytes))).in(file.string());
+}
+
+Result<Journal> journalOf(std::string_view text) {
+    Journal journal;
+    if (text.size() < kJournalHead.size() && kJournalHead.starts_with(text)) {
+        journal.isTorn = !text.empty();
+        return journal;
+    }
+    const bool hasHead = text.starts_with(kJournalHead);
+    if (hasHead) journal.bytes = kJournalHead.size();
+    std::size_t damaged = 0;  // since the last good line
+    for (std::size_t begin = journal.bytes, end = 0; begin < text.size(); begin = end + 1) {
+        end = std::min(text.find('\n', begin), text.size());
+        const std::string_view line = text.substr(begin, end - begin);
+        std::optional<journal::Line> read;
+        if (end < text.size() && line.size() > kCheckDigits &&
+            line.substr(0, kCheckDigits) == checkOf(line.substr(kCheckDigits + 1)))
+            read = lineFrom(line.substr(kCheckDigits + 1));
+        if (!read) {
+            ++damaged;
+            continue;
+        }
+        journal.entries.push_back({*std::move(read), damaged > 0});
+        journal.damaged += std::exchange(damaged, 0);
+        journal.bytes = end + 1;
+    }
+    if (!hasHead && journal.entries.empty())
+        return Error(fmt::format("this is no journal of a night: it does not begin with '{}'",
+                                 kJournalHead.substr(0, kJournalHead.size() - 1)));
+    journal.isTorn = journal.bytes < text.size();
+    return journal;
+}
+
+std::uint64_t hashOf(const CueList& list) {
+    std::string text = fmt::format("{} {}", list.loops, list.goInterval.count());
+    for (const CueList::Cue& cue : list.cues) text += fmt::format("\n{} {}", cue.follow ? cue.follow->count() : -1, cue.name);
+    return fnv1a(text);
+}
+
+}  // namespace fantascope::show

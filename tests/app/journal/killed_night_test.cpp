@@ -1,0 +1,122 @@
+// A run that was killed goes on where it died. FANTASCOPE_KILLS=200
+// build/release/tests/app/app_test --gtest_filter='KilledNight*' kills two hundred.
+
+#include "core/clock.h"
+#include "core/file.h"
+#include "core/random.h"
+#include "running_program.h"
+#include "scratch_folder.h"
+#include "source_folder.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <fstream>
+
+namespace fantascope::app {
+namespace {
+
+constexpr int kCues = 40;
+constexpr double kSeconds = 16;  // so a simulated hand presses GO some three times a second
+
+std::string show() {
+    std::string text =
+        "fantascope: show\nversion: 2\ntitle: Steps\ngo_interval: 0\nsources: {red: {solid: [1, 0, 0]}}\n"
+        "looks: {on: {outputs: {wall: [{source: red}]}}, off: {outputs: {wall: []}}}\ncues:\n";
+    for (int cue = 0; cue < kCues; ++cue)
+        text += fmt::format("  - {{name: Step {}, look: {}, wait: 0.1, fade: 1}}\n", cue, cue % 2 == 0 ? "on" : "off");
+    return text;
+}
+
+// What the test reads of a journal by itself.
+struct Written {
+    int cue = -1;         // GO was taken so often, less one
+    double newest = 0;    // seconds
+    std::size_t end = 0;  // of the last whole line
+};
+Written read(const std::string& text) {
+    Written written;
+    for (std::size_t begin = text.find('\n') + 1, end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+        std::istringstream line(text.substr(begin, end - begin));
+        std::string check, kind, what;
+        double time = 0;
+        line >> check >> kind >> time >> what;
+        if (kind == "input" && what == "go") ++written.cue;
+        written.newest = std::max(written.newest, time / 1e9);
+        written.end = end + 1;
+    }
+    return written;
+}
+// The newer one of its two times, seconds.
+double clockOf(const std::string& text) {
+    std::istringstream slots(text);
+    double newest = 0, time = 0;
+    for (std::string check; slots >> time >> check;) newest = std::max(newest, time / 1e9);
+    return newest;
+}
+
+// Example failures: a press is lost that was acted on a moment before; the time is that of the last
+// press; a torn line is read, or everything before it is lost.
+TEST(KilledNight, goes_on_where_it_died_whatever_is_torn_or_damaged) {
+    const char* const wanted = std::getenv("FANTASCOPE_KILLS");
+    const int kills = wanted != nullptr ? std::atoi(wanted) : 6;
+    const std::string site = R"(fantascope: site
+version: 1
+outputs:
+  - {name: wall, display: {driver: headless}, size: [64, 36], refresh_rate: 30,
+     projector: {position: [0, 2, 8], look_at: [0, 1, 0], throw_ratio: 1.5}}
+cue_controller: {device: {driver: simulated}, buttons: {go: 1}}
+simulation:
+  objects: [{name: wall, rectangle: {corner: [-9, 0, 0], right: [18, 0, 0], up: [0, 5, 0]}}]
+  projectors: {wall: {lumens: 3000}}
+)";
+    Rng rng(4);
+    SteadyClock clock;
+    for (int kill = 0; kill < kills; ++kill) {
+        const ScratchFolder folder;
+        folder.file("show.yaml", show());
+        folder.file("site.yaml", site);
+        const auto journal = folder / "night" / "journal";
+        {
+            RunningProgram program(
+                {"rehearse", ".", "--site", ".", "--seconds", fmt::format("{}", kSeconds), "--journal", "night"}, folder.path());
+            while (!std::filesystem::exists(journal)) ASSERT_TRUE(program.line()) << program.all();
+            clock.sleepUntil(clock.now() + std::chrono::milliseconds(300 + rng.below(3000)));
+            program.stop(SIGKILL);
+        }
+        std::string text = *readFile(journal);
+        Written left = read(text);
+        double time = std::max(left.newest, clockOf(*readFile(folder / "night" / "clock")));
+        const int harm = kill % 5 == 4 ? 1 + static_cast<int>(rng.below(2)) : 0;
+        if (harm == 1) {  // torn: the end of the file did not reach the disk
+            text.resize(text.size() - std::min<std::size_t>(text.size() / 2, rng.below(60)));
+            left = read(text);
+            std::filesystem::remove(folder / "night" / "clock");
+            time = left.newest;
+        } else if (harm == 2) {  // damaged: but not the last second, of which nothing else tells
+            const std::size_t state = text.rfind(" state ");
+            const std::size_t last = text.rfind('\n', state);
+            if (state != std::string::npos) text[rng.below(last)] ^= 1;
+        }
+        if (harm != 0) std::ofstream(journal, std::ios::binary) << text;
+
+        RunningProgram again(
+            {"rehearse", ".", "--site", ".", "--seconds", "0.2", "--journal", "night", "--report", "report.json"}, folder.path());
+        while (again.line()) continue;
+        EXPECT_EQ(again.stop(), 0) << again.all();
+        const auto report = nlohmann::json::parse(*readFile(folder / "report.json"));
+        const auto& resumed = report["resumed"];
+        if (left.cue < 0) {
+            EXPECT_TRUE(resumed.is_null()) << "nothing had happened yet";
+            continue;
+        }
+        ASSERT_FALSE(resumed.is_null()) << kill << ", harm " << harm << "\n" << text << again.all();
+        EXPECT_EQ(resumed["cue"], fmt::format("Step {}", left.cue)) << kill << ", harm " << harm << "\n" << text;
+        EXPECT_NEAR(resumed["at"].get<double>(), time, 1e-6) << kill << ", harm " << harm << "\n" << text;
+    }
+}
+
+}  // namespace
+}  // namespace fantascope::app
