@@ -50,7 +50,8 @@ void JournalKeeper::tick(const show::journal::Figures& now) {
     if (journal_ == nullptr) return;
     const Time showTime = now.at;
     while (const show::Event* const event = told_.next())
-        if (std::string sentence = show::sentenceOf(*event); !sentence.empty())
+        if (std::string sentence = show::sentenceOf(*event);
+            !sentence.empty() && !std::holds_alternative<show::event::KeysAsked>(event->what))
             journal_->write(show::journal::Told{event->at, std::move(sentence)}, false);
     replica_.stateAt(showTime, state_);
     show::journal::State state{.at = written_.at, .controls = state_, .corrects = state_.corrects, .cue = written_.cue};

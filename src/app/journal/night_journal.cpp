@@ -63,7 +63,8 @@ Result<std::unique_ptr<NightJournal>> NightJournal::open(const fs::path& folder,
     std::error_code refused;
     fs::create_directories(folder, refused);
     if (refused) {
-        journal->trouble_ = fmt::format("{}: {}", folder.string(), refused.message());
+        journal->trouble_ =
+            fmt::format("{}: {}; give --journal a folder that can be written", folder.string(), refused.message());
         return journal;
     }
     if (AppendedFile::isOpenElsewhere(folder / "journal"))

@@ -76,6 +76,9 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
             return toggle(Kind::Lock);
         case Action::Pictures:
             return actions_.takePictures();
+        case Action::Keys:
+            events_.append({input.at, show::event::KeysAsked{runKeysText()}});
+            return;
         case Action::Quit:
             if (quitKey_.press(moment)) return actions_.end();
             events_.append({input.at, show::event::QuitAsked{std::string(keyFor(*action)), QuitKey::kPatience}});

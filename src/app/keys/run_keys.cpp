@@ -8,7 +8,8 @@
 namespace fantascope::app {
 
 std::optional<RunKey::Action> actionOf(const Key& key) {
-    const char letter = key.letter == '=' ? '+' : key.letter;  // of one key on many keyboards
+    // Two characters of one key on many keyboards count as one.
+    const char letter = key.letter == '=' ? '+' : key.letter == '/' ? '?' : key.letter;
     const auto found =
         std::ranges::find_if(kRunKeys, [&](const RunKey& run) { return run.key.name == key.name && run.key.letter == letter; });
     return found == kRunKeys.end() ? std::nullopt : std::optional(found->action);
@@ -16,11 +17,15 @@ std::optional<RunKey::Action> actionOf(const Key& key) {
 
 std::string_view keyFor(RunKey::Action action) { return std::ranges::find(kRunKeys, action, &RunKey::action)->name; }
 
-std::string runKeysHelp() {
-    std::string text = "Keys while the show runs:\n";
+std::string runKeysText() {
+    std::string text;
     for (const RunKey& key : kRunKeys) text += fmt::format("  {:<7}{}\n", key.name, key.does);
-    text += "  Ctrl-C end at once\n  Ctrl-Z nothing: it would leave the relays as they are\n";
     return text;
+}
+
+std::string runKeysHelp() {
+    return "Keys while the show runs:\n" + runKeysText() +
+           "  Ctrl-C end at once\n  Ctrl-Z nothing: it would leave the relays as they are\n";
 }
 
 bool QuitKey::press(Time moment) {

@@ -31,6 +31,7 @@ struct RunKey {
         SetUp,
         Corrections,
         Lock,
+        Keys,
         Quit
     };
     Key key;
@@ -40,7 +41,7 @@ struct RunKey {
 };
 
 // All keys. README.md has the same table.
-constexpr std::array<RunKey, 16> kRunKeys = {
+constexpr std::array<RunKey, 17> kRunKeys = {
     {{letterKey(' '), "space", "GO: the loaded cue, or the next one; after a pause: go on", RunKey::Action::Go},
      {letterKey('b'), "b", "back: the cue before", RunKey::Action::Back},
      {{Key::Name::Up}, "up", "load the cue before the one that GO would enter", RunKey::Action::LoadPrevious},
@@ -56,13 +57,16 @@ constexpr std::array<RunKey, 16> kRunKeys = {
      {letterKey('e'), "e", "set the outputs up; again: done", RunKey::Action::SetUp},
      {letterKey('c'), "c", "take the camera's corrections back; again: allow them", RunKey::Action::Corrections},
      {letterKey('l'), "l", "lock hand controller, contacts and windows, but for darkness; again: unlock", RunKey::Action::Lock},
+     {letterKey('?'), "?", "tell the keys", RunKey::Action::Keys},
      {letterKey('q'), "q", "end; `run` asks for it twice", RunKey::Action::Quit}}};
 
 // Shift and Control do not matter.
 std::optional<RunKey::Action> actionOf(const Key& key);
 std::string_view keyFor(RunKey::Action action);
 
-// The text for --help: a line for each key.
+// A line for each key.
+std::string runKeysText();
+// The text for --help.
 std::string runKeysHelp();
 
 // The key that ends a run. A rehearsal ends at once, because it is easy to begin again. A night

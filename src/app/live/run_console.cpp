@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 namespace fantascope::app {
@@ -149,12 +151,16 @@ RunConsole::RunConsole(const Clock& clock, std::ostream& out, std::function<int(
 }
 
 void RunConsole::tell(const RunStatus& status) {
-    if (!status.said.empty()) {
-        const std::string news = fitted(fmt::format("{:6.1f} s  {}", seconds(status.showTime), status.said), kAnyWidth);
+    std::string_view said = status.said;
+    for (bool isFirst = true; !said.empty(); isFirst = false) {
+        const std::size_t end = std::min(said.find('\n'), said.size());
+        const std::string start = isFirst ? fmt::format("{:6.1f} s  ", seconds(status.showTime)) : std::string(10, ' ');
+        const std::string news = fitted(start + std::string(said.substr(0, end)), kAnyWidth);
         if (line_)
             line_->say(news);
         else
             out_ << news << std::endl;
+        said.remove_prefix(std::min(end + 1, said.size()));
     }
     const Time now = clock_.now();
     const bool due = !told_ || now - *told_ >= (line_ ? kRedraw : kRepeat) || (line_ && !status.said.empty());

@@ -57,6 +57,10 @@ struct QuitAsked {
     std::string key;
     Time patience{};
 };
+// Somebody wants to know the keys.
+struct KeysAsked {
+    std::string keys;  // a line for each
+};
 // A fault began, or its reason changed.
 struct FaultBegan {
     std::string device;  // by its name in the site file; empty: none
@@ -131,9 +135,9 @@ struct SiteNotSaved {
 };
 
 using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ShowResumed, ScheduleEnded, QuitAsked,
-                          FaultBegan, FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected, PictureMoved,
-                          CameraMoved, MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed, SettingUpBegan,
-                          SettingUpEnded, SiteSaved, SiteNotSaved>;
+                          KeysAsked, FaultBegan, FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected,
+                          PictureMoved, CameraMoved, MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed,
+                          SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

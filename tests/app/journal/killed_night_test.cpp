@@ -4,6 +4,7 @@
 #include "core/clock.h"
 #include "core/file.h"
 #include "core/random.h"
+#include "program.h"
 #include "running_program.h"
 #include "scratch_folder.h"
 #include "source_folder.h"
@@ -18,6 +19,8 @@
 namespace fantascope::app {
 namespace {
 
+using testing::HasSubstr;
+
 constexpr int kCues = 40;
 constexpr double kSeconds = 16;  // so a simulated hand presses GO some three times a second
 
@@ -29,6 +32,17 @@ std::string show() {
         text += fmt::format("  - {{name: Step {}, look: {}, wait: 0.1, fade: 1}}\n", cue, cue % 2 == 0 ? "on" : "off");
     return text;
 }
+
+constexpr const char* kSite = R"(fantascope: site
+version: 1
+outputs:
+  - {name: wall, display: {driver: headless}, size: [64, 36], refresh_rate: 30,
+     projector: {position: [0, 2, 8], look_at: [0, 1, 0], throw_ratio: 1.5}}
+cue_controller: {device: {driver: simulated}, buttons: {go: 1}}
+simulation:
+  objects: [{name: wall, rectangle: {corner: [-9, 0, 0], right: [18, 0, 0], up: [0, 5, 0]}}]
+  projectors: {wall: {lumens: 3000}}
+)";
 
 // What the test reads of a journal by itself.
 struct Written {
@@ -62,22 +76,12 @@ double clockOf(const std::string& text) {
 TEST(KilledNight, goes_on_where_it_died_whatever_is_torn_or_damaged) {
     const char* const wanted = std::getenv("FANTASCOPE_KILLS");
     const int kills = wanted != nullptr ? std::atoi(wanted) : 6;
-    const std::string site = R"(fantascope: site
-version: 1
-outputs:
-  - {name: wall, display: {driver: headless}, size: [64, 36], refresh_rate: 30,
-     projector: {position: [0, 2, 8], look_at: [0, 1, 0], throw_ratio: 1.5}}
-cue_controller: {device: {driver: simulated}, buttons: {go: 1}}
-simulation:
-  objects: [{name: wall, rectangle: {corner: [-9, 0, 0], right: [18, 0, 0], up: [0, 5, 0]}}]
-  projectors: {wall: {lumens: 3000}}
-)";
     Rng rng(4);
     SteadyClock clock;
     for (int kill = 0; kill < kills; ++kill) {
         const ScratchFolder folder;
         folder.file("show.yaml", show());
-        folder.file("site.yaml", site);
+        folder.file("site.yaml", kSite);
         const auto journal = folder / "night" / "journal";
         {
             RunningProgram program(
@@ -116,6 +120,43 @@ simulation:
         EXPECT_EQ(resumed["cue"], fmt::format("Step {}", left.cue)) << kill << ", harm " << harm << "\n" << text;
         EXPECT_NEAR(resumed["at"].get<double>(), time, 1e-6) << kill << ", harm " << harm << "\n" << text;
     }
+}
+
+// Example failures: the time of day gets into it; a thread of the disk's decides what comes first.
+TEST(FastNight, has_the_same_journal_twice_and_goes_on_where_it_ended) {
+    const ScratchFolder folder;
+    folder.file("show.yaml", show());
+    folder.file("site.yaml", kSite);
+    const auto rehearse = [&](const std::string& journal) {
+        return runProgram({"rehearse", ".", "--site", ".", "--as-fast-as-possible", "--seconds", "4", "--journal", journal,
+                           "--report", "report.json"},
+                          folder.path());
+    };
+    for (const char* journal : {"one", "two"}) EXPECT_THAT(rehearse(journal), exits(0));
+    for (const char* file : {"journal", "clock"}) EXPECT_EQ(*readFile(folder / "one" / file), *readFile(folder / "two" / file));
+    EXPECT_EQ(nlohmann::json::parse(*readFile(folder / "report.json"))["resumed"], nullptr);
+    EXPECT_THAT(rehearse("one"), exits(0));
+    const auto report = nlohmann::json::parse(*readFile(folder / "report.json"));
+    EXPECT_EQ(report["resumed"]["cue"], fmt::format("Step {}", kCues - 1));
+    EXPECT_EQ(report["resumed"]["at"], 4);
+}
+
+// Example failure: the show does not begin, because nobody may write down that it does.
+TEST(FastNight, plays_without_its_journal_and_says_so) {
+    const ScratchFolder folder;
+    folder.file("show.yaml", show());
+    folder.file("site.yaml", kSite);
+    folder.file("night", "a file, where the folder should be");
+    const auto played = runProgram({"rehearse", ".", "--site", ".", "--as-fast-as-possible", "--seconds", "2", "--journal",
+                                    "night", "--report", "report.json"},
+                                   folder.path());
+    EXPECT_THAT(played, exits(0));
+    EXPECT_THAT(played.errors, HasSubstr("the journal is not written: night: "));
+    const auto report = nlohmann::json::parse(*readFile(folder / "report.json"));
+    EXPECT_EQ(report["cues"].size(), static_cast<std::size_t>(kCues));
+    EXPECT_THAT(report["faults"][0]["what"].get<std::string>(), HasSubstr("the journal is not written"));
+    EXPECT_EQ(report["inputs"]["by_source"]["controller"], kCues);
+    EXPECT_EQ(report["inputs"]["by_outcome"]["taken"], kCues);
 }
 
 }  // namespace

@@ -119,6 +119,14 @@ TEST_F(Keys, that_come_through_a_machine_that_stood_still_are_late) {
     EXPECT_FALSE(inputs().back().late);
 }
 
+TEST_F(Keys, are_told_when_somebody_asks) {
+    const auto keys = keysWith({0, false, {}});
+    keys->pressedAtScreen({.letter = '/', .shift = true}, 12s);
+    keys->tick(12s);
+    EXPECT_THAT(inputs(), IsEmpty());
+    EXPECT_THAT(run_.told(), ElementsAre(testing::StartsWith("the keys:\n  space  GO")));
+}
+
 // Example failure: the seventeenth key of somebody in a hurry does nothing.
 TEST_F(Keys, are_all_taken_however_many_came_before_anybody_looked) {
     const auto keys = keysWith({0, false, {}});

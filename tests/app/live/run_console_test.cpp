@@ -174,6 +174,15 @@ TEST(RunConsole, prints_nothing_that_a_terminal_would_obey) {
     EXPECT_THAT(out.str(), AllOf(HasSubstr("cue 1 of 1: ?[2J\n"), Not(HasSubstr("\x1b"))));
 }
 
+TEST(RunConsole, gives_each_line_of_the_news_a_line) {
+    const ManualClock clock;
+    std::ostringstream out;
+    RunStatus status;
+    status.said = "the keys:\n  b  back\n  q  end\n";
+    RunConsole(clock, out, {}).tell(status);
+    EXPECT_THAT(out.str(), StartsWith("   0.0 s  the keys:\n            b  back\n            q  end\n"));
+}
+
 // An alarm that is none teaches not to look.
 TEST(RunSummary, speaks_of_the_machine_only_where_that_made_frames_late) {
     RunReport report;
