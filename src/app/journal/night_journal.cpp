@@ -92,11 +92,13 @@ void NightJournal::readEarlier(bool anew) {
     std::error_code ignored;
     if (!fs::exists(folder_ / "journal", ignored)) return;
     auto journal = show::readJournal(folder_ / "journal");
-    const show::journal::Run* const run = journal ? lastRunOf(*journal) : nullptr;
-    if (run == nullptr) return setAside(utc());
+    if (!journal) return setAside(utc());
+    if (journal->entries.empty()) return;  // it died at once, and leaves nothing
     const Time at = std::max(journal->newest(), newestTime().value_or(Time{}));
-    const Time ended = run->utc + (at - run->at);
-    if (anew || utc() - ended > kNight) return setAside(run->utc);
+    // Without the line of its beginning, nobody knows of which night it is.
+    const show::journal::Run* const run = lastRunOf(*journal);
+    if (anew || (run != nullptr && utc() - (run->utc + (at - run->at)) > kNight))
+        return setAside(run != nullptr ? run->utc : utc());
     earlier_ = Earlier{std::move(*journal), at};
 }
 

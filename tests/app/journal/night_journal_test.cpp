@@ -85,6 +85,18 @@ TEST_F(Nights, cut_a_torn_line_before_they_write_another) {
     EXPECT_EQ(*readFile(file), whole + show::lineOf(Told{1s, "after"}));
 }
 
+// Example failure: a single byte, the end of the first line, and the night begins again.
+TEST_F(Nights, go_on_though_the_line_of_their_beginning_is_damaged) {
+    open()->write(Begun{.at = 0s, .utc = kEvening, .show = {}});
+    open()->write(show::Input{.at = 2s, .kind = show::Input::Kind::Go});
+    std::string text = *readFile(folder_ / "nights" / "journal");
+    text[text.find('\n')] ^= 1;
+    folder_.file("nights/journal", text);
+    const auto journal = open();
+    ASSERT_TRUE(journal->earlier());
+    EXPECT_EQ(journal->earlier()->at, 2s);
+}
+
 TEST_F(Nights, have_one_writer) {
     const auto journal = open();
     journal->write(Told{1s, "mine"});
