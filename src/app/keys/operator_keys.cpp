@@ -27,7 +27,8 @@ void OperatorKeys::tick(Time moment) {
         if (const auto key = parser_.take(*character)) press(*key, Source::Terminal, moment);
     if (const auto key = parser_.pause(moment)) press(*key, Source::Terminal, moment);
     while (const Press* const pressed = pressedAtScreens_.next()) press(pressed->key, Source::Screen, pressed->moment);
-    if (schedule_.due(showClock_.runTime(moment)) && !actions_.pressGo())
+    // After a gap its press would be late: the next tick presses.
+    if (!lateness_.isLate(moment) && schedule_.due(showClock_.runTime(moment)) && !actions_.pressGo())
         inputs_.submit({.at = showClock_.showTime(moment), .kind = Kind::Go, .source = Source::Schedule});
     nextGo_ = schedule_.next();
 }

@@ -57,7 +57,8 @@ Written read(const std::string& text) {
         std::string check, kind, what;
         double time = 0;
         line >> check >> kind >> time >> what;
-        if (kind == "input" && what == "go") ++written.cue;
+        const bool isLate = text.compare(end - 5, 5, " late") == 0;  // the machine was busy, and the show ignored it
+        if (kind == "input" && what == "go" && !isLate) ++written.cue;
         written.newest = std::max(written.newest, time / 1e9);
         written.end = end + 1;
     }

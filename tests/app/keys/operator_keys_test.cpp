@@ -163,6 +163,8 @@ TEST_F(Keys, take_over_from_a_schedule_that_counts_from_the_runs_start) {
     keys->tick(10s);
     EXPECT_THAT(inputs(), IsEmpty());
     EXPECT_EQ(keys->nextGo(), 3'333'333'333ns);
+    keys->tick(13335ms);
+    EXPECT_THAT(inputs(), IsEmpty()) << "nobody has looked for three seconds: the press would be late";
     keys->tick(13340ms);
     EXPECT_THAT(inputs(), ElementsAre(show::Input{.at = 3h + 3340ms, .kind = Kind::Go, .source = Source::Schedule}));
     keys->pressedAtScreen({.letter = '0'}, 20s);
