@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace fantascope::show {
@@ -76,6 +77,18 @@ struct Controls {
     bool locked = false;        // nothing but darkness is taken from hand controller, contacts and windows
     friend bool operator==(const Controls&, const Controls&) = default;
 };
+
+// The ways in which an operator holds a show.
+enum class Hold { Blackout, Panic, Pause, Freeze, Lock };
+// Each, in that order: its name, and whether it is on.
+constexpr struct {
+    std::string_view name;
+    bool Controls::*on;
+} kHolds[] = {{"blackout", &Controls::blackout},
+              {"panic", &Controls::panic},
+              {"pause", &Controls::paused},
+              {"freeze", &Controls::frozen},
+              {"lock", &Controls::locked}};
 
 // The look at one moment of show time. Value type. Reuse it from frame to frame: its vectors keep
 // their capacity.

@@ -9,11 +9,7 @@ namespace fantascope::app {
 
 namespace {
 
-constexpr std::array<std::pair<const char*, bool show::Controls::*>, 5> kHolds = {{{"blackout", &show::Controls::blackout},
-                                                                                   {"panic", &show::Controls::panic},
-                                                                                   {"pause", &show::Controls::paused},
-                                                                                   {"freeze", &show::Controls::frozen},
-                                                                                   {"lock", &show::Controls::locked}}};
+using show::kHolds;
 
 // Reads the lines of a journal one after the other.
 class Reader {
@@ -42,18 +38,13 @@ public:
             ++night_.corrections;
             return;
         }
-        // "12500000000 jump 3 terminal 0"
-        const std::string line = show::lineOf(input);
-        std::vector<std::string> words;
-        for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1)
-            words.push_back(line.substr(begin, (end = line.find(' ', begin)) - begin));
-        std::string what = words[1];
-        if (input.kind == Kind::Jump || input.kind == Kind::Load) what += fmt::format(" {}", input.cue + 1);
-        if (input.kind == Kind::Master) what += fmt::format(" {:.0f} %", 100 * input.level);
-        if (input.late) what += ", too late";
+        Night::Press press{input.at, std::string(show::nameOf(input.kind)), std::string(show::nameOf(input.source))};
+        if (input.kind == Kind::Jump || input.kind == Kind::Load) press.what += fmt::format(" {}", input.cue + 1);
+        if (input.kind == Kind::Master) press.what += fmt::format(" {:.0f} %", 100 * input.level);
+        if (input.late) press.what += ", too late";
         using Source = show::Input::Source;
-        const bool hasNumber = input.source == Source::Controller || input.source == Source::Contact;
-        night_.presses.push_back({input.at, std::move(what), hasNumber ? words[3] + ' ' + words[4] : words[3]});
+        if (input.source == Source::Controller || input.source == Source::Contact) press.by += fmt::format(" {}", input.which);
+        night_.presses.push_back(std::move(press));
     }
     void operator()(const show::journal::State& state) {
         reach(state.at);
@@ -62,8 +53,8 @@ public:
             cue_ = state.cue;
             cueFrom_ = state.at;
         }
-        for (std::size_t i = 0; i < kHolds.size(); ++i) {
-            const bool on = state.controls.*kHolds[i].second;
+        for (std::size_t i = 0; i < std::size(kHolds); ++i) {
+            const bool on = state.controls.*kHolds[i].on;
             if (on && !held_[i]) held_[i] = state.at;
             if (!on) endHold(i, state.at);
         }
@@ -105,19 +96,19 @@ private:
     }
     void endHold(std::size_t hold, Time at) {
         if (const std::optional<Time> since = std::exchange(held_[hold], std::nullopt))
-            add(night_.holds, {*since, at, kHolds[hold].first});
+            add(night_.holds, {*since, at, std::string(kHolds[hold].name)});
     }
     void endStretches() {
         if (night_.runs.empty()) return;
         const Time at = night_.runs.back().to;
         endCue(at);
-        for (std::size_t i = 0; i < kHolds.size(); ++i) endHold(i, at);
+        for (std::size_t i = 0; i < std::size(kHolds); ++i) endHold(i, at);
     }
 
     Night night_;
     std::string cue_;
     Time cueFrom_{};
-    std::array<std::optional<Time>, kHolds.size()> held_;
+    std::array<std::optional<Time>, std::size(kHolds)> held_;
     std::int64_t frames_ = 0, late_ = 0;  // of this run so far
 };
 

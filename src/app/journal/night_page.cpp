@@ -56,7 +56,7 @@ std::string lengthOf(Time time) {
     const auto whole = std::chrono::duration_cast<std::chrono::seconds>(time).count();
     return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
-// A colour for a name, the same on every page.
+// Neighbouring numbers have colours that are far from each other.
 std::string colourOf(std::size_t number) { return fmt::format("hsl({} 45% 72%)", number * 137 % 360); }
 
 // The picture of a night over time.

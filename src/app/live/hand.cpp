@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -63,14 +64,9 @@ void Hand::tick(Time moment) {
 
 // What has changed since the last tick, as events.
 void Hand::tell(Time showTime) {
-    using Hold = show::event::HoldChanged::Hold;
-    const std::pair<Hold, bool show::Controls::*> kHolds[] = {{Hold::Blackout, &show::Controls::blackout},
-                                                              {Hold::Panic, &show::Controls::panic},
-                                                              {Hold::Pause, &show::Controls::paused},
-                                                              {Hold::Freeze, &show::Controls::frozen},
-                                                              {Hold::Lock, &show::Controls::locked}};
-    for (const auto& [hold, on] : kHolds)
-        if (told_.*on != state_.*on) events_.append({showTime, show::event::HoldChanged{hold, state_.*on}});
+    for (std::size_t i = 0; i < std::size(show::kHolds); ++i)
+        if (const auto on = show::kHolds[i].on; told_.*on != state_.*on)
+            events_.append({showTime, show::event::HoldChanged{static_cast<show::Hold>(i), state_.*on}});
     if (told_.master != state_.master) events_.append({showTime, show::event::MasterChanged{state_.master}});
     const int cues = static_cast<int>(show_.cues.size());
     if (told_.cue != state_.cue) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "show/course/course.h"
+#include "show/course/steps.h"
 
 #include "core/clock.h"
 
@@ -27,17 +28,17 @@ public:
     // Gives all relays back to the cue; the share goes on.
     void releaseRelays(Time at);
     LampTrim at(Time time) const;
+    void forget(Time time) { steps_.forget(time); }
     // When the number of relays that are off changed last; nothing: never.
     std::optional<Time> switched() const { return switched_; }
 
 private:
     struct Step {
-        Time at{};
-        Course share;
+        Course share = Course::at(1);
         int relaysOff = 0;
     };
-    void put(const Step& step);
-    std::vector<Step> steps_;  // by time
+    void put(Time at, const Step& step);
+    Steps<Step> steps_;
     std::optional<Time> switched_;
 };
 

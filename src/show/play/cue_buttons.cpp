@@ -1,37 +1,24 @@
 #include "show/play/cue_buttons.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace fantascope::show {
 
 namespace {
 
-std::optional<Input::Kind> kindOf(Button button) {
-    switch (button) {
-        case Button::Go:
-            return Input::Kind::Go;
-        case Button::Back:
-            return Input::Kind::Back;
-        case Button::Blackout:
-            return Input::Kind::Blackout;
-        case Button::Pause:
-            return Input::Kind::Pause;
-        case Button::Freeze:
-            return Input::Kind::Freeze;
-        case Button::Panic:
-            return Input::Kind::Panic;
-        case Button::Restore:
-            return Input::Kind::Restore;
-        default:  // those for setting up
-            return std::nullopt;
-    }
-}
+// The buttons that give an input; the others are for setting up.
+constexpr std::pair<Button, Input::Kind> kInputButtons[] = {
+    {Button::Go, Input::Kind::Go},          {Button::Back, Input::Kind::Back},     {Button::Blackout, Input::Kind::Blackout},
+    {Button::Pause, Input::Kind::Pause},    {Button::Freeze, Input::Kind::Freeze}, {Button::Panic, Input::Kind::Panic},
+    {Button::Restore, Input::Kind::Restore}};
 
 }  // namespace
 
 CueButtons::CueButtons(const std::vector<std::pair<int, Button>>& buttons) {
     for (const auto& [number, button] : buttons)
-        if (const auto kind = kindOf(button)) keys_.push_back({number, *kind});
+        for (const auto& [known, kind] : kInputButtons)
+            if (known == button) keys_.push_back({number, kind});
 }
 
 std::optional<Input> CueButtons::inputFor(int button, bool pressed, Time at) {

@@ -26,7 +26,6 @@ struct Teller {
         return fmt::format("cue {}: {}", placeOf(entered.number, entered.cue, entered.cues), entered.name);
     }
     std::string operator()(const event::HoldChanged& change) const {
-        using Hold = event::HoldChanged::Hold;
         switch (change.hold) {
             case Hold::Blackout:
                 return change.on ? "blackout: pictures and lamps are dark" : "light: the blackout is over";
@@ -52,7 +51,7 @@ struct Teller {
     }
     std::string operator()(const event::ShowResumed& resumed) const {
         std::string text = "the show goes on where the journal ends";
-        if (!resumed.isExact) text += "; the list of cues is another one, so the cue begins again";
+        if (!resumed.isExact) text += "; the cue list has changed, so the cue begins again";
         if (resumed.damaged > 0) text += fmt::format("; {} of its lines are damaged and left out", resumed.damaged);
         return text;
     }

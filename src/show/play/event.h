@@ -29,7 +29,6 @@ struct CueEntered {
 };
 // The operator holds the show in some way, or lets it go.
 struct HoldChanged {
-    enum class Hold { Blackout, Panic, Pause, Freeze, Lock };
     Hold hold = Hold::Blackout;
     bool on = false;
 };

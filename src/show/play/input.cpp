@@ -92,10 +92,11 @@ std::string_view nameOf(Outcome outcome) {
     return "unknown";
 }
 
+std::string_view nameOf(Input::Kind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
 std::string_view nameOf(Input::Source source) { return kSources[static_cast<std::size_t>(source)]; }
 
 std::string lineOf(const Input& input) {
-    std::string line = fmt::format("{} {} {} {} {}", input.at.count(), kKinds[static_cast<std::size_t>(input.kind)],
+    std::string line = fmt::format("{} {} {} {} {}", input.at.count(), nameOf(input.kind),
                                    hasRevision(input.kind) ? input.revision : input.cue, nameOf(input.source), input.which);
     if (input.kind == Input::Kind::Correct)
         for (const glm::vec2 corner : input.shift) line += fmt::format(" {} {}", corner.x, corner.y);

@@ -81,7 +81,9 @@ enum class Outcome {
 };
 // The outcome in words for the operator: "taken", "ignored: ...".
 std::string_view nameOf(Outcome outcome);
-std::string_view nameOf(Input::Source source);  // as in a line: "controller"
+// As in a line: "go", "controller".
+std::string_view nameOf(Input::Kind kind);
+std::string_view nameOf(Input::Source source);
 
 // One line, without its end: show time in nanoseconds, kind, cue (of Revise and Exchange: the
 // revision), source, which, of Correct also the shift, of Trim also the share and how many relays

@@ -1,11 +1,7 @@
 #include "show/play/playback.h"
 
-#include "core/check.h"
-
 #include <algorithm>
-#include <cmath>
 #include <optional>
-#include <span>
 #include <utility>
 
 namespace fantascope::show {
@@ -193,6 +189,7 @@ void Playback::foresee(Time time) {
     loaded_.forget(kept);
     taken_.forget(kept);
     shifts_.forget(kept);
+    trims_.forget(kept);
 }
 
 Outcome Playback::revise(std::shared_ptr<const CueList> list, Time at) {

@@ -14,13 +14,10 @@
 
 #include "core/clock.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
-#include <vector>
 
 namespace fantascope::show {
 

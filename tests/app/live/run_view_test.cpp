@@ -44,7 +44,7 @@ TEST_F(View, tells_the_first_cue_after_the_last_of_a_show_that_loops) {
 // Example failure: the report has read a sentence, and the terminal never shows it.
 TEST_F(View, says_what_happened_once_whoever_else_listens) {
     EXPECT_FALSE(view_.hasNews());
-    run_.events.append({3h, show::event::HoldChanged{show::event::HoldChanged::Hold::Blackout, true}});
+    run_.events.append({3h, show::event::HoldChanged{show::Hold::Blackout, true}});
     run_.events.append({3h, show::event::InputDecided{}});
     run_.events.append({3h, show::event::ScheduleEnded{}});
     EXPECT_EQ(run_.told().size(), 2u);

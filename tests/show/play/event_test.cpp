@@ -25,7 +25,7 @@ TEST(Events, are_heard_by_every_listener_whenever_it_listens) {
     auto terminal = events.reader(), console = events.reader();
     events.append({1s, event::CueEntered{0, 3, "Dusk", 1000}});
     EXPECT_THAT(heard(terminal), ElementsAre("cue 1 of 3: Dusk"));
-    events.append({2s, event::HoldChanged{event::HoldChanged::Hold::Blackout, true}});
+    events.append({2s, event::HoldChanged{Hold::Blackout, true}});
     EXPECT_THAT(heard(console), ElementsAre("cue 1 of 3: Dusk", "blackout: pictures and lamps are dark"));
     EXPECT_THAT(heard(terminal), ElementsAre("blackout: pictures and lamps are dark"));
     EXPECT_THAT(heard(terminal), ElementsAre());
@@ -37,9 +37,8 @@ TEST(Events, say_one_sentence_each) {
     const auto said = [](const event::What& what) { return sentenceOf(Event{{}, what}); };
     EXPECT_EQ(said(event::InputDecided{{0, {}, Outcome::AtLastCue}}), "ignored: this is the last cue");
     EXPECT_EQ(said(event::CueEntered{2, 7, "Dusk", 2500}), "cue 2.5 (3 of 7): Dusk");
-    EXPECT_EQ(said(event::HoldChanged{event::HoldChanged::Hold::Lock, true}),
-              "locked: hand controller, contacts and windows can only make it dark");
-    EXPECT_EQ(said(event::HoldChanged{event::HoldChanged::Hold::Blackout, false}), "light: the blackout is over");
+    EXPECT_EQ(said(event::HoldChanged{Hold::Lock, true}), "locked: hand controller, contacts and windows can only make it dark");
+    EXPECT_EQ(said(event::HoldChanged{Hold::Blackout, false}), "light: the blackout is over");
     EXPECT_EQ(said(event::ScheduleEnded{}), "you have the controller");
     EXPECT_EQ(said(event::QuitAsked{"q", 3s}), "the show goes on; q again within 3 s ends it");
     EXPECT_EQ(said(event::FaultBegan{"road", "'road' is missing"}), "'road' is missing");

@@ -1,6 +1,6 @@
 // What an operator holds of a show: time, light, or what is seen.
 
-#include "show/play/playback.h"
+#include "show/play/played.h"
 
 #include <gmock/gmock.h>
 #include <malloc.h>
@@ -31,16 +31,7 @@ CueList cues() {
     return list;
 }
 
-Playback after(std::initializer_list<Input> inputs) {
-    Playback playback(cues());
-    for (const Input& input : inputs) EXPECT_EQ(playback.apply(input), Outcome::Taken) << seconds(input.at) << " s";
-    return playback;
-}
-ShowState stateOf(const Playback& playback, Time time) {
-    ShowState state;
-    playback.stateAt(time, state);
-    return state;
-}
+Playback after(std::initializer_list<Input> inputs) { return show::after(cues(), inputs); }
 
 TEST(HeldPlayback, a_pause_keeps_the_middle_of_a_fade_and_goes_on_from_there) {
     Playback playback = after({{0s, Kind::Go}, {1s, Kind::Pause}});

@@ -1,5 +1,7 @@
 #include "show/play/playback.h"
 
+#include "show/play/played.h"
+
 #include "allocations.h"
 #include "core/random.h"
 
@@ -49,18 +51,6 @@ CueList followingCues() {
     list.cues[0].follow = 3s;
     list.cues[1].follow = 5s;
     return list;
-}
-
-Playback after(const CueList& list, std::initializer_list<Input> inputs) {
-    Playback playback(list);
-    for (const Input& input : inputs) EXPECT_EQ(playback.apply(input), Outcome::Taken) << seconds(input.at) << " s";
-    return playback;
-}
-
-ShowState stateOf(const Playback& playback, Time time) {
-    ShowState state;
-    playback.stateAt(time, state);
-    return state;
 }
 
 // But for when layers began, which has tests of its own.
