@@ -26,7 +26,7 @@ std::optional<std::size_t> JournalKeeper::cueOn() const {
 bool JournalKeeper::start() {
     if (journal_ == nullptr) return false;
     const bool goesOn = resumed_ && resumed_->isExact;
-    journal_->write(show::journal::Run{.at = resumed_ ? resumed_->at : Time{},
+    journal_->begin(show::journal::Run{.at = resumed_ ? resumed_->at : Time{},
                                        .utc = journal_->utc(),
                                        .goesOn = goesOn,
                                        .list = show::hashOf(*inputs_.cues()),
@@ -69,10 +69,7 @@ void JournalKeeper::tick(const show::journal::Figures& now) {
     journal_->noteTime(showTime);
 }
 
-std::string JournalKeeper::trouble() const {
-    const std::string why = journal_ != nullptr ? journal_->trouble() : "";
-    return why.empty() ? "" : "the journal is not written: " + why;
-}
+std::string JournalKeeper::trouble() const { return journal_ != nullptr ? journal_->trouble() : ""; }
 
 void JournalKeeper::end(const show::journal::Figures& now, const std::string& why) {
     if (journal_ == nullptr) return;

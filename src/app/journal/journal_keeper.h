@@ -36,7 +36,7 @@ public:
     static constexpr double kRate = 20;  // Hz
     // Writes events, changes of the controls, the time, and now and then the figures.
     void tick(const show::journal::Figures& now);
-    // Why lines are not on the disk, for the operator; empty: they are.
+    // NightJournal::trouble().
     std::string trouble() const;
     void end(const show::journal::Figures& now, const std::string& why);
 

@@ -31,13 +31,11 @@ std::string slotOf(Time time) {
 }
 
 std::string stampOf(Time utc) {
-    using namespace std::chrono;
-    const sys_seconds moment{floor<std::chrono::seconds>(utc)};
-    const auto day = floor<days>(moment);
-    const year_month_day date(day);
-    const hh_mm_ss time(moment - day);
-    return fmt::format("{:04}{:02}{:02}T{:02}{:02}{:02}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
-                       static_cast<unsigned>(date.day()), time.hours().count(), time.minutes().count(), time.seconds().count());
+    const WallTime time = wallTimeOf(utc, Time{});
+    const auto whole = std::chrono::duration_cast<std::chrono::seconds>(time.timeOfDay).count();
+    return fmt::format("{:04}{:02}{:02}T{:02}{:02}{:02}", static_cast<int>(time.date.year()),
+                       static_cast<unsigned>(time.date.month()), static_cast<unsigned>(time.date.day()), whole / 3600,
+                       whole / 60 % 60, whole % 60);
 }
 
 // The run that is the last one of a journal; null: there is none.
@@ -169,6 +167,12 @@ void NightJournal::write(const show::journal::Line& line, bool isNeeded) {
         done_.wait(lock, isWritten);
 }
 
+void NightJournal::begin(const show::journal::Run& run) {
+    write(run);
+    // If this fails, the clock still has an earlier time until it is written twice.
+    [[maybe_unused]] const int ignored = ::ftruncate(clockFile_.get(), 0);
+}
+
 void NightJournal::noteTime(Time showTime) {
     const std::lock_guard lock(mutex_);
     time_ = showTime;
@@ -177,10 +181,10 @@ void NightJournal::noteTime(Time showTime) {
 
 std::string NightJournal::trouble() const {
     const std::lock_guard lock(mutex_);
-    if (!trouble_.empty()) return trouble_;
-    if (!syncTrouble_.empty()) return syncTrouble_;
-    if (bytes_ > kTooLarge) return fmt::format("{} is full: nothing more is written", (folder_ / "journal").string());
-    if (bytes_ > kLarge) return fmt::format("{} is large: events are left out from now on", (folder_ / "journal").string());
+    const std::string& why = trouble_.empty() ? syncTrouble_ : trouble_;
+    if (!why.empty()) return "the journal is not written: " + why;
+    if (bytes_ > kTooLarge) return "the journal is full: nothing more is written tonight";
+    if (bytes_ > kLarge) return "the journal is large: only what a restart needs is written from now on";
     return {};
 }
 

@@ -24,9 +24,9 @@ namespace fantascope::app {
 //   journal                  of this night
 //   journal-20261127T200000  of an earlier one, by when it began (UTC); the newest hundred stay
 //   clock                    the newest show time, twice, so that one of them is always whole
-// A line is with the system before write() returns, and on the disk 100 ms later. A disk that is
-// full, slow or broken holds nothing up: write() waits no longer than kPatience, lines are kept and
-// tried again, and trouble() says so.
+// write() returns once the system has the line, or after kPatience; the disk has it 100 ms later.
+// So a disk that is full, slow or broken holds nothing up. Its lines are kept and tried again, and
+// trouble() says so.
 // Thread: any, except where a function says otherwise.
 class NightJournal {
 public:
@@ -53,11 +53,13 @@ public:
     const std::optional<Earlier>& earlier() const { return earlier_; }
     Time utc() const { return wall_.now().utc; }
 
+    // Writes the line of a run's beginning. From then on the times of earlier runs do not count.
+    void begin(const show::journal::Run& run);
     // `isNeeded`: to go on with the show. Only such lines are written once the journal is large.
     void write(const show::journal::Line& line, bool isNeeded = true);
     // Notes the present show time.
     void noteTime(Time showTime);
-    // Why lines are not on the disk, and what to do; empty: they are.
+    // What is wrong with the journal, and what to do, for the operator; empty: nothing.
     std::string trouble() const;
 
 private:

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -17,12 +18,10 @@ namespace {
 
 constexpr std::size_t kCheckDigits = 8;
 
-// The flags of the controls, in the order of kFlags.
-constexpr std::string_view kFlagLetters = "bxpflc";
-std::vector<bool> flagsOf(const journal::State& state) {
-    const Controls& controls = state.controls;
-    return {controls.blackout, controls.panic, controls.paused, controls.frozen, controls.locked, state.corrects};
-}
+// Letters for what is on: those of kHolds, in their order, and of corrections.
+constexpr std::string_view kHoldLetters = "bxpfl";
+constexpr char kCorrects = 'c';
+static_assert(kHoldLetters.size() == std::size(kHolds));
 
 std::string checkOf(std::string_view text) { return fmt::format("{:08x}", static_cast<std::uint32_t>(fnv1a(text))); }
 
@@ -65,9 +64,9 @@ struct Writer {
     std::string operator()(const Input& input) const { return "input " + lineOf(input); }
     std::string operator()(const journal::State& state) const {
         std::string flags;
-        const std::vector<bool> on = flagsOf(state);
-        for (std::size_t i = 0; i < on.size(); ++i)
-            if (on[i]) flags += kFlagLetters[i];
+        for (std::size_t i = 0; i < kHoldLetters.size(); ++i)
+            if (state.controls.*kHolds[i].on) flags += kHoldLetters[i];
+        if (state.corrects) flags += kCorrects;
         return fmt::format("state {} {} {} {} {} {}", state.at.count(), state.controls.cue, state.controls.loaded,
                            state.controls.master, flags.empty() ? "-" : flags, printable(state.cue, 1000));
     }
@@ -108,9 +107,9 @@ std::optional<journal::Line> lineFrom(std::string_view text) {
         state.controls.loaded = words.number<int>();
         state.controls.master = words.number<float>();
         const std::string_view flags = words.word();
-        bool* const on[] = {&state.controls.blackout, &state.controls.panic,  &state.controls.paused,
-                            &state.controls.frozen,   &state.controls.locked, &state.corrects};
-        for (std::size_t i = 0; i < kFlagLetters.size(); ++i) *on[i] = flags.find(kFlagLetters[i]) != std::string_view::npos;
+        const auto isOn = [&](char letter) { return flags.find(letter) != std::string_view::npos; };
+        for (std::size_t i = 0; i < kHoldLetters.size(); ++i) state.controls.*kHolds[i].on = isOn(kHoldLetters[i]);
+        state.corrects = isOn(kCorrects);
         state.cue = words.rest();
         line = state;
     } else if (kind == "event") {
@@ -151,7 +150,10 @@ std::string lineOf(const journal::Line& line) {
 
 Time Journal::newest() const {
     Time newest{};
-    for (const Entry& entry : entries) newest = std::max(newest, timeOf(entry.line));
+    for (const Entry& entry : entries) {
+        const auto* const run = std::get_if<journal::Run>(&entry.line);
+        newest = run != nullptr && !run->goesOn ? run->at : std::max(newest, timeOf(entry.line));
+    }
     return newest;
 }
 

@@ -82,7 +82,7 @@ struct Journal {
     std::size_t damaged = 0;  // lines that were left out
     bool isTorn = false;      // a last line without an end, or damaged, was cut
 
-    // The newest time that any line tells; 0 if there is none.
+    // The newest time that a line tells since the show last began; 0 if there is none.
     Time newest() const;
 };
 

@@ -85,6 +85,26 @@ TEST_F(Nights, cut_a_torn_line_before_they_write_another) {
     EXPECT_EQ(*readFile(file), whole + show::lineOf(Told{1s, "after"}));
 }
 
+// Example failure: nothing happened for a minute, the program died, and the next run began; when
+// that one died after six seconds, the show went on in its second minute.
+TEST_F(Nights, count_no_times_from_before_the_show_began) {
+    {
+        const auto journal = open();
+        journal->begin(Begun{.at = 0s, .utc = kEvening, .show = {}});
+        journal->write(Told{50s, "nobody has pressed GO"});
+        journal->noteTime(60s);
+    }
+    {
+        const auto journal = open();
+        EXPECT_EQ(journal->earlier()->at, 60s);
+        journal->begin(Begun{.at = 0s, .utc = kEvening + 70s, .show = {}});
+        journal->noteTime(6s);
+    }
+    EXPECT_EQ(open()->earlier()->at, 6s);
+    open()->begin(Begun{.at = 6s, .utc = kEvening + 80s, .goesOn = true, .show = {}});
+    EXPECT_EQ(open()->earlier()->at, 6s) << "the line of the beginning tells the time, too";
+}
+
 // Example failure: a single byte, the end of the first line, and the night begins again.
 TEST_F(Nights, go_on_though_the_line_of_their_beginning_is_damaged) {
     open()->write(Begun{.at = 0s, .utc = kEvening, .show = {}});
