@@ -38,6 +38,12 @@ public:
             return read_ < chunk_->count.load(std::memory_order_acquire) ? &chunk_->values[read_++] : nullptr;
         }
 
+        // Whether next() would give one.
+        bool hasNext() const {
+            const Chunk* const chunk = read_ == kChunk ? chunk_->next.load(std::memory_order_acquire) : chunk_;
+            return chunk != nullptr && chunk->count.load(std::memory_order_acquire) > (read_ == kChunk ? 0 : read_);
+        }
+
     private:
         friend AppendLog;
         explicit Reader(const Chunk* chunk) : chunk_(chunk) {}

@@ -37,6 +37,17 @@ public:
     WallTime now() const override;
 };
 
+// One that showed `utc` when it was made, and runs as `clock` does, which outlives it.
+class RunningWallClock final : public WallClock {
+public:
+    RunningWallClock(const Clock& clock, Time utc) : clock_(clock), utc_(utc), madeAt_(clock.now()) {}
+    WallTime now() const override { return wallTimeOf(utc_ + (clock_.now() - madeAt_), Time{}); }
+
+private:
+    const Clock& clock_;
+    const Time utc_, madeAt_;
+};
+
 // One that shows what it was set to.
 class ManualWallClock final : public WallClock {
 public:

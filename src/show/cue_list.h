@@ -34,6 +34,7 @@ struct Fade {
 // Things that begin to move to a look at the same moment. A thing without a fade goes on as before.
 struct Movement {
     Time start{};
+    Time begun{};                                          // from when sources that come play; `start` or earlier
     std::vector<std::optional<Fade>> outputs{}, levels{};  // of each of a Look's
     std::vector<std::uint8_t> relays{};                    // 1: switches
     struct Layer {
@@ -97,6 +98,7 @@ struct CueList {
     } trim{};                // the bounds of LampTrim; one beyond them is ignored
     Time blackoutFade{};     // from full light to none and back
     Time panicFade{};        // from full light to none in a panic
+    Time darkFade{};         // from a cue to the dark before the first
     std::uint64_t seed = 1;  // of the show's own randomness: its gusts
 
     // The cue after a cue; -1 is before the first. Nothing: it is the last one.

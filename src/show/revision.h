@@ -1,12 +1,14 @@
 #pragma once
 
 #include "show/cue_list.h"
+#include "show/schedule/nights.h"
 #include "show/show.h"
 #include "show/site/site.h"
 
 #include "core/result.h"
 
 #include <memory>
+#include <optional>
 
 namespace fantascope::show {
 
@@ -16,14 +18,19 @@ namespace fantascope::show {
 struct Revision {
     Show show;
     Site site;
-    CueList cues;  // of `show` on `site`
+    CueList cues;                  // of `show` on `site`
+    std::optional<Nights> nights;  // of a show with a schedule
 
-    // Error: as Show::bind.
+    // Error: as Show::bind; or the show has a schedule, but the site no place.
     static Result<std::shared_ptr<const Revision>> of(Show show, Site site);
     // The cue list of a revision. The pointer keeps the whole revision alive.
     static std::shared_ptr<const CueList> cuesOf(const std::shared_ptr<const Revision>& revision) {
         return {revision, &revision->cues};
     }
 };
+
+// What a show's schedule does at a site; nothing: the show has none. Error: place in the show file;
+// the site has no place.
+Result<std::optional<Nights>> nightsOf(const Show& show, const Site& site);
 
 }  // namespace fantascope::show

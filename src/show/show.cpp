@@ -29,7 +29,8 @@ constexpr double kLongestGoInterval = 5;
 constexpr double kLongestBlackoutFade = 10;
 constexpr double kStrongestWind = 4;  // times what a pattern was made for
 
-constexpr std::string_view kDark = "dark";  // a show starts so, if it does not start with a cue
+// How a show starts if it does not start with a cue: waiting for GO, or by its schedule.
+constexpr std::string_view kStarts[] = {"dark", "schedule"};
 
 template <class Range>
 std::vector<std::string> namesOf(const Range& things) {
@@ -142,14 +143,26 @@ Result<NamedLook> readLook(const std::string& name, const ConfigNode& node, cons
     return look;
 }
 
-// The cue that a show starts with; nothing: it starts dark.
-Result<std::optional<std::size_t>> readStart(const ConfigNode& node, const std::vector<Cue>& cues) {
+// How a show starts: with a cue, as index into `cues`, or one of kStarts, after these.
+Result<std::size_t> readStart(const ConfigNode& node, const std::vector<Cue>& cues) {
     std::vector<std::string> names = namesOf(cues);
-    if (std::ranges::find(names, kDark) != names.end() && TRY(node.text()) == kDark)
-        return node.error(fmt::format("'{}' means that nothing is seen, but a cue is called so, too; rename the cue", kDark));
-    names.emplace_back(kDark);
-    const std::size_t start = TRY(node.choice(names));
-    return start < cues.size() ? std::optional(start) : std::nullopt;
+    for (const std::string_view start : kStarts) {
+        if (std::ranges::find(names, start) != names.end() && TRY(node.text()) == start)
+            return node.error(fmt::format("'{}' is no cue here, but a cue is called so, too; rename the cue", start));
+        names.emplace_back(start);
+    }
+    return node.choice(names);
+}
+
+// `start`: what readStart() gave. Error: it is the schedule and there is none, or the other way
+// round.
+Result<void> startAs(std::size_t start, const ConfigNode& root, Show& show) {
+    if (start < show.cues.size()) show.start = start;
+    const bool isBySchedule = start == show.cues.size() + 1;
+    if (isBySchedule && !show.schedule) return root.error("'start: schedule' needs the key 'schedule', with the nights");
+    if (!isBySchedule && show.schedule)
+        return show.schedule->at.error("this show does not play by its schedule; add 'start: schedule'");
+    return {};
 }
 
 // The index in the site of a thing that the show calls by name.
@@ -334,10 +347,17 @@ Result<Show> Show::load(const std::filesystem::path& fileOrFolder, SourceNames& 
     });
     show.loops = rules.loops;
     fields.read("cues", show.cues, [&](const ConfigNode& node) { return readCues(node, rules); });
-    readTracking(rules.version, fields, "start", show.start, [&](const ConfigNode& node) {
-        return show.cues.empty() ? std::optional<std::size_t>() : readStart(node, show.cues);  // faulty cues are told already
+    std::size_t start = show.cues.size();  // dark
+    readTracking(rules.version, fields, "start", start, [&](const ConfigNode& node) {
+        return show.cues.empty() ? Result(start) : readStart(node, show.cues);  // faulty cues are told already
     });
+    readTracking(rules.version, fields, "schedule", show.schedule,
+                 [&](const ConfigNode& node) -> Result<std::optional<Schedule>> {
+                     if (show.cues.empty()) return std::optional<Schedule>();
+                     return std::optional(TRY(readSchedule(node, namesOf(show.cues))));
+                 });
     TRY(fields.finish());
+    TRY(startAs(start, root, show));
     return show;
 }
 
@@ -370,6 +390,7 @@ Result<CueList> Show::bind(const Site& site) const {
     list.goInterval = goInterval;
     list.blackoutFade = blackoutFade;
     list.panicFade = panicFade;
+    list.darkFade = schedule ? schedule->fade : blackoutFade;
     list.seed = seed;
     list.farthestShift = site.corrections.geometry.farthest;
     list.shiftSpeed = site.corrections.geometry.speed;
@@ -385,6 +406,7 @@ bool Show::needsNoGoFrom(std::size_t cue) const {
 }
 
 std::string Show::beginning() const {
+    if (schedule) return "plays by its schedule";
     if (!start) return "starts dark and waits for GO";
     return fmt::format("starts with '{}' and {}", cues[*start].name,
                        !needsNoGoFrom(*start) ? "waits for GO later"

@@ -3,6 +3,7 @@
 #include "show/course/wind.h"
 #include "show/cue.h"
 #include "show/cue_list.h"
+#include "show/schedule/schedule.h"
 #include "show/show_state.h"
 #include "show/site/site.h"
 #include "show/source.h"
@@ -49,6 +50,7 @@ struct Show {
     std::vector<NamedLook> looks;
     std::vector<Cue> cues;
     std::optional<std::size_t> start;  // index into `cues`: entered as the show begins; none: dark until an input
+    std::optional<Schedule> schedule;  // by which it plays from its start on; then `start` is empty
     bool loops = false;                // the first cue comes after the last
 
     // Reads a show.yaml, or the one in a folder. Strict; the files that it names must exist.

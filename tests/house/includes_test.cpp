@@ -24,6 +24,7 @@ using Names = std::vector<std::string_view>;
 
 // Outside libraries by their headers: a folder, or a whole name.
 const std::map<std::string_view, Names> kLibraries = {
+    {"date", {"date/"}},
     {"fmt", {"fmt/"}},
     {"GLM", {"glm/"}},
     {"Eigen", {"Eigen/"}},
@@ -96,9 +97,10 @@ const std::vector<Row> kTable = {
      {}},
 
     {"plot", {"core", "media", "pattern", "theatre"}, {}, {"cairo"}},
-    {"show/site", {"core", "media"}, {}, {}},
+    {"show/schedule", {"core"}, {}, {"date"}},
+    {"show/site", {"core", "media", "show/schedule"}, {}, {}},
     {"show/course", {"core"}, {}, {}},
-    {"show", {"core", "media", "show/course", "show/site"}, {}, {}},
+    {"show", {"core", "media", "show/course", "show/schedule", "show/site"}, {}, {}},
     {"show/play", {"core", "media", "show"}, {}, {}},
     {"render/canvas", {"core", "media"}, {}, {}},
     {"render/source",
@@ -124,9 +126,12 @@ const std::vector<Row> kTable = {
     {"app/keys", {"app/base", "core", "media", "device", "show"}, {}, {}},
     {"app/watch", {"core", "device", "media", "pattern", "render", "show", "vision"}, {}, {}},
     {"app/journal", {"core", "drivers/common", "show"}, {}, {"POSIX"}},
+    {"app/check", {"core", "media", "pattern/shape", "show"}, {}, {}},
+    {"app/schedule", {"app/base", "core", "show"}, {}, {}},
     {"app/live",
-     {"app/base", "app/journal", "app/keys", "app/site", "app/watch", "core", "device", "drivers/common", "drivers/site", "media",
-      "pattern/shape", "plot", "render", "show", "theatre/energy", "theatre/motion", "theatre/stage", "vision"},
+     {"app/base", "app/journal", "app/keys", "app/schedule", "app/site", "app/watch", "core", "device", "drivers/common",
+      "drivers/site", "media", "pattern/shape", "plot", "render", "show", "theatre/energy", "theatre/motion", "theatre/stage",
+      "vision"},
      {},
      {"POSIX"}},
     {"app/calibrate",

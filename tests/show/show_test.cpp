@@ -605,6 +605,25 @@ TEST(TrackedShow, may_start_and_loop_by_itself) {
     EXPECT_FALSE(dark.show->loops);
 }
 
+TEST(TrackedShow, may_play_by_a_schedule) {
+    const auto with = [](std::string_view keys) {
+        return replaced(std::string(kTrackedShow), "cues:\n", std::string(keys) + "cues:\n");
+    };
+    constexpr const char* kNights = "schedule: {fade: 7, nights: [{cue: Left, from: \"22:00\"}]}\n";
+    const Loaded loaded(with(std::string("start: schedule\n") + kNights));
+    ASSERT_TRUE(loaded.show) << loaded.show.error().message();
+    EXPECT_FALSE(loaded.show->start);
+    ASSERT_TRUE(loaded.show->schedule);
+    EXPECT_EQ(loaded.show->schedule->items[0].cue, 1u);
+    EXPECT_EQ(loaded.show->bind(testSite())->darkFade, 7s);
+    EXPECT_EQ(loaded.show->beginning(), "plays by its schedule");
+
+    const auto refusal = [&](std::string_view keys) { return Loaded(with(keys)).show.error().message(); };
+    EXPECT_THAT(refusal("start: schedule\n"), HasSubstr("'start: schedule' needs the key 'schedule'"));
+    EXPECT_THAT(refusal(kNights), HasSubstr("schedule: this show does not play by its schedule; add 'start: schedule'"));
+    EXPECT_THAT(refusal(std::string("start: Left\n") + kNights), HasSubstr("add 'start: schedule'"));
+}
+
 TEST(TrackedShow, is_refused_with_advice) {
     EXPECT_THAT(refusalAfter("cues:\n", "start: Night\ncues:\n"), HasSubstr("start: 'start' needs 'version: 2' in this file"));
     EXPECT_THAT(refusalAfter("fade: 0}", "fade: 0, block: true}"), HasSubstr("'block' needs 'version: 2'"));

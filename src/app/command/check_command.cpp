@@ -3,6 +3,7 @@
 #include "app/base/drawing.h"
 #include "app/base/silhouette_file.h"
 #include "app/calibrate/wanted_file.h"
+#include "app/check/oddities.h"
 #include "app/command/commands.h"
 #include "app/lens/lens_file.h"
 #include "app/live/programme.h"
@@ -35,6 +36,7 @@
 #include <deque>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -58,81 +60,14 @@ std::string counted(std::size_t count, std::string_view thing) {
     return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
-// "1.78 : 1"
-std::string shape(double aspect) { return fmt::format("{:.2f} : 1", aspect); }
-
-// What happens to a source's picture on a canvas of another shape.
-std::string fitAdvice(const show::Source& source, double aspect, const show::Output& output) {
-    constexpr std::string_view kWhat[] = {"all of it is seen, with dark beside it (fit: contain)",
-                                          "what hangs over the canvas is cut off (fit: cover)",
-                                          "it is stretched, circles become ellipses (fit: stretch)"};
-    return source.at
-        .error(fmt::format("its picture is {}, and the canvas '{}' is {}: {}", shape(aspect), output.canvas,
-                           shape(output.projection.canvasAspect), kWhat[static_cast<std::size_t>(source.fit)]))
-        .message();
-}
-
-// What happens to pictures on a canvas whose shape on the wall is unknown.
-std::string unknownShape(const show::Site& site, const show::Output& output) {
-    return fmt::format(
-        "{}: the corners of '{}' do not tell the shape of the canvas '{}' on the wall: every picture fills it. Measure it and "
-        "write 'canvas_size: [WIDTH, HEIGHT]' in metres, so that circles stay round",
-        site.file.string(), output.name, output.canvas);
-}
-
-// A source whose picture has a shape of its own.
-struct Shaped {
-    const show::Source* source;
-    double aspect;
-};
-
-// For every source, on every canvas that shows it.
-void noteShapes(const show::CueList& cues, const show::BySource<Shaped>& shaped, const show::Site& site,
-                std::vector<std::string>& oddities) {
-    std::set<std::pair<show::SourceId, std::string>> told;
-    std::set<std::string> unknown;
-    for (const auto& cue : cues.cues)
-        for (std::size_t i = 0; i < site.outputs.size(); ++i)
-            for (const show::LayerState& layer : cue.look.outputs[i].layers) {
-                const show::Output& output = site.outputs[i];
-                const Shaped* const shown = shaped.find(layer.source);
-                const double canvas = output.projection.canvasAspect;
-                if (shown == nullptr) continue;
-                if (canvas == 0) {
-                    if (unknown.insert(output.canvas).second) oddities.push_back(unknownShape(site, output));
-                    continue;
-                }
-                if (isSameShape(shown->aspect, canvas)) continue;
-                if (told.insert({layer.source, output.canvas}).second)
-                    oddities.push_back(fitAdvice(*shown->source, shown->aspect, output));
-            }
-}
-
-// Shapes that were found as light cover the white of the drawing. As leaves, their shadows would
-// show its negative.
-void noteNegatives(const show::Source& source, std::vector<std::string>& oddities) {
-    const auto* foliage = std::get_if<show::FoliageSource>(&source.picture);
-    if (foliage == nullptr) return;
-    for (const show::FoliageSource::Layer& layer : foliage->layers) {
-        const auto pattern = pattern::readPattern(layer.pattern);
-        if (!pattern) continue;  // its own line says why
-        const bool madeForShadows = pattern->guide.filename().string().ends_with(".shadows.png");
-        if (madeForShadows != layer.holes) continue;
-        const std::string file = layer.pattern.filename().string();
-        oddities.push_back(
-            source.at
-                .error(layer.holes
-                           ? fmt::format("the holes of {} stand where the drawing is dark, so that its negative is seen; make "
-                                         "them without --shadows: 'fantascope pattern GUIDE -o {}'",
-                                         file, file)
-                           : fmt::format("the leaves of {} stand where the drawing is white, so that its negative is seen; make "
-                                         "them with 'fantascope pattern GUIDE -o {} --shadows'",
-                                         file, file))
-                .message());
-    }
-}
-
 Result<Finding> checkFile(const fs::path& path, const std::optional<show::Site>& site);
+
+// The rows of a picture's pixels; 0: it has none.
+double rowsOf(const render::PictureSource& source) {
+    if (const auto* const image = std::get_if<render::ImageSource>(&source.picture)) return image->picture->height();
+    if (const auto* const video = std::get_if<render::VideoSource>(&source.picture)) return video->stream->content().size.y;
+    return 0;
+}
 
 Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>& site) {
     const show::Show show = TRY(show::Show::load(path));
@@ -140,10 +75,13 @@ Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>&
                                 counted(show.sources.size(), "source"), show.beginning())};
     ConfigFaults faults;
     show::CueList cues;
+    std::optional<show::Nights> nights;
     if (site) faults.take(show.bind(*site), [&](show::CueList bound) { cues = std::move(bound); });
+    if (site) faults.take(show::nightsOf(show, *site), [&](auto planned) { nights = std::move(planned); });
+    if (nights) noteNights(show, *nights, finding.oddities);
     std::shared_ptr<render::PictureFeed> camera;
     if (site && site->nominalCamera) camera = std::make_shared<render::PictureFeed>(site->nominalCamera->size);
-    show::BySource<Shaped> shaped;
+    show::BySource<ShapedSource> shaped;
     for (const show::Source& source : show.sources) {
         noteNegatives(source, finding.oddities);
         const std::vector<fs::path> files = show::filesOf(source);
@@ -154,38 +92,20 @@ Result<Finding> checkShow(const fs::path& path, const std::optional<show::Site>&
         }
         const auto read = readPictureSource(source, render::VideoStream::Pace::Exact, camera);
         if (read) {
-            if (const auto aspect = render::aspectOf(*read)) shaped.add(source.id, {&source, *aspect});
+            if (const auto aspect = render::aspectOf(*read)) shaped.add(source.id, {&source, *aspect, rowsOf(*read)});
         } else if (std::all_of(files.begin(), files.end(),
                                [&](const fs::path& file) { return checkFile(file, site).has_value(); })) {
             faults.add(read.error());  // each file is valid, but they do not fit together
         }
     }
     TRY(faults.result());
+    noteUnseen(show, finding.oddities);
     if (site) {
         noteShapes(cues, shaped, *site, finding.oddities);
+        noteUnnamed(show, *site, finding.oddities);
         finding.summary += fmt::format(", plays on {}", site->file.string());
     }
     return finding;
-}
-
-// A site with simulated devices can be rehearsed, one with real devices can be run. In a mixture
-// `run` refuses the simulated devices.
-void noteSimulated(const show::Site& site, std::vector<std::string>& oddities) {
-    std::vector<const show::DeviceConfig*> devices;
-    for (const show::Universe& universe : site.universes) {
-        devices.push_back(&universe.port);
-        if (universe.desk) devices.push_back(&universe.desk->device);
-    }
-    for (const auto* banks : {&site.relayBanks, &site.contactBanks})
-        for (const show::Bank& bank : *banks) devices.push_back(&bank.device);
-    for (const auto* device : {&site.cueController, &site.camera})
-        if (*device) devices.push_back(&**device);
-    const auto isReal = [](const show::DeviceConfig* device) { return device->driver != "simulated"; };
-    if (std::none_of(devices.begin(), devices.end(), isReal)) return;
-    for (const show::DeviceConfig* device : devices)
-        if (!isReal(device))
-            oddities.push_back(
-                device->options.error("is simulated beside real devices: it can be rehearsed, and 'run' refuses it").message());
 }
 
 Result<Finding> checkSite(const fs::path& path, const std::optional<show::Site>&) {
@@ -194,6 +114,7 @@ Result<Finding> checkSite(const fs::path& path, const std::optional<show::Site>&
                                 counted(site.fixtures.size(), "fixture"), counted(site.relays.size(), "relay"),
                                 site.camera ? ", camera" : "")};
     noteSimulated(site, finding.oddities);
+    noteGaps(site, finding.oddities);
     std::error_code ignored;
     if (const fs::path survey = surveyFileOf(site.file); fs::exists(survey, ignored)) finding.names.push_back(survey);
     return finding;
@@ -353,12 +274,12 @@ Result<Finding> checkShape(const fs::path& path) {
 using Check = Result<Finding> (*)(const fs::path&, const std::optional<show::Site>&);
 
 // A YAML file states its own kind.
-constexpr std::pair<std::string_view, Check> kKinds[] = {{"show", checkShow},       {"site", checkSite},
-                                                         {"pattern", checkPattern}, {"pattern-settings", checkPatternSettings},
-                                                         {"motion", checkMotion},   {"sequence", checkSequence},
-                                                         {"cast", checkCast},       {"stage", checkStage},
-                                                         {"hints", checkHints},     {"pose-weights", checkWeights},
-                                                         {"wanted", checkWanted},   {"lens", checkLens},
+constexpr std::pair<std::string_view, Check> kKinds[] = {{"show", checkShow},        {"site", checkSite},
+                                                         {"pattern", checkPattern},  {"pattern-settings", checkPatternSettings},
+                                                         {"motion", checkMotion},    {"sequence", checkSequence},
+                                                         {"cast", checkCast},        {"stage", checkStage},
+                                                         {"hints", checkHints},      {"pose-weights", checkWeights},
+                                                         {"wanted", checkWanted},    {"lens", checkLens},
                                                          {"survey", checkSurveyFile}};
 
 Result<Finding> checkYaml(const fs::path& path, const std::optional<show::Site>& site) {

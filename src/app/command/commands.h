@@ -37,6 +37,8 @@ void addPreviewCommand(Program& program);
 void addPlotCommand(Program& program);
 // `fantascope report JOURNAL -o PAGE.html`: the audit of nights.
 void addReportCommand(Program& program);
+// `fantascope schedule SHOW --site SITE`: the season as a table.
+void addScheduleCommand(Program& program);
 // fantascope check PATH... [--site SITE]
 void addCheckCommand(Program& program);
 // `calibrate SITE [OUTPUT..]`: the outputs' warps, found with the camera.

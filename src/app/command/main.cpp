@@ -13,10 +13,11 @@ namespace fantascope::app {
 namespace {
 
 // Every subcommand of the program.
-constexpr AddCommand kCommands[] = {
-    addPatternCommand,  addPoseCommand,  addDeformCommand,    addAdaptCommand,    addFabricateCommand, addConvertCommand,
-    addRehearseCommand, addRunCommand,   addExportCommand,    addTemplateCommand, addPreviewCommand,   addPlotCommand,
-    addReportCommand,   addCheckCommand, addCalibrateCommand, addLensCommand,     addDevicesCommand,   addGuardCommand};
+constexpr AddCommand kCommands[] = {addPatternCommand,   addPoseCommand,     addDeformCommand,   addAdaptCommand,
+                                    addFabricateCommand, addConvertCommand,  addRehearseCommand, addRunCommand,
+                                    addExportCommand,    addTemplateCommand, addPreviewCommand,  addPlotCommand,
+                                    addReportCommand,    addScheduleCommand, addCheckCommand,    addCalibrateCommand,
+                                    addLensCommand,      addDevicesCommand,  addGuardCommand};
 
 enum ExitStatus { Done = 0, Refused = 1, WrongUsage = 2 };
 

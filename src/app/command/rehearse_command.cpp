@@ -15,7 +15,7 @@ namespace fantascope::app {
 namespace {
 
 struct Options {
-    std::string show, site, fromCue, record;
+    std::string show, site, fromCue, record, at;
     std::string pictures = RunOptions{}.pictures, journal;
     std::optional<double> length;  // seconds
     std::filesystem::path report;
@@ -72,6 +72,8 @@ void declareRehearse(Command& command, Options& options) {
     command.add("--site", options.site, "the site to simulate (default: config/simulated)");
     declareCommon(command, options);
     command.add("--seed", options.seed, "seed of the simulated site's noise").showDefault();
+    command.add("--at", options.at,
+                "begin as at this date and time of the place: '2026-12-24 21:30'; for a show with a schedule");
     command.addFlag("--window", options.window, "show the pictures in windows");
     command.addFlag("--as-fast-as-possible", options.asFastAsPossible, "use a stepped clock: the same bytes every time");
     command.addFlag("--by-hand", options.byHand, "press no GO, and wait for the keys below");
@@ -87,6 +89,7 @@ Result<void> rehearse(const Options& options) {
     run.backends = options.window ? Backends::SimulatedWindows : Backends::SimulatedHeadless;
     run.asFastAsPossible = options.asFastAsPossible;
     run.handsOff = !options.byHand;
+    if (!options.at.empty()) run.at = TRY(show::dateAndTimeOf(options.at));
     return runAndReport(run);
 }
 

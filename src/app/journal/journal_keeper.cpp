@@ -1,5 +1,7 @@
 #include "app/journal/journal_keeper.h"
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace fantascope::app {
@@ -7,16 +9,23 @@ namespace fantascope::app {
 namespace {
 
 constexpr Time kStateEvery = std::chrono::seconds(10), kFiguresEvery = std::chrono::minutes(1);
+constexpr Time kClockIsSet = std::chrono::seconds(1);  // a smaller difference is no matter
 
 }  // namespace
 
 JournalKeeper::JournalKeeper(NightJournal* journal, const show::Show& show, show::InputLog& inputs, show::EventLog& events)
     : journal_(journal), show_(show), inputs_(inputs), events_(events), replica_(inputs) {}
 
-Time JournalKeeper::resume() {
+Time JournalKeeper::resume(bool timePasses) {
     if (journal_ == nullptr || !journal_->earlier()) return Time{};
-    resumed_ = show::resume(journal_->earlier()->journal, journal_->earlier()->at, inputs_);
+    const NightJournal::Earlier& earlier = *journal_->earlier();
+    const Time passed = timePasses ? std::max(Time{}, journal_->utc() - earlier.ended) : Time{};
+    resumed_ = show::resume(earlier.journal, earlier.at + passed, inputs_);
     return resumed_ ? resumed_->at : Time{};
+}
+
+std::optional<Time> JournalKeeper::endedBefore() const {
+    return resumed_ ? std::optional(journal_->earlier()->ended) : std::nullopt;
 }
 
 std::optional<std::size_t> JournalKeeper::cueOn() const {
@@ -48,7 +57,12 @@ bool JournalKeeper::start() {
 
 void JournalKeeper::tick(const show::journal::Figures& now) {
     if (journal_ == nullptr) return;
-    const Time showTime = now.at;
+    const Time showTime = now.at, began = journal_->utc() - showTime;
+    if (!began_) began_ = began;
+    if (std::chrono::abs(began - *began_) > kClockIsSet) {
+        began_ = began;
+        journal_->write(show::journal::Clock{showTime, began + showTime});
+    }
     while (const show::Event* const event = told_.next())
         if (std::string sentence = show::sentenceOf(*event);
             !sentence.empty() && !std::holds_alternative<show::event::KeysAsked>(event->what))
@@ -56,7 +70,8 @@ void JournalKeeper::tick(const show::journal::Figures& now) {
     replica_.stateAt(showTime, state_);
     show::journal::State state{.at = written_.at, .controls = state_, .corrects = state_.corrects, .cue = written_.cue};
     state.controls.next = std::nullopt;
-    if (state.controls.cue != written_.controls.cue) state.cue = show_.cues[static_cast<std::size_t>(state.controls.cue)].name;
+    if (state.controls.cue != written_.controls.cue)
+        state.cue = state.controls.cue < 0 ? "" : show_.cues[static_cast<std::size_t>(state.controls.cue)].name;
     if (state != written_ || showTime - written_.at >= kStateEvery) {
         state.at = showTime;
         written_ = std::move(state);

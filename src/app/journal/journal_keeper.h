@@ -26,7 +26,10 @@ public:
     JournalKeeper(NightJournal* journal, const show::Show& show, show::InputLog& inputs, show::EventLog& events);
 
     // Submits what an earlier run has left. Returns the show time at which this one starts.
-    Time resume();
+    // `timePasses`: the show went on while no run was there.
+    Time resume(bool timePasses);
+    // When the earlier run ended or died, in UTC by the clock of then; nothing: the show begins.
+    std::optional<Time> endedBefore() const;
     // The cue that is on then; nothing: the show begins.
     std::optional<std::size_t> cueOn() const;
     // Notes that the run starts, tells that it goes on, and writes every input from now on. Returns
@@ -51,6 +54,7 @@ private:
     show::ShowState state_;
     show::journal::State written_;
     std::optional<Time> figures_;  // when they were written last
+    std::optional<Time> began_;    // UTC of show time 0, by the journal's clock at the last tick
 };
 
 }  // namespace fantascope::app

@@ -30,6 +30,10 @@ public:
         held_ = {};
         frames_ = late_ = 0;
     }
+    void operator()(const show::journal::Clock& clock) {
+        reach(clock.at);
+        if (!night_.runs.empty()) night_.runs.back().utc = clock.utc - (clock.at - night_.runs.back().from);
+    }
     void operator()(const show::Input& input) {
         reach(input.at);
         using Kind = show::Input::Kind;
@@ -39,7 +43,8 @@ public:
             return;
         }
         Night::Press press{input.at, std::string(show::nameOf(input.kind)), std::string(show::nameOf(input.source))};
-        if (input.kind == Kind::Jump || input.kind == Kind::Load) press.what += fmt::format(" {}", input.cue + 1);
+        if (input.kind == Kind::Jump || input.kind == Kind::Load)
+            press.what += input.cue < 0 ? " to the dark" : fmt::format(" {}", input.cue + 1);
         if (input.kind == Kind::Master) press.what += fmt::format(" {:.0f} %", 100 * input.level);
         if (input.late) press.what += ", too late";
         using Source = show::Input::Source;

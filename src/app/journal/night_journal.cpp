@@ -38,21 +38,7 @@ std::string stampOf(Time utc) {
                        whole / 60 % 60, whole % 60);
 }
 
-// The run that is the last one of a journal; null: there is none.
-const show::journal::Run* lastRunOf(const show::Journal& journal) {
-    const show::journal::Run* last = nullptr;
-    for (const auto& entry : journal.entries)
-        if (const auto* const run = std::get_if<show::journal::Run>(&entry.line)) last = run;
-    return last;
-}
-
 }  // namespace
-
-Result<std::unique_ptr<NightJournal>> NightJournal::open(const fs::path& folder, bool anew, bool asFastAsPossible) {
-    static const SystemWallClock machine;
-    static const ManualWallClock none;
-    return open(folder, anew, asFastAsPossible, asFastAsPossible ? static_cast<const WallClock&>(none) : machine);
-}
 
 Result<std::unique_ptr<NightJournal>> NightJournal::open(const fs::path& folder, bool anew, bool asFastAsPossible,
                                                          const WallClock& wall) {
@@ -94,10 +80,10 @@ void NightJournal::readEarlier(bool anew) {
     if (journal->entries.empty()) return;  // it died at once, and leaves nothing
     const Time at = std::max(journal->newest(), newestTime().value_or(Time{}));
     // Without the line of its beginning, nobody knows of which night it is.
-    const show::journal::Run* const run = lastRunOf(*journal);
-    if (anew || (run != nullptr && utc() - (run->utc + (at - run->at)) > kNight))
-        return setAside(run != nullptr ? run->utc : utc());
-    earlier_ = Earlier{std::move(*journal), at};
+    const show::journal::Clock clock = journal->clock().value_or(show::journal::Clock{at, utc()});
+    const Time ended = clock.utc + (at - clock.at);
+    if (anew || utc() - ended > kNight) return setAside(clock.utc);
+    earlier_ = Earlier{std::move(*journal), at, ended};
 }
 
 // Gives the journal that is there the name of an earlier night's.

@@ -37,15 +37,14 @@ public:
     // What an earlier run of this night has left.
     struct Earlier {
         show::Journal journal;
-        Time at{};  // show time when it ended or died
+        Time at{};     // show time when it ended or died
+        Time ended{};  // UTC of that moment, by the clock of then
     };
 
     // Null for an empty path: nobody wants a journal. `anew`: begin another one even if an earlier
     // run could go on. `asFastAsPossible`: on a stepped clock; then it has the same bytes every
-    // time, and only its end waits for the disk. Error: another program writes this journal.
-    // Anything else is no error, but trouble().
-    static Result<std::unique_ptr<NightJournal>> open(const std::filesystem::path& folder, bool anew, bool asFastAsPossible);
-    // With another clock, which outlives the journal.
+    // time, and only its end waits for the disk. `wall` outlives the journal. Error: another
+    // program writes this journal. Anything else is no error, but trouble().
     static Result<std::unique_ptr<NightJournal>> open(const std::filesystem::path& folder, bool anew, bool asFastAsPossible,
                                                       const WallClock& wall);
     ~NightJournal();  // writes what is left

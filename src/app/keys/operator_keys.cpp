@@ -79,6 +79,8 @@ void OperatorKeys::press(const Key& key, Source source, Time moment) {
             return actions_.takePictures();
         case Action::Keys:
             events_.append({input.at, show::event::KeysAsked{runKeysText()}});
+            if (std::string lines = actions_.nextDay(); !lines.empty())
+                events_.append({input.at, show::event::NextDayTold{std::move(lines)}});
             return;
         case Action::Quit:
             if (quitKey_.press(moment)) return actions_.end();

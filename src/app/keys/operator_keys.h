@@ -33,6 +33,7 @@ public:
         std::function<bool()> pressGo;          // presses the simulated controller's GO; false: there is none
         std::function<void()> takePictures;
         std::function<void()> end;
+        std::function<std::string()> nextDay;  // what the show's schedule brings, in lines; empty: there is none
     };
     // The logs outlive this. `terminal`: null if nobody can press a key there.
     OperatorKeys(show::InputLog& inputs, show::EventLog& events, const show::ShowClock& showClock,

@@ -1,5 +1,6 @@
 #include "app/live/frame_loop.h"
 
+#include "app/live/held_frame.h"
 #include "app/live/part.h"
 #include "app/site/site_models.h"
 
@@ -312,6 +313,23 @@ void FrameLoop::finish(Output& output) {
     spend(output, FramePart::Render, clock_.now() - began);
 }
 
+void FrameLoop::drawAll(Time showTime) {
+    replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput_ = std::min(oldestInput_, input.at); });
+    for (std::size_t i = 0; i < outputs_.size(); ++i) alone(outputs_[i], [&] { draw(i, showTime); });
+    for (Output& output : outputs_) alone(output, [&] { finish(output); });
+}
+
+// Waits with a finished frame, whose drawing took `took`. Returns whether it is to be drawn again,
+// for an input that came meanwhile.
+bool FrameLoop::awaitInput(Time due, Time took) {
+    const Output* const leads = leader();
+    if (leads == nullptr || clock_.now() < aheadUntil_) return false;
+    const auto until = heldUntil(due, fromSeconds(1 / leads->display.refreshRate()), took);
+    if (!until || clock_.now() > *until) return false;
+    clock_.sleepUntil(*until);
+    return replica_.hasNews() && clock_.now() + took < due;
+}
+
 Time FrameLoop::refreshFrom(Time moment) {
     if (const Output* const leads = leader()) {
         std::int64_t number = leads->display.nextRefresh();
@@ -331,6 +349,7 @@ void FrameLoop::begin(const show::ShowClock& showClock) {
 
 void FrameLoop::countLate(Output& output, std::int64_t refreshes) {
     if (refreshes <= 0) return;
+    aheadUntil_ = clock_.now() + kAhead;
     PartTimes spent;
     std::transform(spent_.begin(), spent_.end(), output.spentUntilShown.begin(), spent.begin(), std::minus());
     const auto cause = causeOfDelay(spent, fromSeconds(1 / output.display.refreshRate()));
@@ -391,11 +410,6 @@ void FrameLoop::measureSkew() {
     if (swaps > 1) swapSkew_.add(last - first);
 }
 
-void FrameLoop::measureInputToFrame(Time input, Time seen) {
-    // An input from before this run has no moment in this run.
-    if (const auto given = showClock_.momentOf(input, showClock_.runStart())) inputToFrame_.add(seen - *given);
-}
-
 void FrameLoop::step() {
     look();
     Output* const leads = leader();
@@ -405,13 +419,12 @@ void FrameLoop::step() {
     hangsFrom_ = (due + kHangs).count();
     const Time showTime = showClock_.showTime(due);
     lightShare_ = static_cast<float>(std::clamp(seconds(showClock_.runTime(due)) / seconds(kLightFade), 0.0, 1.0));
-
     hasTaken_ = false;
     if (exchanges_.update()) ++version_;
-    Time oldestInput = Time::max();
-    replica_.stateAt(showTime, state_, [&](const show::Input& input) { oldestInput = std::min(oldestInput, input.at); });
-    for (std::size_t i = 0; i < outputs_.size(); ++i) alone(outputs_[i], [&] { draw(i, showTime); });
-    for (Output& output : outputs_) alone(output, [&] { finish(output); });
+    oldestInput_ = Time::max();
+    const Time began = clock_.now();
+    drawAll(showTime);
+    if (awaitInput(due, clock_.now() - began)) drawAll(showTime);
 
     // The leader waits for its refresh; the others show their frames with it.
     const auto showOn = [&](Output& output, const Presenting& present) { alone(output, [&] { show(output, present); }); };
@@ -424,9 +437,10 @@ void FrameLoop::step() {
     measureSkew();
     for (Output& output : outputs_) alone(output, [&] { giveToReaders(output); });
 
-    const auto seen =
-        std::find_if(outputs_.begin(), outputs_.end(), [](const Output& output) { return output.shown.has_value(); });
-    if (seen != outputs_.end() && oldestInput != Time::max()) measureInputToFrame(oldestInput, seen->shown->at);
+    const auto seen = std::ranges::find_if(outputs_, [](const Output& output) { return output.shown.has_value(); });
+    if (seen != outputs_.end() && oldestInput_ != Time::max())
+        if (const auto given = showClock_.momentOf(oldestInput_, showClock_.runStart()))  // else it is from before this run
+            inputToFrame_.add(seen->shown->at - *given);
     if (stateSlot_ != nullptr) {
         stateSlot_->writable() = state_;
         stateSlot_->publish();

@@ -35,8 +35,12 @@ struct OutputSettings {
 // The render thread's work. For each frame it asks the playback what is seen at the next refresh,
 // draws that on every output, and shows it. The first running display leads: its refresh paces the
 // loop, and the others follow within the same refresh. A lost display is left out until it is back.
-// All pictures of a frame are finished before the first one is shown. If a display can hold a
-// finished frame, the loop may be a frame ahead.
+// All pictures of a frame are finished before the first one is shown.
+//
+// A finished frame waits until there is just time to draw it again (held_frame.h). If there was an
+// input meanwhile, it is drawn again, so that a press is seen within 1.4 periods. Where drawing
+// takes more than half a period, and for kAhead after a late frame, it goes to the display at once.
+// If the display can hold it, the loop may be a frame ahead then.
 //
 // If an output cannot be drawn (a shader is missing, OpenGL has no memory, an exception), that is a
 // fault of this output alone. It is left out, and tried again with a back-off from kSoonestRetry to
@@ -46,6 +50,7 @@ struct OutputSettings {
 class FrameLoop {
 public:
     static constexpr Time kSoonestRetry = std::chrono::seconds(1), kLatestRetry = std::chrono::seconds(32);
+    static constexpr Time kAhead = std::chrono::seconds(10);
     // After so long without a frame the loop counts as hanging in a display.
     static constexpr Time kHangs = std::chrono::seconds(5);
 
@@ -168,12 +173,13 @@ private:
     void takeExchanges(Output& output);
     void followSettings(Output& output, const show::PictureShift& shift);
     void draw(std::size_t output, Time showTime);
+    void drawAll(Time showTime);
+    bool awaitInput(Time due, Time took);
     void finish(Output& output);
     using Presenting = std::function<Result<Shown>(DisplaySink&)>;
     void show(Output& output, const Presenting& present);
     void giveToReaders(Output& output);
     void measureSkew();
-    void measureInputToFrame(Time input, Time seen);  // `input`: show time; `seen`: on the machine's clock
     void look();
     Output* leader();
     void spend(Output& output, FramePart part, Time time);
@@ -184,6 +190,8 @@ private:
     Clock& clock_;
     show::ShowClock showClock_;
     Time newest_{};         // the moment of the newest frame
+    Time oldestInput_{};    // of those that are seen for the first time in it, show time; Time::max(): there is none
+    Time aheadUntil_{};     // until then no frame waits for inputs
     float lightShare_ = 0;  // how far the light correction is faded in with it
     show::PlaybackReplica replica_;
     show::ShowState state_;

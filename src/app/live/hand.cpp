@@ -70,8 +70,13 @@ void Hand::tell(Time showTime) {
     if (told_.master != state_.master) events_.append({showTime, show::event::MasterChanged{state_.master}});
     const int cues = static_cast<int>(show_.cues.size());
     if (told_.cue != state_.cue) {
-        const show::Cue& cue = show_.cues[static_cast<std::size_t>(state_.cue)];
-        events_.append({showTime, show::event::CueEntered{state_.cue, cues, cue.name, cue.number}});
+        show::event::CueEntered news{.cue = state_.cue, .cues = cues, .name = {}};
+        if (state_.cue >= 0) {
+            const show::Cue& cue = show_.cues[static_cast<std::size_t>(state_.cue)];
+            news.name = cue.name;
+            news.number = cue.number;
+        }
+        events_.append({showTime, news});
     }
     if (told_.loaded != state_.loaded && (state_.loaded >= 0 || told_.cue == state_.cue)) {
         show::event::CueLoaded news{.cue = state_.loaded, .cues = cues, .name = {}};

@@ -52,4 +52,9 @@ Part guarded(Part part, FaultLog& faults) {
     return part;
 }
 
+std::vector<Part> guarded(std::vector<Part> parts, FaultLog& faults) {
+    for (Part& part : parts) part = guarded(std::move(part), faults);
+    return parts;
+}
+
 }  // namespace fantascope::app

@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace fantascope::app {
 
@@ -43,5 +44,6 @@ private:
 
 // The part with a guard around its work.
 Part guarded(Part part, FaultLog& faults);
+std::vector<Part> guarded(std::vector<Part> parts, FaultLog& faults);
 
 }  // namespace fantascope::app

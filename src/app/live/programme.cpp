@@ -353,9 +353,28 @@ void addVideos(const Programme& programme, RunReport& report) {
 
 GoSchedule goScheduleOf(const Programme& programme, std::optional<std::size_t> first, Time length) {
     const show::Show& show = programme.show;
+    if (show.schedule) return {0, first.has_value(), length};
     if (!first) return {show.cues.size(), false, length};
     const bool playsByItself = show.start && show.needsNoGoFrom(*first);
     return {playsByItself ? 0 : show.cues.size() - *first - 1, true, length};
+}
+
+// When a run's wall clock begins, UTC; nothing: it is the machine's. A rehearsal of a schedule
+// begins as the next night does.
+Result<std::optional<Time>> wallFrom(const RunOptions& options, const Programme& programme) {
+    const show::Nights* const nights = programme.nights();
+    if (options.at) {
+        if (nights == nullptr)
+            return Error(fmt::format("{}: the show has no schedule, so --at changes nothing", programme.show.file.string()));
+        return std::optional(nights->zone().utcOf(options.at->date, options.at->timeOfDay));
+    }
+    if (nights != nullptr && options.backends != Backends::AsDeclared) {
+        const auto night =
+            nights->nextFrom(programme.show.schedule->first.value_or(nights->nightAt(SystemWallClock().now().utc)));
+        if (!night) return programme.show.schedule->at.error("nothing plays within a year; 'fantascope schedule' says why");
+        return std::optional(night->moments.front().utc);
+    }
+    return options.asFastAsPossible ? std::optional(Time{}) : std::nullopt;
 }
 
 Result<Programme> readProgramme(const RunOptions& options) {
@@ -365,6 +384,7 @@ Result<Programme> readProgramme(const RunOptions& options) {
     std::optional<std::size_t> first = programme.show.start;
     if (!options.fromCue.empty()) first = TRY(programme.show.cueNamed(options.fromCue));
     if (first) programme.firstInput = show::Input{Time{}, show::Input::Kind::Jump, static_cast<int>(*first)};
+    programme.wallFrom = TRY(wallFrom(options, programme));
     if (programme.site.nominalCamera)
         programme.camera = std::make_shared<render::PictureFeed>(programme.site.nominalCamera->size);
     using Pace = render::VideoStream::Pace;

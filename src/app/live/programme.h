@@ -34,7 +34,9 @@ struct Programme {
     const show::Show& show;                     // of `revision`
     const show::Site& site;                     // of `revision`
     std::shared_ptr<const show::CueList> cues;  // of `revision`
-    std::optional<show::Input> firstInput;      // the cue to start with: that of --from, or the show's own
+    const show::Nights* nights() const { return revision->nights ? &*revision->nights : nullptr; }
+    std::optional<Time> wallFrom;           // UTC that the run's wall clock shows at first; nothing: it is the machine's
+    std::optional<show::Input> firstInput;  // the cue to start with: that of --from, or the show's own
     std::optional<std::size_t> firstCue() const {
         return firstInput ? std::optional(static_cast<std::size_t>(firstInput->cue)) : std::nullopt;
     }
@@ -76,7 +78,7 @@ Result<render::PictureSource> readPictureSource(const show::Source& source, rend
 void addVideos(const Programme& programme, RunReport& report);
 
 // The schedule of a rehearsal of this length, from the cue `first` or the dark on: every cue is
-// entered. There is none for a show that plays by itself.
+// entered. There is none for a show that plays by itself or by its own schedule.
 GoSchedule goScheduleOf(const Programme& programme, std::optional<std::size_t> first, Time length);
 
 // Reads everything that a run with these options needs. Error: what is wrong, with its place and

@@ -33,6 +33,7 @@ enum Part {
     Fade,
     Loaded,
     Next,
+    Schedule,
     Left,
     Late,
     Rate,
@@ -43,11 +44,11 @@ enum Part {
 using Forms = std::vector<std::string>;
 
 // The parts to shorten by one form, in this order, while the line is too long.
-constexpr line::Part kShortening[] = {line::Scores,   line::Rate,   line::Next,   line::Next,      line::Cue,    line::Cue,
-                                      line::Late,     line::Fade,   line::Left,   line::Next,      line::Next,   line::Loaded,
-                                      line::Locked,   line::Paused, line::Frozen, line::SettingUp, line::Cue,    line::SettingUp,
-                                      line::Loaded,   line::Locked, line::Master, line::Paused,    line::Frozen, line::Panic,
-                                      line::Blackout, line::Cue};
+constexpr line::Part kShortening[] = {
+    line::Scores, line::Rate,   line::Next,      line::Schedule, line::Next,      line::Cue,    line::Cue,
+    line::Late,   line::Fade,   line::Left,      line::Next,     line::Next,      line::Loaded, line::Locked,
+    line::Paused, line::Frozen, line::SettingUp, line::Cue,      line::SettingUp, line::Loaded, line::Locked,
+    line::Master, line::Paused, line::Frozen,    line::Panic,    line::Blackout,  line::Cue};
 
 Forms cueForms(const RunStatus& status) {
     const int cue = status.controls.cue;
@@ -99,6 +100,7 @@ std::array<Forms, line::kParts> partsOf(const RunStatus& status) {
     else if (status.fadeLeft > Time{})
         parts[line::Fade] = {"fading " + shortDuration(status.fadeLeft), ""};
     parts[line::Next] = nextForms(status);
+    parts[line::Schedule] = {status.schedule, ""};
     parts[line::Left] = {status.left ? shortDuration(*status.left) + " left" : "at " + shortDuration(status.showTime), ""};
     parts[line::Late] = {fmt::format("{} late", status.lateFrames), ""};
     if (status.framesPerSecond) parts[line::Rate] = {fmt::format("{:.1f} frames/s", *status.framesPerSecond), ""};

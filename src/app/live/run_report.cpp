@@ -121,6 +121,12 @@ void addEvents(const show::EventLog& events, RunReport& report) {
     }
 }
 
+void addHappenings(const std::vector<site::Happening>& happenings, const show::ShowClock& showClock, RunReport& report) {
+    for (const site::Happening& happening : happenings)
+        report.faults.push_back({showClock.showTime(showClock.runStart() + happening.at), happening.text});
+    std::ranges::stable_sort(report.faults, {}, &FaultReport::at);
+}
+
 std::string sentenceOf(const std::vector<UnsafeBank>& unsafe) {
     std::string banks;
     for (const auto& [bank, why] : unsafe) banks += fmt::format("{}'{}' ({})", banks.empty() ? "" : ", ", bank, why);
@@ -129,6 +135,15 @@ std::string sentenceOf(const std::vector<UnsafeBank>& unsafe) {
 
 std::string sentenceOf(const UnendedLine& line) {
     return fmt::format("the lamps of universe {} did not get their end levels ({}). Check on site", line.universe, line.why);
+}
+
+std::string hungSentence(const std::string& why, const std::vector<UnsafeBank>& unsafe, const std::vector<UnendedLine>& unended,
+                         bool recordingIsLost) {
+    std::string words = fmt::format("the show was to end, but {}. Its lamps and relays were closed first: {}", why,
+                                    unsafe.empty() ? "all relays are safe" : sentenceOf(unsafe));
+    for (const UnendedLine& line : unended) words += "; " + sentenceOf(line);
+    if (recordingIsLost) words += ". The recording was not finished and is lost";
+    return words;
 }
 
 Report jsonOf(const RunReport& report) {

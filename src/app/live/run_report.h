@@ -3,8 +3,10 @@
 #include "app/base/durations.h"
 #include "app/base/report.h"
 #include "app/watch/drift_watch.h"
+#include "drivers/site/simulated_site.h"
 
 #include "show/play/event.h"
+#include "show/play/show_clock.h"
 
 #include "core/clock.h"
 
@@ -73,6 +75,10 @@ struct UnendedLine {
 // Tells the operator which relays were not made safe, why, and what to do.
 std::string sentenceOf(const std::vector<UnsafeBank>& unsafe);
 std::string sentenceOf(const UnendedLine& line);
+// Tells the operator of a run that hung: why, what became of relays and lamps, and whether its
+// recording is lost.
+std::string hungSentence(const std::string& why, const std::vector<UnsafeBank>& unsafe, const std::vector<UnendedLine>& unended,
+                         bool recordingIsLost);
 
 // The report of a run. Every figure was measured in that run; times are show time.
 struct RunReport {
@@ -104,6 +110,9 @@ struct RunReport {
 
 // Adds what the events tell of cues, of the light correction and of patterns, in their order.
 void addEvents(const show::EventLog& events, RunReport& report);
+
+// Adds what happened at the simulated site, in the order of the times.
+void addHappenings(const std::vector<site::Happening>& happenings, const show::ShowClock& showClock, RunReport& report);
 
 // All late frames by cause: "3 render, 1 machine"; empty if none was late.
 std::string lateFramesByCause(const std::vector<OutputReport>& outputs);

@@ -37,7 +37,7 @@ RunStatus RunView::at(Time moment, Time nextGo) {
 bool RunView::hasNews() {
     while (const show::Event* const event = events_.next())
         if (const std::string sentence = show::sentenceOf(*event); !sentence.empty())
-            news_ += (news_.empty() ? "" : "; ") + sentence;
+            news_ += (news_.empty() ? "" : news_.find('\n') == std::string::npos ? "; " : "\n") + sentence;
     return !news_.empty();
 }
 

@@ -20,6 +20,8 @@
 #include "app/live/supervisor.h"
 #include "app/live/watch.h"
 #include "app/live/yardstick.h"
+#include "app/schedule/outlook.h"
+#include "app/schedule/show_caller.h"
 #include "app/site/open_site.h"
 #include "app/site/relay_guard.h"
 #include "app/site/site_claims.h"
@@ -55,15 +57,16 @@ std::vector<std::string> namesOf(const auto& named) {
 // the parts.
 class ShowRun {
 public:
-    // All arguments by reference or pointer outlive this. `recording`, `guard` and `journal` may be
-    // null.
+    // All arguments outlive this. `recording`, `guard` and `journal` may be null.
     ShowRun(const RunOptions& options, const Programme& programme, OpenSite& openSite, Recording* recording, Clock& clock,
-            const std::filesystem::path& assets, Supervisor& supervisor, RelayGuard* guard, NightJournal* journal)
+            const std::filesystem::path& assets, Supervisor& supervisor, RelayGuard* guard, NightJournal* journal,
+            const WallClock& wall)
         : options_(options),
           programme_(programme),
           openSite_(openSite),
           clock_(clock),
           supervisor_(supervisor),
+          wall_(wall),
           faults_(events_),
           inputs_(programme.cues),
           journal_(journal, programme.show, inputs_, events_),
@@ -71,17 +74,18 @@ public:
                   gainsToApply(programme.site, programme.light)),
           terminal_(options.asFastAsPossible ? nullptr : std::make_unique<TerminalKeys>()),
           attended_(terminal_ && terminal_->listens()),
-          wall_(readers(openSite.simulation != nullptr,
-                        [](render::FrameTap& tap) { return &tap.addNewest(std::numeric_limits<double>::infinity()); })),
+          thrown_(readers(openSite.simulation != nullptr,
+                          [](render::FrameTap& tap) { return &tap.addNewest(std::numeric_limits<double>::infinity()); })),
           recorder_(recorderOf(recording)),
           recordingIsOpen_(recording != nullptr),
           watched_(
               readers(!programme.watched.empty(), [](render::FrameTap& tap) { return ShownLight::framesOf(tap.addNewest(0)); })),
           pictured_(readers(attended_, [](render::FrameTap& tap) { return &tap.addNewest(0); })),
           prepared_(frames_.prepare()),
-          showClock_(frames_.refreshFrom(clock.now() + kStartUp), journal_.resume()),
+          showClock_(frames_.refreshFrom(clock.now() + kStartUp), journal_.resume(programme.nights() != nullptr)),
           deviceWatch_(faults_, namesOf(programme.site.relayBanks), showClock_.runStart()),
           lighting_(programme.site, inputs_, openSite.devices, clock, showClock_, recording, faults_, events_),
+          caller_(programme.nights(), programme.show, inputs_, events_, wall, showClock_),
           hand_(programme.show, inputs_, programme.site, openSite.devices, showClock_, events_),
           watch_(programme.show, namesOf(programme.site.outputs), programme.comparisons, openSite.devices.camera.get(),
                  programme.camera.get(), showClock_, recording),
@@ -110,7 +114,9 @@ public:
         if (!pictured_.empty())
             screenshots_.emplace(options.pictures, programme.show, inputs_, namesOf(programme.site.outputs), pictured_,
                                  showClock_, events_);
-        if (!journal_.start() && programme.firstInput) inputs_.submit(*programme.firstInput);
+        const bool goesOn = journal_.start();
+        if (!goesOn && programme.firstInput) inputs_.submit(*programme.firstInput);
+        caller_.begin(goesOn ? journal_.endedBefore() : programme.firstInput ? std::optional(wall.now().utc) : std::nullopt);
     }
 
     ~ShowRun() {
@@ -130,9 +136,10 @@ public:
                          },
                          Rank::Input});
         parts.push_back({"journal", JournalKeeper::kRate, start, [this](Time moment) { keepJournal(moment); }, Rank::Input});
+        parts.push_back({"schedule", ShowCaller::kRate, start, [this](Time moment) { caller_.tick(moment); }, Rank::Input});
         parts.push_back({"lighting", Lighting::kRate, start, [this](Time moment) { lighting_.tick(moment); }, Rank::Lighting});
         for (Part& relays : lighting_.relayParts()) parts.push_back(std::move(relays));
-        return guardedParts(std::move(parts));
+        return guarded(std::move(parts), faults_);
     }
     std::vector<Part> otherParts(const std::function<void(const RunStatus&)>& progress) {
         const Time start = showClock_.runStart();
@@ -156,7 +163,7 @@ public:
                              Rank::Watch});
             parts.push_back(yardstick_.part());
         }
-        return guardedParts(std::move(parts));
+        return guarded(std::move(parts), faults_);
     }
 
     // Starts the lights' parts in real time. The stepped clock runs them together with the others.
@@ -234,20 +241,13 @@ public:
         if (driftWatch_)
             report.causes = driftWatch_->causes(), report.watch = driftWatch_->series(), report.lamps = driftWatch_->lamps();
         addVideos(programme_, report);
-        if (openSite_.simulation)
-            for (const site::Happening& happening : openSite_.simulation->happenings())
-                report.faults.push_back({showClock_.showTime(showClock_.runStart() + happening.at), happening.text});
-        std::ranges::stable_sort(report.faults, {}, &FaultReport::at);
+        if (openSite_.simulation) addHappenings(openSite_.simulation->happenings(), showClock_, report);
         return report;
     }
 
     const std::vector<UnsafeBank>& unsafe() const { return lights_.unsafe(); }  // once the lights are closed
 
 private:
-    std::vector<Part> guardedParts(std::vector<Part> parts) {
-        for (Part& part : parts) part = guarded(std::move(part), faults_);
-        return parts;
-    }
     void tellGuardDied(const Result<void>& another) {
         const Time now = clock_.now();
         if (!std::exchange(guardIsAway_, !another))
@@ -271,22 +271,16 @@ private:
     void tellHung(const std::string& why) {
         const Time now = clock_.now();
         lights_.raiseFaults(now);
-        std::string words = fmt::format("the show was to end, but {}. Its lamps and relays were closed first: {}", why,
-                                        unsafe().empty() ? "all relays are safe" : sentenceOf(unsafe()));
-        for (const UnendedLine& line : lights_.unended()) words += "; " + sentenceOf(line);
         const bool isLost = recordingIsOpen_;
-        if (isLost) {
-            faults_.raise(now, "", FaultLog::Topic::Recording, "recording: it was not finished and is lost");
-            words += ". The recording was not finished and is lost";
-        }
+        if (isLost) faults_.raise(now, "", FaultLog::Topic::Recording, "recording: it was not finished and is lost");
+        std::string words = hungSentence(why, unsafe(), lights_.unended(), isLost);
         RunReport report = reportOfLights();
         report.stopReason = "hung";
         report.hung = why;
         for (std::size_t output = 0; isLost && output < programme_.site.outputs.size(); ++output)
             report.lostFrames[programme_.site.outputs[output].name] = frames_.framesShown(output);
-        if (!options_.report.empty())
-            if (const auto written = writeReport(options_.report, jsonOf(report)); !written)
-                words += fmt::format(". No report: {}", written.error().message());
+        const auto written = options_.report.empty() ? Result<void>() : writeReport(options_.report, jsonOf(report));
+        if (!written) words += fmt::format(". No report: {}", written.error().message());
         std::fputs(("\nfantascope: error: " + words + "\n").c_str(), stderr);
     }
     GoSchedule schedule() const {
@@ -318,7 +312,7 @@ private:
                 [this] {
                     if (screenshots_) screenshots_->take();
                 },
-                [this] { endLights(); }};
+                [this] { endLights(); }, [this] { return caller_.nextDay(); }};
     }
 
     // The simulated projectors throw what the displays show, whatever the displays' drivers are.
@@ -326,7 +320,7 @@ private:
         openSite_.simulation->begin(showClock_.runStart());
         return {"site", kSiteRate, showClock_.runStart(),
                 [this](Time moment) {
-                    for (render::NewestFrame* projector : wall_)
+                    for (render::NewestFrame* projector : thrown_)
                         if (const render::ShownFrame* frame = projector->next(moment)) {
                             const std::string& output = programme_.site.outputs[frame->output].name;
                             openSite_.world.setFrame(output, std::make_shared<const RgbaImage>(frame->image));
@@ -344,6 +338,7 @@ private:
         RunStatus status = view_.at(moment, keys_.nextGo());
         status.settingUp = settingUp_.on();
         status.keys = attended_;
+        status.schedule = outlook_.at(wall_.now().utc);
         const std::int64_t shown = frames_.framesShown(), before = std::exchange(framesBefore_, shown);
         if (showClock_.runTime(moment) > Time{}) status.framesPerSecond = static_cast<double>(shown - before) * kProgressRate;
         status.lateFrames = frames_.framesLate();
@@ -359,6 +354,7 @@ private:
     OpenSite& openSite_;
     Clock& clock_;
     Supervisor& supervisor_;
+    const WallClock& wall_;
     show::EventLog events_;
     FaultLog faults_;
     show::InputLog inputs_;
@@ -366,7 +362,7 @@ private:
     FrameLoop frames_;
     std::unique_ptr<TerminalKeys> terminal_;      // null: as fast as possible, nobody presses keys
     const bool attended_;                         // somebody at the terminal can press keys
-    std::vector<render::NewestFrame*> wall_;      // what simulated projectors throw; empty if they are real
+    std::vector<render::NewestFrame*> thrown_;    // what simulated projectors throw; empty if they are real
     std::unique_ptr<FrameRecorder> recorder_;     // null: nothing is recorded
     std::atomic<bool> recordingIsOpen_;           // its files are not finished yet
     std::vector<ShownLight::Frames> watched_;     // empty unless the camera watches where the pictures stand
@@ -375,6 +371,8 @@ private:
     const show::ShowClock showClock_;  // starts with a refresh, after everything slow
     DeviceWatch deviceWatch_;          // belongs to the devices part
     Lighting lighting_;
+    ShowCaller caller_;
+    Outlook outlook_{programme_.nights(), programme_.show};  // belongs to the progress part
     Hand hand_;
     Watch watch_;
     std::optional<DriftWatch> driftWatch_;
@@ -408,10 +406,12 @@ Result<RunReport> runShow(const RunOptions& options, const Interrupt& interrupt,
     supervisor.step("opening the devices: look at the X server");
     if (!options.asFastAsPossible) setThreadRank(Rank::Render);  // before the displays start threads, which inherit it
     const auto openSite = TRY(OpenSite::open(programme.site, options.backends, options.seed, clock));
-    const auto journal = TRY(NightJournal::open(options.journal, !options.fromCue.empty(), options.asFastAsPossible));
+    std::unique_ptr<WallClock> wall = std::make_unique<SystemWallClock>();
+    if (programme.wallFrom) wall = std::make_unique<RunningWallClock>(clock, *programme.wallFrom);
+    const auto journal = TRY(NightJournal::open(options.journal, !options.fromCue.empty(), options.asFastAsPossible, *wall));
     const auto recording = TRY(Recording::ofSite(options.recordTo, programme.site));
     supervisor.step("preparing the pictures: look at the graphics card");
-    ShowRun run(options, programme, *openSite, recording.get(), clock, assets, supervisor, guard.get(), journal.get());
+    ShowRun run(options, programme, *openSite, recording.get(), clock, assets, supervisor, guard.get(), journal.get(), *wall);
     if (guard) guard->arm();
     supervisor.attend(run.supervised());
     supervisor.step("showing the pictures: look at the X server and the graphics card");

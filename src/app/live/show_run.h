@@ -5,6 +5,8 @@
 #include "app/live/run_report.h"
 #include "app/site/devices.h"
 
+#include "show/schedule/night_time.h"
+
 #include "core/result.h"
 
 #include <filesystem>
@@ -20,6 +22,7 @@ struct RunOptions {
     std::filesystem::path site;  // a folder or a site.yaml
     Backends backends = Backends::AsDeclared;
     std::optional<Time> length;                              // none: until interrupted
+    std::optional<show::DateAndTime> at;                     // by the place's clocks, as if the run began then; none: now
     std::string fromCue;                                     // enter this cue at once; empty: wait for the first GO in the dark
     std::filesystem::path recordTo;                          // empty: no recording; see Recording
     std::filesystem::path pictures = "fantascope-pictures";  // the folder for the operator's pictures; see Screenshots

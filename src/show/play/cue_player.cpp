@@ -15,6 +15,25 @@ std::optional<Time> followerAt(const CueList& list, int cue, Time at) {
     return follow && list.after(cue) ? std::optional(at + *follow) : std::nullopt;
 }
 
+// The dark before the first cue, as a cue.
+CueList::Cue darkOf(const CueList& list) { return {.look = list.dark, .fade = list.darkFade, .follow = {}}; }
+
+// The cue that is on at `at` if `cue` was entered at `entered`, and when it was entered itself.
+std::pair<int, Time> followed(const CueList& list, int cue, Time entered, Time at) {
+    if (cue < 0) return {cue, entered};
+    const auto follows = [](const CueList::Cue& each) { return each.follow.has_value(); };
+    if (list.loops && std::ranges::all_of(list.cues, follows)) {  // whole passes lead nowhere
+        Time pass{};
+        for (const CueList::Cue& each : list.cues) pass += *each.follow;
+        entered += (at - entered) / pass * pass;
+    }
+    for (auto left = followerAt(list, cue, entered); left && *left <= at; left = followerAt(list, cue, entered)) {
+        cue = *list.after(cue);
+        entered = *left;
+    }
+    return {cue, entered};
+}
+
 }  // namespace
 
 bool isOfOneSite(const Look& a, const Look& b) {
@@ -50,33 +69,37 @@ void CuePlayer::examine(const CueList& list) {
 
 LookCourses::Room CuePlayer::room() const { return {sources_.size() + composed_.layers, composed_.pictures}; }
 
-void CuePlayer::enter(int cue, Time at) {
-    begin(this->at(at).list, cue, at);
+void CuePlayer::enter(int cue, Time at, Time ago) {
+    std::shared_ptr<const CueList> list = this->at(at).list;
+    const auto [now, entered] = followed(*list, cue, at - ago, at);
+    begin(std::move(list), now, entered, at);
     followOn();
 }
 
-// Adds the entries of a cue that is entered at `at`. Later entries are dropped.
-void CuePlayer::begin(std::shared_ptr<const CueList> list, int cue, Time at) {
-    const CueList::Cue& wanted = list->cues[static_cast<std::size_t>(cue)];
-    const std::optional<Time> left = followerAt(*list, cue, at);
+// Adds the entries of a cue that was entered at `entered` and is seen from `at` on. Later entries
+// are dropped.
+void CuePlayer::begin(std::shared_ptr<const CueList> list, int cue, Time entered, Time at) {
+    const bool hasBegun = entered < at;
+    const CueList::Cue dark = cue < 0 ? darkOf(*list) : CueList::Cue();
+    const CueList::Cue& wanted = cue < 0 ? dark : list->cues[static_cast<std::size_t>(cue)];
+    const Time least = hasBegun ? list->blackoutFade : Time{};
     drop(at);
-    Entry entry{.at = at,
-                .list = std::move(list),
-                .cue = cue,
-                .entered = at,
-                .whole = at + wanted.length(),
-                .left = left,
-                .seen = entries_.back().seen};
-    move(std::move(entry), wanted, Time{});
+    Entry entry{.at = at, .list = list, .cue = cue, .entered = entered, .left = {}, .seen = entries_.back().seen};
+    entry.whole = std::max(entered + wanted.length(), at + least);
+    if (cue >= 0) entry.left = followerAt(*list, cue, entered);
+    move(std::move(entry), wanted, least, hasBegun);
 }
 
 // Adds an entry that goes on with what is seen, and one for each further moment at which the cue
-// begins to move something. The cue was entered at `entry.entered`.
-void CuePlayer::move(Entry entry, const CueList::Cue& wanted, Time least) {
+// begins to move something. The cue was entered at `entry.entered`. `hasBegun`: sources that come
+// at once play as if they had come with the cue.
+void CuePlayer::move(Entry entry, const CueList::Cue& wanted, Time least, bool hasBegun) {
     entries_.push_back(std::move(entry));
-    for (const Movement& movement : wanted.movements(entries_.back().entered, entries_.back().at, least)) {
-        if (movement.start > entries_.back().at) {
-            Entry later = entries_.back();
+    for (Movement& movement : wanted.movements(entries_.back().entered, entries_.back().at, least)) {
+        Entry& last = entries_.back();
+        movement.begun = hasBegun ? std::min(movement.start, last.entered + wanted.wait) : movement.start;
+        if (movement.start > last.at) {
+            Entry later = last;
             later.at = movement.start;
             entries_.push_back(std::move(later));
         }
@@ -95,7 +118,7 @@ void CuePlayer::followOn() {
     for (std::size_t added = 0; added < most; ++added) {
         const Entry& last = entries_.back();
         if (!last.left) return;
-        begin(last.list, *last.list->after(last.cue), *last.left);
+        begin(last.list, *last.list->after(last.cue), *last.left, *last.left);
     }
 }
 
@@ -122,15 +145,14 @@ void CuePlayer::revise(std::shared_ptr<const CueList> list, Time at) {
     if (entry.isGone) {
         entries_.push_back(std::move(entry));
     } else if (cue < 0) {
-        const CueList::Cue dark{.look = list->dark, .fade = list->blackoutFade, .follow = {}};
         entry.entered = at;
-        move(std::move(entry), dark, Time{});
+        move(std::move(entry), darkOf(*list), Time{}, false);
     } else {
         const CueList::Cue& wanted = list->cues[static_cast<std::size_t>(cue)];
         entry.whole = std::max(entry.entered + wanted.length(), at + list->blackoutFade);
         entry.left = followerAt(*list, cue, entry.entered);
         if (entry.left) entry.left = std::max(at, *entry.left);
-        move(std::move(entry), wanted, list->blackoutFade);
+        move(std::move(entry), wanted, list->blackoutFade, false);
     }
     followOn();
 }

@@ -51,7 +51,10 @@ public:
     // Begins in the dark before the first cue.
     explicit CuePlayer(std::shared_ptr<const CueList> list);
 
-    void enter(int cue, Time at);
+    // Enters a cue; -1: the dark before the first. `ago`: it was to be entered so long before. Then
+    // what has followed by now is entered, with what is left of its fade, but no less than the
+    // list's `blackoutFade`, and of its follow.
+    void enter(int cue, Time at, Time ago = Time{});
     // Continues with another list for the same site.
     void revise(std::shared_ptr<const CueList> list, Time at);
     // Works out the follows until `time`. What was over before `kept` is forgotten, so that a loop
@@ -76,8 +79,8 @@ public:
 
 private:
     void examine(const CueList& list);
-    void begin(std::shared_ptr<const CueList> list, int cue, Time at);
-    void move(Entry entry, const CueList::Cue& wanted, Time least);
+    void begin(std::shared_ptr<const CueList> list, int cue, Time entered, Time at);
+    void move(Entry entry, const CueList::Cue& wanted, Time least, bool hasBegun);
     void drop(Time at);
     void followOn();
 

@@ -23,6 +23,7 @@ struct Teller {
         return decided.input.outcome == Outcome::Taken ? "" : std::string(nameOf(decided.input.outcome));
     }
     std::string operator()(const event::CueEntered& entered) const {
+        if (entered.cue < 0) return "no cue: it gets dark";
         return fmt::format("cue {}: {}", placeOf(entered.number, entered.cue, entered.cues), entered.name);
     }
     std::string operator()(const event::HoldChanged& change) const {
@@ -54,6 +55,14 @@ struct Teller {
         if (!resumed.isExact) text += "; the cue list has changed, so the cue begins again";
         if (resumed.damaged > 0) text += fmt::format("; {} of its lines are damaged and left out", resumed.damaged);
         return text;
+    }
+    std::string operator()(const event::ScheduleCalled& called) const {
+        return fmt::format("schedule: {}{}", called.what, called.joins ? ", joined where the show would be" : "");
+    }
+    std::string operator()(const event::NextDayTold& told) const { return "the schedule, " + told.lines; }
+    std::string operator()(const event::ClockSet& set) const {
+        return fmt::format("the machine's clock was set {} by {:.0f} s: {}", set.by > Time{} ? "forward" : "back",
+                           std::abs(seconds(set.by)), set.now);
     }
     std::string operator()(const event::ScheduleEnded&) const { return "you have the controller"; }
     std::string operator()(const event::QuitAsked& asked) const {

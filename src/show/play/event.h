@@ -22,7 +22,7 @@ struct InputDecided {
 };
 // A cue was entered, by an input or by a follow.
 struct CueEntered {
-    int cue = 0;  // index into Show::cues, of `cues`
+    int cue = 0;  // index into Show::cues, of `cues`; -1: the dark before the first
     int cues = 0;
     std::string name;
     CueNumber number = 0;
@@ -47,6 +47,20 @@ struct ShowResumed {
     std::string cue;          // that is on; empty: none
     bool isExact = true;      // its fades, waits and follows go on, too
     std::size_t damaged = 0;  // lines of the journal
+};
+// The show's schedule enters a cue, or lets it get dark.
+struct ScheduleCalled {
+    std::string what;    // "'Night' since 21:15"
+    bool joins = false;  // the cue was to be entered earlier
+};
+// What the show's schedule brings in the next 24 hours.
+struct NextDayTold {
+    std::string lines;
+};
+// The machine's clock was set.
+struct ClockSet {
+    std::string now;  // what it shows
+    Time by{};        // forward
 };
 // A person took over from the schedule of a rehearsal.
 struct ScheduleEnded {};
@@ -133,10 +147,10 @@ struct SiteNotSaved {
     std::string why;
 };
 
-using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ShowResumed, ScheduleEnded, QuitAsked,
-                          KeysAsked, FaultBegan, FaultEnded, SendersChanged, PictureTaken, PictureMissed, LightCorrected,
-                          PictureMoved, CameraMoved, MovementUnclear, CauseBegan, CauseEnded, PatternFitted, LampsTrimmed,
-                          SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
+using What = std::variant<InputDecided, CueEntered, HoldChanged, MasterChanged, CueLoaded, ShowResumed, ScheduleCalled,
+                          NextDayTold, ClockSet, ScheduleEnded, QuitAsked, KeysAsked, FaultBegan, FaultEnded, SendersChanged,
+                          PictureTaken, PictureMissed, LightCorrected, PictureMoved, CameraMoved, MovementUnclear, CauseBegan,
+                          CauseEnded, PatternFitted, LampsTrimmed, SettingUpBegan, SettingUpEnded, SiteSaved, SiteNotSaved>;
 
 }  // namespace event
 

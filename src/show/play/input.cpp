@@ -100,6 +100,7 @@ std::string lineOf(const Input& input) {
                                    hasRevision(input.kind) ? input.revision : input.cue, nameOf(input.source), input.which);
     if (input.kind == Input::Kind::Correct)
         for (const glm::vec2 corner : input.shift) line += fmt::format(" {} {}", corner.x, corner.y);
+    if (input.kind == Input::Kind::Jump && input.ago != Time{}) line += fmt::format(" {}", input.ago.count());
     if (input.kind == Input::Kind::Master) line += fmt::format(" {}", input.level);
     if (input.kind == Input::Kind::Trim) line += fmt::format(" {} {}", input.trim.share, input.trim.relaysOff);
     if (input.late) line += " late";
@@ -116,6 +117,7 @@ Result<Input> inputOf(std::string_view line) {
     const std::size_t wanted = kWords + (kind == "correct"  ? 2 * input.shift.size()
                                          : kind == "trim"   ? 2
                                          : kind == "master" ? 1
+                                         : kind == "jump"   ? std::min(words.size(), kWords + 1) - std::min(words.size(), kWords)
                                                             : 0);
     if (words.size() != wanted) return Error(fmt::format("an input has {} words, here are {}", wanted, words.size()));
     input.at = Time(TRY(numberOf<Time::rep>(words[0])));
@@ -126,6 +128,7 @@ Result<Input> inputOf(std::string_view line) {
     if (input.kind == Input::Kind::Correct)
         for (std::size_t i = 0; i < 2 * input.shift.size(); ++i)
             input.shift[i / 2][static_cast<int>(i % 2)] = TRY(numberOf<float>(words[kWords + i]));
+    if (input.kind == Input::Kind::Jump && words.size() > kWords) input.ago = Time(TRY(numberOf<Time::rep>(words[kWords])));
     if (input.kind == Input::Kind::Master) input.level = TRY(numberOf<float>(words[kWords]));
     if (input.kind == Input::Kind::Trim) {
         input.trim.share = TRY(numberOf<float>(words[kWords]));

@@ -18,7 +18,7 @@ struct Input {
     enum class Kind {
         Go,           // enter the next cue
         Back,         // enter the cue before
-        Jump,         // enter cue `cue`; also if it is the current one
+        Jump,         // enter cue `cue`, also if it is the current one; -1: the dark before the first
         Blackout,     // toggle the blackout of pictures and fixtures
         Dark,         // begin the blackout, if there is none
         Light,        // end the blackout, if there is one
@@ -42,7 +42,7 @@ struct Input {
         Contact,     // Site::contacts[which]
         Terminal,    // a key at the terminal
         Screen,      // a key at a projector's window
-        Schedule,    // GO by the schedule of a rehearsal without an operator
+        Schedule,    // the show's schedule, or GO by that of a rehearsal without an operator
         Camera,      // what the camera sees; of Correct: on output `which`; of Exchange: of source `which`
         Journal      // what an earlier run has left, where its journal is damaged
     };
@@ -55,6 +55,7 @@ struct Input {
     PictureShift shift{};  // only for Correct
     LampTrim trim{};       // only for Trim
     float level = 1;       // only for Master, 0..1
+    Time ago{};            // for Jump: the cue was to be entered so long before; what has followed by now is entered
     bool late = false;     // a person asked for it so long before it was taken that it may not be wanted any more
     friend bool operator==(const Input&, const Input&) = default;
 };

@@ -78,6 +78,9 @@ struct Writer {
         for (const auto& [output, z] : figures.z) text += fmt::format("{} {}/", z, printable(output));
         return text;
     }
+    std::string operator()(const journal::Clock& clock) const {
+        return fmt::format("clock {} {}", clock.at.count(), clock.utc.count());
+    }
     std::string operator()(const journal::Gap& gap) const { return fmt::format("gap {}", gap.at.count()); }
     std::string operator()(const journal::End& end) const {
         return fmt::format("end {} {}", end.at.count(), printable(end.why, 1000));
@@ -128,6 +131,9 @@ std::optional<journal::Line> lineFrom(std::string_view text) {
             figures.z.emplace_back(score.rest(), z);
         }
         line = figures;
+    } else if (kind == "clock") {
+        const Time at = words.time();
+        line = journal::Clock{at, words.time()};
     } else if (kind == "gap") {
         line = journal::Gap{words.time()};
     } else if (kind == "end") {
@@ -153,6 +159,15 @@ Time Journal::newest() const {
     for (const Entry& entry : entries) {
         const auto* const run = std::get_if<journal::Run>(&entry.line);
         newest = run != nullptr && !run->goesOn ? run->at : std::max(newest, timeOf(entry.line));
+    }
+    return newest;
+}
+
+std::optional<journal::Clock> Journal::clock() const {
+    std::optional<journal::Clock> newest;
+    for (const Entry& entry : entries) {
+        if (const auto* const run = std::get_if<journal::Run>(&entry.line)) newest = journal::Clock{run->at, run->utc};
+        if (const auto* const clock = std::get_if<journal::Clock>(&entry.line)) newest = *clock;
     }
     return newest;
 }

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -51,6 +52,12 @@ struct Figures {
     std::vector<std::pair<std::string, double>> z;  // the camera's newest score of each output; negative: none yet
     friend bool operator==(const Figures&, const Figures&) = default;
 };
+// The machine's clock was set.
+struct Clock {
+    Time at{};
+    Time utc{};  // that it shows now
+    friend bool operator==(const Clock&, const Clock&) = default;
+};
 // Lines are missing here, because they could not be written.
 struct Gap {
     Time at{};
@@ -62,7 +69,7 @@ struct End {
     friend bool operator==(const End&, const End&) = default;
 };
 
-using Line = std::variant<Run, Input, State, Told, Figures, Gap, End>;
+using Line = std::variant<Run, Input, State, Told, Figures, Clock, Gap, End>;
 
 }  // namespace journal
 
@@ -84,6 +91,8 @@ struct Journal {
 
     // The newest time that a line tells since the show last began; 0 if there is none.
     Time newest() const;
+    // What the machine's clock has shown when, by the newest line that tells. Nothing: none does.
+    std::optional<journal::Clock> clock() const;
 };
 
 // Reads a journal. Damaged lines are left out. Error: its first line is not that of a journal, and

@@ -81,7 +81,7 @@ LookCourses::OutputCourse LookCourses::moved(const OutputCourse& before, const O
     OutputCourse after{.layers = {}, .pictures = {}, .wind = before.wind};
     const auto begunOf = [&](SourceId source) {
         const LayerState* const seen = layerOf(source, from.layers);
-        return seen != nullptr ? seen->begun : movement.start;
+        return seen != nullptr ? seen->begun : movement.begun;
     };
     const Layers seen = addedLayers(from), wanted = addedLayers(to);
     const auto move = [&](SourceId source, const Fade& fade) {

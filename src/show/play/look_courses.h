@@ -25,7 +25,8 @@ public:
 
     // From `movement.start` on, the things that it moves go from what is seen at that moment to
     // `look` and `winds`. All others go on as before. Relays switch at once. A source that is seen
-    // already does not begin again. `winds`: one for each output; a missing one is the usual wind.
+    // already does not begin again; another plays from `movement.begun` on. `winds`: one for each
+    // output; a missing one is the usual wind.
     LookCourses moved(const Movement& movement, const Look& look, std::span<const WindWish> winds) const;
 
     // Room for the layers and pictures of one output, so that lookAt() need not allocate.

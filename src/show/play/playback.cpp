@@ -111,12 +111,13 @@ Outcome Playback::moveOn(const Input& input, Time at) {
         if (now.cue <= 0) return Outcome::AtFirstCue;
         wanted = now.cue - 1;
     } else {
-        if (!has(input.cue)) return Outcome::NoSuchCue;
+        if ((input.cue != kNoCue && !has(input.cue)) || input.ago < Time{}) return Outcome::NoSuchCue;
         wanted = input.cue;
     }
     if (paused_.last()) letGoOn(at);
+    if (wanted == kNoCue) frozen_.set(at, nullptr);  // who wants it dark wants nothing of a freeze
     loaded_.set(at, kNoCue);
-    player_.enter(*wanted, cueTime_.at(at));
+    player_.enter(*wanted, cueTime_.at(at), input.kind == Input::Kind::Jump ? input.ago : Time{});
     return Outcome::Taken;
 }
 

@@ -33,7 +33,7 @@ namespace fantascope::show {
 // - A pause lets cue time stand still: waits, fades, follows, videos, shadows and patterns. A second
 //   one, or GO, lets it go on. Back and jumps do so, too.
 // - A freeze keeps what is seen, while the cues go on underneath. A second one shows them again at
-//   once.
+//   once. A jump to the dark ends it, too.
 // - A blackout dims pictures and levels to zero in `blackoutFade`, over whatever is running. A second
 //   one, or Light, ends it. The cues continue underneath. Blackout does not switch relays: a dark
 //   picture is no reason for dark streets.

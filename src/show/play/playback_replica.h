@@ -30,6 +30,9 @@ public:
         stateAt(time, state, [](const Input&) {});
     }
 
+    // Whether there are inputs that the last stateAt() did not take.
+    bool hasNews() const { return inputs_.hasNext(); }
+
     // The playback after the inputs that the last stateAt() took.
     const Playback& playback() const { return playback_; }
 

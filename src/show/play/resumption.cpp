@@ -39,7 +39,7 @@ std::vector<Input> repairs(const ShowState& now, const journal::State& wanted, T
         return inputs.emplace_back(Input{.at = at, .kind = kind, .source = Input::Source::Journal});
     };
     const Controls& goal = wanted.controls;
-    const bool entersCue = now.cue != goal.cue && goal.cue >= 0;
+    const bool entersCue = now.cue != goal.cue;
     // In a panic no cue is entered, nothing is paused and nothing is frozen.
     const bool lifts = now.panic && (!goal.panic || entersCue || now.frozen != goal.frozen || now.paused != goal.paused);
     if (lifts) add(Kind::Restore);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "show/schedule/place.h"
 #include "show/site/corrections.h"
 #include "show/site/dmx_merge.h"
 
@@ -156,6 +157,7 @@ struct Site {
     std::optional<DeviceConfig> camera;
     std::optional<NominalCamera> nominalCamera;  // set whenever `camera` is
     Corrections corrections;                     // what the program does by itself when the camera sees a difference
+    std::optional<Place> place;                  // only schedules need it
     std::optional<ConfigNode> simulation;        // the simulated site's own section
 
     // The same site with `factor` times as many projector pixels across and down.

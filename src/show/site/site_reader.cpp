@@ -148,6 +148,7 @@ public:
         readBanks();
         readController();
         readCamera();
+        readPlace();
         fields_.optional().read("corrections", site_.corrections,
                                 [&](const ConfigNode& node) { return readCorrections(node, site_, fields_.right()); });
         fields_.optional().read("simulation", site_.simulation,
@@ -202,6 +203,12 @@ private:
                                 [&](const ConfigNode& node) { return contactBanks_.read(node, deviceNames); });
         fields_.optional().list("contacts", site_.contacts,
                                 [&](const ConfigNode& node) { return readContact(node, contactNames, contactBanks_); });
+    }
+
+    void readPlace() {
+        fields_.optional().read("place", site_.place, [](const ConfigNode& node) -> Result<std::optional<Place>> {
+            return std::optional(TRY(show::readPlace(node)));
+        });
     }
 
     void readController() {

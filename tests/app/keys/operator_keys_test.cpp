@@ -25,7 +25,7 @@ protected:
         return std::make_unique<OperatorKeys>(
             run_.inputs, run_.events, show::ShowClock(10s, 3h), nullptr, schedule, QuitKey(quitAsks),
             OperatorKeys::Actions{[this](const Key&) { return settingUp_; }, [hasController] { return hasController; },
-                                  [this] { ++pictures_; }, [this] { ++ends_; }});
+                                  [this] { ++pictures_; }, [this] { ++ends_; }, [] { return "20:00  Night"; }});
     }
     std::vector<show::Input> inputs() const {
         std::vector<show::Input> inputs;
@@ -124,7 +124,7 @@ TEST_F(Keys, are_told_when_somebody_asks) {
     keys->pressedAtScreen({.letter = '/', .shift = true}, 12s);
     keys->tick(12s);
     EXPECT_THAT(inputs(), IsEmpty());
-    EXPECT_THAT(run_.told(), ElementsAre(testing::StartsWith("the keys:\n  space  GO")));
+    EXPECT_THAT(run_.told(), ElementsAre(testing::StartsWith("the keys:\n  space  GO"), "the schedule, 20:00  Night"));
 }
 
 // Example failure: the seventeenth key of somebody in a hurry does nothing.

@@ -24,6 +24,7 @@ struct Move {
     Time wait;
     Fade fade;
     float target;
+    bool switches = false;  // it has no fade
 };
 
 // Light that moves to what is wanted at a constant rate.
@@ -58,16 +59,15 @@ private:
 // Finds what is seen by going through everything that happened from the beginning.
 class Model {
 public:
-    explicit Model(const CueList& list) : list_(list) {}
+    explicit Model(const CueList& list) : list_(list), dark_{.look = list.dark, .fade = list.darkFade, .follow = {}} {}
 
     // Until `time`, with the cues that follow by themselves.
     void advance(Time time) {
         while (!entered_.empty()) {
             const Entered last = entered_.back();
-            const auto& follow = cueOf(last.cue).follow;
-            if (!follow || !hasNext(last.cue) || last.cueTime + *follow > cueTime(time)) return;
-            const Time cueTime = last.cueTime + *follow;
-            entered_.push_back({runs_.back().at + (cueTime - runs_.back().cueTime), cueTime, next(last.cue)});
+            if (!followsBy(last, cueTime(time))) return;
+            const Time cueTime = last.cueTime + *cueOf(last.cue).follow;
+            entered_.push_back({runs_.back().at + (cueTime - runs_.back().cueTime), cueTime, cueTime, next(last.cue)});
         }
     }
     bool apply(const Input& input) {
@@ -166,12 +166,19 @@ public:
         for (std::size_t i = 0; i < count && entered_[i].at <= time; ++i) {
             const bool isLast = i + 1 == count || entered_[i + 1].at > time;
             const Move move = moveIn(cueOf(entered_[i].cue));
-            const Time begins = entered_[i].cueTime + move.wait;
-            if (begins > (isLast ? now : entered_[i + 1].cueTime)) continue;
+            Time begins = entered_[i].cueTime + move.wait;
+            const auto rest = [&](Time length) {
+                return begins < entered_[i].seen && !move.switches
+                           ? std::max(begins + length - entered_[i].seen, list_.blackoutFade)
+                           : length;
+            };
+            const Fade left{rest(move.fade.in), rest(move.fade.out), move.fade.curve};
+            begins = std::max(begins, entered_[i].seen);
+            if (begins > (isLast ? now : entered_[i + 1].seen)) continue;
             from = valueOf(begins);
             to = move.target;
             start = begins;
-            fade = move.fade;
+            fade = left;
         }
         return valueOf(now);
     }
@@ -180,7 +187,8 @@ public:
 private:
     struct Entered {
         Time at, cueTime;
-        int cue;
+        Time seen;  // the cue time from which on it is; later than `cueTime` if the cue was joined
+        int cue;    // -1: the dark
     };
     // From a moment on, cue time goes on, or stands still.
     struct Run {
@@ -202,7 +210,7 @@ private:
                     run(true);
                     return true;
                 }
-                if (!entered_.empty() && cueTime(newest_) - entered_.back().cueTime < list_.goInterval) return false;
+                if (cue >= 0 && cueTime(newest_) - entered_.back().cueTime < list_.goInterval) return false;
                 if (wentOn_ && newest_ - *wentOn_ < list_.goInterval) return false;
                 if (!next()) return false;
                 wanted = *next();
@@ -212,14 +220,26 @@ private:
                 wanted = cue - 1;
                 break;
             default:
-                if (input.cue < 0 || input.cue >= count()) return false;
+                if (input.cue < -1 || input.cue >= count() || input.ago < Time{}) return false;
                 wanted = input.cue;
         }
         if (isPaused_) run(true);
         isPaused_ = false;
         loaded_ = -1;
-        entered_.push_back({newest_, cueTime(newest_), wanted});
+        if (wanted < 0 && isFrozen(newest_)) freezes_.push_back({newest_, false, entered_.size()});
+        const Time now = cueTime(newest_);
+        Entered joined{newest_, now - (input.kind == Input::Kind::Jump ? input.ago : Time{}), now, wanted};
+        while (followsBy(joined, now)) {
+            joined.cueTime += *cueOf(joined.cue).follow;
+            joined.cue = next(joined.cue);
+        }
+        entered_.push_back(joined);
         return true;
+    }
+    bool followsBy(const Entered& entered, Time cueTime) const {
+        if (entered.cue < 0 || !hasNext(entered.cue)) return false;
+        const auto& follow = cueOf(entered.cue).follow;
+        return follow && entered.cueTime + *follow <= cueTime;
     }
     void run(bool runs) {
         if (runs_.back().runs == runs) return;
@@ -238,12 +258,13 @@ private:
             if (candidate.at <= time) freeze = &candidate;
         return freeze;
     }
-    const CueList::Cue& cueOf(int cue) const { return list_.cues[static_cast<std::size_t>(cue)]; }
+    const CueList::Cue& cueOf(int cue) const { return cue < 0 ? dark_ : list_.cues[static_cast<std::size_t>(cue)]; }
     int count() const { return static_cast<int>(list_.cues.size()); }
     bool hasNext(int cue) const { return list_.loops || cue + 1 < count(); }
     int next(int cue) const { return (cue + 1) % count(); }
 
     const CueList& list_;
+    CueList::Cue dark_;
     std::vector<Entered> entered_;
     std::vector<Run> runs_{{Time{}, Time{}, true}};
     std::vector<Freeze> freezes_;
@@ -270,6 +291,7 @@ Move moveOfRelay(const CueList::Cue& cue, std::size_t relay) {
     Move move = moveOf(
         cue, [&](const CueList::Part& part) { return has(part.relays, relay); }, cue.look.relays[relay]);
     move.fade = Fade();
+    move.switches = true;
     return move;
 }
 Move moveOfLayer(const CueList::Cue& cue, std::size_t output, SourceId source) {
@@ -322,6 +344,7 @@ CueList anyList() {
     list.goInterval = 300ms;
     list.blackoutFade = 500ms;
     list.panicFade = anyTime();
+    list.darkFade = anyTime();
     for (int cues = *rc::gen::inRange(1, 7); cues > 0; --cues) list.cues.push_back(anyCue());
     list.loops = *rc::gen::arbitrary<bool>() &&
                  std::ranges::any_of(list.cues, [](const CueList::Cue& cue) { return !cue.follow || *cue.follow > Time{}; });
@@ -340,6 +363,7 @@ Input anyInput(Time after) {
     input.kind = *rc::gen::elementOf(std::vector(std::begin(kKinds), std::end(kKinds)));
     input.cue = *rc::gen::inRange(-2, 7);
     input.source = kSources[*rc::gen::inRange(0, 2)];
+    input.ago = *rc::gen::element(0, 0, 0, -1, 500, 1700, 2500, 20000) * 1ms;
     input.level = static_cast<float>(*rc::gen::inRange(-1, 6)) / 4;
     return input;
 }

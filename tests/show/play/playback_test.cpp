@@ -40,7 +40,7 @@ CueList threeCues() {
                  {{{{}}, {0.0f, 0.0f}, {1}}, 0s, std::nullopt}};
     list.dark = {{{}}, {0.0f, 0.0f}, {1}};
     list.goInterval = 300ms;
-    list.blackoutFade = 500ms;
+    list.blackoutFade = list.darkFade = 500ms;
     return list;
 }
 
@@ -259,13 +259,42 @@ TEST(Playback, jump_enters_any_cue_and_go_goes_on_from_there) {
     EXPECT_EQ(stateOf(playback, 20s).cue, 0);
 }
 
+// Example failure: a video of twenty minutes begins when the machine has booted, and not when it
+// was to.
+TEST(Playback, a_cue_that_was_to_be_entered_before_is_joined) {
+    CueList list = threeCues();
+    list.cues[0].follow = 10s;
+    list.blackoutFade = list.darkFade = 500ms;
+    Playback playback(list);
+    ASSERT_EQ(playback.apply({.at = 5s, .kind = Input::Kind::Jump, .cue = 0, .ago = 12s}), Outcome::Taken);
+    ShowState state = stateOf(playback, 5s + 500ms);
+    EXPECT_EQ(state.cue, 1) << "since 3 s";
+    EXPECT_EQ(playback.fadeLeftAt(5s), std::max<Time>(list.cues[1].fade.longer() - 2s, 500ms));
+    EXPECT_EQ(stateOf(playback, 4s).cue, -1) << "the past stays";
+    ASSERT_FALSE(state.outputs[0].layers.empty());
+    EXPECT_EQ(state.outputs[0].layers[0].begun, 3s) << "its video is in the middle";
+}
+
+TEST(Playback, a_jump_to_the_dark_fades_and_go_begins_anew) {
+    CueList list = threeCues();
+    list.darkFade = 4s;
+    const Playback playback = after(list, {go(0s), go(10s), jump(20s, -1), go(40s)});
+    const ShowState lit = stateOf(playback, 20s), fading = stateOf(playback, 22s), dark = stateOf(playback, 24s);
+    EXPECT_EQ(fading.cue, -1);
+    EXPECT_FLOAT_EQ(lit.levels[1], 0.5f);
+    EXPECT_FLOAT_EQ(fading.levels[1], 0.25f);
+    EXPECT_EQ(static_cast<const Look&>(dark), list.dark);
+    EXPECT_EQ(stateOf(playback, 40s).cue, 0);
+}
+
 TEST(Playback, what_cannot_be_done_is_ignored_and_said) {
     Playback playback(threeCues());
     EXPECT_EQ(playback.apply(back(1s)), Outcome::AtFirstCue);  // there is no cue at all yet
     EXPECT_EQ(playback.apply(go(2s)), Outcome::Taken);
     EXPECT_EQ(playback.apply(back(3s)), Outcome::AtFirstCue);
     EXPECT_EQ(playback.apply(jump(4s, 3)), Outcome::NoSuchCue);
-    EXPECT_EQ(playback.apply(jump(4s, -1)), Outcome::NoSuchCue);
+    EXPECT_EQ(playback.apply(jump(4s, -2)), Outcome::NoSuchCue);
+    EXPECT_EQ(playback.apply({.at = 4s, .kind = Input::Kind::Jump, .ago = -1s}), Outcome::NoSuchCue);
     EXPECT_EQ(playback.apply(jump(5s, 2)), Outcome::Taken);
     EXPECT_EQ(playback.apply(go(6s)), Outcome::AtLastCue);
     const ShowState state = stateOf(playback, 7s);
@@ -432,7 +461,7 @@ CueList randomCues(Rng& rng) {
     list.seed = rng.bits();
     list.dark = {std::vector<OutputState>(kOutputs), std::vector<float>(kChannels, 0.0f), {1}};
     list.goInterval = 300ms;
-    list.blackoutFade = 500ms;
+    list.blackoutFade = list.darkFade = 500ms;
     for (std::uint32_t i = 0, count = 2 + rng.below(5); i < count; ++i) {
         const auto fade = [&] {
             return Fade(fromSeconds(0.5 + 3 * rng.uniform()), fromSeconds(0.5 + 3 * rng.uniform()),
